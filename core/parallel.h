@@ -1,0 +1,41 @@
+// Deterministic parallel loops over oneTBB: body(i) writes slot i only, sums are taken in a fixed order.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace bnvpl {
+
+// Calls body(begin, end) for disjoint ranges that cover [0, count), at least `grain` long but the last.
+template <typename Body>
+void parallelRanges(size_t count, size_t grain, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
+                    [&](const tbb::blocked_range<size_t>& r) { body(r.begin(), r.end()); });
+}
+
+template <typename Body>
+void parallelFor(size_t count, size_t grain, const Body& body) {
+  parallelRanges(count, grain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+// Sum of term(i) over [0, count): one partial sum for each fixed chunk, added in chunk order, so the
+// result does not depend on the number of threads.
+template <typename Term>
+double parallelSum(size_t count, const Term& term) {
+  constexpr size_t kChunk = 4096;
+  std::vector<double> partial((count + kChunk - 1) / kChunk, 0.0);
+  parallelFor(partial.size(), 1, [&](size_t chunk) {
+    const size_t end = std::min(count, (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) partial[chunk] += term(i);
+  });
+  double sum = 0.0;
+  for (const double p : partial) sum += p;
+  return sum;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,64 @@
+// Counter-based random numbers: the value depends on (key, index, dimension), never on who asks,
+// when, or on which thread. Philox-like quality is not needed; SplitMix64's finaliser passes BigCrush.
+#pragma once
+
+#include <cstdint>
+
+namespace bnvpl {
+
+constexpr uint64_t mix64(uint64_t x) {  // SplitMix64 finaliser (Steele et al. 2014)
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+// Streams of different purposes never share numbers, even under one seed.
+enum class Stream : uint32_t {
+  PlaceCamera = 1,
+  PlaceLight,
+  Eliminate,
+  Photons,
+  PixelSamples,
+  PathTracer,
+  LightTree,
+  Plot
+};
+
+constexpr uint64_t streamKey(uint64_t seed, Stream stream) {
+  return mix64(mix64(seed + 0x9e3779b97f4a7c15u) + static_cast<uint64_t>(stream));
+}
+
+constexpr uint64_t random64(uint64_t key, uint64_t index, uint32_t dimension) {
+  return mix64(mix64(key + index * 0x9e3779b97f4a7c15u) + (dimension + 1) * 0xd1342543de82ef95u);
+}
+// Uniform in [0, 1): the top 24 bits, so that 1 is never reached.
+constexpr float toUnitFloat(uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
+
+// The numbers of one path, photon or pixel sample, in order of use.
+class Rng {
+ public:
+  constexpr Rng(uint64_t key, uint64_t index) : state_(mix64(key + index * 0x9e3779b97f4a7c15u)) {}
+  constexpr float next() {
+    ++dimension_;
+    return toUnitFloat(mix64(state_ + dimension_ * 0xd1342543de82ef95u));
+  }
+
+ private:
+  uint64_t state_;
+  uint64_t dimension_ = 0;
+};
+
+// Point `index` of the R2 sequence (Roberts 2018), shifted by `shift` in [0,1)^2: every prefix is
+// well spread over the unit square. Double precision keeps it so beyond 2^24 points.
+struct Point2 {
+  float x, y;
+};
+constexpr Point2 r2Sequence(uint64_t index, double shiftX, double shiftY) {
+  // The plastic number p solves p^3 = p + 1; the steps are 1/p and 1/p^2, in 0.64 fixed point,
+  // whose wrap-around is the fractional part.
+  const uint64_t x = index * 0xc13fa9a902a6328fu + static_cast<uint64_t>(shiftX * 0x1p63) * 2;
+  const uint64_t y = index * 0x91e10da5c79e7b1du + static_cast<uint64_t>(shiftY * 0x1p63) * 2;
+  return {toUnitFloat(x), toUnitFloat(y)};
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,70 @@
+// Warps from unit-square numbers to directions and positions, each beside its density.
+#pragma once
+
+#include <numbers>
+
+#include "core/vec3.h"
+
+namespace bnvpl {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
+
+// Uniform on the unit disk, Shirley & Chiu 1997: keeps strata together.
+inline Vec3 sampleDisk(float u, float v) {
+  const float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
+  if (a == 0.0f && b == 0.0f) return {};
+  const bool wide = std::fabs(a) > std::fabs(b);
+  const float r = wide ? a : b;
+  const float phi = wide ? kPi / 4.0f * (b / a) : kPi / 2.0f - kPi / 4.0f * (a / b);
+  return {r * std::cos(phi), r * std::sin(phi), 0.0f};
+}
+
+// Cosine-weighted direction about +z.
+inline Vec3 sampleCosineHemisphere(float u, float v) {
+  const Vec3 d = sampleDisk(u, v);
+  return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
+}
+inline float pdfCosineHemisphere(float cosTheta) { return std::max(0.0f, cosTheta) / kPi; }
+
+// Uniform on the sphere; density 1/(4 pi).
+inline Vec3 sampleSphere(float u, float v) {
+  const float z = 1.0f - 2.0f * u;
+  const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+  return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
+}
+
+// Uniform in the cone about +z with the given cosine of its half angle; density in 1/sr below.
+inline Vec3 sampleCone(float u, float v, float cosHalfAngle) {
+  const float z = 1.0f - u * (1.0f - cosHalfAngle);
+  const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+  return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
+}
+inline float pdfCone(float cosHalfAngle) { return 1.0f / (2.0f * kPi * (1.0f - cosHalfAngle)); }
+
+// cos^n lobe about +z; density (n + 1) / (2 pi) cos^n.
+inline Vec3 samplePowerCosine(float u, float v, float exponent) {
+  const float z = std::pow(u, 1.0f / (exponent + 1.0f));
+  const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+  return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
+}
+inline float pdfPowerCosine(float cosAlpha, float exponent) {
+  return cosAlpha <= 0.0f ? 0.0f : (exponent + 1.0f) / (2.0f * kPi) * std::pow(cosAlpha, exponent);
+}
+
+// Uniform barycentric coordinates (of the second and third corner); density 1/area.
+struct Barycentric {
+  float u, v;
+};
+inline Barycentric sampleTriangle(float u, float v) {
+  const float root = std::sqrt(u);
+  return {root * (1.0f - v), root * v};
+}
+
+// Power heuristic with exponent 2 (Veach 1997, eq. 9.13) for the technique with density `a`.
+inline float powerHeuristic(float a, float b) {
+  if (std::isinf(a)) return 1.0f;
+  const float a2 = a * a, b2 = b * b;
+  return a2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+}
+
+}  // namespace bnvpl
