@@ -17,6 +17,10 @@ AtomicFile::AtomicFile(fs::path target)
   if (fs::is_directory(target_, ignored)) {
     throw OutputError(target_, "is a folder; name a file");
   }
+  // Renaming over /dev/null or a pipe would replace the device itself.
+  if (fs::exists(target_, ignored) && !fs::is_regular_file(target_, ignored)) {
+    throw OutputError(target_, "is a device or pipe, which cannot be replaced; name a file");
+  }
   const int fd = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (fd < 0) {
     throw OutputError(target_, std::string("cannot write: ") + std::strerror(errno) +
@@ -40,8 +44,11 @@ void writeFileAtomically(const fs::path& target, const std::string& bytes) {
   AtomicFile file(target);
   std::FILE* out = std::fopen(file.path().c_str(), "wb");
   bool ok = out && std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-  const int writeErrno = errno;
-  if (out && std::fclose(out) != 0) ok = false;
+  int writeErrno = errno;
+  if (out && std::fclose(out) != 0 && ok) {  // the last buffer is written here
+    ok = false;
+    writeErrno = errno;
+  }
   if (!ok) {
     throw OutputError(target, std::string("write failed: ") + std::strerror(writeErrno) +
                                   "; the old file is unchanged");

@@ -5,9 +5,9 @@
 
 namespace bnvpl {
 
-// Reserves TARGET.partial-PID. The caller writes to path() and then calls commit(); without that, the
-// destructor removes the partial file and the old target stays as it was.
-// Throws OutputError when the folder is missing or not writable, at construction: before the work.
+// Reserves TARGET.partial-PID. The caller writes to path() and then calls commit(); without that,
+// the destructor removes the partial file and the old target stays as it was. Throws OutputError
+// when the folder is missing or not writable, at construction: before the work.
 class AtomicFile {
  public:
   explicit AtomicFile(fs::path target);

@@ -22,14 +22,16 @@ struct VplTable {
   std::vector<uint32_t> id;    // row in path order at placement; survives every stage
 
   // since Eliminated
-  std::vector<float> radius;  // r_max of this VPL, world units: it stands for 2 sqrt(3) radius^2 of surface
-  double rMax = 0.0;          // r_max that belongs to areaEstimate (uniform density), world units
+  std::vector<float>
+      radius;         // r_max of this VPL, world units: it stands for 2 sqrt(3) radius^2 of surface
+  double rMax = 0.0;  // r_max that belongs to areaEstimate (uniform density), world units
   double areaEstimate = 0.0;  // indirectly visible area, world units squared
 
   // since Lit
-  std::vector<Vec3> flux;             // W leaving this VPL's share of the surface, linear sRGB
-  std::vector<uint64_t> photons;      // deposits received
-  std::vector<float> relativeError;   // standard error of the flux over the flux, 0 where photons = 0
+  std::vector<Vec3> flux;         // W leaving this VPL's share of the surface, linear sRGB
+  std::vector<uint64_t> photons;  // deposits received
+  std::vector<float>
+      relativeError;  // standard error of the flux over the flux, 0 where photons = 0
 
   uint64_t sceneHash = 0;  // content hash of the scene that the rows lie on
   std::string provenance;  // JSON array, oldest stage first; see formats/README.md

@@ -1,0 +1,194 @@
+// vpl-eliminate's core: end to end, by part, and the neighbour searches that it could use.
+// Arguments are candidates and, end to end, VPLs kept.
+#include <benchmark/benchmark.h>
+
+#include <atomic>
+#include <cmath>
+#include <map>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "spatial/kd_tree.h"
+#include "spatial/local_density.h"
+#include "spatial/morton_order.h"
+#include "spatial/point_grid.h"
+#include "tools/eliminate/conflict_graph.h"
+#include "tools/eliminate/eliminate.h"
+#include "tools/eliminate/greedy.h"
+#include "tools/eliminate/radii.h"
+
+namespace bnvpl {
+namespace {
+
+struct Cloud {
+  std::vector<Vec3> position, normal;
+};
+
+// On five faces of a room of 8 x 3 x 4, in random order. `uneven` gathers them about one corner, with a
+// density ratio of roughly 100:1, as camera paths do.
+Cloud makeRoom(size_t count, bool uneven) {
+  const Vec3 size(8.0f, 3.0f, 4.0f);
+  Cloud cloud;
+  for (size_t i = 0; i < count; ++i) {
+    Rng rng(streamKey(1, Stream::Plot), i);
+    const float power = uneven ? 2.5f : 1.0f;
+    const float u = std::pow(rng.next(), power), v = std::pow(rng.next(), power);
+    const float face = rng.next() * 112.0f;  // the areas of the walls before this one
+    const size_t axis = face < 24.0f ? 0 : face < 88.0f ? 1 : 2;
+    const bool far = axis == 1 && face >= 56.0f;
+    Vec3 p, n;
+    p[axis] = far ? size[axis] : 0.0f;
+    n[axis] = far ? -1.0f : 1.0f;
+    p[(axis + 1) % 3] = u * size[(axis + 1) % 3];
+    p[(axis + 2) % 3] = v * size[(axis + 2) % 3];
+    cloud.position.push_back(p);
+    cloud.normal.push_back(n);
+  }
+  return cloud;
+}
+
+const Cloud& room(int64_t count, bool uneven) {
+  static std::map<std::pair<int64_t, bool>, Cloud> made;
+  const auto [it, isNew] = made.try_emplace({count, uneven});
+  if (isNew) it->second = makeRoom(static_cast<size_t>(count), uneven);
+  return it->second;
+}
+
+// The same, in the order in which the stage searches.
+const Cloud& sortedRoom(int64_t count, bool uneven) {
+  static std::map<std::pair<int64_t, bool>, Cloud> made;
+  const auto [it, isNew] = made.try_emplace({count, uneven});
+  if (isNew) {
+    const Cloud& from = room(count, uneven);
+    for (const uint32_t row : mortonOrder(from.position)) {
+      it->second.position.push_back(from.position[row]);
+      it->second.normal.push_back(from.normal[row]);
+    }
+  }
+  return it->second;
+}
+
+EliminateOptions optionsFor(const benchmark::State& state, Density density) {
+  EliminateOptions options;
+  options.count = static_cast<uint64_t>(state.range(1));
+  options.density = density;
+  return options;
+}
+
+void endToEnd(benchmark::State& state, Density density, bool uneven) {
+  const Cloud& cloud = room(state.range(0), uneven);
+  const EliminateOptions options = optionsFor(state, density);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(eliminate(cloud.position, cloud.normal, options));
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+void radii(benchmark::State& state, Density density, bool uneven) {
+  const Cloud& cloud = room(state.range(0), uneven);
+  const EliminateOptions options = optionsFor(state, density);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(candidateRadii(cloud.position, cloud.normal, options));
+  }
+}
+
+void sorting(benchmark::State& state) {
+  const Cloud& cloud = room(state.range(0), true);
+  for (auto _ : state) benchmark::DoNotOptimize(mortonOrder(cloud.position));
+}
+
+void conflicts(benchmark::State& state, Density density, bool uneven) {
+  const Cloud& cloud = sortedRoom(state.range(0), uneven);
+  const CandidateRadii r =
+      candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  for (auto _ : state) {
+    const ConflictGraph graph(cloud.position, cloud.normal, r.radius, PairWeight{});
+    state.counters["pairs"] = static_cast<double>(graph.pairCount());
+  }
+}
+
+void greedy(benchmark::State& state, Density density, bool uneven) {
+  const Cloud& cloud = sortedRoom(state.range(0), uneven);
+  const CandidateRadii r =
+      candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const ConflictGraph graph(cloud.position, cloud.normal, r.radius, PairWeight{});
+  const std::vector<uint32_t> row = mortonOrder(cloud.position);
+  for (auto _ : state) benchmark::DoNotOptimize(weightsAtRemoval(graph, row));
+}
+
+template <typename Search>
+size_t queryAll(const Search& search, const Cloud& cloud, const std::vector<float>& radius) {
+  std::atomic<size_t> found{0};
+  parallelRanges(cloud.position.size(), 1024, [&](size_t begin, size_t end) {
+    std::vector<Neighbour> near;
+    size_t count = 0;
+    for (size_t i = begin; i < end; ++i) {
+      search.withinRadius(cloud.position[i], 2.0f * radius[i], near);
+      count += near.size();
+    }
+    found += count;
+  });
+  return found;
+}
+
+// Builds the index and asks once for each candidate.
+void radiusSearch(benchmark::State& state, bool flann, Density density, bool uneven) {
+  const Cloud& cloud = sortedRoom(state.range(0), uneven);
+  const CandidateRadii r =
+      candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const auto cell = static_cast<float>(2.0 * r.rMax);
+  for (auto _ : state) {
+    const size_t found = flann ? queryAll(KdTree(cloud.position), cloud, r.radius)
+                               : queryAll(PointGrid(cloud.position, cell), cloud, r.radius);
+    state.counters["found"] = static_cast<double>(found);
+  }
+}
+
+void buildIndex(benchmark::State& state, bool flann) {
+  const Cloud& cloud = sortedRoom(state.range(0), false);
+  for (auto _ : state) {
+    if (flann) {
+      const KdTree tree(cloud.position);
+    } else {
+      const PointGrid grid(cloud.position, 0.03f);
+    }
+  }
+}
+
+// Neighbours of every candidate by FLANN, as the density estimate asks.
+void nearest(benchmark::State& state) {
+  const Cloud& cloud = room(state.range(0), true);
+  const KdTree tree(cloud.position);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(surfaceShares(cloud.position, cloud.normal, 20, tree));
+  }
+}
+
+#define BNVPL_SIZES ArgsProduct({{50000}, {10000}})->Args({500000, 100000})->MeasureProcessCPUTime()->UseRealTime()->Unit( \
+    benchmark::kMillisecond)
+BENCHMARK_CAPTURE(endToEnd, uniform, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(endToEnd, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(endToEnd, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radii, uniform, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radii, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK(sorting)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(conflicts, uniform, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(conflicts, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(conflicts, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(greedy, uniform, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(greedy, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(greedy, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radiusSearch, flann_uniform, true, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radiusSearch, openvdb_uniform, false, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radiusSearch, flann_uniform_uneven, true, Density::Uniform, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radiusSearch, openvdb_uniform_uneven, false, Density::Uniform, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radiusSearch, flann_local_uneven, true, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radiusSearch, openvdb_local_uneven, false, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(buildIndex, flann, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(buildIndex, openvdb, false)->BNVPL_SIZES;
+BENCHMARK(nearest)->BNVPL_SIZES;
+
+}  // namespace
+}  // namespace bnvpl
+
+BENCHMARK_MAIN();

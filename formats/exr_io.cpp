@@ -1,0 +1,189 @@
+#include "formats/exr_io.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/atomic_file.h"
+
+namespace bnvpl {
+namespace {
+
+constexpr float kHalfMax = 65504.0f;
+constexpr int kMaxSide = 1 << 16;
+// A file that claims more pixel bytes than this is damaged, whatever its compression: ZIP reaches
+// 1032.
+constexpr double kMaxExpansion = 4096.0;
+constexpr double kMaxPixelBytes = 0x1p34;
+
+// No worker threads: neither a global pool nor an order that depends on one.
+constexpr int kNoThreads = 0;
+
+void refuseMalformed(const fs::path& file, const Image& image) {
+  if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide) {
+    throw OutputError(file, "an image of " + std::to_string(image.width) + " x " +
+                                std::to_string(image.height) + " pixels cannot be written");
+  }
+  if (image.channels.empty()) throw OutputError(file, "the image has no channels");
+  for (const ImageChannel& channel : image.channels) {
+    if (channel.name.empty() || channel.data.size() != image.pixelCount() ||
+        image.find(channel.name) != &channel.data) {
+      throw OutputError(file,
+                        "channel '" + channel.name + "' is empty, of another size, or there twice");
+    }
+  }
+}
+
+Imf::Header makeHeader(const Image& image, Imf::PixelType type) {
+  Imf::Header header(image.width,
+                     image.height);  // display and data window: (0,0) to the last pixel
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const ImageChannel& channel : image.channels) {
+    header.channels().insert(channel.name, Imf::Channel(type));
+  }
+  for (const auto& [name, text] : image.attributes) {
+    header.insert(name, Imf::StringAttribute(text));
+  }
+  return header;
+}
+
+// Finite values beyond the half range would turn into infinities, which no later mean survives.
+uint64_t toHalf(const std::vector<float>& from, std::vector<half>& to) {
+  uint64_t clamped = 0;
+  to.reserve(from.size());
+  for (const float value : from) {
+    if (std::fabs(value) > kHalfMax) ++clamped;
+    to.emplace_back(std::isnan(value) ? value : std::clamp(value, -kHalfMax, kHalfMax));
+  }
+  return clamped;
+}
+
+template <typename T>
+Imf::Slice sliceOf(Imf::PixelType type, const std::vector<T>& data, int width) {
+  // OpenEXR reads through this pointer only.
+  char* base = reinterpret_cast<char*>(const_cast<T*>(data.data()));
+  return {type, base, sizeof(T), sizeof(T) * static_cast<size_t>(width)};
+}
+
+// Refuses what no honest file of this size can hold, before anything of that size is allocated.
+void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
+  const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
+  const auto side = [](int low, int high) { return static_cast<double>(high) - low + 1.0; };
+  const double width = side(display.min.x, display.max.x);
+  const double height = side(display.min.y, display.max.y);
+  const double dataWidth = side(data.min.x, data.max.x);
+  const double dataHeight = side(data.min.y, data.max.y);
+  if (std::max({width, height, dataWidth, dataHeight}) > kMaxSide ||
+      std::min({width, height, dataWidth, dataHeight}) < 1.0) {
+    throw InputError(file, "claims a side of more than " + std::to_string(kMaxSide) +
+                               " pixels or none; make it again");
+  }
+  size_t channels = 0;
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
+  const double pixels = std::max(width * height, dataWidth * dataHeight);
+  const double bytes = pixels * static_cast<double>(channels) * sizeof(float);
+  if (bytes > kMaxPixelBytes || bytes > kMaxExpansion * static_cast<double>(fs::file_size(file))) {
+    throw InputError(file, "claims more pixels than a file of its size can hold; make it again");
+  }
+}
+
+// Reads scanline by scanline and keeps the part of each that lies in the display window.
+void readPixels(Imf::InputFile& in, Image& image) {
+  const Imath::Box2i &display = in.header().displayWindow(), &data = in.header().dataWindow();
+  std::vector<std::vector<float>> line(
+      image.channels.size(), std::vector<float>(static_cast<size_t>(data.max.x - data.min.x + 1)));
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < line.size(); ++c) {
+    char* base = reinterpret_cast<char*>(line[c].data()) -
+                 static_cast<std::ptrdiff_t>(data.min.x) * static_cast<int>(sizeof(float));
+    // Every scanline lands in the same place: the step from line to line is 0.
+    frame.insert(image.channels[c].name, Imf::Slice(Imf::FLOAT, base, sizeof(float), 0));
+  }
+  in.setFrameBuffer(frame);
+  const int left = std::max(display.min.x, data.min.x), right = std::min(display.max.x, data.max.x);
+  const int top = std::max(display.min.y, data.min.y);
+  const int bottom = std::min(display.max.y, data.max.y);
+  if (left > right) return;
+  for (int y = top; y <= bottom; ++y) {
+    in.readPixels(y);
+    for (size_t c = 0; c < line.size(); ++c) {
+      const size_t row = static_cast<size_t>(y - display.min.y) * static_cast<size_t>(image.width);
+      std::copy(line[c].begin() + (left - data.min.x), line[c].begin() + (right - data.min.x + 1),
+                image.channels[c].data.begin() + static_cast<std::ptrdiff_t>(row) +
+                    (left - display.min.x));
+    }
+  }
+}
+
+Image readChecked(const fs::path& file) {
+  Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // or OpenEXR allocates its line table first
+  Imf::InputFile in(file.c_str(), kNoThreads);
+  const Imf::Header& header = in.header();
+  refuseAbsurd(file, header);
+  if (!in.isComplete()) throw InputError(file, "scanlines are missing; make it again");
+  Image image;
+  image.width = header.displayWindow().max.x - header.displayWindow().min.x + 1;
+  image.height = header.displayWindow().max.y - header.displayWindow().min.y + 1;
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+    image.add(it.name());
+  }
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    // "type" says how the file is stored, not what the image is.
+    if (text && std::string(it.name()) != "type") image.attributes[it.name()] = text->value();
+  }
+  readPixels(in, image);
+  return image;
+}
+
+}  // namespace
+
+uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
+  refuseMalformed(file, image);
+  uint64_t clamped = 0;
+  // Through memory, because OpenEXR's own file stream keeps silent when its last write fails.
+  Imf::StdOSStream bytes;
+  try {
+    const bool asHalf = type == ExrPixelType::Half;
+    const Imf::Header header = makeHeader(image, asHalf ? Imf::HALF : Imf::FLOAT);
+    std::vector<std::vector<half>> halves(asHalf ? image.channels.size() : 0);
+    Imf::FrameBuffer frame;
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+      const ImageChannel& channel = image.channels[c];
+      if (asHalf) clamped += toHalf(channel.data, halves[c]);
+      frame.insert(channel.name, asHalf ? sliceOf(Imf::HALF, halves[c], image.width)
+                                        : sliceOf(Imf::FLOAT, channel.data, image.width));
+    }
+    Imf::OutputFile out(bytes, header, kNoThreads);
+    out.setFrameBuffer(frame);
+    out.writePixels(image.height);
+  } catch (const std::exception& problem) {
+    throw OutputError(file, std::string("OpenEXR: ") + problem.what());
+  }
+  writeFileAtomically(file, bytes.str());
+  return clamped;
+}
+
+Image readExr(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) {
+    throw InputError(file, "no such file; check the name");
+  }
+  try {
+    return readChecked(file);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& problem) {
+    throw InputError(
+        file, std::string("not a whole OpenEXR image: ") + problem.what() + "; make it again");
+  }
+}
+
+}  // namespace bnvpl

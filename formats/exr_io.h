@@ -1,0 +1,24 @@
+// OpenEXR images: scanlines, ZIP, any number of named channels, string attributes.
+#pragma once
+
+#include <cstdint>
+
+#include "core/errors.h"
+#include "formats/image.h"
+
+namespace bnvpl {
+
+enum class ExrPixelType { Half, Float };
+
+// Replaces `file` atomically; equal images give equal bytes. Returns how many values lay beyond the
+// half range (+-65504, infinity too) and were clamped to it: always 0 for Float.
+// Throws OutputError.
+uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type);
+
+// Reads every channel (half, float or uint) as float, in the order of their names, and every string
+// attribute. The image is the display window: pixels outside the data window are 0, data outside
+// the display window is dropped. Of a multi-part file the first part is read.
+// Throws InputError when the file is missing, damaged, incomplete or absurdly large.
+Image readExr(const fs::path& file);
+
+}  // namespace bnvpl

@@ -1,0 +1,15 @@
+// PNG output for previews and plots.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/errors.h"
+
+namespace bnvpl {
+
+// Replaces `file` atomically with an 8-bit sRGB image: rgb8 holds width * height * 3 bytes, row by
+// row from the top. Throws OutputError.
+void writePng(const fs::path& file, int width, int height, std::span<const uint8_t> rgb8);
+
+}  // namespace bnvpl

@@ -1,0 +1,37 @@
+// Reading and writing .vpl files. The layout is vpl_format.h.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/errors.h"
+#include "formats/vpl_format.h"
+#include "formats/vpl_table.h"
+
+namespace bnvpl {
+
+// Reads and verifies a whole file; sets table.checksum. A file with no rows is valid.
+// Throws InputError when it cannot be read, FileError (at a byte) when it is damaged.
+VplTable readVpl(const fs::path& file);
+
+// The same, and throws InputError when the file is not of the stage `expected`, before reading the
+// columns. The message names the tool that makes the file that is needed.
+VplTable readVpl(const fs::path& file, VplStage expected);
+
+// Header and directory, verified against the real file size; the content is not looked at.
+VplHeader readVplHeader(const fs::path& file);
+
+// Replaces `file` atomically. An empty provenance is written as "[]".
+// Throws OutputError when the table holds a value that readVpl would refuse (naming its column and
+// row) or when a write fails; the old file then stays as it was.
+void writeVpl(const fs::path& file, const VplTable& table);
+
+// "candidates", "eliminated" or "lit"; and the tool that makes such a file.
+std::string_view stageName(VplStage stage);
+std::string_view stageTool(VplStage stage);
+
+// The columns of a stage, in file order, and one number out of them.
+std::span<const VplColumnInfo> columnInfo(VplStage stage);
+double columnValue(const VplTable& table, size_t column, size_t row, size_t component);
+
+}  // namespace bnvpl

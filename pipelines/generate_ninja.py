@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Writes a build.ninja that renders scenes by the four stages, keeping every intermediate file.
+
+  pipelines/generate_ninja.py scenes/u-shape/scene.toml --vpls 3k --photons 10M --spp 8
+  ninja -f out/build.ninja
+
+Ninja remembers each stage's command and reads its depfile, so a stage runs again when an input,
+its executable or its own options have changed. Paths are relative to the folder in which both run.
+"""
+
+import argparse
+import pathlib
+import re
+import shlex
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
+
+# Stages take all cores, so one runs at a time whatever -j says.
+HEADER = """\
+# Made by generate_ninja.py; run that again to change it.
+ninja_required_version = 1.7
+builddir = {out}
+pool stage
+  depth = 1
+rule run
+  command = $cmd
+  description = $out
+  pool = stage
+rule read_scene
+  command = $cmd
+  depfile = $dep
+  description = $out
+  pool = stage
+"""
+
+
+def arguments():
+    p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
+    p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
+    p.add_argument("--out", default="out", help="folder; each scene gets one below it (default out)")
+    p.add_argument("--bin", default=relative(DEFAULT_BIN), help="folder of the executables (default %(default)s)")
+    p.add_argument("--candidates", default="60k", help="default %(default)s")
+    p.add_argument("--vpls", default="3k", help="default %(default)s")
+    p.add_argument("--photons", default="10M", help="default %(default)s")
+    p.add_argument("--spp", default="8", help="samples per pixel (default %(default)s)")
+    p.add_argument("--seed", help="for all stages")
+    p.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
+    for stage in ("place", "eliminate", "estimate", "render"):
+        p.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
+                       help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'")
+    return p.parse_args()
+
+
+def relative(path):
+    """From here when it is below here: shorter to read, and the project may move."""
+    here = pathlib.Path.cwd()
+    return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)
+
+
+def check_path(path):
+    if re.search(r"[\s$:|'\"]", path):
+        sys.exit(f"generate_ninja.py: '{path}' contains a space or one of $ : | ' \"; choose another path")
+    return path
+
+
+def name_of(scene):
+    """u-shape for u-shape/scene.toml, sponza-gallery for sponza/gallery.toml."""
+    path = pathlib.Path(scene).resolve()
+    return path.parent.name + ("" if path.stem == "scene" else f"-{path.stem}")
+
+
+def build(stage, outputs, inputs, words, scene_read):
+    """One build statement. The first input is the executable and does not repeat in `words`."""
+    folder = outputs[0].rsplit("/", 1)[0]
+    command = [inputs[0], *words, "--stats", f"{folder}/{stage}.json"]
+    rows = [f"build {' | '.join(outputs)}: {'read_scene' if scene_read else 'run'} {' '.join(inputs)}"]
+    if scene_read:
+        command += ["--depfile", f"{folder}/{stage}.d"]
+        rows.append(f"  dep = {folder}/{stage}.d")
+    rows.append("  cmd = " + shlex.join(command).replace("$", "$$"))
+    return rows
+
+
+def scene_rules(scene, options):
+    out = check_path(f"{options.out}/{name_of(scene)}")
+    seed = ["--seed", options.seed] if options.seed else []
+    defines = [word for define in options.define for word in ("--define", define)]
+    candidates, vpls, lit = f"{out}/candidates.vpl", f"{out}/vpls.vpl", f"{out}/lit.vpl"
+    image, preview = f"{out}/image.exr", f"{out}/image.png"
+
+    def tool(stage):
+        return f"{options.bin}/vpl-{stage}"
+
+    def flags(stage):
+        return shlex.split(getattr(options, f"{stage}_flags"))
+
+    return [
+        "",
+        *build("place", [candidates], [tool("place"), scene],
+               [scene, "-o", candidates, "-n", options.candidates, *seed, *defines, *flags("place")], True),
+        *build("eliminate", [vpls], [tool("eliminate"), candidates],
+               [candidates, "-o", vpls, "-n", options.vpls, *seed, *flags("eliminate")], False),
+        *build("estimate", [lit], [tool("estimate"), scene, vpls],
+               [scene, vpls, "-o", lit, "--photons", options.photons, *seed, *defines, *flags("estimate")], True),
+        *build("render", [image, preview], [tool("render"), scene, lit],
+               [scene, lit, "-o", image, "--spp", options.spp, "--png", preview, *seed, *defines,
+                *flags("render")], True),
+        f"build {name_of(scene)}: phony {image}",
+    ]
+
+
+def main():
+    options = arguments()
+    for path in (*options.scenes, options.out, options.bin):
+        check_path(path)
+    for scene in options.scenes:
+        if not pathlib.Path(scene).is_file():
+            sys.exit(f"generate_ninja.py: there is no scene '{scene}'")
+    names = [name_of(scene) for scene in options.scenes]
+    if len(set(names)) < len(names):
+        sys.exit("generate_ninja.py: two scenes would share a folder; give them to two runs with different --out")
+    rows = [HEADER.format(out=options.out)]
+    for scene in options.scenes:
+        rows += scene_rules(scene, options)
+    target = pathlib.Path(options.out) / "build.ninja"
+    text = "\n".join(rows) + "\n"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(text)
+    print(f"ninja -f {target}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+// Rays of the pinhole camera.
+#pragma once
+
+#include <cmath>
+
+#include "scene/scene.h"
+
+namespace bnvpl {
+
+// Unit direction through film position (x, y) in [0,1]^2 of the whole film, (0, 0) at the top left.
+inline Vec3 cameraDirection(const Camera& camera, const Film& film, float x, float y) {
+  const float tanHalf = std::tan(0.5f * camera.verticalFovRad);
+  const float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
+  return normalize(camera.forward + camera.right * ((2.0f * x - 1.0f) * tanHalf * aspect) +
+                   camera.up * ((1.0f - 2.0f * y) * tanHalf));
+}
+
+// Film position of a point in the same coordinates and its distance along the viewing axis, which is not
+// positive behind the camera.
+struct FilmPoint {
+  float x, y, depth;
+};
+inline FilmPoint projectToFilm(const Camera& camera, const Film& film, Vec3 p) {
+  const Vec3 d = p - camera.position;
+  const float depth = dot(d, camera.forward);
+  const float tanHalf = std::tan(0.5f * camera.verticalFovRad);
+  const float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
+  return {0.5f + 0.5f * dot(d, camera.right) / (depth * tanHalf * aspect),
+          0.5f - 0.5f * dot(d, camera.up) / (depth * tanHalf), depth};
+}
+
+}  // namespace bnvpl

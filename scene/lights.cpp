@@ -1,0 +1,342 @@
+#include "scene/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sampling.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Area of the scene's box seen along a unit direction: what a distant light's photons must cover.
+float silhouetteArea(const Bounds& box, Vec3 direction) {
+  const Vec3 e = box.extent();
+  return std::fabs(direction.x) * e.y * e.z + std::fabs(direction.y) * e.x * e.z +
+         std::fabs(direction.z) * e.x * e.y;
+}
+
+// Index by a running sum that ends at 1, and the share of u inside that entry, to be used again.
+size_t sampleCdf(const std::vector<float>& cdf, float& u) {
+  const auto it = std::upper_bound(cdf.begin(), cdf.end() - 1, u);
+  const auto i = static_cast<size_t>(it - cdf.begin());
+  const float low = i > 0 ? cdf[i - 1] : 0.0f, width = cdf[i] - low;
+  u = width > 0.0f ? std::min((u - low) / width, 0x1.fffffep-1f) : 0.0f;
+  return i;
+}
+
+std::vector<float> makeCdf(const std::vector<double>& weights) {
+  std::vector<float> cdf(weights.size());
+  double sum = 0.0, running = 0.0;
+  for (const double w : weights) sum += w;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    running += weights[i];
+    cdf[i] = sum > 0.0 ? static_cast<float>(running / sum) : 0.0f;
+  }
+  if (!cdf.empty()) cdf.back() = 1.0f;
+  return cdf;
+}
+
+float cdfShare(const std::vector<float>& cdf, size_t i) { return cdf[i] - (i > 0 ? cdf[i - 1] : 0.0f); }
+
+float spotFalloff(const LightSpec& s, float cosAngle) {
+  const float angle = std::acos(std::clamp(cosAngle, -1.0f, 1.0f));
+  if (angle >= s.coneRad) return 0.0f;
+  const float inner = s.coneRad - s.falloffRad;
+  if (angle <= inner) return 1.0f;
+  const float t = (s.coneRad - angle) / s.falloffRad;
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y.
+Vec3 directionOf(const LightSpec& s, float u, float v) {
+  const float phi = 2.0f * kPi * (u - 0.5f) + s.rotateRad, theta = kPi * v;
+  return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+}
+void texelOf(const LightSpec& s, Vec3 d, float& u, float& v) {
+  const float turns = (std::atan2(d.x, -d.z) - s.rotateRad) / (2.0f * kPi) + 0.5f;
+  u = std::min(turns - std::floor(turns), 0x1.fffffep-1f);
+  v = std::min(std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi, 0x1.fffffep-1f);
+}
+
+float sunCosine(const LightSpec& s) { return std::cos(s.angularRadiusRad); }
+Vec3 sunRadiance(const LightSpec& s) {  // irradiance = radiance * pi sin^2(angular radius)
+  const float sine = std::sin(s.angularRadiusRad);
+  return s.emission * (1.0f / (kPi * sine * sine));
+}
+
+}  // namespace
+
+LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
+  addAreaLights();
+  addSpecLights();
+  std::vector<double> weights;
+  for (const Light& l : lights_) weights.push_back(mean(l.power));
+  pickCdf_ = makeCdf(weights);
+  for (size_t i = 0; i < lights_.size(); ++i) lights_[i].pickProbability = cdfShare(pickCdf_, i);
+}
+
+void LightSet::addAreaLights() {
+  lightOfMaterial_.assign(scene_.materials.size(), kNone);
+  std::vector<std::vector<double>> areas;
+  for (uint32_t t = 0; t < scene_.triangles.size(); ++t) {
+    const uint32_t m = scene_.triangles[t].material;
+    if (isBlack(scene_.materials[m].emission)) continue;
+    if (lightOfMaterial_[m] == kNone) {
+      lightOfMaterial_[m] = static_cast<uint32_t>(lights_.size());
+      Light l;
+      l.area = true;
+      l.material = m;
+      l.twoSided = scene_.materials[m].twoSidedEmission;
+      lights_.push_back(l);
+      areas.emplace_back();
+    }
+    const uint32_t i = lightOfMaterial_[m];
+    lights_[i].triangles.push_back(t);
+    areas[i].push_back(0.5 * double{length(cross(scene_.corner(t, 1) - scene_.corner(t, 0),
+                                                 scene_.corner(t, 2) - scene_.corner(t, 0)))});
+  }
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    double total = 0.0;
+    for (const double a : areas[i]) total += a;
+    lights_[i].areaTotal = static_cast<float>(total);
+    lights_[i].cdf = makeCdf(areas[i]);
+    lights_[i].power = scene_.materials[lights_[i].material].emission *
+                       (kPi * lights_[i].areaTotal * (lights_[i].twoSided ? 2.0f : 1.0f));
+  }
+}
+
+void LightSet::addSpecLights() {
+  for (const LightSpec& s : scene_.lights) {
+    Light l;
+    l.spec = s;
+    switch (s.type) {
+      case LightType::Point:
+        l.power = s.emission * (4.0f * kPi);
+        break;
+      case LightType::Spot: {
+        // Integral of the falloff over the cone, by the midpoint rule: it only shares out photons.
+        double integral = 0.0;
+        constexpr int kSteps = 256;
+        for (int i = 0; i < kSteps; ++i) {
+          const double angle = (i + 0.5) / kSteps * double{s.coneRad};
+          integral += double{spotFalloff(s, float(std::cos(angle)))} * std::sin(angle) * double{s.coneRad} / kSteps;
+        }
+        l.power = s.emission * (2.0f * kPi * static_cast<float>(integral));
+        break;
+      }
+      case LightType::Directional:
+        l.power = s.emission * silhouetteArea(scene_.bounds, s.direction);
+        break;
+      case LightType::Environment: {
+        if (s.image == kNone) {
+          const Vec3 e = scene_.bounds.extent();  // mean silhouette of a box: a quarter of its surface
+          l.power = s.emission * (s.scale * 4.0f * kPi * 0.5f * (e.x * e.y + e.y * e.z + e.z * e.x));
+          break;
+        }
+        const EnvironmentImage& image = scene_.environments[s.image];
+        std::vector<double> weights(image.radiance.size());
+        for (uint32_t y = 0; y < image.height; ++y) {
+          const float top = kPi * float(y) / float(image.height), bottom = kPi * float(y + 1) / float(image.height);
+          const float solidAngle = 2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom));
+          for (uint32_t x = 0; x < image.width; ++x) {
+            const size_t i = size_t{y} * image.width + x;
+            weights[i] = double{mean(image.radiance[i])} * double{solidAngle};
+            const Vec3 d = directionOf(s, (float(x) + 0.5f) / float(image.width), (float(y) + 0.5f) / float(image.height));
+            l.power += image.radiance[i] * (s.scale * solidAngle * silhouetteArea(scene_.bounds, d));
+          }
+        }
+        l.cdf = makeCdf(weights);
+        break;
+      }
+    }
+    if (s.type == LightType::Environment || (s.type == LightType::Directional && s.angularRadiusRad > 0.0f)) {
+      hittableAtInfinity_.push_back(static_cast<uint32_t>(lights_.size()));
+    }
+    lights_.push_back(std::move(l));
+  }
+}
+
+Vec3 LightSet::totalPower() const {
+  Vec3 sum;
+  for (const Light& l : lights_) sum += l.power;
+  return sum;
+}
+
+std::string LightSet::name(size_t light) const {
+  const Light& l = lights_[light];
+  if (l.area) return "emissive material '" + scene_.materials[l.material].name + "'";
+  const char* const names[] = {"point light", "spot light", "directional light", "environment"};
+  return names[static_cast<size_t>(l.spec.type)];
+}
+
+size_t LightSet::pick(float u, float& probability) const {
+  const size_t i = sampleCdf(pickCdf_, u);
+  probability = lights_[i].pickProbability;
+  return i;
+}
+
+Vec3 LightSet::samplePointOn(const Light& light, float u, float v, Vec3& normal) const {
+  const uint32_t t = light.triangles[sampleCdf(light.cdf, u)];
+  const Vec3 p0 = scene_.corner(t, 0), p1 = scene_.corner(t, 1), p2 = scene_.corner(t, 2);
+  const Barycentric b = sampleTriangle(u, v);
+  normal = normalize(cross(p1 - p0, p2 - p0));
+  return (1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2;
+}
+
+bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const {
+  Vec3 n;
+  const Vec3 p = samplePointOn(light, u, v, n);
+  const Vec3 d = p - at;
+  const float d2 = lengthSquared(d);
+  if (!(d2 > 0.0f)) return false;
+  out.wi = d / std::sqrt(d2);
+  float cosine = -dot(n, out.wi);
+  if (light.twoSided && cosine < 0.0f) {
+    cosine = -cosine;
+    n = -n;
+  }
+  if (cosine <= 0.0f) return false;
+  out.pdf = d2 / (cosine * light.areaTotal);
+  out.radianceOverPdf = scene_.materials[light.material].emission * (1.0f / out.pdf);
+  out.infinite = false;
+  out.target = rays_.lifted(p, n);
+  return true;
+}
+
+// A direction towards a light at infinity.
+Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const {
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Directional) {
+    if (s.angularRadiusRad == 0.0f) {
+      pdf = 0.0f;
+      radiance = s.emission;
+      return -s.direction;
+    }
+    pdf = pdfCone(sunCosine(s));
+    radiance = sunRadiance(s);
+    return Basis(-s.direction).toWorld(sampleCone(u, v, sunCosine(s)));
+  }
+  if (s.image == kNone) {
+    pdf = 1.0f / (4.0f * kPi);
+    radiance = s.emission * s.scale;
+    return sampleSphere(u, v);
+  }
+  const EnvironmentImage& image = scene_.environments[s.image];
+  const size_t texel = sampleCdf(light.cdf, u);
+  const auto x = static_cast<float>(texel % image.width), y = static_cast<float>(texel / image.width);
+  // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar angle.
+  const float top = std::cos(kPi * y / float(image.height)), bottom = std::cos(kPi * (y + 1) / float(image.height));
+  const float row = std::acos(std::clamp(top + v * (bottom - top), -1.0f, 1.0f)) / kPi;
+  const float solidAngle = 2.0f * kPi / float(image.width) * (top - bottom);
+  pdf = cdfShare(light.cdf, texel) / solidAngle;
+  radiance = image.radiance[texel] * s.scale;
+  return directionOf(s, (x + u) / float(image.width), row);
+}
+
+Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) const {
+  const Light& light = lights_[index];
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Directional) {
+    if (dot(direction, -s.direction) < sunCosine(s)) return {};
+    pdf = pdfCone(sunCosine(s));
+    return sunRadiance(s);
+  }
+  if (s.image == kNone) {
+    pdf = 1.0f / (4.0f * kPi);
+    return s.emission * s.scale;
+  }
+  const EnvironmentImage& image = scene_.environments[s.image];
+  float u, v;
+  texelOf(s, direction, u, v);
+  const auto x = static_cast<size_t>(u * float(image.width)), y = static_cast<size_t>(v * float(image.height));
+  const float top = kPi * float(y) / float(image.height), bottom = kPi * float(y + 1) / float(image.height);
+  pdf = cdfShare(light.cdf, y * image.width + x) / (2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom)));
+  return image.lookup(u, v) * s.scale;
+}
+
+bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSample& out) const {
+  const Light& light = lights_[index];
+  if (light.area) return sampleArea(light, at, u, v, out);
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Point || s.type == LightType::Spot) {
+    const Vec3 d = s.position - at;
+    const float d2 = lengthSquared(d);
+    if (!(d2 > 0.0f)) return false;
+    out.wi = d / std::sqrt(d2);
+    const float falloff = s.type == LightType::Spot ? spotFalloff(s, -dot(out.wi, s.direction)) : 1.0f;
+    out.radianceOverPdf = s.emission * (falloff / d2);
+    out.pdf = 0.0f;
+    out.infinite = false;
+    out.target = s.position;
+    return !isBlack(out.radianceOverPdf);
+  }
+  Vec3 radiance;
+  out.wi = sampleDirection(light, u, v, radiance, out.pdf);
+  out.radianceOverPdf = out.pdf > 0.0f ? radiance * (1.0f / out.pdf) : radiance;
+  out.infinite = true;
+  return !isBlack(out.radianceOverPdf);
+}
+
+Vec3 LightSet::emitted(const SurfacePoint& hit, size_t& light) const {
+  light = lightOfMaterial_[hit.material];
+  if (light == kNone || !(hit.front || lights_[light].twoSided)) return {};
+  return scene_.materials[hit.material].emission;
+}
+
+float LightSet::pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const {
+  const float cosine = dot(hit.ng, hit.wo);
+  return cosine > 0.0f ? lengthSquared(hit.position - from) / (cosine * lights_[light].areaTotal) : 0.0f;
+}
+
+// Photons from infinity start on the faces of the scene's box that look towards the light, uniformly in
+// projected area: no photon is spent on empty space beside a long scene.
+PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
+  const float u = rng.next(), v = rng.next();
+  Vec3 radiance;
+  float pdf = 0.0f;
+  const Vec3 towards = sampleDirection(light, u, v, radiance, pdf);
+  const Vec3 d = -towards, e = scene_.bounds.extent();
+  const float face[3] = {std::fabs(d.x) * e.y * e.z, std::fabs(d.y) * e.x * e.z, std::fabs(d.z) * e.x * e.y};
+  const float total = face[0] + face[1] + face[2];
+  const float pick = rng.next() * total;
+  const size_t axis = pick < face[0] ? 0 : pick < face[0] + face[1] ? 1 : 2;
+  Vec3 p = scene_.bounds.lower + e * Vec3{rng.next(), rng.next(), rng.next()};
+  p[axis] = d[axis] > 0.0f ? scene_.bounds.lower[axis] : scene_.bounds.upper[axis];
+  PhotonStart start;
+  start.direction = d;
+  // Back along the ray by a little of the scene's size, so that a surface in the face itself is met.
+  start.origin = p - d * (0x1p-10f * scene_.bounds.diagonal());
+  start.flux = radiance * (pdf > 0.0f ? total / pdf : total);
+  return start;
+}
+
+PhotonStart LightSet::emit(size_t index, Rng& rng) const {
+  const Light& light = lights_[index];
+  const LightSpec& s = light.spec;
+  PhotonStart start;
+  if (light.area) {
+    Vec3 n;
+    const float u = rng.next(), v = rng.next();
+    const Vec3 p = samplePointOn(light, u, v, n);
+    if (light.twoSided && rng.next() < 0.5f) n = -n;
+    const float a = rng.next(), b = rng.next();
+    start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, b));
+    start.origin = rays_.lifted(p, n);
+    start.flux = light.power;
+  } else if (s.type == LightType::Point) {
+    const float u = rng.next(), v = rng.next();
+    start = {s.position, sampleSphere(u, v), light.power};
+  } else if (s.type == LightType::Spot) {
+    const float u = rng.next(), v = rng.next();
+    const Vec3 d = sampleCone(u, v, std::cos(s.coneRad));
+    start.origin = s.position;
+    start.direction = Basis(s.direction).toWorld(d);
+    start.flux = s.emission * (spotFalloff(s, d.z) / pdfCone(std::cos(s.coneRad)));
+  } else {
+    start = emitFromInfinity(light, rng);
+  }
+  return start;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,49 @@
+// OBJ and MTL files -> triangles, materials and textures of a Scene.
+#pragma once
+
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace bnvpl {
+
+// Row-major 3x4 matrix, applied to column vectors.
+struct Affine {
+  std::array<std::array<float, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+  Vec3 point(Vec3 p) const;
+  Vec3 normal(Vec3 n) const;  // by the inverse transpose; unit length
+  float determinant() const;  // negative: mirrors, so that windings must turn
+  // Scales, then turns about x, then y, then z, then moves.
+  static Affine fromParts(Vec3 translate, Vec3 rotateRad, Vec3 scale);
+};
+
+class ObjLoader {
+ public:
+  explicit ObjLoader(Scene& scene) : scene_(scene) {}
+
+  // Adds one OBJ. `materials` replaces the libraries that the OBJ names; empty: those are used.
+  // Throws InputError when a file cannot be read at all; what can be repaired goes to scene.warnings.
+  void load(const fs::path& obj, const fs::path& materials, const Affine& transform);
+
+  // After the last OBJ: puts opaque triangles first, computes bounds, pads the vertex buffer.
+  void finish();
+
+ private:
+  struct Parsed;
+  void warn(const std::string& text);
+  uint32_t texture(const fs::path& folder, std::string name, bool srgb, bool mask,
+                   const float* scale, const float* offset);
+  uint32_t addMaterial(const fs::path& library, const void* source);  // a tinyobj material
+  uint32_t fallbackMaterial(const fs::path& obj);
+  void addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform);
+
+  Scene& scene_;
+  std::set<std::string> warned_;
+  std::map<std::string, uint32_t> textures_;  // by path and use
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,63 @@
+// The walk of one photon, shared by every stage that follows light from its source.
+#pragma once
+
+#include "core/random.h"
+#include "scene/bsdf.h"
+#include "scene/lights.h"
+
+namespace bnvpl {
+
+inline constexpr unsigned kMaxChain = 64;  // specular scatterings between two rough ones
+
+// Where a photon's flux went, W.
+struct PhotonFate {
+  Vec3 escaped;
+  Vec3 absorbed;   // by surfaces, and at the end of the longest path
+  uint32_t hits = 0, rays = 0;
+};
+
+// Follows a photon through the scene. At each hit with rough lobes, visit(bsdf, flux) gets the flux
+// that arrives (before albedo), shading normals accounted for; at most maxBounces times, counting the
+// rough scatterings so far plus this one. Russian roulette by reflectance keeps the flux about level.
+template <typename Visit>
+PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces, Rng& rng,
+                       const Visit& visit) {
+  PhotonFate fate;
+  Vec3 origin = start.origin, direction = start.direction, flux = start.flux;
+  unsigned rough = 0, chain = 0;
+  SurfacePoint hit;
+  while (true) {
+    ++fate.rays;
+    if (!rays.closestHit(origin, direction, hit)) {
+      fate.escaped += flux;
+      return fate;
+    }
+    const Bsdf bsdf(rays.scene(), hit);
+    if (bsdf.hasRough()) {
+      ++fate.hits;
+      visit(bsdf, flux * bsdf.photonShadingFactor());
+    }
+    const float survive = bsdf.reflectance();
+    fate.absorbed += flux * (1.0f - survive);
+    if (rng.next() >= survive) return fate;
+    flux *= 1.0f / survive;
+
+    const float chainProbability = bsdf.chainProbability();
+    const bool takeChain = rng.next() < chainProbability;
+    const float probability = takeChain ? chainProbability : 1.0f - chainProbability;
+    BsdfSample next;
+    const bool last = takeChain ? ++chain > kMaxChain : ++rough >= maxBounces;
+    if (last || !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Photons, rng,
+                             next)) {
+      fate.absorbed += flux * survive;
+      return fate;
+    }
+    const Vec3 onward = flux * next.weight * (1.0f / probability);
+    fate.absorbed += (flux - onward) * survive;
+    flux = onward;
+    origin = rays.lifted(hit.position, next.side);
+    direction = next.wi;
+  }
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,162 @@
+#include "scene/ray_scene.h"
+
+#if __has_include(<embree4/rtcore.h>) && defined(BNVPL_EMBREE4)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace bnvpl {
+
+namespace {
+
+// Alpha test: what covers less than half of a texel is not there.
+float opacityAt(const Scene& scene, uint32_t triangle, float b1, float b2) {
+  const Triangle& t = scene.triangles[triangle];
+  const Material& m = scene.materials[t.material];
+  if (m.opacityMap == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone) return m.opacity;
+  const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
+  const float b0 = 1.0f - b1 - b2;
+  return m.opacity * scene.textures[m.opacityMap].lookupAlpha(b0 * a[0] + b1 * b[0] + b2 * c[0],
+                                                              b0 * a[1] + b1 * b[1] + b2 * c[1]);
+}
+
+void rejectCutAway(const RTCFilterFunctionNArguments* args) {
+  const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const uint32_t triangle = scene.maskedBegin + RTCHitN_primID(args->hit, args->N, i);
+    const float opacity =
+        opacityAt(scene, triangle, RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
+    if (opacity < 0.5f) args->valid[i] = 0;
+  }
+}
+
+RTCRay makeRay(Vec3 origin, Vec3 direction, float tfar) {
+  RTCRay ray{};
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tfar = tfar;
+  ray.mask = ~0u;
+  return ray;
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::string error;  // what the device reported last
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  void attach(const Scene& s, uint32_t begin, uint32_t end, unsigned id) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.positions.data(), 0,
+                               sizeof(Vec3), s.positions.size() - 1);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.triangles.data() + begin, 0,
+                               sizeof(Triangle), end - begin);
+    if (id == 1) {
+      rtcSetGeometryUserData(geometry, const_cast<Scene*>(&s));  // Embree's API is not const-correct
+      rtcSetGeometryIntersectFilterFunction(geometry, rejectCutAway);
+      rtcSetGeometryOccludedFilterFunction(geometry, rejectCutAway);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+  }
+
+  bool occluded(const RTCRay& from) const {
+    RTCRay ray = from;
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(scene, &ray);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, &ray);
+#endif
+    return ray.tfar < 0.0f;
+  }
+};
+
+RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device) throw std::runtime_error("Embree cannot start on this machine");
+  rtcSetDeviceErrorFunction(
+      impl_->device,
+      [](void* user, RTCError, const char* text) { static_cast<Impl*>(user)->error = text ? text : "unknown"; },
+      impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
+  const auto count = static_cast<uint32_t>(scene.triangles.size());
+  if (scene.maskedBegin > 0) impl_->attach(scene, 0, scene.maskedBegin, 0);
+  if (scene.maskedBegin < count) impl_->attach(scene, scene.maskedBegin, count, 1);
+  rtcCommitScene(impl_->scene);
+  if (!impl_->error.empty()) throw std::runtime_error("Embree: " + impl_->error);
+  liftBase_ = scene.bounds.diagonal() * 0x1p-20f;
+}
+
+RayScene::~RayScene() = default;
+
+bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const {
+  RTCRayHit rh{};
+  rh.ray = makeRay(origin, direction, std::numeric_limits<float>::infinity());
+  rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(impl_->scene, &rh);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &rh);
+#endif
+  if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+
+  hit.triangle = rh.hit.primID + (rh.hit.geomID == 1 ? scene_.maskedBegin : 0);
+  const Triangle& t = scene_.triangles[hit.triangle];
+  const Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
+             p2 = scene_.positions[t.position[2]];
+  const float b1 = rh.hit.u, b2 = rh.hit.v, b0 = 1.0f - b1 - b2;
+  // From the corners, not along the ray: exact to a few ulps of the triangle, however long the ray.
+  hit.position = b0 * p0 + b1 * p1 + b2 * p2;
+  hit.distance = rh.ray.tfar;
+  hit.material = t.material;
+  hit.wo = -direction;
+  Vec3 ng = normalize(cross(p1 - p0, p2 - p0));
+  hit.front = dot(ng, hit.wo) >= 0.0f;
+  hit.ng = hit.front ? ng : -ng;
+  hit.ns = hit.ng;
+  if (t.normal[0] != kNone && t.normal[1] != kNone && t.normal[2] != kNone) {
+    const Vec3 n = b0 * scene_.normals[t.normal[0]] + b1 * scene_.normals[t.normal[1]] +
+                   b2 * scene_.normals[t.normal[2]];
+    const float len = length(n);
+    if (len > 1e-6f) hit.ns = n * ((dot(n, hit.ng) < 0.0f ? -1.0f : 1.0f) / len);
+  }
+  hit.u = hit.v = std::numeric_limits<float>::quiet_NaN();
+  if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
+    const auto &a = scene_.uvs[t.uv[0]], &b = scene_.uvs[t.uv[1]], &c = scene_.uvs[t.uv[2]];
+    hit.u = b0 * a[0] + b1 * b[0] + b2 * c[0];
+    hit.v = b0 * a[1] + b1 * b[1] + b2 * c[1];
+  }
+  return true;
+}
+
+bool RayScene::occluded(Vec3 from, Vec3 to) const {
+  return impl_->occluded(makeRay(from, to - from, 1.0f));
+}
+
+bool RayScene::occludedToInfinity(Vec3 from, Vec3 direction) const {
+  return impl_->occluded(makeRay(from, direction, std::numeric_limits<float>::infinity()));
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,99 @@
+// The scene as plain arrays: what scene.toml, OBJ, MTL and textures say, ready for ray tracing.
+// Lengths are the scene's own unit (called m below), angles radians in memory, colours linear sRGB.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/errors.h"
+#include "core/vec3.h"
+#include "scene/texture.h"
+
+namespace bnvpl {
+
+inline constexpr uint32_t kNone = 0xffffffffu;
+
+struct Film {
+  uint32_t width = 640, height = 480;  // pixels
+};
+
+// Pinhole. Pixel (0, 0) is the top left one.
+struct Camera {
+  Vec3 position;
+  Vec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};  // orthonormal
+  float verticalFovRad = 1.0f;
+};
+
+// One corner index triple into each of Scene's arrays. `normal` and `uv` may be kNone.
+struct Triangle {
+  std::array<uint32_t, 3> position, normal, uv;
+  uint32_t material;
+};
+static_assert(sizeof(Triangle) == 40);
+
+// As read from the MTL; docs/scene-format.md says how each field is read.
+struct Material {
+  std::string name;
+  Vec3 diffuse;                // Kd
+  Vec3 glossy;                 // Ks of a Phong lobe; 0 for mirror and glass
+  float exponent = 10.0f;      // Ns of that lobe
+  Vec3 mirror;                 // Ks of a perfect mirror, or of glass; never beside a Phong lobe
+  bool glass = false;          // smooth dielectric
+  float ior = 1.5f;            // Ni
+  Vec3 transmission{1, 1, 1};  // Tf
+  Vec3 emission;               // Ke, radiance, W/(m2 sr)
+  bool twoSidedEmission = false;
+  float opacity = 1.0f;  // d; below 0.5 the surface is cut away
+  uint32_t diffuseMap = kNone, glossyMap = kNone, opacityMap = kNone;  // into Scene::textures
+  bool masked() const { return opacityMap != kNone || opacity < 0.5f; }
+};
+
+enum class LightType : uint32_t { Point, Spot, Directional, Environment };
+
+// A light of scene.toml. Emissive triangles are lights too; LightSet gathers both.
+struct LightSpec {
+  LightType type = LightType::Point;
+  Vec3 position;                 // point, spot
+  Vec3 direction{0, 0, -1};      // spot, directional: the way the light travels
+  Vec3 emission;                 // intensity W/sr; irradiance W/m2 (directional); radiance (environment)
+  float coneRad = 0.0f;          // spot: half angle outside which it is dark
+  float falloffRad = 0.0f;       // spot: width of the soft rim inside the cone
+  float angularRadiusRad = 0.0f; // directional: half the angular diameter
+  uint32_t image = kNone;        // environment: into Scene::environments
+  float rotateRad = 0.0f;        // environment: about +y
+  float scale = 1.0f;            // environment
+};
+
+struct Scene {
+  Film film;
+  Camera camera;
+
+  std::vector<Vec3> positions;  // one more than indexed: Embree reads 16 bytes at each vertex
+  std::vector<Vec3> normals;    // unit length
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<Triangle> triangles;  // opaque ones first
+  uint32_t maskedBegin = 0;         // first triangle whose material has an alpha mask
+  Bounds bounds;
+
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<LightSpec> lights;
+  std::vector<EnvironmentImage> environments;
+
+  uint64_t contentHash = 0;           // of geometry, materials, textures and lights; not of the camera
+  std::vector<fs::path> files;        // everything that was read, for depfiles
+  std::vector<std::string> warnings;  // each names what was ignored or repaired
+
+  Vec3 corner(uint32_t triangle, size_t i) const { return positions[triangles[triangle].position[i]]; }
+};
+
+// Values for ${NAME} in file names of a scene.toml; environment variables are asked second.
+using Defines = std::map<std::string, std::string>;
+
+// Reads scene.toml and everything that it names. Throws InputError with file, line, problem and cure.
+Scene loadScene(const fs::path& path, const Defines& defines = {});
+
+}  // namespace bnvpl

@@ -1,0 +1,1 @@
+"""Makes the models of scenes/. See ../generate.py."""

@@ -1,0 +1,103 @@
+#include "spatial/kd_tree.h"
+
+#include <flann/algorithms/dist.h>
+#include <flann/algorithms/kdtree_single_index.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace bnvpl {
+namespace {
+
+using Index = flann::KDTreeSingleIndex<flann::L2<float>>;
+
+// FLANN keeps what is strictly nearer than this, and prunes by distances that it updates in floats:
+// a little wider, no point at the border is missed. addPoint has the last word.
+float pruneBeyond(float distanceSquared) {
+  return distanceSquared * (1.0f + 1e-5f) + std::numeric_limits<float>::min();
+}
+
+// Keeps the `capacity` smallest by (distance, index) as a max-heap, so that ties do not depend on the
+// order in which the tree is walked.
+class NearestSet final : public flann::ResultSet<float> {
+ public:
+  NearestSet(std::vector<Neighbour>& found, size_t capacity) : found_(found), capacity_(capacity) {
+    found_.clear();
+  }
+  bool full() const override { return found_.size() == capacity_; }
+  float worstDist() const override { return worst_; }
+  void addPoint(float distanceSquared, size_t index) override {
+    const Neighbour candidate{distanceSquared, static_cast<uint32_t>(index)};
+    if (full()) {
+      if (!(candidate < found_.front())) return;
+      std::pop_heap(found_.begin(), found_.end());
+      found_.back() = candidate;
+    } else {
+      found_.push_back(candidate);
+    }
+    std::push_heap(found_.begin(), found_.end());
+    if (full()) worst_ = pruneBeyond(found_.front().distanceSquared);
+  }
+
+ private:
+  std::vector<Neighbour>& found_;
+  size_t capacity_;
+  float worst_ = std::numeric_limits<float>::max();
+};
+
+class RadiusSet final : public flann::ResultSet<float> {
+ public:
+  RadiusSet(std::vector<Neighbour>& found, float radius)
+      : found_(found),
+        radiusSquared_(radius * radius),
+        prune_(pruneBeyond(radiusSquared_)) {
+    found_.clear();
+  }
+  bool full() const override { return true; }
+  float worstDist() const override { return prune_; }
+  void addPoint(float distanceSquared, size_t index) override {
+    if (distanceSquared <= radiusSquared_) {
+      found_.push_back({distanceSquared, static_cast<uint32_t>(index)});
+    }
+  }
+
+ private:
+  std::vector<Neighbour>& found_;
+  float radiusSquared_, prune_;
+};
+
+flann::SearchParams exactSearch() { return flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0f); }
+
+}  // namespace
+
+struct KdTree::Impl {
+  // FLANN asks for mutable floats but only reads them. It dislikes an empty set, hence `size`.
+  explicit Impl(std::span<const Vec3> points) : size(points.size()) {
+    if (size == 0) return;
+    auto* const floats = const_cast<float*>(&points.front().x);
+    index = std::make_unique<Index>(flann::Matrix<float>(floats, size, 3),
+                                    flann::KDTreeSingleIndexParams(/*leaf_max_size=*/12));
+    index->buildIndex();
+  }
+  size_t size;
+  std::unique_ptr<Index> index;
+  flann::SearchParams search = exactSearch();
+};
+
+KdTree::KdTree(std::span<const Vec3> points) : impl_(std::make_unique<Impl>(points)) {}
+KdTree::~KdTree() = default;
+
+void KdTree::nearest(Vec3 centre, size_t count, std::vector<Neighbour>& found) const {
+  NearestSet result(found, std::min(count, impl_->size));
+  if (count == 0 || impl_->size == 0) return;
+  impl_->index->findNeighbors(result, &centre.x, impl_->search);
+  std::sort_heap(found.begin(), found.end());
+}
+
+void KdTree::withinRadius(Vec3 centre, float radius, std::vector<Neighbour>& found) const {
+  RadiusSet result(found, radius);
+  if (impl_->size == 0) return;
+  impl_->index->findNeighbors(result, &centre.x, impl_->search);
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,78 @@
+#include "spatial/local_density.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/compatibility.h"
+#include "core/parallel.h"
+#include "core/sampling.h"
+
+namespace bnvpl {
+namespace {
+
+// The distance at which `count` of the nearest were on the sheet.
+struct Reach {
+  float distanceSquared = 0.0f;
+  unsigned count = 0;
+};
+
+// `nearest` is in order of distance and may hold `self`, which does not count.
+Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
+                   const std::vector<Neighbour>& nearest, unsigned k) {
+  const size_t kth = std::min<size_t>(k, nearest.size() - 1);
+  const float tolerance = kPlaneFactor * std::sqrt(nearest[kth].distanceSquared);
+  Reach reach;
+  for (const Neighbour& n : nearest) {
+    if (n.index == self || !sameSheet(position[self], normal[self], position[n.index],
+                                      normal[n.index], tolerance)) {
+      continue;
+    }
+    reach = {n.distanceSquared, reach.count + 1};
+    if (reach.count == k) break;
+  }
+  return reach;
+}
+
+Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
+                unsigned k, const KdTree& tree, std::vector<Neighbour>& nearest) {
+  // On plain surfaces nearly all neighbours qualify, so a short query usually answers what the long one
+  // would: both are prefixes of the same order.
+  tree.nearest(position[self], k + k / 4 + 2, nearest);
+  Reach reach = reachOnSheet(position, normal, self, nearest, k);
+  if (reach.count == k) return reach;
+  tree.nearest(position[self], 3 * size_t{k} + 1, nearest);
+  reach = reachOnSheet(position, normal, self, nearest, k);
+  if (reach.count > 0) return reach;
+  const auto others = static_cast<unsigned>(nearest.size() - 1);
+  return {nearest.back().distanceSquared, std::max(1u, others)};
+}
+
+}  // namespace
+
+std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows) {
+  Bounds bounds;
+  for (const Vec3 p : position) bounds.extend(p);
+  const float smallest = 1e-6f * bounds.diagonal();
+  const size_t count = rows.empty() ? position.size() : rows.size();
+  if (!(smallest > 0.0f)) return std::vector<float>(count, 1.0f);
+
+  std::vector<float> share(count);
+  parallelRanges(count, 256, [&](size_t begin, size_t end) {
+    std::vector<Neighbour> nearest;
+    for (size_t i = begin; i < end; ++i) {
+      const auto self = rows.empty() ? static_cast<uint32_t>(i) : rows[i];
+      const Reach reach = findReach(position, normal, self, std::max(1u, k), tree, nearest);
+      const float distanceSquared = std::max(reach.distanceSquared, smallest * smallest);
+      share[i] = kPi * distanceSquared / static_cast<float>(reach.count);
+    }
+  });
+  return share;
+}
+
+std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                 unsigned k) {
+  return surfaceShares(position, normal, k, KdTree(position));
+}
+
+}  // namespace bnvpl

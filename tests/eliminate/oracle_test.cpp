@@ -1,0 +1,150 @@
+// Elimination against the sequential greedy algorithm, written here in the plainest way.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "tests/eliminate/clouds.h"
+#include "tools/eliminate/eliminate.h"
+
+namespace bnvpl {
+namespace {
+
+// The weight of every pair, in units of 2^-40, straight from the definition.
+std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vector<float>& radius,
+                                            float limit) {
+  const size_t n = cloud.size();
+  std::vector<std::vector<uint64_t>> weight(n, std::vector<uint64_t>(n, 0));
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j < n; ++j) {
+      const Vec3 offset = cloud.position[j] - cloud.position[i];
+      const float reach = radius[i] + radius[j], distance = length(offset);
+      const bool sameSide = dot(cloud.normal[i], cloud.normal[j]) >= 0.5f;
+      const bool samePlane = std::fabs(dot(offset, cloud.normal[i])) <= 0.5f * reach &&
+                             std::fabs(dot(offset, cloud.normal[j])) <= 0.5f * reach;
+      if (i == j || distance >= reach || !sameSide || !samePlane) continue;
+      const float x = 1.0f - std::max(distance / reach, limit);
+      const float x2 = x * x;
+      weight[i][j] = static_cast<uint64_t>(x2 * x2 * (x2 * x2) * 0x1p40f);
+    }
+  }
+  return weight;
+}
+
+// Adds all weights up anew before each removal.
+std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>& radius,
+                                   size_t keep, float limit = 0.0f) {
+  const size_t n = cloud.size();
+  const auto weight = allPairs(cloud, radius, limit);
+  std::vector<bool> alive(n, true);
+  for (size_t left = n; left > keep; --left) {
+    size_t heaviest = n;
+    uint64_t most = 0;
+    for (size_t i = 0; i < n; ++i) {
+      if (!alive[i]) continue;
+      uint64_t sum = 0;
+      for (size_t j = 0; j < n; ++j) sum += alive[j] ? weight[i][j] : 0;
+      if (heaviest == n || sum >= most) {  // of equal sums, the later row
+        heaviest = i;
+        most = sum;
+      }
+    }
+    alive[heaviest] = false;
+  }
+  std::vector<uint32_t> rows;
+  for (size_t i = 0; i < n; ++i) {
+    if (alive[i]) rows.push_back(static_cast<uint32_t>(i));
+  }
+  return rows;
+}
+
+// Every candidate's radius: what the stage says when it keeps them at random, for each of them.
+std::vector<float> radiusOfAll(const Cloud& cloud, EliminateOptions options) {
+  options.method = EliminationMethod::Random;
+  const size_t keep = options.count;
+  options.count = cloud.size();
+  std::vector<float> radius = eliminate(cloud.position, cloud.normal, options).radius;
+  const double wider = std::sqrt(static_cast<double>(cloud.size()) / static_cast<double>(keep));
+  for (float& r : radius) r = static_cast<float>(r * wider);
+  return radius;
+}
+
+EliminateOptions keep(uint64_t count, Density density) {
+  EliminateOptions options;
+  options.count = count;
+  options.density = density;
+  return options;
+}
+
+Cloud withDuplicates(Cloud cloud) {
+  for (size_t i = 0; i < 60; ++i) cloud.add(cloud.position[i * 3], cloud.normal[i * 3]);
+  for (size_t i = 0; i < 12; ++i) cloud.add(cloud.position[0], cloud.normal[0]);
+  return cloud;
+}
+
+TEST(Oracle, UniformOnPlaneAndCube) {
+  for (const uint64_t seed : {1u, 2u, 3u}) {
+    for (const Cloud& cloud : {plane(500, 2.0f, 1.0f, seed), cube(600, 3.0f, seed)}) {
+      const EliminateOptions options = keep(100, Density::Uniform);
+      const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+      const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
+      EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100));
+    }
+  }
+}
+
+TEST(Oracle, LocalDensity) {
+  for (const uint64_t seed : {4u, 5u, 6u}) {
+    for (const Cloud& cloud : {unevenPlane(500, seed), cube(600, 1.0f, seed)}) {
+      const EliminateOptions options = keep(90, Density::Local);
+      const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+      const std::vector<float> radius = radiusOfAll(cloud, options);
+      for (size_t i = 0; i < result.rows.size(); ++i) {
+        ASSERT_NEAR(result.radius[i] / radius[result.rows[i]], 1.0f, 1e-5f);
+      }
+      EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 90));
+    }
+  }
+}
+
+TEST(Oracle, TiesGoToTheLowerRow) {
+  const Cloud cloud = withDuplicates(cube(400, 2.0f, 7));
+  for (const uint64_t count : {380u, 100u, 20u, 3u}) {
+    const EliminateResult result =
+        eliminate(cloud.position, cloud.normal, keep(count, Density::Uniform));
+    const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
+    EXPECT_EQ(result.rows, greedyOracle(cloud, radius, count)) << count;
+  }
+}
+
+// On a lattice nearly every weight is equal to many others.
+TEST(Oracle, RegularLattice) {
+  Cloud cloud;
+  for (int x = 0; x < 20; ++x) {
+    for (int y = 0; y < 20; ++y) {
+      cloud.add({static_cast<float>(x), static_cast<float>(y), 0.0f}, {0, 0, 1});
+    }
+  }
+  EliminateOptions options = keep(80, Density::Uniform);
+  options.area = 400.0;
+  options.weightLimiting = WeightLimiting::Off;
+  const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+  const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
+  EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 80));
+}
+
+TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
+  const Cloud cloud = plane(500, 1.0f, 1.0f, 8);
+  EliminateOptions options = keep(100, Density::Uniform);
+  options.area = 1.0;
+  const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+  const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
+  const auto limit = static_cast<float>(0.65 * (1.0 - std::pow(0.2, 1.5)));
+  EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100, limit));
+  options.weightLimiting = WeightLimiting::Off;
+  EXPECT_EQ(eliminate(cloud.position, cloud.normal, options).rows,
+            greedyOracle(cloud, radius, 100, 0.0f));
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,134 @@
+// Neighbour queries against looking at every point.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/random.h"
+#include "spatial/kd_tree.h"
+#include "spatial/local_density.h"
+#include "spatial/morton_order.h"
+#include "spatial/point_grid.h"
+#include "tests/eliminate/clouds.h"
+
+namespace bnvpl {
+namespace {
+
+std::vector<Neighbour> allByDistance(const std::vector<Vec3>& points, Vec3 centre) {
+  std::vector<Neighbour> all;
+  for (size_t i = 0; i < points.size(); ++i) {
+    all.push_back({lengthSquared(points[i] - centre), static_cast<uint32_t>(i)});
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::vector<Neighbour> within(const std::vector<Neighbour>& all, float radius) {
+  std::vector<Neighbour> near;
+  for (const Neighbour& n : all) {
+    if (n.distanceSquared <= radius * radius) near.push_back(n);
+  }
+  return near;
+}
+
+template <typename Search>
+std::vector<Neighbour> sortedWithin(const Search& search, Vec3 centre, float radius) {
+  std::vector<Neighbour> found{{1.0f, 2}};  // is replaced
+  search.withinRadius(centre, radius, found);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// A lattice has many points at exactly the radius and many equal distances; an offset makes coordinates
+// negative or large.
+std::vector<std::vector<Vec3>> clouds() {
+  std::vector<std::vector<Vec3>> all{cube(2000, 1.0f, 1).position, unevenPlane(2000, 2).position,
+                                     {{1, 2, 3}}, std::vector<Vec3>(100, Vec3(4.0f))};
+  std::vector<Vec3> lattice, far;
+  for (int i = 0; i < 1000; ++i) {
+    lattice.emplace_back(static_cast<float>(i % 10) - 5.0f, static_cast<float>(i / 10 % 10) - 5.0f,
+                         static_cast<float>(i / 100) - 5.0f);
+    far.push_back(lattice.back() * 0.01f + Vec3(-3000.0f, 2000.0f, 1000.0f));
+  }
+  all.push_back(lattice);
+  all.push_back(far);
+  return all;
+}
+
+TEST(Spatial, RadiusQueriesFindExactlyThePointsWithin) {
+  for (const std::vector<Vec3>& points : clouds()) {
+    const KdTree tree(points);
+    for (const float radius : {0.01f, 0.1f, 1.0f, 2.0f}) {
+      const PointGrid grid(points, radius), fine(points, 0.2f * radius);
+      for (size_t q = 0; q < points.size(); q += 97) {
+        const Vec3 centre = points[q] + Vec3(0.0f, 0.0f, q % 2 ? 0.5f * radius : 0.0f);
+        const std::vector<Neighbour> expected = within(allByDistance(points, centre), radius);
+        EXPECT_EQ(sortedWithin(tree, centre, radius), expected);
+        EXPECT_EQ(sortedWithin(grid, centre, radius), expected);
+        EXPECT_EQ(sortedWithin(fine, centre, radius), expected);
+      }
+    }
+  }
+}
+
+TEST(Spatial, NearestAreOrderedAndTiesGoToTheLowerIndex) {
+  for (const std::vector<Vec3>& points : clouds()) {
+    const KdTree tree(points);
+    std::vector<Neighbour> found;
+    for (size_t q = 0; q < points.size(); q += 97) {
+      for (const size_t count : {1u, 7u, 60u, 5000u}) {
+        std::vector<Neighbour> expected = allByDistance(points, points[q]);
+        expected.resize(std::min(count, expected.size()));
+        tree.nearest(points[q], count, found);
+        EXPECT_EQ(found, expected);
+      }
+    }
+  }
+}
+
+TEST(Spatial, NoPoints) {
+  const std::vector<Vec3> none;
+  std::vector<Neighbour> found{{1.0f, 2}};
+  KdTree(none).nearest({}, 3, found);
+  EXPECT_TRUE(found.empty());
+  EXPECT_TRUE(sortedWithin(KdTree(none), {}, 1.0f).empty());
+  EXPECT_TRUE(sortedWithin(PointGrid(none, 1.0f), {}, 1.0f).empty());
+}
+
+TEST(Spatial, SharesAreTheSameWithTheShortQuery) {
+  const Cloud cloud = cube(3000, 1.0f, 3);
+  const std::vector<float> all = surfaceShares(cloud.position, cloud.normal, 20);
+  const std::vector<uint32_t> rows{0, 17, 2999};
+  const KdTree tree(cloud.position);
+  const std::vector<float> some = surfaceShares(cloud.position, cloud.normal, 20, tree, rows);
+  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(some[i], all[rows[i]]);
+}
+
+// A point alone on its sheet takes the density of all that is near; coincident points a positive share.
+TEST(Spatial, SharesOfOddPoints) {
+  Cloud cloud = plane(1000, 1.0f, 1.0f, 4);
+  cloud.add({0.5f, 0.5f, 0.0f}, {1, 0, 0});
+  for (int i = 0; i < 100; ++i) cloud.add({0.2f, 0.2f, 0.0f}, {0, 0, 1});
+  const std::vector<float> share = surfaceShares(cloud.position, cloud.normal, 20);
+  EXPECT_GT(share[1000], 0.0003f);
+  EXPECT_LT(share[1000], 0.003f);
+  EXPECT_GT(share[1050], 0.0f);
+  EXPECT_LT(share[1050], 1e-9f);
+  EXPECT_EQ(surfaceShares(std::vector<Vec3>(5, Vec3(1.0f)), std::vector<Vec3>(5, Vec3(0, 0, 1)), 3),
+            std::vector<float>(5, 1.0f));
+}
+
+TEST(Spatial, MortonOrderIsAPermutation) {
+  const Cloud cloud = cube(5000, 7.0f, 5);
+  std::vector<uint32_t> order = mortonOrder(cloud.position);
+  double step = 0.0;
+  for (size_t i = 1; i < order.size(); ++i) {
+    step += length(cloud.position[order[i]] - cloud.position[order[i - 1]]);
+  }
+  EXPECT_LT(step / 5000.0, 0.5);  // at random it would be about 4
+  std::sort(order.begin(), order.end());
+  for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
+  EXPECT_TRUE(mortonOrder({}).empty());
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,178 @@
+#include <cmath>
+#include <limits>
+
+#include "formats/exr_io.h"
+#include "tests/formats/test_files.h"
+
+namespace bnvpl {
+namespace {
+
+using Exr = TestFolder;
+
+Image layeredImage() {
+  Image image;
+  image.width = 37;  // no multiple of anything, and more lines than one ZIP block
+  image.height = 21;
+  for (const char* name : {"R", "G", "B", "direct.R", "albedo.R", "N.X", "Z", "cutsize"}) {
+    const float scale = static_cast<float>(image.channels.size()) + 1.0f;
+    std::vector<float>& data = image.add(name);
+    for (size_t i = 0; i < data.size(); ++i) data[i] = scale * static_cast<float>(i) / 128.0f;
+  }
+  image.attributes["bnvpl.provenance"] = R"([{"tool":"vpl-place","version":"0.1.0"}])";
+  image.attributes["bnvpl.spp"] = "8";
+  image.attributes["comments"] = "";
+  return image;
+}
+
+TEST_F(Exr, FloatRoundTripIsExactWithLayersAndAttributes) {
+  const Image image = layeredImage();
+  EXPECT_EQ(writeExr(at("a.exr"), image, ExrPixelType::Float), 0u);
+  const Image read = readExr(at("a.exr"));
+  EXPECT_EQ(read.width, image.width);
+  EXPECT_EQ(read.height, image.height);
+  EXPECT_EQ(read.attributes, image.attributes);
+  ASSERT_EQ(read.channels.size(), image.channels.size());
+  for (const ImageChannel& channel : image.channels) {
+    ASSERT_NE(read.find(channel.name), nullptr) << channel.name;
+    EXPECT_EQ(*read.find(channel.name), channel.data) << channel.name;
+  }
+  EXPECT_EQ(read.find("indirect.R"), nullptr);
+}
+
+TEST_F(Exr, HalfRoundTripIsWithinHalfPrecision) {
+  const Image image = layeredImage();
+  EXPECT_EQ(writeExr(at("a.exr"), image, ExrPixelType::Half), 0u);
+  EXPECT_LT(fs::file_size(at("a.exr")), image.pixelCount() * image.channels.size() * 2);
+  const Image read = readExr(at("a.exr"));
+  EXPECT_EQ(read.attributes, image.attributes);
+  ASSERT_EQ(read.channels.size(), image.channels.size());
+  for (const ImageChannel& channel : image.channels) {
+    const std::vector<float>& data = *read.find(channel.name);
+    for (size_t i = 0; i < data.size(); ++i) {
+      ASSERT_NEAR(data[i], channel.data[i], channel.data[i] * 0x1p-11f) << channel.name;
+    }
+  }
+}
+
+TEST_F(Exr, HalfOverflowIsClampedAndCounted) {
+  const float inf = std::numeric_limits<float>::infinity();
+  Image image;
+  image.width = 6;
+  image.height = 1;
+  image.add("R") = {65504.0f, 65505.0f, 1e9f, -inf, 1.0f, std::nanf("")};
+  EXPECT_EQ(writeExr(at("half.exr"), image, ExrPixelType::Half), 3u);
+  const Image half = readExr(at("half.exr"));
+  const std::vector<float>& data = *half.find("R");
+  EXPECT_EQ(data[0], 65504.0f);
+  EXPECT_EQ(data[1], 65504.0f);
+  EXPECT_EQ(data[2], 65504.0f);
+  EXPECT_EQ(data[3], -65504.0f);
+  EXPECT_EQ(data[4], 1.0f);
+  EXPECT_TRUE(std::isnan(data[5]));
+  EXPECT_EQ(writeExr(at("float.exr"), image, ExrPixelType::Float), 0u);
+  EXPECT_EQ((*readExr(at("float.exr")).find("R"))[2], 1e9f);
+}
+
+TEST_F(Exr, EqualImagesGiveEqualBytes) {
+  writeExr(at("a.exr"), layeredImage(), ExrPixelType::Half);
+  writeExr(at("b.exr"), layeredImage(), ExrPixelType::Half);
+  EXPECT_TRUE(readAll(at("a.exr")) == readAll(at("b.exr")));
+}
+
+// Where the payload of a header attribute starts: name, type, then a 32-bit size.
+size_t attributeOffset(const std::string& bytes, const std::string& name, const std::string& type) {
+  const std::string key = name + '\0' + type + '\0';
+  return bytes.find(key) + key.size() + 4;
+}
+
+TEST_F(Exr, WindowsAreWrittenFromZero) {
+  writeExr(at("a.exr"), layeredImage(), ExrPixelType::Float);
+  const std::string bytes = readAll(at("a.exr"));
+  const std::string window("\0\0\0\0\0\0\0\0\x24\0\0\0\x14\0\0\0", 16);  // (0,0) to (36,20)
+  EXPECT_EQ(bytes.substr(attributeOffset(bytes, "displayWindow", "box2i"), 16), window);
+  EXPECT_EQ(bytes.substr(attributeOffset(bytes, "dataWindow", "box2i"), 16), window);
+}
+
+TEST_F(Exr, DataWindowInsideTheDisplayWindowIsPlaced) {
+  const Image image = layeredImage();
+  writeExr(at("a.exr"), image, ExrPixelType::Float);
+  std::string bytes = readAll(at("a.exr"));
+  // The display window grows by 2 columns and 3 lines before, and loses 4 and 5 after.
+  const int window[4] = {-2, -3, 32, 15};
+  poke(bytes, attributeOffset(bytes, "displayWindow", "box2i"), window);
+  writeAll(at("b.exr"), bytes);
+  const Image read = readExr(at("b.exr"));
+  ASSERT_EQ(read.width, 35);
+  ASSERT_EQ(read.height, 19);
+  for (int y = 0; y < 19; ++y) {
+    for (int x = 0; x < 35; ++x) {
+      const bool inside = x >= 2 && y >= 3;
+      const size_t from = static_cast<size_t>((y - 3) * 37 + x - 2);
+      ASSERT_EQ((*read.find("G"))[static_cast<size_t>(y * 35 + x)],
+                inside ? (*image.find("G"))[from] : 0.0f)
+          << x << ' ' << y;
+    }
+  }
+}
+
+TEST_F(Exr, EveryTruncationIsRefused) {
+  Image image;
+  image.width = image.height = 20;
+  for (const char* name : {"R", "G"}) {
+    std::vector<float>& data = image.add(name);
+    for (size_t i = 0; i < data.size(); ++i) data[i] = std::sin(static_cast<float>(i));
+  }
+  writeExr(at("a.exr"), image, ExrPixelType::Half);
+  const std::string bytes = readAll(at("a.exr"));
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    writeAll(at("b.exr"), bytes.substr(0, size));
+    ASSERT_THROW(readExr(at("b.exr")), InputError) << size;
+  }
+  EXPECT_THROW(readExr(at("missing.exr")), InputError);
+  EXPECT_THROW(readExr(at(".")), InputError);
+}
+
+TEST_F(Exr, NoSingleByteOfDamageCrashesTheReader) {
+  writeExr(at("a.exr"), layeredImage(), ExrPixelType::Half);
+  const std::string bytes = readAll(at("a.exr"));
+  for (size_t i = 0; i < std::min<size_t>(bytes.size(), 1200); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0xff);
+    writeAll(at("b.exr"), damaged);
+    try {
+      readExr(at("b.exr"));  // some bytes only change a name or a colour
+    } catch (const InputError&) {
+    }
+  }
+}
+
+TEST_F(Exr, AbsurdSizesAreRefusedBeforeTheyAreAllocated) {
+  writeExr(at("a.exr"), layeredImage(), ExrPixelType::Half);
+  const std::string bytes = readAll(at("a.exr"));
+  for (const int side : {60000, 1 << 20, 2147483647}) {
+    for (const char* name : {"displayWindow", "dataWindow"}) {
+      std::string damaged = bytes;
+      const int window[4] = {0, 0, side - 1, side - 1};
+      poke(damaged, attributeOffset(damaged, name, "box2i"), window);
+      writeAll(at("b.exr"), damaged);
+      EXPECT_THROW(readExr(at("b.exr")), InputError) << name << side;
+    }
+  }
+}
+
+TEST_F(Exr, MalformedImagesAndTargetsAreRefused) {
+  Image image = layeredImage();
+  EXPECT_THROW(writeExr(at("missing") / "a.exr", image, ExrPixelType::Half), OutputError);
+  image.add("R");
+  EXPECT_THROW(writeExr(at("a.exr"), image, ExrPixelType::Half), OutputError);
+  image.channels.back() = {"short", std::vector<float>(3)};
+  EXPECT_THROW(writeExr(at("a.exr"), image, ExrPixelType::Half), OutputError);
+  EXPECT_THROW(writeExr(at("a.exr"), Image{}, ExrPixelType::Half), OutputError);
+  image.channels.pop_back();
+  image.attributes["dataWindow"] = "not a window";
+  EXPECT_THROW(writeExr(at("a.exr"), image, ExrPixelType::Half), OutputError);
+  EXPECT_EQ(fileCount(), 0u);
+}
+
+}  // namespace
+}  // namespace bnvpl

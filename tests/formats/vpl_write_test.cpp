@@ -1,0 +1,185 @@
+// What goes in comes out, and what must not go in leaves the old file alone.
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
+#include <limits>
+
+#include "formats/vpl_io.h"
+#include "tests/formats/test_files.h"
+
+namespace bnvpl {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+using VplWrite = TestFolder;
+
+// Enough rows that columns span many alignment blocks, and a count that leaves padding.
+VplTable manyRows(VplStage stage, size_t count) {
+  VplTable table;
+  table.stage = stage;
+  table.sceneHash = 0xfedcba9876543210u;
+  table.provenance = R"([{"tool":"a"},{"tool":"b","options":{"name":"ü"}}])";
+  for (size_t i = 0; i < count; ++i) {
+    const float x = static_cast<float>(i);
+    table.position.emplace_back(x, -x, x * 0.1f);
+    table.normal.emplace_back(std::sin(x), 0.0f, std::cos(x));
+    table.albedo.emplace_back(1.0f / (x + 1.0f), 0.5f, 0.0f);
+    table.id.push_back(static_cast<uint32_t>(i * 3));
+    if (stage >= VplStage::Eliminated) table.radius.push_back(x + 0.5f);
+    if (stage < VplStage::Lit) continue;
+    table.flux.emplace_back(x, x * 2.0f, x * x);
+    table.photons.push_back(i << 33);
+    table.relativeError.push_back(1.0f / (x + 2.0f));
+  }
+  if (stage >= VplStage::Eliminated) table.rMax = 0.1, table.areaEstimate = 1e9;
+  return table;
+}
+
+void expectSame(const VplTable& a, const VplTable& b) {
+  EXPECT_EQ(a.stage, b.stage);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.normal, b.normal);
+  EXPECT_EQ(a.albedo, b.albedo);
+  EXPECT_EQ(a.id, b.id);
+  EXPECT_EQ(a.radius, b.radius);
+  EXPECT_EQ(a.flux, b.flux);
+  EXPECT_EQ(a.photons, b.photons);
+  EXPECT_EQ(a.relativeError, b.relativeError);
+  EXPECT_EQ(a.rMax, b.rMax);
+  EXPECT_EQ(a.areaEstimate, b.areaEstimate);
+  EXPECT_EQ(a.sceneHash, b.sceneHash);
+  EXPECT_EQ(a.provenance, b.provenance);
+}
+
+TEST_F(VplWrite, EveryStageAndSizeSurvivesTheRoundTrip) {
+  for (const VplStage stage : {VplStage::Candidates, VplStage::Eliminated, VplStage::Lit}) {
+    for (const size_t count : {0, 1, 5, 16, 17, 1000}) {
+      const VplTable table = manyRows(stage, count);
+      writeVpl(at("a.vpl"), table);
+      const VplTable read = readVpl(at("a.vpl"), stage);
+      expectSame(read, table);
+      writeVpl(at("b.vpl"), read);
+      EXPECT_TRUE(readAll(at("a.vpl")) == readAll(at("b.vpl")));
+      const VplHeader header = readVplHeader(at("a.vpl"));
+      EXPECT_EQ(header.stage, stage);
+      EXPECT_EQ(header.count, count);
+      EXPECT_EQ(header.checksum, read.checksum);
+      EXPECT_EQ(header.fileBytes, fs::file_size(at("a.vpl")));
+    }
+  }
+}
+
+TEST_F(VplWrite, ColumnsAreAlignedAndListedWithTheirValues) {
+  const VplTable table = smallTable(VplStage::Lit);
+  EXPECT_EQ(columnInfo(VplStage::Candidates).size(), 4u);
+  EXPECT_EQ(columnInfo(VplStage::Eliminated).size(), 5u);
+  const auto columns = columnInfo(VplStage::Lit);
+  ASSERT_EQ(columns.size(), 8u);
+  EXPECT_EQ(columns[5].name, "flux");
+  EXPECT_EQ(columnValue(table, 5, 0, 2), 4.0);
+  EXPECT_EQ(columnValue(table, 6, 0, 0), 4294967297.0);
+  EXPECT_EQ(columnValue(table, 0, 1, 2), -0.125);
+}
+
+TEST_F(VplWrite, EmptyProvenanceIsAnEmptyArray) {
+  VplTable table = smallTable(VplStage::Candidates);
+  table.provenance.clear();
+  writeVpl(at("a.vpl"), table);
+  EXPECT_EQ(readVpl(at("a.vpl")).provenance, "[]");
+}
+
+// Runs `change` on a table of stage Lit, writes it over a good file, and expects a refusal that
+// says `what` and leaves the good file.
+template <typename Change>
+void expectRefused(const fs::path& file, const std::string& what, const Change& change) {
+  writeVpl(file, smallTable(VplStage::Lit));
+  const std::string before = readAll(file);
+  VplTable table = smallTable(VplStage::Lit);
+  change(table);
+  try {
+    writeVpl(file, table);
+    ADD_FAILURE() << "written: " << what;
+  } catch (const OutputError& error) {
+    EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+  }
+  EXPECT_TRUE(readAll(file) == before);
+}
+
+TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
+  const fs::path f = at("a.vpl");
+  expectRefused(f, "column position, row 1", [](VplTable& t) { t.position[1].y = kNan; });
+  expectRefused(f, "column position, row 0", [](VplTable& t) { t.position[0].z = -kInf; });
+  expectRefused(f, "column normal, row 0: not a finite", [](VplTable& t) { t.normal[0].x = kNan; });
+  expectRefused(f, "column normal, row 1: not of unit", [](VplTable& t) { t.normal[1].x = 0.99f; });
+  expectRefused(f, "column albedo, row 0", [](VplTable& t) { t.albedo[0].z = 1.01f; });
+  expectRefused(f, "column albedo, row 0", [](VplTable& t) { t.albedo[0].y = -0.01f; });
+  expectRefused(f, "column radius, row 1", [](VplTable& t) { t.radius[1] = 0.0f; });
+  expectRefused(f, "column radius, row 0", [](VplTable& t) { t.radius[0] = kInf; });
+  expectRefused(f, "column flux, row 1", [](VplTable& t) { t.flux[1].x = -1.0f; });
+  expectRefused(f, "column flux, row 0", [](VplTable& t) { t.flux[0].x = kNan; });
+  expectRefused(f, "column relative_error, row 0", [](VplTable& t) { t.relativeError[0] = kNan; });
+  expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
+  expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });
+  expectRefused(f, "provenance", [](VplTable& t) { t.provenance = "{}"; });
+  EXPECT_EQ(fileCount(), 1u);  // nothing partial stays behind
+}
+
+TEST_F(VplWrite, UnevenOrSurplusColumnsAreOurBug) {
+  VplTable uneven = smallTable(VplStage::Lit);
+  uneven.photons.pop_back();
+  EXPECT_THROW(writeVpl(at("a.vpl"), uneven), std::logic_error);
+  VplTable surplus = smallTable(VplStage::Lit);
+  surplus.stage = VplStage::Eliminated;
+  EXPECT_THROW(writeVpl(at("a.vpl"), surplus), std::logic_error);
+  EXPECT_EQ(fileCount(), 0u);
+}
+
+TEST_F(VplWrite, FailedWriteLeavesTheOldFile) {
+  writeVpl(at("a.vpl"), smallTable(VplStage::Candidates));
+  const std::string before = readAll(at("a.vpl"));
+  // A limit on file size fails the write itself, for root too.
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
+  const auto oldHandler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{4096, old.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
+  EXPECT_THROW(writeVpl(at("a.vpl"), manyRows(VplStage::Lit, 1000)), OutputError);
+  // Small enough to sit in the stream's buffer until it is closed.
+  const rlimit tighter{256, old.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tighter), 0);
+  EXPECT_THROW(writeVpl(at("a.vpl"), smallTable(VplStage::Lit)), OutputError);
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, oldHandler);
+  EXPECT_TRUE(readAll(at("a.vpl")) == before);
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(VplWrite, TargetsThatCannotBeReplacedAreRefused) {
+  const VplTable table = smallTable(VplStage::Candidates);
+  EXPECT_THROW(writeVpl(at("missing") / "a.vpl", table), OutputError);
+  EXPECT_THROW(writeVpl(at("."), table), OutputError);
+  EXPECT_THROW(writeVpl("/dev/null", table), OutputError);
+  EXPECT_FALSE(fs::is_regular_file("/dev/null"));
+}
+
+TEST_F(VplWrite, WrongStageIsRefusedNamingTheTool) {
+  writeVpl(at("c.vpl"), smallTable(VplStage::Candidates));
+  try {
+    readVpl(at("c.vpl"), VplStage::Lit);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("c.vpl"), std::string::npos) << text;
+    EXPECT_NE(text.find("stage candidates"), std::string::npos) << text;
+    EXPECT_NE(text.find("stage lit is needed"), std::string::npos) << text;
+    EXPECT_NE(text.find("vpl-estimate"), std::string::npos) << text;
+  }
+  EXPECT_THROW(readVpl(at("c.vpl"), VplStage::Eliminated), InputError);
+  EXPECT_NO_THROW(readVpl(at("c.vpl"), VplStage::Candidates));
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,71 @@
+// What every stage's main shares: options of all tools, exit codes, summary, provenance records.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/errors.h"
+
+namespace bnvpl {
+
+using Json = nlohmann::ordered_json;
+
+// Options that do not change what is computed, and therefore never enter a provenance record.
+struct ToolOptions {
+  unsigned threads = 0;  // 0: all cores
+  bool quiet = false;
+  fs::path stats;    // JSON summary, empty: none
+  fs::path depfile;  // Make/ninja dependencies, empty: none
+};
+
+// --threads --quiet --stats --version, and --depfile where the stage reads more than it is named.
+void addToolOptions(CLI::App& cli, ToolOptions& options);
+void addDepfileOption(CLI::App& cli, ToolOptions& options);
+
+// A count option that takes 3000, 3k, 10M or 1G (powers of 1000), from 1 up.
+CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
+                      const std::string& help);
+
+// "3k" -> 3000. Throws UsageError on anything else than a positive whole number within 2^53.
+uint64_t parseCount(const std::string& text);
+
+// Parses argv, limits oneTBB to --threads, calls `work`, and turns exceptions into one line on stderr
+// and the documented exit code. The only try/catch of a tool.
+int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
+            const std::function<int()>& work);
+
+// Appends a stage's record to the chain of its input (empty for the first stage).
+//   {"tool": "vpl-place", "version": "0.1.0", "options": {...}, "inputs": {"scene": "<hash>"}}
+std::string extendProvenance(const std::string& earlier, const std::string& tool,
+                             const Json& options, const Json& inputs);
+std::string hashText(uint64_t hash);  // 16 hexadecimal digits
+
+// Ends a tool's work: prints "name: key value, ..." to stdout unless quiet, writes the same with time and
+// peak memory to --stats.
+class Summary {
+ public:
+  explicit Summary(std::string tool);
+  // `text` is for people, `value` for the JSON file. Keys carry their units: "time_s".
+  void add(const std::string& key, Json value, const std::string& text = "");
+  void finish(const ToolOptions& options) const;
+
+ private:
+  std::string tool_;
+  double startS_;
+  Json values_ = Json::object();
+  std::vector<std::string> lines_;
+};
+
+// Prints each warning once, by name, to stderr. Warnings are not silenced by --quiet.
+void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
+
+// Writes "target: file file ..." in Make syntax, atomically. Does nothing when `depfile` is empty.
+void writeDepfile(const fs::path& depfile, const fs::path& target, const std::vector<fs::path>& files);
+
+std::string formatSi(double value);  // 12345678 -> "12.3M"
+
+}  // namespace bnvpl

@@ -1,0 +1,99 @@
+#include "tools/eliminate/eliminate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "spatial/morton_order.h"
+#include "tools/eliminate/conflict_graph.h"
+#include "tools/eliminate/greedy.h"
+#include "tools/eliminate/radii.h"
+
+namespace bnvpl {
+namespace {
+
+// Yuksel 2015, section 4.2: where to stop telling near pairs apart.
+constexpr double kLimitBeta = 0.65, kLimitGamma = 1.5;
+
+template <typename T>
+std::vector<T> gather(std::span<const T> values, const std::vector<uint32_t>& order) {
+  std::vector<T> out(order.size());
+  parallelFor(order.size(), 4096, [&](size_t i) { out[i] = values[order[i]]; });
+  return out;
+}
+
+// The rows of the `count` smallest keys, ascending.
+std::vector<uint32_t> rowsOfSmallest(std::vector<RemovalKey>& keys, size_t count) {
+  if (count < keys.size()) {
+    std::nth_element(keys.begin(), keys.begin() + static_cast<ptrdiff_t>(count), keys.end());
+  }
+  std::vector<uint32_t> rows(count);
+  for (size_t i = 0; i < count; ++i) rows[i] = keys[i].row;
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+std::vector<uint32_t> randomRows(size_t candidates, const EliminateOptions& options) {
+  const uint64_t key = streamKey(options.seed, Stream::Eliminate);
+  std::vector<RemovalKey> keys(candidates);
+  parallelFor(candidates, 4096, [&](size_t i) {
+    keys[i] = {random64(key, i, 0), static_cast<uint32_t>(i)};
+  });
+  return rowsOfSmallest(keys, options.count);
+}
+
+PairWeight pairWeightRule(size_t candidates, const EliminateOptions& options) {
+  const bool limited =
+      options.weightLimiting == WeightLimiting::On ||
+      (options.weightLimiting == WeightLimiting::Auto && options.area > 0.0 &&
+       options.density == Density::Uniform);
+  const double kept = static_cast<double>(options.count) / static_cast<double>(candidates);
+  const double limit = limited ? (1.0 - std::pow(kept, kLimitGamma)) * kLimitBeta : 0.0;
+  return {static_cast<float>(options.alpha), static_cast<float>(limit)};
+}
+
+// `order` tells the row of each candidate, `keep` the number that stay.
+std::vector<uint32_t> spreadRows(const ConflictGraph& graph, const std::vector<uint32_t>& order,
+                                 size_t keep) {
+  const std::vector<uint64_t> weights = weightsAtRemoval(graph, order);
+  std::vector<RemovalKey> keys(order.size());
+  for (size_t i = 0; i < keys.size(); ++i) keys[i] = {weights[i], order[i]};
+  return rowsOfSmallest(keys, keep);
+}
+
+}  // namespace
+
+EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> normal,
+                          const EliminateOptions& options) {
+  const size_t candidates = position.size();
+  if (options.count == 0) throw InputError("cannot keep 0 VPLs; ask for at least 1 with -n");
+  if (options.count > candidates) {
+    throw InputError("asked to keep " + std::to_string(options.count) + " of " +
+                     std::to_string(candidates) + " candidates; rerun vpl-place -n at least " +
+                     std::to_string(options.count * 5) + " (5 to 20 x " +
+                     std::to_string(options.count) + ")");
+  }
+  // All searching is done in an order that keeps neighbours together.
+  const std::vector<uint32_t> order = mortonOrder(position);
+  const std::vector<Vec3> sortedPosition = gather<Vec3>(position, order);
+  const std::vector<Vec3> sortedNormal = gather<Vec3>(normal, order);
+  const CandidateRadii radii = candidateRadii(sortedPosition, sortedNormal, options);
+  EliminateResult result;
+  result.rMax = radii.rMax;
+  result.area = radii.area;
+  if (options.method == EliminationMethod::Random) {
+    result.rows = randomRows(candidates, options);
+  } else {
+    const ConflictGraph graph(sortedPosition, sortedNormal, radii.radius,
+                              pairWeightRule(candidates, options));
+    result.rows = spreadRows(graph, order, options.count);
+  }
+  std::vector<float> radiusOfRow(candidates);
+  parallelFor(candidates, 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
+  result.radius = gather<float>(radiusOfRow, result.rows);
+  return result;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,60 @@
+#include "tools/eliminate/radii.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "spatial/local_density.h"
+
+namespace bnvpl {
+namespace {
+
+constexpr double kTwoSqrt3 = 2.0 * std::numbers::sqrt3;
+// The area enters r_max by its root: the 1 % that this many rows may miss it by is not seen.
+constexpr size_t kMostAreaRows = 16384;
+
+std::vector<uint32_t> evenlySpacedRows(size_t count, size_t most) {
+  std::vector<uint32_t> rows(std::min(count, most));
+  for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<uint32_t>(i * count / rows.size());
+  return rows;
+}
+
+double sumOf(const std::vector<float>& values) {
+  return parallelSum(values.size(), [&](size_t i) { return static_cast<double>(values[i]); });
+}
+
+}  // namespace
+
+double packedDiskRadius(double area, double count) { return std::sqrt(area / (kTwoSqrt3 * count)); }
+
+CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
+                              const EliminateOptions& options) {
+  const auto candidates = static_cast<double>(position.size());
+  const auto kept = static_cast<double>(options.count);
+  const auto k = static_cast<unsigned>(options.neighbours);
+  CandidateRadii result;
+  if (options.density == Density::Uniform) {
+    result.area = options.area;
+    if (!(options.area > 0.0)) {
+      const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMostAreaRows);
+      const KdTree tree(position);
+      result.area = sumOf(surfaceShares(position, normal, k, tree, rows)) * candidates /
+                    static_cast<double>(rows.size());
+    }
+    result.rMax = packedDiskRadius(result.area, kept);
+    result.radius.assign(position.size(), static_cast<float>(result.rMax));
+    return result;
+  }
+  result.radius = surfaceShares(position, normal, k);
+  const double estimate = sumOf(result.radius);
+  result.area = options.area > 0.0 ? options.area : estimate;
+  result.rMax = packedDiskRadius(result.area, kept);
+  const double shareScale = result.area / estimate * candidates;
+  parallelFor(position.size(), 4096, [&](size_t i) {
+    result.radius[i] = static_cast<float>(packedDiskRadius(result.radius[i] * shareScale, kept));
+  });
+  return result;
+}
+
+}  // namespace bnvpl

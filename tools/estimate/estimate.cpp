@@ -1,0 +1,246 @@
+#include "tools/estimate/estimate.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/compatibility.h"
+#include "core/parallel.h"
+#include "scene/photon_path.h"
+#include "spatial/reach_grid.h"
+#include "tools/estimate/photon_shares.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr uint64_t kPhotonsPerRange = 4096;
+// Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of a curved
+// surface do not hide it from itself (METHOD 1: 0.1 R).
+constexpr float kGuardLift = 0.1f;
+// More VPLs than this around one hit share its energy among the first ones found; at the default radius
+// there are four to six.
+constexpr size_t kMaxEligible = 256;
+
+// Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers commutes,
+// so neither threads nor the order of photons matter, and ranges computed apart can be added up.
+class FixedPoint {
+ public:
+  // 2^-26 of the mean photon: the sum of 2^36 of them fits in 63 bits.
+  explicit FixedPoint(double photonPower) : unit_(std::ldexp(1.0, std::ilogb(photonPower) - 26)) {}
+  int64_t encode(double value) const {
+    const double units = value / unit_;
+    if (!(std::fabs(units) < 0x1p62)) throw std::overflow_error("flux exceeds its fixed-point range");
+    return static_cast<int64_t>(std::llround(units));
+  }
+  double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
+
+ private:
+  double unit_;
+};
+
+void addChecked(int64_t& sum, int64_t term) {
+  if (__builtin_add_overflow(sum, term, &sum)) {
+    throw std::overflow_error("flux sum exceeds its fixed-point range; lower --photons");
+  }
+}
+
+struct VplSum {
+  std::array<int64_t, 3> flux{};
+  int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
+  uint64_t photons = 0;
+
+  void add(const VplSum& o) {
+    for (size_t c = 0; c < 3; ++c) addChecked(flux[c], o.flux[c]);
+    addChecked(squares, o.squares);
+    photons += o.photons;
+  }
+};
+
+enum Tally { kEmitted, kEscaped, kAbsorbed, kReflected, kDeposited, kOutside, kGap, kHidden, kTallies };
+
+struct Sums {  // of one thread
+  std::vector<VplSum> vpl;
+  std::array<int64_t, kTallies> tally{};
+  uint64_t hits = 0, rays = 0, guardRays = 0;
+};
+
+class Scatterer {
+ public:
+  Scatterer(const VplTable& vpls, const RayScene& rays, const EstimateOptions& options, double photonPower)
+      : vpls_(vpls),
+        rays_(rays),
+        options_(options),
+        fixed_(photonPower),
+        photonPower_(photonPower),
+        reach_(reachOf(vpls, options.radius)),
+        grid_(vpls.position, reach_) {}
+
+  // Hands the flux that leaves a diffuse hit to the VPLs around it.
+  void scatter(const SurfacePoint& hit, Vec3 flux, Rng& rng, Sums& sums) const {
+    ++sums.hits;
+    tally(sums, kReflected, flux);
+    if (options_.scatter == Scatter::Even) return scatterEvenly(hit, flux, sums);
+    scatterGuarded(hit, flux, rng, sums);
+  }
+  void tally(Sums& sums, Tally t, Vec3 flux) const {
+    addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
+  }
+  const FixedPoint& fixed() const { return fixed_; }
+  double photonPower() const { return photonPower_; }
+
+ private:
+  static std::vector<float> reachOf(const VplTable& vpls, float radius) {
+    std::vector<float> reach(vpls.radius);
+    for (float& r : reach) r *= radius;
+    return reach;
+  }
+
+  void deposit(uint32_t vpl, Vec3 flux, Sums& sums) const {
+    VplSum& s = sums.vpl[vpl];
+    for (size_t c = 0; c < 3; ++c) addChecked(s.flux[c], fixed_.encode(double{flux[c]}));
+    const double relative = double{mean(flux)} / photonPower_;
+    addChecked(s.squares, std::llround(relative * relative * 0x1p20));
+    ++s.photons;
+  }
+
+  // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies between.
+  void scatterEvenly(const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
+    uint32_t found = 0;
+    grid_.forEachReaching(hit.position, [&](uint32_t, float) { ++found; });
+    if (found == 0) return tally(sums, kOutside, flux);
+    const Vec3 share = flux * (1.0f / static_cast<float>(found));
+    grid_.forEachReaching(hit.position, [&](uint32_t i, float) { deposit(i, share, sums); });
+    tally(sums, kDeposited, flux);
+  }
+
+  // Evenly among those on the same sheet and in sight, in expectation: the eligible are tried in random
+  // order, and the first in sight gets all. That is one guard ray a hit instead of one for each VPL.
+  void scatterGuarded(const SurfacePoint& hit, Vec3 flux, Rng& rng, Sums& sums) const {
+    std::array<uint32_t, kMaxEligible> eligible;
+    size_t count = 0, reaching = 0;
+    grid_.forEachReaching(hit.position, [&](uint32_t i, float) {
+      ++reaching;
+      if (count < kMaxEligible && sameSheet(hit.position, hit.ng, vpls_.position[i], vpls_.normal[i],
+                                            kPlaneFactor * reach_[i])) {
+        eligible[count++] = i;
+      }
+    });
+    if (count == 0) return tally(sums, reaching == 0 ? kOutside : kGap, flux);
+    for (size_t left = count; left > 0; --left) {
+      const auto pick = std::min(left - 1, static_cast<size_t>(rng.next() * static_cast<float>(left)));
+      const uint32_t i = eligible[pick];
+      if (inSight(hit, i, sums)) {
+        deposit(i, flux, sums);
+        return tally(sums, kDeposited, flux);
+      }
+      eligible[pick] = eligible[left - 1];
+    }
+    tally(sums, kHidden, flux);
+  }
+
+  bool inSight(const SurfacePoint& hit, uint32_t vpl, Sums& sums) const {
+    ++sums.guardRays;
+    const float lift = kGuardLift * reach_[vpl];
+    return !rays_.occluded(hit.position + hit.ng * lift, vpls_.position[vpl] + vpls_.normal[vpl] * lift);
+  }
+
+  const VplTable& vpls_;
+  const RayScene& rays_;
+  const EstimateOptions& options_;
+  FixedPoint fixed_;
+  double photonPower_;
+  std::vector<float> reach_;
+  ReachGrid grid_;
+};
+
+Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights, const PhotonShares& shares,
+                  const Scatterer& scatterer, const EstimateOptions& options, const ProgressFn& progress) {
+  const uint64_t key = streamKey(options.seed, Stream::Photons);
+  const auto fresh = [&] {
+    Sums s;
+    s.vpl.resize(vpls.size());
+    return s;
+  };
+  tbb::enumerable_thread_specific<Sums> perThread(fresh);
+  parallelRanges(shares.total(), kPhotonsPerRange, [&](size_t begin, size_t end) {
+    Sums& sums = perThread.local();
+    for (uint64_t photon = begin; photon < end; ++photon) {
+      Rng rng(key, photon);
+      const size_t light = shares.lightOf(photon);
+      PhotonStart start = lights.emit(light, rng);
+      start.flux *= shares.weight(light);
+      scatterer.tally(sums, kEmitted, start.flux);
+      const PhotonFate fate =
+          tracePhoton(rays, start, options.maxBounces, rng, [&](const Bsdf& bsdf, Vec3 flux) {
+            scatterer.scatter(bsdf.point(), flux * bsdf.roughAlbedo(), rng, sums);
+          });
+      scatterer.tally(sums, kEscaped, fate.escaped);
+      scatterer.tally(sums, kAbsorbed, fate.absorbed);
+      sums.rays += fate.rays;
+    }
+    if (progress) progress(end - begin);
+  });
+  Sums total = fresh();
+  for (const Sums& s : perThread) {
+    for (size_t i = 0; i < total.vpl.size(); ++i) total.vpl[i].add(s.vpl[i]);
+    for (size_t t = 0; t < kTallies; ++t) addChecked(total.tally[t], s.tally[t]);
+    total.hits += s.hits;
+    total.rays += s.rays;
+    total.guardRays += s.guardRays;
+  }
+  return total;
+}
+
+void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
+  vpls.stage = VplStage::Lit;
+  vpls.flux.resize(vpls.size());
+  vpls.photons.resize(vpls.size());
+  vpls.relativeError.resize(vpls.size());
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const VplSum& s = sums.vpl[i];
+    double sum = 0.0;
+    for (size_t c = 0; c < 3; ++c) {
+      const double value = scatterer.fixed().decode(s.flux[c]);
+      vpls.flux[i][c] = static_cast<float>(value);
+      sum += value / 3.0;
+    }
+    vpls.photons[i] = s.photons;
+    // Deposits taken as independent: sqrt(sum of squares) over the sum.
+    const double rootSquares = std::sqrt(static_cast<double>(s.squares) * 0x1p-20) * scatterer.photonPower();
+    vpls.relativeError[i] = sum > 0.0 ? static_cast<float>(rootSquares / sum) : 0.0f;
+  }
+}
+
+}  // namespace
+
+EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
+                           const EstimateOptions& options, const ProgressFn& progress) {
+  const double power = double{mean(lights.totalPower())};
+  if (!(power > 0.0)) {
+    throw InputError("the scene has no light with power; add a [[light]] or an emissive material (Ke)");
+  }
+  const PhotonShares shares(lights, options.photons);
+  const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()));
+  const Sums sums = tracePhotons(vpls, rays, lights, shares, scatterer, options, progress);
+  fillTable(vpls, sums, scatterer);
+
+  const auto watts = [&](Tally t) { return scatterer.fixed().decode(sums.tally[t]); };
+  EnergyAccount a;
+  a.emitted = watts(kEmitted);
+  a.escaped = watts(kEscaped);
+  a.absorbed = watts(kAbsorbed);
+  a.reflected = watts(kReflected);
+  a.deposited = watts(kDeposited);
+  a.outside = watts(kOutside);
+  a.gap = watts(kGap);
+  a.hidden = watts(kHidden);
+  a.photons = shares.total();
+  a.hits = sums.hits;
+  a.rays = sums.rays;
+  a.guardRays = sums.guardRays;
+  return a;
+}
+
+}  // namespace bnvpl

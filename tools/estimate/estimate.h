@@ -1,0 +1,41 @@
+// The stage vpl-estimate without files: photons from the real lights give the VPLs their flux.
+#pragma once
+
+#include "core/progress.h"
+#include "formats/vpl_table.h"
+#include "scene/lights.h"
+#include "scene/ray_scene.h"
+
+namespace bnvpl {
+
+// Guarded: only VPLs that the hit could stand for: on the same sheet of surface and in sight.
+// Even: every VPL within the radius, as the thesis says; leaks through thin walls.
+enum class Scatter { Guarded, Even };
+
+struct EstimateOptions {
+  uint64_t photons = 10000000;
+  float radius = 2.0f;  // how far a VPL reaches, in units of its own r_max
+  Scatter scatter = Scatter::Guarded;
+  unsigned maxBounces = 32;  // diffuse hits of a photon
+  uint64_t seed = 1;
+};
+
+// Where the light went, W (linear sRGB, averaged over the channels). emitted = escaped + absorbed up to the
+// noise of Russian roulette; reflected = deposited + outside + gap + hidden exactly.
+struct EnergyAccount {
+  double emitted = 0, escaped = 0, absorbed = 0;
+  double reflected = 0;  // flux that leaves the diffuse hits
+  double deposited = 0;  // handed to VPLs
+  double outside = 0;    // no VPL reaches the hit: it lies outside the region that lights the view
+  double gap = 0;        // VPLs reach the hit, but none is on its sheet of surface
+  double hidden = 0;     // some are on its sheet, but none is in sight
+  uint64_t photons = 0, hits = 0, rays = 0, guardRays = 0;
+};
+
+// Fills flux, photons and relativeError of `vpls` (stage Eliminated) and makes it stage Lit. Flux is summed
+// in 64-bit fixed point: any number of threads gives the same bits.
+// Throws InputError when no light has power.
+EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
+                           const EstimateOptions& options, const ProgressFn& progress = {});
+
+}  // namespace bnvpl

@@ -1,0 +1,178 @@
+#include "tools/place/place.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/parallel.h"
+#include "scene/bsdf.h"
+#include "scene/camera.h"
+#include "scene/photon_path.h"
+#include "spatial/local_density.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr uint64_t kPathsPerChunk = 1024;
+constexpr uint64_t kChunksPerWave = 64;
+// A view that yields less than one candidate in this many paths is refused, not searched for ever.
+constexpr uint64_t kPathsPerCandidate = 200;
+constexpr uint64_t kFreePaths = 1000000;
+
+// What one fixed range of paths yields; chunks are joined in order, so threads do not matter.
+struct Chunk {
+  VplTable rows;
+  std::vector<uint64_t> path;  // of each row, to know where the count was reached
+  uint64_t rays = 0, escaped = 0, absorbed = 0, complete = 0;
+};
+
+void addRow(Chunk& chunk, const Bsdf& bsdf, uint64_t path) {
+  chunk.rows.position.push_back(bsdf.point().position);
+  chunk.rows.normal.push_back(bsdf.point().ng);
+  chunk.rows.albedo.push_back(bsdf.roughAlbedo());
+  chunk.path.push_back(path);
+}
+
+void traceCameraPath(const RayScene& rays, const PlaceOptions& options, uint64_t path, uint64_t key,
+                     Chunk& chunk) {
+  const Scene& scene = rays.scene();
+  const Point2 film = r2Sequence(path, double{toUnitFloat(random64(key, 0, 0))},
+                                 double{toUnitFloat(random64(key, 0, 1))});
+  Rng rng(key, path + 1);
+  Vec3 origin = scene.camera.position;
+  Vec3 direction = cameraDirection(scene.camera, scene.film, film.x, film.y);
+  unsigned rough = 0, chain = 0;
+  SurfacePoint hit;
+  while (true) {
+    ++chunk.rays;
+    if (!rays.closestHit(origin, direction, hit)) {
+      ++chunk.escaped;
+      return;
+    }
+    const Bsdf bsdf(scene, hit);
+    const bool takeChain = rng.next() < bsdf.chainProbability();
+    if (!takeChain && bsdf.hasRough()) {
+      if (++rough >= 2) addRow(chunk, bsdf, path);
+      if (rough >= options.depth) {
+        ++chunk.complete;
+        return;
+      }
+    }
+    BsdfSample next;
+    if ((takeChain && ++chain > kMaxChain) ||
+        !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Radiance, rng, next)) {
+      ++chunk.absorbed;
+      return;
+    }
+    origin = rays.lifted(hit.position, next.side);
+    direction = next.wi;
+  }
+}
+
+void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOptions& options,
+                     uint64_t path, uint64_t key, Chunk& chunk) {
+  Rng rng(key, path);
+  float probability = 0.0f;
+  const size_t light = lights.pick(rng.next(), probability);
+  PhotonStart start = lights.emit(light, rng);
+  start.flux *= 1.0f / probability;
+  const PhotonFate fate =
+      tracePhoton(rays, start, options.lightDepth, rng, [&](const Bsdf& bsdf, Vec3 flux) {
+        addRow(chunk, bsdf, path);
+        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+      });
+  chunk.rays += fate.rays;
+  isBlack(fate.escaped) ? ++chunk.absorbed : ++chunk.escaped;
+}
+
+[[noreturn]] void failTooFew(const PlaceResult& r, const PlaceOptions& options) {
+  const auto percent = [&](uint64_t n) {
+    return std::to_string(static_cast<int>(std::lround(100.0 * double(n) / double(r.paths)))) + " %";
+  };
+  throw InputError("only " + std::to_string(r.table.size()) + " of " + std::to_string(options.count) +
+                   " VPLs found on " + std::to_string(r.paths) + " paths: " + percent(r.escaped) +
+                   " left the scene, " + percent(r.absorbed) + " met surfaces that reflect nothing, " +
+                   percent(r.complete) +
+                   " were complete; point the camera at lit surfaces or ask for fewer with -n");
+}
+
+// Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
+template <typename TracePath>
+PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress, const TracePath& tracePath) {
+  PlaceResult result;
+  VplTable& rows = result.table;
+  const uint64_t effort = kFreePaths + kPathsPerCandidate * options.count;
+  uint64_t firstPath = 0;
+  while (rows.size() < options.count) {
+    if (firstPath >= effort) failTooFew(result, options);
+    std::vector<Chunk> wave(kChunksPerWave);
+    parallelFor(wave.size(), 1, [&](size_t c) {
+      const uint64_t begin = firstPath + c * kPathsPerChunk;
+      for (uint64_t p = begin; p < begin + kPathsPerChunk; ++p) tracePath(p, wave[c]);
+    });
+    firstPath += kChunksPerWave * kPathsPerChunk;
+    const size_t before = rows.size();
+    result.paths = firstPath;
+    for (const Chunk& c : wave) {
+      const size_t room = options.count - rows.size(), take = std::min(room, c.rows.size());
+      const auto append = [take](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(std::min(take, from.size())));
+      };
+      append(rows.position, c.rows.position);
+      append(rows.normal, c.rows.normal);
+      append(rows.albedo, c.rows.albedo);
+      append(rows.flux, c.rows.flux);
+      result.rays += c.rays;
+      result.escaped += c.escaped;
+      result.absorbed += c.absorbed;
+      result.complete += c.complete;
+      if (rows.size() == options.count) {
+        if (take > 0) result.paths = c.path[take - 1] + 1;
+        break;
+      }
+    }
+    if (progress) progress(rows.size() - before);
+  }
+  rows.id.resize(rows.size());
+  for (size_t i = 0; i < rows.size(); ++i) rows.id[i] = static_cast<uint32_t>(i);
+  return result;
+}
+
+}  // namespace
+
+PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options, const ProgressFn& progress) {
+  const uint64_t key = streamKey(options.seed, Stream::PlaceCamera);
+  PlaceResult result = collect(options, progress, [&](uint64_t path, Chunk& chunk) {
+    traceCameraPath(rays, options, path, key, chunk);
+  });
+  result.table.stage = VplStage::Candidates;
+  result.table.sceneHash = rays.scene().contentHash;
+  return result;
+}
+
+PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights, const PlaceOptions& options,
+                            const ProgressFn& progress) {
+  if (!(mean(lights.totalPower()) > 0.0f)) {
+    throw InputError("the scene has no light with power; add a [[light]] or an emissive material (Ke)");
+  }
+  const uint64_t key = streamKey(options.seed, Stream::PlaceLight);
+  PlaceResult result = collect(options, progress, [&](uint64_t path, Chunk& chunk) {
+    tracePhotonPath(rays, lights, options, path, key, chunk);
+  });
+  VplTable& t = result.table;
+  t.stage = VplStage::Lit;
+  t.sceneHash = rays.scene().contentHash;
+  // Each VPL carries the flux of its photon; the estimate divides by the photons that were started.
+  for (Vec3& f : t.flux) f *= 1.0f / static_cast<float>(result.paths);
+  t.photons.assign(t.size(), 1);
+  t.relativeError.assign(t.size(), 1.0f);
+  constexpr unsigned kNeighbours = 20;  // as vpl-eliminate, so that clamps compare
+  for (const float share : surfaceShares(t.position, t.normal, kNeighbours)) {
+    t.areaEstimate += double{share};
+    t.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
+  }
+  t.rMax = std::sqrt(t.areaEstimate / (2.0 * std::sqrt(3.0) * static_cast<double>(t.size())));
+  return result;
+}
+
+}  // namespace bnvpl

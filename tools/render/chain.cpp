@@ -1,0 +1,43 @@
+#include "tools/render/chain.h"
+
+#include "scene/photon_path.h"
+
+namespace bnvpl {
+
+ChainEnd followChain(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
+                     const Arrival& start, Rng& rng) {
+  ChainEnd end;
+  end.throughput = Vec3{1.0f};
+  Arrival arrival = start;
+  while (true) {
+    Vec3& met = end.links == 0 ? end.metFirst : end.metLater;
+    ++end.rays;
+    if (!rays.closestHit(origin, direction, end.hit)) {
+      met += end.throughput * emissionAtInfinity(lights, direction, arrival);
+      return end;
+    }
+    if (end.links == 0) end.firstDistance = end.hit.distance;
+    met += end.throughput * emissionMet(lights, end.hit, arrival);
+
+    const Bsdf bsdf(rays.scene(), end.hit);
+    const float chainProbability = bsdf.chainProbability();
+    if (rng.next() >= chainProbability) {
+      end.throughput *= 1.0f / (1.0f - chainProbability);
+      end.rough = bsdf.hasRough();
+      return end;
+    }
+    if (++end.links > kMaxChain) return end;
+    end.throughput *= 1.0f / chainProbability;
+    if (!bsdf.chainIsDelta()) {
+      end.metLater += end.throughput * directLightMis(rays, lights, bsdf, LobeGroup::Chain, rng);
+    }
+    BsdfSample next;
+    if (!bsdf.sample(LobeGroup::Chain, Transport::Radiance, rng, next)) return end;
+    end.throughput *= next.weight;
+    arrival = {next.pdf, end.hit.position};
+    origin = rays.lifted(end.hit.position, next.side);
+    direction = next.wi;
+  }
+}
+
+}  // namespace bnvpl

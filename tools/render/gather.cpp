@@ -1,0 +1,166 @@
+#include "tools/render/gather.h"
+
+#include <algorithm>
+
+#include "core/sampling.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Sums in double: a cut adds and takes back thousands of terms.
+struct Rgb64 {
+  double r = 0, g = 0, b = 0;
+  void add(Vec3 v, double sign = 1.0) {
+    r += sign * double{v.x};
+    g += sign * double{v.y};
+    b += sign * double{v.z};
+  }
+  double sum() const { return r + g + b; }
+  Vec3 toVec3() const {
+    return {static_cast<float>(std::max(0.0, r)), static_cast<float>(std::max(0.0, g)),
+            static_cast<float>(std::max(0.0, b))};
+  }
+};
+
+// Largest cosine between `axis` and any direction from `at` into the box (Walter et al. 2005, section 4.1).
+float maxCosine(const Bounds& box, Vec3 at, Vec3 axis) {
+  const Basis frame(axis);
+  Bounds local;  // the box's own box in the frame: larger, so that the bound holds
+  const Vec3 center = box.center() - at, half = 0.5f * box.extent();
+  const auto along = [&](Vec3 a, float& low, float& high) {
+    const float c = dot(center, a);
+    const float r = half.x * std::fabs(a.x) + half.y * std::fabs(a.y) + half.z * std::fabs(a.z);
+    low = c - r;
+    high = c + r;
+  };
+  along(frame.s, local.lower.x, local.upper.x);
+  along(frame.t, local.lower.y, local.upper.y);
+  along(frame.n, local.lower.z, local.upper.z);
+  const float z = local.upper.z;
+  if (z <= 0.0f) return 0.0f;
+  const auto nearest = [](float low, float high) { return low > 0.0f ? low : high < 0.0f ? high : 0.0f; };
+  const float x = nearest(local.lower.x, local.upper.x), y = nearest(local.lower.y, local.upper.y);
+  return z / std::sqrt(x * x + y * y + z * z);
+}
+
+// Largest cosine at the emitters: of the normals' cone against the directions from the box to `at`.
+float maxEmitterCosine(const LightNode& n, Vec3 at) {
+  // From the box towards `at` is the mirror image of from `at` towards the mirrored box.
+  const Bounds mirrored{2.0f * at - n.bounds.upper, 2.0f * at - n.bounds.lower};
+  const float cosine = maxCosine(mirrored, at, n.axis);
+  if (cosine >= n.cosHalfAngle || n.cosHalfAngle <= 0.0f) return 1.0f;
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+  const float sinHalf = std::sqrt(std::max(0.0f, 1.0f - n.cosHalfAngle * n.cosHalfAngle));
+  return std::max(0.0f, cosine * n.cosHalfAngle + sine * sinHalf);
+}
+
+struct Cluster {
+  float bound;        // on the error, summed over the channels
+  uint32_t node;
+  Vec3 transfer;      // of the representative, times its visibility
+  float clamped;
+};
+bool lessBound(const Cluster& a, const Cluster& b) {
+  return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
+}
+
+float errorBound(const LightNode& n, const Bsdf& bsdf) {
+  if (n.leaf()) return 0.0f;
+  const Vec3 at = bsdf.point().position;
+  const float emitter = maxEmitterCosine(n, at);
+  if (emitter <= 0.0f) return 0.0f;
+  const Vec3 value = bsdf.roughUpperBound(maxCosine(n.bounds, at, bsdf.point().ns), [&](Vec3 axis) {
+    return maxCosine(n.bounds, at, axis);
+  });
+  const Vec3 bound = value * n.intensity;
+  const float sum = (bound.x + bound.y + bound.z) * emitter;
+  return sum > 0.0f ? sum * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
+}
+
+}  // namespace
+
+Gatherer::Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options, uint64_t seed)
+    : rays_(rays), vpls_(vpls), options_(options) {
+  if (options.lightcuts) tree_ = buildLightTree(vpls, seed);
+}
+
+Gathered Gatherer::gather(const Bsdf& bsdf) const {
+  return options_.lightcuts ? gatherCut(bsdf) : gatherAll(bsdf);
+}
+
+Gathered Gatherer::gatherAll(const Bsdf& bsdf) const {
+  Gathered out;
+  out.cut = static_cast<uint32_t>(vpls_.size());
+  const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  Rgb64 total, clamped;
+  Coupling c;
+  for (size_t i = 0; i < vpls_.size(); ++i) {
+    if (!couple(vpls_, i, bsdf, c)) continue;
+    ++out.shadowRays;
+    if (rays_.occluded(from, vpls_.position[i])) continue;
+    const Vec3 light = c.transfer * vpls_.intensity[i];
+    total.add(light);
+    clamped.add(light * c.clamped);
+  }
+  out.radiance = total.toVec3();
+  out.clamped = clamped.toVec3();
+  return out;
+}
+
+Gathered Gatherer::gatherCut(const Bsdf& bsdf) const {
+  Gathered out;
+  if (tree_.nodes.empty()) return out;
+  const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
+  heap.clear();
+  Rgb64 total, clamped;
+
+  const auto account = [&](const Cluster& c, double sign) {
+    const Vec3 light = c.transfer * tree_.nodes[c.node].intensity;
+    total.add(light, sign);
+    clamped.add(light * c.clamped, sign);
+  };
+  const auto evaluate = [&](uint32_t node) {
+    Cluster c{errorBound(tree_.nodes[node], bsdf), node, {}, 0.0f};
+    const uint32_t r = tree_.nodes[node].representative;
+    Coupling coupling;
+    if (couple(vpls_, r, bsdf, coupling)) {
+      ++out.shadowRays;
+      if (!rays_.occluded(from, vpls_.position[r])) {
+        c.transfer = coupling.transfer;
+        c.clamped = coupling.clamped;
+      }
+    }
+    return c;
+  };
+  const auto insert = [&](const Cluster& c) {
+    account(c, 1.0);
+    heap.push_back(c);
+    std::push_heap(heap.begin(), heap.end(), lessBound);
+  };
+
+  for (const uint32_t node : tree_.startCut) insert(evaluate(node));
+  while (heap.size() < options_.maxCut) {
+    const Cluster worst = heap.front();
+    if (worst.bound <= 0.0f || double{worst.bound} <= double{options_.error} * total.sum()) break;
+    std::pop_heap(heap.begin(), heap.end(), lessBound);
+    heap.pop_back();
+    account(worst, -1.0);
+    const LightNode& n = tree_.nodes[worst.node];
+    for (const uint32_t child : {n.left, n.right}) {
+      if (tree_.nodes[child].representative == n.representative) {
+        // The representative is the parent's: nothing to trace again.
+        insert({errorBound(tree_.nodes[child], bsdf), child, worst.transfer, worst.clamped});
+      } else {
+        insert(evaluate(child));
+      }
+    }
+  }
+  out.cut = static_cast<uint32_t>(heap.size());
+  out.radiance = total.toVec3();
+  out.clamped = clamped.toVec3();
+  return out;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,55 @@
+// Radiance along one camera ray, split into what the image's layers need.
+#pragma once
+
+#include "tools/render/chain.h"
+#include "tools/render/gather.h"
+
+namespace bnvpl {
+
+struct RadianceSample {
+  Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough vertex,
+                  // and nothing between that and a light
+  Vec3 indirect;  // everything else
+  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed
+  Vec3 albedo, normal;  // of the first rough vertex
+  float depth = 0.0f;   // of the first hit along the viewing axis; 0: none
+  uint32_t cut = 0, shadowRays = 0;
+};
+
+enum class Only { Everything, Direct, Indirect };
+
+// The thesis: direct light by shadow rays, indirect light from the VPLs. `scene chain` paths that VPLs
+// cannot carry (light or VPL, mirror or glass, first rough vertex) are completed by one sampled ray.
+class VplIntegrator {
+ public:
+  VplIntegrator(const RayScene& rays, const LightSet& lights, const Gatherer& gatherer, Only only)
+      : rays_(rays), lights_(lights), gatherer_(gatherer), only_(only), chains_(hasChainLobes(rays.scene())) {}
+  RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
+
+ private:
+  void extendThroughChain(const Bsdf& bsdf, Vec3 throughput, Rng& rng, RadianceSample& out) const;
+  void addGathered(const Bsdf& bsdf, Vec3 throughput, RadianceSample& out) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  const Gatherer& gatherer_;
+  Only only_;
+  bool chains_;
+};
+
+// The reference: unbiased path tracing with next-event estimation and multiple importance sampling, no
+// clamping. Rough scatterings after the first rough vertex are limited to maxBounces, as a photon's hits.
+class PathTracer {
+ public:
+  PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only)
+      : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only) {}
+  RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
+
+ private:
+  const RayScene& rays_;
+  const LightSet& lights_;
+  unsigned maxBounces_;
+  Only only_;
+};
+
+}  // namespace bnvpl

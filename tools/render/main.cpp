@@ -1,0 +1,212 @@
+// vpl-render: direct light plus all VPLs, or the path-traced reference.
+//   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "formats/exr_io.h"
+#include "formats/png_io.h"
+#include "formats/tonemap.h"
+#include "formats/vpl_io.h"
+#include "tools/common/choice.h"
+#include "tools/common/progress_meter.h"
+#include "tools/common/scene_options.h"
+#include "tools/render/render.h"
+
+namespace bnvpl {
+namespace {
+
+enum class IntegratorKind { Vpl, Path };
+enum class GatherKind { Lightcuts, All };
+
+struct RenderOptions {
+  IntegratorKind integrator = IntegratorKind::Vpl;
+  GatherKind gather = GatherKind::Lightcuts;
+  GatherOptions cuts;
+  float clamp = 1.0f;  // in units of a VPL's r_max
+  unsigned maxBounces = 32;
+  FilmOptions film;
+  ExrPixelType pixels = ExrPixelType::Float;
+  std::vector<std::string> layers;
+  std::string exposure = "auto";
+};
+
+const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl}, {"path", IntegratorKind::Path}};
+const Choices<GatherKind> kGathers{{"lightcuts", GatherKind::Lightcuts}, {"all", GatherKind::All}};
+const Choices<Only> kOnlys{{"all", Only::Everything}, {"direct", Only::Direct}, {"indirect", Only::Indirect}};
+const Choices<ExrPixelType> kPixels{{"half", ExrPixelType::Half}, {"float", ExrPixelType::Float}};
+const Choices<unsigned> kLayers{{"direct", kLayerDirect},         {"indirect", kLayerIndirect},
+                                {"albedo", kLayerAlbedo},         {"N", kLayerNormal},
+                                {"Z", kLayerDepth},               {"cutsize", kLayerCutSize},
+                                {"shadowrays", kLayerShadowRays}, {"clamped", kLayerClamped}};
+
+unsigned layerBits(const std::vector<std::string>& names) {
+  unsigned bits = 0;
+  for (const std::string& name : names) {
+    const auto it = kLayers.find(name);
+    if (name == "all") bits = ~0u;
+    else if (it != kLayers.end()) bits |= it->second;
+    else throw UsageError("--layers: unknown layer '" + name + "'; use direct, indirect, albedo, N, Z, cutsize, "
+                          "shadowrays, clamped or all");
+  }
+  return bits;
+}
+
+Json describe(const RenderOptions& o) {
+  Json json{{"integrator", nameOf(o.integrator, kIntegrators)}, {"spp", o.film.spp}, {"seed", o.film.seed},
+            {"only", nameOf(o.film.only, kOnlys)}};
+  if (o.integrator == IntegratorKind::Path) {
+    json["max-bounces"] = o.maxBounces;
+    return json;
+  }
+  json["gather"] = nameOf(o.gather, kGathers);
+  json["clamp"] = o.clamp;
+  if (o.gather == GatherKind::Lightcuts) {
+    json["error"] = o.cuts.error;
+    json["max-cut"] = o.cuts.maxCut;
+  }
+  return json;
+}
+
+// Exposure in EV: as given, or so that the logarithmic mean of the luminance becomes middle grey.
+float exposureOf(const Image& image, const std::string& text) {
+  if (text != "auto") {
+    try {
+      size_t used = 0;
+      const float ev = std::stof(text, &used);
+      if (used == text.size() && std::isfinite(ev)) return ev;
+    } catch (const std::exception&) {
+    }
+    throw UsageError("--exposure '" + text + "' is neither 'auto' nor a number of stops");
+  }
+  const std::vector<float>&r = *image.find("R"), &g = *image.find("G"), &b = *image.find("B");
+  double logSum = 0.0;
+  size_t lit = 0;
+  for (size_t i = 0; i < r.size(); ++i) {
+    const double y = double{luminance({r[i], g[i], b[i]})};
+    if (y > 0.0) {
+      logSum += std::log2(y);
+      ++lit;
+    }
+  }
+  const double ev = lit > 0 ? std::log2(0.18) - logSum / double(lit) : 0.0;
+  return static_cast<float>(std::round(ev * 4.0) / 4.0);
+}
+
+struct Paths {
+  fs::path lit, output, png;
+};
+
+int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOptions o, const ToolOptions& tool) {
+  Summary summary("vpl-render");
+  const bool vpl = o.integrator == IntegratorKind::Vpl;
+  o.film.layers = layerBits(o.layers);
+  if (vpl && paths.lit.empty()) throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path");
+  if (!vpl && !paths.lit.empty()) throw UsageError("--integrator path takes no VPLs; leave " + paths.lit.string() + " out");
+
+  VplTable lit;
+  if (vpl) lit = readVpl(paths.lit, VplStage::Lit);
+  const Scene scene = loadSceneFor("vpl-render", sceneOptions);
+  if (vpl) requireSameScene(paths.lit, lit.sceneHash, scene, "rerun the pipeline from vpl-place on this scene");
+  const RayScene rays(scene);
+  const LightSet lights(rays);
+  o.cuts.lightcuts = o.gather == GatherKind::Lightcuts;
+  const VplLights vpls = makeVplLights(lit, rays, o.clamp);
+  const Gatherer gatherer(rays, vpls, o.cuts, o.film.seed);
+  const VplIntegrator byVpls(rays, lights, gatherer, o.film.only);
+  const PathTracer byPaths(rays, lights, o.maxBounces, o.film.only);
+
+  ProgressMeter meter("pixels", uint64_t{scene.film.width} * scene.film.height, tool.quiet);
+  FilmStats stats;
+  Image image = renderFilm(
+      scene,
+      [&](Vec3 origin, Vec3 direction, Rng& rng) {
+        return vpl ? byVpls.sample(origin, direction, rng) : byPaths.sample(origin, direction, rng);
+      },
+      o.film, stats, meter.callback());
+
+  Json inputs{{"scene", hashText(scene.contentHash)}};
+  if (vpl) inputs["lit"] = hashText(lit.checksum);
+  image.attributes["bnvpl.provenance"] = extendProvenance(lit.provenance, "vpl-render", describe(o), inputs);
+  image.attributes["bnvpl.samplesPerPixel"] = std::to_string(o.film.spp);
+  const float ev = paths.png.empty() ? 0.0f : exposureOf(image, o.exposure);
+  const uint64_t overflow = writeExr(paths.output, image, o.pixels);
+  if (!paths.png.empty()) {
+    writePng(paths.png, image.width, image.height,
+             toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
+  }
+  std::vector<fs::path> read = scene.files;
+  if (vpl) read.push_back(paths.lit);
+  writeDepfile(tool.depfile, paths.output, read);
+
+  std::vector<std::string> warnings;
+  if (stats.notFinite > 0) warnings.push_back(std::to_string(stats.notFinite) + " samples were not finite and are left out");
+  if (overflow > 0) warnings.push_back(std::to_string(overflow) + " values exceed half precision; use --pixels float");
+  printWarnings("vpl-render", warnings);
+  char line[256];
+  std::snprintf(line, sizeof line, "%u x %u pixels, %u spp: mean direct %.5g, indirect %.5g, clamped away %.5g W/(m2 sr)",
+                scene.film.width, scene.film.height, o.film.spp, stats.direct, stats.indirect, stats.clamped);
+  summary.add("samples", stats.samples, line);
+  summary.add("mean_direct", stats.direct);
+  summary.add("mean_indirect", stats.indirect);
+  summary.add("mean_clamped", stats.clamped);
+  if (vpl) {
+    std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample", vpls.size(), stats.cut,
+                  stats.shadowRays);
+    summary.add("vpls", vpls.size(), line);
+    summary.add("mean_cut", stats.cut);
+    summary.add("mean_shadow_rays", stats.shadowRays);
+  }
+  summary.add("not_finite", stats.notFinite);
+  if (!paths.png.empty()) {
+    std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: %s", double{ev}, paths.png.c_str());
+    summary.add("exposure_ev", ev, line);
+  }
+  summary.finish(tool);
+  return kExitOk;
+}
+
+void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut) {
+  addCount(cli, "--spp", spp, "samples a pixel");
+  addChoice(cli, "--integrator", o.integrator, kIntegrators, "vpl: the method; path: the reference, takes no VPLs");
+  addChoice(cli, "--gather", o.gather, kGathers, "lightcuts: a cut of the light tree; all: every VPL");
+  cli.add_option("--error", o.cuts.error, "lightcuts: largest error of a cluster, as a share of the total")
+      ->check(CLI::Range(0.0f, 1.0f))->capture_default_str();
+  addCount(cli, "--max-cut", maxCut, "lightcuts: most clusters at a point");
+  cli.add_option("--clamp", o.clamp, "1/d^2 grows no further inside this many r_max of a VPL")
+      ->check(CLI::Range(0.0f, 1000.0f))->capture_default_str();
+  cli.add_option("--max-bounces", o.maxBounces, "path: diffuse bounces after the first surface, as vpl-estimate's")
+      ->check(CLI::Range(0, 1000))->capture_default_str();
+  addChoice(cli, "--only", o.film.only, kOnlys, "which light the image shows");
+  cli.add_option("--layers", o.layers, "extra channels: direct,indirect,albedo,N,Z,cutsize,shadowrays,clamped or all")
+      ->delimiter(',')->type_name("LIST");
+  addChoice(cli, "--pixels", o.pixels, kPixels, "EXR channel type");
+  cli.add_option("--exposure", o.exposure, "of the PNG, in stops (EV); auto: middle grey")->capture_default_str();
+  cli.add_option("--seed", o.film.seed, "random seed")->capture_default_str();
+}
+
+}  // namespace
+}  // namespace bnvpl
+
+int main(int argc, char** argv) {
+  using namespace bnvpl;
+  CLI::App cli{"Render the scene, lit by its lights and the VPLs.", "vpl-render"};
+  RenderOptions options;
+  ToolOptions tool;
+  SceneOptions scene;
+  Paths paths;
+  uint64_t spp = options.film.spp, maxCut = options.cuts.maxCut;
+  addSceneOptions(cli, scene);
+  cli.add_option("lit", paths.lit, "from vpl-estimate or vpl-place --method light (.vpl)");
+  cli.add_option("-o,--output", paths.output, "image (.exr)")->required();
+  cli.add_option("--png", paths.png, "also write a preview");
+  addOptions(cli, options, spp, maxCut);
+  addToolOptions(cli, tool);
+  addDepfileOption(cli, tool);
+  return runTool(cli, tool, argc, argv, [&] {
+    if (spp > UINT32_MAX || maxCut > UINT32_MAX) throw UsageError("--spp and --max-cut must be below 2^32");
+    options.film.spp = static_cast<uint32_t>(spp);
+    options.cuts.maxCut = static_cast<uint32_t>(maxCut);
+    return runRender(scene, paths, options, tool);
+  });
+}

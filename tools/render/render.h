@@ -1,0 +1,46 @@
+// The stage vpl-render without files: a scene and lit VPLs -> an image with layers.
+#pragma once
+
+#include <functional>
+
+#include "core/progress.h"
+#include "formats/image.h"
+#include "tools/render/integrators.h"
+
+namespace bnvpl {
+
+// Layers beside R, G, B; each a bit.
+enum LayerBits : unsigned {
+  kLayerDirect = 1,
+  kLayerIndirect = 2,
+  kLayerAlbedo = 4,
+  kLayerNormal = 8,
+  kLayerDepth = 16,
+  kLayerCutSize = 32,
+  kLayerShadowRays = 64,
+  kLayerClamped = 128,
+};
+
+struct FilmOptions {
+  uint32_t spp = 8;        // samples a pixel
+  uint64_t seed = 1;
+  Only only = Only::Everything;
+  unsigned layers = 0;     // LayerBits
+};
+
+struct FilmStats {
+  double direct = 0, indirect = 0, clamped = 0;  // image means of the channels' mean, W/(m2 sr)
+  double cut = 0, shadowRays = 0;                // a sample, on average
+  uint64_t samples = 0;
+  uint64_t notFinite = 0;  // samples left out because a value was NaN or infinite
+};
+
+// Radiance along one camera ray.
+using Integrator = std::function<RadianceSample(Vec3 origin, Vec3 direction, Rng& rng)>;
+
+// Box filter, samples stratified in each pixel. Pixels depend on the seed and their place only.
+// Progress counts pixels.
+Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+                 FilmStats& stats, const ProgressFn& progress = {});
+
+}  // namespace bnvpl
