@@ -24,8 +24,8 @@ struct Cloud {
   std::vector<Vec3> position, normal;
 };
 
-// On five faces of a room of 8 x 3 x 4, in random order. `uneven` gathers them about one corner, with a
-// density ratio of roughly 100:1, as camera paths do.
+// On five faces of a room of 8 x 3 x 4, in random order. `uneven` gathers them about one corner,
+// with a density ratio of roughly 100:1, as camera paths do.
 Cloud makeRoom(size_t count, bool uneven) {
   const Vec3 size(8.0f, 3.0f, 4.0f);
   Cloud cloud;
@@ -99,8 +99,7 @@ void sorting(benchmark::State& state) {
 
 void conflicts(benchmark::State& state, Density density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const CandidateRadii r =
-      candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
   for (auto _ : state) {
     const ConflictGraph graph(cloud.position, cloud.normal, r.radius, PairWeight{});
     state.counters["pairs"] = static_cast<double>(graph.pairCount());
@@ -109,11 +108,11 @@ void conflicts(benchmark::State& state, Density density, bool uneven) {
 
 void greedy(benchmark::State& state, Density density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const CandidateRadii r =
-      candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
   const ConflictGraph graph(cloud.position, cloud.normal, r.radius, PairWeight{});
   const std::vector<uint32_t> row = mortonOrder(cloud.position);
-  for (auto _ : state) benchmark::DoNotOptimize(weightsAtRemoval(graph, row));
+  const auto keep = static_cast<size_t>(state.range(1));
+  for (auto _ : state) benchmark::DoNotOptimize(weightsAtRemoval(graph, row, keep));
 }
 
 template <typename Search>
@@ -134,8 +133,7 @@ size_t queryAll(const Search& search, const Cloud& cloud, const std::vector<floa
 // Builds the index and asks once for each candidate.
 void radiusSearch(benchmark::State& state, bool flann, Density density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const CandidateRadii r =
-      candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
   const auto cell = static_cast<float>(2.0 * r.rMax);
   for (auto _ : state) {
     const size_t found = flann ? queryAll(KdTree(cloud.position), cloud, r.radius)
@@ -164,8 +162,12 @@ void nearest(benchmark::State& state) {
   }
 }
 
-#define BNVPL_SIZES ArgsProduct({{50000}, {10000}})->Args({500000, 100000})->MeasureProcessCPUTime()->UseRealTime()->Unit( \
-    benchmark::kMillisecond)
+#define BNVPL_SIZES               \
+  ArgsProduct({{50000}, {10000}}) \
+      ->Args({500000, 100000})    \
+      ->MeasureProcessCPUTime()   \
+      ->UseRealTime()             \
+      ->Unit(benchmark::kMillisecond)
 BENCHMARK_CAPTURE(endToEnd, uniform, Density::Uniform, false)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(endToEnd, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(endToEnd, local_uneven, Density::Local, true)->BNVPL_SIZES;

@@ -1,13 +1,15 @@
-// Which points belong to the same sheet of surface. One definition for elimination (who competes) and
-// for estimation (who may receive a photon's energy): whoever lost to a neighbour can be replaced by it.
+// Which points belong to the same sheet of surface. One definition for elimination (who competes)
+// and for estimation (who may receive a photon's energy): whoever lost to a neighbour can be
+// replaced by it.
 #pragma once
 
 #include "core/vec3.h"
 
 namespace bnvpl {
 
-// Normals may differ by 60 degrees: the two sides of a wall and its corners are apart, while mouldings,
-// columns and curtains stay together (tighter limits left many hits without any partner).
+// Normals may differ by 60 degrees: the two sides of a wall and its corners are apart, while
+// mouldings, columns and curtains stay together (tighter limits left many hits without any
+// partner).
 inline constexpr float kMinNormalDot = 0.5f;
 // How far a point may lie off the other's tangent plane, as a share of the radius of the query.
 inline constexpr float kPlaneFactor = 0.5f;

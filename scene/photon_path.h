@@ -37,11 +37,10 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
       ++fate.hits;
       visit(bsdf, flux * bsdf.photonShadingFactor());
     }
+    // What does not travel on counts as absorbed, roulette included: escaped + absorbed = emitted exactly.
+    fate.absorbed += flux;
     const float survive = bsdf.reflectance();
-    fate.absorbed += flux * (1.0f - survive);
     if (rng.next() >= survive) return fate;
-    flux *= 1.0f / survive;
-
     const float chainProbability = bsdf.chainProbability();
     const bool takeChain = rng.next() < chainProbability;
     const float probability = takeChain ? chainProbability : 1.0f - chainProbability;
@@ -49,12 +48,10 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
     const bool last = takeChain ? ++chain > kMaxChain : ++rough >= maxBounces;
     if (last || !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Photons, rng,
                              next)) {
-      fate.absorbed += flux * survive;
       return fate;
     }
-    const Vec3 onward = flux * next.weight * (1.0f / probability);
-    fate.absorbed += (flux - onward) * survive;
-    flux = onward;
+    flux *= next.weight * (1.0f / (probability * survive));
+    fate.absorbed += -flux;
     origin = rays.lifted(hit.position, next.side);
     direction = next.wi;
   }

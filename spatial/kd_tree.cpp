@@ -17,8 +17,8 @@ float pruneBeyond(float distanceSquared) {
   return distanceSquared * (1.0f + 1e-5f) + std::numeric_limits<float>::min();
 }
 
-// Keeps the `capacity` smallest by (distance, index) as a max-heap, so that ties do not depend on the
-// order in which the tree is walked.
+// Keeps the `capacity` smallest by (distance, index) as a max-heap, so that ties do not depend on
+// the order in which the tree is walked.
 class NearestSet final : public flann::ResultSet<float> {
  public:
   NearestSet(std::vector<Neighbour>& found, size_t capacity) : found_(found), capacity_(capacity) {
@@ -48,9 +48,7 @@ class NearestSet final : public flann::ResultSet<float> {
 class RadiusSet final : public flann::ResultSet<float> {
  public:
   RadiusSet(std::vector<Neighbour>& found, float radius)
-      : found_(found),
-        radiusSquared_(radius * radius),
-        prune_(pruneBeyond(radiusSquared_)) {
+      : found_(found), radiusSquared_(radius * radius), prune_(pruneBeyond(radiusSquared_)) {
     found_.clear();
   }
   bool full() const override { return true; }
@@ -66,7 +64,9 @@ class RadiusSet final : public flann::ResultSet<float> {
   float radiusSquared_, prune_;
 };
 
-flann::SearchParams exactSearch() { return flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0f); }
+flann::SearchParams exactSearch() {
+  return flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0f);
+}
 
 }  // namespace
 

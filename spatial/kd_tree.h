@@ -1,5 +1,5 @@
-// Exact nearest neighbours over points of any density: FLANN's single kd-tree. The only FLANN include
-// is in kd_tree.cpp.
+// Exact nearest neighbours over points of any density: FLANN's single kd-tree. The only FLANN
+// include is in kd_tree.cpp.
 #pragma once
 
 #include <cstddef>

@@ -23,8 +23,8 @@ Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal,
   const float tolerance = kPlaneFactor * std::sqrt(nearest[kth].distanceSquared);
   Reach reach;
   for (const Neighbour& n : nearest) {
-    if (n.index == self || !sameSheet(position[self], normal[self], position[n.index],
-                                      normal[n.index], tolerance)) {
+    if (n.index == self ||
+        !sameSheet(position[self], normal[self], position[n.index], normal[n.index], tolerance)) {
       continue;
     }
     reach = {n.distanceSquared, reach.count + 1};
@@ -35,8 +35,8 @@ Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal,
 
 Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
                 unsigned k, const KdTree& tree, std::vector<Neighbour>& nearest) {
-  // On plain surfaces nearly all neighbours qualify, so a short query usually answers what the long one
-  // would: both are prefixes of the same order.
+  // On plain surfaces nearly all neighbours qualify, so a short query usually answers what the long
+  // one would: both are prefixes of the same order.
   tree.nearest(position[self], k + k / 4 + 2, nearest);
   Reach reach = reachOnSheet(position, normal, self, nearest, k);
   if (reach.count == k) return reach;

@@ -9,8 +9,8 @@
 
 namespace bnvpl {
 
-// Indices of the points along a Morton curve of 1024 cells per axis of their bounding box; points of the
-// same cell keep their order.
+// Indices of the points along a Morton curve of 1024 cells per axis of their bounding box; points
+// of the same cell keep their order.
 std::vector<uint32_t> mortonOrder(std::span<const Vec3> points);
 
 }  // namespace bnvpl

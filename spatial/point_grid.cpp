@@ -62,8 +62,8 @@ void PointGrid::withinRadius(Vec3 centre, float radius, std::vector<Neighbour>& 
   constexpr int kLeafMask = ~static_cast<int>(Leaf::DIM - 1);
   for (int x = lower.x(); x <= upper.x(); ++x) {
     for (int y = lower.y(); y <= upper.y(); ++y) {
-      // A leaf orders its points by cell, z fastest, and a cell's value is where its points end: cells
-      // along z are one run of indices for each leaf.
+      // A leaf orders its points by cell, z fastest, and a cell's value is where its points end:
+      // cells along z are one run of indices for each leaf.
       for (int z = lower.z(), zEnd; z <= upper.z(); z = zEnd + 1) {
         zEnd = std::min(upper.z(), (z & kLeafMask) + static_cast<int>(Leaf::DIM) - 1);
         const Leaf* leaf = accessor.probeConstLeaf(Coord(x, y, z));

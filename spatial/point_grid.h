@@ -1,5 +1,5 @@
-// Points within a radius, for queries of about one size: OpenVDB's point index grid. The only OpenVDB
-// include is in point_grid.cpp.
+// Points within a radius, for queries of about one size: OpenVDB's point index grid. The only
+// OpenVDB include is in point_grid.cpp.
 #pragma once
 
 #include <memory>

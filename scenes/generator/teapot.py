@@ -103,7 +103,6 @@ def files(folder):
     return {
         "teapot/teapot.obj": mesh.text(),
         "teapot/teapot.mtl": mtl(note, {"Teapot": {"Kd": grey(0.75)}}),
-        "teapot/blue.mtl": mtl(note, {"Teapot": {"Kd": (0.2, 0.35, 0.6)}}),
         "teapot/glossy.mtl": mtl(note, {"Teapot": glossy}),
         "teapot/mirror.mtl": mtl(note, {"Teapot": {"Ks": grey(0.9), "Ns": 1000, "illum": 3}}),
     }

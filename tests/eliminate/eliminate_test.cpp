@@ -28,8 +28,7 @@ float smallestDistance(const Cloud& cloud, const std::vector<uint32_t>& rows) {
   float smallest = INFINITY;
   for (size_t a = 0; a < rows.size(); ++a) {
     for (size_t b = a + 1; b < rows.size(); ++b) {
-      smallest =
-          std::min(smallest, length(cloud.position[rows[a]] - cloud.position[rows[b]]));
+      smallest = std::min(smallest, length(cloud.position[rows[a]] - cloud.position[rows[b]]));
     }
   }
   return smallest;
@@ -47,10 +46,11 @@ void expectSubset(const EliminateResult& result, size_t count, size_t candidates
 }
 
 TEST(Eliminate, KeepsExactlyTheCountInPathOrder) {
-  const Cloud cloud = cube(3000, 2.0f, 1);
+  const Cloud cloud = cube(1000, 2.0f, 1);
   for (const Density density : {Density::Uniform, Density::Local}) {
-    for (const EliminationMethod method : {EliminationMethod::Elimination, EliminationMethod::Random}) {
-      for (const uint64_t count : {1u, 2u, 600u, 2999u, 3000u}) {
+    for (const EliminationMethod method :
+         {EliminationMethod::Elimination, EliminationMethod::Random}) {
+      for (const uint64_t count : {1u, 2u, 200u, 999u, 1000u}) {
         EliminateOptions options = keep(count, density);
         options.method = method;
         expectSubset(run(cloud, options), count, cloud.size());
@@ -74,7 +74,8 @@ TEST(Eliminate, SpacingFarBetterThanRandom) {
   EXPECT_LT(smallestDistance(cloud, random.rows) / (2.0 * random.rMax), 0.1);
 }
 
-// Relative to the local radius, the spacing is as good where candidates are dense as where they are not.
+// Relative to the local radius, the spacing is as good where candidates are dense as where they are
+// not.
 TEST(Eliminate, LocalDensitySpacesRelativeToTheRadius) {
   const Cloud cloud = unevenPlane(4000, 3);
   const EliminateResult result = run(cloud, keep(800, Density::Local));
@@ -138,10 +139,11 @@ TEST(Eliminate, StackedSheetsDoNotCompete) {
 }
 
 TEST(Eliminate, AnyNumberOfThreadsGivesTheSame) {
-  const Cloud cloud = cube(30000, 1.0f, 9);
+  const Cloud cloud = cube(10000, 1.0f, 9);
   for (const Density density : {Density::Uniform, Density::Local}) {
-    for (const EliminationMethod method : {EliminationMethod::Elimination, EliminationMethod::Random}) {
-      EliminateOptions options = keep(6000, density);
+    for (const EliminationMethod method :
+         {EliminationMethod::Elimination, EliminationMethod::Random}) {
+      EliminateOptions options = keep(2000, density);
       options.method = method;
       std::vector<EliminateResult> results;
       for (const size_t threads : {1u, 2u, 7u}) {

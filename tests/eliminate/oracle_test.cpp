@@ -5,7 +5,9 @@
 
 #include "core/random.h"
 #include "tests/eliminate/clouds.h"
+#include "tools/eliminate/conflict_graph.h"
 #include "tools/eliminate/eliminate.h"
+#include "tools/eliminate/greedy.h"
 
 namespace bnvpl {
 namespace {
@@ -31,25 +33,23 @@ std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vecto
   return weight;
 }
 
-// Adds all weights up anew before each removal.
+// Looks for the heaviest among all that are left, and takes it from the sums of the others.
 std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>& radius,
                                    size_t keep, float limit = 0.0f) {
   const size_t n = cloud.size();
   const auto weight = allPairs(cloud, radius, limit);
+  std::vector<uint64_t> sum(n, 0);
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j < n; ++j) sum[i] += weight[i][j];
+  }
   std::vector<bool> alive(n, true);
   for (size_t left = n; left > keep; --left) {
     size_t heaviest = n;
-    uint64_t most = 0;
-    for (size_t i = 0; i < n; ++i) {
-      if (!alive[i]) continue;
-      uint64_t sum = 0;
-      for (size_t j = 0; j < n; ++j) sum += alive[j] ? weight[i][j] : 0;
-      if (heaviest == n || sum >= most) {  // of equal sums, the later row
-        heaviest = i;
-        most = sum;
-      }
+    for (size_t i = 0; i < n; ++i) {  // of equal sums, the later row
+      if (alive[i] && (heaviest == n || sum[i] >= sum[heaviest])) heaviest = i;
     }
     alive[heaviest] = false;
+    for (size_t j = 0; j < n; ++j) sum[j] -= weight[heaviest][j];
   }
   std::vector<uint32_t> rows;
   for (size_t i = 0; i < n; ++i) {
@@ -144,6 +144,25 @@ TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
   options.weightLimiting = WeightLimiting::Off;
   EXPECT_EQ(eliminate(cloud.position, cloud.normal, options).rows,
             greedyOracle(cloud, radius, 100, 0.0f));
+}
+
+// Where there are too many pairs to store, they are searched for each time.
+TEST(Oracle, SearchedPairsGiveTheSameAsStoredOnes) {
+  const Cloud cloud = cube(3000, 1.0f, 12);
+  std::vector<float> radius(cloud.size());
+  std::vector<uint32_t> row(cloud.size());
+  for (const bool equal : {true, false}) {
+    for (size_t i = 0; i < cloud.size(); ++i) {
+      row[i] = static_cast<uint32_t>(i);
+      radius[i] = equal ? 0.05f : 0.02f + 0.05f * cloud.position[i].x;
+    }
+    const ConflictGraph stored(cloud.position, cloud.normal, radius, PairWeight{});
+    const ConflictGraph searched(cloud.position, cloud.normal, radius, PairWeight{}, 1);
+    ASSERT_TRUE(stored.stored());
+    ASSERT_FALSE(searched.stored());
+    EXPECT_EQ(stored.weights(), searched.weights());
+    EXPECT_EQ(weightsAtRemoval(stored, row, 500), weightsAtRemoval(searched, row, 500));
+  }
 }
 
 }  // namespace

@@ -38,11 +38,13 @@ std::vector<Neighbour> sortedWithin(const Search& search, Vec3 centre, float rad
   return found;
 }
 
-// A lattice has many points at exactly the radius and many equal distances; an offset makes coordinates
-// negative or large.
+// A lattice has many points at exactly the radius and many equal distances; an offset makes
+// coordinates negative or large.
 std::vector<std::vector<Vec3>> clouds() {
-  std::vector<std::vector<Vec3>> all{cube(2000, 1.0f, 1).position, unevenPlane(2000, 2).position,
-                                     {{1, 2, 3}}, std::vector<Vec3>(100, Vec3(4.0f))};
+  std::vector<std::vector<Vec3>> all{cube(2000, 1.0f, 1).position,
+                                     unevenPlane(2000, 2).position,
+                                     {{1, 2, 3}},
+                                     std::vector<Vec3>(100, Vec3(4.0f))};
   std::vector<Vec3> lattice, far;
   for (int i = 0; i < 1000; ++i) {
     lattice.emplace_back(static_cast<float>(i % 10) - 5.0f, static_cast<float>(i / 10 % 10) - 5.0f,
@@ -103,7 +105,8 @@ TEST(Spatial, SharesAreTheSameWithTheShortQuery) {
   for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(some[i], all[rows[i]]);
 }
 
-// A point alone on its sheet takes the density of all that is near; coincident points a positive share.
+// A point alone on its sheet takes the density of all that is near; coincident points a positive
+// share.
 TEST(Spatial, SharesOfOddPoints) {
   Cloud cloud = plane(1000, 1.0f, 1.0f, 4);
   cloud.add({0.5f, 0.5f, 0.0f}, {1, 0, 0});

@@ -24,8 +24,7 @@ CLI::Option* addChoice(CLI::App& cli, const std::string& flags, Enum& value,
   std::string names;
   for (const auto& [name, choice] : choices) names += (names.empty() ? "" : "|") + name;
   return cli.add_option(flags, value, help)
-      ->transform(CLI::Transformer(choices, CLI::ignore_case).description(""))
-      ->check(CLI::IsMember(choices).description(""))
+      ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case).description(""))
       ->type_name(names)
       ->default_str(nameOf(value, choices));
 }

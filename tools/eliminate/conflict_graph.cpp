@@ -40,7 +40,7 @@ ConflictGraph::ConflictGraph(std::span<const Vec3> position, std::span<const Vec
   } else {
     tree_ = std::make_unique<KdTree>(position);
   }
-  if (mostPairs == 0) mostPairs = std::max(64 * size(), size_t{1} << 24);
+  if (mostPairs == 0) mostPairs = size_t{1} << 27;
   pairCount_ = estimatePairs();
   stored_ = pairCount_ <= mostPairs;
   if (stored_) {

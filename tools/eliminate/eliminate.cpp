@@ -45,10 +45,9 @@ std::vector<uint32_t> randomRows(size_t candidates, const EliminateOptions& opti
 }
 
 PairWeight pairWeightRule(size_t candidates, const EliminateOptions& options) {
-  const bool limited =
-      options.weightLimiting == WeightLimiting::On ||
-      (options.weightLimiting == WeightLimiting::Auto && options.area > 0.0 &&
-       options.density == Density::Uniform);
+  const bool limited = options.weightLimiting == WeightLimiting::On ||
+                       (options.weightLimiting == WeightLimiting::Auto && options.area > 0.0 &&
+                        options.density == Density::Uniform);
   const double kept = static_cast<double>(options.count) / static_cast<double>(candidates);
   const double limit = limited ? (1.0 - std::pow(kept, kLimitGamma)) * kLimitBeta : 0.0;
   return {static_cast<float>(options.alpha), static_cast<float>(limit)};
@@ -57,7 +56,7 @@ PairWeight pairWeightRule(size_t candidates, const EliminateOptions& options) {
 // `order` tells the row of each candidate, `keep` the number that stay.
 std::vector<uint32_t> spreadRows(const ConflictGraph& graph, const std::vector<uint32_t>& order,
                                  size_t keep) {
-  const std::vector<uint64_t> weights = weightsAtRemoval(graph, order);
+  const std::vector<uint64_t> weights = weightsAtRemoval(graph, order, keep);
   std::vector<RemovalKey> keys(order.size());
   for (size_t i = 0; i < keys.size(); ++i) keys[i] = {weights[i], order[i]};
   return rowsOfSmallest(keys, keep);

@@ -1,41 +1,18 @@
 // vpl-eliminate: keep the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
 #include "formats/vpl_io.h"
+#include "tools/common/choice.h"
 #include "tools/common/run_tool.h"
 #include "tools/eliminate/eliminate.h"
 
 namespace bnvpl {
 namespace {
 
-const std::map<std::string, EliminationMethod> kMethods{
-    {"elimination", EliminationMethod::Elimination}, {"random", EliminationMethod::Random}};
-const std::map<std::string, Density> kDensities{{"uniform", Density::Uniform},
-                                                {"local", Density::Local}};
-const std::map<std::string, WeightLimiting> kLimitings{
+const Choices<EliminationMethod> kMethods{{"elimination", EliminationMethod::Elimination},
+                                          {"random", EliminationMethod::Random}};
+const Choices<Density> kDensities{{"uniform", Density::Uniform}, {"local", Density::Local}};
+const Choices<WeightLimiting> kLimitings{
     {"auto", WeightLimiting::Auto}, {"on", WeightLimiting::On}, {"off", WeightLimiting::Off}};
-
-template <typename Enum>
-void addChoice(CLI::App& cli, const std::string& flag, Enum& value,
-               const std::map<std::string, Enum>& choices, const std::string& help) {
-  std::string names, current;
-  for (const auto& [name, choice] : choices) {
-    names += (names.empty() ? "" : "|") + name;
-    if (choice == value) current = name;
-  }
-  cli.add_option(flag, value, help)
-      ->transform(CLI::Transformer(choices, CLI::ignore_case).description(""))
-      ->check(CLI::IsMember(choices).description(""))
-      ->type_name(names)
-      ->default_str(current);
-}
-
-template <typename Enum>
-std::string nameOf(Enum value, const std::map<std::string, Enum>& choices) {
-  for (const auto& [name, choice] : choices) {
-    if (choice == value) return name;
-  }
-  return "?";
-}
 
 void addOptions(CLI::App& cli, EliminateOptions& options) {
   addCount(cli, "-n,--count", options.count, "VPLs to keep, exactly")->required();
@@ -43,6 +20,10 @@ void addOptions(CLI::App& cli, EliminateOptions& options) {
             "elimination: blue noise; random: any, for comparison");
   addChoice(cli, "--density", options.density, kDensities,
             "uniform: one radius; local: the radius follows the candidates' density");
+  cli.add_option("--uniform-share", options.uniformShare,
+                 "local: share of the VPLs that is spent evenly, the rest follows the candidates")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   cli.add_option("--area", options.area,
                  "indirectly visible area, scene units squared; 0: estimated from the candidates")
       ->check(CLI::NonNegativeNumber)
@@ -78,6 +59,7 @@ Json describe(const EliminateOptions& options) {
   return {{"count", options.count},
           {"method", nameOf(options.method, kMethods)},
           {"density", nameOf(options.density, kDensities)},
+          {"uniform-share", options.uniformShare},
           {"area", options.area},
           {"alpha", options.alpha},
           {"weight-limiting", nameOf(options.weightLimiting, kLimitings)},
@@ -96,6 +78,7 @@ int runEliminate(const fs::path& input, const fs::path& output, const EliminateO
   vpls.provenance = extendProvenance(candidates.provenance, "vpl-eliminate", describe(options),
                                      {{"candidates", hashText(candidates.checksum)}});
   writeVpl(output, vpls);
+  writeDepfile(tool.depfile, output, {input});
 
   summary.add("candidates", candidates.size());
   summary.add("kept", vpls.size(),
@@ -121,6 +104,6 @@ int main(int argc, char** argv) {
   cli.add_option("-o,--output", output, "VPLs without flux (.vpl)")->required();
   addOptions(cli, options);
   addToolOptions(cli, tool);
-  return runTool(cli, tool, argc, argv,
-                 [&] { return runEliminate(input, output, options, tool); });
+  addDepfileOption(cli, tool);
+  return runTool(cli, tool, argc, argv, [&] { return runEliminate(input, output, options, tool); });
 }

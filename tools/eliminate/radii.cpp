@@ -50,9 +50,12 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   const double estimate = sumOf(result.radius);
   result.area = options.area > 0.0 ? options.area : estimate;
   result.rMax = packedDiskRadius(result.area, kept);
-  const double shareScale = result.area / estimate * candidates;
+  // Density in 1/m2 of what is kept: N ((1 - w) / (M share) + w / A), which integrates to N.
+  const double shareScale = result.area / estimate, w = options.uniformShare;
   parallelFor(position.size(), 4096, [&](size_t i) {
-    result.radius[i] = static_cast<float>(packedDiskRadius(result.radius[i] * shareScale, kept));
+    const double share = static_cast<double>(result.radius[i]) * shareScale;
+    const double density = (1.0 - w) / (candidates * share) + w / result.area;
+    result.radius[i] = static_cast<float>(packedDiskRadius(1.0 / density, kept));
   });
   return result;
 }

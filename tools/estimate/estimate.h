@@ -20,8 +20,8 @@ struct EstimateOptions {
   uint64_t seed = 1;
 };
 
-// Where the light went, W (linear sRGB, averaged over the channels). emitted = escaped + absorbed up to the
-// noise of Russian roulette; reflected = deposited + outside + gap + hidden exactly.
+// Where the light went, W (linear sRGB, averaged over the channels).
+// emitted = escaped + absorbed, and reflected = deposited + outside + gap + hidden.
 struct EnergyAccount {
   double emitted = 0, escaped = 0, absorbed = 0;
   double reflected = 0;  // flux that leaves the diffuse hits

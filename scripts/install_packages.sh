@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that the build and the tests need; does nothing when all are there.
+set -euo pipefail
+
+packages=(
+  build-essential cmake ninja-build pkg-config python3
+  libembree-dev libtbb-dev                                # ray tracing, threads
+  libflann-dev liblz4-dev                                 # kd-tree; FLANN's headers need lz4
+  libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB asks for Boost
+  libopenexr-dev zlib1g-dev libstb-dev                    # images
+  libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
+  nlohmann-json3-dev libxxhash-dev                        # provenance, checksums
+  libgtest-dev libbenchmark-dev                           # tests, benchmarks
+)
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  echo "No apt here, so nothing is installed. The build needs what Debian 12 calls:"
+  echo "  ${packages[*]}"
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [[ $status == installed ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  echo "All ${#packages[@]} packages are installed."
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "Missing: ${missing[*]}" >&2
+    echo "Neither root nor sudo here; run as root: apt-get install ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300)
+
+echo "Installing ${#missing[@]} packages with ${as_root[*]:+sudo }apt-get: ${missing[*]}"
+"${apt[@]}" update
+"${apt[@]}" install --yes --no-install-recommends "${missing[@]}"

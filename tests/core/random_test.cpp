@@ -1,0 +1,108 @@
+#include "core/random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace bnvpl {
+namespace {
+
+TEST(Random, UnitFloatNeverReachesOne) {
+  EXPECT_EQ(toUnitFloat(0), 0.0f);
+  EXPECT_LT(toUnitFloat(~uint64_t{0}), 1.0f);
+  EXPECT_GT(toUnitFloat(~uint64_t{0}), 0.9999999f);
+}
+
+TEST(Random, DependsOnKeyIndexAndDimensionOnly) {
+  Rng a(streamKey(1, Stream::Photons), 5), b(streamKey(1, Stream::Photons), 5);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next(), b.next());
+  EXPECT_EQ(random64(3, 4, 5), random64(3, 4, 5));
+  std::set<uint64_t> seen;
+  for (uint64_t key = 0; key < 10; ++key) {
+    for (uint64_t index = 0; index < 10; ++index) {
+      for (uint32_t dimension = 0; dimension < 10; ++dimension) {
+        seen.insert(random64(key, index, dimension));
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), 1000u);
+}
+
+TEST(Random, StreamsAndSeedsShareNoKey) {
+  std::set<uint64_t> keys;
+  for (uint64_t seed = 0; seed < 1000; ++seed) {
+    for (const Stream s :
+         {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
+          Stream::PixelSamples, Stream::PathTracer, Stream::LightTree, Stream::Plot}) {
+      keys.insert(streamKey(seed, s));
+    }
+  }
+  EXPECT_EQ(keys.size(), 8000u);
+}
+
+// Chi-square of counts that should be equal; its mean is the cells less one.
+double chiSquare(const std::vector<int>& cells, double expected) {
+  double sum = 0.0;
+  for (const int n : cells) sum += (n - expected) * (n - expected) / expected;
+  return sum;
+}
+
+TEST(Random, ConsecutiveNumbersFillTheSquareEvenly) {
+  constexpr int kSide = 16, kDraws = 256 * 400;
+  std::vector<int> cells(kSide * kSide);
+  for (int i = 0; i < kDraws; ++i) {
+    Rng rng(streamKey(7, Stream::PixelSamples), uint64_t(i));
+    const int x = int(rng.next() * kSide), y = int(rng.next() * kSide);
+    ++cells[size_t(y * kSide + x)];
+  }
+  // 255 degrees of freedom: standard deviation 22.6; five of them is 113.
+  EXPECT_NEAR(chiSquare(cells, 400.0), 255.0, 113.0);
+}
+
+TEST(Random, NeighbouringIndicesAreUncorrelated) {
+  constexpr int kDraws = 100000;
+  double sum = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    Rng a(1, uint64_t(i)), b(1, uint64_t(i) + 1);
+    sum += (double(a.next()) - 0.5) * (double(b.next()) - 0.5);
+  }
+  const double correlation = sum / kDraws * 12.0;
+  EXPECT_NEAR(correlation, 0.0, 5.0 / std::sqrt(double(kDraws)));
+}
+
+// Every prefix is spread far more evenly than random points: a random count in a cell that expects
+// 4 has a standard deviation of 2, so its variance over 4 is 1; the sequence stays far below that.
+TEST(R2Sequence, EveryPrefixIsStratified) {
+  for (const int side : {4, 8, 16, 32}) {
+    const int count = side * side * 4;
+    std::vector<int> cells(size_t(side * side));
+    for (int i = 0; i < count; ++i) {
+      const Point2 p = r2Sequence(uint64_t(i), 0.3, 0.8);
+      ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
+      ++cells[size_t(int(p.y * float(side)) * side + int(p.x * float(side)))];
+    }
+    EXPECT_LT(chiSquare(cells, 4.0) / double(side * side), 0.35) << side;
+    for (const int n : cells) EXPECT_GT(n, 0);
+  }
+}
+
+TEST(R2Sequence, ShiftMovesAllPointsAlike) {
+  for (uint64_t i = 0; i < 1000; ++i) {
+    const Point2 a = r2Sequence(i, 0.0, 0.0), b = r2Sequence(i, 0.25, 0.5);
+    const float dx = b.x - a.x + (b.x < a.x ? 1.0f : 0.0f),
+                dy = b.y - a.y + (b.y < a.y ? 1.0f : 0.0f);
+    EXPECT_NEAR(dx, 0.25f, 1e-6f);
+    EXPECT_NEAR(dy, 0.5f, 1e-6f);
+  }
+}
+
+TEST(R2Sequence, StaysFineBeyondManyPoints) {
+  std::set<float> seen;
+  for (uint64_t i = 0; i < 1000; ++i) seen.insert(r2Sequence((uint64_t{1} << 40) + i, 0, 0).x);
+  EXPECT_EQ(seen.size(), 1000u);
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,135 @@
+// Each warp against its density: the density integrates to 1, and the drawn directions follow it.
+#include "core/sampling.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+#include "core/random.h"
+
+namespace bnvpl {
+namespace {
+
+// Integral over the sphere of a function of z = cos(theta) alone, by the midpoint rule.
+double overSphere(const std::function<double(double)>& f) {
+  constexpr int kSteps = 200000;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) sum += f(-1.0 + 2.0 * (i + 0.5) / kSteps);
+  return sum * 2.0 / kSteps * 2.0 * double{kPi};
+}
+
+using Warp = std::function<Vec3(float, float)>;
+using Density = std::function<double(double)>;
+
+// The drawn directions have unit length, an even azimuth, and as many of them in each of `kBands`
+// bands of z as the density says (within five standard deviations).
+void expectFollows(const Warp& warp, const Density& pdf, double zLow, double zHigh) {
+  constexpr int kBands = 20, kDraws = 160000;
+  std::vector<int> bands(kBands), sectors(8);
+  Rng rng(streamKey(1, Stream::PathTracer), 0);
+  for (int i = 0; i < kDraws; ++i) {
+    const float u = rng.next(), v = rng.next();
+    const Vec3 d = warp(u, v);
+    ASSERT_NEAR(length(d), 1.0f, 1e-5f);
+    const double position = (double{d.z} - zLow) / (zHigh - zLow);
+    ASSERT_GT(position, -1e-5);
+    ASSERT_LT(position, 1.0 + 1e-5);
+    ++bands[size_t(std::clamp(int(position * kBands), 0, kBands - 1))];
+    ++sectors[size_t(std::clamp(int((std::atan2(d.y, d.x) / kPi + 1.0f) * 4.0f), 0, 7))];
+  }
+  for (int b = 0; b < kBands; ++b) {
+    const double low = zLow + (zHigh - zLow) * b / kBands, step = (zHigh - zLow) / kBands / 100;
+    double expected = 0.0;
+    for (int k = 0; k < 100; ++k) expected += pdf(low + (k + 0.5) * step) * step;
+    expected *= 2.0 * double{kPi} * kDraws;
+    EXPECT_NEAR(bands[size_t(b)], expected, 5.0 * std::sqrt(expected)) << "band " << b;
+  }
+  for (const int n : sectors) EXPECT_NEAR(n, kDraws / 8, 5.0 * std::sqrt(kDraws / 8.0));
+}
+
+TEST(Sampling, DiskIsUniformAndKeepsStrata) {
+  constexpr int kSide = 300;
+  double inner = 0.0;
+  Vec3 mean;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Vec3 p = sampleDisk((float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide);
+      ASSERT_LE(length(p), 1.0f + 1e-6f);
+      inner += length(p) < 0.5f ? 1.0 : 0.0;
+      mean += p;
+    }
+  }
+  EXPECT_NEAR(inner / (kSide * kSide), 0.25, 0.005);
+  EXPECT_LT(length(mean) / (kSide * kSide), 1e-4f);
+  EXPECT_EQ(sampleDisk(0.5f, 0.5f), Vec3());
+  // Neighbours in the square stay neighbours on the disk.
+  for (float u = 0.0f; u < 1.0f; u += 0.01f) {
+    EXPECT_LT(length(sampleDisk(u, 0.3f) - sampleDisk(u + 0.01f, 0.3f)), 0.04f);
+  }
+}
+
+TEST(Sampling, CosineHemisphere) {
+  const Density pdf = [](double z) { return double{pdfCosineHemisphere(float(z))}; };
+  EXPECT_NEAR(overSphere(pdf), 1.0, 1e-4);
+  EXPECT_EQ(pdfCosineHemisphere(-0.5f), 0.0f);
+  expectFollows(sampleCosineHemisphere, pdf, 0.0, 1.0);
+}
+
+TEST(Sampling, Sphere) {
+  expectFollows(
+      sampleSphere, [](double) { return 1.0 / (4.0 * double{kPi}); }, -1.0, 1.0);
+}
+
+TEST(Sampling, Cone) {
+  for (const float cosHalf : {0.99f, 0.5f, 0.0f, -0.7f}) {
+    const Density pdf = [&](double z) {
+      return z >= double{cosHalf} ? double{pdfCone(cosHalf)} : 0.0;
+    };
+    EXPECT_NEAR(overSphere(pdf), 1.0, 2e-3) << cosHalf;
+    expectFollows([&](float u, float v) { return sampleCone(u, v, cosHalf); }, pdf, double{cosHalf},
+                  1.0);
+  }
+}
+
+TEST(Sampling, PowerCosine) {
+  for (const float exponent : {0.0f, 1.0f, 5.0f, 60.0f}) {
+    const Density pdf = [&](double z) { return double{pdfPowerCosine(float(z), exponent)}; };
+    EXPECT_NEAR(overSphere(pdf), 1.0, 1e-3) << exponent;
+    expectFollows([&](float u, float v) { return samplePowerCosine(u, v, exponent); }, pdf, 0.0,
+                  1.0);
+  }
+  EXPECT_EQ(pdfPowerCosine(-0.1f, 2.0f), 0.0f);
+}
+
+TEST(Sampling, TriangleIsUniform) {
+  constexpr int kSide = 300;
+  double u = 0.0, v = 0.0, corner = 0.0;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Barycentric b = sampleTriangle((float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide);
+      ASSERT_TRUE(b.u >= 0.0f && b.v >= 0.0f && b.u + b.v <= 1.0f + 1e-6f);
+      u += double{b.u};
+      v += double{b.v};
+      corner += b.u > 0.5f ? 1.0 : 0.0;
+    }
+  }
+  EXPECT_NEAR(u / (kSide * kSide), 1.0 / 3.0, 1e-3);
+  EXPECT_NEAR(v / (kSide * kSide), 1.0 / 3.0, 1e-3);
+  EXPECT_NEAR(corner / (kSide * kSide), 0.25, 0.005);
+}
+
+TEST(Sampling, PowerHeuristicSharesSumToOne) {
+  for (const float a : {1e-6f, 0.3f, 1.0f, 50.0f, 1e6f}) {
+    for (const float b : {1e-6f, 0.3f, 1.0f, 50.0f, 1e6f}) {
+      EXPECT_NEAR(powerHeuristic(a, b) + powerHeuristic(b, a), 1.0f, 1e-6f);
+    }
+    EXPECT_EQ(powerHeuristic(a, 0.0f), 1.0f);
+    EXPECT_EQ(powerHeuristic(0.0f, a), 0.0f);
+  }
+  EXPECT_GT(powerHeuristic(2.0f, 1.0f), 0.79f);  // squares: 4 / 5
+  EXPECT_EQ(powerHeuristic(INFINITY, 1.0f), 1.0f);
+}
+
+}  // namespace
+}  // namespace bnvpl

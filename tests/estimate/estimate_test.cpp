@@ -1,0 +1,108 @@
+#include "tools/estimate/estimate.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/support/pipeline.h"
+#include "tools/estimate/photon_shares.h"
+
+namespace bnvpl::test {
+namespace {
+
+double totalFlux(const VplTable& t) {
+  double sum = 0.0;
+  for (const Vec3 f : t.flux) sum += double{mean(f)};
+  return sum;
+}
+
+TEST(Estimate, EnergyAccountCloses) {
+  const World world("u-shape/scene.toml");
+  VplTable vpls = placeAndEliminate(world, 10000, {.count = 1000});
+  const EnergyAccount a = estimateFlux(vpls, world.rays, world.lights, {.photons = 100000});
+  EXPECT_NEAR(a.emitted, double{mean(world.lights.totalPower())}, 1e-4 * a.emitted);
+  EXPECT_NEAR(a.escaped + a.absorbed, a.emitted, 1e-4 * a.emitted);
+  EXPECT_NEAR(a.deposited + a.outside + a.gap + a.hidden, a.reflected, 1e-6 * a.reflected);
+  EXPECT_NEAR(totalFlux(vpls), a.deposited, 1e-5 * a.deposited);
+  EXPECT_GT(a.deposited, 0.0);
+}
+
+// In a closed box every hit lies in the region: nothing may be lost, and with albedo 0.5 and an area
+// light on every wall the reflected flux is the emitted times 0.5 / (1 - 0.5).
+TEST(Estimate, ClosedBoxLosesNothing) {
+  const World world("furnace/scene.toml");
+  for (const Density density : {Density::Uniform, Density::Local}) {
+    VplTable vpls = placeAndEliminate(world, 20000, {.count = 1000, .density = density});
+    const EnergyAccount a = estimateFlux(vpls, world.rays, world.lights, {.photons = 200000});
+    EXPECT_NEAR(a.reflected / a.emitted, 1.0, 0.01);
+    EXPECT_GT(a.deposited / a.reflected, 0.995);
+    EXPECT_EQ(a.escaped, 0.0);
+  }
+}
+
+TEST(Estimate, NoLightLeaksIntoAClosedRoom) {
+  for (const char* name : {"test/two-rooms.toml", "test/divider.toml"}) {
+    const World world(name);
+    VplTable vpls = placeAndEliminate(world, 10000, {.count = 500});
+    const EnergyAccount a = estimateFlux(vpls, world.rays, world.lights, {.photons = 300000});
+    EXPECT_GT(a.reflected, 0.0);
+    EXPECT_EQ(totalFlux(vpls), 0.0) << name;
+  }
+}
+
+// The thesis to the letter does leak there: the test above would be empty if nothing could.
+TEST(Estimate, EvenScatterLeaksUnderTheDivider) {
+  const World world("test/divider.toml");
+  VplTable vpls = placeAndEliminate(world, 10000, {.count = 500});
+  estimateFlux(vpls, world.rays, world.lights, {.photons = 100000, .scatter = Scatter::Even});
+  EXPECT_GT(totalFlux(vpls), 0.0);
+}
+
+TEST(Estimate, AnyThreadCountGivesTheSameBits) {
+  const World world("cornell/scene.toml");
+  const VplTable start = placeAndEliminate(world, 10000, {.count = 1000});
+  VplTable first;
+  for (const size_t threads : {1, 2, 7}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    VplTable vpls = start;
+    estimateFlux(vpls, world.rays, world.lights, {.photons = 50000});
+    if (threads == 1) first = vpls;
+    EXPECT_EQ(vpls.flux, first.flux);
+    EXPECT_EQ(vpls.photons, first.photons);
+    EXPECT_EQ(vpls.relativeError, first.relativeError);
+  }
+}
+
+// Over independent seeds, a VPL's flux must scatter about as much as it says.
+TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
+  const World world("cornell/scene.toml");
+  const VplTable start = placeAndEliminate(world, 4000, {.count = 50});
+  constexpr int kSeeds = 24;
+  std::vector<double> sum(50), sum2(50), stated(50);
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    VplTable vpls = start;
+    estimateFlux(vpls, world.rays, world.lights, {.photons = 20000, .seed = seed});
+    for (size_t i = 0; i < 50; ++i) {
+      const double f = double{mean(vpls.flux[i])};
+      sum[i] += f;
+      sum2[i] += f * f;
+      stated[i] += double{vpls.relativeError[i]} / kSeeds;
+    }
+  }
+  double ratio = 0.0;
+  for (size_t i = 0; i < 50; ++i) {
+    const double m = sum[i] / kSeeds;
+    ratio += std::sqrt(std::max(0.0, sum2[i] / kSeeds - m * m)) / m / stated[i] / 50.0;
+  }
+  EXPECT_NEAR(ratio, 1.0, 0.2);
+}
+
+TEST(PhotonShares, FollowPowerExactlyAndLeaveNobodyOut) {
+  const World world("cornell/scene.toml");
+  const PhotonShares shares(world.lights, 12345);
+  EXPECT_EQ(shares.total(), 12345u);
+  EXPECT_EQ(shares.lightOf(0), 0u);
+  EXPECT_FLOAT_EQ(shares.weight(0), 1.0f / 12345.0f);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,116 @@
+#include "tools/inspect/info.h"
+
+#include "tests/inspect/inspect_files.h"
+#include "tools/inspect/spacing.h"
+
+namespace bnvpl {
+namespace {
+
+class Info : public InspectTest {};
+
+const Json& columnOf(const Json& info, const std::string& name) {
+  for (const Json& c : info["columns"]) {
+    if (c["name"] == name) return c;
+  }
+  throw std::runtime_error("no column " + name);
+}
+
+TEST_F(Info, DescribesALitFile) {
+  writeVpl(at("lit.vpl"), threeRows(VplStage::Lit));
+  const Json info = describeFile(at("lit.vpl"));
+  EXPECT_EQ(info["stage"], "lit");
+  EXPECT_EQ(info["rows"], 3);
+  EXPECT_EQ(info["r_max"], 0.5);
+  EXPECT_EQ(info["provenance"][0]["tool"], "vpl-place");
+  EXPECT_EQ(columnOf(info, "position.x")["max"], 4.0);
+  EXPECT_DOUBLE_EQ(columnOf(info, "position.x")["mean"].get<double>(), 5.0 / 3.0);
+  EXPECT_EQ(columnOf(info, "photons")["max"], 4294967297.0);
+  EXPECT_EQ(info["energy_W"]["R"], 1.5);
+  EXPECT_EQ(info["energy_W"]["mean"], 2.5);
+
+  const std::string text = infoText(info);
+  EXPECT_TRUE(
+      contains(text, "vpl-place " BNVPL_VERSION ": count 3, seed 1; from scene 0000000000001234"))
+      << text;
+  EXPECT_TRUE(contains(text, "flux.b")) << text;
+  EXPECT_TRUE(contains(text, "mean 2.5 W")) << text;
+  EXPECT_TRUE(contains(text, "relative_error")) << text;
+}
+
+TEST_F(Info, EmptyFile) {
+  VplTable table;
+  writeVpl(at("empty.vpl"), table);
+  const Json info = describeFile(at("empty.vpl"));
+  EXPECT_EQ(info["rows"], 0);
+  EXPECT_EQ(columnOf(info, "id")["min"], nullptr);
+  EXPECT_TRUE(contains(infoText(info), "no record"));
+}
+
+TEST_F(Info, DescribesAnImage) {
+  Image image = flatImage(2, 2, 1, 2, 3);
+  image.add("Z") = {1, 3, INFINITY, 2};
+  image.attributes["bnvpl.provenance"] =
+      extendProvenance("", "vpl-render", {{"spp", 4}}, Json::object());
+  image.attributes["bnvpl.samplesPerPixel"] = "4";
+  writeExr(at("a.exr"), image, ExrPixelType::Float);
+  const Json info = describeFile(at("a.exr"));
+  EXPECT_EQ(info["width"], 2);
+  EXPECT_EQ(columnOf(info, "G")["mean"], 2.0);
+  EXPECT_EQ(columnOf(info, "Z")["mean"], 2.0);
+  EXPECT_EQ(columnOf(info, "Z")["not_finite"], 1);
+  const std::string text = infoText(info);
+  EXPECT_TRUE(contains(text, "bnvpl.samplesPerPixel = 4")) << text;
+  EXPECT_TRUE(contains(text, "vpl-render " BNVPL_VERSION ": spp 4")) << text;
+  EXPECT_TRUE(contains(text, "1 not finite")) << text;
+}
+
+TEST_F(Info, RefusesWhatIsNeither) {
+  writeAll(at("a.txt"), "text");
+  writeAll(at("a.vpl"), "text");
+  writeAll(at("a.exr"), "text");
+  EXPECT_TRUE(contains(messageOf<InputError>([&] { describeFile(at("a.txt")); }), "neither"));
+  EXPECT_THROW(describeFile(at("a.vpl")), InputError);
+  EXPECT_THROW(describeFile(at("a.exr")), InputError);
+  EXPECT_THROW(describeFile(at("absent.vpl")), InputError);
+  EXPECT_THROW(describeFile(at("")), InputError);  // a folder
+}
+
+TEST(Spacing, DistancesByHand) {
+  const Spacing s = measureSpacing(threeRows(VplStage::Eliminated));
+  EXPECT_EQ(s.measured, 3u);
+  EXPECT_DOUBLE_EQ(s.minDistance, 1.0);
+  EXPECT_DOUBLE_EQ(s.meanDistance, 5.0 / 3.0);  // 1, 1, 3
+  EXPECT_DOUBLE_EQ(s.minRelative, 1.0);
+  EXPECT_DOUBLE_EQ(s.meanRelative, 5.0 / 3.0);
+  EXPECT_FLOAT_EQ(float(s.minOwn), 1.0f / 1.5f);  // 1 / (0.5 + 1)
+  EXPECT_FLOAT_EQ(float(s.meanOwn), (1.0f / 1.5f + 1.0f / 1.5f + 1.0f) / 3.0f);
+}
+
+TEST(Spacing, TheOtherSideOfAWallIsNoNeighbour) {
+  VplTable table = threeRows(VplStage::Eliminated);
+  table.normal[1] = {0, 0, -1};
+  const Spacing s = measureSpacing(table);
+  EXPECT_EQ(s.measured, 2u);
+  EXPECT_EQ(s.alone, 1u);
+  EXPECT_DOUBLE_EQ(s.minDistance, 4.0);
+  table.normal[0] = {1, 0, 0};
+  EXPECT_EQ(measureSpacing(table).measured, 0u);
+}
+
+// The partner stands behind many points of the other side, so that the first query does not find
+// it.
+TEST(Spacing, LooksFurtherThanTheFirstNeighbours) {
+  VplTable table;
+  for (int i = 0; i < 100; ++i) {
+    table.position.push_back({0.01f * static_cast<float>(i), 0, 0});
+    table.normal.push_back(i == 0 || i == 99 ? Vec3{0, 0, 1} : Vec3{0, 0, -1});
+  }
+  table.albedo.resize(100);
+  table.id.resize(100);
+  const Spacing s = measureSpacing(table);
+  EXPECT_EQ(s.alone, 0u);
+  EXPECT_NEAR(s.meanDistance, (2 * 0.99 + 98 * 0.01) / 100, 1e-6);
+}
+
+}  // namespace
+}  // namespace bnvpl

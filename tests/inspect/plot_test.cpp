@@ -1,0 +1,120 @@
+#include "tools/inspect/plot.h"
+
+#include "scene/camera.h"
+#include "tests/inspect/tiny_scene.h"
+
+namespace bnvpl {
+namespace {
+
+class Plot : public InspectTest {
+ protected:
+  Plot() {
+    writeTinyScene(at(""));
+    scene_ = loadScene(at("tiny.toml"));
+  }
+  // Pixels that the dots changed.
+  std::vector<size_t> changed(const RayScene& rays, const std::vector<Dot>& dots, float diameter) {
+    Canvas canvas = shadeView(rays, 2);
+    const std::vector<uint8_t> before = canvas.rgb8();
+    canvas.paint(dots, diameter);
+    const std::vector<uint8_t> after = canvas.rgb8();
+    std::vector<size_t> pixels;
+    for (size_t i = 0; i < canvas.pixels.size(); ++i) {
+      if (!std::equal(&before[3 * i], &before[3 * i] + 3, &after[3 * i])) pixels.push_back(i);
+    }
+    return pixels;
+  }
+  Scene scene_;
+};
+
+TEST_F(Plot, DotsStandWhereTheRowsProject) {
+  const RayScene rays(scene_);
+  PlotCounts counts;
+  const VplTable table = tinyRows(scene_.contentHash);
+  const std::vector<Dot> dots = visibleDots(table, rays, {}, counts);
+  ASSERT_EQ(dots.size(), 1u);
+  EXPECT_EQ(counts.drawn, 1u);
+  EXPECT_EQ(counts.occluded, 1u);
+  EXPECT_EQ(counts.facingAway, 1u);
+  EXPECT_EQ(counts.outside, 1u);
+
+  const FilmPoint film = projectToFilm(scene_.camera, scene_.film, table.position[0]);
+  const float x = film.x * 80, y = film.y * 60;
+  const std::vector<size_t> pixels = changed(rays, dots, 5.0f);
+  ASSERT_FALSE(pixels.empty());
+  bool centre = false;
+  for (const size_t i : pixels) {
+    const float px = static_cast<float>(i % 80), py = static_cast<float>(i / 80);
+    centre |= static_cast<size_t>(x) == i % 80 && static_cast<size_t>(y) == i / 80;
+    EXPECT_LT(std::hypot(px + 0.5f - x, py + 0.5f - y), 3.1f);
+  }
+  EXPECT_TRUE(centre);
+}
+
+TEST_F(Plot, ShowBackDrawsRings) {
+  const RayScene rays(scene_);
+  PlotCounts counts;
+  PlotOptions options;
+  options.showBack = true;
+  const std::vector<Dot> dots = visibleDots(tinyRows(scene_.contentHash), rays, options, counts);
+  ASSERT_EQ(dots.size(), 2u);
+  EXPECT_FALSE(dots[0].hollow);
+  EXPECT_TRUE(dots[1].hollow);
+  const std::vector<size_t> ring = changed(rays, {dots[1]}, 9.0f);
+  ASSERT_FALSE(ring.empty());
+  const size_t centre = static_cast<size_t>(dots[1].y) * 80 + static_cast<size_t>(dots[1].x);
+  EXPECT_EQ(std::count(ring.begin(), ring.end(), centre), 0);  // hollow
+}
+
+TEST_F(Plot, NearDotsCoverFarOnes) {
+  Canvas canvas{9, 9, std::vector<Vec3>(81)};
+  const Dot red{4.5f, 4.5f, 1.0f, {1, 0, 0}, false}, green{4.5f, 4.5f, 2.0f, {0, 1, 0}, false};
+  canvas.paint({red, green}, 7.0f);
+  EXPECT_EQ(canvas.pixels[40], (Vec3{1, 0, 0}));
+  canvas.paint({green, red}, 7.0f);
+  EXPECT_EQ(canvas.pixels[40], (Vec3{1, 0, 0}));
+}
+
+TEST_F(Plot, DotsAtTheEdgeAreCut) {
+  Canvas canvas{4, 4, std::vector<Vec3>(16)};
+  canvas.paint(
+      {Dot{0, 0, 1, {1, 1, 1}, false}, Dot{4, 4, 1, {1, 1, 1}, false}, Dot{-90, 2, 1, {}, false}},
+      5.0f);
+  EXPECT_GT(canvas.pixels[0].x, 0.9f);
+  EXPECT_GT(canvas.pixels[15].x, 0.9f);
+}
+
+TEST_F(Plot, ColoursNeedTheirColumn) {
+  const RayScene rays(scene_);
+  PlotCounts counts;
+  PlotOptions options;
+  options.colour = DotColour::Flux;
+  VplTable table = tinyRows(scene_.contentHash);
+  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
+                       "vpl-estimate"));
+  options.colour = DotColour::Radius;
+  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
+                       "vpl-eliminate"));
+
+  table.stage = VplStage::Lit;
+  table.radius = {1, 2, 3, 4};
+  table.flux = {{2, 1, 0}, {0, 0.01f, 0}, {0.5f, 0, 0}, {0, 0, 0}};
+  options.colour = DotColour::Flux;
+  const Vec3 strongest = visibleDots(table, rays, options, counts).at(0).colour;
+  table.flux[0] = {0, 0, 0.001f};
+  const Vec3 weakest = visibleDots(table, rays, options, counts).at(0).colour;
+  EXPECT_GT(luminance(strongest), 2.0f * luminance(weakest));
+}
+
+TEST_F(Plot, EmptyTable) {
+  const RayScene rays(scene_);
+  PlotCounts counts;
+  VplTable table;
+  table.stage = VplStage::Eliminated;
+  PlotOptions options;
+  options.colour = DotColour::Radius;
+  EXPECT_TRUE(visibleDots(table, rays, options, counts).empty());
+}
+
+}  // namespace
+}  // namespace bnvpl

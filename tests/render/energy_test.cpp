@@ -1,0 +1,129 @@
+// Energy and leaks of the whole method, against numbers that are known without it.
+#include <gtest/gtest.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+// Every wall shines with radiance 1 and reflects rho: direct light is 1 + rho, and what VPLs carry is
+// rho^2 / (1 - rho), for any number of VPLs, radius and density.
+struct FurnaceCase {
+  const char* scene;
+  double rho;
+  uint64_t vpls;
+  float radius;
+  Density density;
+};
+class Furnace : public testing::TestWithParam<FurnaceCase> {};
+
+TEST_P(Furnace, IndirectLightIsTheGeometricSeries) {
+  const FurnaceCase c = GetParam();
+  const World world(c.scene);
+  VplSettings s;
+  s.vpls = c.vpls;
+  s.candidates = 20 * c.vpls;
+  s.density = c.density;
+  s.estimate.radius = c.radius;
+  s.estimate.maxBounces = 64;
+  s.clamp = 0.05f;  // the clamp's own loss is another test's
+  s.film.layers = kLayerDirect | kLayerIndirect;
+  FilmStats stats;
+  const Image image = renderVpls(world, lightUp(world, s), s, stats);
+  EXPECT_NEAR(meanOf(image, "direct."), 1.0 + c.rho, 0.01 * (1.0 + c.rho));
+  const double expected = c.rho * c.rho / (1.0 - c.rho);
+  EXPECT_NEAR(meanOf(image, "indirect."), expected, 0.03 * expected);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Cases, Furnace,
+    testing::Values(FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.0f, Density::Uniform},
+                    FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.5f, Density::Local},
+                    FurnaceCase{"furnace/scene.toml", 0.5, 1200, 2.0f, Density::Local},
+                    FurnaceCase{"furnace/white.toml", 0.8, 1200, 3.0f, Density::Uniform}));
+
+TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
+  const World world("furnace/scene.toml");
+  VplSettings s;
+  s.vpls = 300;
+  const VplTable lit = lightUp(world, s);
+  FilmStats loose, tight;
+  s.clamp = 0.02f;
+  renderVpls(world, lit, s, loose);
+  s.clamp = 2.0f;
+  renderVpls(world, lit, s, tight);
+  EXPECT_LT(tight.indirect, 0.95 * loose.indirect);
+  EXPECT_NEAR(tight.indirect + tight.clamped, loose.indirect + loose.clamped, 0.001 * loose.indirect);
+}
+
+// A wall that alone sees the lamp and a floor that sees the wall: one bounce, known from the path tracer.
+TEST(OneBounce, VplsAgreeWithThePathTracer) {
+  const World world("test/one-bounce.toml");
+  VplSettings s;
+  s.estimate.maxBounces = 1;
+  s.clamp = 0.3f;
+  s.film.spp = 16;
+  s.film.only = Only::Indirect;
+  FilmStats vpl, path;
+  renderVpls(world, lightUp(world, s), s, vpl);
+  renderPaths(world, {.spp = 512, .only = Only::Indirect}, path, 1);
+  EXPECT_GT(path.indirect, 0.0);
+  EXPECT_NEAR(vpl.indirect / path.indirect, 1.0, 0.03);
+}
+
+// With more bounces between the same surfaces, the two must count alike.
+TEST(ManyBounces, VplsAgreeWithThePathTracer) {
+  const World world("cornell/scene.toml");
+  for (const unsigned bounces : {1u, 2u, 8u}) {
+    VplSettings s;
+    s.estimate.maxBounces = bounces;
+    s.vpls = 800;
+    s.clamp = 0.3f;
+    s.film.spp = 1;
+    s.film.only = Only::Indirect;
+    World small("cornell/scene.toml");
+    small.scene.film = {48, 48};
+    FilmStats vpl, path;
+    renderVpls(small, lightUp(world, s), s, vpl);
+    renderPaths(small, {.spp = 256, .only = Only::Indirect}, path, bounces);
+    EXPECT_NEAR(vpl.indirect / path.indirect, 1.0, 0.03) << bounces << " bounces";
+  }
+}
+
+TEST(Leak, ADarkRoomStaysExactlyBlack) {
+  for (const char* name : {"test/two-rooms.toml", "test/divider.toml"}) {
+    const World world(name);
+    VplSettings s;
+    s.vpls = 400;
+    s.film.spp = 2;
+    FilmStats stats;
+    const Image image = renderVpls(world, lightUp(world, s), s, stats);
+    for (const char* c : {"R", "G", "B"}) {
+      for (const float v : *image.find(c)) ASSERT_EQ(v, 0.0f) << name;
+    }
+  }
+}
+
+TEST(LightPlaced, InstantRadiosityHasTheSameMean) {
+  World world("cornell/scene.toml");
+  world.scene.film = {32, 32};
+  FilmStats path;
+  renderPaths(world, {.spp = 512, .only = Only::Indirect}, path);
+  double sum = 0.0;
+  constexpr int kSets = 8;
+  for (uint64_t seed = 1; seed <= kSets; ++seed) {
+    PlaceOptions place;
+    place.count = 2000;
+    place.seed = seed;
+    const VplTable lit = placeFromLights(world.rays, world.lights, place).table;
+    VplSettings s;
+    s.clamp = 0.1f;
+    s.film = {.spp = 1, .only = Only::Indirect};
+    FilmStats stats;
+    renderVpls(world, lit, s, stats);
+    sum += stats.indirect / kSets;
+  }
+  EXPECT_NEAR(sum / path.indirect, 1.0, 0.04);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,152 @@
+// Oddities of OBJ and MTL files that the loader survives, and what it says about them.
+#include "tests/scene/scene_files.h"
+
+namespace bnvpl {
+namespace {
+
+using Loader = SceneFiles;
+const fs::path kScenes = BNVPL_SCENES;
+
+TEST(LoaderQuirks, TriangleCountsAreThoseWithAnArea) {
+  const Scene scene = loadScene(kScenes / "test/quirks.toml");
+  EXPECT_EQ(scene.triangles.size(), 10u);
+  EXPECT_EQ(countContaining(scene.warnings, "quirks.obj: 2 triangles without area"), 1u) << joined(scene.warnings);
+  for (uint32_t t = 0; t < scene.triangles.size(); ++t) EXPECT_GT(areaOf(scene, t), 0.0);
+}
+
+TEST(LoaderQuirks, ConcavePolygonKeepsItsArea) {
+  const Scene scene = loadScene(kScenes / "test/quirks.toml");
+  EXPECT_NEAR(areaOfMaterial(scene, "Plain"), 1.0 - 0.35, 1e-6);
+}
+
+TEST(LoaderQuirks, NegativeIndicesCountFromTheEnd) {
+  const Scene scene = loadScene(kScenes / "test/quirks.toml");
+  EXPECT_NEAR(areaOfMaterial(scene, "Checker"), 4.0, 1e-6);
+  for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    if (scene.materials[scene.triangles[t].material].name != "Checker") continue;
+    for (size_t k = 0; k < 3; ++k) EXPECT_EQ(scene.corner(t, k).y, 0.0f);
+    EXPECT_EQ(geometricNormal(scene, t), Vec3(0, 1, 0));
+    EXPECT_NE(scene.triangles[t].uv[0], kNone);
+  }
+}
+
+TEST(LoaderQuirks, EachOddityIsNamedOnce) {
+  const Scene scene = loadScene(kScenes / "test/quirks.toml");
+  for (const char* part : {"missing.png: no such texture", "'Checker': map_Bump", "without a known material"}) {
+    EXPECT_EQ(countContaining(scene.warnings, part), 1u) << part << " in:\n" << joined(scene.warnings);
+  }
+  EXPECT_EQ(countContaining(scene.warnings, "checker.png"), 0u) << joined(scene.warnings);
+}
+
+TEST(LoaderQuirks, BackslashPathAndCarriageReturns) {
+  const Scene scene = loadScene(kScenes / "test/quirks.toml");
+  const uint32_t map = materialNamed(scene, "BackslashPath").diffuseMap;
+  ASSERT_NE(map, kNone);
+  EXPECT_EQ(map, materialNamed(scene, "Checker").diffuseMap);  // one file, read once
+  EXPECT_EQ(materialNamed(scene, "MissingTexture").diffuseMap, kNone);
+  EXPECT_EQ(materialNamed(scene, "MissingTexture").diffuse, Vec3(0.4f));
+  for (const Material& m : scene.materials) EXPECT_EQ(m.name.find('\r'), std::string::npos);
+  std::vector<std::string> files;
+  for (const fs::path& f : scene.files) files.push_back(f.filename().string());
+  EXPECT_EQ(files, (std::vector<std::string>{"quirks.toml", "quirks.obj", "quirks.mtl", "checker.png"}));
+}
+
+TEST_F(Loader, MissingTextureOfManyMaterialsIsNamedOnce) {
+  std::string obj = "mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n", mtl;
+  for (const std::string name : {"a", "b", "c"}) {
+    obj += "usemtl " + name + "\nf 1/1 2/1 3/1\n";
+    mtl += "newmtl " + name + "\nKd 1 1 1\nmap_Kd gone.png\n";
+  }
+  const Scene scene = loadMesh(obj, mtl);
+  EXPECT_EQ(scene.materials.size(), 3u);
+  EXPECT_EQ(countContaining(scene.warnings, "gone.png"), 1u) << joined(scene.warnings);
+}
+
+TEST_F(Loader, DamagedTextureIsAWarningToo) {
+  write("bad.png", "not a picture");
+  const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 0.3 0.3 0.3\nmap_Kd bad.png\n");
+  EXPECT_EQ(countContaining(scene.warnings, "bad.png: cannot read the image"), 1u) << joined(scene.warnings);
+  EXPECT_EQ(scene.materials.at(0).diffuseMap, kNone);
+}
+
+// Which of its two diagonals splits a dart matters: one lies outside it.
+TEST_F(Loader, ConcaveQuadKeepsItsArea) {
+  const std::string corners = "mtllib square.mtl\nv 0 0 0\nv 2 -1 0\nv 0.5 0 0\nv 2 1 0\nusemtl paint\n";
+  const double area = 1.5;  // two triangles of base 1.5 (along x = 2 .. the notch) taken apart
+  for (const char* face : {"f 1 2 3 4\n", "f 2 3 4 1\n", "f 3 4 1 2\n", "f 4 1 2 3\n"}) {
+    const Scene scene = loadMesh(corners + face, "newmtl paint\nKd 1 1 1\n");
+    double sum = 0.0;
+    for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
+      sum += areaOf(scene, t);
+      EXPECT_GT(geometricNormal(scene, t).z, 0.99f) << face;
+    }
+    EXPECT_NEAR(sum, area / 3.0, 1e-6) << face;
+  }
+}
+
+TEST_F(Loader, FacesThatNameAbsentVerticesAreLeftOut) {
+  const std::string obj = kSquareObj + "f 1 2 99\n";
+  std::string error;
+  try {
+    const Scene scene = loadMesh(obj, "newmtl paint\nKd 1 1 1\n");
+    EXPECT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(countContaining(scene.warnings, "missing or non-finite vertices"), 1u) << joined(scene.warnings);
+  } catch (const InputError& e) {
+    error = e.what();
+    EXPECT_NE(error.find("square.obj"), std::string::npos) << error;
+  }
+}
+
+TEST_F(Loader, MissingLibraryMakesThingsGrey) {
+  write("square.obj", kSquareObj);
+  const Scene scene = load(kFilmAndCamera + "[[mesh]]\nfile = \"square.obj\"\n");
+  EXPECT_EQ(countContaining(scene.warnings, "square.mtl: no such material library"), 1u) << joined(scene.warnings);
+  ASSERT_EQ(scene.triangles.size(), 2u);
+  EXPECT_EQ(scene.materials.at(scene.triangles[0].material).diffuse, Vec3(0.5f));
+}
+
+TEST_F(Loader, OverrideReplacesTheLibrary) {
+  write("other.mtl", "newmtl paint\nKd 0.25 0.5 0.75\n");
+  const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\n", "materials = \"other.mtl\"\n");
+  EXPECT_EQ(scene.materials.at(0).diffuse, Vec3(0.25f, 0.5f, 0.75f));
+  for (const fs::path& f : scene.files) EXPECT_NE(f.filename(), "square.mtl");
+}
+
+TEST_F(Loader, MissingObjIsAnErrorThatNamesIt) {
+  const std::string error = loadError(kFilmAndCamera + "[[mesh]]\nfile = \"nowhere.obj\"\n");
+  EXPECT_NE(error.find("nowhere.obj: no such OBJ file"), std::string::npos) << error;
+}
+
+TEST_F(Loader, EmissionSides) {
+  const std::string lamp = "newmtl paint\nKd 0 0 0\nKe 5 6 7\n";
+  EXPECT_FALSE(loadMesh(kSquareObj, lamp).materials.at(0).twoSidedEmission);
+  EXPECT_EQ(loadMesh(kSquareObj, lamp).materials.at(0).emission, Vec3(5, 6, 7));
+  EXPECT_FALSE(loadMesh(kSquareObj, lamp + "emission_sides 1\n").materials.at(0).twoSidedEmission);
+  EXPECT_TRUE(loadMesh(kSquareObj, lamp + "emission_sides 2\n").materials.at(0).twoSidedEmission);
+  const Scene odd = loadMesh(kSquareObj, lamp + "emission_sides 3\n");
+  EXPECT_EQ(countContaining(odd.warnings, "emission_sides"), 1u);
+}
+
+TEST_F(Loader, MirrorAndGlassByTheirFields) {
+  const auto material = [&](const std::string& fields) {
+    return loadMesh(kSquareObj, "newmtl paint\n" + fields).materials.at(0);
+  };
+  const Material mirror = material("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n");
+  EXPECT_EQ(mirror.mirror, Vec3(0.9f, 0.8f, 0.7f));
+  EXPECT_EQ(mirror.glossy, Vec3());
+  EXPECT_EQ(material("Kd 0 0 0\nKs 1 1 1\nNs 100000\nillum 2\n").mirror, Vec3(1));
+  const Material glossy = material("Kd 0.3 0.3 0.3\nKs 0.2 0.2 0.2\nNs 12\nillum 2\n");
+  EXPECT_EQ(glossy.glossy, Vec3(0.2f));
+  EXPECT_EQ(glossy.exponent, 12.0f);
+  EXPECT_EQ(glossy.mirror, Vec3());
+  for (const char* illum : {"4", "6", "7", "9"}) {
+    const Material glass = material(std::string("Kd 1 1 1\nNi 1.33\nTf 0.5 0.6 0.7\nillum ") + illum + "\n");
+    EXPECT_TRUE(glass.glass) << illum;
+    EXPECT_FLOAT_EQ(glass.ior, 1.33f);
+    EXPECT_EQ(glass.transmission, Vec3(0.5f, 0.6f, 0.7f));
+    EXPECT_EQ(glass.diffuse, Vec3());
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl

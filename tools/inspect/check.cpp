@@ -1,0 +1,129 @@
+#include "tools/inspect/check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/exr_io.h"
+#include "formats/vpl_io.h"
+#include "tools/inspect/file_kind.h"
+
+namespace bnvpl {
+namespace {
+
+// Under which name a later stage records the checksum of a file of this stage.
+const char* inputName(VplStage stage) {
+  switch (stage) {
+    case VplStage::Candidates:
+      return "candidates";
+    case VplStage::Eliminated:
+      return "vpls";
+    case VplStage::Lit:
+      return "lit";
+  }
+  return "";
+}
+
+void refuseNan(const fs::path& file, const Image& image) {
+  for (const ImageChannel& channel : image.channels) {
+    for (size_t i = 0; i < channel.data.size(); ++i) {
+      if (!std::isnan(channel.data[i])) continue;
+      const size_t width = static_cast<size_t>(image.width);
+      throw InputError(file, "channel " + channel.name + " is not a number at pixel (" +
+                                 std::to_string(i % width) + ", " + std::to_string(i / width) +
+                                 "); rerun vpl-render");
+    }
+  }
+}
+
+// Every scene hash in the history must be the file's own.
+void settleScene(CheckedFile& checked) {
+  for (const StageRecord& record : checked.chain) {
+    const auto scene = record.inputs.find("scene");
+    if (scene == record.inputs.end()) continue;
+    if (checked.scene.empty()) checked.scene = scene->second;
+    if (scene->second == checked.scene) continue;
+    throw InputError(checked.file, record.tool + " ran on scene " + scene->second +
+                                       ", but the file belongs to scene " + checked.scene +
+                                       "; rerun " + record.tool);
+  }
+}
+
+CheckedFile checkVpl(const fs::path& file) {
+  const VplTable table = readVpl(file);
+  CheckedFile checked;
+  checked.file = file;
+  checked.what =
+      std::string(stageName(table.stage)) + ", " + std::to_string(table.size()) + " rows";
+  checked.stage = table.stage;
+  checked.checksum = hashText(table.checksum);
+  checked.scene = hashText(table.sceneHash);
+  checked.chain = parseProvenance(file, table.provenance);
+  return checked;
+}
+
+CheckedFile checkExr(const fs::path& file) {
+  const Image image = readExr(file);
+  refuseNan(file, image);
+  CheckedFile checked;
+  checked.file = file;
+  checked.what = "OpenEXR, " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                 " pixels, " + std::to_string(image.channels.size()) + " channels";
+  checked.chain = parseProvenance(file, provenanceOf(image));
+  return checked;
+}
+
+// The given files of `stage`, when none of them is the one with this checksum.
+const CheckedFile* strangerOfStage(std::span<const CheckedFile> files, const std::string& input,
+                                   const std::string& checksum) {
+  const CheckedFile* stranger = nullptr;
+  for (const CheckedFile& f : files) {
+    if (!f.stage || inputName(*f.stage) != input) continue;
+    if (f.checksum == checksum) return nullptr;
+    if (stranger == nullptr) stranger = &f;
+  }
+  return stranger;
+}
+
+void requireOneScene(std::span<const CheckedFile> files) {
+  const CheckedFile* first = nullptr;
+  for (const CheckedFile& f : files) {
+    if (f.scene.empty()) continue;
+    if (first == nullptr) first = &f;
+    if (f.scene == first->scene) continue;
+    throw InputError(f.file, "made from scene " + f.scene + ", but " + first->file.string() +
+                                 " from scene " + first->scene +
+                                 "; rerun vpl-place and every later stage on one scene");
+  }
+}
+
+}  // namespace
+
+CheckedFile checkFile(const fs::path& file) {
+  CheckedFile checked = fileKind(file) == FileKind::Vpl ? checkVpl(file) : checkExr(file);
+  settleScene(checked);
+  return checked;
+}
+
+void checkTogether(std::span<const CheckedFile> files) {
+  requireOneScene(files);
+  // The earliest stage that is out of date is the one to rerun, so records are looked at in chain
+  // order.
+  size_t longest = 0;
+  for (const CheckedFile& f : files) longest = std::max(longest, f.chain.size());
+  for (size_t step = 0; step < longest; ++step) {
+    for (const CheckedFile& f : files) {
+      if (step >= f.chain.size()) continue;
+      for (const auto& [input, checksum] : f.chain[step].inputs) {
+        const CheckedFile* other = strangerOfStage(files, input, checksum);
+        if (other == nullptr) continue;
+        const std::string& tool = f.chain[step].tool;
+        std::string problem = tool + " read " + input + " ";
+        problem.append(checksum).append(", but ").append(other->file.string()).append(" is ");
+        problem.append(other->checksum).append("; rerun ").append(tool);
+        throw InputError(f.file, problem + " and every later stage");
+      }
+    }
+  }
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,108 @@
+#include "tools/inspect/commands.h"
+
+#include <cstdio>
+
+#include "formats/exr_io.h"
+#include "formats/png_io.h"
+#include "formats/vpl_io.h"
+#include "tools/inspect/check.h"
+#include "tools/inspect/difference_image.h"
+#include "tools/inspect/export_table.h"
+#include "tools/inspect/info.h"
+
+namespace bnvpl {
+
+int runInfo(const InfoCommand& command) {
+  const Json description = describeFile(command.file);
+  const std::string text = command.json ? description.dump(2) + "\n" : infoText(description);
+  std::fputs(text.c_str(), stdout);
+  return kExitOk;
+}
+
+int runCheck(const CheckCommand& command, const ToolOptions& tool) {
+  std::vector<CheckedFile> checked;
+  for (const fs::path& file : command.files) {
+    checked.push_back(checkFile(file));
+    if (!tool.quiet) std::printf("%s: OK (%s)\n", file.c_str(), checked.back().what.c_str());
+  }
+  std::fflush(stdout);  // before the message that a mixture gets on stderr
+  checkTogether(checked);
+  if (!tool.quiet && checked.size() > 1) std::printf("no contradiction between the files\n");
+  return kExitOk;
+}
+
+int runExport(const ExportCommand& command, const ToolOptions& tool) {
+  requireExportable(command.output);
+  Summary summary("vpl-inspect");
+  const VplTable table = readVpl(command.file);
+  exportTable(table, command.output);
+  summary.add("rows", table.size(), "wrote " + std::to_string(table.size()) + " rows");
+  summary.finish(tool);
+  return kExitOk;
+}
+
+int runPlot(const PlotCommand& command, const ToolOptions& tool) {
+  Summary summary("vpl-inspect");
+  const VplTable table = readVpl(command.file);
+  Scene scene = loadSceneFor("vpl-inspect", command.scene);
+  requireSameScene(command.file, table.sceneHash, scene,
+                   "name the scene it was made from, or rerun vpl-place");
+  if (!command.size.empty()) scene.film = parseSize(command.size);
+  PlotOptions options = command.plot;
+  if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
+
+  const RayScene rays(scene);
+  PlotCounts counts;
+  std::vector<Dot> dots = visibleDots(table, rays, options, counts);
+  Canvas canvas = shadeView(rays, options.samples);
+  canvas.paint(std::move(dots), options.dotPixels);
+  writePng(command.output, canvas.width, canvas.height, canvas.rgb8());
+  std::vector<fs::path> read = scene.files;
+  read.push_back(command.file);
+  writeDepfile(tool.depfile, command.output, read);
+
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "%zu rows: %zu in sight, %zu facing away, %zu hidden, %zu outside the film",
+                table.size(), counts.drawn, counts.facingAway, counts.occluded, counts.outside);
+  summary.add("rows", table.size(), line);
+  summary.add("in_sight", counts.drawn);
+  summary.add("facing_away", counts.facingAway);
+  summary.add("hidden", counts.occluded);
+  summary.add("outside_film", counts.outside);
+  summary.finish(tool);
+  return kExitOk;
+}
+
+int runCompare(const CompareCommand& command) {
+  const Image imageA = readExr(command.imageA), imageB = readExr(command.imageB);
+  const Layer a =
+      findLayer(command.imageA, imageA, command.layerA.empty() ? command.layer : command.layerA);
+  const Layer b =
+      findLayer(command.imageB, imageB, command.layerB.empty() ? command.layer : command.layerB);
+  const Comparison c = compareLayers(command.imageA, a, command.imageB, b, command.limits);
+  if (!command.diff.empty()) {
+    const Picture picture = differencePicture(a, b, command.diffRange);
+    writePng(command.diff, picture.width, picture.height, picture.rgb8);
+  }
+  const std::string text = command.json ? comparisonJson(c, command.limits).dump(2) + "\n"
+                                        : comparisonText(c, command.limits);
+  std::fputs(text.c_str(), stdout);
+  return comparisonExitCode(c, command.limits);
+}
+
+Film parseSize(const std::string& text) {
+  unsigned width = 0, height = 0;
+  char rest = 0;
+  constexpr unsigned kMost = 16384;
+  const bool digits = text.find_first_not_of("0123456789x") == std::string::npos;
+  if (!digits || text.size() > 11 ||
+      std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width < 1 ||
+      height < 1 || width > kMost || height > kMost) {
+    throw UsageError("--size '" + text +
+                     "' is not WIDTHxHEIGHT, such as 640x480, up to 16384 each");
+  }
+  return {width, height};
+}
+
+}  // namespace bnvpl

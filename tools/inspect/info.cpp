@@ -1,0 +1,131 @@
+#include "tools/inspect/info.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/exr_io.h"
+#include "formats/vpl_io.h"
+#include "tools/inspect/column_names.h"
+#include "tools/inspect/file_kind.h"
+#include "tools/inspect/provenance.h"
+#include "tools/inspect/spacing.h"
+
+namespace bnvpl {
+namespace {
+
+struct Range {
+  double min = INFINITY, max = -INFINITY, sum = 0.0;
+  uint64_t finite = 0, other = 0;
+  void add(double value) {
+    if (!std::isfinite(value)) {
+      ++other;
+      return;
+    }
+    min = std::min(min, value);
+    max = std::max(max, value);
+    sum += value;
+    ++finite;
+  }
+};
+
+Json rangeJson(const std::string& name, const Range& range) {
+  Json json{{"name", name}, {"min", nullptr}, {"max", nullptr}, {"mean", nullptr}};
+  if (range.finite > 0) {
+    json["min"] = range.min;
+    json["max"] = range.max;
+    json["mean"] = range.sum / double(range.finite);
+  }
+  return json;
+}
+
+Json columnsJson(const VplTable& table) {
+  Json columns = Json::array();
+  const auto infos = columnInfo(table.stage);
+  for (size_t c = 0; c < infos.size(); ++c) {
+    for (size_t k = 0; k < infos[c].components; ++k) {
+      Range range;
+      for (size_t row = 0; row < table.size(); ++row) range.add(columnValue(table, c, row, k));
+      Json json = rangeJson(componentName(infos[c], k), range);
+      json["unit"] = infos[c].unit;
+      json["meaning"] = infos[c].meaning;
+      columns.push_back(std::move(json));
+    }
+  }
+  return columns;
+}
+
+Json energyJson(const VplTable& table) {
+  double r = 0.0, g = 0.0, b = 0.0;
+  for (const Vec3& f : table.flux) {
+    r += double{f.x};
+    g += double{f.y};
+    b += double{f.z};
+  }
+  return {{"R", r}, {"G", g}, {"B", b}, {"mean", (r + g + b) / 3.0}};
+}
+
+Json spacingJson(const VplTable& table) {
+  const Spacing s = measureSpacing(table);
+  Json json{{"measured", s.measured}, {"alone", s.alone}};
+  if (s.measured == 0) return json;
+  json["distance"] = {{"min", s.minDistance}, {"mean", s.meanDistance}};
+  if (table.rMax > 0.0) json["over_2_r_max"] = {{"min", s.minRelative}, {"mean", s.meanRelative}};
+  if (!table.radius.empty()) json["over_own_radii"] = {{"min", s.minOwn}, {"mean", s.meanOwn}};
+  return json;
+}
+
+Json provenanceJson(const std::string& text) {
+  return text.empty() ? Json::array() : Json::parse(text, nullptr, false);
+}
+
+}  // namespace
+
+Json describeTable(const VplTable& table) {
+  Json json{{"format", "vpl"},
+            {"stage", stageName(table.stage)},
+            {"rows", table.size()},
+            {"scene", hashText(table.sceneHash)},
+            {"checksum", hashText(table.checksum)}};
+  if (table.rMax > 0.0) json["r_max"] = table.rMax;
+  if (table.areaEstimate > 0.0) json["area_estimate"] = table.areaEstimate;
+  json["provenance"] = provenanceJson(table.provenance);
+  json["columns"] = columnsJson(table);
+  if (table.stage == VplStage::Lit) json["energy_W"] = energyJson(table);
+  json["spacing"] = spacingJson(table);
+  return json;
+}
+
+Json describeImage(const Image& image) {
+  Json json{{"format", "exr"}, {"width", image.width}, {"height", image.height}};
+  json["provenance"] = provenanceJson(provenanceOf(image));
+  json["attributes"] = Json::object();
+  for (const auto& [name, value] : image.attributes) {
+    if (name != kProvenanceAttribute) json["attributes"][name] = value;
+  }
+  json["columns"] = Json::array();
+  for (const ImageChannel& channel : image.channels) {
+    Range range;
+    for (const float value : channel.data) range.add(double{value});
+    Json entry = rangeJson(channel.name, range);
+    entry["not_finite"] = range.other;
+    json["columns"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json describeFile(const fs::path& file) {
+  Json json{{"file", file.string()}, {"bytes", nullptr}};
+  if (fileKind(file) == FileKind::Vpl) {
+    const VplTable table = readVpl(file);
+    json["version"] = readVplHeader(file).version;
+    json.update(describeTable(table));
+  } else {
+    const Image image = readExr(file);
+    parseProvenance(file, provenanceOf(image));  // throws when it is damaged
+    json.update(describeImage(image));
+  }
+  json["bytes"] = fs::file_size(file);
+  return json;
+}
+
+}  // namespace bnvpl

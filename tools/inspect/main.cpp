@@ -1,0 +1,116 @@
+// vpl-inspect: look into, check, export, draw and compare what the stages make.
+//   vpl-inspect info lit.vpl
+//   vpl-inspect compare image.exr reference.exr --layer indirect --max-relmse 0.01 --diff diff.png
+#include "tools/common/choice.h"
+#include "tools/inspect/commands.h"
+
+namespace bnvpl {
+namespace {
+
+const Choices<DotColour> kDotColours{
+    {"flux", DotColour::Flux}, {"radius", DotColour::Radius}, {"plain", DotColour::Plain}};
+
+CLI::App* addInfo(CLI::App& cli, InfoCommand& c) {
+  CLI::App* sub = cli.add_subcommand("info",
+                                     "Header, history, columns and spacing of a .vpl file, or "
+                                     "channels of an .exr image.");
+  sub->add_option("file", c.file, ".vpl or .exr")->required();
+  sub->add_flag("--json", c.json, "the same as JSON");
+  return sub;
+}
+
+CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
+  CLI::App* sub = cli.add_subcommand("check", "Verify files; several also against each other.");
+  sub->add_option("files", c.files, ".vpl and .exr")->required();
+  return sub;
+}
+
+CLI::App* addExport(CLI::App& cli, ExportCommand& c) {
+  CLI::App* sub = cli.add_subcommand("export", "Write the rows for other programs.");
+  sub->add_option("file", c.file, ".vpl")->required();
+  sub->add_option("-o,--output", c.output, ".ply (MeshLab, Blender) or .csv")->required();
+  return sub;
+}
+
+CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
+  CLI::App* sub =
+      cli.add_subcommand("plot", "Draw the rows as dots over the camera's view of the scene.");
+  sub->add_option("file", c.file, ".vpl")->required();
+  sub->add_option("--scene", c.scene.file, "the scene (.toml) that the rows lie on")->required();
+  sub->add_option("--define", c.scene.defines, "value of ${NAME} in the scene's file names")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  sub->add_option("-o,--output", c.output, "picture (.png)")->required();
+  sub->add_option("--dot", c.plot.dotPixels, "diameter of a dot, pixels")
+      ->check(CLI::Range(1.0f, 100.0f))
+      ->capture_default_str();
+  addChoice(*sub, "--color", c.plot.colour, kDotColours,
+            "what the dots' colour shows, violet for little to yellow for much")
+      ->default_str("flux if lit, else plain");
+  sub->add_flag("--show-back", c.plot.showBack,
+                "rings for rows in sight whose lit side faces away");
+  sub->add_option("--size", c.size, "of the picture, pixels; the scene's film unless given")
+      ->type_name("WxH");
+  return sub;
+}
+
+CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
+  CLI::App* sub = cli.add_subcommand(
+      "compare",
+      "Measure image A against the reference B over all pixels of R, G, B or one layer.\n"
+      "relMSE is the mean of (a-b)^2 / (b^2 + e), e = epsilon * mean(b)^2.\n"
+      "Exits with 5 when a limit is exceeded.");
+  sub->add_option("A", c.imageA, "image (.exr)")->required();
+  sub->add_option("B", c.imageB, "reference (.exr)")->required();
+  sub->add_option("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
+  sub->add_option("--layer-a", c.layerA, "of A only");
+  sub->add_option("--layer-b", c.layerB, "of B only");
+  sub->add_option("--epsilon", c.limits.epsilon, "of relMSE, times the squared mean of B")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  sub->add_option("--max-relmse", c.limits.maxRelMse, "largest relMSE allowed")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--max-rmse", c.limits.maxRmse, "largest RMSE allowed")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--max-rmse-over-mean", c.limits.maxRmseOverMean,
+                  "largest RMSE / mean(B) allowed")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--diff", c.diff,
+                  "picture (.png) of (a-b) / (b + 0.1 mean(b)): blue darker, red brighter");
+  sub->add_option("--diff-range", c.diffRange, "difference at the ends of its colours, 1 = 100 %")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  sub->add_flag("--json", c.json, "the measures as JSON");
+  return sub;
+}
+
+}  // namespace
+}  // namespace bnvpl
+
+int main(int argc, char** argv) {
+  using namespace bnvpl;
+  CLI::App cli{"Look into, check, export, draw and compare what the stages make.", "vpl-inspect"};
+  ToolOptions tool;
+  cli.fallthrough();  // --threads and --quiet may stand after the subcommand too
+  addToolOptions(cli, tool);
+  cli.require_subcommand(1);
+  InfoCommand info;
+  CheckCommand check;
+  ExportCommand exported;
+  PlotCommand plot;
+  CompareCommand compare;
+  const CLI::App* infoCli = addInfo(cli, info);
+  const CLI::App* checkCli = addCheck(cli, check);
+  const CLI::App* exportCli = addExport(cli, exported);
+  CLI::App* plotCli = addPlot(cli, plot);
+  addDepfileOption(*plotCli, tool);
+  addCompare(cli, compare);
+  return runTool(cli, tool, argc, argv, [&] {
+    plot.colourGiven = plotCli->count("--color") > 0;
+    if (infoCli->parsed()) return runInfo(info);
+    if (checkCli->parsed()) return runCheck(check, tool);
+    if (exportCli->parsed()) return runExport(exported, tool);
+    if (plotCli->parsed()) return runPlot(plot, tool);
+    return runCompare(compare);
+  });
+}

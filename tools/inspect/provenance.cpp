@@ -1,0 +1,69 @@
+#include "tools/inspect/provenance.h"
+
+#include <cstdio>
+
+namespace bnvpl {
+namespace {
+
+std::string plain(const Json& value) {
+  if (value.is_number_float()) {  // 0.02, not 0.0199999996 of a float that became a double
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value.get<double>());
+    return text;
+  }
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+// The record's text under `key`, or an empty one: a chain of another program is shown as far as it
+// goes.
+std::string textAt(const Json& record, const char* key) {
+  const auto found = record.find(key);
+  return found == record.end() ? std::string() : plain(*found);
+}
+
+}  // namespace
+
+std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string& text) {
+  std::vector<StageRecord> chain;
+  if (text.empty()) return chain;
+  const Json json = Json::parse(text, nullptr, false);
+  const auto fail = [&] {
+    return InputError(file, "its provenance is not a JSON array of objects");
+  };
+  if (!json.is_array()) throw fail();
+  for (const Json& entry : json) {
+    if (!entry.is_object()) throw fail();
+    StageRecord record;
+    record.tool = textAt(entry, "tool");
+    record.version = textAt(entry, "version");
+    if (const auto it = entry.find("options"); it != entry.end() && it->is_object())
+      record.options = *it;
+    if (const auto it = entry.find("inputs"); it != entry.end() && it->is_object()) {
+      for (const auto& [name, value] : it->items()) record.inputs[name] = plain(value);
+    }
+    chain.push_back(std::move(record));
+  }
+  return chain;
+}
+
+std::string provenanceOf(const Image& image) {
+  const auto found = image.attributes.find(kProvenanceAttribute);
+  return found == image.attributes.end() ? std::string() : found->second;
+}
+
+std::string describeRecord(const StageRecord& record) {
+  std::string line = (record.tool.empty() ? "(unnamed tool)" : record.tool) + " " + record.version;
+  std::string separator = ": ";
+  for (const auto& [name, value] : record.options.items()) {
+    line.append(separator).append(name).append(" ").append(plain(value));
+    separator = ", ";
+  }
+  separator = "; from ";
+  for (const auto& [name, value] : record.inputs) {
+    line.append(separator).append(name).append(" ").append(value);
+    separator = ", ";
+  }
+  return line;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,32 @@
+// The history that every file carries: which tools made it, with what, from what.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "formats/image.h"
+#include "tools/common/run_tool.h"
+
+namespace bnvpl {
+
+inline constexpr const char* kProvenanceAttribute = "bnvpl.provenance";
+
+struct StageRecord {
+  std::string tool, version;
+  Json options = Json::object();
+  std::map<std::string, std::string>
+      inputs;  // "scene", "candidates", "vpls", "lit" -> 16 hex digits
+};
+
+// Oldest first; keys that are absent stay empty. `file` is for the message.
+// Throws InputError when `text` is not a JSON array of objects. An empty text is an empty chain.
+std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string& text);
+
+// The provenance attribute of an image, or an empty text.
+std::string provenanceOf(const Image& image);
+
+// "vpl-place 0.1.0: count 3000, seed 1; from scene 0123456789abcdef"
+std::string describeRecord(const StageRecord& record);
+
+}  // namespace bnvpl
