@@ -65,15 +65,17 @@ struct VplHeader {
   uint32_t reserved0 = 0;           // zero; readers refuse anything else
   double rMax = 0.0;                // scene units; 0 until it is known
   double areaEstimate = 0.0;        // scene units squared; 0 until it is known
-  std::array<char, 48> reserved{};  // zero; readers refuse anything else
+  double reach = 0.0;               // how far each VPL received photons, in units of its radius
+  std::array<char, 40> reserved{};  // zero; readers refuse anything else
 };
 static_assert(sizeof(VplHeader) == 128 && std::is_trivially_copyable_v<VplHeader>);
 static_assert(offsetof(VplHeader, version) == 8 && offsetof(VplHeader, stage) == 12);
 static_assert(offsetof(VplHeader, count) == 16 && offsetof(VplHeader, sceneHash) == 24);
 static_assert(offsetof(VplHeader, provenanceBytes) == 32 && offsetof(VplHeader, fileBytes) == 40);
 static_assert(offsetof(VplHeader, checksum) == 48 && offsetof(VplHeader, columnCount) == 56);
+static_assert(offsetof(VplHeader, reserved) == 88);
 static_assert(offsetof(VplHeader, reserved0) == 60 && offsetof(VplHeader, rMax) == 64);
-static_assert(offsetof(VplHeader, areaEstimate) == 72 && offsetof(VplHeader, reserved) == 80);
+static_assert(offsetof(VplHeader, areaEstimate) == 72 && offsetof(VplHeader, reach) == 80);
 
 struct VplColumnEntry {
   std::array<char, 24> name;  // zero-padded

@@ -125,6 +125,7 @@ VplLayout checkShape(const InputFile& in, const VplHeader& header) {
     in.fail(offsetof(VplHeader, reserved), "reserved field is not zero");
   }
   if (!isMeasure(header.rMax)) in.fail(offsetof(VplHeader, rMax), "r_max is not a length");
+  if (!isMeasure(header.reach)) in.fail(offsetof(VplHeader, reach), "reach is not a length");
   if (!isMeasure(header.areaEstimate)) {
     in.fail(offsetof(VplHeader, areaEstimate), "area estimate is not an area");
   }
@@ -188,6 +189,7 @@ VplTable makeTable(const InputFile& in, Bytes file, const VplHeader& header,
   table.stage = header.stage;
   table.rMax = header.rMax;
   table.areaEstimate = header.areaEstimate;
+  table.reach = header.reach;
   table.sceneHash = header.sceneHash;
   table.checksum = header.checksum;
   table.provenance.assign(reinterpret_cast<const char*>(file.data()) + layout.provenanceOffset,

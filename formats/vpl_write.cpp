@@ -70,6 +70,7 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
                                 "; not written, the old file, if any, is unchanged");
   }
   if (!isMeasure(table.rMax)) throw OutputError(file, "r_max is negative or not finite");
+  if (!isMeasure(table.reach)) throw OutputError(file, "reach is negative or not finite");
   if (!isMeasure(table.areaEstimate)) throw OutputError(file, "area is negative or not finite");
   if (!isProvenance(provenance)) throw OutputError(file, "provenance is not a JSON array");
 }
@@ -89,6 +90,7 @@ void writeVpl(const fs::path& file, const VplTable& table) {
   header.columnCount = static_cast<uint32_t>(layout.directory.size());
   header.rMax = table.rMax;
   header.areaEstimate = table.areaEstimate;
+  header.reach = table.reach;
   header.checksum = hashPieces(filePieces(header, layout, provenance, table));
   writePieces(file, filePieces(header, layout, provenance, table));
 }

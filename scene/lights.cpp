@@ -48,18 +48,33 @@ float spotFalloff(const LightSpec& s, float cosAngle) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y.
+// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. The image
+// is turned as rotate_deg turns a mesh: by the right-hand rule.
 Vec3 directionOf(const LightSpec& s, float u, float v) {
-  const float phi = 2.0f * kPi * (u - 0.5f) + s.rotateRad, theta = kPi * v;
+  const float phi = 2.0f * kPi * (u - 0.5f) - s.rotateRad, theta = kPi * v;
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 void texelOf(const LightSpec& s, Vec3 d, float& u, float& v) {
-  const float turns = (std::atan2(d.x, -d.z) - s.rotateRad) / (2.0f * kPi) + 0.5f;
+  const float turns = (std::atan2(d.x, -d.z) + s.rotateRad) / (2.0f * kPi) + 0.5f;
   u = std::min(turns - std::floor(turns), 0x1.fffffep-1f);
   v = std::min(std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi, 0x1.fffffep-1f);
 }
 
-float sunCosine(const LightSpec& s) { return std::cos(s.angularRadiusRad); }
+// A cone by 1 - cos of its half angle, which keeps its digits where the cosine rounds to 1: at the
+// sun's 0.27 degrees the cosine of a float has 8 bits left, below 0.014 none.
+float versine(float angleRad) {
+  const float s = std::sin(0.5f * angleRad);
+  return 2.0f * s * s;
+}
+Vec3 sampleNarrowCone(float u, float v, float coneVersine) {
+  const float w = u * coneVersine, r = std::sqrt(w * (2.0f - w));
+  return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), 1.0f - w};
+}
+float pdfNarrowCone(float coneVersine) { return 1.0f / (2.0f * kPi * coneVersine); }
+bool inNarrowCone(Vec3 direction, Vec3 axis, float coneVersine) {  // |a - b|^2 = 2 (1 - cos)
+  return lengthSquared(direction - axis) <= 2.0f * coneVersine;
+}
+
 Vec3 sunRadiance(const LightSpec& s) {  // irradiance = radiance * pi sin^2(angular radius)
   const float sine = std::sin(s.angularRadiusRad);
   return s.emission * (1.0f / (kPi * sine * sine));
@@ -213,9 +228,9 @@ Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radia
       radiance = s.emission;
       return -s.direction;
     }
-    pdf = pdfCone(sunCosine(s));
+    pdf = pdfNarrowCone(versine(s.angularRadiusRad));
     radiance = sunRadiance(s);
-    return Basis(-s.direction).toWorld(sampleCone(u, v, sunCosine(s)));
+    return Basis(-s.direction).toWorld(sampleNarrowCone(u, v, versine(s.angularRadiusRad)));
   }
   if (s.image == kNone) {
     pdf = 1.0f / (4.0f * kPi);
@@ -238,8 +253,8 @@ Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) cons
   const Light& light = lights_[index];
   const LightSpec& s = light.spec;
   if (s.type == LightType::Directional) {
-    if (dot(direction, -s.direction) < sunCosine(s)) return {};
-    pdf = pdfCone(sunCosine(s));
+    if (!inNarrowCone(direction, -s.direction, versine(s.angularRadiusRad))) return {};
+    pdf = pdfNarrowCone(versine(s.angularRadiusRad));
     return sunRadiance(s);
   }
   if (s.image == kNone) {
@@ -329,10 +344,10 @@ PhotonStart LightSet::emit(size_t index, Rng& rng) const {
     start = {s.position, sampleSphere(u, v), light.power};
   } else if (s.type == LightType::Spot) {
     const float u = rng.next(), v = rng.next();
-    const Vec3 d = sampleCone(u, v, std::cos(s.coneRad));
+    const Vec3 d = sampleNarrowCone(u, v, versine(s.coneRad));
     start.origin = s.position;
     start.direction = Basis(s.direction).toWorld(d);
-    start.flux = s.emission * (spotFalloff(s, d.z) / pdfCone(std::cos(s.coneRad)));
+    start.flux = s.emission * (spotFalloff(s, d.z) / pdfNarrowCone(versine(s.coneRad)));
   } else {
     start = emitFromInfinity(light, rng);
   }

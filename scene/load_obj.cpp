@@ -103,11 +103,15 @@ void ObjLoader::warn(const std::string& text) {
   if (warned_.insert(text).second) scene_.warnings.push_back(text);
 }
 
-uint32_t ObjLoader::texture(const fs::path& folder, std::string name, bool srgb, bool mask,
-                            const float* scale, const float* offset) {
+uint32_t ObjLoader::texture(const fs::path& folder, const fs::path& otherFolder, std::string name,
+                            bool srgb, bool mask, const float* scale, const float* offset) {
   if (name.empty()) return kNone;
   std::replace(name.begin(), name.end(), '\\', '/');
-  const fs::path file = (folder / name).lexically_normal();
+  fs::path file = (folder / name).lexically_normal();
+  if (!fs::is_regular_file(file)) {
+    const fs::path other = (otherFolder / name).lexically_normal();
+    if (fs::is_regular_file(other)) file = other;
+  }
   const std::string key = file.string() + (srgb ? "|s" : "|l") + (mask ? "m" : "") + "|" +
                           std::to_string(scale[0]) + "," + std::to_string(scale[1]) + "," +
                           std::to_string(offset[0]) + "," + std::to_string(offset[1]);
@@ -132,7 +136,7 @@ uint32_t ObjLoader::texture(const fs::path& folder, std::string name, bool srgb,
   return it->second = static_cast<uint32_t>(scene_.textures.size() - 1);
 }
 
-uint32_t ObjLoader::addMaterial(const fs::path& library, const void* source) {
+uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, const void* source) {
   const auto& in = *static_cast<const tinyobj::material_t*>(source);
   const fs::path folder = library.parent_path();
   const std::string where = library.string() + ": material '" + in.name + "': ";
@@ -167,7 +171,7 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const void* source) {
     if (!m.twoSidedEmission && firstLine(it->second) != "1") warn(where + "emission_sides must be 1 or 2; 1 is used");
   }
   const auto map = [&](const std::string& name, const tinyobj::texture_option_t& o, bool srgb, bool mask) {
-    return texture(folder, name, srgb, mask, o.scale, o.origin_offset);
+    return texture(folder, obj.parent_path(), name, srgb, mask, o.scale, o.origin_offset);
   };
   if (!m.glass) {
     m.diffuseMap = map(in.diffuse_texname, in.diffuse_texopt, true, false);
@@ -301,7 +305,7 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   }
   parsed.materialOf.assign(source.size(), kNone);
   for (size_t i = 0; i < source.size(); ++i) {
-    if (used[i]) parsed.materialOf[i] = addMaterial(reader.origin[i], &source[i]);
+    if (used[i]) parsed.materialOf[i] = addMaterial(reader.origin[i], obj, &source[i]);
   }
   addTriangles(obj, parsed, transform);
 }

@@ -35,9 +35,10 @@ class ObjLoader {
  private:
   struct Parsed;
   void warn(const std::string& text);
-  uint32_t texture(const fs::path& folder, std::string name, bool srgb, bool mask,
+  uint32_t texture(const fs::path& folder, const fs::path& otherFolder, std::string name, bool srgb, bool mask,
                    const float* scale, const float* offset);
-  uint32_t addMaterial(const fs::path& library, const void* source);  // a tinyobj material
+  // `source` is a tinyobj material; textures are looked for beside its library, then beside the OBJ.
+  uint32_t addMaterial(const fs::path& library, const fs::path& obj, const void* source);
   uint32_t fallbackMaterial(const fs::path& obj);
   void addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform);
 

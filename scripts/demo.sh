@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh clone to a picture: installs what is missing, builds the tools, and renders the
-# U-shaped scene through the four stages. Settings of the pipeline may be added: scripts/demo.sh SPP=8
+# U-shaped scene through the four stages. Settings may be added: scripts/demo.sh SPP=8
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -11,5 +11,5 @@ cmake --build --preset release --target vpl-place vpl-eliminate vpl-estimate vpl
 
 echo "Rendering scenes/u-shape"
 make --no-print-directory -f pipelines/Makefile SCENE=scenes/u-shape/scene.toml OUT=out/u-shape \
-  BIN=build/release/bin CANDIDATES=60k VPLS=3k PHOTONS=2M SPP=2 "$@"
+  BIN=build/release/bin CANDIDATES=60k VPLS=3k PHOTONS=10M SPP=4 "$@"
 echo "The picture: $PWD/out/u-shape/image.png"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that the build and the tests need; does nothing when all are there.
+# Installs the Debian 12 packages that the build and the tests need; does nothing when all are
+# there.
 set -euo pipefail
 
 packages=(

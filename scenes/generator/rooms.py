@@ -26,9 +26,9 @@ def u_shape():
     mesh.object("Divider")
     mesh.box((-0.05, -SUNK, 0), (0.05, 3 + SUNK, 6.5 + SUNK), "Divider")
     mesh.object("Wing")  # hides from the lamp all that the camera sees: its whole view is indirect
-    mesh.box((0, -SUNK, 0.02), (1.2, 3 + SUNK, 0.12), "Divider")
+    mesh.box((0, -SUNK, 0.02), (2.6, 3 + SUNK, 0.12), "Divider")
     mesh.object("Lamp")
-    lamp_box(mesh, (1.3, 2.9, 2.6), (2.3, 3 + SUNK, 3.6))
+    lamp_box(mesh, (2.5, 2.9, 1.2), (3.5, 3 + SUNK, 2.2))
     mesh.object("Table")
     mesh.box((-2.7, -SUNK, 2.0), (-1.1, 0.6, 3.0), "Table")
     mesh.object("GreenBox")

@@ -66,6 +66,7 @@ inline VplTable smallTable(VplStage stage) {
     table.areaEstimate = 12.0;
   }
   if (stage >= VplStage::Lit) {
+    table.reach = 2.5;
     table.flux = {{1.0f, 2.0f, 4.0f}, {0.0f, 0.0f, 0.0f}};
     table.photons = {4294967297u, 0};
     table.relativeError = {0.0625f, 0.0f};

@@ -96,7 +96,8 @@ TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(64, -1.0), "byte 64: r_max");
   EXPECT_SAYS(complaintAbout(64, std::numeric_limits<double>::quiet_NaN()), "byte 64: r_max");
   EXPECT_SAYS(complaintAbout(72, std::numeric_limits<double>::infinity()), "byte 72: area");
-  for (size_t i = 80; i < 128; ++i) EXPECT_SAYS(complaintAbout(i, '\1'), "byte 80: reserved");
+  for (size_t i = 88; i < 128; ++i) EXPECT_SAYS(complaintAbout(i, '\1'), "byte 88: reserved");
+  EXPECT_SAYS(complaintAbout(80, -1.0), "byte 80: reach");
 }
 
 TEST_F(VplDamage, SceneHashAndChecksumAreCoveredByTheChecksum) {

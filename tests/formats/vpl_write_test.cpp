@@ -50,6 +50,7 @@ void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.relativeError, b.relativeError);
   EXPECT_EQ(a.rMax, b.rMax);
   EXPECT_EQ(a.areaEstimate, b.areaEstimate);
+  EXPECT_EQ(a.reach, b.reach);
   EXPECT_EQ(a.sceneHash, b.sceneHash);
   EXPECT_EQ(a.provenance, b.provenance);
 }
@@ -122,6 +123,7 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "column flux, row 0", [](VplTable& t) { t.flux[0].x = kNan; });
   expectRefused(f, "column relative_error, row 0", [](VplTable& t) { t.relativeError[0] = kNan; });
   expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
+  expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });
   expectRefused(f, "provenance", [](VplTable& t) { t.provenance = "{}"; });
   EXPECT_EQ(fileCount(), 1u);  // nothing partial stays behind

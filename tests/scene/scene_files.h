@@ -26,7 +26,8 @@ inline const std::string kSquareObj =
 
 class SceneFiles : public ::testing::Test {
  protected:
-  SceneFiles() : folder_(fs::temp_directory_path() / ("bnvpl-scene-" + std::to_string(::getpid()))) {
+  SceneFiles()
+      : folder_(fs::temp_directory_path() / ("bnvpl-scene-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
   }
   ~SceneFiles() override { fs::remove_all(folder_); }
@@ -67,7 +68,8 @@ class SceneFiles : public ::testing::Test {
 };
 
 // An uncompressed 32-bit TGA, rows from the top: the simplest file with an alpha channel.
-inline std::string tga(uint8_t width, uint8_t height, const std::vector<std::array<uint8_t, 4>>& rgba) {
+inline std::string tga(uint8_t width, uint8_t height,
+                       const std::vector<std::array<uint8_t, 4>>& rgba) {
   std::string bytes(18, '\0');
   bytes[2] = 2;
   bytes[12] = static_cast<char>(width);
@@ -92,7 +94,8 @@ inline std::string joined(const std::vector<std::string>& texts) {
 }
 
 inline double areaOf(const Scene& scene, uint32_t triangle) {
-  const Vec3 p0 = scene.corner(triangle, 0), p1 = scene.corner(triangle, 1), p2 = scene.corner(triangle, 2);
+  const Vec3 p0 = scene.corner(triangle, 0), p1 = scene.corner(triangle, 1),
+             p2 = scene.corner(triangle, 2);
   return 0.5 * double{length(cross(p1 - p0, p2 - p0))};
 }
 inline double areaOfMaterial(const Scene& scene, const std::string& name) {
@@ -103,7 +106,8 @@ inline double areaOfMaterial(const Scene& scene, const std::string& name) {
   return sum;
 }
 inline Vec3 geometricNormal(const Scene& scene, uint32_t t) {
-  return normalize(cross(scene.corner(t, 1) - scene.corner(t, 0), scene.corner(t, 2) - scene.corner(t, 0)));
+  return normalize(
+      cross(scene.corner(t, 1) - scene.corner(t, 0), scene.corner(t, 2) - scene.corner(t, 0)));
 }
 inline const Material& materialNamed(const Scene& scene, const std::string& name) {
   for (const Material& m : scene.materials) {

@@ -43,6 +43,7 @@ struct VplSettings {
   Density density = Density::Local;
   EstimateOptions estimate{.photons = 300000};
   float clamp = 1.0f;
+  bool nearField = false;
   GatherOptions gather{.lightcuts = false};
   FilmOptions film{.spp = 4};
 };
@@ -56,7 +57,9 @@ inline VplTable lightUp(const World& world, const VplSettings& s) {
 inline Image renderVpls(const World& world, const VplTable& lit, const VplSettings& s, FilmStats& stats) {
   const VplLights vpls = makeVplLights(lit, world.rays, s.clamp);
   const Gatherer gatherer(world.rays, vpls, s.gather, s.film.seed);
-  const VplIntegrator integrator(world.rays, world.lights, gatherer, s.film.only);
+  const NearField nearField(lit, world.rays, s.clamp);
+  const VplIntegrator integrator(world.rays, world.lights, gatherer, s.nearField ? &nearField : nullptr,
+                                 s.film.only);
   return renderFilm(
       world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, s.film, stats);
 }

@@ -21,7 +21,7 @@ struct EliminateOptions {
   Density density = Density::Local;
   // Local: this share of the VPLs is spent evenly, the rest in proportion to the candidates. It bounds the
   // radius by r_max / sqrt(share): an isolated candidate must not stand for half a room.
-  double uniformShare = 0.5;
+  double uniformShare = 0.2;
   double area = 0.0;  // of the indirectly visible surface, world units squared; 0: estimated
   double alpha = 8.0;
   // Auto: only where --area gives the area and the density is uniform. With limiting, every pair

@@ -5,10 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "core/compatibility.h"
 #include "core/parallel.h"
+#include "scene/coverage.h"
 #include "scene/photon_path.h"
-#include "spatial/reach_grid.h"
 #include "tools/estimate/photon_shares.h"
 
 namespace bnvpl {
@@ -16,13 +15,6 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
-// Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of a curved
-// surface do not hide it from itself (METHOD 1: 0.1 R).
-constexpr float kGuardLift = 0.1f;
-// More VPLs than this around one hit share its energy among the first ones found; at the default radius
-// there are four to six.
-constexpr size_t kMaxEligible = 256;
-
 // Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers commutes,
 // so neither threads nor the order of photons matter, and ranges computed apart can be added up.
 class FixedPoint {
@@ -69,13 +61,10 @@ struct Sums {  // of one thread
 class Scatterer {
  public:
   Scatterer(const VplTable& vpls, const RayScene& rays, const EstimateOptions& options, double photonPower)
-      : vpls_(vpls),
-        rays_(rays),
-        options_(options),
+      : options_(options),
         fixed_(photonPower),
         photonPower_(photonPower),
-        reach_(reachOf(vpls, options.radius)),
-        grid_(vpls.position, reach_) {}
+        coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
 
   // Hands the flux that leaves a diffuse hit to the VPLs around it.
   void scatter(const SurfacePoint& hit, Vec3 flux, Rng& rng, Sums& sums) const {
@@ -89,6 +78,7 @@ class Scatterer {
   }
   const FixedPoint& fixed() const { return fixed_; }
   double photonPower() const { return photonPower_; }
+  float reach() const { return options_.radius; }
 
  private:
   static std::vector<float> reachOf(const VplTable& vpls, float radius) {
@@ -108,51 +98,30 @@ class Scatterer {
   // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies between.
   void scatterEvenly(const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
     uint32_t found = 0;
-    grid_.forEachReaching(hit.position, [&](uint32_t, float) { ++found; });
+    coverage_.forEachReaching(hit.position, [&](uint32_t) { ++found; });
     if (found == 0) return tally(sums, kOutside, flux);
     const Vec3 share = flux * (1.0f / static_cast<float>(found));
-    grid_.forEachReaching(hit.position, [&](uint32_t i, float) { deposit(i, share, sums); });
+    coverage_.forEachReaching(hit.position, [&](uint32_t i) { deposit(i, share, sums); });
     tally(sums, kDeposited, flux);
   }
 
-  // Evenly among those on the same sheet and in sight, in expectation: the eligible are tried in random
-  // order, and the first in sight gets all. That is one guard ray a hit instead of one for each VPL.
+  // Evenly among those on the same sheet and in sight, in expectation: one of them gets all.
   void scatterGuarded(const SurfacePoint& hit, Vec3 flux, Rng& rng, Sums& sums) const {
-    std::array<uint32_t, kMaxEligible> eligible;
-    size_t count = 0, reaching = 0;
-    grid_.forEachReaching(hit.position, [&](uint32_t i, float) {
-      ++reaching;
-      if (count < kMaxEligible && sameSheet(hit.position, hit.ng, vpls_.position[i], vpls_.normal[i],
-                                            kPlaneFactor * reach_[i])) {
-        eligible[count++] = i;
-      }
-    });
-    if (count == 0) return tally(sums, reaching == 0 ? kOutside : kGap, flux);
-    for (size_t left = count; left > 0; --left) {
-      const auto pick = std::min(left - 1, static_cast<size_t>(rng.next() * static_cast<float>(left)));
-      const uint32_t i = eligible[pick];
-      if (inSight(hit, i, sums)) {
-        deposit(i, flux, sums);
-        return tally(sums, kDeposited, flux);
-      }
-      eligible[pick] = eligible[left - 1];
+    const Coverage::Found found = coverage_.pick(hit.position, hit.ng, rng);
+    sums.guardRays += found.rays;
+    if (found.vpl) {
+      deposit(*found.vpl, flux, sums);
+      return tally(sums, kDeposited, flux);
     }
-    tally(sums, kHidden, flux);
+    tally(sums, found.miss == Coverage::Miss::Outside ? kOutside
+                : found.miss == Coverage::Miss::Gap   ? kGap
+                                                      : kHidden, flux);
   }
 
-  bool inSight(const SurfacePoint& hit, uint32_t vpl, Sums& sums) const {
-    ++sums.guardRays;
-    const float lift = kGuardLift * reach_[vpl];
-    return !rays_.occluded(hit.position + hit.ng * lift, vpls_.position[vpl] + vpls_.normal[vpl] * lift);
-  }
-
-  const VplTable& vpls_;
-  const RayScene& rays_;
   const EstimateOptions& options_;
   FixedPoint fixed_;
   double photonPower_;
-  std::vector<float> reach_;
-  ReachGrid grid_;
+  Coverage coverage_;
 };
 
 Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights, const PhotonShares& shares,
@@ -195,6 +164,7 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
 
 void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
   vpls.stage = VplStage::Lit;
+  vpls.reach = double{scatterer.reach()};
   vpls.flux.resize(vpls.size());
   vpls.photons.resize(vpls.size());
   vpls.relativeError.resize(vpls.size());

@@ -11,7 +11,7 @@ namespace bnvpl {
 enum class PlaceMethod { Camera, Light };
 
 struct PlaceOptions {
-  uint64_t count = 60000;  // rows, exactly
+  uint64_t count = 120000;  // rows, exactly
   PlaceMethod method = PlaceMethod::Camera;
   // camera: diffuse vertices of a path, the first of which is never a candidate; 2 keeps the vertices
   // that light the view directly. light: hits of a photon.

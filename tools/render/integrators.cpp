@@ -4,6 +4,9 @@ namespace bnvpl {
 
 namespace {
 
+// Vertices beyond the first that a near-field ray may add; each follows with the missing share alone.
+constexpr unsigned kMaxExtensions = 16;
+
 // The camera's part of a path, the same for both integrators.
 ChainEnd seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction, Rng& rng,
                  RadianceSample& out) {
@@ -32,36 +35,48 @@ RadianceSample VplIntegrator::sample(Vec3 origin, Vec3 direction, Rng& rng) cons
     out.direct += seen.throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough, rng);
   }
   if (only_ != Only::Direct) {
-    addGathered(bsdf, seen.throughput, out);
-    if (chains_) extendThroughChain(bsdf, seen.throughput, rng, out);
+    out.indirect += gatherAt(bsdf, out, seen.throughput);
+    if (chains_ || nearField_) extend(seen, seen.throughput, rng, out);
   }
   return out;
 }
 
-void VplIntegrator::addGathered(const Bsdf& bsdf, Vec3 throughput, RadianceSample& out) const {
+Vec3 VplIntegrator::gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 throughput) const {
   const Gathered g = gatherer_.gather(bsdf);
-  out.indirect += throughput * g.radiance;
   out.clamped += throughput * g.clamped;
   out.cut += g.cut;
   out.shadowRays += g.shadowRays;
+  return throughput * g.radiance;
 }
 
-// A VPL's light, or a light's own, that reaches the vertex over a mirror, glass or sharp lobe. A ray that
-// meets rough lobes first adds nothing: the VPLs stand for those, and light sampling for the lights.
-void VplIntegrator::extendThroughChain(const Bsdf& bsdf, Vec3 throughput, Rng& rng, RadianceSample& out) const {
-  BsdfSample next;
-  if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return;
-  const Vec3 from = rays_.lifted(bsdf.point().position, next.side);
-  const ChainEnd end =
-      followChain(rays_, lights_, from, next.wi, Arrival{next.pdf, bsdf.point().position}, rng);
-  if (end.links == 0) return;
-  throughput *= next.weight;
-  out.indirect += throughput * end.metLater;
-  if (!end.rough) return;
-  const Bsdf behind(rays_.scene(), end.hit);
-  throughput *= end.throughput;
-  out.indirect += throughput * directLight(rays_, lights_, behind, LobeGroup::Rough, rng);
-  addGathered(behind, throughput, out);
+// One ray from the vertex for the light that the VPLs do not bring to it: over a mirror, glass or sharp lobe
+// (VPLs shine in straight lines), and what NearField says is missing. What else the ray meets is left to the
+// VPLs, and lights to light sampling. Where something is missing, the vertex that the ray found is lit in the
+// same way, and so on.
+void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const {
+  for (unsigned links = 0; links < kMaxExtensions; ++links) {
+    const Bsdf bsdf(rays_.scene(), vertex.hit);
+    BsdfSample next;
+    if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return;
+    throughput *= next.weight;
+    const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
+    const Arrival arrival{next.pdf, vertex.hit.position};
+    ChainEnd end = followChain(rays_, lights_, from, next.wi, arrival, rng);
+    out.extended += throughput * end.metLater;
+    out.indirect += throughput * end.metLater;
+    if (!end.rough) return;
+    const float missing = end.links > 0 ? 1.0f
+                          : nearField_  ? nearField_->missingShare(end.hit, end.hit.distance, rng)
+                                        : 0.0f;
+    if (rng.next() >= missing) return;  // roulette: followed with that probability at full weight
+    throughput *= end.throughput;
+    const Bsdf found(rays_.scene(), end.hit);
+    Vec3 light = throughput * directLight(rays_, lights_, found, LobeGroup::Rough, rng);
+    light += gatherAt(found, out, throughput);
+    out.extended += light;
+    out.indirect += light;
+    vertex = end;
+  }
 }
 
 RadianceSample PathTracer::sample(Vec3 origin, Vec3 direction, Rng& rng) const {

@@ -3,6 +3,7 @@
 
 #include "tools/render/chain.h"
 #include "tools/render/gather.h"
+#include "tools/render/near_field.h"
 
 namespace bnvpl {
 
@@ -10,7 +11,8 @@ struct RadianceSample {
   Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough vertex,
                   // and nothing between that and a light
   Vec3 indirect;  // everything else
-  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed
+  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
+  Vec3 extended;  // indirect light that sampled rays brought instead; part of `indirect`
   Vec3 albedo, normal;  // of the first rough vertex
   float depth = 0.0f;   // of the first hit along the viewing axis; 0: none
   uint32_t cut = 0, shadowRays = 0;
@@ -18,21 +20,28 @@ struct RadianceSample {
 
 enum class Only { Everything, Direct, Indirect };
 
-// The thesis: direct light by shadow rays, indirect light from the VPLs. `scene chain` paths that VPLs
-// cannot carry (light or VPL, mirror or glass, first rough vertex) are completed by one sampled ray.
+// The thesis: direct light by shadow rays, indirect light from the VPLs. What the VPLs do not carry is
+// completed by one sampled ray from the vertex (NearField).
 class VplIntegrator {
  public:
-  VplIntegrator(const RayScene& rays, const LightSet& lights, const Gatherer& gatherer, Only only)
-      : rays_(rays), lights_(lights), gatherer_(gatherer), only_(only), chains_(hasChainLobes(rays.scene())) {}
+  VplIntegrator(const RayScene& rays, const LightSet& lights, const Gatherer& gatherer,
+                const NearField* nearField, Only only)
+      : rays_(rays),
+        lights_(lights),
+        gatherer_(gatherer),
+        nearField_(nearField),
+        only_(only),
+        chains_(hasChainLobes(rays.scene())) {}
   RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
 
  private:
-  void extendThroughChain(const Bsdf& bsdf, Vec3 throughput, Rng& rng, RadianceSample& out) const;
-  void addGathered(const Bsdf& bsdf, Vec3 throughput, RadianceSample& out) const;
+  void extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const;
+  Vec3 gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 throughput) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
   const Gatherer& gatherer_;
+  const NearField* nearField_;  // null: what the clamp and the gaps take away stays away
   Only only_;
   bool chains_;
 };

@@ -23,7 +23,8 @@ struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::Vpl;
   GatherKind gather = GatherKind::Lightcuts;
   GatherOptions cuts;
-  float clamp = 1.0f;  // in units of a VPL's r_max
+  float clamp = 2.0f;      // in units of a VPL's r_max
+  bool nearField = true;  // give back what the clamp and the gaps take away
   unsigned maxBounces = 32;
   FilmOptions film;
   ExrPixelType pixels = ExrPixelType::Float;
@@ -61,6 +62,7 @@ Json describe(const RenderOptions& o) {
   }
   json["gather"] = nameOf(o.gather, kGathers);
   json["clamp"] = o.clamp;
+  json["near-field"] = o.nearField;
   if (o.gather == GatherKind::Lightcuts) {
     json["error"] = o.cuts.error;
     json["max-cut"] = o.cuts.maxCut;
@@ -113,7 +115,9 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   o.cuts.lightcuts = o.gather == GatherKind::Lightcuts;
   const VplLights vpls = makeVplLights(lit, rays, o.clamp);
   const Gatherer gatherer(rays, vpls, o.cuts, o.film.seed);
-  const VplIntegrator byVpls(rays, lights, gatherer, o.film.only);
+  std::optional<NearField> nearField;
+  if (vpl && o.nearField) nearField.emplace(lit, rays, o.clamp);
+  const VplIntegrator byVpls(rays, lights, gatherer, nearField ? &*nearField : nullptr, o.film.only);
   const PathTracer byPaths(rays, lights, o.maxBounces, o.film.only);
 
   ProgressMeter meter("pixels", uint64_t{scene.film.width} * scene.film.height, tool.quiet);
@@ -144,13 +148,17 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   if (overflow > 0) warnings.push_back(std::to_string(overflow) + " values exceed half precision; use --pixels float");
   printWarnings("vpl-render", warnings);
   char line[256];
-  std::snprintf(line, sizeof line, "%u x %u pixels, %u spp: mean direct %.5g, indirect %.5g, clamped away %.5g W/(m2 sr)",
-                scene.film.width, scene.film.height, o.film.spp, stats.direct, stats.indirect, stats.clamped);
+  std::snprintf(line, sizeof line, "%u x %u pixels, %u spp: mean direct %.5g, indirect %.5g W/(m2 sr)",
+                scene.film.width, scene.film.height, o.film.spp, stats.direct, stats.indirect);
   summary.add("samples", stats.samples, line);
   summary.add("mean_direct", stats.direct);
   summary.add("mean_indirect", stats.indirect);
-  summary.add("mean_clamped", stats.clamped);
   if (vpl) {
+    std::snprintf(line, sizeof line, "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
+                  stats.indirect > 0 ? 100 * stats.clamped / stats.indirect : 0.0,
+                  stats.indirect > 0 ? 100 * stats.extended / stats.indirect : 0.0);
+    summary.add("mean_clamped", stats.clamped, line);
+    summary.add("mean_extended", stats.extended);
     std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample", vpls.size(), stats.cut,
                   stats.shadowRays);
     summary.add("vpls", vpls.size(), line);
@@ -175,6 +183,8 @@ void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut
   addCount(cli, "--max-cut", maxCut, "lightcuts: most clusters at a point");
   cli.add_option("--clamp", o.clamp, "1/d^2 grows no further inside this many r_max of a VPL")
       ->check(CLI::Range(0.0f, 1000.0f))->capture_default_str();
+  cli.add_flag("--near-field,!--no-near-field", o.nearField,
+               "give back by sampled rays what the clamp and gaps between VPLs take away (default: on)");
   cli.add_option("--max-bounces", o.maxBounces, "path: diffuse bounces after the first surface, as vpl-estimate's")
       ->check(CLI::Range(0, 1000))->capture_default_str();
   addChoice(cli, "--only", o.film.only, kOnlys, "which light the image shows");

@@ -14,9 +14,9 @@ constexpr uint32_t kTile = 8;  // pixels; a tile's samples meet the same surface
 
 // Means over a pixel's samples, in the order of the channels below.
 struct Pixel {
-  std::array<double, 17> sum{};
+  std::array<double, 20> sum{};
 };
-enum Slot { kDirect = 0, kIndirect = 3, kClamped = 6, kAlbedo = 9, kNormal = 12, kDepth = 15, kHits = 16 };
+enum Slot { kDirect = 0, kIndirect = 3, kClamped = 6, kAlbedo = 9, kNormal = 12, kDepth = 15, kHits = 16, kExtended = 17 };
 
 void addTo(Pixel& p, size_t slot, Vec3 v) {
   p.sum[slot] += double{v.x};
@@ -47,6 +47,7 @@ void samplePixel(const Scene& scene, const Integrator& integrator, const FilmOpt
     addTo(pixel, kDirect, r.direct);
     addTo(pixel, kIndirect, r.indirect);
     addTo(pixel, kClamped, r.clamped);
+    addTo(pixel, kExtended, r.extended);
     addTo(pixel, kAlbedo, r.albedo);
     addTo(pixel, kNormal, r.normal);
     pixel.sum[kDepth] += double{r.depth};
@@ -127,6 +128,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   stats.direct = meanOf(kDirect);
   stats.indirect = meanOf(kIndirect);
   stats.clamped = meanOf(kClamped);
+  stats.extended = meanOf(kExtended);
   stats.samples = uint64_t{options.spp} * pixels.size();
   for (const PixelCounts& c : counts) {
     stats.cut += double(c.cut);

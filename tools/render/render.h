@@ -29,7 +29,7 @@ struct FilmOptions {
 };
 
 struct FilmStats {
-  double direct = 0, indirect = 0, clamped = 0;  // image means of the channels' mean, W/(m2 sr)
+  double direct = 0, indirect = 0, clamped = 0, extended = 0;  // image means of the channels' mean, W/(m2 sr)
   double cut = 0, shadowRays = 0;                // a sample, on average
   uint64_t samples = 0;
   uint64_t notFinite = 0;  // samples left out because a value was NaN or infinite

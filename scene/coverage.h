@@ -1,0 +1,82 @@
+// Which VPL speaks for a point of the scene. One definition for vpl-estimate, which hands a photon's energy
+// to such a VPL, and vpl-render, which must know what no VPL stands for.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
+#include "core/compatibility.h"
+#include "core/random.h"
+#include "scene/ray_scene.h"
+#include "spatial/reach_grid.h"
+
+namespace bnvpl {
+
+class Coverage {
+ public:
+  // Why a point has no VPL. Outside: none reaches it. Gap: some do, but on other sheets of surface.
+  // Hidden: some are on its sheet, but none is in sight.
+  enum class Miss { Outside, Gap, Hidden };
+  struct Found {
+    std::optional<uint32_t> vpl;
+    Miss miss = Miss::Outside;  // where vpl is empty
+    uint32_t rays = 0;          // guard rays traced
+  };
+
+  // `reach`: how far each VPL reaches, world units. Borrows the columns and the scene.
+  Coverage(std::span<const Vec3> position, std::span<const Vec3> normal, std::vector<float> reach,
+           const RayScene& rays)
+      : position_(position), normal_(normal), reach_(std::move(reach)), rays_(rays), grid_(position, reach_) {}
+
+  // One of the VPLs that reach the point, lie on its sheet of surface and are in sight, each with the same
+  // probability: they are tried in random order, which takes about one ray.
+  Found pick(Vec3 at, Vec3 normal, Rng& rng) const {
+    std::array<uint32_t, kMaxEligible> eligible;
+    size_t left = 0, reaching = 0;
+    grid_.forEachReaching(at, [&](uint32_t i, float) {
+      ++reaching;
+      if (left < kMaxEligible && sameSheet(at, normal, position_[i], normal_[i], kPlaneFactor * reach_[i])) {
+        eligible[left++] = i;
+      }
+    });
+    Found found;
+    found.miss = reaching == 0 ? Miss::Outside : left == 0 ? Miss::Gap : Miss::Hidden;
+    for (; left > 0; --left) {
+      const auto k = std::min(left - 1, static_cast<size_t>(rng.next() * static_cast<float>(left)));
+      ++found.rays;
+      if (inSight(at, normal, eligible[k])) {
+        found.vpl = eligible[k];
+        return found;
+      }
+      eligible[k] = eligible[left - 1];
+    }
+    return found;
+  }
+
+  // Every VPL within reach, whatever lies between: the thesis' rule.
+  template <typename Fn>
+  void forEachReaching(Vec3 at, const Fn& fn) const {
+    grid_.forEachReaching(at, [&](uint32_t i, float) { fn(i); });
+  }
+
+ private:
+  // More VPLs than this around one point: the first ones found. At the default reach there are about four.
+  static constexpr size_t kMaxEligible = 256;
+  // Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of a curved
+  // surface do not hide it from itself (measured: docs/theory.md, "Guards").
+  static constexpr float kLift = 0.1f;
+
+  bool inSight(Vec3 at, Vec3 normal, uint32_t i) const {
+    const float lift = kLift * reach_[i];
+    return !rays_.occluded(at + normal * lift, position_[i] + normal_[i] * lift);
+  }
+
+  std::span<const Vec3> position_, normal_;
+  std::vector<float> reach_;
+  const RayScene& rays_;
+  ReachGrid grid_;
+};
+
+}  // namespace bnvpl

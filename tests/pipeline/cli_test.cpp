@@ -1,0 +1,149 @@
+// Options of every tool, and what they refuse.
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+using Options = PipelineTest;
+
+TEST_F(Options, HelpListsEveryOption) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> options{
+      {"vpl-place",
+       {"scene", "--output", "--count", "--method", "camera|light", "--depth", "--light-depth",
+        "--seed", "--define", "--depfile"}},
+      {"vpl-eliminate",
+       {"candidates", "--output", "--count", "--method", "elimination|random", "--density",
+        "local|uniform", "--area", "--alpha"}},
+      {"vpl-estimate",
+       {"scene", "vpls", "--output", "--photons", "--radius", "--scatter", "even|guarded",
+        "--max-bounces", "--seed", "--define", "--depfile"}},
+      {"vpl-render",
+       {"scene",         "lit",      "--output",      "--png",    "--spp",      "--integrator",
+        "path|vpl",      "--gather", "all|lightcuts", "--error",  "--max-cut",  "--clamp",
+        "--max-bounces", "--only",   "--layers",      "--pixels", "float|half", "--exposure",
+        "--seed",        "--define", "--depfile"}},
+      {"vpl-inspect", {"info", "check", "export", "plot", "compare"}}};
+  for (const auto& [name, texts] : options) {
+    const Outcome help = tool(name, "--help");
+    EXPECT_EQ(help.code, kExitOk) << name;
+    EXPECT_EQ(help.err, "") << name;
+    for (const std::string& text : texts)
+      EXPECT_TRUE(contains(help.out, text)) << name << " lacks " << text;
+    for (const char* text : {"--threads", "--quiet", "--stats", "--version", "--help"}) {
+      EXPECT_TRUE(contains(help.out, text)) << name << " lacks " << text;
+    }
+  }
+}
+
+TEST_F(Options, HelpShowsDefaults) {
+  EXPECT_TRUE(contains(tool("vpl-place", "--help").out, "COUNT=60000"));
+  EXPECT_TRUE(contains(tool("vpl-estimate", "--help").out, "COUNT=10000000"));
+  EXPECT_TRUE(contains(tool("vpl-render", "--help").out, "=0.02"));
+  EXPECT_TRUE(contains(tool("vpl-render", "--help").out, "COUNT=1000"));
+}
+
+TEST_F(Options, Version) {
+  for (const std::string name :
+       {"vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render", "vpl-inspect"}) {
+    const Outcome r = tool(name, "--version");
+    EXPECT_EQ(r.code, kExitOk);
+    EXPECT_EQ(r.out, name + " " BNVPL_VERSION "\n");
+  }
+}
+
+TEST_F(Options, UnknownAndMissingOptions) {
+  for (const std::string& name : kStages) {
+    fail(name, "--no-such-option", kExitUsage, {"--help"});
+    fail(name, "", kExitUsage, {"required"});
+    fail(name, "a b c d e -o x", kExitUsage);
+    fail(name, "-o", kExitUsage);
+  }
+  fail("vpl-inspect", "", kExitUsage);
+  fail("vpl-place", scene_, kExitUsage, {"-o"});
+  fail("vpl-eliminate", "a.vpl -o b.vpl", kExitUsage, {"--count"});
+}
+
+TEST_F(Options, UnknownChoices) {
+  fail("vpl-place", scene_ + " -o x --method sideways", kExitUsage, {"--method", "sideways"});
+  for (const char* option : {"--method", "--density"}) {
+    fail("vpl-eliminate", std::string("a -o x -n 1 ") + option + " odd", kExitUsage,
+         {option, "odd"});
+  }
+  fail("vpl-estimate", scene_ + " a -o x --scatter wild", kExitUsage, {"--scatter", "wild"});
+  for (const char* option : {"--integrator", "--gather", "--only", "--pixels"}) {
+    fail("vpl-render", scene_ + " a -o x " + option + " odd", kExitUsage, {option, "odd"});
+  }
+  fail("vpl-render", scene_ + " a -o x --layers direct,odd", kExitUsage, {"--layers", "odd"});
+  fail("vpl-render",
+       scene_ + " -o " + path("x.exr") + " --integrator path --spp 1 --png " + path("x.png") +
+           " --exposure bright",
+       kExitUsage, {"--exposure", "bright"});
+  EXPECT_TRUE(listing().empty());
+}
+
+TEST_F(Options, BadCounts) {
+  const std::pair<const char*, std::string> counts[] = {
+      {"vpl-place", scene_ + " -o x -n "},
+      {"vpl-eliminate", "a -o x -n "},
+      {"vpl-estimate", scene_ + " a -o x --photons "},
+      {"vpl-render", scene_ + " a -o x --spp "},
+      {"vpl-render", scene_ + " a -o x --max-cut "}};
+  for (const auto& [name, arguments] : counts) {
+    for (const char* bad :
+         {"3x", "-1", "1.5", "0", "''", "k", "1kk", "nan", "inf", "1e99", "'1 0'"}) {
+      fail(name, arguments + bad, kExitUsage);
+    }
+  }
+  fail("vpl-place", scene_ + " -o x -n 1.0005k", kExitUsage, {"not whole"});
+}
+
+TEST_F(Options, GoodCounts) {
+  for (const auto& [text, count] :
+       {std::pair{"12", "12"}, std::pair{"0.1k", "100"}, std::pair{"1K", "1000"}}) {
+    const Outcome r = tool("vpl-place", scene_ + " -o " + path("c.vpl") + " -n " + text);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    EXPECT_TRUE(contains(r.out, std::string("placed ") + count + " ")) << r.out;
+  }
+}
+
+TEST_F(Options, NumbersOutOfRange) {
+  fail("vpl-place", scene_ + " -o x --depth 1", kExitUsage, {"--depth"});
+  fail("vpl-place", scene_ + " -o x --threads -1", kExitUsage, {"--threads"});
+  fail("vpl-place", scene_ + " -o x --seed soon", kExitUsage, {"--seed"});
+  fail("vpl-eliminate", "a -o x -n 1 --area -3", kExitUsage, {"--area"});
+  fail("vpl-estimate", scene_ + " a -o x --radius 0", kExitUsage, {"--radius"});
+  fail("vpl-estimate", scene_ + " a -o x --radius nan", kExitUsage, {"--radius"});
+  fail("vpl-estimate", scene_ + " a -o x --max-bounces 0", kExitUsage, {"--max-bounces"});
+  fail("vpl-render", scene_ + " a -o x --error 2", kExitUsage, {"--error"});
+  fail("vpl-render", scene_ + " a -o x --clamp -1", kExitUsage, {"--clamp"});
+}
+
+TEST_F(Options, VplsAndPathTracerExcludeEachOther) {
+  fail("vpl-render", scene_ + " -o x", kExitUsage, {"vpl-estimate"});
+  fail("vpl-render", scene_ + " a.vpl -o x --integrator path", kExitUsage, {"a.vpl"});
+}
+
+TEST_F(Options, ListsTakeOneWord) {
+  makeStages(scene_);
+  succeed("vpl-render",
+          "--layers direct,Z " + scene_ + " " + path("lit.vpl") + " --spp 1 -o " + path("i.exr"));
+}
+
+// --define takes one word and leaves the scene's name alone, wherever it stands.
+TEST_F(Options, DefinesMayStandAnywhere) {
+  fs::copy(BNVPL_SOURCE "/scenes/test", at("far"), fs::copy_options::recursive);
+  std::string toml = readAll(at("far/one-bounce.toml"));
+  const size_t where = toml.find("\"one-bounce.obj\"");
+  ASSERT_NE(where, std::string::npos);
+  write("near.toml", toml.replace(where, 16, "\"${DIR}/one-bounce.obj\""));
+  const std::string define = "--define DIR=far ", end = " -o " + path("c.vpl") + " -n 10 ";
+  succeed("vpl-place", path("near.toml") + end + define);
+  succeed("vpl-place", define + path("near.toml") + end);
+  succeed("vpl-place", "--define A=b " + define + path("near.toml") + end);
+  fail("vpl-place", path("near.toml") + end, kExitInput,
+       {"near.toml:", "${DIR} is not set", "--define DIR="});
+  fail("vpl-place", path("near.toml") + end + "--define DIR", kExitUsage, {"NAME=VALUE"});
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,124 @@
+// The Makefile and the ninja file run a stage again when its own inputs or options change, and only
+// then.
+#include <unistd.h>
+
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+class Rerun : public PipelineTest {
+ protected:
+  void SetUp() override { copyVeachDoor(); }
+
+  // "place eliminate ...": the stages whose commands make printed.
+  std::string made(const std::string& more = "") const {
+    const Outcome r =
+        shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
+              " OUT=" + path("out") +
+              " BIN='" BNVPL_BIN "' CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=1 " + more);
+    EXPECT_EQ(r.code, 0) << r.out << r.err;
+    return stagesIn(r.out, "/vpl-", " ");
+  }
+  bool upToDate(const std::string& more = "") const { return made("-n " + more).empty(); }
+
+  bool haveNinja() const { return shell("ninja --version").code == 0; }
+  void generate(const std::string& photons) const {
+    const Outcome r = shell(
+        "pipelines/generate_ninja.py " + path("veach-door/scene.toml") + " --out " + path("n") +
+        " --bin '" BNVPL_BIN "' --candidates 2k --vpls 200 --spp 1 --photons " + photons);
+    ASSERT_EQ(r.code, 0) << r.err;
+  }
+  std::string built() const {
+    const Outcome r = shell("ninja -v -f " + path("n/build.ninja"));
+    EXPECT_EQ(r.code, 0) << r.out << r.err;
+    return stagesIn(r.out, "/vpl-", " ");
+  }
+  // Later than everything that was made so far, as a file system with coarse times sees it too.
+  void touch(const std::string& name) const {
+    ::usleep(20000);
+    fs::last_write_time(at(name), fs::file_time_type::clock::now());
+  }
+
+  static std::string stagesIn(const std::string& log, const std::string& before,
+                              const std::string& after) {
+    std::string stages;
+    for (const std::string name : {"place", "eliminate", "estimate", "render"}) {
+      if (contains(log, before + name + after)) stages += (stages.empty() ? "" : " ") + name;
+    }
+    return stages;
+  }
+  const std::string all_ = "place eliminate estimate render";
+};
+
+TEST_F(Rerun, MakeRunsWhatChanged) {
+  EXPECT_FALSE(upToDate());
+  EXPECT_EQ(made(), all_);
+  for (const char* file : {"candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr", "image.png"}) {
+    EXPECT_TRUE(fs::exists(at("out") / file)) << file;
+  }
+  EXPECT_EQ(made(), "");
+  EXPECT_TRUE(upToDate());
+  touch("veach-door/landscape.png");
+  EXPECT_FALSE(upToDate());
+  EXPECT_EQ(made(), all_);
+  EXPECT_EQ(made(), "");
+  EXPECT_EQ(made("PHOTONS=30k"), "estimate render");
+  EXPECT_EQ(made("PHOTONS=30k"), "");
+  EXPECT_EQ(made("PHOTONS=30k SPP=2"), "render");
+  EXPECT_EQ(made("PHOTONS=30k SPP=2 VPLS=150"), "eliminate estimate render");
+  EXPECT_EQ(made("PHOTONS=30k SPP=2 VPLS=150 RUN_FLAGS=--quiet"), "");
+}
+
+TEST_F(Rerun, MakeFollowsEveryFileOfTheScene) {
+  EXPECT_EQ(made("-j4"), all_);
+  for (const char* file :
+       {"veach-door/scene.toml", "veach-door/room.mtl", "teapot/teapot.obj", "teapot/glossy.mtl"}) {
+    touch(file);
+    EXPECT_FALSE(upToDate()) << file;
+    EXPECT_EQ(made(), all_) << file;
+  }
+  fs::remove(at("out/lit.vpl"));
+  EXPECT_EQ(made(), "estimate render");
+  fs::remove(at("out/image.png"));
+  EXPECT_EQ(made(), "render");
+  EXPECT_EQ(made(), "");
+}
+
+TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
+  EXPECT_EQ(made(), all_);
+  const std::string image = readAll(at("out/image.exr"));
+  const Outcome r =
+      shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
+            " OUT=" + path("out") + " BIN='" BNVPL_BIN "' CANDIDATES=2k VPLS=3k PHOTONS=20k SPP=1");
+  EXPECT_NE(r.code, 0);
+  EXPECT_TRUE(contains(r.err, "vpl-eliminate: ")) << r.err;
+  EXPECT_EQ(readAll(at("out/image.exr")), image);
+  EXPECT_EQ(made("VPLS=100"), "eliminate estimate render");
+}
+
+TEST_F(Rerun, NinjaRunsWhatChanged) {
+  if (!haveNinja()) GTEST_SKIP() << "ninja is not installed";
+  generate("20k");
+  EXPECT_EQ(built(), all_);
+  EXPECT_EQ(built(), "");
+  generate("20k");
+  EXPECT_EQ(built(), "");
+  touch("veach-door/landscape.png");
+  EXPECT_EQ(built(), all_);
+  generate("30k");
+  EXPECT_EQ(built(), "estimate render");
+  EXPECT_EQ(built(), "");
+}
+
+// Both make the same image.
+TEST_F(Rerun, MakeAndNinjaAgree) {
+  if (!haveNinja()) GTEST_SKIP() << "ninja is not installed";
+  generate("20k");
+  EXPECT_EQ(built(), all_);
+  EXPECT_EQ(made(), all_);
+  EXPECT_TRUE(readAll(at("out/image.exr")) == readAll(at("n/veach-door/image.exr")));
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,67 @@
+// Alpha masks cut holes for every kind of ray.
+#include "scene/ray_scene.h"
+#include "tests/scene/scene_files.h"
+
+namespace bnvpl {
+namespace {
+
+using Alpha = SceneFiles;
+
+// Whether a ray along -z at x meets the square; all queries must agree.
+bool blocks(const RayScene& rays, float x) {
+  SurfacePoint hit;
+  const Vec3 from{x, 0.1f, 3}, to{x, 0.1f, -3}, direction{0, 0, -1};
+  const bool closest = rays.closestHit(from, direction, hit);
+  EXPECT_EQ(rays.occluded(from, to), closest) << x;
+  EXPECT_EQ(rays.occluded(to, from), closest) << x;
+  EXPECT_EQ(rays.occludedToInfinity(from, direction), closest) << x;
+  EXPECT_TRUE(!closest || std::fabs(hit.distance - 3.0f) < 1e-5f) << x;
+  return closest;
+}
+
+// Left half cut away. Textures repeat, so the outermost texels blend with the other side.
+void expectLeftHalfOpen(const Scene& scene) {
+  EXPECT_EQ(scene.maskedBegin, 0u);
+  const RayScene rays(scene);
+  for (const float x : {-0.8f, -0.5f, -0.2f}) EXPECT_FALSE(blocks(rays, x)) << x;
+  for (const float x : {0.2f, 0.5f, 0.8f}) EXPECT_TRUE(blocks(rays, x)) << x;
+}
+
+TEST_F(Alpha, MaskFromTheAlphaChannel) {
+  write("mask.tga", tga(2, 1, {{255, 255, 255, 0}, {0, 0, 0, 255}}));
+  expectLeftHalfOpen(loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\nmap_d mask.tga\n"));
+}
+
+TEST_F(Alpha, MaskFromLuminanceWhereAlphaSaysNothing) {
+  write("mask.tga", tga(2, 1, {{0, 0, 0, 255}, {255, 255, 255, 255}}));
+  expectLeftHalfOpen(loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\nmap_d mask.tga\n"));
+}
+
+TEST_F(Alpha, DissolveBelowAHalfCutsAway) {
+  for (const auto& [d, solid] : {std::pair{"0", false}, std::pair{"0.49", false},
+                                 std::pair{"0.51", true}, std::pair{"1", true}}) {
+    const Scene scene = loadMesh(kSquareObj, std::string("newmtl paint\nKd 1 1 1\nd ") + d + "\n");
+    EXPECT_EQ(blocks(RayScene(scene), 0.3f), solid) << d;
+  }
+}
+
+TEST_F(Alpha, WhatLiesBehindAHoleIsSeen) {
+  write("mask.tga", tga(2, 1, {{255, 255, 255, 0}, {0, 0, 0, 255}}));
+  const std::string obj =
+      kSquareObj + "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nusemtl wall\nf 5 6 7 8\n";
+  const Scene scene =
+      loadMesh(obj, "newmtl paint\nKd 1 1 1\nmap_d mask.tga\nnewmtl wall\nKd 0.5 0.5 0.5\n");
+  EXPECT_EQ(scene.maskedBegin, 2u);  // the opaque wall comes first, though it is last in the file
+  const RayScene rays(scene);
+  SurfacePoint hit;
+  ASSERT_TRUE(rays.closestHit({-0.5f, 0, 3}, {0, 0, -1}, hit));
+  EXPECT_EQ(scene.materials[hit.material].name, "wall");
+  EXPECT_NEAR(hit.distance, 4.0f, 1e-5f);
+  ASSERT_TRUE(rays.closestHit({0.5f, 0, 3}, {0, 0, -1}, hit));
+  EXPECT_EQ(scene.materials[hit.material].name, "paint");
+  EXPECT_FALSE(rays.occluded({-0.5f, 0, 3}, {-0.5f, 0, -0.5f}));
+  EXPECT_TRUE(rays.occluded({0.5f, 0, 3}, {0.5f, 0, -0.5f}));
+}
+
+}  // namespace
+}  // namespace bnvpl

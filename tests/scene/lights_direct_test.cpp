@@ -1,0 +1,211 @@
+// Direct light samples against irradiances that are known in closed form.
+#include "tests/scene/plain_scene.h"
+
+namespace bnvpl {
+namespace {
+
+// Unoccluded irradiance at `at` (normal n) from one light by its direct samples, on a grid of (u,
+// v).
+Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
+  constexpr int kSide = 300;
+  double sum[3] = {0, 0, 0};
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      DirectSample s;
+      if (!lights.sampleDirect(light, at, (float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide, s))
+        continue;
+      EXPECT_NEAR(length(s.wi), 1.0f, 1e-5f);
+      for (size_t c = 0; c < 3; ++c)
+        sum[c] += double{s.radianceOverPdf[c]} * std::max(0.0, double{dot(s.wi, n)});
+    }
+  }
+  const double count = double{kSide} * kSide;
+  return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
+}
+
+struct Lit {  // a floor scene with one light, ready to ask
+  Scene scene;
+  RayScene rays;
+  LightSet lights;
+  explicit Lit(Scene s) : scene(std::move(s)), rays(scene), lights(rays) {}
+};
+Scene withLight(const LightSpec& spec) {
+  Scene scene = floorScene();
+  scene.lights.push_back(spec);
+  return scene;
+}
+
+// Form factor from a surface element to a rectangle a x b parallel to it, one corner of which lies
+// at distance c along its normal (any table of view factors).
+double cornerFormFactor(double a, double b, double c) {
+  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2.0 * double{kPi});
+}
+
+Scene lampScene(bool twoSided) {
+  Scene scene;
+  addSquare(scene, {-1, 1.5f, -0.5f}, {2, 0, 0}, {0, 0, 1},
+            lamp({10, 5, 1}, twoSided));  // faces -y
+  addSquare(scene, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, lambert(Vec3(0.5f)));
+  finishScene(scene);
+  return scene;
+}
+
+TEST(DirectLight, SquareLampMatchesTheFormFactor) {
+  const Lit lit(lampScene(false));
+  ASSERT_EQ(lit.lights.size(), 1u);
+  const double below = 4.0 * cornerFormFactor(1, 0.5, 1.5);
+  expectClose(irradiance(lit.lights, 0, {0, 0, 0}, {0, 1, 0}),
+              Vec3(10, 5, 1) * (kPi * float(below)), 1e-3f);
+  const double aside = 2.0 * (cornerFormFactor(4, 0.5, 1.5) - cornerFormFactor(2, 0.5, 1.5));
+  expectClose(irradiance(lit.lights, 0, {3, 0, 0}, {0, 1, 0}),
+              Vec3(10, 5, 1) * (kPi * float(aside)), 2e-3f);
+}
+
+TEST(DirectLight, LampShinesOnItsSidesOnly) {
+  const Lit one(lampScene(false)), two(lampScene(true));
+  EXPECT_EQ(irradiance(one.lights, 0, {0, 3, 0}, {0, -1, 0}), Vec3());
+  const Vec3 above = irradiance(two.lights, 0, {0, 3, 0}, {0, -1, 0});
+  const Vec3 below = irradiance(two.lights, 0, {0, 0, 0}, {0, 1, 0});
+  EXPECT_GT(above.x, 1.0f);
+  expectClose(above, below, 1e-3f);
+}
+
+TEST(DirectLight, LampSampleIsWhatARayFinds) {
+  for (const bool twoSided : {false, true}) {
+    const Lit lit(lampScene(twoSided));
+    const Vec3 from{0.5f, twoSided ? 2.5f : 0.5f, 0.2f};
+    Rng rng(2, 3);
+    for (int i = 0; i < 1000; ++i) {
+      const float u = rng.next(), v = rng.next();
+      DirectSample s;
+      ASSERT_TRUE(lit.lights.sampleDirect(0, from, u, v, s));
+      EXPECT_FALSE(lit.rays.occluded(from, s.target));
+      SurfacePoint hit;
+      ASSERT_TRUE(lit.rays.closestHit(from, s.wi, hit));
+      size_t light = kNone;
+      const Vec3 radiance = lit.lights.emitted(hit, light);
+      ASSERT_EQ(light, 0u);
+      const float pdf = lit.lights.pdfEmitted(light, hit, from);
+      EXPECT_NEAR(pdf, s.pdf, 2e-4f * pdf);
+      expectClose(s.radianceOverPdf * s.pdf, radiance, 1e-4f);
+    }
+  }
+}
+
+TEST(DirectLight, OnlyTheLitSideEmits) {
+  const Lit lit(lampScene(false));
+  SurfacePoint hit;
+  size_t light = 0;
+  ASSERT_TRUE(lit.rays.closestHit({0, 3, 0}, {0, -1, 0}, hit));
+  EXPECT_EQ(lit.lights.emitted(hit, light), Vec3());
+  ASSERT_TRUE(lit.rays.closestHit({0, 1, 0}, {0, 1, 0}, hit));
+  EXPECT_EQ(lit.lights.emitted(hit, light), Vec3(10, 5, 1));
+}
+
+TEST(DirectLight, PointFollowsTheInverseSquare) {
+  LightSpec spec;
+  spec.position = {0, 2, 0};
+  spec.emission = {8, 4, 2};
+  const Lit lit(withLight(spec));
+  DirectSample s;
+  ASSERT_TRUE(lit.lights.sampleDirect(0, {0, 0, 0}, 0.5f, 0.5f, s));
+  expectClose(s.radianceOverPdf, {2, 1, 0.5f}, 1e-6f);
+  EXPECT_EQ(s.wi, Vec3(0, 1, 0));
+  EXPECT_EQ(s.target, Vec3(0, 2, 0));
+  EXPECT_EQ(s.pdf, 0.0f);
+  EXPECT_FALSE(s.infinite);
+  EXPECT_FALSE(lit.lights.sampleDirect(0, spec.position, 0.5f, 0.5f, s));
+}
+
+TEST(DirectLight, SpotFadesAcrossItsRim) {
+  LightSpec spec;
+  spec.type = LightType::Spot;
+  spec.position = {0, 4, 0};
+  spec.direction = {0, -1, 0};
+  spec.emission = Vec3(16);
+  spec.coneRad = 40 * kPi / 180;
+  spec.falloffRad = 15 * kPi / 180;
+  const Lit lit(withLight(spec));
+  float before = 2.0f;
+  for (const float degrees : {0.0f, 10.0f, 24.0f, 28.0f, 32.5f, 37.0f, 39.5f, 41.0f, 70.0f}) {
+    DirectSample s;
+    const Vec3 at{4 * std::tan(degrees * kPi / 180), 0, 0};
+    const bool lights = lit.lights.sampleDirect(0, at, 0.5f, 0.5f, s);
+    EXPECT_EQ(lights, degrees < 40) << degrees;
+    const float share =
+        lights ? s.radianceOverPdf.x * lengthSquared(at - spec.position) / 16.0f : 0.0f;
+    if (degrees < 25) {
+      EXPECT_NEAR(share, 1.0f, 1e-5f) << degrees;
+    }
+    if (degrees > 25 && degrees < 40) {
+      EXPECT_LT(share, before) << degrees;
+    }
+    if (degrees == 32.5f) {
+      EXPECT_NEAR(share, 0.5f, 1e-3f);
+    }
+    before = share;
+  }
+  DirectSample s;
+  EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind it
+}
+
+TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
+  for (const float diameterDeg : {0.0f, 0.001f, 0.01f, 0.1f, 0.53f, 2.0f, 30.0f, 120.0f}) {
+    LightSpec spec;
+    spec.type = LightType::Directional;
+    spec.direction = normalize({0.2f, -0.95f, 0.2f});
+    spec.emission = {20, 18, 15};
+    spec.angularRadiusRad = 0.5f * diameterDeg * kPi / 180;
+    const Lit lit(withLight(spec));
+    expectClose(irradiance(lit.lights, 0, {}, -spec.direction), {20, 18, 15}, 5e-4f,
+                std::to_string(diameterDeg) + " degrees");
+    DirectSample s;
+    ASSERT_TRUE(lit.lights.sampleDirect(0, {}, 0.3f, 0.9f, s));
+    EXPECT_TRUE(s.infinite);
+    EXPECT_GE(dot(s.wi, -spec.direction), std::cos(spec.angularRadiusRad) - 1e-6f);
+  }
+}
+
+// A ray that looks along a sample of the sun sees what the sample says.
+TEST(DirectLight, SunSampleIsWhatARayFinds) {
+  for (const float diameterDeg : {0.1f, 0.53f, 5.0f, 60.0f}) {
+    LightSpec spec;
+    spec.type = LightType::Directional;
+    spec.direction = normalize({0.5f, -0.7f, 0.1f});
+    spec.emission = Vec3(3);
+    spec.angularRadiusRad = 0.5f * diameterDeg * kPi / 180;
+    const Lit lit(withLight(spec));
+    int seen = 0;
+    for (int i = 0; i < 1000; ++i) {
+      Rng rng(4, uint64_t(i));
+      const float u = 0.97f * rng.next(), v = rng.next();  // rounding may put the very rim outside
+      DirectSample s;
+      ASSERT_TRUE(lit.lights.sampleDirect(0, {}, u, v, s));
+      lit.lights.forEachAtInfinity(s.wi, [&](size_t, Vec3 radiance, float pdf) {
+        ++seen;
+        EXPECT_NEAR(pdf, s.pdf, 1e-4f * s.pdf);
+        expectClose(radiance / pdf, s.radianceOverPdf, 1e-4f);
+      });
+    }
+    EXPECT_GE(seen, 990) << diameterDeg;
+    const float outside = spec.angularRadiusRad * 1.1f;
+    const Basis basis(-spec.direction);
+    lit.lights.forEachAtInfinity(basis.toWorld({std::sin(outside), 0, std::cos(outside)}),
+                                 [&](size_t, Vec3, float) { ADD_FAILURE() << diameterDeg; });
+  }
+}
+
+TEST(DirectLight, ConstantSkyGivesPiTimesItsRadiance) {
+  LightSpec spec;
+  spec.type = LightType::Environment;
+  spec.emission = {0.4f, 0.6f, 0.9f};
+  spec.scale = 2.0f;
+  const Lit lit(withLight(spec));
+  for (const Vec3 n : {Vec3(0, 1, 0), normalize({1, -2, 0.5f})}) {
+    expectClose(irradiance(lit.lights, 0, {}, n), spec.emission * (2.0f * kPi), 2e-3f);
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl
