@@ -41,7 +41,7 @@ def arguments():
     p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
     p.add_argument("--out", default="out", help="folder; each scene gets one below it (default out)")
     p.add_argument("--bin", default=relative(DEFAULT_BIN), help="folder of the executables (default %(default)s)")
-    p.add_argument("--candidates", default="60k", help="default %(default)s")
+    p.add_argument("--candidates", default="120k", help="default %(default)s")
     p.add_argument("--vpls", default="3k", help="default %(default)s")
     p.add_argument("--photons", default="10M", help="default %(default)s")
     p.add_argument("--spp", default="8", help="samples per pixel (default %(default)s)")

@@ -78,7 +78,9 @@ TEST(Eliminate, SpacingFarBetterThanRandom) {
 // not.
 TEST(Eliminate, LocalDensitySpacesRelativeToTheRadius) {
   const Cloud cloud = unevenPlane(4000, 3);
-  const EliminateResult result = run(cloud, keep(800, Density::Local));
+  EliminateOptions options = keep(800, Density::Local);
+  options.uniformShare = 0.0;
+  const EliminateResult result = run(cloud, options);
   size_t dense = 0;
   for (size_t a = 0; a < result.rows.size(); ++a) {
     if (cloud.position[result.rows[a]].x < 0.1f) ++dense;
@@ -88,6 +90,22 @@ TEST(Eliminate, LocalDensitySpacesRelativeToTheRadius) {
     }
   }
   EXPECT_NEAR(static_cast<double>(dense), 400.0, 40.0);  // half of the candidates lie there
+}
+
+// A tenth of the area holds half of the candidates: 0.8 * 400 + 0.2 * 80 of 800 VPLs.
+TEST(Eliminate, AShareOfTheVplsIsSpentEvenly) {
+  const Cloud cloud = unevenPlane(4000, 3);
+  EliminateOptions options = keep(800, Density::Local);
+  options.uniformShare = 0.2;
+  const EliminateResult result = run(cloud, options);
+  double dense = 0.0;
+  float largest = 0.0f;
+  for (size_t a = 0; a < result.rows.size(); ++a) {
+    if (cloud.position[result.rows[a]].x < 0.1f) dense += 1.0;
+    largest = std::max(largest, result.radius[a]);
+  }
+  EXPECT_NEAR(dense, 336.0, 35.0);
+  EXPECT_LT(largest, result.rMax / std::sqrt(0.2) * 1.001);
 }
 
 TEST(Eliminate, EstimatesTheArea) {

@@ -143,5 +143,21 @@ TEST(DifferencePicture, ColoursAreMonotoneAndClamped) {
   }
 }
 
+// Errors of +1 and -1 in the two halves cancel: against their mean the image is exact.
+TEST(Compare, ASecondHalfTakesTheNoiseOut) {
+  Image a, b, second;
+  for (Image* image : {&a, &b, &second}) {
+    image->width = 2;
+    image->height = 1;
+    for (const char* name : {"R", "G", "B"}) image->add(name) = {4.0f, 4.0f};
+  }
+  for (ImageChannel& channel : b.channels) channel.data = {5.0f, 3.0f};
+  for (ImageChannel& channel : second.channels) channel.data = {5.0f, 5.0f};
+  const Layer la = findLayer("a", a, ""), lb = findLayer("b", b, ""), ls = findLayer("s", second, "");
+  EXPECT_DOUBLE_EQ(compareLayers("a", la, "b", lb, {}).rmse, 1.0);
+  // (4-5)(4-5) = 1 and (4-3)(4-5) = -1.
+  EXPECT_DOUBLE_EQ(compareLayers("a", la, "b", lb, {}, &ls).rmse, 0.0);
+}
+
 }  // namespace
 }  // namespace bnvpl

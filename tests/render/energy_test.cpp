@@ -39,7 +39,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.0f, Density::Uniform},
                     FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.5f, Density::Local},
                     FurnaceCase{"furnace/scene.toml", 0.5, 1200, 2.0f, Density::Local},
-                    FurnaceCase{"furnace/white.toml", 0.8, 1200, 3.0f, Density::Uniform}));
+                    FurnaceCase{"furnace/white.toml", 0.8, 1200, 3.0f, Density::Uniform}),
+    [](const auto& parameter) {
+      const FurnaceCase& c = parameter.param;
+      return std::string(c.rho > 0.6 ? "White" : "Grey") + std::to_string(c.vpls) +
+             (c.density == Density::Local ? "Local" : "Uniform") + std::to_string(int(10 * c.radius));
+    });
 
 TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
   const World world("furnace/scene.toml");

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <sstream>
 
 #include "formats/atomic_file.h"
 
@@ -109,6 +110,24 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
   } catch (const std::exception& e) {
     return fail(kExitInternal, std::string("internal error: ") + e.what());
   }
+}
+
+void requireWritable(const std::vector<fs::path>& outputs) {
+  for (const fs::path& output : outputs) {
+    if (!output.empty()) AtomicFile probe(output);  // throws; leaves nothing behind
+  }
+}
+
+CLI::Validator inRange(double least, double most) {
+  std::ostringstream range;
+  range << "in [" << least << ", " << most << "]";
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0.0;
+        const bool valid = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return valid ? std::string() : "'" + text + "' is not a number from " + std::to_string(least) + " to " + std::to_string(most);
+      },
+      range.str());
 }
 
 std::string hashText(uint64_t hash) {

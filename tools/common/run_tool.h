@@ -38,6 +38,12 @@ uint64_t parseCount(const std::string& text);
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
 
+// Refuses outputs that could not be written, before the work. Empty paths are not asked for.
+void requireWritable(const std::vector<fs::path>& outputs);
+
+// Numbers from least to most. CLI::Range lets NaN through.
+CLI::Validator inRange(double least, double most);
+
 // Appends a stage's record to the chain of its input (empty for the first stage).
 //   {"tool": "vpl-place", "version": "0.1.0", "options": {...}, "inputs": {"scene": "<hash>"}}
 std::string extendProvenance(const std::string& earlier, const std::string& tool,

@@ -6,7 +6,8 @@ void addSceneOptions(CLI::App& cli, SceneOptions& options) {
   cli.add_option("scene", options.file, "the scene (.toml)")->required();
   cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
-      ->take_all();
+      ->take_all()
+      ->allow_extra_args(false);  // or it would swallow what follows
 }
 
 Scene loadSceneFor(const std::string& tool, const SceneOptions& options) {

@@ -22,19 +22,19 @@ void addOptions(CLI::App& cli, EliminateOptions& options) {
             "uniform: one radius; local: the radius follows the candidates' density");
   cli.add_option("--uniform-share", options.uniformShare,
                  "local: share of the VPLs that is spent evenly, the rest follows the candidates")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(inRange(0.0, 1.0))
       ->capture_default_str();
   cli.add_option("--area", options.area,
                  "indirectly visible area, scene units squared; 0: estimated from the candidates")
-      ->check(CLI::NonNegativeNumber)
+      ->check(inRange(0.0, 1e300))
       ->capture_default_str();
   cli.add_option("--alpha", options.alpha, "exponent of the pair weights")
-      ->check(CLI::Range(0.1, 64.0))
+      ->check(inRange(0.1, 64.0))
       ->capture_default_str();
   addChoice(cli, "--weight-limiting", options.weightLimiting, kLimitings,
             "treat all near pairs alike; auto: only with --area and uniform density");
   cli.add_option("--neighbours", options.neighbours, "k of the density estimate")
-      ->check(CLI::Range(1, 1000))
+      ->check(inRange(1, 1000))
       ->capture_default_str();
   cli.add_option("--seed", options.seed, "random seed of --method random")->capture_default_str();
 }
@@ -70,6 +70,7 @@ Json describe(const EliminateOptions& options) {
 int runEliminate(const fs::path& input, const fs::path& output, const EliminateOptions& options,
                  const ToolOptions& tool) {
   Summary summary("vpl-eliminate");
+  requireWritable({output, tool.stats, tool.depfile});
   const VplTable candidates = readVpl(input, VplStage::Candidates);
 
   const EliminateResult kept = eliminate(candidates.position, candidates.normal, options);

@@ -66,6 +66,7 @@ void report(const EnergyAccount& a, const VplTable& vpls, Summary& summary) {
 int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const fs::path& output,
                 const EstimateOptions& options, const ToolOptions& tool) {
   Summary summary("vpl-estimate");
+  requireWritable({output, tool.stats, tool.depfile});
   VplTable vpls = readVpl(input, VplStage::Eliminated);
   const Scene scene = loadSceneFor("vpl-estimate", sceneOptions);
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
@@ -102,12 +103,12 @@ int main(int argc, char** argv) {
   cli.add_option("-o,--output", output, "lit VPLs (.vpl)")->required();
   addCount(cli, "--photons", options.photons, "photons from all lights together");
   cli.add_option("--radius", options.radius, "how far a VPL reaches for photons, in units of its r_max")
-      ->check(CLI::Range(0.01f, 100.0f))
+      ->check(inRange(0.01f, 100.0f))
       ->capture_default_str();
   addChoice(cli, "--scatter", options.scatter, kScatters,
             "guarded: to VPLs on the same sheet and in sight; even: to all within reach (leaks)");
   cli.add_option("--max-bounces", options.maxBounces, "diffuse hits of a photon")
-      ->check(CLI::Range(1, 1000))
+      ->check(inRange(1, 1000))
       ->capture_default_str();
   cli.add_option("--seed", options.seed, "random seed")->capture_default_str();
   addToolOptions(cli, tool);

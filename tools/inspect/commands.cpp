@@ -1,6 +1,7 @@
 #include "tools/inspect/commands.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
@@ -80,7 +81,14 @@ int runCompare(const CompareCommand& command) {
       findLayer(command.imageA, imageA, command.layerA.empty() ? command.layer : command.layerA);
   const Layer b =
       findLayer(command.imageB, imageB, command.layerB.empty() ? command.layer : command.layerB);
-  const Comparison c = compareLayers(command.imageA, a, command.imageB, b, command.limits);
+  std::optional<Image> imageSecond;
+  std::optional<Layer> second;
+  if (!command.secondB.empty()) {
+    imageSecond = readExr(command.secondB);
+    second = findLayer(command.secondB, *imageSecond, b.name);
+  }
+  const Comparison c = compareLayers(command.imageA, a, command.imageB, b, command.limits,
+                                     second ? &*second : nullptr);
   if (!command.diff.empty()) {
     const Picture picture = differencePicture(a, b, command.diffRange);
     writePng(command.diff, picture.width, picture.height, picture.rgb8);

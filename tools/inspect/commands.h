@@ -25,7 +25,7 @@ struct PlotCommand {
   std::string size;          // WxH, empty: the scene's film
 };
 struct CompareCommand {
-  fs::path imageA, imageB, diff;
+  fs::path imageA, imageB, secondB, diff;
   std::string layer, layerA, layerB;  // layerA and layerB go first
   CompareOptions limits;
   double diffRange = 0.5;  // relative difference at the ends of the colour scale

@@ -57,17 +57,17 @@ void addMeans(const Layer& a, const Layer& b, Comparison& c) {
   }
 }
 
-void addErrors(const Layer& a, const Layer& b, Comparison& c) {
+void addErrors(const Layer& a, const Layer& b, const Layer& second, Comparison& c) {
   const size_t pixels = b.data[0]->size(), width = static_cast<size_t>(b.width);
   double squared = 0.0, relative = 0.0, worst = -1.0;
   for (size_t i = 0; i < pixels; ++i) {
     double pixelSquared = 0.0;
     for (size_t k = 0; k < b.data.size(); ++k) {
-      const double reference = double{(*b.data[k])[i]};
-      const double difference = double{(*a.data[k])[i]} - reference;
-      pixelSquared += difference * difference;
-      if (difference != 0.0)
-        relative += difference * difference / (reference * reference + c.epsilon);
+      const double value = double{(*a.data[k])[i]};
+      const double b1 = double{(*b.data[k])[i]}, b2 = double{(*second.data[k])[i]};
+      const double error = (value - b1) * (value - b2), reference = 0.5 * (b1 + b2);
+      pixelSquared += error;
+      if (error != 0.0) relative += error / (reference * reference + c.epsilon);
     }
     squared += pixelSquared;
     if (pixelSquared > worst) {
@@ -76,9 +76,9 @@ void addErrors(const Layer& a, const Layer& b, Comparison& c) {
     }
   }
   const double count = double(pixels * b.data.size());
-  c.mse = squared / count;
+  c.mse = std::max(0.0, squared / count);
   c.rmse = std::sqrt(c.mse);
-  c.relMse = relative / count;
+  c.relMse = std::max(0.0, relative / count);
 }
 
 Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -112,12 +112,19 @@ Layer findLayer(const fs::path& file, const Image& image, const std::string& nam
 }
 
 Comparison compareLayers(const fs::path& fileA, const Layer& a, const fs::path& fileB,
-                         const Layer& b, const CompareOptions& options) {
+                         const Layer& b, const CompareOptions& options, const Layer* second) {
   const auto size = [](const Layer& l) {
     return std::to_string(l.width) + " x " + std::to_string(l.height) + " pixels of " +
            std::to_string(l.data.size()) + " channels";
   };
-  if (a.width != b.width || a.height != b.height || a.data.size() != b.data.size()) {
+  const auto sameShape = [&](const Layer& l) {
+    return l.width == b.width && l.height == b.height && l.data.size() == b.data.size();
+  };
+  if (second != nullptr && !sameShape(*second)) {
+    throw InputError(fileB, size(b) + ", but its second half has " + size(*second) +
+                                "; render both from one scene.toml");
+  }
+  if (!sameShape(a)) {
     throw InputError(fileA, size(a) + ", but " + fileB.string() + " has " + size(b) +
                                 "; render both from one scene.toml");
   }
@@ -126,7 +133,7 @@ Comparison compareLayers(const fs::path& fileA, const Layer& a, const fs::path& 
   Comparison c;
   addMeans(a, b, c);
   c.epsilon = options.epsilon * c.meanB * c.meanB;
-  addErrors(a, b, c);
+  addErrors(a, b, second != nullptr ? *second : b, c);
   return c;
 }
 

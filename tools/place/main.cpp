@@ -21,6 +21,7 @@ Json describe(const PlaceOptions& o) {
 int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const PlaceOptions& options,
              const ToolOptions& tool) {
   Summary summary("vpl-place");
+  requireWritable({output, tool.stats, tool.depfile});
   if (options.count > UINT32_MAX) throw UsageError("-n is above 2^32 - 1, the largest row number");
   const Scene scene = loadSceneFor("vpl-place", sceneOptions);
   const RayScene rays(scene);
@@ -59,10 +60,10 @@ int main(int argc, char** argv) {
   addChoice(cli, "--method", options.method, kMethods,
             "camera: candidates for vpl-eliminate; light: instant radiosity, straight to vpl-render");
   cli.add_option("--depth", options.depth, "camera: diffuse vertices of a path; the first is never used")
-      ->check(CLI::Range(2, 1000))
+      ->check(inRange(2, 1000))
       ->capture_default_str();
   cli.add_option("--light-depth", options.lightDepth, "light: diffuse hits of a photon")
-      ->check(CLI::Range(1, 1000))
+      ->check(inRange(1, 1000))
       ->capture_default_str();
   cli.add_option("--seed", options.seed, "random seed")->capture_default_str();
   addToolOptions(cli, tool);

@@ -34,6 +34,7 @@ struct RenderOptions {
 
 const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl}, {"path", IntegratorKind::Path}};
 const Choices<GatherKind> kGathers{{"lightcuts", GatherKind::Lightcuts}, {"all", GatherKind::All}};
+const Choices<bool> kOnOff{{"on", true}, {"off", false}};
 const Choices<Only> kOnlys{{"all", Only::Everything}, {"direct", Only::Direct}, {"indirect", Only::Indirect}};
 const Choices<ExrPixelType> kPixels{{"half", ExrPixelType::Half}, {"float", ExrPixelType::Float}};
 const Choices<unsigned> kLayers{{"direct", kLayerDirect},         {"indirect", kLayerIndirect},
@@ -70,17 +71,21 @@ Json describe(const RenderOptions& o) {
   return json;
 }
 
+// Empty for "auto".
+std::optional<float> parseExposure(const std::string& text) {
+  if (text == "auto") return {};
+  try {
+    size_t used = 0;
+    const float ev = std::stof(text, &used);
+    if (used == text.size() && std::isfinite(ev)) return ev;
+  } catch (const std::exception&) {
+  }
+  throw UsageError("--exposure '" + text + "' is neither 'auto' nor a number of stops");
+}
+
 // Exposure in EV: as given, or so that the logarithmic mean of the luminance becomes middle grey.
 float exposureOf(const Image& image, const std::string& text) {
-  if (text != "auto") {
-    try {
-      size_t used = 0;
-      const float ev = std::stof(text, &used);
-      if (used == text.size() && std::isfinite(ev)) return ev;
-    } catch (const std::exception&) {
-    }
-    throw UsageError("--exposure '" + text + "' is neither 'auto' nor a number of stops");
-  }
+  if (const std::optional<float> given = parseExposure(text)) return *given;
   const std::vector<float>&r = *image.find("R"), &g = *image.find("G"), &b = *image.find("B");
   double logSum = 0.0;
   size_t lit = 0;
@@ -103,6 +108,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   Summary summary("vpl-render");
   const bool vpl = o.integrator == IntegratorKind::Vpl;
   o.film.layers = layerBits(o.layers);
+  parseExposure(o.exposure);
+  requireWritable({paths.output, paths.png, tool.stats, tool.depfile});
   if (vpl && paths.lit.empty()) throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path");
   if (!vpl && !paths.lit.empty()) throw UsageError("--integrator path takes no VPLs; leave " + paths.lit.string() + " out");
 
@@ -179,17 +186,17 @@ void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut
   addChoice(cli, "--integrator", o.integrator, kIntegrators, "vpl: the method; path: the reference, takes no VPLs");
   addChoice(cli, "--gather", o.gather, kGathers, "lightcuts: a cut of the light tree; all: every VPL");
   cli.add_option("--error", o.cuts.error, "lightcuts: largest error of a cluster, as a share of the total")
-      ->check(CLI::Range(0.0f, 1.0f))->capture_default_str();
+      ->check(inRange(0.0f, 1.0f))->capture_default_str();
   addCount(cli, "--max-cut", maxCut, "lightcuts: most clusters at a point");
   cli.add_option("--clamp", o.clamp, "1/d^2 grows no further inside this many r_max of a VPL")
-      ->check(CLI::Range(0.0f, 1000.0f))->capture_default_str();
-  cli.add_flag("--near-field,!--no-near-field", o.nearField,
-               "give back by sampled rays what the clamp and gaps between VPLs take away (default: on)");
+      ->check(inRange(0.0f, 1000.0f))->capture_default_str();
+  addChoice(cli, "--near-field", o.nearField, kOnOff,
+            "give back by sampled rays what the clamp and gaps between VPLs take away");
   cli.add_option("--max-bounces", o.maxBounces, "path: diffuse bounces after the first surface, as vpl-estimate's")
-      ->check(CLI::Range(0, 1000))->capture_default_str();
+      ->check(inRange(0, 1000))->capture_default_str();
   addChoice(cli, "--only", o.film.only, kOnlys, "which light the image shows");
   cli.add_option("--layers", o.layers, "extra channels: direct,indirect,albedo,N,Z,cutsize,shadowrays,clamped or all")
-      ->delimiter(',')->type_name("LIST");
+      ->delimiter(',')->type_name("LIST")->allow_extra_args(false);
   addChoice(cli, "--pixels", o.pixels, kPixels, "EXR channel type");
   cli.add_option("--exposure", o.exposure, "of the PNG, in stops (EV); auto: middle grey")->capture_default_str();
   cli.add_option("--seed", o.film.seed, "random seed")->capture_default_str();
