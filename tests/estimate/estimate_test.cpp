@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <array>
+
 #include "tests/support/pipeline.h"
 #include "tools/estimate/photon_shares.h"
 
@@ -94,6 +97,32 @@ TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
     ratio += std::sqrt(std::max(0.0, sum2[i] / kSeeds - m * m)) / m / stated[i] / 50.0;
   }
   EXPECT_NEAR(ratio, 1.0, 0.2);
+}
+
+// VPLs move along their surface to the centre of what they received, and off the rims of the walls.
+TEST(Estimate, RecentredVplsStayOnTheirSurface) {
+  const World world("furnace/scene.toml");
+  const VplTable start = placeAndEliminate(world, 6000, {.count = 300});
+  const auto nearestRim = [](Vec3 p) {  // distance to the second nearest of the cube's six planes
+    std::array<float, 3> d{};
+    for (size_t a = 0; a < 3; ++a) d[a] = std::min(p[a], 1.0f - p[a]);
+    std::sort(d.begin(), d.end());
+    return double{d[1]};
+  };
+  double before = 0.0, after = 0.0;
+  VplTable still = start, moved = start;
+  estimateFlux(still, world.rays, world.lights, {.photons = 100000, .recentre = false});
+  estimateFlux(moved, world.rays, world.lights, {.photons = 100000});
+  EXPECT_EQ(still.position, start.position);
+  for (size_t i = 0; i < start.size(); ++i) {
+    EXPECT_EQ(moved.normal[i], start.normal[i]);
+    EXPECT_NEAR(dot(moved.position[i] - start.position[i], start.normal[i]), 0.0f, 1e-5f);
+    EXPECT_LT(length(moved.position[i] - start.position[i]), 2.0f * start.radius[i]);
+    before += nearestRim(start.position[i]) / 300.0;
+    after += nearestRim(moved.position[i]) / 300.0;
+  }
+  EXPECT_GT(after, before * 1.03);
+  EXPECT_EQ(totalFlux(moved), totalFlux(still));
 }
 
 TEST(PhotonShares, FollowPowerExactlyAndLeaveNobodyOut) {

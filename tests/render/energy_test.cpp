@@ -94,6 +94,44 @@ TEST(ManyBounces, VplsAgreeWithThePathTracer) {
   }
 }
 
+// A generous clamp takes much of the light; rays give back what it takes. And where VPLs are missing
+// altogether, here on every surface that looks to the left, rays carry all.
+TEST(NearField, GivesBackWhatClampAndGapsTake) {
+  World world("cornell/scene.toml");
+  FilmStats path;
+  world.scene.film = {48, 48};
+  renderPaths(world, {.spp = 256, .only = Only::Indirect}, path);
+  VplSettings s;
+  s.vpls = 500;
+  s.clamp = 3.0f;
+  s.film = {.spp = 4, .only = Only::Indirect};
+  for (const bool gap : {false, true}) {
+    VplTable vpls = placeAndEliminate(world, 20000, {.count = 500});
+    if (gap) {
+      VplTable rest = vpls;
+      rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(), rest.radius.clear();
+      for (size_t i = 0; i < vpls.size(); ++i) {
+        if (vpls.normal[i].x < -0.5f) continue;
+        rest.position.push_back(vpls.position[i]);
+        rest.normal.push_back(vpls.normal[i]);
+        rest.albedo.push_back(vpls.albedo[i]);
+        rest.id.push_back(vpls.id[i]);
+        rest.radius.push_back(vpls.radius[i]);
+      }
+      ASSERT_LT(rest.size(), vpls.size());
+      vpls = rest;
+    }
+    estimateFlux(vpls, world.rays, world.lights, s.estimate);
+    FilmStats off, on;
+    s.nearField = false;
+    renderVpls(world, vpls, s, off);
+    s.nearField = true;
+    renderVpls(world, vpls, s, on);
+    EXPECT_LT(off.indirect, 0.93 * path.indirect);
+    EXPECT_NEAR(on.indirect / path.indirect, 1.0, 0.03) << (gap ? "with a gap" : "");
+  }
+}
+
 TEST(Leak, ADarkRoomStaysExactlyBlack) {
   for (const char* name : {"test/two-rooms.toml", "test/divider.toml"}) {
     const World world(name);

@@ -15,6 +15,8 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
+// How far above the surface a VPL travels to its new place, as a share of its reach.
+constexpr float kRecentreLift = 0.1f;
 // Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers commutes,
 // so neither threads nor the order of photons matter, and ranges computed apart can be added up.
 class FixedPoint {
@@ -41,10 +43,15 @@ void addChecked(int64_t& sum, int64_t term) {
 struct VplSum {
   std::array<int64_t, 3> flux{};
   int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
+  // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of 2^-24.
+  std::array<int64_t, 3> moment{};
   uint64_t photons = 0;
 
   void add(const VplSum& o) {
-    for (size_t c = 0; c < 3; ++c) addChecked(flux[c], o.flux[c]);
+    for (size_t c = 0; c < 3; ++c) {
+      addChecked(flux[c], o.flux[c]);
+      addChecked(moment[c], o.moment[c]);
+    }
     addChecked(squares, o.squares);
     photons += o.photons;
   }
@@ -61,7 +68,8 @@ struct Sums {  // of one thread
 class Scatterer {
  public:
   Scatterer(const VplTable& vpls, const RayScene& rays, const EstimateOptions& options, double photonPower)
-      : options_(options),
+      : vpls_(vpls),
+        options_(options),
         fixed_(photonPower),
         photonPower_(photonPower),
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
@@ -87,11 +95,13 @@ class Scatterer {
     return reach;
   }
 
-  void deposit(uint32_t vpl, Vec3 flux, Sums& sums) const {
+  void deposit(uint32_t vpl, const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
     VplSum& s = sums.vpl[vpl];
     for (size_t c = 0; c < 3; ++c) addChecked(s.flux[c], fixed_.encode(double{flux[c]}));
     const double relative = double{mean(flux)} / photonPower_;
     addChecked(s.squares, std::llround(relative * relative * 0x1p20));
+    const Vec3 offset = (hit.position - vpls_.position[vpl]) / (options_.radius * vpls_.radius[vpl]);
+    for (size_t c = 0; c < 3; ++c) addChecked(s.moment[c], std::llround(relative * double{offset[c]} * 0x1p24));
     ++s.photons;
   }
 
@@ -101,7 +111,7 @@ class Scatterer {
     coverage_.forEachReaching(hit.position, [&](uint32_t) { ++found; });
     if (found == 0) return tally(sums, kOutside, flux);
     const Vec3 share = flux * (1.0f / static_cast<float>(found));
-    coverage_.forEachReaching(hit.position, [&](uint32_t i) { deposit(i, share, sums); });
+    coverage_.forEachReaching(hit.position, [&](uint32_t i) { deposit(i, hit, share, sums); });
     tally(sums, kDeposited, flux);
   }
 
@@ -110,7 +120,7 @@ class Scatterer {
     const Coverage::Found found = coverage_.pick(hit.position, hit.ng, rng);
     sums.guardRays += found.rays;
     if (found.vpl) {
-      deposit(*found.vpl, flux, sums);
+      deposit(*found.vpl, hit, flux, sums);
       return tally(sums, kDeposited, flux);
     }
     tally(sums, found.miss == Coverage::Miss::Outside ? kOutside
@@ -118,6 +128,7 @@ class Scatterer {
                                                       : kHidden, flux);
   }
 
+  const VplTable& vpls_;
   const EstimateOptions& options_;
   FixedPoint fixed_;
   double photonPower_;
@@ -183,6 +194,28 @@ void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
   }
 }
 
+// To the centre of what was received, along the tangent plane and then down to the surface. A VPL from which
+// the new place is not in plain sight stays.
+void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, const RayScene& rays) {
+  parallelFor(vpls.size(), 256, [&](size_t i) {
+    const double weight = double{mean(vpls.flux[i])} / scatterer.photonPower();
+    if (!(weight > 0.0)) return;
+    const Vec3 position = vpls.position[i], n = vpls.normal[i];
+    const float reach = scatterer.reach() * vpls.radius[i], lift = kRecentreLift * reach;
+    Vec3 offset;
+    for (size_t c = 0; c < 3; ++c) {
+      offset[c] = static_cast<float>(double(sums.vpl[i].moment[c]) * 0x1p-24 / weight) * reach;
+    }
+    offset += n * -dot(n, offset);
+    const Vec3 above = position + offset + n * lift;
+    SurfacePoint hit;
+    if (rays.occluded(position + n * lift, above) || !rays.closestHit(above, -n, hit)) return;
+    if (hit.distance > 2.0f * lift || dot(hit.ng, n) < kMinNormalDot) return;
+    vpls.position[i] = hit.position;
+    vpls.normal[i] = hit.ng;
+  });
+}
+
 }  // namespace
 
 EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
@@ -195,6 +228,7 @@ EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet&
   const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()));
   const Sums sums = tracePhotons(vpls, rays, lights, shares, scatterer, options, progress);
   fillTable(vpls, sums, scatterer);
+  if (options.recentre) recentre(vpls, sums, scatterer, rays);
 
   const auto watts = [&](Tally t) { return scatterer.fixed().decode(sums.tally[t]); };
   EnergyAccount a;

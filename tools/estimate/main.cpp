@@ -12,6 +12,7 @@
 namespace bnvpl {
 namespace {
 
+const Choices<bool> kOnOff{{"on", true}, {"off", false}};
 const Choices<Scatter> kScatters{{"guarded", Scatter::Guarded}, {"even", Scatter::Even}};
 
 Json describe(const EstimateOptions& o) {
@@ -19,6 +20,7 @@ Json describe(const EstimateOptions& o) {
           {"radius", o.radius},
           {"scatter", nameOf(o.scatter, kScatters)},
           {"max-bounces", o.maxBounces},
+          {"recentre", o.recentre},
           {"seed", o.seed}};
 }
 
@@ -107,6 +109,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   addChoice(cli, "--scatter", options.scatter, kScatters,
             "guarded: to VPLs on the same sheet and in sight; even: to all within reach (leaks)");
+  addChoice(cli, "--recentre", options.recentre, kOnOff,
+            "move each VPL to the centre of the energy that it received");
   cli.add_option("--max-bounces", options.maxBounces, "diffuse hits of a photon")
       ->check(inRange(1, 1000))
       ->capture_default_str();

@@ -1,0 +1,75 @@
+// Place, estimate and render on one scene in one process: candidates/s, photons/s and hits/s, samples/s.
+// Sponza where SPONZA_DIR is set, else the U-shape.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+const World& world() {
+  static const World w(std::getenv("SPONZA_DIR") ? "sponza/scene.toml" : "u-shape/scene.toml");
+  return w;
+}
+
+const VplTable& lit() {
+  static const VplTable table = [] {
+    VplTable t = placeAndEliminate(world(), 60000, {.count = 3000});
+    estimateFlux(t, world().rays, world().lights, {.photons = 1000000});
+    return t;
+  }();
+  return table;
+}
+
+void placeCandidates(benchmark::State& state) {
+  PlaceOptions options;
+  options.count = 200000;
+  for (auto _ : state) benchmark::DoNotOptimize(placeFromCamera(world().rays, options).table.size());
+  state.counters["candidates/s"] = benchmark::Counter(double(options.count), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void tracePhotons(benchmark::State& state) {
+  VplTable vpls = placeAndEliminate(world(), 60000, {.count = 3000});
+  EnergyAccount account;
+  double photons = 0, hits = 0, rays = 0;
+  for (auto _ : state) {
+    VplTable copy = vpls;
+    account = estimateFlux(copy, world().rays, world().lights, {.photons = 500000});
+    photons += double(account.photons);
+    hits += double(account.hits);
+    rays += double(account.rays + account.guardRays);
+  }
+  state.counters["photons/s"] = benchmark::Counter(photons, benchmark::Counter::kIsRate);
+  state.counters["hits/s"] = benchmark::Counter(hits, benchmark::Counter::kIsRate);
+  state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
+}
+
+void renderSamples(benchmark::State& state) {
+  VplSettings s;
+  s.gather.lightcuts = state.range(0) != 0;
+  s.nearField = true;
+  s.clamp = 2.0f;
+  s.film.spp = 1;
+  World small(std::getenv("SPONZA_DIR") ? "sponza/scene.toml" : "u-shape/scene.toml");
+  small.scene.film = {64, 48};
+  FilmStats stats;
+  double samples = 0, rays = 0;
+  for (auto _ : state) {
+    renderVpls(small, lit(), s, stats);
+    samples += double(stats.samples);
+    rays += stats.shadowRays * double(stats.samples);
+  }
+  state.counters["samples/s"] = benchmark::Counter(samples, benchmark::Counter::kIsRate);
+  state.counters["shadow rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
+}
+
+BENCHMARK(placeCandidates)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(tracePhotons)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(renderSamples)->ArgName("lightcuts")->Arg(1)->Arg(0)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace bnvpl::test
+
+BENCHMARK_MAIN();
