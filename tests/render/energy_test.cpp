@@ -54,7 +54,7 @@ TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
   FilmStats loose, tight;
   s.clamp = 0.02f;
   renderVpls(world, lit, s, loose);
-  s.clamp = 2.0f;
+  s.clamp = 4.0f;
   renderVpls(world, lit, s, tight);
   EXPECT_LT(tight.indirect, 0.95 * loose.indirect);
   EXPECT_NEAR(tight.indirect + tight.clamped, loose.indirect + loose.clamped, 0.001 * loose.indirect);
@@ -102,11 +102,11 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
   world.scene.film = {48, 48};
   renderPaths(world, {.spp = 256, .only = Only::Indirect}, path);
   VplSettings s;
-  s.vpls = 500;
-  s.clamp = 3.0f;
-  s.film = {.spp = 4, .only = Only::Indirect};
+  s.clamp = 4.0f;
+  s.film = {.spp = 2, .only = Only::Indirect};
   for (const bool gap : {false, true}) {
-    VplTable vpls = placeAndEliminate(world, 20000, {.count = 500});
+    // Enough VPLs for the blur of their energy, which falls with their spacing, to be small.
+    VplTable vpls = placeAndEliminate(world, 40000, {.count = 2000});
     if (gap) {
       VplTable rest = vpls;
       rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(), rest.radius.clear();
@@ -127,7 +127,7 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
     renderVpls(world, vpls, s, off);
     s.nearField = true;
     renderVpls(world, vpls, s, on);
-    EXPECT_LT(off.indirect, 0.93 * path.indirect);
+    EXPECT_LT(off.indirect, 0.98 * path.indirect);
     EXPECT_NEAR(on.indirect / path.indirect, 1.0, 0.03) << (gap ? "with a gap" : "");
   }
 }

@@ -62,8 +62,10 @@ void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceS
     const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
     const Arrival arrival{next.pdf, vertex.hit.position};
     ChainEnd end = followChain(rays_, lights_, from, next.wi, arrival, rng);
-    out.extended += throughput * end.metLater;
-    out.indirect += throughput * end.metLater;
+    // Light met first is the other half of the MIS at the vertices that this loop has lit.
+    const Vec3 met = end.metLater + (links > 0 ? end.metFirst : Vec3{});
+    out.extended += throughput * met;
+    out.indirect += throughput * met;
     if (!end.rough) return;
     const float missing = end.links > 0 ? 1.0f
                           : nearField_  ? nearField_->missingShare(end.hit, end.hit.distance, rng)
@@ -71,7 +73,7 @@ void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceS
     if (rng.next() >= missing) return;  // roulette: followed with that probability at full weight
     throughput *= end.throughput;
     const Bsdf found(rays_.scene(), end.hit);
-    Vec3 light = throughput * directLight(rays_, lights_, found, LobeGroup::Rough, rng);
+    Vec3 light = throughput * directLightMis(rays_, lights_, found, LobeGroup::Rough, rng);
     light += gatherAt(found, out, throughput);
     out.extended += light;
     out.indirect += light;
