@@ -14,7 +14,7 @@ mkdir -p "$out"
 
 # A copy of a scene.toml with another film, beside the original so that file names stay valid.
 film() { # scene.toml width height
-  local copy="${1%.toml}.film-$2x$3.toml"
+  local copy="${1%.toml}.film-$2x$3.toml" # ignored by git
   sed -E "s/^width = .*/width = $2/; s/^height = .*/height = $3/" "$1" > "$copy"
   echo "$copy"
 }

@@ -16,7 +16,7 @@ struct Outcome {
 
 Outcome run(const std::string& arguments) {
   Outcome result;
-  FILE* pipe = ::popen((std::string(BNVPL_INSPECT) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = ::popen(("'" BNVPL_INSPECT "' " + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return result;
   char buffer[4096];
   for (size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)

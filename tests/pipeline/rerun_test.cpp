@@ -16,7 +16,7 @@ class Rerun : public PipelineTest {
     const Outcome r =
         shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
               " OUT=" + path("out") +
-              " BIN='" BNVPL_BIN "' CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=1 " + more);
+              " BIN=" BNVPL_BIN_FROM_SOURCE " CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=1 " + more);
     EXPECT_EQ(r.code, 0) << r.out << r.err;
     return stagesIn(r.out, "/vpl-", " ");
   }
@@ -26,7 +26,7 @@ class Rerun : public PipelineTest {
   void generate(const std::string& photons) const {
     const Outcome r = shell(
         "pipelines/generate_ninja.py " + path("veach-door/scene.toml") + " --out " + path("n") +
-        " --bin '" BNVPL_BIN "' --candidates 2k --vpls 200 --spp 1 --photons " + photons);
+        " --bin " BNVPL_BIN_FROM_SOURCE " --candidates 2k --vpls 200 --spp 1 --photons " + photons);
     ASSERT_EQ(r.code, 0) << r.err;
   }
   std::string built() const {
@@ -90,7 +90,7 @@ TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
   const std::string image = readAll(at("out/image.exr"));
   const Outcome r =
       shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
-            " OUT=" + path("out") + " BIN='" BNVPL_BIN "' CANDIDATES=2k VPLS=3k PHOTONS=20k SPP=1");
+            " OUT=" + path("out") + " BIN=" BNVPL_BIN_FROM_SOURCE " CANDIDATES=2k VPLS=3k PHOTONS=20k SPP=1");
   EXPECT_NE(r.code, 0);
   EXPECT_TRUE(contains(r.err, "vpl-eliminate: ")) << r.err;
   EXPECT_EQ(readAll(at("out/image.exr")), image);
