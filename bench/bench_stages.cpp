@@ -1,5 +1,5 @@
-// Place, estimate and render on one scene in one process: candidates/s, photons/s and hits/s, samples/s.
-// Sponza where SPONZA_DIR is set, else the U-shape.
+// Place, estimate and render on one scene in one process: candidates/s, photons/s and hits/s,
+// samples/s. Sponza where SPONZA_DIR is set, else the U-shape.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -26,8 +26,10 @@ const VplTable& lit() {
 void placeCandidates(benchmark::State& state) {
   PlaceOptions options;
   options.count = 200000;
-  for (auto _ : state) benchmark::DoNotOptimize(placeFromCamera(world().rays, options).table.size());
-  state.counters["candidates/s"] = benchmark::Counter(double(options.count), benchmark::Counter::kIsIterationInvariantRate);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(placeFromCamera(world().rays, options).table.size());
+  state.counters["candidates/s"] =
+      benchmark::Counter(double(options.count), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void tracePhotons(benchmark::State& state) {
@@ -67,7 +69,12 @@ void renderSamples(benchmark::State& state) {
 
 BENCHMARK(placeCandidates)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(tracePhotons)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(renderSamples)->ArgName("lightcuts")->Arg(1)->Arg(0)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(renderSamples)
+    ->ArgName("lightcuts")
+    ->Arg(1)
+    ->Arg(0)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace bnvpl::test

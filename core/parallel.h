@@ -1,4 +1,5 @@
-// Deterministic parallel loops over oneTBB: body(i) writes slot i only, sums are taken in a fixed order.
+// Deterministic parallel loops over oneTBB: body(i) writes slot i only, sums are taken in a fixed
+// order.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -9,7 +10,8 @@
 
 namespace bnvpl {
 
-// Calls body(begin, end) for disjoint ranges that cover [0, count), at least `grain` long but the last.
+// Calls body(begin, end) for disjoint ranges that cover [0, count), at least `grain` long but the
+// last.
 template <typename Body>
 void parallelRanges(size_t count, size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
@@ -23,8 +25,8 @@ void parallelFor(size_t count, size_t grain, const Body& body) {
   });
 }
 
-// Sum of term(i) over [0, count): one partial sum for each fixed chunk, added in chunk order, so the
-// result does not depend on the number of threads.
+// Sum of term(i) over [0, count): one partial sum for each fixed chunk, added in chunk order, so
+// the result does not depend on the number of threads.
 template <typename Term>
 double parallelSum(size_t count, const Term& term) {
   constexpr size_t kChunk = 4096;

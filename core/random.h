@@ -1,5 +1,6 @@
 // Counter-based random numbers: the value depends on (key, index, dimension), never on who asks,
-// when, or on which thread. Philox-like quality is not needed; SplitMix64's finaliser passes BigCrush.
+// when, or on which thread. Philox-like quality is not needed; SplitMix64's finaliser passes
+// BigCrush.
 #pragma once
 
 #include <cstdint>

@@ -41,8 +41,12 @@ constexpr Vec3 cross(Vec3 a, Vec3 b) {
 constexpr float lengthSquared(Vec3 a) { return dot(a, a); }
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
 inline Vec3 normalize(Vec3 a) { return a / length(a); }
-inline Vec3 min(Vec3 a, Vec3 b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-inline Vec3 max(Vec3 a, Vec3 b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+inline Vec3 min(Vec3 a, Vec3 b) {
+  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+inline Vec3 max(Vec3 a, Vec3 b) {
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
 inline float maxComponent(Vec3 a) { return std::max(a.x, std::max(a.y, a.z)); }
 constexpr float mean(Vec3 rgb) { return (rgb.x + rgb.y + rgb.z) * (1.0f / 3.0f); }
 // Relative luminance of linear sRGB (Rec. 709 primaries).

@@ -28,7 +28,8 @@ struct VplTable {
   double areaEstimate = 0.0;  // indirectly visible area, world units squared
 
   // since Lit
-  double reach = 0.0;  // how far each VPL received photons, in units of its radius; 0: placed from lights
+  double reach =
+      0.0;  // how far each VPL received photons, in units of its radius; 0: placed from lights
   std::vector<Vec3> flux;         // W leaving this VPL's share of the surface, linear sRGB
   std::vector<uint64_t> photons;  // deposits received
   std::vector<float>

@@ -10,8 +10,8 @@ namespace {
 
 bool isSharp(const Material& m) { return m.exponent > kSharpExponent; }
 
-// Unpolarised Fresnel reflectance of a smooth dielectric; cosI >= 0, eta = n_transmitted / n_incident.
-// Sets the cosine of the refracted direction; 1 under total internal reflection.
+// Unpolarised Fresnel reflectance of a smooth dielectric; cosI >= 0, eta = n_transmitted /
+// n_incident. Sets the cosine of the refracted direction; 1 under total internal reflection.
 float fresnel(float cosI, float eta, float& cosT) {
   const float sin2T = (1.0f - cosI * cosI) / (eta * eta);
   if (sin2T >= 1.0f) return 1.0f;
@@ -41,8 +41,9 @@ Bsdf::Bsdf(const Scene& scene, const SurfacePoint& point) : point_(point) {
     return;
   }
   const bool hasUv = point.u == point.u;
-  diffuse_ = m.diffuseMap != kNone && hasUv ? m.diffuse * scene.textures[m.diffuseMap].lookup(point.u, point.v)
-                                            : m.diffuse;
+  diffuse_ = m.diffuseMap != kNone && hasUv
+                 ? m.diffuse * scene.textures[m.diffuseMap].lookup(point.u, point.v)
+                 : m.diffuse;
   glossy_ = m.glossy;
   if (m.glossyMap != kNone && hasUv) {
     const Vec3 k = scene.textures[m.glossyMap].lookup(point.u, point.v);
@@ -78,14 +79,16 @@ Vec3 Bsdf::diffuseBound() const { return diffuse_ * (1.0f / kPi); }
 // Modified Phong (Lafortune & Willems 1994): reciprocal, and never reflects more than Ks.
 Vec3 Bsdf::glossyBound(float cosAlpha) const {
   if (cosAlpha <= 0.0f) return {};
-  return glossy_ * ((exponent_ + 2.0f) / (2.0f * kPi) * std::pow(std::min(cosAlpha, 1.0f), exponent_));
+  return glossy_ *
+         ((exponent_ + 2.0f) / (2.0f * kPi) * std::pow(std::min(cosAlpha, 1.0f), exponent_));
 }
 
 Vec3 Bsdf::eval(LobeGroup group, Vec3 wi) const {
   const float cosine = dot(point_.ns, wi);
   if (glass_ || dot(point_.ng, wi) <= 0.0f || cosine <= 0.0f) return {};
   Vec3 value = group == LobeGroup::Rough ? diffuseBound() : Vec3{};
-  if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_)) value += glossyBound(dot(glossyAxis(), wi));
+  if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_))
+    value += glossyBound(dot(glossyAxis(), wi));
   return value * cosine;
 }
 
@@ -94,7 +97,8 @@ float Bsdf::pdf(LobeGroup group, Vec3 wi) const {
   const float glossyPdf = pdfPowerCosine(dot(glossyAxis(), wi), exponent_);
   if (group == LobeGroup::Chain) return sharp_ ? glossyPdf : 0.0f;
   const float diffusePdf = pdfCosineHemisphere(dot(point_.ns, wi));
-  return diffuseShare_ >= 1.0f ? diffusePdf : diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
+  return diffuseShare_ >= 1.0f ? diffusePdf
+                               : diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
 }
 
 bool Bsdf::sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const {
@@ -114,7 +118,8 @@ bool Bsdf::sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const {
   }
   out.wi = normalize(n * (cosI / eta - cosT) - point_.wo * (1.0f / eta));
   // Radiance is squeezed by refraction, flux is not (Veach 1997, section 5.2).
-  out.weight = transport == Transport::Radiance ? transmission_ * (1.0f / (eta * eta)) : transmission_;
+  out.weight =
+      transport == Transport::Radiance ? transmission_ * (1.0f / (eta * eta)) : transmission_;
   out.side = -point_.ng;
   return dot(out.wi, point_.ng) < 0.0f;
 }
@@ -152,7 +157,8 @@ bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& ou
                 : diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
   if (!(out.pdf > 0.0f)) return false;
   Vec3 value = group == LobeGroup::Rough ? diffuseBound() : Vec3{};
-  if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_)) value += glossyBound(dot(lobeAxis, out.wi));
+  if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_))
+    value += glossyBound(dot(lobeAxis, out.wi));
   const float cosine = photons ? cosGeometric * shading : std::max(0.0f, cosShading);
   out.weight = value * (cosine / out.pdf);
   return !isBlack(out.weight);

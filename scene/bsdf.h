@@ -1,8 +1,10 @@
-// Reflection and transmission at a surface point, split into two groups of lobes with one meaning for
-// every stage:
-//   rough  diffuse, and Phong lobes with an exponent up to kSharpExponent. VPLs stand for the light that
+// Reflection and transmission at a surface point, split into two groups of lobes with one meaning
+// for every stage:
+//   rough  diffuse, and Phong lobes with an exponent up to kSharpExponent. VPLs stand for the light
+//   that
 //          leaves through these; photons deposit here; VPLs light these.
-//   chain  sharper Phong lobes, mirrors and glass. Paths pass through: a VPL cannot carry such light.
+//   chain  sharper Phong lobes, mirrors and glass. Paths pass through: a VPL cannot carry such
+//   light.
 // A path takes one group at a vertex, at random.
 #pragma once
 
@@ -21,10 +23,10 @@ enum class LobeGroup { Rough, Chain };
 enum class Transport { Radiance, Photons };
 
 struct BsdfSample {
-  Vec3 wi;       // unit, away from the surface
-  Vec3 weight;   // value * cosine / density
-  float pdf;     // of wi in 1/sr, given the group; 0 for a perfect mirror or glass
-  Vec3 side;     // normal of the side that the path leaves by
+  Vec3 wi;      // unit, away from the surface
+  Vec3 weight;  // value * cosine / density
+  float pdf;    // of wi in 1/sr, given the group; 0 for a perfect mirror or glass
+  Vec3 side;    // normal of the side that the path leaves by
 };
 
 class Bsdf {
@@ -36,15 +38,18 @@ class Bsdf {
   bool hasRough() const { return !isBlack(roughAlbedo()); }
   // Probability with which a path should take the chain group; 0 or 1 where there is but one.
   float chainProbability() const { return chainProbability_; }
-  bool chainIsDelta() const { return !sharp_; }  // a mirror or glass: light sampling cannot reach it
+  bool chainIsDelta() const {
+    return !sharp_;
+  }  // a mirror or glass: light sampling cannot reach it
   // Survival probability for Russian roulette: the largest channel of everything that leaves.
   float reflectance() const;
 
-  // BSDF value times |cos(ns, wi)|, in 1/sr, of one group for radiance transport; 0 for delta lobes.
+  // BSDF value times |cos(ns, wi)|, in 1/sr, of one group for radiance transport; 0 for delta
+  // lobes.
   Vec3 eval(LobeGroup group, Vec3 wi) const;
   float pdf(LobeGroup group, Vec3 wi) const;
-  // Upper bound of eval(Rough, wi) over directions whose cosine with ns is at most maxCosNs and whose
-  // cosine with any axis a is at most maxCosine(a).
+  // Upper bound of eval(Rough, wi) over directions whose cosine with ns is at most maxCosNs and
+  // whose cosine with any axis a is at most maxCosine(a).
   template <typename MaxCosine>
   Vec3 roughUpperBound(float maxCosNs, const MaxCosine& maxCosine) const {
     Vec3 bound = diffuseBound();
@@ -54,8 +59,8 @@ class Bsdf {
   // Draws a direction. False: absorbed.
   bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
 
-  // A photon's flux is measured against the geometric normal, shading against the shading normal: factor
-  // |ns.wo| / |ng.wo| of the flux that arrives from wo (Veach 1997, eq. 5.19).
+  // A photon's flux is measured against the geometric normal, shading against the shading normal:
+  // factor |ns.wo| / |ng.wo| of the flux that arrives from wo (Veach 1997, eq. 5.19).
   float photonShadingFactor() const;
 
   const SurfacePoint& point() const { return point_; }

@@ -15,8 +15,8 @@ inline Vec3 cameraDirection(const Camera& camera, const Film& film, float x, flo
                    camera.up * ((1.0f - 2.0f * y) * tanHalf));
 }
 
-// Film position of a point in the same coordinates and its distance along the viewing axis, which is not
-// positive behind the camera.
+// Film position of a point in the same coordinates and its distance along the viewing axis, which
+// is not positive behind the camera.
 struct FilmPoint {
   float x, y, depth;
 };

@@ -1,5 +1,5 @@
-// Which VPL speaks for a point of the scene. One definition for vpl-estimate, which hands a photon's energy
-// to such a VPL, and vpl-render, which must know what no VPL stands for.
+// Which VPL speaks for a point of the scene. One definition for vpl-estimate, which hands a
+// photon's energy to such a VPL, and vpl-render, which must know what no VPL stands for.
 #pragma once
 
 #include <algorithm>
@@ -28,16 +28,21 @@ class Coverage {
   // `reach`: how far each VPL reaches, world units. Borrows the columns and the scene.
   Coverage(std::span<const Vec3> position, std::span<const Vec3> normal, std::vector<float> reach,
            const RayScene& rays)
-      : position_(position), normal_(normal), reach_(std::move(reach)), rays_(rays), grid_(position, reach_) {}
+      : position_(position),
+        normal_(normal),
+        reach_(std::move(reach)),
+        rays_(rays),
+        grid_(position, reach_) {}
 
-  // One of the VPLs that reach the point, lie on its sheet of surface and are in sight, each with the same
-  // probability: they are tried in random order, which takes about one ray.
+  // One of the VPLs that reach the point, lie on its sheet of surface and are in sight, each with
+  // the same probability: they are tried in random order, which takes about one ray.
   Found pick(Vec3 at, Vec3 normal, Rng& rng) const {
     std::array<uint32_t, kMaxEligible> eligible;
     size_t left = 0, reaching = 0;
     grid_.forEachReaching(at, [&](uint32_t i, float) {
       ++reaching;
-      if (left < kMaxEligible && sameSheet(at, normal, position_[i], normal_[i], kPlaneFactor * reach_[i])) {
+      if (left < kMaxEligible &&
+          sameSheet(at, normal, position_[i], normal_[i], kPlaneFactor * reach_[i])) {
         eligible[left++] = i;
       }
     });
@@ -62,10 +67,11 @@ class Coverage {
   }
 
  private:
-  // More VPLs than this around one point: the first ones found. At the default reach there are about four.
+  // More VPLs than this around one point: the first ones found. At the default reach there are
+  // about four.
   static constexpr size_t kMaxEligible = 256;
-  // Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of a curved
-  // surface do not hide it from itself (measured: docs/theory.md, "Guards").
+  // Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of
+  // a curved surface do not hide it from itself (measured: docs/theory.md, "Guards").
   static constexpr float kLift = 0.1f;
 
   bool inSight(Vec3 at, Vec3 normal, uint32_t i) const {

@@ -37,7 +37,9 @@ std::vector<float> makeCdf(const std::vector<double>& weights) {
   return cdf;
 }
 
-float cdfShare(const std::vector<float>& cdf, size_t i) { return cdf[i] - (i > 0 ? cdf[i - 1] : 0.0f); }
+float cdfShare(const std::vector<float>& cdf, size_t i) {
+  return cdf[i] - (i > 0 ? cdf[i - 1] : 0.0f);
+}
 
 float spotFalloff(const LightSpec& s, float cosAngle) {
   const float angle = std::acos(std::clamp(cosAngle, -1.0f, 1.0f));
@@ -48,8 +50,8 @@ float spotFalloff(const LightSpec& s, float cosAngle) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. The image
-// is turned as rotate_deg turns a mesh: by the right-hand rule.
+// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. The
+// image is turned as rotate_deg turns a mesh: by the right-hand rule.
 Vec3 directionOf(const LightSpec& s, float u, float v) {
   const float phi = 2.0f * kPi * (u - 0.5f) - s.rotateRad, theta = kPi * v;
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
@@ -135,7 +137,8 @@ void LightSet::addSpecLights() {
         constexpr int kSteps = 256;
         for (int i = 0; i < kSteps; ++i) {
           const double angle = (i + 0.5) / kSteps * double{s.coneRad};
-          integral += double{spotFalloff(s, float(std::cos(angle)))} * std::sin(angle) * double{s.coneRad} / kSteps;
+          integral += double{spotFalloff(s, float(std::cos(angle)))} * std::sin(angle) *
+                      double{s.coneRad} / kSteps;
         }
         l.power = s.emission * (2.0f * kPi * static_cast<float>(integral));
         break;
@@ -145,27 +148,34 @@ void LightSet::addSpecLights() {
         break;
       case LightType::Environment: {
         if (s.image == kNone) {
-          const Vec3 e = scene_.bounds.extent();  // mean silhouette of a box: a quarter of its surface
-          l.power = s.emission * (s.scale * 4.0f * kPi * 0.5f * (e.x * e.y + e.y * e.z + e.z * e.x));
+          const Vec3 e =
+              scene_.bounds.extent();  // mean silhouette of a box: a quarter of its surface
+          l.power =
+              s.emission * (s.scale * 4.0f * kPi * 0.5f * (e.x * e.y + e.y * e.z + e.z * e.x));
           break;
         }
         const EnvironmentImage& image = scene_.environments[s.image];
         std::vector<double> weights(image.radiance.size());
         for (uint32_t y = 0; y < image.height; ++y) {
-          const float top = kPi * float(y) / float(image.height), bottom = kPi * float(y + 1) / float(image.height);
-          const float solidAngle = 2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom));
+          const float top = kPi * float(y) / float(image.height),
+                      bottom = kPi * float(y + 1) / float(image.height);
+          const float solidAngle =
+              2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom));
           for (uint32_t x = 0; x < image.width; ++x) {
             const size_t i = size_t{y} * image.width + x;
             weights[i] = double{mean(image.radiance[i])} * double{solidAngle};
-            const Vec3 d = directionOf(s, (float(x) + 0.5f) / float(image.width), (float(y) + 0.5f) / float(image.height));
-            l.power += image.radiance[i] * (s.scale * solidAngle * silhouetteArea(scene_.bounds, d));
+            const Vec3 d = directionOf(s, (float(x) + 0.5f) / float(image.width),
+                                       (float(y) + 0.5f) / float(image.height));
+            l.power +=
+                image.radiance[i] * (s.scale * solidAngle * silhouetteArea(scene_.bounds, d));
           }
         }
         l.cdf = makeCdf(weights);
         break;
       }
     }
-    if (s.type == LightType::Environment || (s.type == LightType::Directional && s.angularRadiusRad > 0.0f)) {
+    if (s.type == LightType::Environment ||
+        (s.type == LightType::Directional && s.angularRadiusRad > 0.0f)) {
       hittableAtInfinity_.push_back(static_cast<uint32_t>(lights_.size()));
     }
     lights_.push_back(std::move(l));
@@ -220,7 +230,8 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectS
 }
 
 // A direction towards a light at infinity.
-Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const {
+Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radiance,
+                               float& pdf) const {
   const LightSpec& s = light.spec;
   if (s.type == LightType::Directional) {
     if (s.angularRadiusRad == 0.0f) {
@@ -239,9 +250,12 @@ Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radia
   }
   const EnvironmentImage& image = scene_.environments[s.image];
   const size_t texel = sampleCdf(light.cdf, u);
-  const auto x = static_cast<float>(texel % image.width), y = static_cast<float>(texel / image.width);
-  // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar angle.
-  const float top = std::cos(kPi * y / float(image.height)), bottom = std::cos(kPi * (y + 1) / float(image.height));
+  const auto x = static_cast<float>(texel % image.width),
+             y = static_cast<float>(texel / image.width);
+  // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar
+  // angle.
+  const float top = std::cos(kPi * y / float(image.height)),
+              bottom = std::cos(kPi * (y + 1) / float(image.height));
   const float row = std::acos(std::clamp(top + v * (bottom - top), -1.0f, 1.0f)) / kPi;
   const float solidAngle = 2.0f * kPi / float(image.width) * (top - bottom);
   pdf = cdfShare(light.cdf, texel) / solidAngle;
@@ -264,9 +278,12 @@ Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) cons
   const EnvironmentImage& image = scene_.environments[s.image];
   float u, v;
   texelOf(s, direction, u, v);
-  const auto x = static_cast<size_t>(u * float(image.width)), y = static_cast<size_t>(v * float(image.height));
-  const float top = kPi * float(y) / float(image.height), bottom = kPi * float(y + 1) / float(image.height);
-  pdf = cdfShare(light.cdf, y * image.width + x) / (2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom)));
+  const auto x = static_cast<size_t>(u * float(image.width)),
+             y = static_cast<size_t>(v * float(image.height));
+  const float top = kPi * float(y) / float(image.height),
+              bottom = kPi * float(y + 1) / float(image.height);
+  pdf = cdfShare(light.cdf, y * image.width + x) /
+        (2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom)));
   return image.lookup(u, v) * s.scale;
 }
 
@@ -279,7 +296,8 @@ bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSampl
     const float d2 = lengthSquared(d);
     if (!(d2 > 0.0f)) return false;
     out.wi = d / std::sqrt(d2);
-    const float falloff = s.type == LightType::Spot ? spotFalloff(s, -dot(out.wi, s.direction)) : 1.0f;
+    const float falloff =
+        s.type == LightType::Spot ? spotFalloff(s, -dot(out.wi, s.direction)) : 1.0f;
     out.radianceOverPdf = s.emission * (falloff / d2);
     out.pdf = 0.0f;
     out.infinite = false;
@@ -301,18 +319,20 @@ Vec3 LightSet::emitted(const SurfacePoint& hit, size_t& light) const {
 
 float LightSet::pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const {
   const float cosine = dot(hit.ng, hit.wo);
-  return cosine > 0.0f ? lengthSquared(hit.position - from) / (cosine * lights_[light].areaTotal) : 0.0f;
+  return cosine > 0.0f ? lengthSquared(hit.position - from) / (cosine * lights_[light].areaTotal)
+                       : 0.0f;
 }
 
-// Photons from infinity start on the faces of the scene's box that look towards the light, uniformly in
-// projected area: no photon is spent on empty space beside a long scene.
+// Photons from infinity start on the faces of the scene's box that look towards the light,
+// uniformly in projected area: no photon is spent on empty space beside a long scene.
 PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
   const float u = rng.next(), v = rng.next();
   Vec3 radiance;
   float pdf = 0.0f;
   const Vec3 towards = sampleDirection(light, u, v, radiance, pdf);
   const Vec3 d = -towards, e = scene_.bounds.extent();
-  const float face[3] = {std::fabs(d.x) * e.y * e.z, std::fabs(d.y) * e.x * e.z, std::fabs(d.z) * e.x * e.y};
+  const float face[3] = {std::fabs(d.x) * e.y * e.z, std::fabs(d.y) * e.x * e.z,
+                         std::fabs(d.z) * e.x * e.y};
   const float total = face[0] + face[1] + face[2];
   const float pick = rng.next() * total;
   const size_t axis = pick < face[0] ? 0 : pick < face[0] + face[1] ? 1 : 2;
@@ -320,7 +340,8 @@ PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
   p[axis] = d[axis] > 0.0f ? scene_.bounds.lower[axis] : scene_.bounds.upper[axis];
   PhotonStart start;
   start.direction = d;
-  // Back along the ray by a little of the scene's size, so that a surface in the face itself is met.
+  // Back along the ray by a little of the scene's size, so that a surface in the face itself is
+  // met.
   start.origin = p - d * (0x1p-10f * scene_.bounds.diagonal());
   start.flux = radiance * (pdf > 0.0f ? total / pdf : total);
   return start;

@@ -1,5 +1,5 @@
-// All lights of a scene behind one set of questions: emissive triangles (one light for each emissive
-// material), and the lights of scene.toml. Power in W, linear sRGB.
+// All lights of a scene behind one set of questions: emissive triangles (one light for each
+// emissive material), and the lights of scene.toml. Power in W, linear sRGB.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace bnvpl {
 // A light seen from a point: a direction and what arrives from it, ready for a shadow ray.
 struct DirectSample {
   Vec3 wi;                // unit, towards the light
-  Vec3 radianceOverPdf;   // radiance / density; for point-like lights the irradiance on a facing surface
+  Vec3 radianceOverPdf;   // radiance / density; for point-like lights the irradiance on a facing
+                          // surface
   float pdf = 0.0f;       // of wi in 1/sr, given the light; 0 for lights that no ray can hit
   bool infinite = false;  // the shadow ray never ends
   Vec3 target;            // else it ends here, lifted off the emitter
@@ -59,11 +60,11 @@ class LightSet {
 
  private:
   struct Light {
-    LightSpec spec;                    // of scene.toml
-    bool area = false;                 // else a light of emissive triangles:
+    LightSpec spec;     // of scene.toml
+    bool area = false;  // else a light of emissive triangles:
     uint32_t material = kNone;
     std::vector<uint32_t> triangles;
-    std::vector<float> cdf;            // over area, or over texels of an environment image
+    std::vector<float> cdf;  // over area, or over texels of an environment image
     float areaTotal = 0.0f;
     bool twoSided = false;
     Vec3 power;

@@ -30,7 +30,8 @@ class LibraryReader : public tinyobj::MaterialReader {
       : folder_(std::move(folder)), override_(std::move(override)) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* byName, std::string* warn, std::string* err) override {
+                  std::map<std::string, int>* byName, std::string* warn,
+                  std::string* err) override {
     if (!override_.empty() && !files.empty()) return true;
     std::string path = name;
     std::replace(path.begin(), path.end(), '\\', '/');
@@ -66,7 +67,8 @@ Vec3 Affine::point(Vec3 p) const {
 }
 
 Vec3 Affine::normal(Vec3 n) const {
-  const Vec3 r0{m[0][0], m[0][1], m[0][2]}, r1{m[1][0], m[1][1], m[1][2]}, r2{m[2][0], m[2][1], m[2][2]};
+  const Vec3 r0{m[0][0], m[0][1], m[0][2]}, r1{m[1][0], m[1][1], m[1][2]},
+      r2{m[2][0], m[2][1], m[2][2]};
   // The cofactor matrix is the inverse transpose but for the determinant, whose sign matters.
   const Vec3 q{dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n)};
   const float len = length(q);
@@ -74,7 +76,8 @@ Vec3 Affine::normal(Vec3 n) const {
 }
 
 float Affine::determinant() const {
-  const Vec3 r0{m[0][0], m[0][1], m[0][2]}, r1{m[1][0], m[1][1], m[1][2]}, r2{m[2][0], m[2][1], m[2][2]};
+  const Vec3 r0{m[0][0], m[0][1], m[0][2]}, r1{m[1][0], m[1][1], m[1][2]},
+      r2{m[2][0], m[2][1], m[2][2]};
   return dot(r0, cross(r1, r2));
 }
 
@@ -166,11 +169,14 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, co
   if (limit > 1.0f && !hasMap) {
     warn(where + "Kd + Ks exceeds 1; both are scaled down so that energy is conserved");
   }
-  if (const auto it = in.unknown_parameter.find("emission_sides"); it != in.unknown_parameter.end()) {
+  if (const auto it = in.unknown_parameter.find("emission_sides");
+      it != in.unknown_parameter.end()) {
     m.twoSidedEmission = firstLine(it->second) == "2";
-    if (!m.twoSidedEmission && firstLine(it->second) != "1") warn(where + "emission_sides must be 1 or 2; 1 is used");
+    if (!m.twoSidedEmission && firstLine(it->second) != "1")
+      warn(where + "emission_sides must be 1 or 2; 1 is used");
   }
-  const auto map = [&](const std::string& name, const tinyobj::texture_option_t& o, bool srgb, bool mask) {
+  const auto map = [&](const std::string& name, const tinyobj::texture_option_t& o, bool srgb,
+                       bool mask) {
     return texture(folder, obj.parent_path(), name, srgb, mask, o.scale, o.origin_offset);
   };
   if (!m.glass) {
@@ -179,12 +185,9 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, co
     m.opacityMap = map(in.alpha_texname, in.alpha_texopt, false, true);
   }
   const std::pair<const std::string&, const char*> ignored[] = {
-      {in.bump_texname, "map_Bump (height map)"},
-      {in.normal_texname, "norm (normal map)"},
-      {in.displacement_texname, "disp"},
-      {in.emissive_texname, "map_Ke"},
-      {in.specular_highlight_texname, "map_Ns"},
-      {in.reflection_texname, "refl"}};
+      {in.bump_texname, "map_Bump (height map)"}, {in.normal_texname, "norm (normal map)"},
+      {in.displacement_texname, "disp"},          {in.emissive_texname, "map_Ke"},
+      {in.specular_highlight_texname, "map_Ns"},  {in.reflection_texname, "refl"}};
   for (const auto& [name, field] : ignored) {
     if (!name.empty()) warn(where + field + " is ignored");
   }
@@ -207,12 +210,14 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
   const auto base = std::array{scene_.positions.size(), scene_.normals.size(), scene_.uvs.size()};
   const auto& a = parsed.attrib;
   const size_t counts[3] = {a.vertices.size() / 3, a.normals.size() / 3, a.texcoords.size() / 2};
-  for (size_t i = 0; i < counts[0]; ++i) scene_.positions.push_back(transform.point(toVec3(&a.vertices[3 * i])));
+  for (size_t i = 0; i < counts[0]; ++i)
+    scene_.positions.push_back(transform.point(toVec3(&a.vertices[3 * i])));
   for (size_t i = 0; i < counts[1]; ++i) {
     const Vec3 n = toVec3(&a.normals[3 * i]);
     scene_.normals.push_back(lengthSquared(n) > 0 && isFinite(n) ? transform.normal(n) : Vec3{});
   }
-  for (size_t i = 0; i < counts[2]; ++i) scene_.uvs.push_back({a.texcoords[2 * i], a.texcoords[2 * i + 1]});
+  for (size_t i = 0; i < counts[2]; ++i)
+    scene_.uvs.push_back({a.texcoords[2 * i], a.texcoords[2 * i + 1]});
 
   const bool mirrored = transform.determinant() < 0.0f;
   size_t degenerate = 0, damaged = 0;
@@ -223,7 +228,8 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
   uint32_t fallback = kNone;
   for (const tinyobj::shape_t& shape : parsed.shapes) {
     const auto& mesh = shape.mesh;
-    for (size_t f = 0; f + 1 <= mesh.num_face_vertices.size() && 3 * f + 2 < mesh.indices.size(); ++f) {
+    for (size_t f = 0; f + 1 <= mesh.num_face_vertices.size() && 3 * f + 2 < mesh.indices.size();
+         ++f) {
       Triangle t;
       for (size_t k = 0; k < 3; ++k) {
         const tinyobj::index_t& i = mesh.indices[3 * f + (mirrored ? 2 - k : k)];
@@ -255,16 +261,20 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
         t.material = fallback;
       }
       const Material& m = scene_.materials[t.material];
-      if (t.uv[0] == kNone && (m.diffuseMap != kNone || m.glossyMap != kNone || m.opacityMap != kNone)) {
-        warn(obj.string() + ": material '" + m.name + "' has a texture but faces without texture coordinates; "
+      if (t.uv[0] == kNone &&
+          (m.diffuseMap != kNone || m.glossyMap != kNone || m.opacityMap != kNone)) {
+        warn(obj.string() + ": material '" + m.name +
+             "' has a texture but faces without texture coordinates; "
              "the plain material colour is used there");
       }
       scene_.triangles.push_back(t);
     }
   }
-  if (degenerate > 0) warn(obj.string() + ": " + std::to_string(degenerate) + " triangles without area are left out");
+  if (degenerate > 0)
+    warn(obj.string() + ": " + std::to_string(degenerate) + " triangles without area are left out");
   if (damaged > 0) {
-    warn(obj.string() + ": " + std::to_string(damaged) + " triangles with missing or non-finite vertices are left out");
+    warn(obj.string() + ": " + std::to_string(damaged) +
+         " triangles with missing or non-finite vertices are left out");
   }
 }
 
@@ -286,8 +296,9 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   std::vector<tinyobj::material_t> source;
   std::string warnings, errors;
   LibraryReader reader(obj.parent_path(), materials);
-  const bool ok = tinyobj::LoadObj(&parsed.attrib, &parsed.shapes, &source, &warnings, &errors, &in, &reader,
-                                   /*triangulate=*/true, /*default_vcols_fallback=*/false);
+  const bool ok =
+      tinyobj::LoadObj(&parsed.attrib, &parsed.shapes, &source, &warnings, &errors, &in, &reader,
+                       /*triangulate=*/true, /*default_vcols_fallback=*/false);
   if (!ok || !errors.empty()) {
     throw InputError(obj, "cannot read the mesh: " + firstLine(errors.empty() ? warnings : errors));
   }
@@ -311,9 +322,8 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
 }
 
 void ObjLoader::finish() {
-  std::stable_partition(scene_.triangles.begin(), scene_.triangles.end(), [&](const Triangle& t) {
-    return !scene_.materials[t.material].masked();
-  });
+  std::stable_partition(scene_.triangles.begin(), scene_.triangles.end(),
+                        [&](const Triangle& t) { return !scene_.materials[t.material].masked(); });
   const auto firstMasked =
       std::find_if(scene_.triangles.begin(), scene_.triangles.end(),
                    [&](const Triangle& t) { return scene_.materials[t.material].masked(); });

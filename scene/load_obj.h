@@ -26,7 +26,8 @@ class ObjLoader {
   explicit ObjLoader(Scene& scene) : scene_(scene) {}
 
   // Adds one OBJ. `materials` replaces the libraries that the OBJ names; empty: those are used.
-  // Throws InputError when a file cannot be read at all; what can be repaired goes to scene.warnings.
+  // Throws InputError when a file cannot be read at all; what can be repaired goes to
+  // scene.warnings.
   void load(const fs::path& obj, const fs::path& materials, const Affine& transform);
 
   // After the last OBJ: puts opaque triangles first, computes bounds, pads the vertex buffer.
@@ -35,9 +36,10 @@ class ObjLoader {
  private:
   struct Parsed;
   void warn(const std::string& text);
-  uint32_t texture(const fs::path& folder, const fs::path& otherFolder, std::string name, bool srgb, bool mask,
-                   const float* scale, const float* offset);
-  // `source` is a tinyobj material; textures are looked for beside its library, then beside the OBJ.
+  uint32_t texture(const fs::path& folder, const fs::path& otherFolder, std::string name, bool srgb,
+                   bool mask, const float* scale, const float* offset);
+  // `source` is a tinyobj material; textures are looked for beside its library, then beside the
+  // OBJ.
   uint32_t addMaterial(const fs::path& library, const fs::path& obj, const void* source);
   uint32_t fallbackMaterial(const fs::path& obj);
   void addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform);

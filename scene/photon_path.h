@@ -12,16 +12,17 @@ inline constexpr unsigned kMaxChain = 64;  // specular scatterings between two r
 // Where a photon's flux went, W.
 struct PhotonFate {
   Vec3 escaped;
-  Vec3 absorbed;   // by surfaces, and at the end of the longest path
+  Vec3 absorbed;  // by surfaces, and at the end of the longest path
   uint32_t hits = 0, rays = 0;
 };
 
 // Follows a photon through the scene. At each hit with rough lobes, visit(bsdf, flux) gets the flux
-// that arrives (before albedo), shading normals accounted for; at most maxBounces times, counting the
-// rough scatterings so far plus this one. Russian roulette by reflectance keeps the flux about level.
+// that arrives (before albedo), shading normals accounted for; at most maxBounces times, counting
+// the rough scatterings so far plus this one. Russian roulette by reflectance keeps the flux about
+// level.
 template <typename Visit>
-PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces, Rng& rng,
-                       const Visit& visit) {
+PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces,
+                       Rng& rng, const Visit& visit) {
   PhotonFate fate;
   Vec3 origin = start.origin, direction = start.direction, flux = start.flux;
   unsigned rough = 0, chain = 0;
@@ -37,7 +38,8 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
       ++fate.hits;
       visit(bsdf, flux * bsdf.photonShadingFactor());
     }
-    // What does not travel on counts as absorbed, roulette included: escaped + absorbed = emitted exactly.
+    // What does not travel on counts as absorbed, roulette included: escaped + absorbed = emitted
+    // exactly.
     fate.absorbed += flux;
     const float survive = bsdf.reflectance();
     if (rng.next() >= survive) return fate;
@@ -46,8 +48,8 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
     const float probability = takeChain ? chainProbability : 1.0f - chainProbability;
     BsdfSample next;
     const bool last = takeChain ? ++chain > kMaxChain : ++rough >= maxBounces;
-    if (last || !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Photons, rng,
-                             next)) {
+    if (last || !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Photons,
+                             rng, next)) {
       return fate;
     }
     flux *= next.weight * (1.0f / (probability * survive));

@@ -18,7 +18,8 @@ namespace {
 float opacityAt(const Scene& scene, uint32_t triangle, float b1, float b2) {
   const Triangle& t = scene.triangles[triangle];
   const Material& m = scene.materials[t.material];
-  if (m.opacityMap == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone) return m.opacity;
+  if (m.opacityMap == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
+    return m.opacity;
   const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
   const float b0 = 1.0f - b1 - b2;
   return m.opacity * scene.textures[m.opacityMap].lookupAlpha(b0 * a[0] + b1 * b[0] + b2 * c[0],
@@ -30,8 +31,8 @@ void rejectCutAway(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const uint32_t triangle = scene.maskedBegin + RTCHitN_primID(args->hit, args->N, i);
-    const float opacity =
-        opacityAt(scene, triangle, RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
+    const float opacity = opacityAt(scene, triangle, RTCHitN_u(args->hit, args->N, i),
+                                    RTCHitN_v(args->hit, args->N, i));
     if (opacity < 0.5f) args->valid[i] = 0;
   }
 }
@@ -63,12 +64,13 @@ struct RayScene::Impl {
 
   void attach(const Scene& s, uint32_t begin, uint32_t end, unsigned id) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.positions.data(), 0,
-                               sizeof(Vec3), s.positions.size() - 1);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.triangles.data() + begin, 0,
-                               sizeof(Triangle), end - begin);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               s.positions.data(), 0, sizeof(Vec3), s.positions.size() - 1);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               s.triangles.data() + begin, 0, sizeof(Triangle), end - begin);
     if (id == 1) {
-      rtcSetGeometryUserData(geometry, const_cast<Scene*>(&s));  // Embree's API is not const-correct
+      rtcSetGeometryUserData(geometry,
+                             const_cast<Scene*>(&s));  // Embree's API is not const-correct
       rtcSetGeometryIntersectFilterFunction(geometry, rejectCutAway);
       rtcSetGeometryOccludedFilterFunction(geometry, rejectCutAway);
     }
@@ -95,7 +97,9 @@ RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<I
   if (!impl_->device) throw std::runtime_error("Embree cannot start on this machine");
   rtcSetDeviceErrorFunction(
       impl_->device,
-      [](void* user, RTCError, const char* text) { static_cast<Impl*>(user)->error = text ? text : "unknown"; },
+      [](void* user, RTCError, const char* text) {
+        static_cast<Impl*>(user)->error = text ? text : "unknown";
+      },
       impl_.get());
   impl_->scene = rtcNewScene(impl_->device);
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles

@@ -10,14 +10,14 @@ namespace bnvpl {
 // Where a ray met the scene, described from the side that the ray came from.
 struct SurfacePoint {
   Vec3 position;
-  Vec3 wo;              // unit, back along the ray
-  Vec3 ng;              // geometric normal, unit, dot(ng, wo) >= 0
-  Vec3 ns;              // shading normal, unit, in the hemisphere of ng
-  float u = 0, v = 0;   // texture coordinates; NaN where the mesh has none
-  float distance = 0;   // along the ray
+  Vec3 wo;             // unit, back along the ray
+  Vec3 ng;             // geometric normal, unit, dot(ng, wo) >= 0
+  Vec3 ns;             // shading normal, unit, in the hemisphere of ng
+  float u = 0, v = 0;  // texture coordinates; NaN where the mesh has none
+  float distance = 0;  // along the ray
   uint32_t triangle = kNone;
   uint32_t material = kNone;
-  bool front = true;    // wo lies on the side of the triangle's winding
+  bool front = true;  // wo lies on the side of the triangle's winding
 };
 
 // Owns the acceleration structure; the Scene must outlive it. Queries are thread-safe.
@@ -29,16 +29,17 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // Nearest surface along the ray from `origin` (lifted off its own surface by the caller) in the unit
-  // direction. False: the ray leaves the scene.
+  // Nearest surface along the ray from `origin` (lifted off its own surface by the caller) in the
+  // unit direction. False: the ray leaves the scene.
   bool closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const;
 
   // Whether anything lies strictly between two points, both lifted by the caller.
   bool occluded(Vec3 from, Vec3 to) const;
   bool occludedToInfinity(Vec3 from, Vec3 direction) const;
 
-  // A point moved off its surface towards `side` (unit, a normal of the side to leave by), far enough
-  // that rounding cannot put it behind: scales with the scene and with the distance from the origin.
+  // A point moved off its surface towards `side` (unit, a normal of the side to leave by), far
+  // enough that rounding cannot put it behind: scales with the scene and with the distance from the
+  // origin.
   Vec3 lifted(Vec3 p, Vec3 side) const {
     const float reach = std::max(std::fabs(p.x), std::max(std::fabs(p.y), std::fabs(p.z)));
     return p + side * (reach * 0x1p-18f + liftBase_);

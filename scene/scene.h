@@ -56,15 +56,15 @@ enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 // A light of scene.toml. Emissive triangles are lights too; LightSet gathers both.
 struct LightSpec {
   LightType type = LightType::Point;
-  Vec3 position;                 // point, spot
-  Vec3 direction{0, 0, -1};      // spot, directional: the way the light travels
-  Vec3 emission;                 // intensity W/sr; irradiance W/m2 (directional); radiance (environment)
-  float coneRad = 0.0f;          // spot: half angle outside which it is dark
-  float falloffRad = 0.0f;       // spot: width of the soft rim inside the cone
-  float angularRadiusRad = 0.0f; // directional: half the angular diameter
-  uint32_t image = kNone;        // environment: into Scene::environments
-  float rotateRad = 0.0f;        // environment: about +y
-  float scale = 1.0f;            // environment
+  Vec3 position;             // point, spot
+  Vec3 direction{0, 0, -1};  // spot, directional: the way the light travels
+  Vec3 emission;            // intensity W/sr; irradiance W/m2 (directional); radiance (environment)
+  float coneRad = 0.0f;     // spot: half angle outside which it is dark
+  float falloffRad = 0.0f;  // spot: width of the soft rim inside the cone
+  float angularRadiusRad = 0.0f;  // directional: half the angular diameter
+  uint32_t image = kNone;         // environment: into Scene::environments
+  float rotateRad = 0.0f;         // environment: about +y
+  float scale = 1.0f;             // environment
 };
 
 struct Scene {
@@ -83,17 +83,20 @@ struct Scene {
   std::vector<LightSpec> lights;
   std::vector<EnvironmentImage> environments;
 
-  uint64_t contentHash = 0;           // of geometry, materials, textures and lights; not of the camera
-  std::vector<fs::path> files;        // everything that was read, for depfiles
+  uint64_t contentHash = 0;     // of geometry, materials, textures and lights; not of the camera
+  std::vector<fs::path> files;  // everything that was read, for depfiles
   std::vector<std::string> warnings;  // each names what was ignored or repaired
 
-  Vec3 corner(uint32_t triangle, size_t i) const { return positions[triangles[triangle].position[i]]; }
+  Vec3 corner(uint32_t triangle, size_t i) const {
+    return positions[triangles[triangle].position[i]];
+  }
 };
 
 // Values for ${NAME} in file names of a scene.toml; environment variables are asked second.
 using Defines = std::map<std::string, std::string>;
 
-// Reads scene.toml and everything that it names. Throws InputError with file, line, problem and cure.
+// Reads scene.toml and everything that it names. Throws InputError with file, line, problem and
+// cure.
 Scene loadScene(const fs::path& path, const Defines& defines = {});
 
 }  // namespace bnvpl

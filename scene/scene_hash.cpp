@@ -56,7 +56,8 @@ uint64_t hashScene(const Scene& scene) {
   for (const LightSpec& l : scene.lights) {
     h.value(static_cast<uint32_t>(l.type));
     for (const Vec3 v : {l.position, l.direction, l.emission}) h.value(v);
-    for (const float f : {l.coneRad, l.falloffRad, l.angularRadiusRad, l.rotateRad, l.scale}) h.value(f);
+    for (const float f : {l.coneRad, l.falloffRad, l.angularRadiusRad, l.rotateRad, l.scale})
+      h.value(f);
     h.value(l.image);
   }
   h.value(uint64_t{scene.environments.size()});

@@ -43,8 +43,8 @@ class Section {
   }
 
   [[noreturn]] void fail(const toml::node& node, const std::string& problem) const {
-    throw InputError(file_.string() + ":" + std::to_string(node.source().begin.line) + ": " + name_ +
-                     ": " + problem);
+    throw InputError(file_.string() + ":" + std::to_string(node.source().begin.line) + ": " +
+                     name_ + ": " + problem);
   }
   [[noreturn]] void fail(const std::string& problem) const { fail(table_, problem); }
   bool has(const char* key) const { return table_.contains(key); }
@@ -82,7 +82,8 @@ class Section {
   }
   Vec3 color(const char* key) const {  // W-like: three numbers that are not negative
     const Vec3 c = vector(key);
-    if (c.x < 0 || c.y < 0 || c.z < 0) fail(node(key), std::string("'") + key + "' must not be negative");
+    if (c.x < 0 || c.y < 0 || c.z < 0)
+      fail(node(key), std::string("'") + key + "' must not be negative");
     return c;
   }
   Vec3 direction(const char* key) const {
@@ -152,12 +153,14 @@ Camera readCamera(const Section& s) {
     c.forward = s.direction("forward");
   } else {
     const Vec3 d = s.vector("look_at") - c.position;
-    if (!(length(d) > 0.0f)) s.fail(s.node("look_at"), "'look_at' equals 'position'; move one of them");
+    if (!(length(d) > 0.0f))
+      s.fail(s.node("look_at"), "'look_at' equals 'position'; move one of them");
     c.forward = normalize(d);
   }
   const Vec3 up = s.has("up") ? s.direction("up") : Vec3{0, 1, 0};
   const Vec3 right = cross(c.forward, up);
-  if (length(right) < 1e-6f) s.fail("'up' is parallel to the viewing direction; choose another 'up'");
+  if (length(right) < 1e-6f)
+    s.fail("'up' is parallel to the viewing direction; choose another 'up'");
   c.right = normalize(right);
   c.up = cross(c.right, c.forward);
   c.verticalFovRad = s.number("vertical_fov_deg", 1e-3f, 179.9f) * kRadPerDeg;
@@ -172,11 +175,14 @@ Affine readTransform(const Section& s) {
     Affine a;
     for (size_t i = 0; i < 4; ++i) {
       const toml::array* row = rows && rows->size() == 4 ? rows->get(i)->as_array() : nullptr;
-      if (!row || row->size() != 4) s.fail(s.node("transform"), "'transform' must be four rows of four numbers");
+      if (!row || row->size() != 4)
+        s.fail(s.node("transform"), "'transform' must be four rows of four numbers");
       for (size_t j = 0; j < 4; ++j) {
         const float v = s.numberOf(*row->get(j), "transform", -1e30f, 1e30f);
-        if (i < 3) a.m[i][j] = v;
-        else if (v != (j == 3 ? 1.0f : 0.0f)) s.fail(*row, "the last row of 'transform' must be 0, 0, 0, 1");
+        if (i < 3)
+          a.m[i][j] = v;
+        else if (v != (j == 3 ? 1.0f : 0.0f))
+          s.fail(*row, "the last row of 'transform' must be 0, 0, 0, 1");
       }
     }
     return a;
@@ -194,10 +200,12 @@ LightSpec readLight(const fs::path& file, const Section& s, const Defines& defin
   LightSpec light;
   const std::string type = s.text("type");
   const auto only = [&](std::set<std::string> allowed) {  // a key of another type would be ignored
-    for (const char* key : {"position", "direction", "intensity", "irradiance", "radiance", "image",
-                            "cone_deg", "falloff_deg", "angular_diameter_deg", "rotate_deg", "scale"}) {
+    for (const char* key :
+         {"position", "direction", "intensity", "irradiance", "radiance", "image", "cone_deg",
+          "falloff_deg", "angular_diameter_deg", "rotate_deg", "scale"}) {
       if (s.has(key) && !allowed.contains(key)) {
-        s.fail(s.node(key), "'" + std::string(key) + "' has no meaning for a " + type + " light; remove it");
+        s.fail(s.node(key),
+               "'" + std::string(key) + "' has no meaning for a " + type + " light; remove it");
       }
     }
   };
@@ -212,14 +220,16 @@ LightSpec readLight(const fs::path& file, const Section& s, const Defines& defin
       light.direction = s.direction("direction");
       light.coneRad = s.number("cone_deg", 0.01f, 180.0f) * kRadPerDeg;
       light.falloffRad = s.number("falloff_deg", 0.0f, 180.0f, 0.0f) * kRadPerDeg;
-      if (light.falloffRad > light.coneRad) s.fail(s.node("falloff_deg"), "'falloff_deg' exceeds 'cone_deg'");
+      if (light.falloffRad > light.coneRad)
+        s.fail(s.node("falloff_deg"), "'falloff_deg' exceeds 'cone_deg'");
     }
   } else if (type == "directional") {
     only({"direction", "irradiance", "angular_diameter_deg"});
     light.type = LightType::Directional;
     light.direction = s.direction("direction");
     light.emission = s.color("irradiance");
-    light.angularRadiusRad = 0.5f * s.number("angular_diameter_deg", 0.0f, 170.0f, 0.0f) * kRadPerDeg;
+    light.angularRadiusRad =
+        0.5f * s.number("angular_diameter_deg", 0.0f, 170.0f, 0.0f) * kRadPerDeg;
   } else if (type == "environment") {
     only({"radiance", "image", "rotate_deg", "scale"});
     light.type = LightType::Environment;
@@ -235,13 +245,15 @@ LightSpec readLight(const fs::path& file, const Section& s, const Defines& defin
       scene.files.push_back(image);
     }
   } else {
-    s.fail(s.node("type"), "unknown type '" + type + "'; use point, spot, directional or environment");
+    s.fail(s.node("type"),
+           "unknown type '" + type + "'; use point, spot, directional or environment");
   }
   return light;
 }
 
 // The tables of an array of tables such as [[mesh]].
-std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root, const char* key) {
+std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
+                                         const char* key) {
   std::vector<const toml::table*> tables;
   const toml::node* node = root.get(key);
   if (!node) return tables;
@@ -283,7 +295,8 @@ Scene loadScene(const fs::path& path, const Defines& defines) {
   scene.files.push_back(path);
   const Section film(path, "[film]", tableOf(path, root, "film"), {"width", "height"});
   scene.film = {film.integer("width", 1, kMaxFilmSide), film.integer("height", 1, kMaxFilmSide)};
-  if (uint64_t{scene.film.width} * scene.film.height > kMaxFilmPixels) film.fail("has more than 2^31 pixels");
+  if (uint64_t{scene.film.width} * scene.film.height > kMaxFilmPixels)
+    film.fail("has more than 2^31 pixels");
   scene.camera = readCamera(Section(path, "[camera]", tableOf(path, root, "camera"),
                                     {"position", "look_at", "forward", "up", "vertical_fov_deg"}));
 
@@ -297,9 +310,10 @@ Scene loadScene(const fs::path& path, const Defines& defines) {
   }
   loader.finish();
   for (const toml::table* t : tablesOf(path, root, "light")) {
-    const Section s(path, "[[light]]", *t,
-                    {"type", "position", "direction", "intensity", "irradiance", "radiance", "image",
-                     "cone_deg", "falloff_deg", "angular_diameter_deg", "rotate_deg", "scale"});
+    const Section s(
+        path, "[[light]]", *t,
+        {"type", "position", "direction", "intensity", "irradiance", "radiance", "image",
+         "cone_deg", "falloff_deg", "angular_diameter_deg", "rotate_deg", "scale"});
     scene.lights.push_back(readLight(path, s, defines, scene));
   }
   if (scene.triangles.empty()) {

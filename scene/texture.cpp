@@ -79,7 +79,8 @@ float Texture::lookupAlpha(float u, float v) const {
   if (!finite(u, v)) return 1.0f;
   const Bilinear b = bilinear(*this, u, v);
   float sum = 0.0f;
-  for (int k = 0; k < 4; ++k) sum += b.weight[k] * float(rgba[4 * b.texel[k] + 3]) * (1.0f / 255.0f);
+  for (int k = 0; k < 4; ++k)
+    sum += b.weight[k] * float(rgba[4 * b.texel[k] + 3]) * (1.0f / 255.0f);
   return sum;
 }
 
@@ -107,7 +108,8 @@ Texture loadTexture(const fs::path& file, bool srgb, bool mask) {
     for (size_t i = 3; i < t.rgba.size(); i += 4) varies |= t.rgba[i] != 255;
     if (!varies) {
       for (size_t i = 0; i < t.rgba.size(); i += 4) {
-        t.rgba[i + 3] = static_cast<uint8_t>((54 * t.rgba[i] + 183 * t.rgba[i + 1] + 19 * t.rgba[i + 2]) >> 8);
+        t.rgba[i + 3] =
+            static_cast<uint8_t>((54 * t.rgba[i] + 183 * t.rgba[i + 1] + 19 * t.rgba[i + 2]) >> 8);
       }
     }
   }
@@ -139,7 +141,8 @@ EnvironmentImage loadEnvironment(const fs::path& file) {
     // stb decodes 8-bit images with a plain power; we want the sRGB curve.
     if (stbi_is_hdr(file.c_str())) {
       float* pixels = stbi_loadf(file.c_str(), &w, &h, &channels, 3);
-      if (!pixels) throw InputError(file, std::string("cannot read the image: ") + stbi_failure_reason());
+      if (!pixels)
+        throw InputError(file, std::string("cannot read the image: ") + stbi_failure_reason());
       const auto* rgb = reinterpret_cast<const Vec3*>(pixels);
       e.radiance.assign(rgb, rgb + size_t(w) * size_t(h));
       stbi_image_free(pixels);

@@ -13,18 +13,18 @@ namespace bnvpl {
 // 8-bit texture, repeated in both directions, v = 0 at the bottom row as in OBJ.
 struct Texture {
   uint32_t width = 0, height = 0;
-  bool srgb = true;             // decode to linear on lookup; false for masks and other plain data
-  std::vector<uint8_t> rgba;    // row-major from the top
+  bool srgb = true;           // decode to linear on lookup; false for masks and other plain data
+  std::vector<uint8_t> rgba;  // row-major from the top
   std::array<float, 2> scale{1, 1}, offset{0, 0};  // of the texture coordinates (MTL -s, -o)
 
-  Vec3 lookup(float u, float v) const;  // bilinear, linear sRGB
+  Vec3 lookup(float u, float v) const;        // bilinear, linear sRGB
   float lookupAlpha(float u, float v) const;  // bilinear; of the mask channel: see loadTexture
 };
 
 // Latitude-longitude radiance map; u = 0.5 looks along -z, v = 0 (top row) is +y.
 struct EnvironmentImage {
   uint32_t width = 0, height = 0;
-  std::vector<Vec3> radiance;  // row-major from the top
+  std::vector<Vec3> radiance;           // row-major from the top
   Vec3 lookup(float u, float v) const;  // nearest texel, so that sampling by texel is exact
 };
 

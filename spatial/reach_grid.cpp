@@ -11,8 +11,9 @@ namespace bnvpl {
 
 namespace {
 
-// A cell's three coordinates, mixed. Two cells of one key would share a list: harmless, since every entry's
-// distance is tested, but an entry must then not be listed twice; so keys are exact: 21 bits an axis.
+// A cell's three coordinates, mixed. Two cells of one key would share a list: harmless, since every
+// entry's distance is tested, but an entry must then not be listed twice; so keys are exact: 21
+// bits an axis.
 constexpr int64_t kAxisBits = 21;
 constexpr int64_t kAxisMask = (int64_t{1} << kAxisBits) - 1;
 
@@ -22,7 +23,9 @@ int64_t cellOf(float offset, float cellSize) {
 }
 
 uint64_t packCell(int64_t x, int64_t y, int64_t z) {
-  const auto bits = [](int64_t v) { return static_cast<uint64_t>((v + (int64_t{1} << (kAxisBits - 1))) & kAxisMask); };
+  const auto bits = [](int64_t v) {
+    return static_cast<uint64_t>((v + (int64_t{1} << (kAxisBits - 1))) & kAxisMask);
+  };
   return mix64(bits(x) | bits(y) << kAxisBits | bits(z) << (2 * kAxisBits));
 }
 
@@ -53,11 +56,13 @@ ReachGrid::ReachGrid(std::span<const Vec3> points, std::span<const float> radii)
 void ReachGrid::buildLevel(Level& level, const std::vector<uint32_t>& members) {
   std::vector<std::pair<uint64_t, uint32_t>> listed;  // cell, disk
   for (const uint32_t i : members) {
-    const Vec3 low = points_[i] - origin_ - Vec3{radii_[i]}, high = points_[i] - origin_ + Vec3{radii_[i]};
+    const Vec3 low = points_[i] - origin_ - Vec3{radii_[i]},
+               high = points_[i] - origin_ + Vec3{radii_[i]};
     const float c = level.cellSize;
     for (int64_t z = cellOf(low.z, c); z <= cellOf(high.z, c); ++z) {
       for (int64_t y = cellOf(low.y, c); y <= cellOf(high.y, c); ++y) {
-        for (int64_t x = cellOf(low.x, c); x <= cellOf(high.x, c); ++x) listed.emplace_back(packCell(x, y, z), i);
+        for (int64_t x = cellOf(low.x, c); x <= cellOf(high.x, c); ++x)
+          listed.emplace_back(packCell(x, y, z), i);
       }
     }
   }
@@ -72,7 +77,8 @@ void ReachGrid::buildLevel(Level& level, const std::vector<uint32_t>& members) {
     }
     uint64_t slot = listed[begin].first & level.mask;
     while (level.slots[slot].begin != level.slots[slot].end) slot = (slot + 1) & level.mask;
-    level.slots[slot] = {listed[begin].first, static_cast<uint32_t>(begin), static_cast<uint32_t>(end)};
+    level.slots[slot] = {listed[begin].first, static_cast<uint32_t>(begin),
+                         static_cast<uint32_t>(end)};
     begin = end;
   }
 }

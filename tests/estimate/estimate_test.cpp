@@ -29,8 +29,8 @@ TEST(Estimate, EnergyAccountCloses) {
   EXPECT_GT(a.deposited, 0.0);
 }
 
-// In a closed box every hit lies in the region: nothing may be lost, and with albedo 0.5 and an area
-// light on every wall the reflected flux is the emitted times 0.5 / (1 - 0.5).
+// In a closed box every hit lies in the region: nothing may be lost, and with albedo 0.5 and an
+// area light on every wall the reflected flux is the emitted times 0.5 / (1 - 0.5).
 TEST(Estimate, ClosedBoxLosesNothing) {
   const World world("furnace/scene.toml");
   for (const Density density : {Density::Uniform, Density::Local}) {

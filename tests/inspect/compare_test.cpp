@@ -153,7 +153,8 @@ TEST(Compare, ASecondHalfTakesTheNoiseOut) {
   }
   for (ImageChannel& channel : b.channels) channel.data = {5.0f, 3.0f};
   for (ImageChannel& channel : second.channels) channel.data = {5.0f, 5.0f};
-  const Layer la = findLayer("a", a, ""), lb = findLayer("b", b, ""), ls = findLayer("s", second, "");
+  const Layer la = findLayer("a", a, ""), lb = findLayer("b", b, ""),
+              ls = findLayer("s", second, "");
   EXPECT_DOUBLE_EQ(compareLayers("a", la, "b", lb, {}).rmse, 1.0);
   // (4-5)(4-5) = 1 and (4-3)(4-5) = -1.
   EXPECT_DOUBLE_EQ(compareLayers("a", la, "b", lb, {}, &ls).rmse, 0.0);

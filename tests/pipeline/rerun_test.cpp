@@ -88,9 +88,9 @@ TEST_F(Rerun, MakeFollowsEveryFileOfTheScene) {
 TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
   EXPECT_EQ(made(), all_);
   const std::string image = readAll(at("out/image.exr"));
-  const Outcome r =
-      shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
-            " OUT=" + path("out") + " BIN=" BNVPL_BIN_FROM_SOURCE " CANDIDATES=2k VPLS=3k PHOTONS=20k SPP=1");
+  const Outcome r = shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
+                          " OUT=" + path("out") +
+                          " BIN=" BNVPL_BIN_FROM_SOURCE " CANDIDATES=2k VPLS=3k PHOTONS=20k SPP=1");
   EXPECT_NE(r.code, 0);
   EXPECT_TRUE(contains(r.err, "vpl-eliminate: ")) << r.err;
   EXPECT_EQ(readAll(at("out/image.exr")), image);

@@ -25,7 +25,8 @@ TEST(Place, GivesExactlyTheCountInPathOrder) {
   }
 }
 
-// Each candidate lies on a surface and faces free space: a ray down onto its lit side comes back to it.
+// Each candidate lies on a surface and faces free space: a ray down onto its lit side comes back to
+// it.
 TEST(Place, CandidatesLieOnSurfacesAndFaceTheSideTheyWereSeenFrom) {
   const World world("u-shape/scene.toml");
   const VplTable t = placeFromCamera(world.rays, options(2000)).table;
@@ -38,10 +39,11 @@ TEST(Place, CandidatesLieOnSurfacesAndFaceTheSideTheyWereSeenFrom) {
   }
 }
 
-// The plane fills the lower half of the view; paths from it reach the sky alone. Were anything placed at
-// the first diffuse vertex, the count would be reached at once.
+// The plane fills the lower half of the view; paths from it reach the sky alone. Were anything
+// placed at the first diffuse vertex, the count would be reached at once.
 TEST(Place, NothingIsPlacedAtTheFirstDiffuseVertex) {
-  const World world("test/two-patches.toml");  // receiver seen alone; the emitter above reflects nothing
+  const World world(
+      "test/two-patches.toml");  // receiver seen alone; the emitter above reflects nothing
   try {
     placeFromCamera(world.rays, options(100));
     FAIL() << "the view cannot yield candidates";

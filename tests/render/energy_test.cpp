@@ -6,8 +6,8 @@
 namespace bnvpl::test {
 namespace {
 
-// Every wall shines with radiance 1 and reflects rho: direct light is 1 + rho, and what VPLs carry is
-// rho^2 / (1 - rho), for any number of VPLs, radius and density.
+// Every wall shines with radiance 1 and reflects rho: direct light is 1 + rho, and what VPLs carry
+// is rho^2 / (1 - rho), for any number of VPLs, radius and density.
 struct FurnaceCase {
   const char* scene;
   double rho;
@@ -43,7 +43,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& parameter) {
       const FurnaceCase& c = parameter.param;
       return std::string(c.rho > 0.6 ? "White" : "Grey") + std::to_string(c.vpls) +
-             (c.density == Density::Local ? "Local" : "Uniform") + std::to_string(int(10 * c.radius));
+             (c.density == Density::Local ? "Local" : "Uniform") +
+             std::to_string(int(10 * c.radius));
     });
 
 TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
@@ -57,10 +58,12 @@ TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
   s.clamp = 4.0f;
   renderVpls(world, lit, s, tight);
   EXPECT_LT(tight.indirect, 0.95 * loose.indirect);
-  EXPECT_NEAR(tight.indirect + tight.clamped, loose.indirect + loose.clamped, 0.001 * loose.indirect);
+  EXPECT_NEAR(tight.indirect + tight.clamped, loose.indirect + loose.clamped,
+              0.001 * loose.indirect);
 }
 
-// A wall that alone sees the lamp and a floor that sees the wall: one bounce, known from the path tracer.
+// A wall that alone sees the lamp and a floor that sees the wall: one bounce, known from the path
+// tracer.
 TEST(OneBounce, VplsAgreeWithThePathTracer) {
   const World world("test/one-bounce.toml");
   VplSettings s;
@@ -94,8 +97,8 @@ TEST(ManyBounces, VplsAgreeWithThePathTracer) {
   }
 }
 
-// A generous clamp takes much of the light; rays give back what it takes. And where VPLs are missing
-// altogether, here on every surface that looks to the left, rays carry all.
+// A generous clamp takes much of the light; rays give back what it takes. And where VPLs are
+// missing altogether, here on every surface that looks to the left, rays carry all.
 TEST(NearField, GivesBackWhatClampAndGapsTake) {
   World world("cornell/scene.toml");
   FilmStats path;
@@ -109,7 +112,8 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
     VplTable vpls = placeAndEliminate(world, 40000, {.count = 2000});
     if (gap) {
       VplTable rest = vpls;
-      rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(), rest.radius.clear();
+      rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(),
+          rest.radius.clear();
       for (size_t i = 0; i < vpls.size(); ++i) {
         if (vpls.normal[i].x < -0.5f) continue;
         rest.position.push_back(vpls.position[i]);

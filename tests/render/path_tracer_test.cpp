@@ -19,8 +19,8 @@ TEST(PathTracer, TruncatedFurnaceIsThePartialSeries) {
   EXPECT_NEAR(meanOf(image), 1.0 + 0.5 + 0.25, 0.01);  // emitted, direct, one bounce
 }
 
-// Radiance of a diffuse patch under a parallel emitting one, by the form factor of two aligned parallel
-// squares (Howell's catalogue, C-11): W = side / distance = 0.2 gives F = 0.012404.
+// Radiance of a diffuse patch under a parallel emitting one, by the form factor of two aligned
+// parallel squares (Howell's catalogue, C-11): W = side / distance = 0.2 gives F = 0.012404.
 TEST(PathTracer, TwoPatchFormFactor) {
   const World world("test/two-patches.toml");
   const Material* receiver = nullptr;

@@ -20,7 +20,8 @@ struct World {
   LightSet lights;
 };
 
-inline VplTable placeAndEliminate(const World& world, uint64_t candidates, const EliminateOptions& options) {
+inline VplTable placeAndEliminate(const World& world, uint64_t candidates,
+                                  const EliminateOptions& options) {
   PlaceOptions place;
   place.count = candidates;
   const VplTable all = placeFromCamera(world.rays, place).table;
@@ -54,20 +55,24 @@ inline VplTable lightUp(const World& world, const VplSettings& s) {
   return vpls;
 }
 
-inline Image renderVpls(const World& world, const VplTable& lit, const VplSettings& s, FilmStats& stats) {
+inline Image renderVpls(const World& world, const VplTable& lit, const VplSettings& s,
+                        FilmStats& stats) {
   const VplLights vpls = makeVplLights(lit, world.rays, s.clamp);
   const Gatherer gatherer(world.rays, vpls, s.gather, s.film.seed);
   const NearField nearField(lit, world.rays, s.clamp);
-  const VplIntegrator integrator(world.rays, world.lights, gatherer, s.nearField ? &nearField : nullptr,
-                                 s.film.only);
+  const VplIntegrator integrator(world.rays, world.lights, gatherer,
+                                 s.nearField ? &nearField : nullptr, s.film.only);
   return renderFilm(
-      world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, s.film, stats);
+      world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, s.film,
+      stats);
 }
 
-inline Image renderPaths(const World& world, const FilmOptions& film, FilmStats& stats, unsigned maxBounces = 32) {
+inline Image renderPaths(const World& world, const FilmOptions& film, FilmStats& stats,
+                         unsigned maxBounces = 32) {
   const PathTracer integrator(world.rays, world.lights, maxBounces, film.only);
   return renderFilm(
-      world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, film, stats);
+      world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, film,
+      stats);
 }
 
 // Mean over pixels and channels of a layer ("" for R, G, B).

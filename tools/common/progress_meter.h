@@ -1,5 +1,5 @@
-// Progress with an estimate of the time that is left: one rewritten line on a terminal, an occasional
-// plain line elsewhere.
+// Progress with an estimate of the time that is left: one rewritten line on a terminal, an
+// occasional plain line elsewhere.
 #pragma once
 
 #include <atomic>

@@ -54,10 +54,14 @@ uint64_t parseCount(const std::string& text) {
     throw fail("is not a count");
   }
   const std::string suffix = text.substr(used);
-  if (suffix == "k" || suffix == "K") value *= 1e3;
-  else if (suffix == "m" || suffix == "M") value *= 1e6;
-  else if (suffix == "g" || suffix == "G") value *= 1e9;
-  else if (!suffix.empty()) throw fail("has an unknown suffix");
+  if (suffix == "k" || suffix == "K")
+    value *= 1e3;
+  else if (suffix == "m" || suffix == "M")
+    value *= 1e6;
+  else if (suffix == "g" || suffix == "G")
+    value *= 1e9;
+  else if (!suffix.empty())
+    throw fail("has an unknown suffix");
   if (!(value >= 1.0) || value > 0x1p53) throw fail("is out of range");
   if (value != std::floor(value)) throw fail("is not whole");
   return static_cast<uint64_t>(value);
@@ -91,9 +95,9 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
     cli.parse(argc, argv);
     tbb::global_control limit(
         tbb::global_control::max_allowed_parallelism,
-        options.threads > 0 ? options.threads
-                            : tbb::global_control::active_value(
-                                  tbb::global_control::max_allowed_parallelism));
+        options.threads > 0
+            ? options.threads
+            : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
     return work();
   } catch (const CLI::Success& e) {  // --help, --version
     return cli.exit(e, std::cout, std::cerr);
@@ -124,8 +128,11 @@ CLI::Validator inRange(double least, double most) {
   return CLI::Validator(
       [=](std::string& text) {
         double value = 0.0;
-        const bool valid = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
-        return valid ? std::string() : "'" + text + "' is not a number from " + std::to_string(least) + " to " + std::to_string(most);
+        const bool valid =
+            CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+        return valid ? std::string()
+                     : "'" + text + "' is not a number from " + std::to_string(least) + " to " +
+                           std::to_string(most);
       },
       range.str());
 }

@@ -33,8 +33,8 @@ CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
 // "3k" -> 3000. Throws UsageError on anything else than a positive whole number within 2^53.
 uint64_t parseCount(const std::string& text);
 
-// Parses argv, limits oneTBB to --threads, calls `work`, and turns exceptions into one line on stderr
-// and the documented exit code. The only try/catch of a tool.
+// Parses argv, limits oneTBB to --threads, calls `work`, and turns exceptions into one line on
+// stderr and the documented exit code. The only try/catch of a tool.
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
 
@@ -50,8 +50,8 @@ std::string extendProvenance(const std::string& earlier, const std::string& tool
                              const Json& options, const Json& inputs);
 std::string hashText(uint64_t hash);  // 16 hexadecimal digits
 
-// Ends a tool's work: prints "name: key value, ..." to stdout unless quiet, writes the same with time and
-// peak memory to --stats.
+// Ends a tool's work: prints "name: key value, ..." to stdout unless quiet, writes the same with
+// time and peak memory to --stats.
 class Summary {
  public:
   explicit Summary(std::string tool);
@@ -70,7 +70,8 @@ class Summary {
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
 
 // Writes "target: file file ..." in Make syntax, atomically. Does nothing when `depfile` is empty.
-void writeDepfile(const fs::path& depfile, const fs::path& target, const std::vector<fs::path>& files);
+void writeDepfile(const fs::path& depfile, const fs::path& target,
+                  const std::vector<fs::path>& files);
 
 std::string formatSi(double value);  // 12345678 -> "12.3M"
 

@@ -1,4 +1,5 @@
-// What the stages that read a scene share: its options, loading with warnings, and the inputs' hashes.
+// What the stages that read a scene share: its options, loading with warnings, and the inputs'
+// hashes.
 #pragma once
 
 #include "scene/scene.h"

@@ -19,8 +19,8 @@ struct EliminateOptions {
   EliminationMethod method = EliminationMethod::Elimination;
   // Uniform: one radius for all. Local: the radius follows the candidates' own density.
   Density density = Density::Local;
-  // Local: this share of the VPLs is spent evenly, the rest in proportion to the candidates. It bounds the
-  // radius by r_max / sqrt(share): an isolated candidate must not stand for half a room.
+  // Local: this share of the VPLs is spent evenly, the rest in proportion to the candidates. It
+  // bounds the radius by r_max / sqrt(share): an isolated candidate must not stand for half a room.
   double uniformShare = 0.2;
   double area = 0.0;  // of the indirectly visible surface, world units squared; 0: estimated
   double alpha = 8.0;

@@ -17,15 +17,17 @@ namespace {
 constexpr uint64_t kPhotonsPerRange = 4096;
 // How far above the surface a VPL travels to its new place, as a share of its reach.
 constexpr float kRecentreLift = 0.1f;
-// Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers commutes,
-// so neither threads nor the order of photons matter, and ranges computed apart can be added up.
+// Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
+// commutes, so neither threads nor the order of photons matter, and ranges computed apart can be
+// added up.
 class FixedPoint {
  public:
   // 2^-26 of the mean photon: the sum of 2^36 of them fits in 63 bits.
   explicit FixedPoint(double photonPower) : unit_(std::ldexp(1.0, std::ilogb(photonPower) - 26)) {}
   int64_t encode(double value) const {
     const double units = value / unit_;
-    if (!(std::fabs(units) < 0x1p62)) throw std::overflow_error("flux exceeds its fixed-point range");
+    if (!(std::fabs(units) < 0x1p62))
+      throw std::overflow_error("flux exceeds its fixed-point range");
     return static_cast<int64_t>(std::llround(units));
   }
   double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
@@ -43,7 +45,8 @@ void addChecked(int64_t& sum, int64_t term) {
 struct VplSum {
   std::array<int64_t, 3> flux{};
   int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
-  // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of 2^-24.
+  // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of
+  // 2^-24.
   std::array<int64_t, 3> moment{};
   uint64_t photons = 0;
 
@@ -57,7 +60,17 @@ struct VplSum {
   }
 };
 
-enum Tally { kEmitted, kEscaped, kAbsorbed, kReflected, kDeposited, kOutside, kGap, kHidden, kTallies };
+enum Tally {
+  kEmitted,
+  kEscaped,
+  kAbsorbed,
+  kReflected,
+  kDeposited,
+  kOutside,
+  kGap,
+  kHidden,
+  kTallies
+};
 
 struct Sums {  // of one thread
   std::vector<VplSum> vpl;
@@ -67,7 +80,8 @@ struct Sums {  // of one thread
 
 class Scatterer {
  public:
-  Scatterer(const VplTable& vpls, const RayScene& rays, const EstimateOptions& options, double photonPower)
+  Scatterer(const VplTable& vpls, const RayScene& rays, const EstimateOptions& options,
+            double photonPower)
       : vpls_(vpls),
         options_(options),
         fixed_(photonPower),
@@ -100,12 +114,15 @@ class Scatterer {
     for (size_t c = 0; c < 3; ++c) addChecked(s.flux[c], fixed_.encode(double{flux[c]}));
     const double relative = double{mean(flux)} / photonPower_;
     addChecked(s.squares, std::llround(relative * relative * 0x1p20));
-    const Vec3 offset = (hit.position - vpls_.position[vpl]) / (options_.radius * vpls_.radius[vpl]);
-    for (size_t c = 0; c < 3; ++c) addChecked(s.moment[c], std::llround(relative * double{offset[c]} * 0x1p24));
+    const Vec3 offset =
+        (hit.position - vpls_.position[vpl]) / (options_.radius * vpls_.radius[vpl]);
+    for (size_t c = 0; c < 3; ++c)
+      addChecked(s.moment[c], std::llround(relative * double{offset[c]} * 0x1p24));
     ++s.photons;
   }
 
-  // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies between.
+  // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies
+  // between.
   void scatterEvenly(const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
     uint32_t found = 0;
     coverage_.forEachReaching(hit.position, [&](uint32_t) { ++found; });
@@ -123,9 +140,11 @@ class Scatterer {
       deposit(*found.vpl, hit, flux, sums);
       return tally(sums, kDeposited, flux);
     }
-    tally(sums, found.miss == Coverage::Miss::Outside ? kOutside
-                : found.miss == Coverage::Miss::Gap   ? kGap
-                                                      : kHidden, flux);
+    tally(sums,
+          found.miss == Coverage::Miss::Outside ? kOutside
+          : found.miss == Coverage::Miss::Gap   ? kGap
+                                                : kHidden,
+          flux);
   }
 
   const VplTable& vpls_;
@@ -135,8 +154,9 @@ class Scatterer {
   Coverage coverage_;
 };
 
-Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights, const PhotonShares& shares,
-                  const Scatterer& scatterer, const EstimateOptions& options, const ProgressFn& progress) {
+Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
+                  const PhotonShares& shares, const Scatterer& scatterer,
+                  const EstimateOptions& options, const ProgressFn& progress) {
   const uint64_t key = streamKey(options.seed, Stream::Photons);
   const auto fresh = [&] {
     Sums s;
@@ -189,13 +209,14 @@ void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
     }
     vpls.photons[i] = s.photons;
     // Deposits taken as independent: sqrt(sum of squares) over the sum.
-    const double rootSquares = std::sqrt(static_cast<double>(s.squares) * 0x1p-20) * scatterer.photonPower();
+    const double rootSquares =
+        std::sqrt(static_cast<double>(s.squares) * 0x1p-20) * scatterer.photonPower();
     vpls.relativeError[i] = sum > 0.0 ? static_cast<float>(rootSquares / sum) : 0.0f;
   }
 }
 
-// To the centre of what was received, along the tangent plane and then down to the surface. A VPL from which
-// the new place is not in plain sight stays.
+// To the centre of what was received, along the tangent plane and then down to the surface. A VPL
+// from which the new place is not in plain sight stays.
 void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, const RayScene& rays) {
   parallelFor(vpls.size(), 256, [&](size_t i) {
     const double weight = double{mean(vpls.flux[i])} / scatterer.photonPower();
@@ -222,7 +243,8 @@ EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet&
                            const EstimateOptions& options, const ProgressFn& progress) {
   const double power = double{mean(lights.totalPower())};
   if (!(power > 0.0)) {
-    throw InputError("the scene has no light with power; add a [[light]] or an emissive material (Ke)");
+    throw InputError(
+        "the scene has no light with power; add a [[light]] or an emissive material (Ke)");
   }
   const PhotonShares shares(lights, options.photons);
   const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()));

@@ -17,8 +17,8 @@ struct EstimateOptions {
   float radius = 2.0f;  // how far a VPL reaches, in units of its own r_max
   Scatter scatter = Scatter::Guarded;
   unsigned maxBounces = 32;  // diffuse hits of a photon
-  // Move each VPL to the centre of the energy that it received. Elimination favours the rims of surfaces,
-  // where a VPL lies in the plane of the neighbouring wall and cannot light it.
+  // Move each VPL to the centre of the energy that it received. Elimination favours the rims of
+  // surfaces, where a VPL lies in the plane of the neighbouring wall and cannot light it.
   bool recentre = true;
   uint64_t seed = 1;
 };
@@ -35,9 +35,9 @@ struct EnergyAccount {
   uint64_t photons = 0, hits = 0, rays = 0, guardRays = 0;
 };
 
-// Fills flux, photons and relativeError, and moves position and normal as options.recentre says, of `vpls` (stage Eliminated) and makes it stage Lit. Flux is summed
-// in 64-bit fixed point: any number of threads gives the same bits.
-// Throws InputError when no light has power.
+// Fills flux, photons and relativeError, and moves position and normal as options.recentre says, of
+// `vpls` (stage Eliminated) and makes it stage Lit. Flux is summed in 64-bit fixed point: any
+// number of threads gives the same bits. Throws InputError when no light has power.
 EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
                            const EstimateOptions& options, const ProgressFn& progress = {});
 

@@ -36,20 +36,25 @@ float medianError(const VplTable& vpls) {
 }
 
 void report(const EnergyAccount& a, const VplTable& vpls, Summary& summary) {
-  const auto percent = [](double part, double whole) { return whole > 0.0 ? 100.0 * part / whole : 0.0; };
+  const auto percent = [](double part, double whole) {
+    return whole > 0.0 ? 100.0 * part / whole : 0.0;
+  };
   char line[256];
-  std::snprintf(line, sizeof line, "%s photons, %s hits: emitted %.4g W, escaped %.1f %%, absorbed %.1f %%",
+  std::snprintf(line, sizeof line,
+                "%s photons, %s hits: emitted %.4g W, escaped %.1f %%, absorbed %.1f %%",
                 formatSi(double(a.photons)).c_str(), formatSi(double(a.hits)).c_str(), a.emitted,
                 percent(a.escaped, a.emitted), percent(a.absorbed, a.emitted));
   summary.add("photons", a.photons, line);
-  std::snprintf(line, sizeof line,
-                "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, in a gap "
-                "%.2f %%, hidden %.2f %%",
-                a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
-                percent(a.gap, a.reflected), percent(a.hidden, a.reflected));
+  std::snprintf(
+      line, sizeof line,
+      "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, in a gap "
+      "%.2f %%, hidden %.2f %%",
+      a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
+      percent(a.gap, a.reflected), percent(a.hidden, a.reflected));
   summary.add("hits", a.hits, line);
   const auto dark = static_cast<uint64_t>(std::count(vpls.photons.begin(), vpls.photons.end(), 0u));
-  std::snprintf(line, sizeof line, "median relative error of a VPL %.2g, %llu VPLs without a photon",
+  std::snprintf(line, sizeof line,
+                "median relative error of a VPL %.2g, %llu VPLs without a photon",
                 double{medianError(vpls)}, static_cast<unsigned long long>(dark));
   summary.add("median_relative_error", medianError(vpls), line);
   summary.add("vpls_without_photon", dark);
@@ -104,7 +109,8 @@ int main(int argc, char** argv) {
   cli.add_option("vpls", input, "from vpl-eliminate (.vpl)")->required();
   cli.add_option("-o,--output", output, "lit VPLs (.vpl)")->required();
   addCount(cli, "--photons", options.photons, "photons from all lights together");
-  cli.add_option("--radius", options.radius, "how far a VPL reaches for photons, in units of its r_max")
+  cli.add_option("--radius", options.radius,
+                 "how far a VPL reaches for photons, in units of its r_max")
       ->check(inRange(0.01f, 100.0f))
       ->capture_default_str();
   addChoice(cli, "--scatter", options.scatter, kScatters,
@@ -117,5 +123,6 @@ int main(int argc, char** argv) {
   cli.add_option("--seed", options.seed, "random seed")->capture_default_str();
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] { return runEstimate(scene, input, output, options, tool); });
+  return runTool(cli, tool, argc, argv,
+                 [&] { return runEstimate(scene, input, output, options, tool); });
 }

@@ -13,7 +13,8 @@ PhotonShares::PhotonShares(const LightSet& lights, uint64_t photons) {
   std::vector<double> remainder(lights.size(), 0.0);
   uint64_t given = 0;
   for (size_t l = 0; l < lights.size(); ++l) {
-    const double share = total > 0.0 ? double{mean(lights.power(l))} / total * static_cast<double>(photons) : 0.0;
+    const double share =
+        total > 0.0 ? double{mean(lights.power(l))} / total * static_cast<double>(photons) : 0.0;
     if (share <= 0.0) continue;
     count[l] = std::max<uint64_t>(1, static_cast<uint64_t>(share));
     remainder[l] = share - std::floor(share);
@@ -21,7 +22,8 @@ PhotonShares::PhotonShares(const LightSet& lights, uint64_t photons) {
   }
   std::vector<size_t> order(lights.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return remainder[a] > remainder[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return remainder[a] > remainder[b]; });
   for (const size_t l : order) {
     if (given >= photons) break;
     if (count[l] > 0) {
@@ -34,7 +36,9 @@ PhotonShares::PhotonShares(const LightSet& lights, uint64_t photons) {
 }
 
 size_t PhotonShares::lightOf(uint64_t photon) const {
-  return static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), photon) - first_.begin()) - 1;
+  return static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), photon) -
+                             first_.begin()) -
+         1;
 }
 
 }  // namespace bnvpl

@@ -10,14 +10,16 @@ namespace bnvpl {
 // Photons [begin(l), begin(l + 1)) belong to light l.
 class PhotonShares {
  public:
-  // In proportion to power by the largest remainder; a light with power gets at least one photon, so
-  // `photons` may be exceeded where there are more lights than photons.
+  // In proportion to power by the largest remainder; a light with power gets at least one photon,
+  // so `photons` may be exceeded where there are more lights than photons.
   PhotonShares(const LightSet& lights, uint64_t photons);
 
   uint64_t total() const { return first_.back(); }
   size_t lightOf(uint64_t photon) const;
   // Of the flux of a light: one over the photons that it really sends.
-  float weight(size_t light) const { return 1.0f / static_cast<float>(first_[light + 1] - first_[light]); }
+  float weight(size_t light) const {
+    return 1.0f / static_cast<float>(first_[light + 1] - first_[light]);
+  }
 
  private:
   std::vector<uint64_t> first_;

@@ -49,10 +49,11 @@ struct Comparison {
   double meanRatio() const { return meanA / meanB; }
 };
 
-// `b` is the reference; `second`, where given, another rendering of it with independent noise. Squared
-// errors are then products (a - b)(a - second), in which the reference's own noise cancels on average, and
-// their mean is the reference: a negative mean counts as 0. Throws InputError when sizes or channel counts differ, or at the first
-// pixel that is not finite. The file names are for the messages.
+// `b` is the reference; `second`, where given, another rendering of it with independent noise.
+// Squared errors are then products (a - b)(a - second), in which the reference's own noise cancels
+// on average, and their mean is the reference: a negative mean counts as 0. Throws InputError when
+// sizes or channel counts differ, or at the first pixel that is not finite. The file names are for
+// the messages.
 Comparison compareLayers(const fs::path& fileA, const Layer& a, const fs::path& fileB,
                          const Layer& b, const CompareOptions& options,
                          const Layer* second = nullptr);

@@ -13,8 +13,10 @@ const Choices<PlaceMethod> kMethods{{"camera", PlaceMethod::Camera}, {"light", P
 
 Json describe(const PlaceOptions& o) {
   Json json{{"count", o.count}, {"method", nameOf(o.method, kMethods)}, {"seed", o.seed}};
-  if (o.method == PlaceMethod::Camera) json["depth"] = o.depth;
-  else json["light-depth"] = o.lightDepth;
+  if (o.method == PlaceMethod::Camera)
+    json["depth"] = o.depth;
+  else
+    json["light-depth"] = o.lightDepth;
   return json;
 }
 
@@ -31,13 +33,14 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
                            ? placeFromCamera(rays, options, meter.callback())
                            : placeFromLights(rays, LightSet(rays), options, meter.callback());
 
-  placed.table.provenance =
-      extendProvenance("", "vpl-place", describe(options), {{"scene", hashText(scene.contentHash)}});
+  placed.table.provenance = extendProvenance("", "vpl-place", describe(options),
+                                             {{"scene", hashText(scene.contentHash)}});
   writeVpl(output, placed.table);
   writeDepfile(tool.depfile, output, scene.files);
 
   summary.add("placed", placed.table.size(),
-              "placed " + std::to_string(placed.table.size()) + " on " + std::to_string(placed.paths) + " paths");
+              "placed " + std::to_string(placed.table.size()) + " on " +
+                  std::to_string(placed.paths) + " paths");
   summary.add("paths", placed.paths);
   summary.add("rays", placed.rays);
   summary.finish(tool);
@@ -57,9 +60,11 @@ int main(int argc, char** argv) {
   addSceneOptions(cli, scene);
   cli.add_option("-o,--output", output, "candidates (.vpl)")->required();
   addCount(cli, "-n,--count", options.count, "VPLs to place, exactly");
-  addChoice(cli, "--method", options.method, kMethods,
-            "camera: candidates for vpl-eliminate; light: instant radiosity, straight to vpl-render");
-  cli.add_option("--depth", options.depth, "camera: diffuse vertices of a path; the first is never used")
+  addChoice(
+      cli, "--method", options.method, kMethods,
+      "camera: candidates for vpl-eliminate; light: instant radiosity, straight to vpl-render");
+  cli.add_option("--depth", options.depth,
+                 "camera: diffuse vertices of a path; the first is never used")
       ->check(inRange(2, 1000))
       ->capture_default_str();
   cli.add_option("--light-depth", options.lightDepth, "light: diffuse hits of a photon")

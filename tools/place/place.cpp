@@ -60,7 +60,8 @@ void traceCameraPath(const RayScene& rays, const PlaceOptions& options, uint64_t
     }
     BsdfSample next;
     if ((takeChain && ++chain > kMaxChain) ||
-        !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Radiance, rng, next)) {
+        !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Radiance, rng,
+                     next)) {
       ++chunk.absorbed;
       return;
     }
@@ -87,18 +88,20 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
 
 [[noreturn]] void failTooFew(const PlaceResult& r, const PlaceOptions& options) {
   const auto percent = [&](uint64_t n) {
-    return std::to_string(static_cast<int>(std::lround(100.0 * double(n) / double(r.paths)))) + " %";
+    return std::to_string(static_cast<int>(std::lround(100.0 * double(n) / double(r.paths)))) +
+           " %";
   };
-  throw InputError("only " + std::to_string(r.table.size()) + " of " + std::to_string(options.count) +
-                   " VPLs found on " + std::to_string(r.paths) + " paths: " + percent(r.escaped) +
-                   " left the scene, " + percent(r.absorbed) + " met surfaces that reflect nothing, " +
-                   percent(r.complete) +
+  throw InputError("only " + std::to_string(r.table.size()) + " of " +
+                   std::to_string(options.count) + " VPLs found on " + std::to_string(r.paths) +
+                   " paths: " + percent(r.escaped) + " left the scene, " + percent(r.absorbed) +
+                   " met surfaces that reflect nothing, " + percent(r.complete) +
                    " were complete; point the camera at lit surfaces or ask for fewer with -n");
 }
 
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
 template <typename TracePath>
-PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress, const TracePath& tracePath) {
+PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress,
+                    const TracePath& tracePath) {
   PlaceResult result;
   VplTable& rows = result.table;
   const uint64_t effort = kFreePaths + kPathsPerCandidate * options.count;
@@ -116,7 +119,8 @@ PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress, con
     for (const Chunk& c : wave) {
       const size_t room = options.count - rows.size(), take = std::min(room, c.rows.size());
       const auto append = [take](auto& to, const auto& from) {
-        to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(std::min(take, from.size())));
+        to.insert(to.end(), from.begin(),
+                  from.begin() + static_cast<std::ptrdiff_t>(std::min(take, from.size())));
       };
       append(rows.position, c.rows.position);
       append(rows.normal, c.rows.normal);
@@ -140,7 +144,8 @@ PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress, con
 
 }  // namespace
 
-PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options, const ProgressFn& progress) {
+PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options,
+                            const ProgressFn& progress) {
   const uint64_t key = streamKey(options.seed, Stream::PlaceCamera);
   PlaceResult result = collect(options, progress, [&](uint64_t path, Chunk& chunk) {
     traceCameraPath(rays, options, path, key, chunk);
@@ -150,10 +155,11 @@ PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options, c
   return result;
 }
 
-PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights, const PlaceOptions& options,
-                            const ProgressFn& progress) {
+PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights,
+                            const PlaceOptions& options, const ProgressFn& progress) {
   if (!(mean(lights.totalPower()) > 0.0f)) {
-    throw InputError("the scene has no light with power; add a [[light]] or an emissive material (Ke)");
+    throw InputError(
+        "the scene has no light with power; add a [[light]] or an emissive material (Ke)");
   }
   const uint64_t key = streamKey(options.seed, Stream::PlaceLight);
   PlaceResult result = collect(options, progress, [&](uint64_t path, Chunk& chunk) {

@@ -1,5 +1,5 @@
-// From a ray to the first rough vertex, through mirrors, glass and sharp lobes: the one definition of
-// "specular chain" for every integrator.
+// From a ray to the first rough vertex, through mirrors, glass and sharp lobes: the one definition
+// of "specular chain" for every integrator.
 #pragma once
 
 #include "tools/render/direct_light.h"
@@ -7,12 +7,12 @@
 namespace bnvpl {
 
 struct ChainEnd {
-  bool rough = false;     // `hit` is a vertex where the rough lobes were taken
+  bool rough = false;  // `hit` is a vertex where the rough lobes were taken
   SurfacePoint hit;
-  Vec3 throughput;        // from the start to the hit, one over the probability of `rough` included
-  unsigned links = 0;     // chain vertices passed
-  Vec3 metFirst;          // emission met by the first segment
-  Vec3 metLater;          // emission met behind chain vertices, and light sampled at sharp ones
+  Vec3 throughput;     // from the start to the hit, one over the probability of `rough` included
+  unsigned links = 0;  // chain vertices passed
+  Vec3 metFirst;       // emission met by the first segment
+  Vec3 metLater;       // emission met behind chain vertices, and light sampled at sharp ones
   float firstDistance = INFINITY;  // of the first hit, along the ray
   uint32_t rays = 0;
 };

@@ -28,10 +28,12 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
   return reflected * (weight / lightProbability);
 }
 
-Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group, Rng& rng) {
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 Rng& rng) {
   Vec3 sum;
   if (lights.size() <= kMaxLightsEach) {
-    for (size_t l = 0; l < lights.size(); ++l) sum += sampleLight(rays, lights, bsdf, group, l, 1.0f, false, rng);
+    for (size_t l = 0; l < lights.size(); ++l)
+      sum += sampleLight(rays, lights, bsdf, group, l, 1.0f, false, rng);
     return sum;
   }
   for (size_t k = 0; k < kMaxLightsEach; ++k) {
@@ -42,7 +44,8 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
   return sum * (1.0f / static_cast<float>(kMaxLightsEach));
 }
 
-Vec3 directLightMis(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group, Rng& rng) {
+Vec3 directLightMis(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                    Rng& rng) {
   if (lights.size() == 0) return {};
   float probability = 0.0f;
   const size_t l = lights.pick(rng.next(), probability);
@@ -54,7 +57,8 @@ Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  return emitted * hitWeight(arrival, lights.pickProbability(light) * lights.pdfEmitted(light, hit, arrival.from));
+  return emitted * hitWeight(arrival, lights.pickProbability(light) *
+                                          lights.pdfEmitted(light, hit, arrival.from));
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {

@@ -23,7 +23,8 @@ struct Rgb64 {
   }
 };
 
-// Largest cosine between `axis` and any direction from `at` into the box (Walter et al. 2005, section 4.1).
+// Largest cosine between `axis` and any direction from `at` into the box (Walter et al. 2005,
+// section 4.1).
 float maxCosine(const Bounds& box, Vec3 at, Vec3 axis) {
   const Basis frame(axis);
   Bounds local;  // the box's own box in the frame: larger, so that the bound holds
@@ -39,7 +40,9 @@ float maxCosine(const Bounds& box, Vec3 at, Vec3 axis) {
   along(frame.n, local.lower.z, local.upper.z);
   const float z = local.upper.z;
   if (z <= 0.0f) return 0.0f;
-  const auto nearest = [](float low, float high) { return low > 0.0f ? low : high < 0.0f ? high : 0.0f; };
+  const auto nearest = [](float low, float high) {
+    return low > 0.0f ? low : high < 0.0f ? high : 0.0f;
+  };
   const float x = nearest(local.lower.x, local.upper.x), y = nearest(local.lower.y, local.upper.y);
   return z / std::sqrt(x * x + y * y + z * z);
 }
@@ -56,9 +59,9 @@ float maxEmitterCosine(const LightNode& n, Vec3 at) {
 }
 
 struct Cluster {
-  float bound;        // on the error, summed over the channels
+  float bound;  // on the error, summed over the channels
   uint32_t node;
-  Vec3 transfer;      // of the representative, times its visibility
+  Vec3 transfer;  // of the representative, times its visibility
   float clamped;
 };
 bool lessBound(const Cluster& a, const Cluster& b) {
@@ -70,9 +73,8 @@ float errorBound(const LightNode& n, const Bsdf& bsdf) {
   const Vec3 at = bsdf.point().position;
   const float emitter = maxEmitterCosine(n, at);
   if (emitter <= 0.0f) return 0.0f;
-  const Vec3 value = bsdf.roughUpperBound(maxCosine(n.bounds, at, bsdf.point().ns), [&](Vec3 axis) {
-    return maxCosine(n.bounds, at, axis);
-  });
+  const Vec3 value = bsdf.roughUpperBound(maxCosine(n.bounds, at, bsdf.point().ns),
+                                          [&](Vec3 axis) { return maxCosine(n.bounds, at, axis); });
   const Vec3 bound = value * n.intensity;
   const float sum = (bound.x + bound.y + bound.z) * emitter;
   return sum > 0.0f ? sum * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
@@ -80,7 +82,8 @@ float errorBound(const LightNode& n, const Bsdf& bsdf) {
 
 }  // namespace
 
-Gatherer::Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options, uint64_t seed)
+Gatherer::Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options,
+                   uint64_t seed)
     : rays_(rays), vpls_(vpls), options_(options) {
   if (options.lightcuts) tree_ = buildLightTree(vpls, seed);
 }

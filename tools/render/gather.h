@@ -13,15 +13,16 @@ struct GatherOptions {
 };
 
 struct Gathered {
-  Vec3 radiance;            // that leaves towards the viewer
-  Vec3 clamped;             // what the bound on 1/d^2 removed
-  uint32_t cut = 0;         // clusters or VPLs evaluated
+  Vec3 radiance;     // that leaves towards the viewer
+  Vec3 clamped;      // what the bound on 1/d^2 removed
+  uint32_t cut = 0;  // clusters or VPLs evaluated
   uint32_t shadowRays = 0;
 };
 
 class Gatherer {
  public:
-  Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options, uint64_t seed);
+  Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options,
+           uint64_t seed);
 
   Gathered gather(const Bsdf& bsdf) const;  // thread-safe
 

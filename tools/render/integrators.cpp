@@ -4,12 +4,13 @@ namespace bnvpl {
 
 namespace {
 
-// Vertices beyond the first that a near-field ray may add; each follows with the missing share alone.
+// Vertices beyond the first that a near-field ray may add; each follows with the missing share
+// alone.
 constexpr unsigned kMaxExtensions = 16;
 
 // The camera's part of a path, the same for both integrators.
-ChainEnd seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction, Rng& rng,
-                 RadianceSample& out) {
+ChainEnd seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
+                 Rng& rng, RadianceSample& out) {
   const ChainEnd end = followChain(rays, lights, origin, direction, Arrival{}, rng);
   out.direct = end.metFirst + end.metLater;
   if (end.firstDistance < INFINITY) {
@@ -49,10 +50,10 @@ Vec3 VplIntegrator::gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 through
   return throughput * g.radiance;
 }
 
-// One ray from the vertex for the light that the VPLs do not bring to it: over a mirror, glass or sharp lobe
-// (VPLs shine in straight lines), and what NearField says is missing. What else the ray meets is left to the
-// VPLs, and lights to light sampling. Where something is missing, the vertex that the ray found is lit in the
-// same way, and so on.
+// One ray from the vertex for the light that the VPLs do not bring to it: over a mirror, glass or
+// sharp lobe (VPLs shine in straight lines), and what NearField says is missing. What else the ray
+// meets is left to the VPLs, and lights to light sampling. Where something is missing, the vertex
+// that the ray found is lit in the same way, and so on.
 void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const {
   for (unsigned links = 0; links < kMaxExtensions; ++links) {
     const Bsdf bsdf(rays_.scene(), vertex.hit);

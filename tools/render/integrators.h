@@ -8,11 +8,11 @@
 namespace bnvpl {
 
 struct RadianceSample {
-  Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough vertex,
-                  // and nothing between that and a light
-  Vec3 indirect;  // everything else
-  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
-  Vec3 extended;  // indirect light that sampled rays brought instead; part of `indirect`
+  Vec3 direct;  // at most mirrors, glass and sharp lobes between the camera and the first rough
+                // vertex, and nothing between that and a light
+  Vec3 indirect;        // everything else
+  Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
+  Vec3 extended;        // indirect light that sampled rays brought instead; part of `indirect`
   Vec3 albedo, normal;  // of the first rough vertex
   float depth = 0.0f;   // of the first hit along the viewing axis; 0: none
   uint32_t cut = 0, shadowRays = 0;
@@ -20,8 +20,8 @@ struct RadianceSample {
 
 enum class Only { Everything, Direct, Indirect };
 
-// The thesis: direct light by shadow rays, indirect light from the VPLs. What the VPLs do not carry is
-// completed by one sampled ray from the vertex (NearField).
+// The thesis: direct light by shadow rays, indirect light from the VPLs. What the VPLs do not carry
+// is completed by one sampled ray from the vertex (NearField).
 class VplIntegrator {
  public:
   VplIntegrator(const RayScene& rays, const LightSet& lights, const Gatherer& gatherer,
@@ -46,8 +46,9 @@ class VplIntegrator {
   bool chains_;
 };
 
-// The reference: unbiased path tracing with next-event estimation and multiple importance sampling, no
-// clamping. Rough scatterings after the first rough vertex are limited to maxBounces, as a photon's hits.
+// The reference: unbiased path tracing with next-event estimation and multiple importance sampling,
+// no clamping. Rough scatterings after the first rough vertex are limited to maxBounces, as a
+// photon's hits.
 class PathTracer {
  public:
   PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only)

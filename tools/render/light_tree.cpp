@@ -59,8 +59,8 @@ class Builder {
     }
     const float middle = 0.5f * (low[axis] + high[axis]);
     const auto at = [&](size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
-    const auto cut = std::stable_partition(at(begin), at(end),
-                                           [&](uint32_t i) { return coordinate(i, axis) < middle; });
+    const auto cut = std::stable_partition(
+        at(begin), at(end), [&](uint32_t i) { return coordinate(i, axis) < middle; });
     const auto position = static_cast<size_t>(cut - order_.begin());
     return position > begin && position < end ? position : begin + (end - begin) / 2;
   }
@@ -84,7 +84,8 @@ class Builder {
     n.intensity = a.intensity + b.intensity;
     n.clamp2 = std::min(a.clamp2, b.clamp2);
     const float share = mean(a.intensity) / mean(n.intensity);
-    n.representative = toUnitFloat(random64(key_, index, 0)) < share ? a.representative : b.representative;
+    n.representative =
+        toUnitFloat(random64(key_, index, 0)) < share ? a.representative : b.representative;
     n.left = left;
     n.right = right;
     return n;

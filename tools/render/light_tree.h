@@ -10,24 +10,25 @@ namespace bnvpl {
 
 struct LightNode {
   Bounds bounds;
-  Vec3 axis;                // of the cone of normals
+  Vec3 axis;  // of the cone of normals
   float cosHalfAngle = 1.0f;
-  Vec3 intensity;           // sum over the cluster, W/sr
-  float clamp2 = 0.0f;      // smallest of the cluster, so that the bound holds for all
+  Vec3 intensity;       // sum over the cluster, W/sr
+  float clamp2 = 0.0f;  // smallest of the cluster, so that the bound holds for all
   uint32_t representative = 0;
   uint32_t left = 0, right = 0;  // both 0: a leaf
   bool leaf() const { return left == 0; }
 };
 
 struct LightTree {
-  std::vector<LightNode> nodes;    // nodes[0] is the root; empty without VPLs
-  // Where every cut starts. Not at the root: one occluded representative would make the total 0, one
-  // very near would end refinement at once (METHOD 4).
+  std::vector<LightNode> nodes;  // nodes[0] is the root; empty without VPLs
+  // Where every cut starts. Not at the root: one occluded representative would make the total 0,
+  // one very near would end refinement at once (METHOD 4).
   std::vector<uint32_t> startCut;
 };
 
-// Splits from the top along the longest side of position and (scaled) normal, O(N log N); representatives
-// in proportion to intensity, a parent sharing one child's. Deterministic for a seed.
+// Splits from the top along the longest side of position and (scaled) normal, O(N log N);
+// representatives in proportion to intensity, a parent sharing one child's. Deterministic for a
+// seed.
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed);
 
 }  // namespace bnvpl

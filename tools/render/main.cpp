@@ -23,7 +23,7 @@ struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::Vpl;
   GatherKind gather = GatherKind::Lightcuts;
   GatherOptions cuts;
-  float clamp = 2.0f;      // in units of a VPL's r_max
+  float clamp = 2.0f;     // in units of a VPL's r_max
   bool nearField = true;  // give back what the clamp and the gaps take away
   unsigned maxBounces = 32;
   FilmOptions film;
@@ -32,30 +32,42 @@ struct RenderOptions {
   std::string exposure = "auto";
 };
 
-const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl}, {"path", IntegratorKind::Path}};
+const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl},
+                                           {"path", IntegratorKind::Path}};
 const Choices<GatherKind> kGathers{{"lightcuts", GatherKind::Lightcuts}, {"all", GatherKind::All}};
 const Choices<bool> kOnOff{{"on", true}, {"off", false}};
-const Choices<Only> kOnlys{{"all", Only::Everything}, {"direct", Only::Direct}, {"indirect", Only::Indirect}};
+const Choices<Only> kOnlys{
+    {"all", Only::Everything}, {"direct", Only::Direct}, {"indirect", Only::Indirect}};
 const Choices<ExrPixelType> kPixels{{"half", ExrPixelType::Half}, {"float", ExrPixelType::Float}};
-const Choices<unsigned> kLayers{{"direct", kLayerDirect},         {"indirect", kLayerIndirect},
-                                {"albedo", kLayerAlbedo},         {"N", kLayerNormal},
-                                {"Z", kLayerDepth},               {"cutsize", kLayerCutSize},
-                                {"shadowrays", kLayerShadowRays}, {"clamped", kLayerClamped}};
+const Choices<unsigned> kLayers{{"direct", kLayerDirect},
+                                {"indirect", kLayerIndirect},
+                                {"albedo", kLayerAlbedo},
+                                {"N", kLayerNormal},
+                                {"Z", kLayerDepth},
+                                {"cutsize", kLayerCutSize},
+                                {"shadowrays", kLayerShadowRays},
+                                {"clamped", kLayerClamped}};
 
 unsigned layerBits(const std::vector<std::string>& names) {
   unsigned bits = 0;
   for (const std::string& name : names) {
     const auto it = kLayers.find(name);
-    if (name == "all") bits = ~0u;
-    else if (it != kLayers.end()) bits |= it->second;
-    else throw UsageError("--layers: unknown layer '" + name + "'; use direct, indirect, albedo, N, Z, cutsize, "
-                          "shadowrays, clamped or all");
+    if (name == "all")
+      bits = ~0u;
+    else if (it != kLayers.end())
+      bits |= it->second;
+    else
+      throw UsageError("--layers: unknown layer '" + name +
+                       "'; use direct, indirect, albedo, N, Z, cutsize, "
+                       "shadowrays, clamped or all");
   }
   return bits;
 }
 
 Json describe(const RenderOptions& o) {
-  Json json{{"integrator", nameOf(o.integrator, kIntegrators)}, {"spp", o.film.spp}, {"seed", o.film.seed},
+  Json json{{"integrator", nameOf(o.integrator, kIntegrators)},
+            {"spp", o.film.spp},
+            {"seed", o.film.seed},
             {"only", nameOf(o.film.only, kOnlys)}};
   if (o.integrator == IntegratorKind::Path) {
     json["max-bounces"] = o.maxBounces;
@@ -104,19 +116,24 @@ struct Paths {
   fs::path lit, output, png;
 };
 
-int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOptions o, const ToolOptions& tool) {
+int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOptions o,
+              const ToolOptions& tool) {
   Summary summary("vpl-render");
   const bool vpl = o.integrator == IntegratorKind::Vpl;
   o.film.layers = layerBits(o.layers);
   parseExposure(o.exposure);
   requireWritable({paths.output, paths.png, tool.stats, tool.depfile});
-  if (vpl && paths.lit.empty()) throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path");
-  if (!vpl && !paths.lit.empty()) throw UsageError("--integrator path takes no VPLs; leave " + paths.lit.string() + " out");
+  if (vpl && paths.lit.empty())
+    throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path");
+  if (!vpl && !paths.lit.empty())
+    throw UsageError("--integrator path takes no VPLs; leave " + paths.lit.string() + " out");
 
   VplTable lit;
   if (vpl) lit = readVpl(paths.lit, VplStage::Lit);
   const Scene scene = loadSceneFor("vpl-render", sceneOptions);
-  if (vpl) requireSameScene(paths.lit, lit.sceneHash, scene, "rerun the pipeline from vpl-place on this scene");
+  if (vpl)
+    requireSameScene(paths.lit, lit.sceneHash, scene,
+                     "rerun the pipeline from vpl-place on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);
   o.cuts.lightcuts = o.gather == GatherKind::Lightcuts;
@@ -124,7 +141,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   const Gatherer gatherer(rays, vpls, o.cuts, o.film.seed);
   std::optional<NearField> nearField;
   if (vpl && o.nearField) nearField.emplace(lit, rays, o.clamp);
-  const VplIntegrator byVpls(rays, lights, gatherer, nearField ? &*nearField : nullptr, o.film.only);
+  const VplIntegrator byVpls(rays, lights, gatherer, nearField ? &*nearField : nullptr,
+                             o.film.only);
   const PathTracer byPaths(rays, lights, o.maxBounces, o.film.only);
 
   ProgressMeter meter("pixels", uint64_t{scene.film.width} * scene.film.height, tool.quiet);
@@ -138,7 +156,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
 
   Json inputs{{"scene", hashText(scene.contentHash)}};
   if (vpl) inputs["lit"] = hashText(lit.checksum);
-  image.attributes["bnvpl.provenance"] = extendProvenance(lit.provenance, "vpl-render", describe(o), inputs);
+  image.attributes["bnvpl.provenance"] =
+      extendProvenance(lit.provenance, "vpl-render", describe(o), inputs);
   image.attributes["bnvpl.samplesPerPixel"] = std::to_string(o.film.spp);
   const float ev = paths.png.empty() ? 0.0f : exposureOf(image, o.exposure);
   const uint64_t overflow = writeExr(paths.output, image, o.pixels);
@@ -151,30 +170,37 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   writeDepfile(tool.depfile, paths.output, read);
 
   std::vector<std::string> warnings;
-  if (stats.notFinite > 0) warnings.push_back(std::to_string(stats.notFinite) + " samples were not finite and are left out");
-  if (overflow > 0) warnings.push_back(std::to_string(overflow) + " values exceed half precision; use --pixels float");
+  if (stats.notFinite > 0)
+    warnings.push_back(std::to_string(stats.notFinite) +
+                       " samples were not finite and are left out");
+  if (overflow > 0)
+    warnings.push_back(std::to_string(overflow) +
+                       " values exceed half precision; use --pixels float");
   printWarnings("vpl-render", warnings);
   char line[256];
-  std::snprintf(line, sizeof line, "%u x %u pixels, %u spp: mean direct %.5g, indirect %.5g W/(m2 sr)",
+  std::snprintf(line, sizeof line,
+                "%u x %u pixels, %u spp: mean direct %.5g, indirect %.5g W/(m2 sr)",
                 scene.film.width, scene.film.height, o.film.spp, stats.direct, stats.indirect);
   summary.add("samples", stats.samples, line);
   summary.add("mean_direct", stats.direct);
   summary.add("mean_indirect", stats.indirect);
   if (vpl) {
-    std::snprintf(line, sizeof line, "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
+    std::snprintf(line, sizeof line,
+                  "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
                   stats.indirect > 0 ? 100 * stats.clamped / stats.indirect : 0.0,
                   stats.indirect > 0 ? 100 * stats.extended / stats.indirect : 0.0);
     summary.add("mean_clamped", stats.clamped, line);
     summary.add("mean_extended", stats.extended);
-    std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample", vpls.size(), stats.cut,
-                  stats.shadowRays);
+    std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample",
+                  vpls.size(), stats.cut, stats.shadowRays);
     summary.add("vpls", vpls.size(), line);
     summary.add("mean_cut", stats.cut);
     summary.add("mean_shadow_rays", stats.shadowRays);
   }
   summary.add("not_finite", stats.notFinite);
   if (!paths.png.empty()) {
-    std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: %s", double{ev}, paths.png.c_str());
+    std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: %s", double{ev},
+                  paths.png.c_str());
     summary.add("exposure_ev", ev, line);
   }
   summary.finish(tool);
@@ -183,22 +209,33 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
 
 void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut) {
   addCount(cli, "--spp", spp, "samples a pixel");
-  addChoice(cli, "--integrator", o.integrator, kIntegrators, "vpl: the method; path: the reference, takes no VPLs");
-  addChoice(cli, "--gather", o.gather, kGathers, "lightcuts: a cut of the light tree; all: every VPL");
-  cli.add_option("--error", o.cuts.error, "lightcuts: largest error of a cluster, as a share of the total")
-      ->check(inRange(0.0f, 1.0f))->capture_default_str();
+  addChoice(cli, "--integrator", o.integrator, kIntegrators,
+            "vpl: the method; path: the reference, takes no VPLs");
+  addChoice(cli, "--gather", o.gather, kGathers,
+            "lightcuts: a cut of the light tree; all: every VPL");
+  cli.add_option("--error", o.cuts.error,
+                 "lightcuts: largest error of a cluster, as a share of the total")
+      ->check(inRange(0.0f, 1.0f))
+      ->capture_default_str();
   addCount(cli, "--max-cut", maxCut, "lightcuts: most clusters at a point");
   cli.add_option("--clamp", o.clamp, "1/d^2 grows no further inside this many r_max of a VPL")
-      ->check(inRange(0.0f, 1000.0f))->capture_default_str();
+      ->check(inRange(0.0f, 1000.0f))
+      ->capture_default_str();
   addChoice(cli, "--near-field", o.nearField, kOnOff,
             "give back by sampled rays what the clamp and gaps between VPLs take away");
-  cli.add_option("--max-bounces", o.maxBounces, "path: diffuse bounces after the first surface, as vpl-estimate's")
-      ->check(inRange(0, 1000))->capture_default_str();
+  cli.add_option("--max-bounces", o.maxBounces,
+                 "path: diffuse bounces after the first surface, as vpl-estimate's")
+      ->check(inRange(0, 1000))
+      ->capture_default_str();
   addChoice(cli, "--only", o.film.only, kOnlys, "which light the image shows");
-  cli.add_option("--layers", o.layers, "extra channels: direct,indirect,albedo,N,Z,cutsize,shadowrays,clamped or all")
-      ->delimiter(',')->type_name("LIST")->allow_extra_args(false);
+  cli.add_option("--layers", o.layers,
+                 "extra channels: direct,indirect,albedo,N,Z,cutsize,shadowrays,clamped or all")
+      ->delimiter(',')
+      ->type_name("LIST")
+      ->allow_extra_args(false);
   addChoice(cli, "--pixels", o.pixels, kPixels, "EXR channel type");
-  cli.add_option("--exposure", o.exposure, "of the PNG, in stops (EV); auto: middle grey")->capture_default_str();
+  cli.add_option("--exposure", o.exposure, "of the PNG, in stops (EV); auto: middle grey")
+      ->capture_default_str();
   cli.add_option("--seed", o.film.seed, "random seed")->capture_default_str();
 }
 
@@ -221,7 +258,8 @@ int main(int argc, char** argv) {
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] {
-    if (spp > UINT32_MAX || maxCut > UINT32_MAX) throw UsageError("--spp and --max-cut must be below 2^32");
+    if (spp > UINT32_MAX || maxCut > UINT32_MAX)
+      throw UsageError("--spp and --max-cut must be below 2^32");
     options.film.spp = static_cast<uint32_t>(spp);
     options.cuts.maxCut = static_cast<uint32_t>(maxCut);
     return runRender(scene, paths, options, tool);

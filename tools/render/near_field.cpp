@@ -4,7 +4,8 @@ namespace bnvpl {
 
 namespace {
 
-// VPLs that were placed from the lights stand for all surfaces by chance, without a reach of their own.
+// VPLs that were placed from the lights stand for all surfaces by chance, without a reach of their
+// own.
 constexpr float kReachWithoutPhotons = 2.0f;
 
 std::vector<float> scaled(std::vector<float> values, float factor) {
@@ -16,7 +17,9 @@ std::vector<float> scaled(std::vector<float> values, float factor) {
 
 NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp)
     : coverage_(lit.position, lit.normal,
-                scaled(lit.radius, lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons), rays),
+                scaled(lit.radius,
+                       lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),
+                rays),
       clampRadius_(scaled(lit.radius, clamp)),
       gaps_(lit.reach > 0.0) {}
 

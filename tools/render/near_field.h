@@ -1,6 +1,6 @@
-// What the VPLs leave out of the light from one surface point to another: the part of 1/d^2 that the clamp
-// removes, and all light from points that no VPL stands for. A sampled ray brings exactly that back
-// (Kollig & Keller 2006, with the VPLs' own bound and gaps).
+// What the VPLs leave out of the light from one surface point to another: the part of 1/d^2 that
+// the clamp removes, and all light from points that no VPL stands for. A sampled ray brings exactly
+// that back (Kollig & Keller 2006, with the VPLs' own bound and gaps).
 #pragma once
 
 #include "formats/vpl_table.h"
@@ -19,7 +19,7 @@ class NearField {
  private:
   Coverage coverage_;
   std::vector<float> clampRadius_;  // of each VPL, world units
-  bool gaps_;                       // whether a point without a VPL is a gap: not for VPLs from the lights
+  bool gaps_;  // whether a point without a VPL is a gap: not for VPLs from the lights
 };
 
 }  // namespace bnvpl

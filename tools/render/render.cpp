@@ -16,7 +16,16 @@ constexpr uint32_t kTile = 8;  // pixels; a tile's samples meet the same surface
 struct Pixel {
   std::array<double, 20> sum{};
 };
-enum Slot { kDirect = 0, kIndirect = 3, kClamped = 6, kAlbedo = 9, kNormal = 12, kDepth = 15, kHits = 16, kExtended = 17 };
+enum Slot {
+  kDirect = 0,
+  kIndirect = 3,
+  kClamped = 6,
+  kAlbedo = 9,
+  kNormal = 12,
+  kDepth = 15,
+  kHits = 16,
+  kExtended = 17
+};
 
 void addTo(Pixel& p, size_t slot, Vec3 v) {
   p.sum[slot] += double{v.x};
@@ -28,8 +37,8 @@ struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, notFinite = 0;
 };
 
-void samplePixel(const Scene& scene, const Integrator& integrator, const FilmOptions& options, uint64_t key,
-                 uint32_t x, uint32_t y, Pixel& pixel, PixelCounts& counts) {
+void samplePixel(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+                 uint64_t key, uint32_t x, uint32_t y, Pixel& pixel, PixelCounts& counts) {
   const uint64_t index = uint64_t{y} * scene.film.width + x;
   const double shiftX = double{toUnitFloat(random64(key, index, 0))};
   const double shiftY = double{toUnitFloat(random64(key, index, 1))};
@@ -58,11 +67,13 @@ void samplePixel(const Scene& scene, const Integrator& integrator, const FilmOpt
 }
 
 // Channels of the image and where their values lie in a Pixel.
-void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmOptions& options, Image& image) {
+void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmOptions& options,
+                 Image& image) {
   const auto rgb = [&](const std::string& prefix, const char* names, auto&& value) {
     for (size_t c = 0; c < 3; ++c) {
       std::vector<float>& data = image.add(prefix + names[c]);
-      for (size_t i = 0; i < data.size(); ++i) data[i] = static_cast<float>(value(pixels[i], c) * perSample);
+      for (size_t i = 0; i < data.size(); ++i)
+        data[i] = static_cast<float>(value(pixels[i], c) * perSample);
     }
   };
   const auto slot = [](size_t first) {
@@ -79,7 +90,8 @@ void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmO
   if (options.layers & kLayerNormal) rgb("N.", "XYZ", slot(kNormal));
   if (options.layers & kLayerDepth) {
     std::vector<float>& z = image.add("Z");
-    for (size_t i = 0; i < z.size(); ++i) {  // over the samples that hit; the void is infinitely far
+    for (size_t i = 0; i < z.size();
+         ++i) {  // over the samples that hit; the void is infinitely far
       const Pixel& p = pixels[i];
       z[i] = p.sum[kHits] > 0.0 ? static_cast<float>(p.sum[kDepth] / p.sum[kHits]) : INFINITY;
     }
@@ -88,8 +100,8 @@ void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmO
 
 }  // namespace
 
-Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options, FilmStats& stats,
-                 const ProgressFn& progress) {
+Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+                 FilmStats& stats, const ProgressFn& progress) {
   const uint32_t width = scene.film.width, height = scene.film.height;
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
   Image image;
@@ -100,7 +112,8 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
 
   const size_t tilesX = (width + kTile - 1) / kTile, tilesY = (height + kTile - 1) / kTile;
   parallelFor(tilesX * tilesY, 1, [&](size_t tile) {
-    const auto x0 = static_cast<uint32_t>(tile % tilesX) * kTile, y0 = static_cast<uint32_t>(tile / tilesX) * kTile;
+    const auto x0 = static_cast<uint32_t>(tile % tilesX) * kTile,
+               y0 = static_cast<uint32_t>(tile / tilesX) * kTile;
     const uint32_t x1 = std::min(width, x0 + kTile), y1 = std::min(height, y0 + kTile);
     for (uint32_t y = y0; y < y1; ++y) {
       for (uint32_t x = x0; x < x1; ++x) {
@@ -115,15 +128,20 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   addChannels(pixels, perSample, options, image);
   const auto perPixel = [&](const std::string& name, uint64_t PixelCounts::*member) {
     std::vector<float>& data = image.add(name);
-    for (size_t i = 0; i < data.size(); ++i) data[i] = static_cast<float>(double(counts[i].*member) * perSample);
+    for (size_t i = 0; i < data.size(); ++i)
+      data[i] = static_cast<float>(double(counts[i].*member) * perSample);
   };
   if (options.layers & kLayerCutSize) perPixel("cutsize", &PixelCounts::cut);
   if (options.layers & kLayerShadowRays) perPixel("shadowrays", &PixelCounts::shadowRays);
 
   const auto meanOf = [&](size_t slot) {
-    return parallelSum(pixels.size(), [&](size_t i) {
-             return (pixels[i].sum[slot] + pixels[i].sum[slot + 1] + pixels[i].sum[slot + 2]) / 3.0;
-           }) * perSample / static_cast<double>(pixels.size());
+    return parallelSum(
+               pixels.size(),
+               [&](size_t i) {
+                 return (pixels[i].sum[slot] + pixels[i].sum[slot + 1] + pixels[i].sum[slot + 2]) /
+                        3.0;
+               }) *
+           perSample / static_cast<double>(pixels.size());
   };
   stats.direct = meanOf(kDirect);
   stats.indirect = meanOf(kIndirect);

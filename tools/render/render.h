@@ -22,15 +22,16 @@ enum LayerBits : unsigned {
 };
 
 struct FilmOptions {
-  uint32_t spp = 8;        // samples a pixel
+  uint32_t spp = 8;  // samples a pixel
   uint64_t seed = 1;
   Only only = Only::Everything;
-  unsigned layers = 0;     // LayerBits
+  unsigned layers = 0;  // LayerBits
 };
 
 struct FilmStats {
-  double direct = 0, indirect = 0, clamped = 0, extended = 0;  // image means of the channels' mean, W/(m2 sr)
-  double cut = 0, shadowRays = 0;                // a sample, on average
+  double direct = 0, indirect = 0, clamped = 0,
+         extended = 0;             // image means of the channels' mean, W/(m2 sr)
+  double cut = 0, shadowRays = 0;  // a sample, on average
   uint64_t samples = 0;
   uint64_t notFinite = 0;  // samples left out because a value was NaN or infinite
 };

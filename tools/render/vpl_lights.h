@@ -10,7 +10,7 @@ namespace bnvpl {
 
 // Columns of the VPLs that carry flux; the others would only be visited in vain.
 struct VplLights {
-  std::vector<Vec3> position;   // lifted off its surface, so that shadow rays end before it
+  std::vector<Vec3> position;  // lifted off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // flux / pi: along the normal, W/sr
   std::vector<float> clamp2;    // (clamp * radius)^2, world units squared
@@ -21,13 +21,16 @@ struct VplLights {
 // `clamp` in units of each VPL's own radius (r_max).
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp);
 
-// 1/d^2 bounded by the VPL's footprint: the same function shades and bounds (docs/theory.md, "Clamping").
-inline float falloff(float distanceSquared, float clamp2) { return 1.0f / std::max(distanceSquared, clamp2); }
+// 1/d^2 bounded by the VPL's footprint: the same function shades and bounds (docs/theory.md,
+// "Clamping").
+inline float falloff(float distanceSquared, float clamp2) {
+  return 1.0f / std::max(distanceSquared, clamp2);
+}
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct Coupling {
-  Vec3 transfer;          // BSDF * cosines * falloff, 1/m2
-  float clamped = 0.0f;   // what the bound on 1/d^2 removed, as a multiple of transfer
+  Vec3 transfer;         // BSDF * cosines * falloff, 1/m2
+  float clamped = 0.0f;  // what the bound on 1/d^2 removed, as a multiple of transfer
 };
 
 // False: exactly 0 whatever is between (behind either side).
