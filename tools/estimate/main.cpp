@@ -12,7 +12,6 @@
 namespace bnvpl {
 namespace {
 
-const Choices<bool> kOnOff{{"on", true}, {"off", false}};
 const Choices<Scatter> kScatters{{"guarded", Scatter::Guarded}, {"even", Scatter::Even}};
 
 Json describe(const EstimateOptions& o) {

@@ -35,7 +35,6 @@ struct RenderOptions {
 const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl},
                                            {"path", IntegratorKind::Path}};
 const Choices<GatherKind> kGathers{{"lightcuts", GatherKind::Lightcuts}, {"all", GatherKind::All}};
-const Choices<bool> kOnOff{{"on", true}, {"off", false}};
 const Choices<Only> kOnlys{
     {"all", Only::Everything}, {"direct", Only::Direct}, {"indirect", Only::Indirect}};
 const Choices<ExrPixelType> kPixels{{"half", ExrPixelType::Half}, {"float", ExrPixelType::Float}};
