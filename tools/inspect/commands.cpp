@@ -6,6 +6,7 @@
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
+#include "tools/common/film_size.h"
 #include "tools/inspect/check.h"
 #include "tools/inspect/difference_image.h"
 #include "tools/inspect/export_table.h"
@@ -97,20 +98,6 @@ int runCompare(const CompareCommand& command) {
                                         : comparisonText(c, command.limits);
   std::fputs(text.c_str(), stdout);
   return comparisonExitCode(c, command.limits);
-}
-
-Film parseSize(const std::string& text) {
-  unsigned width = 0, height = 0;
-  char rest = 0;
-  constexpr unsigned kMost = 16384;
-  const bool digits = text.find_first_not_of("0123456789x") == std::string::npos;
-  if (!digits || text.size() > 11 ||
-      std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width < 1 ||
-      height < 1 || width > kMost || height > kMost) {
-    throw UsageError("--size '" + text +
-                     "' is not WIDTHxHEIGHT, such as 640x480, up to 16384 each");
-  }
-  return {width, height};
 }
 
 }  // namespace bnvpl

@@ -38,7 +38,4 @@ int runExport(const ExportCommand& command, const ToolOptions& tool);
 int runPlot(const PlotCommand& command, const ToolOptions& tool);
 int runCompare(const CompareCommand& command);
 
-// "640x480". Throws UsageError on anything else and on sizes that are no picture.
-Film parseSize(const std::string& text);
-
 }  // namespace bnvpl

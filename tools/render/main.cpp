@@ -9,6 +9,7 @@
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
 #include "tools/common/choice.h"
+#include "tools/common/film_size.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/scene_options.h"
 #include "tools/render/render.h"
@@ -27,6 +28,7 @@ struct RenderOptions {
   bool nearField = true;  // give back what the clamp and the gaps take away
   unsigned maxBounces = 32;
   FilmOptions film;
+  std::string size;  // WxH, empty: the scene's film
   ExrPixelType pixels = ExrPixelType::Float;
   std::vector<std::string> layers;
   std::string exposure = "auto";
@@ -129,7 +131,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
 
   VplTable lit;
   if (vpl) lit = readVpl(paths.lit, VplStage::Lit);
-  const Scene scene = loadSceneFor("vpl-render", sceneOptions);
+  Scene scene = loadSceneFor("vpl-render", sceneOptions);
+  if (!o.size.empty()) scene.film = parseSize(o.size);
   if (vpl)
     requireSameScene(paths.lit, lit.sceneHash, scene,
                      "rerun the pipeline from vpl-place on this scene");
@@ -208,6 +211,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
 
 void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut) {
   addCount(cli, "--spp", spp, "samples a pixel");
+  cli.add_option("--size", o.size, "of the image, pixels; the scene's film unless given")
+      ->type_name("WxH");
   addChoice(cli, "--integrator", o.integrator, kIntegrators,
             "vpl: the method; path: the reference, takes no VPLs");
   addChoice(cli, "--gather", o.gather, kGathers,

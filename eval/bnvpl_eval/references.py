@@ -1,0 +1,69 @@
+"""The references: path-traced images in two independent halves, kept in eval/references/.
+
+A half is the mean of renders of CHUNK samples a pixel with different seeds, so that a stopped run goes on
+where it was. `key` names what the image depends on (scene content, film, samples); a stored reference
+whose key differs is refused.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from . import images
+from .runner import Runner, digest, scene_key
+from .settings import EVAL, ROOT, View
+
+CHUNK = 2048  # spp of one render
+FOLDER = EVAL / "references"
+
+
+def path(view: View, film: str, half: str) -> Path:
+    return FOLDER / f"{view.name}-{film}-{half}.exr"
+
+
+def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
+    target = path(view, film, half)
+    key = digest(json.dumps([scene_key(ROOT / view.file), film, spp, half]).encode())
+    if target.is_file() and json.loads(target.with_suffix(".json").read_text())["key"] == key:
+        return
+    chunk = min(spp, CHUNK)
+    count = -(-spp // chunk)
+    sums = {"": 0.0, "indirect": 0.0}
+    cpu_s = 0.0
+    for i in range(count):
+        seed = 1000 + 2 * i + (half == "b")  # away from the seeds that are judged
+        run = runner.run("vpl-render",
+                         ["{scene}", "--size", film, "--integrator", "path", "--spp", chunk, "--seed", seed,
+                          "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
+                         {"scene": ROOT / view.file}, ["image.exr"])
+        cpu_s += run.cpu_s
+        for layer in sums:
+            sums[layer] = sums[layer] + images.read(run["image.exr"], layer).astype(np.float64)
+    note = f"bnvpl path tracer, {view.file}, {film}, {chunk * count} spp, half {half}"
+    images.write_half(target, {layer: total / count for layer, total in sums.items()}, note)
+    target.with_suffix(".json").write_text(json.dumps(
+        {"key": key, "scene": view.file, "film": film, "spp": chunk * count, "half": half,
+         "seeds": [1000 + (half == "b"), 2 * count + 998 + (half == "b")],
+         "cpu_s": round(cpu_s, 1)}, indent=1) + "\n")
+
+
+def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
+    halves = []
+    for half in "ab":
+        file = path(view, film, half)
+        if not file.is_file():
+            raise SystemExit(f"eval: {file}: no such reference; make it with 'make -C eval references'")
+        record = json.loads(file.with_suffix(".json").read_text())
+        if record["key"] != digest(json.dumps(
+                [scene_key(ROOT / view.file), film, record["spp"], half]).encode()):
+            raise SystemExit(f"eval: {file}: made from another version of {view.file}; "
+                             "delete it and run 'make -C eval references'")
+        halves.append(images.read(file, layer))
+    return halves[0], halves[1]
+
+
+def half_difference(halves: tuple[np.ndarray, np.ndarray]) -> float:
+    """RMS of the difference of the halves over the mean. The mean of both has half of that as its error."""
+    a, b = (half.astype(np.float64) for half in halves)
+    return float(np.sqrt(np.mean((a - b)**2)) / np.mean((a + b) / 2))

@@ -1,0 +1,115 @@
+"""Runs the tools, each command once: outputs are kept under a key of what they depend on.
+
+A key is the hash of the executable, the options, and the keys (or bytes) of the inputs; so a changed option,
+tool or scene reruns exactly what depends on it. Each run leaves run.json beside its outputs: command, key,
+wall and CPU seconds, peak memory.
+"""
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .settings import ROOT
+
+
+def digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:20]
+
+
+def scene_key(scene: Path) -> str:
+    """Of a scene.toml and every model, material and picture in its folder and in the folders that it names."""
+    text = scene.read_text()
+    folders = [scene.parent] + [(scene.parent / os.path.expandvars(name)).resolve().parent
+                                for name in re.findall(r'^(?:file|materials) = "(.*)"', text, re.M)]
+    files = sorted({file for folder in folders for file in folder.iterdir()
+                    if file.suffix in (".obj", ".mtl", ".png")}, key=lambda file: file.name)
+    return digest(text.encode() + b"".join(file.read_bytes() for file in files))
+
+
+@dataclass
+class Run:
+    folder: Path
+    record: dict
+
+    def __getitem__(self, name: str) -> Path:
+        return self.folder / name
+
+    @property
+    def cpu_s(self) -> float:
+        return self.record["cpu_s"]
+
+
+@dataclass
+class Runner:
+    bin: Path
+    cache: Path
+    quiet: bool = False
+    nice: int = 0
+    runs: dict[str, Run] = field(default_factory=dict)  # every run that was asked for, by key
+    _files: dict[Path, str] = field(default_factory=dict)
+
+    def file_key(self, path: Path) -> str:
+        """A product of ours by its key, so that no bytes need be read; another file by its bytes, a scene with
+        its models."""
+        if path.is_relative_to(self.cache):
+            return path.parent.name + "/" + path.name
+        if path not in self._files:
+            self._files[path] = scene_key(path) if path.suffix == ".toml" else digest(path.read_bytes())
+        return self._files[path]
+
+    def run(self, tool: str, options: list, inputs: dict[str, Path], outputs: list[str]) -> Run:
+        """`options` may hold '{name}' for an input and '@name' for an output, which stands in the run's folder."""
+        words = [str(word) for word in options]
+        executable = self.bin / tool
+        key = digest(json.dumps([tool, self.file_key(executable), words,
+                                 {name: self.file_key(path) for name, path in inputs.items()}]).encode())
+        if key in self.runs:
+            return self.runs[key]
+        folder = self.cache / key
+        if not (folder / "run.json").is_file():
+            self._execute(key, executable, words, inputs, folder)
+        for name in outputs:
+            if not (folder / name).is_file():
+                raise SystemExit(f"eval: {folder / name}: missing from the cache; delete {folder} and rerun")
+        run = Run(folder, json.loads((folder / "run.json").read_text()))
+        self.runs[key] = run
+        return run
+
+    def _execute(self, key: str, executable: Path, words: list[str], inputs: dict[str, Path],
+                 folder: Path) -> None:
+        partial = folder.with_name(f".{key}.partial-{os.getpid()}")
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        command = [str(executable)]
+        for word in words:
+            if word.startswith("@"):
+                word = str(partial / word[1:])
+            elif word.startswith("{"):
+                word = str(inputs[word[1:-1]])
+            command.append(word)
+        if not self.quiet:
+            print(f"eval: {executable.name} {' '.join(words)}", file=sys.stderr, flush=True)
+        begin = time.monotonic()
+        with (partial / "log.txt").open("wb") as log:
+            child = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=ROOT,
+                                     preexec_fn=(lambda: os.nice(self.nice)) if self.nice else None)
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+        wall = time.monotonic() - begin
+        if child.returncode != 0:
+            text = (partial / "log.txt").read_text(errors="replace").strip()
+            shutil.rmtree(partial)
+            raise SystemExit(f"eval: {' '.join(command)}\nfailed with exit code {child.returncode}: {text}")
+        record = {"tool": executable.name, "options": words,
+                  "inputs": {name: self.file_key(path) for name, path in inputs.items()}, "key": key,
+                  "wall_s": round(wall, 3), "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
+                  "peak_mib": round(usage.ru_maxrss / 1024, 1)}
+        (partial / "run.json").write_text(json.dumps(record, indent=1))
+        os.rename(partial, folder)

@@ -1,0 +1,239 @@
+"""scene.toml, OBJ and MTL -> plain NumPy arrays, without any code of the renderer under test.
+
+It reads the subset of docs/scene-format.md that the cross-check needs and refuses the rest by name:
+a feature that one renderer drew and the other ignored would look like an error of one of them.
+Used by cross_check.py and, inside Blender, by render_cycles.py.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+
+class SceneError(Exception):
+    """Bad input: one line that names file, problem and cure."""
+
+
+@dataclass
+class Material:
+    name: str
+    kd: tuple[float, float, float] = (0.6, 0.6, 0.6)
+    ks: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ke: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    illum: int = 0
+    opacity: float = 1.0
+    map_kd: Path | None = None
+    two_sided: bool = False
+    maps: list[str] = field(default_factory=list)  # other maps, refused if a face uses them
+
+    @property
+    def mirror(self) -> bool:
+        return self.illum in (3, 5, 8)
+
+
+@dataclass
+class Mesh:
+    """Triangles of one OBJ. `normal` and `uv` hold NaN where the file has none."""
+
+    position: np.ndarray  # float64 (n, 3, 3): triangle, corner, xyz
+    normal: np.ndarray  # (n, 3, 3)
+    uv: np.ndarray  # (n, 3, 2)
+    material: np.ndarray  # int (n): into `materials`
+    materials: list[Material]
+
+
+@dataclass
+class Camera:
+    position: np.ndarray
+    right: np.ndarray
+    up: np.ndarray
+    forward: np.ndarray
+    vertical_fov_deg: float
+
+
+@dataclass
+class Scene:
+    width: int
+    height: int
+    camera: Camera
+    meshes: list[Mesh]
+    lights: list[dict]
+
+
+def read_toml(path: Path) -> dict:
+    try:
+        with open(path, "rb") as file:
+            return tomllib.load(file)
+    except OSError as error:
+        raise SceneError(f"{path}: {error.strerror}; name a scene.toml") from error
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"{path}: {error}") from error
+
+
+def resolve(scene: Path, name: str) -> Path:
+    """A file that a scene.toml names: ${NAME} from the environment, relative to the toml."""
+
+    def value(match: re.Match[str]) -> str:
+        if match[1] not in os.environ:
+            raise SceneError(f"{scene}: ${{{match[1]}}} is not set; set the environment variable")
+        return os.environ[match[1]]
+
+    return (scene.parent / re.sub(r"\$\{(\w+)\}", value, name)).resolve()
+
+
+def _unit(v: np.ndarray) -> np.ndarray:
+    return v / np.linalg.norm(v)
+
+
+def read_camera(table: dict) -> Camera:
+    position = np.array(table["position"], float)
+    if "forward" in table:
+        forward = _unit(np.array(table["forward"], float))
+    else:
+        forward = _unit(np.array(table["look_at"], float) - position)
+    right = _unit(np.cross(forward, np.array(table.get("up", [0, 1, 0]), float)))
+    up = np.cross(right, forward)
+    return Camera(position, right, up, forward, float(table["vertical_fov_deg"]))
+
+
+def read_transform(table: dict) -> np.ndarray:
+    """4x4 matrix: `transform`, or scale, then turns about x, y, z, then a shift."""
+    if "transform" in table:
+        return np.array(table["transform"], float)
+    turn = np.eye(3)
+    for axis, degrees in enumerate(table.get("rotate_deg", [0, 0, 0])):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        one = np.eye(3)
+        one[i, i] = one[j, j] = np.cos(np.radians(degrees))
+        one[j, i] = np.sin(np.radians(degrees))
+        one[i, j] = -one[j, i]
+        turn = one @ turn
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn @ np.diag(np.broadcast_to(np.array(table.get("scale", 1.0), float), 3))
+    matrix[:3, 3] = table.get("translate", [0, 0, 0])
+    return matrix
+
+
+def read_mtl(path: Path, obj: Path) -> dict[str, Material]:
+    materials: dict[str, Material] = {}
+    current = Material("")
+    try:
+        text = path.read_text()
+    except OSError as error:
+        raise SceneError(f"{path}: {error.strerror}; name an MTL file") from error
+    for line in text.splitlines():
+        key, *rest = line.split() or ["#"]
+        if key == "newmtl":
+            current = materials[rest[0]] = Material(rest[0])
+        elif key in ("Kd", "Ks", "Ke"):
+            setattr(current, key.lower(), tuple(float(x) for x in rest[:3]))
+        elif key == "illum":
+            current.illum = int(rest[0])
+        elif key == "d":
+            current.opacity = float(rest[0])
+        elif key == "emission_sides":
+            current.two_sided = rest[0] == "2"
+        elif key == "map_Kd" and len(rest) == 1:
+            beside = path.parent / rest[0]
+            current.map_kd = beside if beside.is_file() else obj.parent / rest[0]
+        elif key.lower().startswith("map_") or key == "bump":
+            current.maps.append(line.strip())
+    return materials
+
+
+def check_supported(material: Material, path: Path) -> None:
+    """Refuses what has no exact counterpart in Cycles."""
+    problem = ""
+    if material.illum in (4, 6, 7, 9):
+        problem = "is glass"
+    elif any(material.ks) and not material.mirror:
+        problem = "has a Phong lobe (Ks)"
+    elif material.opacity < 0.5 or material.maps:
+        problem = "has a mask or a map other than a plain map_Kd"
+    elif max(np.add(material.kd, material.ks)) > 1.0:
+        problem = "reflects more than it receives (Kd + Ks > 1)"
+    if problem:
+        raise SceneError(f"{path}: material '{material.name}' {problem}, which the cross-check does"
+                         " not map; name a diffuse variant in 'materials'")
+
+
+def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
+    """Columns v, vt, vn; corner index triples (-1: none); a name for each triangle; libraries."""
+    columns: dict[str, list] = {"v": [], "vt": [], "vn": []}
+    corners, names, libraries = [], [], []
+    name = ""
+    with open(path) as file:
+        for line in file:
+            parts = line.split()
+            if not parts:
+                continue
+            key = parts[0]
+            if key in columns:
+                columns[key].append([float(x) for x in parts[1:3 if key == "vt" else 4]])
+            elif key == "usemtl":
+                name = parts[1]
+            elif key == "mtllib":
+                libraries.append(parts[1])
+            elif key == "f":
+                face = [_corner(text, columns) for text in parts[1:]]
+                for k in range(2, len(face)):
+                    corners.append((face[0], face[k - 1], face[k]))
+                    names.append(name)
+    return columns, corners, names, libraries
+
+
+def _corner(text: str, columns: dict[str, list]) -> tuple[int, int, int]:
+    ids = (text.split("/") + ["", ""])[:3]
+    sizes = (len(columns["v"]), len(columns["vt"]), len(columns["vn"]))
+    return tuple(-1 if not i else int(i) - 1 if int(i) > 0 else size + int(i)
+                 for i, size in zip(ids, sizes))
+
+
+def read_mesh(obj: Path, mtl: Path | None, matrix: np.ndarray) -> Mesh:
+    if not obj.is_file():
+        raise SceneError(f"{obj}: no such OBJ file; check 'file' in the scene.toml")
+    columns, corners, names, libraries = _parse_obj(obj)
+    library = read_mtl(mtl or obj.parent / libraries[0], obj)
+    index = np.array(corners, int).reshape(-1, 3, 3)
+
+    def take(key: str, which: int, width: int) -> np.ndarray:
+        rows = np.array(columns[key] + [[np.nan] * width], float)
+        return rows[index[:, :, which]]  # -1 is the NaN row
+
+    position = take("v", 0, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+    normal = take("vn", 2, 3) @ np.linalg.inv(matrix[:3, :3])
+    with np.errstate(invalid="ignore"):
+        normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    uv = take("vt", 1, 2)
+    if np.linalg.det(matrix[:3, :3]) < 0:  # a reflection turns faces inside out; turn them back
+        position, normal, uv = position[:, ::-1], normal[:, ::-1], uv[:, ::-1]
+
+    used = sorted(set(names))
+    for name in used:
+        if name not in library:
+            raise SceneError(f"{obj}: material '{name}' is not in its library; add it")
+        check_supported(library[name], obj)
+    material = np.array([used.index(name) for name in names])
+    doubled = np.cross(position[:, 1] - position[:, 0], position[:, 2] - position[:, 0])
+    keep = np.linalg.norm(doubled, axis=1) > 0
+    return Mesh(position[keep], normal[keep], uv[keep], material[keep], [library[n] for n in used])
+
+
+def read_scene(path: Path) -> Scene:
+    table = read_toml(path)
+    try:
+        meshes = []
+        for mesh in table.get("mesh", []):
+            mtl = resolve(path, mesh["materials"]) if "materials" in mesh else None
+            meshes.append(read_mesh(resolve(path, mesh["file"]), mtl, read_transform(mesh)))
+        film = table["film"]
+        camera = read_camera(table["camera"])
+        return Scene(film["width"], film["height"], camera, meshes, table.get("light", []))
+    except KeyError as error:
+        raise SceneError(f"{path}: key {error} is missing; add it") from error

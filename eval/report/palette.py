@@ -1,0 +1,9 @@
+"""The look of plot lines: colour, marker and dash, the same in the page and in plots.py.
+
+The hues keep apart under the common colour-vision deficiencies (they follow Okabe and Ito), have a
+contrast of at least 3:1 on their background, and no line is known by its colour alone.
+"""
+
+LIGHT = ("#0067b3", "#cc4b00", "#00795a", "#a8327e", "#846500", "#4a4f57", "#5b4bc4", "#b3261e")
+DARK = ("#63b3ff", "#ff9550", "#2fd0a0", "#f490cf", "#e3c64a", "#c3c8cf", "#b0a4ff", "#ff8a80")
+MARKERS = ("circle", "square", "triangle", "diamond", "down", "plus", "cross", "circle")
