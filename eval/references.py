@@ -19,9 +19,10 @@ def main() -> int:
     arguments = parser.parse_args()
     runner = Runner(arguments.bin.resolve(), arguments.cache.resolve())
     scenes, _ = settings.load()
-    for view in (view for scene in scenes for view in scene.views):
-        if arguments.views and view.name not in arguments.views:
-            continue
+    views = {view.name: view for scene in scenes for view in scene.views}
+    if unknown := [name for name in arguments.views if name not in views]:
+        raise SystemExit(f"eval: no view '{unknown[0]}'; settings.toml has {', '.join(views)}")
+    for view in (views[name] for name in arguments.views or views):
         if not view.scene.available:
             print(f"eval: {view.name} left out: set {view.scene.define}", file=sys.stderr)
             continue

@@ -23,13 +23,13 @@ def read(path: Path, layer: str = "") -> np.ndarray:
         raise SystemExit(f"eval: {path}: has no channel {missing[0]}; it holds {', '.join(names)}")
     pixels = source.read_image(oiio.FLOAT)
     source.close()
-    return pixels[:, :, [names.index(name) for name in channel_names(layer)]]
+    return np.ascontiguousarray(pixels[:, :, [names.index(name) for name in channel_names(layer)]])
 
 
 def write_half(path: Path, layers: dict[str, np.ndarray], note: str) -> None:
     """Half floats, written beside `path` and renamed. `layers`: '' and others to (h, w, 3)."""
     names = [name for layer in layers for name in channel_names(layer)]
-    pixels = np.concatenate(list(layers.values()), axis=2).astype(np.float32)
+    pixels = np.ascontiguousarray(np.concatenate(list(layers.values()), axis=2), dtype=np.float32)
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], oiio.HALF)
     spec.channelnames = tuple(names)
     spec.attribute("compression", "zip")
@@ -40,6 +40,18 @@ def write_half(path: Path, layers: dict[str, np.ndarray], note: str) -> None:
     target = oiio.ImageOutput.create(str(partial))
     if target is None or not target.open(str(partial), spec) or not target.write_image(pixels):
         partial.unlink(missing_ok=True)
-        raise SystemExit(f"eval: {path}: cannot be written; is the folder writable and the disk not full?")
+        reason = target.geterror() if target else oiio.geterror()
+        raise SystemExit(f"eval: {path}: cannot be written ({reason}); is the folder writable and the disk not full?")
     target.close()
     os.replace(partial, path)
+
+
+def read_channel(path: Path, name: str) -> np.ndarray:
+    """One channel, (height, width)."""
+    source = oiio.ImageInput.open(str(path))
+    names = list(source.spec().channelnames) if source else []
+    if name not in names:
+        raise SystemExit(f"eval: {path}: has no channel {name}; it holds {', '.join(names)}")
+    pixels = source.read_image(oiio.FLOAT)
+    source.close()
+    return pixels[:, :, names.index(name)]

@@ -129,7 +129,8 @@ def table(node: Node) -> dict[str, Any]:
                                          'use "low", "high", "one" or null')
         columns.append({"key": c.text("key"), "label": c.text("label"),
                         "unit": c.get("unit", str, "a text", ""), "better": better,
-                        "digits": c.get("digits", int, "a number of digits", 3)})
+                        "digits": c.get("digits", int, "a number of digits", 3),
+                        "decimals": c.get("decimals", int, "a number of decimals")})
     if not columns:
         raise node.child("columns").fail("no columns", "list at least one")
     rows = []

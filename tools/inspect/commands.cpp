@@ -1,14 +1,11 @@
 #include "tools/inspect/commands.h"
 
 #include <cstdio>
-#include <optional>
 
-#include "formats/exr_io.h"
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
 #include "tools/common/film_size.h"
 #include "tools/inspect/check.h"
-#include "tools/inspect/difference_image.h"
 #include "tools/inspect/export_table.h"
 #include "tools/inspect/info.h"
 
@@ -74,30 +71,6 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   summary.add("outside_film", counts.outside);
   summary.finish(tool);
   return kExitOk;
-}
-
-int runCompare(const CompareCommand& command) {
-  const Image imageA = readExr(command.imageA), imageB = readExr(command.imageB);
-  const Layer a =
-      findLayer(command.imageA, imageA, command.layerA.empty() ? command.layer : command.layerA);
-  const Layer b =
-      findLayer(command.imageB, imageB, command.layerB.empty() ? command.layer : command.layerB);
-  std::optional<Image> imageSecond;
-  std::optional<Layer> second;
-  if (!command.secondB.empty()) {
-    imageSecond = readExr(command.secondB);
-    second = findLayer(command.secondB, *imageSecond, b.name);
-  }
-  const Comparison c = compareLayers(command.imageA, a, command.imageB, b, command.limits,
-                                     second ? &*second : nullptr);
-  if (!command.diff.empty()) {
-    const Picture picture = differencePicture(a, b, command.diffRange);
-    writePng(command.diff, picture.width, picture.height, picture.rgb8);
-  }
-  const std::string text = command.json ? comparisonJson(c, command.limits).dump(2) + "\n"
-                                        : comparisonText(c, command.limits);
-  std::fputs(text.c_str(), stdout);
-  return comparisonExitCode(c, command.limits);
 }
 
 }  // namespace bnvpl

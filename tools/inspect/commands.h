@@ -3,6 +3,7 @@
 
 #include "tools/common/scene_options.h"
 #include "tools/inspect/compare.h"
+#include "tools/inspect/error_map.h"
 #include "tools/inspect/plot.h"
 
 namespace bnvpl {
@@ -25,10 +26,14 @@ struct PlotCommand {
   std::string size;          // WxH, empty: the scene's film
 };
 struct CompareCommand {
-  fs::path imageA, imageB, secondB, diff;
+  fs::path imageA, imageB, secondB, mask, diff;
   std::string layer, layerA, layerB;  // layerA and layerB go first
   CompareOptions limits;
-  double diffRange = 0.5;  // relative difference at the ends of the colour scale
+  std::string exposure = "auto";  // of LDR-FLIP
+  std::string flipExposures;      // of HDR-FLIP, START:STOP or auto; empty: the default
+  FlipOptions flip;
+  MapKind map = MapKind::Difference;
+  std::optional<double> diffRange;  // at the end of the colour scale; none: the map's own
   bool json = false;
 };
 
@@ -37,5 +42,8 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool);
 int runExport(const ExportCommand& command, const ToolOptions& tool);
 int runPlot(const PlotCommand& command, const ToolOptions& tool);
 int runCompare(const CompareCommand& command);
+
+// The options of `compare`.
+CLI::App* addCompare(CLI::App& cli, CompareCommand& command);
 
 }  // namespace bnvpl

@@ -54,38 +54,6 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   return sub;
 }
 
-CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
-  CLI::App* sub = cli.add_subcommand(
-      "compare",
-      "Measure image A against the reference B over all pixels of R, G, B or one layer.\n"
-      "relMSE is the mean of (a-b)^2 / (b^2 + e), e = epsilon * mean(b)^2.\n"
-      "Exits with 5 when a limit is exceeded.");
-  sub->add_option("A", c.imageA, "image (.exr)")->required();
-  sub->add_option("B", c.imageB, "reference (.exr)")->required();
-  sub->add_option("--second-half", c.secondB,
-                  "the reference again, with another seed: takes its noise out of RMSE and relMSE");
-  sub->add_option("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
-  sub->add_option("--layer-a", c.layerA, "of A only");
-  sub->add_option("--layer-b", c.layerB, "of B only");
-  sub->add_option("--epsilon", c.limits.epsilon, "of relMSE, times the squared mean of B")
-      ->check(inRange(0.0, 1e300))
-      ->capture_default_str();
-  sub->add_option("--max-relmse", c.limits.maxRelMse, "largest relMSE allowed")
-      ->check(inRange(0.0, 1e300));
-  sub->add_option("--max-rmse", c.limits.maxRmse, "largest RMSE allowed")
-      ->check(inRange(0.0, 1e300));
-  sub->add_option("--max-rmse-over-mean", c.limits.maxRmseOverMean,
-                  "largest RMSE / mean(B) allowed")
-      ->check(inRange(0.0, 1e300));
-  sub->add_option("--diff", c.diff,
-                  "picture (.png) of (a-b) / (b + 0.1 mean(b)): blue darker, red brighter");
-  sub->add_option("--diff-range", c.diffRange, "difference at the ends of its colours, 1 = 100 %")
-      ->check(inRange(1e-6, 1e6))
-      ->capture_default_str();
-  sub->add_flag("--json", c.json, "the measures as JSON");
-  return sub;
-}
-
 }  // namespace
 }  // namespace bnvpl
 

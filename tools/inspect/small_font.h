@@ -1,4 +1,5 @@
-// Numbers in an image: 5 x 7 pixel glyphs for digits, signs, point and per cent.
+// Numbers and names of measures in an image: 5 x 7 pixel glyphs for digits, signs, point, per cent
+// and the capital letters that legends need.
 #pragma once
 
 #include <array>
@@ -40,6 +41,35 @@ constexpr std::array<uint8_t, kGlyphHeight> glyphRows(char c) {
       return {0, 0, 0, 0, 0, 12, 12};
     case '%':
       return {24, 25, 2, 4, 8, 19, 3};
+    case 'A':
+      return {14, 17, 17, 31, 17, 17, 17};
+    case 'D':
+      return {30, 17, 17, 17, 17, 17, 30};
+    case 'e':  // of 1e-05
+    case 'E':
+      return {31, 16, 16, 30, 16, 16, 31};
+    case 'F':
+      return {31, 16, 16, 30, 16, 16, 16};
+    case 'H':
+      return {17, 17, 17, 31, 17, 17, 17};
+    case 'I':
+      return {14, 4, 4, 4, 4, 4, 14};
+    case 'L':
+      return {16, 16, 16, 16, 16, 16, 31};
+    case 'M':
+      return {17, 27, 21, 21, 17, 17, 17};
+    case 'O':
+      return {14, 17, 17, 17, 17, 17, 14};
+    case 'P':
+      return {30, 17, 17, 30, 16, 16, 16};
+    case 'R':
+      return {30, 17, 17, 30, 20, 18, 17};
+    case 'S':
+      return {15, 16, 16, 14, 1, 1, 30};
+    case 'T':
+      return {31, 4, 4, 4, 4, 4, 4};
+    case 'V':
+      return {17, 17, 17, 17, 17, 10, 4};
     default:
       return {};
   }

@@ -1,0 +1,70 @@
+"""What every part of the evaluation is given, and what it adds to."""
+
+import sys
+from dataclasses import dataclass, field
+
+from . import images, pipeline, references, statistics
+from .pipeline import Configuration
+from .runner import Run, Runner
+from .settings import Scene, View
+
+
+@dataclass
+class Context:
+    size_name: str
+    size: dict  # [size.*] of settings.toml
+    settings: dict
+    scenes: list[Scene]  # those of this size that are available
+    runner: Runner
+    results: list[dict] = field(default_factory=list)  # one row a configuration, of every part
+    tables: list[dict] = field(default_factory=list)  # of the report
+    plots: list[dict] = field(default_factory=list)
+    pictures: dict[str, list[dict]] = field(default_factory=dict)  # by view name
+
+    def views(self, only: str = "") -> list[View]:
+        return [view for scene in self.scenes for view in scene.views
+                if view.id in self.size["views"] and (not only or view.id == only)]
+
+    def configuration(self, view: View, method: str, picture: bool = False) -> Configuration:
+        vpls = max(1, round(view.scene.vpls * self.size["scale"]))
+        width = self.size["picture_width" if picture else "film_width"]
+        return Configuration(method, vpls, self.size["photons"], vpls * self.size["candidates_per_vpl"],
+                             self.size["spp"], view.scene.film(width))
+
+    def seeds(self, view: View) -> range:
+        return range(1, 1 + self.size["seeds" if view.id == "main" else "second_seeds"])
+
+    def halves(self, view: View, layer: str = "indirect"):
+        return references.load(view, view.scene.film(self.size["film_width"]), layer)
+
+    def judge(self, part: str, view: View, c: Configuration, seeds: range, **labels) -> dict:
+        """Runs the configuration for all seeds and adds a row: errors of the indirect light and of the full
+        image, seconds and peak memory of every stage."""
+        made = [pipeline.image(self.runner, view, c, seed) for seed in seeds]
+        row = {"part": part, "view": view.name, "method": c.method, "vpls": c.vpls, "photons": c.photons,
+               "candidates": c.candidates, "spp": c.spp, "film": c.film, **labels}
+        return self.add_row(row, view, made)
+
+    def judge_path(self, part: str, view: View, film: str, spp: int, seeds: range) -> dict:
+        made = [pipeline.path_traced(self.runner, view, film, spp, seed) for seed in seeds]
+        return self.add_row({"part": part, "view": view.name, "method": "path", "spp": spp, "film": film},
+                            view, made)
+
+    def add_row(self, row: dict, view: View, made: list) -> dict:
+        files = [file for file, _ in made]
+        row |= statistics.summarise([images.read(file, "indirect") for file in files], self.halves(view))
+        full = statistics.summarise([images.read(file) for file in files], self.halves(view, ""))
+        row |= {f"full_{key}": full[key] for key in ("mean_ratio", "rmse_over_mean", "relmse")}
+        for stage in range(len(made[0][1])):
+            runs: list[Run] = [runs[stage] for _, runs in made]
+            tool = runs[0].record["tool"].removeprefix("vpl-")
+            row[f"{tool}_cpu_s"] = sum(run.cpu_s for run in runs) / len(runs)
+            row[f"{tool}_peak_mib"] = max(run.record["peak_mib"] for run in runs)
+        row["cpu_s"] = sum(value for key, value in row.items() if key.endswith("_cpu_s"))
+        row["images"] = [str(file) for file in files]
+        self.results.append(row)
+        return row
+
+    def say(self, text: str) -> None:
+        if not self.runner.quiet:
+            print(f"eval: {text}", file=sys.stderr, flush=True)

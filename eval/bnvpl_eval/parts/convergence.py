@@ -1,0 +1,48 @@
+"""Error against the number of VPLs, and against time, beside the path tracer."""
+
+from ..context import Context
+from ..pipeline import METHODS
+from ..statistics import slope
+
+
+def run(context: Context) -> None:
+    plan = context.size["convergence"]
+    for view in (view for view in context.views("main") if view.scene.id in plan["scenes"]):
+        seeds = range(1, 1 + plan["seeds"])
+        found = {method: [] for method in plan["methods"]}
+        for method, rows in found.items():
+            for count in plan["counts"]:
+                context.say(f"convergence: {view.name}, {method}, {count} VPLs")
+                c = context.configuration(view, method).but(
+                    vpls=count, candidates=count * context.size["candidates_per_vpl"])
+                rows.append(context.judge("convergence", view, c, seeds))
+        path = []
+        for spp in plan["path_spp"]:
+            context.say(f"convergence: {view.name}, path tracer, {spp} spp")
+            path.append(context.judge_path("convergence", view, c.film, spp, seeds))
+        add_plots(context, view, found, path)
+
+
+def series(label: str, rows: list[dict], x: str) -> dict:
+    """RMSE / mean over the column x; points whose error is not above its own noise are left out."""
+    rows = [row for row in rows if row["rmse_over_mean"] > 0]
+    xs, ys = [row[x] for row in rows], [row["rmse_over_mean"] for row in rows]
+    made = {"label": label, "x": xs, "y": ys, "error": [row.get("rmse_error", 0.0) for row in rows]}
+    if len(xs) > 1:
+        made["slope"] = slope(xs, ys)
+    return made
+
+
+def add_plots(context: Context, view, found: dict, path: list[dict]) -> None:
+    common = {"y_label": "RMSE / mean of the indirect light", "x_log": True, "y_log": True}
+    name = view.scene.id
+    context.plots.append({
+        "id": f"convergence-vpls-{name}", "title": f"{view.scene.title}: error against VPLs",
+        "caption": f"{context.size['photons'] // 1000}k photons, {context.size['spp']} spp, mean of the seeds.",
+        "x_label": "VPLs", "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()], **common})
+    context.plots.append({
+        "id": f"convergence-time-{name}", "title": f"{view.scene.title}: error against time",
+        "caption": f"CPU time of all stages, a film of {path[0]['film']} pixels.",
+        "x_label": "CPU seconds",
+        "series": [series(METHODS[m], rows, "cpu_s") for m, rows in found.items()] +
+                  [{**series("path tracer", path, "cpu_s"), "dash": True}], **common})

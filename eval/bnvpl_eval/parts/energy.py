@@ -1,0 +1,41 @@
+"""Energy: mean image over the reference, and where the photons' energy went."""
+
+import json
+
+from .. import pipeline
+from ..context import Context
+from ..pipeline import METHODS
+
+COLUMNS = [
+    {"key": "label", "label": "VPLs", "better": None},
+    {"key": "mean_ratio", "label": "mean ratio, indirect", "better": "one"},
+    {"key": "mean_ratio_error", "label": "its standard error", "better": None},
+    {"key": "full_mean_ratio", "label": "mean ratio, full image", "better": "one"},
+    {"key": "deposited", "label": "deposited", "unit": "%", "better": None},
+    {"key": "outside", "label": "outside", "unit": "%", "better": None},
+    {"key": "gap", "label": "gap", "unit": "%", "better": None},
+    {"key": "hidden", "label": "hidden", "unit": "%", "better": None},
+]
+
+
+def run(context: Context) -> None:
+    rows = []
+    for view in context.views():
+        for method in context.size["methods"]:
+            row = next(r for r in context.results if r["part"] == "methods" and r["view"] == view.name and
+                       r["method"] == method)
+            shown = {"group": f"{view.scene.title}, {view.title}", **row}
+            if method != "light":
+                _, runs = pipeline.lit(context.runner, view, context.configuration(view, method), 1)
+                account = json.loads(runs[-1]["stats.json"].read_text())["energy_W"]
+                whole = account["reflected"]
+                shown |= {"deposited": 100 * account["deposited"] / whole}
+                shown |= {key: 100 * account["dropped_" + key] / whole for key in ("outside", "gap", "hidden")}
+            rows.append(shown)
+    context.tables.append({
+        "id": "energy", "title": "Energy",
+        "note": "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because no VPL reaches the "
+                "hit (outside: it lights nothing in view), none on its sheet of surface (gap), none in sight (hidden). "
+                "Near-field rays bring what gap and hidden lose.",
+        "columns": COLUMNS, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in COLUMNS)]}
+                                     for row in rows]})

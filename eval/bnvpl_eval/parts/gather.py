@@ -1,0 +1,37 @@
+"""Lightcuts against all VPLs: the same lit files, error and time."""
+
+from ..context import Context
+
+COLUMNS = [
+    {"key": "label", "label": "gather", "better": None},
+    {"key": "mean_ratio", "label": "mean ratio", "better": "one"},
+    {"key": "rmse_over_mean", "label": "RMSE / mean", "better": "low"},
+    {"key": "relmse", "label": "relMSE", "better": "low"},
+    {"key": "cut_rmse", "label": "difference to all / mean", "better": "low"},
+    {"key": "render_cpu_s", "label": "render", "unit": "CPU s", "better": "low"},
+]
+
+
+def run(context: Context) -> None:
+    from .. import images, statistics
+    rows = []
+    for view in context.views("main"):
+        context.say(f"gather: {view.name}")
+        seeds = context.seeds(view)[:2]
+        made = {}
+        for gather in ("lightcuts", "all"):
+            c = context.configuration(view, "local").but(render=("--gather", gather))
+            made[gather] = context.judge("gather", view, c, seeds, label=gather)
+        # The same samples and VPLs, so that only the cut differs.
+        cut, every = ([images.read(file, "indirect") for file in made[g]["images"]] for g in ("lightcuts", "all"))
+        difference = sum(((a - b)**2).mean() for a, b in zip(cut, every)) / len(cut)
+        mean = sum(b.mean() for b in every) / len(every)
+        made["lightcuts"]["cut_rmse"] = statistics.root(difference) / float(mean)
+        made["all"]["cut_rmse"] = 0.0
+        title = f"{view.scene.title}, {made['all']['vpls']} VPLs"
+        rows += [{"group": title, **row} for row in made.values()]
+    context.tables.append({
+        "id": "gather", "title": "Lightcuts against all VPLs",
+        "note": "The same VPLs, rays and seeds; the cut's own error is its difference to all VPLs.",
+        "columns": COLUMNS, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in COLUMNS)]}
+                                     for row in rows]})

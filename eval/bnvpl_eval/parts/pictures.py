@@ -1,0 +1,65 @@
+"""What the report's viewer shows of each view: images beside the reference, dots, cut sizes, error maps."""
+
+from .. import pipeline, references
+from ..context import Context
+from ..pipeline import METHODS
+from ..settings import ROOT, View
+from .equal_time import picture_spp
+
+
+def run(context: Context) -> None:
+    for view in context.views():
+        context.say(f"pictures: {view.name}")
+        film = view.scene.film(context.size["picture_width"])
+        references.render_half(context.runner, view, film, context.size["picture_reference_spp"], "a")
+        reference = references.path(view, film, "a")
+        shown = [{"id": "reference", "label": f"path tracer, {context.size['picture_reference_spp']} spp",
+                  "file": reference}]
+        maps = []
+        for method in context.size["methods"]:
+            c = context.configuration(view, method, picture=True)
+            file, _ = pipeline.image(context.runner, view, c, 1)
+            shown.append({"id": method, "label": METHODS[method], "file": file})
+            maps.append(error_map(context, method, file, reference))
+            if method == "local":
+                maps.append(cut_map(context, view, c))
+        shown.append(equal_time(context, view))
+        context.pictures[view.name] = {"images": shown, "maps": dots(context, view) + [m for m in maps if m]}
+
+
+def equal_time(context: Context, view: View) -> dict:
+    c = context.configuration(view, "local", picture=True)
+    _, runs = pipeline.image(context.runner, view, c, 1)
+    spp = picture_spp(context, view, c, sum(run.cpu_s for run in runs))
+    file, _ = pipeline.path_traced(context.runner, view, c.film, spp, 1)
+    return {"id": "path", "label": f"path tracer, time of ours ({spp} spp)", "file": file}
+
+
+def error_map(context: Context, method: str, image, reference) -> dict:
+    run = context.runner.run("vpl-inspect",
+                             ["compare", "{image}", "{reference}", "--layer", "indirect", "--diff", "@diff.png"],
+                             {"image": image, "reference": reference}, ["diff.png"])
+    return {"id": f"diff-{method}", "label": f"Difference to the reference: {METHODS[method]}",
+            "file": run["diff.png"]}
+
+
+def cut_map(context: Context, view: View, c: pipeline.Configuration) -> dict:
+    file, _ = pipeline.image(context.runner, view, c, 1)
+    return {"id": "cut", "label": "Cut size, clusters a sample", "file": file, "channel": "cutsize"}
+
+
+def dots(context: Context, view: View) -> list[dict]:
+    """Figure 3.2 of the thesis: the same number of VPLs, random and blue noise, over the view."""
+    count = context.size["dots"]
+    made = []
+    for method in ("random", "uniform", "local"):
+        c = context.configuration(view, method).but(vpls=count, candidates=10 * count)
+        placed = pipeline.candidates(context.runner, view, c, 1)
+        kept = context.runner.run("vpl-eliminate", ["{c}", "-n", count, *pipeline.ELIMINATE[method],
+                                                    "-o", "@v.vpl", "--quiet"],
+                                  {"c": placed["candidates.vpl"]}, ["v.vpl"])
+        plot = context.runner.run("vpl-inspect", ["plot", "{v}", "--scene", "{scene}", "-o", "@dots.png", "--quiet",
+                                                  "--dot", 2, "--size", view.scene.film(640)],
+                                  {"v": kept["v.vpl"], "scene": ROOT / view.file}, ["dots.png"])
+        made.append({"id": f"dots-{method}", "label": f"{count} VPLs, {METHODS[method]}", "file": plot["dots.png"]})
+    return made

@@ -1,0 +1,90 @@
+"""A configuration of the four stages, and its runs."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from .runner import Run, Runner
+from .settings import ROOT, View
+
+# How the VPLs of a set come about; options that are not here are the tools' defaults.
+METHODS = {
+    "light": "from the light (instant radiosity)",
+    "random": "random, from the camera",
+    "uniform": "blue noise, uniform (thesis)",
+    "local": "blue noise, local density (ours)",
+    "even": "ours, but the thesis' scatter",
+    "literal": "thesis to the letter",
+}
+ELIMINATE = {
+    "random": ("--method", "random"),
+    "uniform": ("--density", "uniform"),
+    "local": (),
+    "even": (),
+    "literal": ("--density", "uniform"),
+}
+ESTIMATE = {
+    "even": ("--scatter", "even"),
+    "literal": ("--scatter", "even", "--recentre", "off"),
+}
+RENDER = {
+    "literal": ("--near-field", "off"),
+}
+
+
+@dataclass(frozen=True)
+class Configuration:
+    method: str
+    vpls: int
+    photons: int
+    candidates: int  # of the camera's methods
+    spp: int
+    film: str  # WIDTHxHEIGHT
+    place: tuple = ()
+    eliminate: tuple = ()
+    estimate: tuple = ()
+    render: tuple = ()
+
+    def but(self, **changes) -> "Configuration":
+        return replace(self, **changes)
+
+
+def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:
+    return runner.run("vpl-place", ["{scene}", "-n", c.candidates, "--seed", seed, *c.place,
+                                    "-o", "@candidates.vpl", "--quiet"],
+                      {"scene": ROOT / view.file}, ["candidates.vpl"])
+
+
+def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
+    """The lit VPLs, and the runs that made them."""
+    scene = {"scene": ROOT / view.file}
+    if c.method == "light":
+        run = runner.run("vpl-place", ["{scene}", "--method", "light", "-n", c.vpls, "--seed", seed, *c.place,
+                                       "-o", "@lit.vpl", "--quiet"], scene, ["lit.vpl"])
+        return run["lit.vpl"], [run]
+    placed = candidates(runner, view, c, seed)
+    kept = runner.run("vpl-eliminate", ["{candidates}", "-n", c.vpls, *ELIMINATE[c.method], *c.eliminate,
+                                        *(("--seed", seed) if c.method == "random" else ()),
+                                        "-o", "@vpls.vpl", "--quiet"],
+                      {"candidates": placed["candidates.vpl"]}, ["vpls.vpl"])
+    run = runner.run("vpl-estimate", ["{scene}", "{vpls}", "--photons", c.photons, "--seed", seed,
+                                      *ESTIMATE.get(c.method, ()), *c.estimate,
+                                      "-o", "@lit.vpl", "--stats", "@stats.json", "--quiet"],
+                     {**scene, "vpls": kept["vpls.vpl"]}, ["lit.vpl", "stats.json"])
+    return run["lit.vpl"], [placed, kept, run]
+
+
+def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
+    """The image with its layers direct and indirect, and the runs of all stages."""
+    vpls, runs = lit(runner, view, c, seed)
+    run = runner.run("vpl-render", ["{scene}", "{lit}", "--size", c.film, "--spp", c.spp, "--seed", seed,
+                                    *RENDER.get(c.method, ()), *c.render, "--layers", "direct,indirect,cutsize",
+                                    "-o", "@image.exr", "--stats", "@stats.json", "--quiet"],
+                     {"scene": ROOT / view.file, "lit": vpls}, ["image.exr", "stats.json"])
+    return run["image.exr"], runs + [run]
+
+
+def path_traced(runner: Runner, view: View, film: str, spp: int, seed: int) -> tuple[Path, list[Run]]:
+    run = runner.run("vpl-render", ["{scene}", "--size", film, "--integrator", "path", "--spp", spp,
+                                    "--seed", seed, "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
+                     {"scene": ROOT / view.file}, ["image.exr"])
+    return run["image.exr"], [run]

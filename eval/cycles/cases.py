@@ -1,0 +1,137 @@
+"""What is rendered by both programs, and the variants of scenes that both then read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+from scene_source import SceneError, read_toml, resolve
+
+
+@dataclass(frozen=True)
+class View:
+    """One picture of a case. `indirect` is everything but `direct`, which is bounces = 0."""
+
+    quantity: str  # all, direct, indirect
+    bounces: int  # diffuse vertices after the one that the camera sees
+
+    @property
+    def name(self) -> str:
+        return f"{self.quantity}-{self.bounces}"
+
+
+DIRECT, ONE_BOUNCE, INDIRECT = View("direct", 0), View("indirect", 1), View("indirect", 32)
+
+
+@dataclass(frozen=True)
+class Case:
+    name: str
+    scene: str  # below scenes/
+    size: tuple[int, int]
+    spp: int  # of ours, each seed
+    cycles_spp: int
+    seeds: int
+    views: tuple[View, ...]
+    drop: tuple[str, ...] = ()  # MTL keys taken out of every material that is no mirror
+    lights: tuple[dict, ...] = ()  # in place of the scene's own
+    note: str = ""
+
+
+ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 256, "cycles_spp": 256, "seeds": 4,
+        "views": (DIRECT, INDIRECT), "drop": ("Ke",)}
+SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.0, 2.5, 2.0]}
+
+CASES = (
+    Case("cornell", "cornell/scene.toml", (160, 160), 256, 256, 4, (DIRECT, ONE_BOUNCE, INDIRECT)),
+    Case("u-shape", "u-shape/scene.toml", (160, 120), 256, 256, 4, (DIRECT, INDIRECT)),
+    Case("veach-ajar", "veach-ajar/scene.toml", (160, 90), 512, 512, 4, (DIRECT, INDIRECT),
+         note="all diffuse, by the scene's own material library"),
+    Case("veach-door", "veach-door/scene.toml", (160, 90), 512, 512, 4, (DIRECT, INDIRECT),
+         drop=("Ks",), note="Phong lobes left out of both renderers; the mirror teapot stays"),
+    Case("room-point", lights=({"type": "point", "position": [0.3, 0.45, 0.15],
+                                "intensity": [0.2, 0.15, 0.1]},), **ROOM),
+    Case("room-spot", lights=({"type": "spot", "position": [0.3, 0.5, 0.1], "cone_deg": 30.0,
+                               "direction": [-0.2, -1.0, 0.6], "intensity": [1.0, 0.8, 0.6]},),
+         **ROOM),
+    Case("room-sun", lights=(SUN | {"angular_diameter_deg": 5.0},), **ROOM),
+    Case("room-distant", lights=(SUN,), **ROOM, note="a sun of no size"),
+    Case("room-sky", lights=({"type": "environment", "radiance": [0.5, 0.8, 1.0]},), **ROOM),
+    Case("room-sky-image", lights=({"type": "environment", "image": "sky.exr", "scale": 0.5,
+                                    "rotate_deg": 130.0},), **ROOM),
+)
+
+
+def edit_mtl(text: str, drop: tuple[str, ...]) -> str:
+    """The library without the lines that begin with a key in `drop`; mirrors stay as they are."""
+    out = []
+    for block in text.split("newmtl "):
+        mirror = any(line.split() in (["illum", n] for n in "358") for line in block.splitlines())
+        lines = [line for line in block.split("\n")
+                 if mirror or not line.split() or line.split()[0] not in drop]
+        out.append("\n".join(lines))
+    return "newmtl ".join(out)
+
+
+def _library_of(obj: Path) -> Path:
+    with open(obj) as file:
+        for line in file:
+            if line.startswith("mtllib "):
+                return obj.parent / line.split()[1]
+    raise SceneError(f"{obj}: names no material library; name one in 'materials'")
+
+
+def _toml_value(value: object) -> str:
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, list):
+        return "[" + ", ".join(_toml_value(v) for v in value) + "]"
+    return repr(value)
+
+
+def _toml_table(header: str, table: dict) -> str:
+    lines = [header] + [f"{key} = {_toml_value(value)}" for key, value in table.items()]
+    return "\n".join(lines) + "\n\n"
+
+
+def write_sky(path: Path) -> None:
+    """A latitude-longitude image without symmetry, so that a wrong turn or flip shows."""
+    y, x = np.mgrid[0:16, 0:32]
+    up = 1.0 - (y + 0.5) / 16
+    sky = np.stack([0.2 + 0.3 * up, 0.2 + 0.6 * up, 0.2 + 1.2 * up], axis=-1)
+    sky[4:7, 20:24] = (30.0, 20.0, 8.0)
+    sky[9:12, 3:9] = (6.0, 0.5, 0.5)
+    sky[x >= 28] *= 0.25
+    image = oiio.ImageBuf(oiio.ImageSpec(32, 16, 3, oiio.FLOAT))
+    image.set_pixels(oiio.ROI(), np.ascontiguousarray(sky, np.float32))
+    if not image.write(str(path)):
+        raise OSError(f"{path}: cannot write: {image.geterror()}")
+
+
+def prepare(case: Case, scenes: Path, folder: Path) -> Path:
+    """Writes the scene.toml (and libraries) that both renderers read; returns its path."""
+    original = scenes / case.scene
+    table = read_toml(original)
+    folder.mkdir(parents=True, exist_ok=True)
+    width, height = case.size
+    text = _toml_table("[film]", {"width": width, "height": height})
+    text += _toml_table("[camera]", table["camera"])
+    for number, mesh in enumerate(table["mesh"]):
+        obj = resolve(original, mesh["file"])
+        if not obj.is_file():
+            raise SceneError(f"{obj}: no such OBJ file; see scenes/README.md for the downloads")
+        mtl = resolve(original, mesh["materials"]) if "materials" in mesh else _library_of(obj)
+        if case.drop:
+            edited = folder / f"mesh{number}.mtl"
+            edited.write_text(edit_mtl(mtl.read_text(), case.drop))
+            mtl = edited
+        text += _toml_table("[[mesh]]", mesh | {"file": str(obj), "materials": str(mtl)})
+    for light in case.lights or table.get("light", []):
+        if "image" in light:
+            write_sky(folder / light["image"])
+        text += _toml_table("[[light]]", light)
+    path = folder / "scene.toml"
+    path.write_text(text)
+    return path

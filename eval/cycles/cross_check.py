@@ -1,0 +1,232 @@
+#!/usr/bin/python3
+"""Cross-checks our path tracer against Blender's Cycles on the CPU.
+
+  eval/cycles/cross_check.py                   all cases
+  eval/cycles/cross_check.py cornell u-shape   two of them
+  eval/cycles/cross_check.py --list
+
+Each view is rendered with several seeds by both; the ratio of the image means is printed with its
+standard error. Exit codes: 0 all means agree within --tolerance; 2 options that make no sense;
+3 Blender, vpl-render or an input is missing or fails; 5 a mean differs by more, or is too noisy
+to tell.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+import compare
+from cases import CASES, Case, View, prepare
+from scene_source import SceneError
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
+
+
+class ToolError(Exception):
+    """A program that is missing or failed: one line."""
+
+
+def parse_arguments(arguments: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="cross_check.py", description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all")
+    parser.add_argument("--list", action="store_true", help="print the cases and stop")
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "cycles",
+                        help="folder for images (default out/cycles)")
+    parser.add_argument("--results", type=Path,
+                        help="JSON to write; cases already in it stay (default OUT/results.json)")
+    parser.add_argument("--blender", default="blender", help="program (default blender)")
+    parser.add_argument("--vpl-render", default=str(ROOT / "build/release/bin/vpl-render"),
+                        help="program (default build/release/bin/vpl-render)")
+    parser.add_argument("--effort", type=float, default=1.0, help="factor on samples (default 1)")
+    parser.add_argument("--tolerance", type=float, default=0.01,
+                        help="allowed difference of the means (default 0.01)")
+    parser.add_argument("--threads", type=int, default=2, help="default 2")
+    parser.add_argument("--reuse", action="store_true",
+                        help="keep images of an earlier run with the same samples and seeds")
+    parser.add_argument("--encoded-textures", action="store_true",
+                        help="Cycles filters textures before decoding them, as it does by itself")
+    options = parser.parse_args(arguments)
+    names = [case.name for case in CASES]
+    for name in options.cases:
+        if name not in names:
+            parser.error(f"no case '{name}'; use {', '.join(names)}")
+    if options.effort <= 0 or options.tolerance <= 0 or options.threads < 1:
+        parser.error("--effort, --tolerance and --threads must be positive")
+    options.results = options.results or options.out / "results.json"
+    return options
+
+
+def require_program(name: str, cure: str) -> str:
+    found = shutil.which(name)
+    if not found:
+        raise ToolError(f"{name}: no such program; {cure}")
+    return found
+
+
+def run(command: list[str], log: Path, wanted: list[Path]) -> float:
+    """Wall time in s. Blender can fail with code 0, so what it should have written is looked at."""
+    start = time.monotonic()
+    with open(log, "w") as out:
+        done = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, check=False)
+    missing = [path for path in wanted if not path.is_file()]
+    if done.returncode != 0 or missing:
+        told = [line for line in log.read_text().splitlines()
+                if re.match(r"\S+: ", line) and not line.startswith("Fra:")]
+        cause = told[-1] if told else f"exit code {done.returncode}"
+        raise ToolError(f"{Path(command[0]).name} failed: {cause}; all it said is in {log}")
+    return time.monotonic() - start
+
+
+def samples(case: Case, options: argparse.Namespace) -> tuple[int, int]:
+    return (max(1, round(case.spp * options.effort)),
+            max(1, round(case.cycles_spp * options.effort)))
+
+
+def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
+    spp, seconds = samples(case, options)[0], 0.0
+    stacks = {}
+    for view in case.views:
+        images = []
+        for seed in range(1, case.seeds + 1):
+            image = scene.parent / f"ours.{view.name}.{spp}spp.{seed}.exr"
+            command = [options.vpl_render, str(scene), "-o", str(image), "--integrator", "path",
+                       "--only", view.quantity, "--max-bounces", str(view.bounces), "--spp",
+                       str(spp), "--seed", str(seed), "--threads", str(options.threads), "--quiet"]
+            if not (options.reuse and image.is_file()):
+                image.unlink(missing_ok=True)
+                seconds += run(command, scene.parent / "ours.log", [image])
+            images.append(compare.read_exr(image))
+        stacks[view] = np.stack(images)
+    return stacks, seconds
+
+
+def cycles_bounces(views: tuple[View, ...]) -> list[int]:
+    """Limits to render: Cycles has no indirect picture alone; it is the whole less the direct."""
+    limits = {view.bounces for view in views}
+    return sorted(limits | ({0} if any(v.quantity == "indirect" for v in views) else set()))
+
+
+def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
+    spp, seconds = samples(case, options)[1], 0.0
+    limits, seeds = cycles_bounces(case.views), range(1, case.seeds + 1)
+    kind = "cycles-encoded" if options.encoded_textures else "cycles"
+    name = f"{kind}.{{bounces}}.{spp}spp.{{seed}}.exr"
+
+    def path(bounces: int, seed: int) -> Path:
+        return scene.parent / name.format(bounces=bounces, seed=seed)
+
+    wanted = [path(b, s) for b in limits for s in seeds]
+    if not (options.reuse and all(image.is_file() for image in wanted)):
+        for image in wanted:
+            image.unlink(missing_ok=True)
+        command = [options.blender, "-b", "--factory-startup", "--python-exit-code", "3",
+                   "--python", str(HERE / "render_cycles.py"), "--", str(scene),
+                   "--output", str(scene.parent / name), "--spp", str(spp),
+                   "--bounces", ",".join(map(str, limits)), "--seeds", ",".join(map(str, seeds)),
+                   "--threads", str(options.threads)]
+        command += ["--encoded-textures"] if options.encoded_textures else []
+        seconds = run(command, scene.parent / "cycles.log", wanted)
+    stacks = {b: np.stack([compare.read_exr(path(b, s)) for s in seeds]) for b in limits}
+    return {v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0)
+            for v in case.views}, seconds
+
+
+def verdict(figures: dict, tolerance: float) -> str:
+    """`noisy` where the error bar is too wide to hold the claim either way."""
+    ratio, error = figures["mean"]["ratio"], figures["mean"]["error"]
+    if ratio is None or abs(ratio - 1.0) > tolerance + 3.0 * error:
+        return "differs"
+    if 2.0 * error > tolerance:
+        return "noisy"
+    return "agrees" if abs(ratio - 1.0) <= tolerance else "differs"
+
+
+def check(case: Case, options: argparse.Namespace) -> dict:
+    folder = options.out / case.name
+    scene = prepare(case, ROOT / "scenes", folder)
+    ours, our_seconds = render_ours(case, scene, options)
+    cycles, cycles_seconds = render_cycles(case, scene, options)
+    spp, cycles_spp = samples(case, options)
+    result = {"scene": case.scene, "note": case.note, "size": list(case.size), "seeds": case.seeds,
+              "spp": spp, "cycles_spp": cycles_spp, "views": {},
+              "time_s": round(our_seconds, 1), "cycles_time_s": round(cycles_seconds, 1)}
+    for view in case.views:
+        figures = compare.compare(ours[view], cycles[view])
+        figures["verdict"] = verdict(figures, options.tolerance)
+        result["views"][view.name] = figures
+        report(case, view, figures)
+        compare.write_picture(folder / f"{view.name}.png", f"{case.name}, {view.name}", ours[view],
+                              cycles[view])
+    return result
+
+
+def report(case: Case, view: View, figures: dict) -> None:
+    mean, blocks = figures["mean"], figures["blocks"]
+    ratio = "-" if mean["ratio"] is None else f"{mean['ratio']:.4f} +- {mean['error']:.4f}"
+    print(f"{case.name:15} {view.name:12} ours {mean['ours']:.5g}  Cycles {mean['cycles']:.5g}  "
+          f"ratio {ratio}  blocks z^2 {blocks['mean_square_z']:.2f}  {figures['verdict']}",
+          flush=True)
+
+
+def first_line(command: list[str]) -> str:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return (done.stdout.splitlines() or ["unknown"])[0].strip()
+
+
+def describe_run(options: argparse.Namespace) -> dict:
+    commit = first_line(["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=10"])
+    cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
+    return {"blender": first_line([options.blender, "--version"]), "commit": commit,
+            "vpl_render": first_line([options.vpl_render, "--version"]),
+            "cpu": cpu[1] if cpu else platform.machine(), "threads": options.threads,
+            "effort": options.effort, "tolerance": options.tolerance,
+            "encoded_textures": options.encoded_textures}
+
+
+def write_results(path: Path, runs: dict) -> None:
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps(runs, indent=1, sort_keys=True) + "\n")
+    partial.replace(path)
+
+
+def main(arguments: list[str]) -> int:
+    options = parse_arguments(arguments)
+    chosen = [case for case in CASES if not options.cases or case.name in options.cases]
+    if options.list:
+        for case in CASES:
+            print(f"{case.name:15} {case.scene:24} {' '.join(v.name for v in case.views)}")
+        return EXIT_OK
+    options.blender = require_program(
+        options.blender, "apt-get install --no-install-recommends blender, or name it by --blender")
+    options.vpl_render = require_program(options.vpl_render, "build it, or name it by --vpl-render")
+    options.out.mkdir(parents=True, exist_ok=True)
+    results = json.loads(options.results.read_text()) if options.results.is_file() else {}
+    about = describe_run(options)
+    good = True
+    for case in chosen:
+        results[case.name] = {"run": about} | check(case, options)
+        write_results(options.results, results)
+        good &= all(v["verdict"] == "agrees" for v in results[case.name]["views"].values())
+    return EXIT_OK if good else EXIT_DIFFERENT
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except (SceneError, ToolError, OSError, ValueError) as problem:
+        print(f"cross_check.py: {problem}", file=sys.stderr)
+        sys.exit(EXIT_INPUT)

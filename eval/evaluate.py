@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""The evaluation: runs the comparisons of settings.toml through the tools and writes one report.
+
+  eval/evaluate.py --size standard
+  eval/evaluate.py --size quick --parts methods,gather
+"""
+
+import argparse
+import datetime
+import importlib
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+from bnvpl_eval import output, settings
+from bnvpl_eval.context import Context
+from bnvpl_eval.runner import Runner
+
+# In the order in which they may use each other's rows.
+PARTS = ["methods", "scatter", "gather", "equal_time", "energy", "convergence", "sensitivity", "pictures"]
+
+
+def processor() -> str:
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def git(*words: str) -> str:
+    done = subprocess.run(["git", "-C", str(settings.ROOT), *words], capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+def provenance(size: str, runner: Runner) -> dict:
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", "core", "formats", "scene", "spatial", "tools")
+    return {"commit": git("rev-parse", "--short", "HEAD") + (" with changes" if changed else ""),
+            "size": size, "processor": processor(), "threads": len(os.sched_getaffinity(0)),
+            "date": datetime.date.today().isoformat(), "runs": len(runner.runs),
+            "CPU seconds": round(sum(run.cpu_s for run in runner.runs.values())),
+            "peak memory MiB": max((run.record["peak_mib"] for run in runner.runs.values()), default=0)}
+
+
+def arguments_of() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", default="standard", help="of settings.toml: quick, standard, full")
+    parser.add_argument("--parts", default=",".join(PARTS), help=f"some of {','.join(PARTS)}")
+    parser.add_argument("--settings", type=Path, default=settings.EVAL / "settings.toml")
+    parser.add_argument("--scenes", help="some of the size's scenes, by id")
+    parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools")
+    parser.add_argument("-o", "--output", type=Path, help="folder; build/eval/SIZE unless given")
+    parser.add_argument("--quiet", action="store_true")
+    return parser.parse_args()
+
+
+def main() -> int:
+    arguments = arguments_of()
+    scenes, table = settings.load(arguments.settings)
+    if arguments.size not in table["size"]:
+        raise SystemExit(f"eval: no size '{arguments.size}'; settings.toml has {', '.join(table['size'])}")
+    parts = arguments.parts.split(",")
+    if unknown := [part for part in parts if part not in PARTS]:
+        raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(PARTS)}")
+    size = table["size"][arguments.size]
+    wanted = arguments.scenes.split(",") if arguments.scenes else size["scenes"]
+    chosen = []
+    for scene in (scene for scene in scenes if scene.id in wanted):
+        if scene.available:
+            chosen.append(scene)
+        else:
+            print(f"eval: {scene.title} is left out: set {scene.define} to the model's folder", file=sys.stderr)
+    if not chosen:
+        raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
+    folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
+    runner = Runner(arguments.bin.resolve(), settings.ROOT / "build/eval/cache", arguments.quiet)
+    context = Context(arguments.size, size, table, chosen, runner)
+    for part in PARTS:
+        if part in parts:
+            importlib.import_module(f"bnvpl_eval.parts.{part}").run(context)
+    report = output.write_all(context, folder, provenance(arguments.size, runner))
+    print(f"eval: {len(runner.runs)} runs; {report}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

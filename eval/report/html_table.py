@@ -1,0 +1,128 @@
+"""Tables with the best value of each group marked."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+from typing import Any
+
+MINUS = "−"
+
+
+def number_text(value: float, digits: int) -> str:
+    """`digits` significant digits, no exponent where a reader would not want one."""
+    if value == 0:
+        return "0"
+    size = math.floor(math.log10(abs(value)))
+    if size < -4 or size > 6:
+        mantissa, power = f"{value:.{digits - 1}e}".split("e")
+        return f"{mantissa}e{int(power)}".replace("-", MINUS)
+    rounded = round(value, digits - 1 - size)
+    size = math.floor(math.log10(abs(rounded))) if rounded else size
+    return f"{rounded:.{max(0, digits - 1 - size)}f}".replace("-", MINUS)
+
+
+def cell_text(value: Any, digits: int, fixed: int | None = None) -> str:
+    """`fixed` decimals where given, else `digits` significant ones."""
+    if value is None:
+        return "–"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        centre = cell_text(value[0], digits, fixed)
+        decimals = len(centre.partition(".")[2]) if "e" not in centre else None
+        error = number_text(value[1], 2) if decimals is None else f"{value[1]:.{decimals}f}"
+        return f"{centre} ± {error}"
+    if fixed is not None:
+        return f"{value:.{fixed}f}".replace("-", MINUS)
+    if isinstance(value, int) and abs(value) >= 10 ** digits:
+        return f"{value:,}".replace(",", "\u2009").replace("-", MINUS)
+    return number_text(value, digits)
+
+
+def badness(value: Any, better: str) -> float | None:
+    """Small is good; None where the value is not to be judged."""
+    if isinstance(value, tuple):
+        value = value[0]
+    if value is None or isinstance(value, str):
+        return None
+    if better == "one":
+        return abs(math.log(value)) if value > 0 else math.inf
+    return value if better == "low" else -value
+
+
+def groups_of(rows: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
+    """Consecutive rows of one group stand together."""
+    groups: list[tuple[str, list[dict[str, Any]]]] = []
+    for row in rows:
+        if not groups or groups[-1][0] != row["group"]:
+            groups.append((row["group"], []))
+        groups[-1][1].append(row)
+    return groups
+
+
+def best_rows(rows: list[dict[str, Any]], column: dict[str, Any]) -> set[int]:
+    """Of one group; none where there is nothing to choose between."""
+    if column["better"] is None:
+        return set()
+    found = {i: badness(row["cells"][column["key"]], column["better"])
+             for i, row in enumerate(rows) if row["judged"]}
+    judged = {i: v for i, v in found.items() if v is not None}
+    if len(judged) < 2:
+        return set()
+    return {i for i, v in judged.items() if v == min(judged.values())}
+
+
+def is_text(column: dict[str, Any], rows: list[dict[str, Any]]) -> bool:
+    return any(isinstance(row["cells"][column["key"]], str) for row in rows)
+
+
+def head(columns: list[dict[str, Any]], text: list[bool]) -> str:
+    hints = {"low": "lower is better", "high": "higher is better", "one": "1 is best"}
+    cells = []
+    for column, left in zip(columns, text):
+        hint = hints.get(column["better"], "")
+        below = " · ".join(t for t in (column["unit"], hint) if t)
+        small = f"<small>{escape(below)}</small>" if below else ""
+        cells.append(f'<th scope="col"{" class=text" if left else ""}>'
+                     f'{escape(column["label"])}{small}</th>')
+    return "<thead><tr>" + "".join(cells) + "</tr></thead>"
+
+
+def table_html(table: dict[str, Any]) -> str:
+    columns = [c for c in table["columns"] if c["key"] != "group"]
+    text = [is_text(c, table["rows"]) for c in columns]
+    parts = [f'<section class="block" id="table-{table["id"]}"><h2>{escape(table["title"])}</h2>']
+    if table["note"]:
+        parts.append(f'<p class="note">{escape(table["note"])}</p>')
+    # Focusable, so that arrow keys scroll it where it is wider than the page.
+    parts.append(f'<div class="scroll" tabindex="0" role="region" '
+                 f'aria-label="{escape(table["title"])}"><table class="numbers">')
+    parts.append(head(columns, text))
+    for group, rows in groups_of(table["rows"]):
+        parts.append("<tbody>")
+        if group:
+            parts.append(f'<tr class="group"><th colspan="{len(columns)}" scope="rowgroup">'
+                         f"<span>{escape(group)}</span></th></tr>")
+        best = [best_rows(rows, c) for c in columns]
+        parts += [row_html(i, row, columns, text, best) for i, row in enumerate(rows)]
+        parts.append("</tbody>")
+    parts.append("</table></div>")
+    if any(c["better"] for c in columns):
+        parts.append('<p class="fine"><b class="best">Bold</b>: the best of its group.</p>')
+    return "\n".join(parts + ["</section>"])
+
+
+def row_html(i: int, row: dict[str, Any], columns: list[dict[str, Any]], text: list[bool],
+             best: list[set[int]]) -> str:
+    cells = []
+    for k, column in enumerate(columns):
+        shown = escape(cell_text(row["cells"][column["key"]], column["digits"],
+                                 column["decimals"]))
+        if i in best[k]:
+            shown = f'<b class="best">{shown}<span class="hidden"> (best)</span></b>'
+        if k == 0:
+            cells.append(f'<th scope="row"{" class=text" if text[k] else ""}>{shown}</th>')
+        else:
+            cells.append(f'<td{" class=text" if text[k] else ""}>{shown}</td>')
+    return "<tr>" + "".join(cells) + "</tr>"

@@ -1,0 +1,32 @@
+// Viewers are made when they come near the window: a page holds more images than memory likes.
+
+const page = JSON.parse(document.getElementById("views").textContent);
+const viewers = new Map();  // host -> Viewer
+
+function makeViewer(host) {
+  if (viewers.has(host)) return;
+  const viewer = new Viewer(host, page.views[Number(host.dataset.view)], page.exponents);
+  // One open list shows that there are keys; where a keyboard is unlikely, its heading does.
+  if (viewers.size === 0) viewer.panel.keys.open = matchMedia("(min-width: 40rem)").matches;
+  viewers.set(host, viewer);
+}
+
+const nearby = new IntersectionObserver((entries) => {
+  for (const entry of entries) {
+    if (!entry.isIntersecting) continue;
+    nearby.unobserve(entry.target);
+    makeViewer(entry.target);
+  }
+}, {rootMargin: "800px"});
+
+let underPointer = null;
+for (const host of document.querySelectorAll(".viewer")) {
+  nearby.observe(host);
+  host.addEventListener("pointerenter", () => { underPointer = host; });
+  host.addEventListener("pointerleave", () => { underPointer = null; });
+}
+
+// Keys while nothing has the focus: for the viewer under the pointer.
+document.addEventListener("keydown", (event) => {
+  if (event.target === document.body) viewers.get(underPointer)?.key(event);
+});

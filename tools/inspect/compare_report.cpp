@@ -1,0 +1,124 @@
+// What `vpl-inspect compare` prints, and how it exits.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "tools/inspect/compare.h"
+
+namespace bnvpl {
+namespace {
+
+Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+struct Limit {
+  const char* what;
+  double value, most;  // negative: no limit
+};
+std::array<Limit, 3> limits(const Comparison& c, const CompareOptions& options) {
+  return {{{"relMSE", c.relMse, options.maxRelMse},
+           {"RMSE", c.rmse, options.maxRmse},
+           {"RMSE / mean", c.rmseOverMean(), options.maxRmseOverMean}}};
+}
+// Written so that an undefined value exceeds any limit.
+bool exceeds(const Limit& limit) { return limit.most >= 0.0 && !(limit.value <= limit.most); }
+
+Json channelJson(const Comparison::Channel& k) {
+  return {{"name", k.name},
+          {"mean", k.meanA},
+          {"mean_reference", k.meanB},
+          {"mean_ratio", finiteOrNull(k.meanA / k.meanB)},
+          {"rmse", k.rmse},
+          {"relmse", finiteOrNull(k.relMse)},
+          {"smape", k.smape}};
+}
+
+Json flipJson(const Comparison::Flip& flip) {
+  return {{"pixels_per_degree", flip.ppd}, {"exposure_ev", flip.exposureEv},
+          {"hdr_start_ev", flip.startEv},  {"hdr_stop_ev", flip.stopEv},
+          {"hdr_exposures", flip.exposures}};
+}
+
+class Text {
+ public:
+  template <typename... Values>
+  void add(const char* format, Values... values) {
+    char line[256];
+    std::snprintf(line, sizeof line, format, values...);
+    text_ += line;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void addFlipText(const Comparison::Flip& flip, Text& out) {
+  out.add("FLIP           %.6g   (at %+g EV, %.4g pixels per degree)\n", flip.ldr, flip.exposureEv,
+          flip.ppd);
+  out.add("HDR-FLIP       %.6g   (the largest of %zu exposures from %+.4g to %+.4g EV)\n", flip.hdr,
+          flip.exposures, flip.startEv, flip.stopEv);
+}
+
+void addChannelText(const Comparison& c, Text& out) {
+  if (c.channels.size() == 1) return;
+  out.add("%-14s %-12s %-12s %s\n", "of each", "RMSE", "relMSE", "SMAPE");
+  const auto row = [&](const Comparison::Channel& k) {
+    out.add("  %-12s %-12.6g %-12.6g %.6g\n", k.name.c_str(), k.rmse, k.relMse, k.smape);
+  };
+  for (const Comparison::Channel& k : c.channels) row(k);
+  if (c.luminance) row(*c.luminance);
+}
+
+}  // namespace
+
+Json comparisonJson(const Comparison& c, const CompareOptions& options) {
+  Json json{{"mean", c.meanA},
+            {"mean_reference", c.meanB},
+            {"mean_ratio", finiteOrNull(c.meanRatio())},
+            {"rmse", c.rmse},
+            {"rmse_over_mean", finiteOrNull(c.rmseOverMean())},
+            {"relmse", finiteOrNull(c.relMse)},
+            {"relmse_epsilon", c.epsilon},
+            {"smape", c.smape},
+            {"flip", c.flip ? Json(c.flip->ldr) : Json(nullptr)},
+            {"hdr_flip", c.flip ? Json(c.flip->hdr) : Json(nullptr)},
+            {"flip_settings", c.flip ? flipJson(*c.flip) : Json(nullptr)},
+            {"mask_pixels", c.maskPixels ? Json(*c.maskPixels) : Json(nullptr)},
+            {"worst_pixel", {c.worstPixel[0], c.worstPixel[1]}},
+            {"channels", Json::array()}};
+  for (const Comparison::Channel& k : c.channels) json["channels"].push_back(channelJson(k));
+  json["luminance"] = c.luminance ? channelJson(*c.luminance) : Json(nullptr);
+  json["within_limits"] = comparisonExitCode(c, options) == kExitOk;
+  return json;
+}
+
+std::string comparisonText(const Comparison& c, const CompareOptions& options) {
+  Text out;
+  out.add("mean ratio     %.6g   (mean %.6g, reference %.6g)\n", c.meanRatio(), c.meanA, c.meanB);
+  for (const Comparison::Channel& k : c.channels) {
+    if (c.channels.size() == 1) break;
+    out.add("  %-12s %.6g   (mean %.6g, reference %.6g)\n", k.name.c_str(), k.meanA / k.meanB,
+            k.meanA, k.meanB);
+  }
+  out.add("RMSE           %.6g\n", c.rmse);
+  out.add("RMSE / mean    %.6g\n", c.rmseOverMean());
+  out.add("relMSE         %.6g   (epsilon %.6g = %g times the squared mean of the reference)\n",
+          c.relMse, c.epsilon, options.epsilon);
+  out.add("SMAPE          %.6g\n", c.smape);
+  if (c.flip) addFlipText(*c.flip, out);
+  addChannelText(c, out);
+  out.add("worst pixel    (%zu, %zu)\n", c.worstPixel[0], c.worstPixel[1]);
+  if (c.maskPixels) out.add("mask           counts %.6g pixels\n", *c.maskPixels);
+  for (const Limit& limit : limits(c, options)) {
+    if (!exceeds(limit)) continue;
+    out.add("DIFFERENT: %s %.6g exceeds the limit %g\n", limit.what, limit.value, limit.most);
+  }
+  return out.text();
+}
+
+int comparisonExitCode(const Comparison& c, const CompareOptions& options) {
+  const auto all = limits(c, options);
+  return std::any_of(all.begin(), all.end(), exceeds) ? kExitDifferent : kExitOk;
+}
+
+}  // namespace bnvpl
