@@ -11,6 +11,7 @@ import OpenImageIO as oiio
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
+ROUNDING = 2e-4  # relative: two float renderers differ by this where neither has noise
 BLOCK = 8  # pixels: wide enough that its mean is not a single path's
 
 
@@ -65,11 +66,12 @@ def block_map(ours: np.ndarray, cycles: np.ndarray) -> tuple[np.ndarray, np.ndar
     """Relative difference (ours - Cycles) / Cycles of each block, and it in standard errors."""
     (a, va), (b, vb) = mean_and_variance(ours), mean_and_variance(cycles)
     difference = block_sums(a - b)
-    error = np.sqrt(block_sums(va + vb))
     total = block_sums(b)
+    error = np.hypot(np.sqrt(block_sums(va + vb)), ROUNDING * np.abs(total))
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(total > 0.0, difference / total, 0.0)
-        z = np.where(error > 0.0, difference / error, np.where(difference == 0.0, 0.0, np.inf))
+        # Light in a block where Cycles has none at all, without noise: a difference beyond doubt.
+        z = np.where(error > 0.0, difference / error, np.where(difference == 0.0, 0.0, 1e3))
     return relative, z
 
 

@@ -73,6 +73,12 @@ def albedo_socket(tree: bpy.types.NodeTree, material: source.Material, encoded: 
 
 
 def reflection_shader(tree: bpy.types.NodeTree, material: source.Material, encoded: bool):
+    if material.glass:
+        glass = tree.nodes.new("ShaderNodeBsdfGlass")
+        glass.distribution = "SHARP"
+        glass.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+        glass.inputs["IOR"].default_value = material.ior
+        return glass.outputs[0]
     diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")  # roughness 0: Lambert
     diffuse.inputs["Roughness"].default_value = 0.0
     diffuse.inputs["Color"].default_value = (*material.kd, 1.0)
@@ -175,6 +181,7 @@ def make_lamp(light: dict, name: str) -> None:
             raise SceneError("spot light: Cycles' soft rim has another shape; use falloff_deg 0")
         lamp.spot_size = 2.0 * math.radians(light["cone_deg"])
         lamp.spot_blend = 0.0
+        undo_cosine(lamp)
     if "direction" in light:
         forward = np.array(light["direction"], float)
         forward /= np.linalg.norm(forward)
@@ -184,6 +191,23 @@ def make_lamp(light: dict, name: str) -> None:
     else:
         thing.location = light["position"]
     bpy.context.scene.collection.objects.link(thing)
+
+
+def undo_cosine(lamp: bpy.types.Light) -> None:
+    """Cycles' spot dims by the cosine to its axis; ours is even inside the cone."""
+    lamp.use_nodes = True
+    tree = lamp.node_tree
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    parts = tree.nodes.new("ShaderNodeSeparateXYZ")
+    inverse = tree.nodes.new("ShaderNodeMath")
+    inverse.operation = "DIVIDE"
+    inverse.inputs[0].default_value = 1.0
+    size = tree.nodes.new("ShaderNodeMath")
+    size.operation = "ABSOLUTE"
+    tree.links.new(coordinates.outputs["Normal"], parts.inputs[0])
+    tree.links.new(parts.outputs["Z"], size.inputs[0])
+    tree.links.new(size.outputs[0], inverse.inputs[1])
+    tree.links.new(inverse.outputs[0], tree.nodes["Emission"].inputs["Strength"])
 
 
 def make_world(lights: list[dict], scene_folder: Path) -> None:

@@ -26,6 +26,8 @@ class Material:
     kd: tuple[float, float, float] = (0.6, 0.6, 0.6)
     ks: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ke: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    tf: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ior: float = 1.5
     illum: int = 0
     opacity: float = 1.0
     map_kd: Path | None = None
@@ -35,6 +37,10 @@ class Material:
     @property
     def mirror(self) -> bool:
         return self.illum in (3, 5, 8)
+
+    @property
+    def glass(self) -> bool:
+        return self.illum in (4, 6, 7, 9)
 
 
 @dataclass
@@ -131,10 +137,12 @@ def read_mtl(path: Path, obj: Path) -> dict[str, Material]:
         key, *rest = line.split() or ["#"]
         if key == "newmtl":
             current = materials[rest[0]] = Material(rest[0])
-        elif key in ("Kd", "Ks", "Ke"):
+        elif key in ("Kd", "Ks", "Ke", "Tf"):
             setattr(current, key.lower(), tuple(float(x) for x in rest[:3]))
         elif key == "illum":
             current.illum = int(rest[0])
+        elif key == "Ni":
+            current.ior = float(rest[0])
         elif key == "d":
             current.opacity = float(rest[0])
         elif key == "emission_sides":
@@ -150,8 +158,9 @@ def read_mtl(path: Path, obj: Path) -> dict[str, Material]:
 def check_supported(material: Material, path: Path) -> None:
     """Refuses what has no exact counterpart in Cycles."""
     problem = ""
-    if material.illum in (4, 6, 7, 9):
-        problem = "is glass"
+    if material.glass:  # black stands for white in both fields
+        if any(c not in ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for c in (material.ks, material.tf)):
+            problem = "is coloured glass"
     elif any(material.ks) and not material.mirror:
         problem = "has a Phong lobe (Ks)"
     elif material.opacity < 0.5 or material.maps:

@@ -165,7 +165,7 @@ def data_html(plot: dict[str, Any]) -> str:
     """The numbers behind the lines, for those who cannot see them or want to copy them."""
     rows = []
     for s in plot["series"]:
-        slope = f" <small>{escape(slope_text(s['slope']))}</small>" if s["slope"] is not None else ""
+        slope = "" if s["slope"] is None else f" <small>{slope_text(s['slope'])}</small>"
         rows.append(f'<tbody><tr class="group"><th colspan="3" scope="rowgroup">'
                     f'<span>{escape(s["label"])}{slope}</span></th></tr>')
         for i, (x, y) in enumerate(zip(s["x"], s["y"])):

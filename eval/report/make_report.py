@@ -32,13 +32,13 @@ def write_whole(path: Path, data: bytes) -> None:
         raise
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("report", type=Path, help="what to show (.json)")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the page (.html)")
     parser.add_argument("--quiet", action="store_true", help="no line about the page's size")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     try:
         page = page_html(load(options.report)).encode()
     except ReportError as e:

@@ -83,14 +83,14 @@ def picture(plot: dict[str, Any], kind: str, dpi: int) -> bytes:
     return buffer.getvalue()
 
 
-def main() -> int:
+def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("report", type=Path, help="the report (.json)")
     parser.add_argument("plot", help="id of the plot")
     parser.add_argument("-o", "--output", type=Path, required=True, help="picture (.png or .svg)")
     parser.add_argument("--dpi", type=int, default=110, help="of a PNG (default: %(default)s)")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     kind = options.output.suffix.lstrip(".").lower()
     if kind not in ("png", "svg"):
         parser.error(f"{options.output}: neither .png nor .svg")

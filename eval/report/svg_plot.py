@@ -1,8 +1,8 @@
 """A plot as inline SVG. Colours come from classes, so that the page's style decides light or dark.
 
 Two sizes of each are written and the style shows one: a wide one with the names at the ends of the
-lines, and a narrow one, for phones, with the names below. Scaling one drawing would make the other's
-letters too small.
+lines, and a narrow one, for phones, with the names below. One drawing scaled to both would have
+letters too small on a phone.
 """
 
 from __future__ import annotations

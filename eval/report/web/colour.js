@@ -1,5 +1,5 @@
-// From linear values to what a screen shows. The curve is that of the renderer's PNG previews: 2^EV,
-// then sRGB's own, clamped.
+// From linear values to what a screen shows. The curve is that of the renderer's PNG previews:
+// 2^EV, then sRGB's own, clamped.
 
 function toSrgb8(linear) {
   if (!(linear > 0)) return 0;

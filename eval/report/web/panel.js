@@ -64,8 +64,8 @@ class Panel {
   makeList(name, view, act) {
     this.rows = this.items.map((item, i) => {
       const radio = (slot) => el("input", {
-        type: "radio", name: `${name}-${slot}`, "aria-label": `${slot.toUpperCase()}: ${item.label}`,
-        onchange: () => act.choose(slot, i)});
+        type: "radio", name: `${name}-${slot}`,
+        "aria-label": `${slot.toUpperCase()}: ${item.label}`, onchange: () => act.choose(slot, i)});
       const a = radio("a"), b = radio("b");
       const numbers = el("small", {class: "numbers"});
       const isReference = item.id === view.reference && !item.element;
@@ -119,7 +119,6 @@ class Panel {
     this.ev.value = state.ev;
     this.evText.textContent = `${signedText(state.ev)} EV`;
     this.ev.setAttribute("aria-valuetext", this.evText.textContent);
-    this.ev.disabled = state.map !== "image";
     this.rows.forEach((r, i) => {
       r.a.checked = i === state.a;
       r.b.checked = i === state.b;

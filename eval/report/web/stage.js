@@ -1,4 +1,4 @@
-// The picture area: two canvases of image pixels, shown enlarged, one left and one right of the split.
+// The picture area: two canvases of image pixels, enlarged, one left and one right of the split.
 
 const zoomSteps = [1, 2, 4, 8, 16, 32];
 
@@ -41,7 +41,8 @@ class Stage {
 
   // CSS pixels for the picture: beside the list, or, on a narrow page, the whole width.
   room() {
-    const style = getComputedStyle(this.host), em = parseFloat(getComputedStyle(document.body).fontSize);
+    const style = getComputedStyle(this.host);
+    const em = parseFloat(getComputedStyle(document.documentElement).fontSize);
     const beside = style.gridTemplateColumns.split(" ").length > 1;
     return this.host.clientWidth - (beside ? 23 * em + parseFloat(style.columnGap) : 0);
   }

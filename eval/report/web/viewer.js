@@ -6,7 +6,7 @@ class Viewer {
     this.items = [...view.images, ...view.pictures];
     this.reference = view.images.findIndex((i) => i.id === view.reference);
     const a = Math.max(0, view.images.findIndex((_, i) => i !== this.reference));
-    this.state = {layer: view.layers[0].id, a, mode: "split", map: "image", ev: view.exposure ?? 0,
+    this.state = {layer: view.layers[0].id, mode: "split", map: "image", ev: view.exposure ?? 0, a,
                   b: this.reference >= 0 ? this.reference : Math.min(1, this.items.length - 1),
                   ranges: {relative: kinds.relative.initial, squared: kinds.squared.initial}};
     this.exposed = view.exposure !== null;
@@ -56,14 +56,18 @@ class Viewer {
     if (!this.exposed && main && main.bits) this.autoExpose(true);
     panel.update(state, this.available);
     const sources = ["a", "b"].map((slot, k) => this.paint(k, state[slot], reference));
-    const suffix = state.map === "image" ? "" : `: ${kinds[state.map].title.toLowerCase()}`;
     this.stage.show(sources, ["a", "b"].map((slot) => {
-      const item = this.items[state[slot]];
-      return item.label + (item.files ? suffix : "");
+      const item = this.items[state[slot]], map = this.mapOf(state[slot], reference);
+      return item.label + (map === "image" ? "" : `: ${kinds[map].title.toLowerCase()}`);
     }), state.mode);
     this.host.setAttribute("aria-busy", String(sources.includes(null)));
     if (this.pixel) this.showPixel(...this.pixel, false);
     if (!sources.includes(null)) this.summarise(reference);
+  }
+
+  // The reference stays a picture: its own error is nothing to look at, and what is there is.
+  mapOf(i, reference) {
+    return reference && i !== this.reference && this.items[i].files ? this.state.map : "image";
   }
 
   // A canvas with the image as it is to be shown; repainted only if something of it changed.
@@ -71,7 +75,7 @@ class Viewer {
     const {state} = this, image = this.decoded(i);
     if (!image) return null;
     if (image.picture) return image.picture;
-    const map = reference ? state.map : "image";
+    const map = this.mapOf(i, reference);
     const key = [i, state.layer, map, map === "image" ? state.ev : state.ranges[map]].join();
     if (this.painted[k]?.key !== key) {
       const canvas = el("canvas", {width: image.width, height: image.height});

@@ -1,0 +1,208 @@
+#!/usr/bin/python3
+"""Tests of the cross-check; those that need Blender are skipped where it is missing.
+
+  python3 eval/cycles/test_cross_check.py
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import cases  # noqa: E402
+import compare  # noqa: E402
+import cross_check  # noqa: E402
+import scene_source as source  # noqa: E402
+
+ROOT = HERE.parent.parent
+VPL_RENDER = os.environ.get("VPL_RENDER", str(ROOT / "build/release/bin/vpl-render"))
+OBJ = """mtllib m.mtl
+v 0 0 0
+v 2 0 0
+v 2 3 0
+v 0 3 0
+vn 0 0 1
+vt 0 0
+vt 1 0
+usemtl A
+f 1/1/1 2/2/1 3/2/1 -1/1/1
+usemtl B
+f 1 2 2
+f 1 2 4
+"""
+MTL = "newmtl A\nKd 0.1 0.2 0.3\nnewmtl B\nKd 0.5 0.5 0.5\nKe 1 2 3\nemission_sides 2\n"
+
+
+def command(*arguments: str) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, str(HERE / "cross_check.py"), *arguments],
+                          capture_output=True, text=True, check=False)
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name: str, text: str) -> Path:
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+
+class Reader(InFolder):
+    def mesh(self, matrix: np.ndarray, mtl: str = MTL) -> source.Mesh:
+        self.write("m.mtl", mtl)
+        return source.read_mesh(self.write("m.obj", OBJ), None, matrix)
+
+    def test_quads_negative_indices_and_triangles_without_area(self) -> None:
+        mesh = self.mesh(np.eye(4))
+        self.assertEqual(mesh.position.tolist(), [
+            [[0, 0, 0], [2, 0, 0], [2, 3, 0]], [[0, 0, 0], [2, 3, 0], [0, 3, 0]],
+            [[0, 0, 0], [2, 0, 0], [0, 3, 0]]])
+        self.assertEqual([mesh.materials[m].name for m in mesh.material], ["A", "A", "B"])
+        self.assertEqual(mesh.uv[0].tolist(), [[0, 0], [1, 0], [1, 0]])
+        self.assertTrue(np.isnan(mesh.normal[2]).all() and np.isnan(mesh.uv[2]).all())
+
+    def test_material_fields(self) -> None:
+        a, b = self.mesh(np.eye(4)).materials
+        self.assertEqual((a.kd, a.ke, a.two_sided), ((0.1, 0.2, 0.3), (0, 0, 0), False))
+        self.assertEqual((b.ke, b.two_sided), ((1, 2, 3), True))
+
+    def test_scale_then_turns_then_shift(self) -> None:
+        matrix = source.read_transform({"scale": [2, 1, 1], "rotate_deg": [90, 0, 90],
+                                        "translate": [0, 0, 5]})
+        # (1, 1, 0) -> scale (2, 1, 0) -> about x (2, 0, 1) -> about z (0, 2, 1) -> shift
+        np.testing.assert_allclose(matrix @ [1, 1, 0, 1], [0, 2, 6, 1], atol=1e-12)
+
+    def test_a_reflection_keeps_the_lit_side(self) -> None:
+        flip = np.diag([-1.0, 1.0, 1.0, 1.0])
+        mesh = self.mesh(flip)
+        p = mesh.position[0]
+        self.assertGreater(np.cross(p[1] - p[0], p[2] - p[0])[2], 0)
+        np.testing.assert_allclose(mesh.normal[0], [[0, 0, 1]] * 3)
+
+    def test_normals_stay_upright_under_uneven_scale(self) -> None:
+        slanted = OBJ.replace("vn 0 0 1", "vn 1 0 1")
+        self.write("m.mtl", MTL)
+        mesh = source.read_mesh(self.write("m.obj", slanted), None, np.diag([2.0, 1, 1, 1]))
+        np.testing.assert_allclose(mesh.normal[0, 0], np.array([1, 0, 2]) / np.sqrt(5))
+
+    def test_what_has_no_counterpart_is_refused_by_name(self) -> None:
+        for line, said in (("Ks 0.1 0.1 0.1", "Phong"), ("map_d a.png", "mask"),
+                           ("illum 7\nTf 0.5 1 1", "coloured glass"), ("Ks 0.9 0.9 0.9\nillum 3",
+                                                                       "more than it receives")):
+            with self.assertRaisesRegex(source.SceneError, f"material 'B'.*{said}"):
+                self.mesh(np.eye(4), MTL + line + "\n")
+
+
+class Preparation(InFolder):
+    def test_edited_library_keeps_mirrors(self) -> None:
+        text = "# c\nnewmtl A\nKs 1 1 1\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n"
+        self.assertEqual(cases.edit_mtl(text, ("Ks",)),
+                         "# c\nnewmtl A\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n")
+
+    def test_every_own_case_is_read(self) -> None:
+        for case in cases.CASES:
+            if case.scene.startswith("veach-ajar"):
+                continue  # a download
+            scene = source.read_scene(cases.prepare(case, ROOT / "scenes", self.folder / case.name))
+            self.assertEqual((scene.width, scene.height), case.size)
+            lit = any(any(m.ke) for mesh in scene.meshes for m in mesh.materials)
+            self.assertEqual(lit, not case.lights, case.name)
+            self.assertEqual(scene.lights, list(case.lights))
+
+
+class Statistics(unittest.TestCase):
+    def setUp(self) -> None:
+        random = np.random.default_rng(7)
+        self.a = 1.02 * random.gamma(4.0, 0.25, (4, 40, 36, 3))
+        self.b = random.gamma(4.0, 0.25, (4, 40, 36, 3))
+
+    def test_ratio_and_its_error(self) -> None:
+        mean = compare.compare(self.a, self.b)["mean"]
+        # 4 seeds x 1440 pixels x 3 channels of deviation 0.5 in each image
+        self.assertAlmostEqual(mean["error"], np.sqrt(2) * 0.5 / np.sqrt(4 * 1440 * 3), delta=2e-3)
+        self.assertLess(abs(mean["ratio"] - 1.02), 3 * mean["error"])
+
+    def test_a_local_difference_is_found_where_it_is(self) -> None:
+        self.a[:, 16:24, 32:36] *= 2.0
+        blocks = compare.compare(self.a, self.b)["blocks"]
+        self.assertEqual((blocks["worst"]["x"], blocks["worst"]["y"]), (32, 16))
+        self.assertAlmostEqual(blocks["worst"]["relative"], 1.04, delta=0.2)
+        self.assertEqual(blocks["count"], 25)
+
+    def test_black_against_black_and_against_light(self) -> None:
+        black = np.zeros_like(self.a)
+        self.assertEqual(compare.compare(black, black)["mean"]["ratio"], 1.0)
+        self.assertIsNone(compare.compare(self.a, black)["mean"]["ratio"])
+
+    def test_one_seed_or_two_sizes_are_refused(self) -> None:
+        with self.assertRaisesRegex(ValueError, "two seeds"):
+            compare.compare(self.a[:1], self.b[:1])
+        with self.assertRaisesRegex(ValueError, "sizes differ"):
+            compare.compare(self.a, self.b[:, :, :30])
+
+    def test_verdict(self) -> None:
+        def of(ratio: float | None, error: float) -> str:
+            return cross_check.verdict({"mean": {"ratio": ratio, "error": error}}, 0.01)
+
+        self.assertEqual(of(1.009, 0.001), "agrees")
+        self.assertEqual(of(0.985, 0.001), "differs")
+        self.assertEqual(of(1.012, 0.004), "differs")
+        self.assertEqual(of(1.0, 0.006), "noisy")
+        self.assertEqual(of(1.2, 0.02), "differs")
+        self.assertEqual(of(None, 0.0), "differs")
+
+
+class CommandLine(InFolder):
+    def test_indirect_needs_the_direct_picture(self) -> None:
+        self.assertEqual(cross_check.cycles_bounces((cases.INDIRECT,)), [0, 32])
+        self.assertEqual(cross_check.cycles_bounces((cases.View("all", 5),)), [5])
+
+    def assert_one_line(self, done: subprocess.CompletedProcess, code: int, said: str) -> None:
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertIn(said, done.stderr)
+
+    def test_no_blender_is_one_line_and_code_3(self) -> None:
+        done = command("cornell", "--blender", "no-such-blender", "--out", str(self.folder))
+        self.assert_one_line(done, 3, "no-such-blender: no such program; apt-get install")
+
+    def test_an_unknown_case_is_code_2(self) -> None:
+        done = command("cornel")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no case 'cornel'", done.stderr)
+
+    def test_a_blender_that_writes_nothing_is_code_3(self) -> None:
+        fake = self.write("fake", "#!/bin/sh\nexit 0\n")
+        fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
+        if not Path(VPL_RENDER).is_file():
+            self.skipTest("no vpl-render")
+        done = command("room-point", "--effort", "0.004", "--blender", str(fake), "--vpl-render",
+                       VPL_RENDER, "--out", str(self.folder / "out"))
+        self.assert_one_line(done, 3, "fake failed: exit code 0; all it said is in")
+        self.assertFalse((self.folder / "out" / "results.json").exists())
+
+    @unittest.skipUnless(shutil.which("blender") and Path(VPL_RENDER).is_file(), "no Blender")
+    def test_a_small_cornell_box_agrees(self) -> None:
+        done = command("cornell", "--effort", "0.03", "--tolerance", "0.05", "--vpl-render",
+                       VPL_RENDER, "--out", str(self.folder))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(done.stdout.count("agrees"), 3)
+        self.assertTrue((self.folder / "cornell" / "indirect-32.png").is_file())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,98 @@
+"""The page in a real browser, and ways to look at it."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+import unittest
+from pathlib import Path
+from typing import Any, Callable
+
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.keys import Keys
+
+from test_support import WIDTH, browser, run, write_report
+
+
+# By way of a canvas of its own: Chromium complains in the console of reading the page's repeatedly.
+READ_PIXEL = """
+    function readPixel(canvas, x, y) {
+      const own = document.createElement('canvas');
+      own.width = own.height = 1;
+      const context = own.getContext('2d', {willReadFrequently: true});
+      context.drawImage(canvas, Math.floor(x), Math.floor(y), 1, 1, 0, 0, 1, 1);
+      return [...context.getImageData(0, 0, 1, 1).data].slice(0, 3);
+    }"""
+
+
+class PageCase(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        page = Path(cls.folder.name) / "report.html"
+        made = run("make_report.py", write_report(page.parent), "-o", page)
+        assert made.returncode == 0, made.stderr
+        cls.url = page.as_uri()
+        cls.driver = browser()
+        cls.addClassCleanup(cls.driver.quit)
+
+    def setUp(self) -> None:
+        self.open(1280, "light")
+
+    def tearDown(self) -> None:
+        found = [entry["message"] for entry in self.driver.get_log("browser")]
+        self.assertEqual(found, [], "the console is not silent")
+
+    def open(self, width: int, scheme: str) -> None:
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
+            "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        self.driver.get(self.url)
+        self.viewer = self.reach(0)
+
+    def reach(self, index: int) -> Any:
+        """The viewer, in sight and with all its images decoded."""
+        viewer = self.all(".viewer")[index]
+        self.js("arguments[0].scrollIntoView({behavior: 'instant'})", viewer)
+        self.until(lambda: viewer.get_attribute("aria-busy") == "false" and "relMSE" in viewer.text)
+        return viewer
+
+    def until(self, condition: Callable[[], bool]) -> None:
+        end = time.monotonic() + 10
+        while not condition():
+            self.assertLess(time.monotonic(), end, "waited 10 s in vain")
+            time.sleep(0.02)
+
+    def js(self, script: str, *arguments: Any) -> Any:
+        return self.driver.execute_script(script, *arguments)
+
+    def all(self, selector: str) -> list[Any]:
+        return self.driver.find_elements("css selector", selector)
+
+    def one(self, selector: str) -> Any:
+        return self.viewer.find_element("css selector", selector)
+
+    def keys(self, *keys: str, at: str = ".stage") -> None:
+        target = self.one(at)
+        self.js("arguments[0].focus({preventScroll: true})", target)
+        chain = ActionChains(self.driver)
+        for key in keys:
+            if len(key) > 1 and key.startswith("^"):
+                chain.key_down(Keys.SHIFT).send_keys(key[1:]).key_up(Keys.SHIFT)
+            else:
+                chain.send_keys(key)
+        chain.perform()
+
+    def colour(self, x: float, y: float) -> list[int]:
+        """What the canvas shows at a place given in image pixels at zoom 1."""
+        return self.js("""
+            const c = arguments[0].querySelector('.stage canvas'), s = c.width / arguments[3];
+            return readPixel(c, arguments[1] * s, arguments[2] * s);""" + READ_PIXEL,
+                       self.viewer, x, y, WIDTH)
+
+    def readout(self) -> list[list[str]]:
+        return self.js("return [...arguments[0].querySelectorAll('.readout tbody tr')].map("
+                       "(r) => [...r.querySelectorAll('td')].map((c) => c.textContent))",
+                       self.viewer)

@@ -1,0 +1,165 @@
+"""What the scripts write, and what they refuse."""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+import unittest
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import make_report
+import plots
+from test_support import call, flat, report, run, write_exr, write_report
+
+
+class InputTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.json = write_report(self.folder)
+        self.page = self.folder / "report.html"
+
+    def make(self) -> str:
+        made = call(make_report.main, self.json, "-o", self.page)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        return self.page.read_text(encoding="utf-8")
+
+    def refused(self, *expected: str) -> None:
+        """One line with these parts, exit code 3, and no page."""
+        made = call(make_report.main, self.json, "-o", self.page)
+        self.assertEqual(made.returncode, 3, made.stderr)
+        self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
+        for part in expected:
+            self.assertIn(part, made.stderr)
+        self.assertEqual(list(self.folder.glob("report.html*")), [])
+
+    def change(self, edit: Any) -> None:
+        data = report()
+        edit(data)
+        self.json.write_text(json.dumps(data), encoding="utf-8")
+
+    # --- the page
+
+    def test_equal_input_gives_equal_bytes(self) -> None:
+        first = self.make()
+        made = run("make_report.py", self.json, "-o", self.page)
+        self.assertRegex(made.stderr, r"^make_report.py: .*report.html: [0-9.]+ MiB\n$")
+        self.assertEqual(first, self.page.read_text(encoding="utf-8"))
+        self.assertNotIn(str(self.folder), first)
+
+    def test_text_is_escaped(self) -> None:
+        self.change(lambda r: r["scenes"][0]["views"][0]["images"][0].update(
+            label="</script><script>alert(1)</script>"))
+        page = self.make()
+        self.assertIn("<h1>A report &lt;of&gt; tests</h1>", page)
+        self.assertNotIn("<script>alert", page)
+
+    def test_best_of_each_group(self) -> None:
+        rows = re.findall(r"<tr><th scope=\"row\".*?</tr>", self.make())
+        marks = [[("best" in c) for c in re.findall(r"<t[hd][^>]*>.*?</t[hd]>", r)][1:4]
+                 for r in rows]
+        # Columns rmse, ratio, rays. Row r is not judged; one value is no choice; a tie marks both.
+        self.assertEqual(marks, [[False, True, False], [True, False, True], [False] * 3,
+                                 [False, False, True], [False, True, True]])
+        self.assertIn("0.100 ± 0.013", self.page.read_text())
+
+    def test_plot_labels(self) -> None:
+        page = self.make()
+        svg = page[page.index('<svg class="plot wide"'):]
+        svg = svg[:svg.index("</svg>")]
+        powers = re.findall(r'10<tspan class="power" dy="-5">([^<]*)</tspan>', svg)
+        self.assertEqual(set(powers), {"3", "4", "−3", "−2", "−1", "0"})
+        self.assertIn("slope −1.02", svg)
+        self.assertEqual(svg.count('class="bar"'), 24)
+        places = [float(y) for y in re.findall(r'class="name[^>]* y="([\d.]+)"', svg)]
+        self.assertEqual(len(places), 8)
+        gaps = np.diff(sorted(places))
+        self.assertGreaterEqual(gaps.min(), 32, "names overlap")
+
+    def test_plots_as_files(self) -> None:
+        for name, start in (("p.png", b"\x89PNG"), ("p.svg", b"<?xml")):
+            files = [self.folder / f"{i}{name}" for i in range(2)]
+            made = [call(plots.main, self.json, "conv", "-o", files[0]),
+                    run("plots.py", self.json, "conv", "-o", files[1])]
+            self.assertEqual([m.returncode for m in made], [0, 0], made[1].stderr)
+            first, second = (f.read_bytes() for f in files)
+            self.assertEqual(first[:len(start)], start)
+            self.assertEqual(first, second)
+        made = call(plots.main, self.json, "none", "-o", self.folder / "n.png")
+        self.assertEqual(made.returncode, 3)
+        self.assertIn("it has conv, lin", made.stderr)
+
+    # --- refusals
+
+    def test_malformed_json(self) -> None:
+        self.json.write_text('{"title": "x",\n "lead": }')
+        self.refused("report.json: line 2, column 10", "correct it")
+        self.json.write_text('{"title": NaN}')
+        self.refused("NaN", "write null")
+        self.json.unlink()
+        self.refused("report.json: No such file")
+
+    def test_missing_image(self) -> None:
+        (self.folder / "a-full.exr").unlink()
+        self.refused("a-full.exr: no such file; render it")
+
+    def test_damaged_image(self) -> None:
+        (self.folder / "b.exr").write_bytes(b"nonsense")
+        self.refused("b.exr: no image that can be read; render it again")
+
+    def test_cut_picture(self) -> None:
+        data = (self.folder / "dots.png").read_bytes()
+        (self.folder / "dots.png").write_bytes(data[:-5])
+        self.refused("dots.png: not a whole PNG file")
+
+    def test_wrong_size(self) -> None:
+        write_exr(self.folder / "b.exr", flat(1, 1, 1)[:, :5])
+        self.refused("b.exr: 5x6 pixels, but", "reference.exr has 8x6; render both at one size")
+
+    def test_not_finite(self) -> None:
+        pixels = flat(1, 1, 1)
+        pixels[2, 4, 1] = np.nan
+        write_exr(self.folder / "b.exr", pixels)
+        self.refused("b.exr: pixel (4, 2): not finite")
+
+    def test_missing_layer(self) -> None:
+        write_exr(self.folder / "layers.exr", flat(1, 1, 1))
+        self.refused("layers.exr: no channels full.R full.G full.B (it has R G B)")
+
+    def test_wrong_values(self) -> None:
+        view = "scenes[0].views[0]"
+        cases = [
+            (lambda r: r.pop("title"), "top level: 'title' is missing"),
+            (lambda r: r["tables"][0]["columns"][1].update(better="lower"),
+             'tables[0].columns[1].better: "lower" is unknown; use "low"'),
+            (lambda r: r["tables"][0]["rows"][0].update(rmse=[1]),
+             "tables[0].rows[0].rmse: [1] is neither text nor number"),
+            (lambda r: r["scenes"][0]["views"][0].update(reference="x"),
+             f"{view}.reference: no image has the id 'x'"),
+            (lambda r: r["scenes"][0]["views"][0]["images"][1]["files"].update(direct="a.exr"),
+             f"{view}.images[1].files.direct: no layer has the id 'direct'"),
+            (lambda r: r["scenes"][0]["views"][1].update(id="main"), "id 'main' is used twice"),
+            (lambda r: r["scenes"][0].update(id="a b"), "scenes[0].id: 'a b' is no id"),
+            (lambda r: r["plots"][0]["series"][2]["x"].pop(),
+             "plots[0].series[2]: 2 of x, 3 of y, 3 of error: lists of unequal length"),
+            (lambda r: r["plots"][0]["series"][0]["y"].__setitem__(1, 0),
+             "plots[0].series[0].y[1]: 0 has no place on a logarithmic axis"),
+        ]
+        for edit, expected in cases:
+            with self.subTest(expected):
+                self.change(edit)
+                self.refused(expected)
+
+    def test_output_that_cannot_be_written(self) -> None:
+        made = run("make_report.py", self.json, "-o", self.folder / "none" / "r.html")
+        self.assertEqual(made.returncode, 4)
+        self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

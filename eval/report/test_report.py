@@ -1,0 +1,14 @@
+#!/usr/bin/python3
+"""All tests of the report: what the scripts read and write, and the page in headless Chromium.
+
+Needs chromium, chromium-driver, python3-selenium, python3-openimageio, python3-matplotlib.
+"""
+
+import unittest
+
+from test_inputs import InputTest  # noqa: F401  (unittest finds them here)
+from test_page import PageTest  # noqa: F401
+from test_viewer import ViewerTest  # noqa: F401
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,76 @@
+"""A command runs once; a changed option, input or tool runs it again; a failed one leaves nothing."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from bnvpl_eval.runner import Runner, scene_key  # noqa: E402 (after the path that it needs)
+
+TOOL = """#!/bin/sh
+# copies its input behind a line with its options; every run is one line of calls.log
+echo x >> "{log}"
+[ "$2" = fail ] && {{ echo "made to fail"; exit 3; }}
+{{ echo "$2"; cat "$1"; }} > "$3"
+"""
+
+
+class Caching(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.log = self.folder / "calls.log"
+        self.tool = self.folder / "vpl-fake"
+        self.tool.write_text(TOOL.format(log=self.log))
+        self.tool.chmod(0o755)
+        self.input = self.folder / "in.txt"
+        self.input.write_text("input\n")
+
+    def run_tool(self, option="a", runner=None):
+        runner = runner or Runner(self.folder, self.folder / "cache", quiet=True)
+        return runner.run("vpl-fake", ["{in}", option, "@out.txt"], {"in": self.input}, ["out.txt"])
+
+    def calls(self) -> int:
+        return len(self.log.read_text().splitlines())
+
+    def test_runs_once(self):
+        first, second = self.run_tool(), self.run_tool()
+        self.assertEqual(self.calls(), 1)
+        self.assertEqual(first["out.txt"].read_text(), "a\ninput\n")
+        self.assertEqual(first.folder, second.folder)
+        self.assertGreater(first.record["peak_mib"], 0)
+        self.assertEqual(first.record["options"], ["{in}", "a", "@out.txt"])
+
+    def test_what_changes_runs_again(self):
+        folders = {self.run_tool().folder, self.run_tool("b").folder}
+        self.input.write_text("other\n")
+        folders.add(self.run_tool().folder)
+        self.tool.write_text(self.tool.read_text() + "# another version\n")
+        folders.add(self.run_tool().folder)
+        self.assertEqual((self.calls(), len(folders)), (4, 4))
+
+    def test_a_changed_product_reruns_what_follows(self):
+        runner = Runner(self.folder, self.folder / "cache", quiet=True)
+        for option in ("a", "b", "a"):
+            made = self.run_tool(option, runner)["out.txt"]
+            runner.run("vpl-fake", ["{in}", "next", "@out.txt"], {"in": made}, ["out.txt"])
+        self.assertEqual(self.calls(), 4)
+
+    def test_failure_tells_why_and_leaves_nothing(self):
+        with self.assertRaisesRegex(SystemExit, "exit code 3: made to fail"):
+            self.run_tool("fail")
+        self.assertEqual(list((self.folder / "cache").iterdir()), [])
+
+    def test_scene_key_holds_the_models(self):
+        scene, model = self.folder / "scene.toml", self.folder / "room.obj"
+        scene.write_text('[[mesh]]\nfile = "room.obj"\n')
+        model.write_text("v 0 0 0\n")
+        before = scene_key(scene)
+        model.write_text("v 0 0 1\n")
+        self.assertNotEqual(before, scene_key(scene))
+
+
+if __name__ == "__main__":
+    unittest.main()
