@@ -60,6 +60,19 @@ class Coverage {
     return found;
   }
 
+  // Probability with which pick() names VPL i for the point: one over the number of those it may
+  // name, 0 when i is none of them.
+  float shareOf(uint32_t i, Vec3 at, Vec3 normal) const {
+    const auto speaks = [&](uint32_t k) {
+      return sameSheet(at, normal, position_[k], normal_[k], kPlaneFactor * reach_[k]) &&
+             inSight(at, normal, k);
+    };
+    if (!speaks(i)) return 0.0f;
+    uint32_t speakers = 1;
+    grid_.forEachReaching(at, [&](uint32_t k, float) { speakers += k != i && speaks(k) ? 1 : 0; });
+    return 1.0f / static_cast<float>(speakers);
+  }
+
   // Every VPL within reach, whatever lies between: the thesis' rule.
   template <typename Fn>
   void forEachReaching(Vec3 at, const Fn& fn) const {

@@ -136,6 +136,58 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
   }
 }
 
+// In the furnace every surface sends out rho / (1 - rho) of what is not its own emission. So say the
+// VPLs, from their flux and the area that each is found to speak for, on the average over surfaces.
+TEST(NearField, VplsKnowTheRadianceAroundThem) {
+  const World world("furnace/scene.toml");  // rho = 0.5
+  VplSettings s;
+  const VplTable lit = lightUp(world, s);
+  const NearField nearField(lit, world.rays, s.clamp);
+  double sum = 0.0;
+  int known = 0;
+  Rng rng(streamKey(1, Stream::PixelSamples), 0);
+  for (int k = 0; k < 4000; ++k) {
+    SurfacePoint hit;
+    // Evenly over the six faces of the unit cube.
+    const float side = rng.next() < 0.5f ? -0.5f : 0.5f;
+    const float u = rng.next() - 0.5f, v = rng.next() - 0.5f;
+    const Vec3 face = k % 3 == 0 ? Vec3{side, u, v} : k % 3 == 1 ? Vec3{u, side, v} : Vec3{u, v, side};
+    if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
+    const auto missing = nearField.missing(hit, 0.8f * s.clamp * lit.radius[0], rng);
+    if (!missing.radiance) continue;
+    ++known;
+    sum += double{missing.radiance->x};
+    EXPECT_NEAR(missing.share, 0.36f, 0.36f);
+  }
+  ASSERT_GT(known, 3000);
+  EXPECT_NEAR(sum / known, 1.0, 0.03);
+}
+
+// More rays bring the same light with less noise.
+TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
+  World world("cornell/scene.toml");
+  world.scene.film = {32, 32};
+  VplSettings s;
+  s.nearField = true;
+  s.clamp = 2.0f;
+  const VplTable lit = lightUp(world, s);
+  const auto render = [&](unsigned rays, uint64_t seed, FilmStats& stats) {
+    s.nearFieldRays = rays;
+    s.film = {.spp = 4, .seed = seed, .only = Only::Indirect};
+    return renderVpls(world, lit, s, stats);
+  };
+  std::array<double, 2> spread{}, mean{};
+  for (const unsigned few : {0u, 1u}) {
+    FilmStats a, b;
+    const Image first = render(few ? 1 : 16, 1, a), second = render(few ? 1 : 16, 2, b);
+    const std::vector<float>&x = *first.find("G"), &y = *second.find("G");
+    for (size_t i = 0; i < x.size(); ++i) spread[few] += std::pow(double{x[i]} - double{y[i]}, 2);
+    mean[few] = a.indirect + b.indirect;
+  }
+  EXPECT_NEAR(mean[1] / mean[0], 1.0, 0.02);
+  EXPECT_LT(spread[0], 0.7 * spread[1]);
+}
+
 TEST(Leak, ADarkRoomStaysExactlyBlack) {
   for (const char* name : {"test/two-rooms.toml", "test/divider.toml"}) {
     const World world(name);

@@ -45,6 +45,7 @@ struct VplSettings {
   EstimateOptions estimate{.photons = 300000};
   float clamp = 1.0f;
   bool nearField = false;
+  unsigned nearFieldRays = 8;
   GatherOptions gather{.lightcuts = false};
   FilmOptions film{.spp = 4};
 };
@@ -61,7 +62,8 @@ inline Image renderVpls(const World& world, const VplTable& lit, const VplSettin
   const Gatherer gatherer(world.rays, vpls, s.gather, s.film.seed);
   const NearField nearField(lit, world.rays, s.clamp);
   const VplIntegrator integrator(world.rays, world.lights, gatherer,
-                                 s.nearField ? &nearField : nullptr, s.film.only);
+                                 s.nearField ? &nearField : nullptr, s.nearFieldRays,
+                                 s.film.only);
   return renderFilm(
       world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, s.film,
       stats);

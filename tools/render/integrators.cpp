@@ -37,7 +37,7 @@ RadianceSample VplIntegrator::sample(Vec3 origin, Vec3 direction, Rng& rng) cons
   }
   if (only_ != Only::Direct) {
     out.indirect += gatherAt(bsdf, out, seen.throughput);
-    if (chains_ || nearField_) extend(seen, seen.throughput, rng, out);
+    if (chains_ || nearField_) complete(seen, rng, out);
   }
   return out;
 }
@@ -50,10 +50,16 @@ Vec3 VplIntegrator::gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 through
   return throughput * g.radiance;
 }
 
-// One ray from the vertex for the light that the VPLs do not bring to it: over a mirror, glass or
-// sharp lobe (VPLs shine in straight lines), and what NearField says is missing. What else the ray
-// meets is left to the VPLs, and lights to light sampling. Where something is missing, the vertex
-// that the ray found is lit in the same way, and so on.
+// Rays from the vertex for the light that the VPLs do not bring to it.
+void VplIntegrator::complete(const ChainEnd& seen, Rng& rng, RadianceSample& out) const {
+  const float weight = 1.0f / static_cast<float>(extensions_);
+  for (unsigned k = 0; k < extensions_; ++k) extend(seen, seen.throughput * weight, rng, out);
+}
+
+// One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
+// what NearField says is missing: from the radiance that a VPL knows where it speaks for the point
+// that the ray found, else by lighting that point as the first one, and so on. What else the ray
+// meets is left to the VPLs, and lights to light sampling.
 void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const {
   for (unsigned links = 0; links < kMaxExtensions; ++links) {
     const Bsdf bsdf(rays_.scene(), vertex.hit);
@@ -62,24 +68,31 @@ void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceS
     throughput *= next.weight;
     const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
     const Arrival arrival{next.pdf, vertex.hit.position};
-    ChainEnd end = followChain(rays_, lights_, from, next.wi, arrival, rng);
+    const ChainEnd end = followChain(rays_, lights_, from, next.wi, arrival, rng);
     // Light met first is the other half of the MIS at the vertices that this loop has lit.
-    const Vec3 met = end.metLater + (links > 0 ? end.metFirst : Vec3{});
-    out.extended += throughput * met;
-    out.indirect += throughput * met;
-    if (!end.rough) return;
-    const float missing = end.links > 0 ? 1.0f
-                          : nearField_  ? nearField_->missingShare(end.hit, end.hit.distance, rng)
-                                        : 0.0f;
-    if (rng.next() >= missing) return;  // roulette: followed with that probability at full weight
+    Vec3 light = throughput * (end.metLater + (links > 0 ? end.metFirst : Vec3{}));
+    const NearField::Missing missing = missingFrom(end, rng);
     throughput *= end.throughput;
-    const Bsdf found(rays_.scene(), end.hit);
-    Vec3 light = throughput * directLightMis(rays_, lights_, found, LobeGroup::Rough, rng);
-    light += gatherAt(found, out, throughput);
+    if (missing.radiance) light += throughput * *missing.radiance * missing.share;
+    // Roulette for shares below 1.
+    const bool follow = !missing.radiance && rng.next() < missing.share;
+    if (follow) {
+      throughput *= std::max(1.0f, missing.share);
+      const Bsdf found(rays_.scene(), end.hit);
+      light += throughput * directLightMis(rays_, lights_, found, LobeGroup::Rough, rng);
+      light += gatherAt(found, out, throughput);
+    }
     out.extended += light;
     out.indirect += light;
+    if (!follow) return;
     vertex = end;
   }
+}
+
+NearField::Missing VplIntegrator::missingFrom(const ChainEnd& end, Rng& rng) const {
+  if (!end.rough) return {};
+  if (end.links > 0) return {1.0f, {}};
+  return nearField_ ? nearField_->missing(end.hit, end.hit.distance, rng) : NearField::Missing{};
 }
 
 RadianceSample PathTracer::sample(Vec3 origin, Vec3 direction, Rng& rng) const {

@@ -21,27 +21,32 @@ struct RadianceSample {
 enum class Only { Everything, Direct, Indirect };
 
 // The thesis: direct light by shadow rays, indirect light from the VPLs. What the VPLs do not carry
-// is completed by one sampled ray from the vertex (NearField).
+// is completed by sampled rays from the vertex (NearField).
 class VplIntegrator {
  public:
   VplIntegrator(const RayScene& rays, const LightSet& lights, const Gatherer& gatherer,
-                const NearField* nearField, Only only)
+                const NearField* nearField, unsigned nearFieldRays, Only only)
       : rays_(rays),
         lights_(lights),
         gatherer_(gatherer),
         nearField_(nearField),
+        extensions_(nearField != nullptr && nearField->knowsRadiance() ? nearFieldRays : 1),
         only_(only),
         chains_(hasChainLobes(rays.scene())) {}
   RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
 
  private:
+  void complete(const ChainEnd& seen, Rng& rng, RadianceSample& out) const;
   void extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const;
+  NearField::Missing missingFrom(const ChainEnd& end, Rng& rng) const;
   Vec3 gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 throughput) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
   const Gatherer& gatherer_;
   const NearField* nearField_;  // null: what the clamp and the gaps take away stays away
+  // Rays from each shaded point. Without known radiance most would cost a gather of their own: one.
+  unsigned extensions_;
   Only only_;
   bool chains_;
 };

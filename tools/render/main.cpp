@@ -26,6 +26,7 @@ struct RenderOptions {
   GatherOptions cuts;
   float clamp = 2.0f;     // in units of a VPL's r_max
   bool nearField = true;  // give back what the clamp and the gaps take away
+  unsigned nearFieldRays = 8;
   unsigned maxBounces = 32;
   FilmOptions film;
   std::string size;  // WxH, empty: the scene's film
@@ -77,6 +78,7 @@ Json describe(const RenderOptions& o) {
   json["gather"] = nameOf(o.gather, kGathers);
   json["clamp"] = o.clamp;
   json["near-field"] = o.nearField;
+  if (o.nearField) json["near-field-rays"] = o.nearFieldRays;
   if (o.gather == GatherKind::Lightcuts) {
     json["error"] = o.cuts.error;
     json["max-cut"] = o.cuts.maxCut;
@@ -144,7 +146,7 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   std::optional<NearField> nearField;
   if (vpl && o.nearField) nearField.emplace(lit, rays, o.clamp);
   const VplIntegrator byVpls(rays, lights, gatherer, nearField ? &*nearField : nullptr,
-                             o.film.only);
+                             o.nearFieldRays, o.film.only);
   const PathTracer byPaths(rays, lights, o.maxBounces, o.film.only);
 
   ProgressMeter meter("pixels", uint64_t{scene.film.width} * scene.film.height, tool.quiet);
@@ -227,6 +229,10 @@ void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut
       ->capture_default_str();
   addChoice(cli, "--near-field", o.nearField, kOnOff,
             "give back by sampled rays what the clamp and gaps between VPLs take away");
+  cli.add_option("--near-field-rays", o.nearFieldRays,
+                 "rays from each shaded point, for --near-field")
+      ->check(inRange(1, 4096))
+      ->capture_default_str();
   cli.add_option("--max-bounces", o.maxBounces,
                  "path: diffuse bounces after the first surface, as vpl-estimate's")
       ->check(inRange(0, 1000))

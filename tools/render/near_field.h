@@ -1,5 +1,5 @@
 // What the VPLs leave out of the light from one surface point to another: the part of 1/d^2 that
-// the clamp removes, and all light from points that no VPL stands for. A sampled ray brings exactly
+// the clamp removes, and all light from points that no VPL stands for. Sampled rays bring exactly
 // that back (Kollig & Keller 2006, with the VPLs' own bound and gaps).
 #pragma once
 
@@ -10,15 +10,25 @@ namespace bnvpl {
 
 class NearField {
  public:
+  // What VPLs do not bring from a point that a ray from a receiver has found.
+  struct Missing {
+    float share = 0.0f;  // of the light from there; above 1: for rays that were left out
+    std::optional<Vec3> radiance;  // that leaves there, W/(m2 sr); empty: has to be found out
+  };
+
   // Borrows the table and the scene. `clamp` as for makeVplLights().
   NearField(const VplTable& lit, const RayScene& rays, float clamp);
 
-  // Share of the light from `seen` that VPLs do not bring to a receiver at `distance`: 0..1.
-  float missingShare(const SurfacePoint& seen, float distance, Rng& rng) const;
+  Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const;
+
+  // Whether VPLs know the radiance around them: those that photons lit do, those that are photons
+  // do not.
+  bool knowsRadiance() const { return gaps_; }
 
  private:
   Coverage coverage_;
-  std::vector<float> clampRadius_;  // of each VPL, world units
+  std::vector<float> radius_, clampRadius_;    // of each VPL, world units
+  std::vector<std::optional<Vec3>> radiance_;  // mean of the surface that it speaks for
   bool gaps_;  // whether a point without a VPL is a gap: not for VPLs from the lights
 };
 
