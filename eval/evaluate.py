@@ -51,6 +51,8 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--scenes", help="some of the size's scenes, by id")
     parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools")
     parser.add_argument("-o", "--output", type=Path, help="folder; build/eval/SIZE unless given")
+    parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache",
+                        help="where runs are kept for the next time")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
 
@@ -74,7 +76,7 @@ def main() -> int:
     if not chosen:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
-    runner = Runner(arguments.bin.resolve(), settings.ROOT / "build/eval/cache", arguments.quiet)
+    runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet)
     context = Context(arguments.size, size, table, chosen, runner)
     for part in PARTS:
         if part in parts:

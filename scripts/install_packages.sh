@@ -12,6 +12,8 @@ packages=(
   libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums
   libgtest-dev libbenchmark-dev                           # tests, benchmarks
+  python3-numpy python3-matplotlib python3-openimageio    # evaluation
+  chromium chromium-driver python3-selenium               # test of its report
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -107,10 +107,12 @@ def write_picture(path: Path, title: str, ours: np.ndarray, cycles: np.ndarray) 
     """Ours, Cycles, relative difference by block, and the same in standard errors, side by side."""
     mean_ours, mean_cycles = ours.mean(axis=0), cycles.mean(axis=0)
     relative, z = block_map(ours.mean(axis=3), cycles.mean(axis=3))
-    white = max(float(np.quantile(mean_cycles, 0.97)), 1e-12)
-    figure, axes = pyplot.subplots(1, 4, figsize=(16, 3.9), layout="constrained")
-    figure.suptitle(title)
+    lit = mean_cycles[mean_cycles > 0.0]
+    white = float(np.quantile(lit, 0.97)) if lit.size else 1.0
     height, width = mean_ours.shape[:2]
+    size = (16.0, 3.4 * height / width + 0.9)  # inches
+    figure, axes = pyplot.subplots(1, 4, figsize=size, layout="constrained")
+    figure.suptitle(title)
     for axis, name, image in ((axes[0], "ours", mean_ours), (axes[1], "Cycles", mean_cycles)):
         axis.imshow(display(image, white))
         axis.set_title(name)

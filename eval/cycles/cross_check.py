@@ -4,6 +4,7 @@
   eval/cycles/cross_check.py                   all cases
   eval/cycles/cross_check.py cornell u-shape   two of them
   eval/cycles/cross_check.py --list
+  eval/cycles/cross_check.py --table --results eval/cycles/results.json
 
 Each view is rendered with several seeds by both; the ratio of the image means is printed with its
 standard error. Exit codes: 0 all means agree within --tolerance; 2 options that make no sense;
@@ -44,6 +45,8 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all")
     parser.add_argument("--list", action="store_true", help="print the cases and stop")
+    parser.add_argument("--table", action="store_true",
+                        help="print --results as a Markdown table and stop")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "cycles",
                         help="folder for images (default out/cycles)")
     parser.add_argument("--results", type=Path,
@@ -163,7 +166,9 @@ def check(case: Case, options: argparse.Namespace) -> dict:
     spp, cycles_spp = samples(case, options)
     result = {"scene": case.scene, "note": case.note, "size": list(case.size), "seeds": case.seeds,
               "spp": spp, "cycles_spp": cycles_spp, "views": {},
-              "time_s": round(our_seconds, 1), "cycles_time_s": round(cycles_seconds, 1)}
+              # null: nothing was rendered, thanks to --reuse
+              "time_s": round(our_seconds, 1) or None,
+              "cycles_time_s": round(cycles_seconds, 1) or None}
     for view in case.views:
         figures = compare.compare(ours[view], cycles[view])
         figures["verdict"] = verdict(figures, options.tolerance)
@@ -184,13 +189,17 @@ def report(case: Case, view: View, figures: dict) -> None:
 
 def first_line(command: list[str]) -> str:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return (done.stdout.splitlines() or ["unknown"])[0].strip()
+    return (done.stdout.splitlines() or [""])[0].strip()
 
 
 def describe_run(options: argparse.Namespace) -> dict:
-    commit = first_line(["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=10"])
+    git = ["git", "-C", str(ROOT)]
+    parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render"]
+    changed = first_line([*git, "status", "--porcelain", "--", *parts]) != ""
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    return {"blender": first_line([options.blender, "--version"]), "commit": commit,
+    return {"commit": first_line([*git, "rev-parse", "--short=10", "HEAD"]),
+            "sources_changed": changed,
+            "blender": first_line([options.blender, "--version"]),
             "vpl_render": first_line([options.vpl_render, "--version"]),
             "cpu": cpu[1] if cpu else platform.machine(), "threads": options.threads,
             "effort": options.effort, "tolerance": options.tolerance,
@@ -203,12 +212,28 @@ def write_results(path: Path, runs: dict) -> None:
     partial.replace(path)
 
 
+def table(results: dict) -> str:
+    lines = ["| case | view | ours | Cycles | ratio | standard error | blocks: mean z² |",
+             "|---|---|---|---|---|---|---|"]
+    for case in (case.name for case in CASES if case.name in results):
+        for view, figures in results[case]["views"].items():
+            mean, z2 = figures["mean"], figures["blocks"]["mean_square_z"]
+            ratio, error = ("-" if mean[key] is None else f"{mean[key]:.4f}"
+                            for key in ("ratio", "error"))
+            lines.append(f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
+                         f"| {ratio} | {error} | {z2:.2f} |")
+    return "\n".join(lines)
+
+
 def main(arguments: list[str]) -> int:
     options = parse_arguments(arguments)
     chosen = [case for case in CASES if not options.cases or case.name in options.cases]
     if options.list:
         for case in CASES:
             print(f"{case.name:15} {case.scene:24} {' '.join(v.name for v in case.views)}")
+        return EXIT_OK
+    if options.table:
+        print(table(json.loads(options.results.read_text())))
         return EXIT_OK
     options.blender = require_program(
         options.blender, "apt-get install --no-install-recommends blender, or name it by --blender")

@@ -17,10 +17,11 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import scene_source as source  # noqa: E402
+from cycles_lights import make_lamp, make_world, place  # noqa: E402
+from cycles_materials import make_material  # noqa: E402
 from scene_source import SceneError  # noqa: E402
 
 
@@ -37,101 +38,20 @@ def parse_arguments() -> argparse.Namespace:
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
 
-def linear_image(path: Path) -> bpy.types.Image:
-    """The texture as linear floats. Cycles filters 8-bit sRGB images before it decodes them; ours
-    decodes first, as light adds up."""
-    encoded = bpy.data.images.load(str(path))
-    encoded.alpha_mode = "NONE"
-    width, height = encoded.size
-    pixels = np.empty(width * height * 4, np.float32)
-    encoded.pixels.foreach_get(pixels)
-    low = pixels <= 0.04045
-    pixels = np.where(low, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4).astype(np.float32)
-    pixels[3::4] = 1.0
-    image = bpy.data.images.new(path.name, width, height, float_buffer=True, is_data=True)
-    image.pixels.foreach_set(pixels)
-    image.update()
-    return image
-
-
-def albedo_socket(tree: bpy.types.NodeTree, material: source.Material, encoded: bool):
-    """The node output that has Kd times map_Kd, or None for a plain colour."""
-    if material.map_kd is None:
-        return None
-    if not material.map_kd.is_file():
-        raise SceneError(f"{material.map_kd}: no such texture; supply it")
-    texture = tree.nodes.new("ShaderNodeTexImage")
-    texture.image = (bpy.data.images.load(str(material.map_kd)) if encoded
-                     else linear_image(material.map_kd))
-    texture.interpolation = "Linear"
-    texture.extension = "REPEAT"
-    scale = tree.nodes.new("ShaderNodeVectorMath")
-    scale.operation = "MULTIPLY"
-    scale.inputs[1].default_value = material.kd
-    tree.links.new(texture.outputs["Color"], scale.inputs[0])
-    return scale.outputs[0]
-
-
-def reflection_shader(tree: bpy.types.NodeTree, material: source.Material, encoded: bool):
-    if material.glass:
-        glass = tree.nodes.new("ShaderNodeBsdfGlass")
-        glass.distribution = "SHARP"
-        glass.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-        glass.inputs["IOR"].default_value = material.ior
-        return glass.outputs[0]
-    diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")  # roughness 0: Lambert
-    diffuse.inputs["Roughness"].default_value = 0.0
-    diffuse.inputs["Color"].default_value = (*material.kd, 1.0)
-    socket = albedo_socket(tree, material, encoded)
-    if socket is not None:
-        tree.links.new(socket, diffuse.inputs["Color"])
-    if not material.mirror:
-        return diffuse.outputs[0]
-    mirror = tree.nodes.new("ShaderNodeBsdfGlossy")
-    mirror.distribution = "SHARP"
-    mirror.inputs["Color"].default_value = (*material.ks, 1.0)
-    return add_shaders(tree, diffuse.outputs[0], mirror.outputs[0])
-
-
-def add_shaders(tree: bpy.types.NodeTree, a, b):
-    node = tree.nodes.new("ShaderNodeAddShader")
-    tree.links.new(a, node.inputs[0])
-    tree.links.new(b, node.inputs[1])
-    return node.outputs[0]
-
-
-def emission_shader(tree: bpy.types.NodeTree, material: source.Material):
-    """Radiance Ke; on the side of the winding only, unless the material says otherwise."""
-    emission = tree.nodes.new("ShaderNodeEmission")
-    emission.inputs["Color"].default_value = (*material.ke, 1.0)
-    emission.inputs["Strength"].default_value = 1.0
-    if not material.two_sided:
-        geometry = tree.nodes.new("ShaderNodeNewGeometry")
-        front = tree.nodes.new("ShaderNodeMath")
-        front.operation = "SUBTRACT"
-        front.inputs[0].default_value = 1.0
-        tree.links.new(geometry.outputs["Backfacing"], front.inputs[1])
-        tree.links.new(front.outputs[0], emission.inputs["Strength"])
-    return emission.outputs[0]
-
-
-def make_material(material: source.Material, encoded: bool) -> bpy.types.Material:
-    made = bpy.data.materials.new(material.name)
-    made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    shader = reflection_shader(tree, material, encoded)
-    if any(material.ke):
-        shader = add_shaders(tree, shader, emission_shader(tree, material))
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(shader, output.inputs["Surface"])
-    return made
+def corner_normals(mesh: source.Mesh) -> tuple[np.ndarray, bool]:
+    """Shading normals, and whether the file has any. One smooth face makes Cycles interpolate
+    normals on all faces of a mesh, so flat ones get their own."""
+    missing = np.isnan(mesh.normal).any(axis=(1, 2))
+    p = mesh.position
+    flat = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+    return np.where(missing[:, None, None], flat[:, None, :], mesh.normal), not missing.all()
 
 
 def make_mesh(mesh: source.Mesh, name: str, encoded: bool) -> None:
     count = len(mesh.position)
-    smooth = ~np.isnan(mesh.normal).any(axis=(1, 2))
-    corners = np.concatenate([mesh.position, np.nan_to_num(mesh.normal)], axis=2)
+    normal, smooth = corner_normals(mesh)
+    corners = np.concatenate([mesh.position, normal], axis=2)
     vertices, index = np.unique(corners.reshape(-1, 6), axis=0, return_inverse=True)
 
     made = bpy.data.meshes.new(name)
@@ -143,7 +63,7 @@ def make_mesh(mesh: source.Mesh, name: str, encoded: bool) -> None:
     made.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
     made.polygons.foreach_set("loop_total", np.full(count, 3, np.int32))
     made.polygons.foreach_set("material_index", mesh.material.astype(np.int32))
-    made.polygons.foreach_set("use_smooth", smooth)
+    made.polygons.foreach_set("use_smooth", np.full(count, smooth))
     uv = made.uv_layers.new(name="uv")
     uv.data.foreach_set("uv", np.nan_to_num(mesh.uv).astype(np.float32).ravel())
     for material in mesh.materials:
@@ -151,7 +71,7 @@ def make_mesh(mesh: source.Mesh, name: str, encoded: bool) -> None:
     made.update(calc_edges=True)
     if len(made.polygons) != count:
         raise SceneError(f"{name}: Blender dropped triangles; report this")
-    if smooth.any():
+    if smooth:
         made.use_auto_smooth = True  # without it Blender ignores custom normals
         made.auto_smooth_angle = math.pi
         made.normals_split_custom_set_from_vertices(vertices[:, 3:].tolist())
@@ -161,105 +81,6 @@ def make_mesh(mesh: source.Mesh, name: str, encoded: bool) -> None:
     thing.cycles.shadow_terminator_offset = 0.0
     thing.cycles.shadow_terminator_geometry_offset = 0.0
     bpy.context.scene.collection.objects.link(thing)
-
-
-def make_lamp(light: dict, name: str) -> None:
-    kinds = {"point": "POINT", "spot": "SPOT", "directional": "SUN"}
-    lamp = bpy.data.lights.new(name, kinds[light["type"]])
-    colour = light["irradiance" if light["type"] == "directional" else "intensity"]
-    peak = max(colour) or 1.0
-    lamp.color = [c / peak for c in colour]
-    thing = bpy.data.objects.new(name, lamp)
-    if light["type"] == "directional":
-        lamp.energy = peak  # W/m2 on a facing surface
-        lamp.angle = math.radians(light.get("angular_diameter_deg", 0.0))
-    else:
-        lamp.energy = peak * 4.0 * math.pi  # W over the sphere, cone or not; ours is W/sr
-        lamp.shadow_soft_size = 0.0
-    if light["type"] == "spot":
-        if light.get("falloff_deg", 0.0) > 0.0:
-            raise SceneError("spot light: Cycles' soft rim has another shape; use falloff_deg 0")
-        lamp.spot_size = 2.0 * math.radians(light["cone_deg"])
-        lamp.spot_blend = 0.0
-        undo_cosine(lamp)
-    if "direction" in light:
-        forward = np.array(light["direction"], float)
-        forward /= np.linalg.norm(forward)
-        side = np.cross(forward, np.eye(3)[np.argmin(np.abs(forward))])
-        side /= np.linalg.norm(side)
-        place(thing, side, np.cross(side, forward), forward, light.get("position", (0, 0, 0)))
-    else:
-        thing.location = light["position"]
-    bpy.context.scene.collection.objects.link(thing)
-
-
-def undo_cosine(lamp: bpy.types.Light) -> None:
-    """Cycles' spot dims by the cosine to its axis; ours is even inside the cone."""
-    lamp.use_nodes = True
-    tree = lamp.node_tree
-    coordinates = tree.nodes.new("ShaderNodeTexCoord")
-    parts = tree.nodes.new("ShaderNodeSeparateXYZ")
-    inverse = tree.nodes.new("ShaderNodeMath")
-    inverse.operation = "DIVIDE"
-    inverse.inputs[0].default_value = 1.0
-    size = tree.nodes.new("ShaderNodeMath")
-    size.operation = "ABSOLUTE"
-    tree.links.new(coordinates.outputs["Normal"], parts.inputs[0])
-    tree.links.new(parts.outputs["Z"], size.inputs[0])
-    tree.links.new(size.outputs[0], inverse.inputs[1])
-    tree.links.new(inverse.outputs[0], tree.nodes["Emission"].inputs["Strength"])
-
-
-def make_world(lights: list[dict], scene_folder: Path) -> None:
-    world = bpy.data.worlds.new("world")
-    bpy.context.scene.world = world
-    world.use_nodes = True
-    tree = world.node_tree
-    background = tree.nodes["Background"]
-    background.inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
-    background.inputs["Strength"].default_value = 1.0
-    if len(lights) > 1:
-        raise SceneError("more than one environment light; the cross-check maps one")
-    for light in lights:
-        background.inputs["Strength"].default_value = light.get("scale", 1.0)
-        if "radiance" in light:
-            background.inputs["Color"].default_value = (*light["radiance"], 1.0)
-        else:
-            tree.links.new(environment_image(tree, light, scene_folder), background.inputs["Color"])
-        world.cycles.sampling_method = "AUTOMATIC"
-
-
-def environment_image(tree: bpy.types.NodeTree, light: dict, folder: Path):
-    """Our image has -z at its centre and goes round over +x, about +y; Cycles' has +x at its
-    centre and goes round over -y, about +z. Ours is looked up texel by texel."""
-    image = tree.nodes.new("ShaderNodeTexEnvironment")
-    image.image = bpy.data.images.load(str(source.resolve(folder / "x", light["image"])))
-    image.interpolation = "Closest"
-    coordinates = tree.nodes.new("ShaderNodeTexCoord")
-    turned = tree.nodes.new("ShaderNodeVectorRotate")
-    turned.rotation_type = "Y_AXIS"
-    turned.inputs["Angle"].default_value = -math.radians(light.get("rotate_deg", 0.0))
-    parts = tree.nodes.new("ShaderNodeSeparateXYZ")
-    joined = tree.nodes.new("ShaderNodeCombineXYZ")
-    tree.links.new(coordinates.outputs["Generated"], turned.inputs["Vector"])
-    tree.links.new(turned.outputs[0], parts.inputs[0])
-    for ours, theirs in (("Z", "X"), ("X", "Y")):
-        negated = tree.nodes.new("ShaderNodeMath")
-        negated.operation = "MULTIPLY"
-        negated.inputs[1].default_value = -1.0
-        tree.links.new(parts.outputs[ours], negated.inputs[0])
-        tree.links.new(negated.outputs[0], joined.inputs[theirs])
-    tree.links.new(parts.outputs["Y"], joined.inputs["Z"])
-    tree.links.new(joined.outputs[0], image.inputs["Vector"])
-    return image.outputs["Color"]
-
-
-def place(thing: bpy.types.Object, right, up, forward, position) -> None:
-    """Cameras and lamps of Blender look along their own -z."""
-    matrix = np.eye(4)
-    matrix[:3, 0], matrix[:3, 1], matrix[:3, 2] = right, up, -np.asarray(forward)
-    matrix[:3, 3] = position
-    thing.matrix_world = Matrix(matrix.tolist())
 
 
 def make_camera(camera: source.Camera) -> None:
@@ -311,9 +132,10 @@ def set_unbiased(spp: int) -> None:
 
 
 def set_bounces(bounces: int) -> None:
+    """As our --max-bounces: diffuse vertices are limited, mirrors and glass are passed through."""
     cycles = bpy.context.scene.cycles
-    cycles.max_bounces = bounces
-    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
+    cycles.diffuse_bounces = bounces
+    cycles.max_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 1024
     cycles.transparent_max_bounces = 8
     cycles.min_light_bounces = 0  # Russian roulette from the start, as ours
 

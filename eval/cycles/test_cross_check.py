@@ -180,6 +180,10 @@ class CommandLine(InFolder):
         done = command("cornell", "--blender", "no-such-blender", "--out", str(self.folder))
         self.assert_one_line(done, 3, "no-such-blender: no such program; apt-get install")
 
+    def test_a_table_of_nothing_is_code_3(self) -> None:
+        done = command("--table", "--out", str(self.folder))
+        self.assert_one_line(done, 3, "results.json")
+
     def test_an_unknown_case_is_code_2(self) -> None:
         done = command("cornel")
         self.assertEqual(done.returncode, 2)
@@ -201,6 +205,9 @@ class CommandLine(InFolder):
                        VPL_RENDER, "--out", str(self.folder))
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(done.stdout.count("agrees"), 3)
+        table = command("--table", "--out", str(self.folder)).stdout.splitlines()
+        self.assertEqual([row.split(" | ")[:2] for row in table[2:]],
+                         [["| cornell", v.name] for v in cases.CASES[0].views])
         self.assertTrue((self.folder / "cornell" / "indirect-32.png").is_file())
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import re
 import tempfile
 import unittest
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import numpy as np
 
@@ -76,10 +78,21 @@ class InputTest(unittest.TestCase):
         self.assertEqual(set(powers), {"3", "4", "−3", "−2", "−1", "0"})
         self.assertIn("slope −1.02", svg)
         self.assertEqual(svg.count('class="bar"'), 24)
-        places = [float(y) for y in re.findall(r'class="name[^>]* y="([\d.]+)"', svg)]
-        self.assertEqual(len(places), 8)
-        gaps = np.diff(sorted(places))
-        self.assertGreaterEqual(gaps.min(), 32, "names overlap")
+
+    def test_names_at_the_lines_ends_stay_apart(self) -> None:
+        for end in (1.0, 0.0001):  # all lines end near the top, near the bottom
+            def edit(data: dict[str, Any]) -> None:
+                for i, series in enumerate(data["plots"][0]["series"]):
+                    series.update(y=[0.01, 0.02, end * (1 + 0.01 * i)], error=None)
+            self.change(edit)
+            page = self.make()
+            svg = page[page.index('<svg class="plot wide"'):]
+            svg = svg[:svg.index("</svg>")]
+            places = sorted(float(y) for y in re.findall(r'class="name[^>]* y="([-\d.]+)"', svg))
+            self.assertEqual(len(places), 8)
+            self.assertGreaterEqual(np.diff(places).min(), 32, "names overlap")
+            self.assertGreater(places[0], 12)
+            self.assertLess(places[-1] + 16, 460)
 
     def test_plots_as_files(self) -> None:
         for name, start in (("p.png", b"\x89PNG"), ("p.svg", b"<?xml")):
@@ -159,6 +172,22 @@ class InputTest(unittest.TestCase):
         made = run("make_report.py", self.json, "-o", self.folder / "none" / "r.html")
         self.assertEqual(made.returncode, 4)
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
+
+    def test_a_full_disk_leaves_the_old_page(self) -> None:
+        old = self.make()
+        self.change(lambda r: r.update(title="Another"))
+
+        def write_half(path: Path, data: bytes) -> None:
+            with open(path, "wb") as file:
+                file.write(data[:len(data) // 2])
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        with mock.patch.object(Path, "write_bytes", write_half):
+            made = call(make_report.main, self.json, "-o", self.page)
+        self.assertEqual(made.returncode, 4)
+        self.assertIn("report.html: No space left on device", made.stderr)
+        self.assertEqual(self.page.read_text(encoding="utf-8"), old)
+        self.assertEqual(list(self.folder.glob("report.html*")), [self.page])
 
 
 if __name__ == "__main__":

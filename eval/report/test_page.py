@@ -35,8 +35,9 @@ class PageTest(PageCase):
 
     def test_viewers_far_below_wait(self) -> None:
         made = "return [...document.querySelectorAll('.viewer')].map((v) => v.children.length > 1)"
-        # Before any script of the page has run.
-        style = ("const s = new CSSStyleSheet(); s.replaceSync('.view {margin-top: 9000px !important}');"
+        # In force before any script of the page runs.
+        style = ("const s = new CSSStyleSheet();"
+                 "s.replaceSync('.view {margin-top: 9000px !important}');"
                  "document.adoptedStyleSheets = [s]")
         script = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument",
                                              {"source": style})

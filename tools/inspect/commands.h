@@ -29,8 +29,8 @@ struct CompareCommand {
   fs::path imageA, imageB, secondB, mask, diff;
   std::string layer, layerA, layerB;  // layerA and layerB go first
   CompareOptions limits;
-  std::string exposure = "auto";  // of LDR-FLIP
-  std::string flipExposures;      // of HDR-FLIP, START:STOP or auto; empty: the default
+  std::string exposure;       // of LDR-FLIP, stops or auto
+  std::string flipExposures;  // of HDR-FLIP, START:STOP or auto; empty: as in `flip`
   FlipOptions flip;
   MapKind map = MapKind::Difference;
   std::optional<double> diffRange;  // at the end of the colour scale; none: the map's own

@@ -33,8 +33,10 @@ Json channelJson(const Comparison::Channel& k) {
 }
 
 Json flipJson(const Comparison::Flip& flip) {
-  return {{"pixels_per_degree", flip.ppd}, {"exposure_ev", flip.exposureEv},
-          {"hdr_start_ev", flip.startEv},  {"hdr_stop_ev", flip.stopEv},
+  return {{"pixels_per_degree", flip.ppd},
+          {"exposure_ev", flip.exposureEv},
+          {"hdr_start_ev", flip.startEv},
+          {"hdr_stop_ev", flip.stopEv},
           {"hdr_exposures", flip.exposures}};
 }
 

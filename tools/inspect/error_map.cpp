@@ -91,10 +91,9 @@ ErrorMap relMseMap(const Layer& a, const Layer& reference, double epsilon) {
 }
 
 ErrorMap smapeMap(const Layer& a, const Layer& reference) {
-  return {channelMeans(a, reference,
-                       [](double x, double r) {
-                         return std::fabs(x - r) / (std::fabs(x) + std::fabs(r));
-                       }),
+  return {channelMeans(
+              a, reference,
+              [](double x, double r) { return std::fabs(x - r) / (std::fabs(x) + std::fabs(r)); }),
           "SMAPE", false, 1.0};
 }
 

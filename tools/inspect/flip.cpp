@@ -14,7 +14,7 @@ using flip::Filters;
 using flip::Kernel;
 using flip::Plane;
 
-// [A20] section 4.1.3 and 4.2.2: the exponents of colour and feature differences. Colour
+// [A20]: the exponents of colour and feature differences. Colour
 // differences up to kKneeShare of the largest possible one take the lower kKnee of 0..1.
 constexpr float kColourExponent = 0.7f, kFeatureExponent = 0.5f;
 constexpr float kKneeShare = 0.4f, kKnee = 0.95f;
@@ -23,7 +23,7 @@ constexpr size_t kPixelsEach = 4096;
 
 // What the eye makes of one picture.
 struct Appearance {
-  std::vector<Vec3> huntLab;        // after the contrast sensitivity filters
+  std::vector<Vec3> huntLab;         // after the contrast sensitivity filters
   std::vector<float> edges, points;  // strength of features
 };
 
@@ -56,8 +56,8 @@ Appearance appearance(const RgbImage& image, const Filters& filters) {
   const size_t pixels = image.rgb[0].size();
   Plane y(image.width, image.height), cx = y, cz = y, grey = y;
   parallelFor(pixels, kPixelsEach, [&](size_t i) {
-    const Vec3 c = flip::yCxCzFromRgb(
-        clamp01(Vec3{image.rgb[0][i], image.rgb[1][i], image.rgb[2][i]}));
+    const Vec3 c =
+        flip::yCxCzFromRgb(clamp01(Vec3{image.rgb[0][i], image.rgb[1][i], image.rgb[2][i]}));
     y.values[i] = c.x;
     cx.values[i] = c.y;
     cz.values[i] = c.z;

@@ -28,7 +28,7 @@ struct FlipOptions {
   double ppd = 3840.0 * std::numbers::pi / 180.0;
   std::optional<double> exposureEv;  // of LDR-FLIP; none: middleGreyEv of the reference
   // The first and the last exposure of HDR-FLIP; none: exposureRange of the reference. The default
-  // covers what exposureRange gives for the scenes that come with bnvpl.
+  // covers what that gives for the scenes of bnvpl, but for a stop at the start for Veach-ajar.
   std::optional<std::array<double, 2>> rangeEv = std::array<double, 2>{-4.0, 10.0};
 };
 
@@ -46,11 +46,11 @@ FlipMaps flipMaps(const RgbImage& reference, const RgbImage& test, const FlipOpt
 // in quarters of a stop, so that another seed of the reference gives the same. 0 for black.
 double middleGreyEv(const RgbImage& image);
 
-// [A21] section 3.3: where the ACES curve takes the brightest pixel, and where it takes the median
+// [A21]: where the ACES curve takes the brightest pixel, and where it takes the median
 // one, to 0.85. Black pixels are left out of the median: no exposure shows them. 0, 0 for black.
 std::array<double, 2> exposureRange(const RgbImage& reference);
 
-// [A21] section 3.2: max(2, whole stops in the range).
+// [A21]: max(2, whole stops in the range).
 size_t exposureCount(double startEv, double stopEv);
 
 // Narkowicz' fit of the ACES film curve, clamped to 0..1.

@@ -14,9 +14,10 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 // CIE XYZ from linear sRGB: Image Engineering technote 958, as in the authors' implementation. It
 // differs from IEC 61966-2-1 in the fifth digit.
-inline constexpr Matrix3 kXyzFromRgb{{{0.4123865632529917, 0.3575914909206253, 0.1804504912035637},
-                                      {0.2126368216773238, 0.7151829818412507, 0.0721801964814255},
-                                      {0.0193306201524840, 0.1191971636402082, 0.9503725870054354}}};
+inline constexpr Matrix3 kXyzFromRgb{
+    {{0.4123865632529917, 0.3575914909206253, 0.1804504912035637},
+     {0.2126368216773238, 0.7151829818412507, 0.0721801964814255},
+     {0.0193306201524840, 0.1191971636402082, 0.9503725870054354}}};
 
 // Every use of XYZ in FLIP is relative to the white point, which is the XYZ of R = G = B = 1.
 constexpr Matrix3 relativeToWhite(Matrix3 m) {
@@ -55,7 +56,7 @@ inline Vec3 multiply(const Matrix3& m, Vec3 v) {
   return {row(0), row(1), row(2)};
 }
 
-// YCxCz, the linear opponent space that the filters work in: [A20] section 4.1.1.
+// YCxCz, the linear opponent space that the filters work in: [A20]
 inline Vec3 yCxCzFromRgb(Vec3 rgb) {
   const Vec3 w = multiply(kWhiteXyzFromRgb, rgb);
   return {116.0f * w.y - 16.0f, 500.0f * (w.x - w.y), 200.0f * (w.y - w.z)};
@@ -66,7 +67,7 @@ inline Vec3 rgbFromYCxCz(Vec3 c) {
 }
 
 // L*, a*, b* (CIE 1976), with a* and b* scaled by L* / 100: colours matter less in the dark (the
-// Hunt effect, [A20] section 4.1.2).
+// Hunt effect, [A20]).
 inline Vec3 huntLabFromRgb(Vec3 rgb) {
   constexpr float kDelta = 6.0f / 29.0f;
   const auto f = [](float t) {

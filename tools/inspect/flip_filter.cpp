@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kRowsEach = 8;
 
-// The contrast sensitivities as sums of Gaussians in space, [A20] equation 5 and table 1:
+// The contrast sensitivities as sums of Gaussians in space, [A20]:
 // a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees. The second blue-yellow one is for its long tail.
 struct SpatialGaussian {
   double a, b;
@@ -21,7 +21,7 @@ const std::vector<SpatialGaussian> kAchromatic{{1.0, 0.0047}}, kRedGreen{{1.0, 0
 // All three end where the widest has fallen to three of its standard deviations.
 constexpr double kWidestB = 0.04, kDeviations = 3.0;
 
-// Width of the feature detector, in degrees: [A20] section 4.2.1.
+// Width of the feature detector, in degrees: [A20]
 constexpr double kFeatureDegrees = 0.082;
 
 // Leaves out the ends that are below what a float can add to the middle.
@@ -65,8 +65,8 @@ SensitivityFilter sensitivity(const std::vector<SpatialGaussian>& terms, double 
   std::vector<double> volumes;
   double total = 0.0;
   for (const SpatialGaussian& term : terms) {
-    const std::vector<double> line = sampled(
-        radius, [&](double i) { return std::exp(-kPi2 * i * i / (ppd * ppd * term.b)); });
+    const std::vector<double> line =
+        sampled(radius, [&](double i) { return std::exp(-kPi2 * i * i / (ppd * ppd * term.b)); });
     double sum = 0.0;
     for (const double w : line) sum += w;
     volumes.push_back(term.a * std::sqrt(std::numbers::pi / term.b) * sum * sum);
@@ -80,17 +80,19 @@ SensitivityFilter sensitivity(const std::vector<SpatialGaussian>& terms, double 
 }  // namespace
 
 Filters makeFilters(double ppd) {
-  Filters filters{sensitivity(kAchromatic, ppd), sensitivity(kRedGreen, ppd),
-                  sensitivity(kBlueYellow, ppd), {}, {}, {}};
+  Filters filters{sensitivity(kAchromatic, ppd),
+                  sensitivity(kRedGreen, ppd),
+                  sensitivity(kBlueYellow, ppd),
+                  {},
+                  {},
+                  {}};
   const double deviation = 0.5 * kFeatureDegrees * ppd;
   const int radius = static_cast<int>(std::ceil(kDeviations * deviation));
   const auto gauss = [&](double x) { return std::exp(-x * x / (2.0 * deviation * deviation)); };
   filters.smooth = trimmed(normalised(sampled(radius, gauss)));
-  filters.edge =
-      trimmed(normalised(sampled(radius, [&](double x) { return -x * gauss(x); })));
-  filters.point = trimmed(normalised(sampled(radius, [&](double x) {
-    return (x * x / (deviation * deviation) - 1.0) * gauss(x);
-  })));
+  filters.edge = trimmed(normalised(sampled(radius, [&](double x) { return -x * gauss(x); })));
+  filters.point = trimmed(normalised(sampled(
+      radius, [&](double x) { return (x * x / (deviation * deviation) - 1.0) * gauss(x); })));
   return filters;
 }
 

@@ -1,6 +1,7 @@
 // FLIP's filters: what the eye resolves, and what catches it. All are separable.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace bnvpl::flip {

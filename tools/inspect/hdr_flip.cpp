@@ -8,11 +8,11 @@
 namespace bnvpl {
 namespace {
 
-// [A21] section 3.1: (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5) from Narkowicz 2016, "ACES Filmic Tone
+// [A21]: (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5) from Narkowicz 2016, "ACES Filmic Tone
 // Mapping Curve". The curve's own exposure of 0.6 is part of the constants.
-constexpr double kK0 = 0.6 * 0.6 * 2.51, kK1 = 0.6 * 0.03, kK3 = 0.6 * 0.6 * 2.43,
-                 kK4 = 0.6 * 0.59, kK5 = 0.14;
-constexpr double kBright = 0.85;  // [A21] section 3.3: t_max and t_min
+constexpr double kK0 = 0.6 * 0.6 * 2.51, kK1 = 0.6 * 0.03, kK3 = 0.6 * 0.6 * 2.43, kK4 = 0.6 * 0.59,
+                 kK5 = 0.14;
+constexpr double kBright = 0.85;  // [A21]: t_max and t_min
 
 constexpr size_t kPixelsEach = 4096;
 
@@ -101,8 +101,8 @@ FlipMaps flipMaps(const RgbImage& reference, const RgbImage& test, const FlipOpt
   const double step = (maps.stopEv - maps.startEv) / double(maps.exposures - 1);
   for (size_t k = 0; k < maps.exposures; ++k) {
     const double ev = maps.startEv + double(k) * step;
-    const std::vector<float> map = ldrFlip(mapped(reference, ev, acesCurve),
-                                           mapped(test, ev, acesCurve), options.ppd);
+    const std::vector<float> map =
+        ldrFlip(mapped(reference, ev, acesCurve), mapped(test, ev, acesCurve), options.ppd);
     for (size_t i = 0; i < map.size(); ++i) maps.hdr[i] = std::max(maps.hdr[i], map[i]);
   }
   return maps;

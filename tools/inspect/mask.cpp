@@ -34,8 +34,7 @@ std::string readBytes(const fs::path& file) {
 
 // The grey of a pixel with 1 to 4 channels: grey, grey alpha, R G B, R G B alpha.
 double weightOf(const fs::path& file, const stbi_uc* pixel, int channels, size_t x, size_t y) {
-  const std::string where =
-      "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is ";
+  const std::string where = "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is ";
   if (channels >= 3 && (pixel[0] != pixel[1] || pixel[0] != pixel[2])) {
     throw InputError(file, where + "coloured; a mask is white, black or grey");
   }

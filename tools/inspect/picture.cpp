@@ -25,8 +25,8 @@ Picture::Picture(int w, int h)
 
 void Picture::set(int x, int y, Colour colour) {
   if (x < 0 || y < 0 || x >= width || y >= height) return;
-  const size_t at = 3 * (static_cast<size_t>(y) * static_cast<size_t>(width) +
-                         static_cast<size_t>(x));
+  const size_t at =
+      3 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x));
   std::copy(colour.begin(), colour.end(), rgb8.begin() + static_cast<std::ptrdiff_t>(at));
 }
 

@@ -17,7 +17,7 @@ struct Picture {
   std::vector<uint8_t> rgb8;
 
   Picture() = default;
-  Picture(int w, int h);               // white
+  Picture(int w, int h);                  // white
   void set(int x, int y, Colour colour);  // nothing outside
 };
 
@@ -27,7 +27,7 @@ struct Legend {
   std::vector<std::string> labels;         // evenly spaced from end to end
   std::string title;                       // empty: no line
 };
-inline constexpr int kLegendHeight = 26;       // pixels added below an image
+inline constexpr int kLegendHeight = 26;        // pixels added below an image
 inline constexpr int kTitledLegendHeight = 37;  // with a title
 inline constexpr int kMinLegendWidth = 180;     // five numbers need this much
 

@@ -3,7 +3,7 @@
 const zoomSteps = [1, 2, 4, 8, 16, 32];
 
 class Stage {
-  // on: {split(share), pixel(x, y), zoom()}
+  // on: {pixel(x, y, byKeyboard), zoom()}
   constructor(host, width, height, label, on) {
     Object.assign(this, {host, width, height, on, zoom: 1, split: 0.5, mode: "split", x: 0, y: 0});
     this.sources = [null, null];
@@ -103,7 +103,6 @@ class Stage {
   setSplit(share) {
     this.split = clamp(share, 0, 1);
     this.draw();
-    this.on.split(this.split);
   }
 
   // Keeps the image point (x, y) where it is on the screen.

@@ -6,13 +6,14 @@ class Viewer {
     this.items = [...view.images, ...view.pictures];
     this.reference = view.images.findIndex((i) => i.id === view.reference);
     const a = Math.max(0, view.images.findIndex((_, i) => i !== this.reference));
-    this.state = {layer: view.layers[0].id, mode: "split", map: "image", ev: view.exposure ?? 0, a,
-                  b: this.reference >= 0 ? this.reference : Math.min(1, this.items.length - 1),
+    const b = this.reference >= 0 ? this.reference : Math.min(1, this.items.length - 1);
+    this.state = {layer: view.layers[0].id, a, b, mode: "split", map: "image",
+                  ev: view.exposure ?? 0,
                   ranges: {relative: kinds.relative.initial, squared: kinds.squared.initial}};
     this.exposed = view.exposure !== null;
     this.panel = new Panel(view, this.items, this.state, this);
-    this.stage = new Stage(host, view.width, view.height, `${view.title}. Keys: see the list below.`, {
-      split: () => {},
+    const label = `${view.title}. The list of keys follows.`;
+    this.stage = new Stage(host, view.width, view.height, label, {
       pixel: (x, y, spoken) => this.showPixel(x, y, spoken),
       zoom: () => { this.panel.zoomText.textContent = `${this.stage.zoom}×`; },
     });

@@ -1,0 +1,115 @@
+// `vpl-inspect compare` itself: masks, FLIP and pictures from the command line.
+#include "formats/png_io.h"
+#include "tests/inspect/run_inspect.h"
+
+namespace bnvpl {
+namespace {
+
+class CompareCli : public InspectTest {
+ protected:
+  CompareCli() {
+    Image a = flatImage(4, 3, 3, 3, 3);
+    for (const char* name : {"N.X", "N.Y", "N.Z"}) a.add(name).assign(12, 0.5f);
+    writeExr(at("a.exr"), a, ExrPixelType::Float);
+    Image b = flatImage(4, 3, 2, 2, 2);
+    for (const char* name : {"N.X", "N.Y", "N.Z"}) b.add(name).assign(12, 0.5f);
+    b.channels[0].data[0] = 3.0f;
+    writeExr(at("b.exr"), b, ExrPixelType::Float);
+  }
+  std::string path(const std::string& name) const { return "'" + at(name).string() + "'"; }
+  std::string both() const { return "compare " + path("a.exr") + " " + path("b.exr") + " "; }
+  Json json(const std::string& options) const {
+    const Outcome result = runInspect(both() + "--json " + options);
+    EXPECT_EQ(result.code, kExitOk) << result.output;
+    return Json::parse(result.output, nullptr, false);
+  }
+};
+
+TEST_F(CompareCli, FlipIsAlwaysThereForLight) {
+  const Json flip = json("--exposure -3 --flip-exposures -2:2.5 --ppd 30");
+  EXPECT_GT(flip["flip"].get<double>(), 0.05);
+  EXPECT_GT(flip["hdr_flip"].get<double>(), 0.05);
+  EXPECT_EQ(flip["flip_settings"]["exposure_ev"], -3.0);
+  EXPECT_EQ(flip["flip_settings"]["hdr_start_ev"], -2.0);
+  EXPECT_EQ(flip["flip_settings"]["hdr_stop_ev"], 2.5);
+  EXPECT_EQ(flip["flip_settings"]["hdr_exposures"], 5);
+  EXPECT_EQ(flip["flip_settings"]["pixels_per_degree"], 30.0);
+  EXPECT_EQ(json("--layer N")["flip"], nullptr);
+  EXPECT_TRUE(contains(runInspect(both()).output, "HDR-FLIP"));
+  EXPECT_TRUE(contains(runInspect(both()).output, "14 exposures from -4 to +10 EV"));
+}
+
+TEST_F(CompareCli, ExposuresMayComeFromTheReference) {
+  const Json flip = json("--flip-exposures auto");
+  EXPECT_LT(flip["flip_settings"]["hdr_start_ev"].get<double>(), 0.1);
+  EXPECT_NE(flip["flip_settings"]["hdr_start_ev"], -4.0);
+  EXPECT_EQ(flip["flip_settings"]["exposure_ev"], -3.5);  // log2(0.18 / 2) to a quarter
+}
+
+TEST_F(CompareCli, OptionsThatMakeNoSenseExitWith2) {
+  for (const char* options :
+       {"--flip-exposures 4", "--flip-exposures 4:2", "--flip-exposures a:b",
+        "--flip-exposures 0:99", "--flip-exposures nan:2", "--exposure bright", "--exposure 1x",
+        "--ppd 0", "--map flip", "--diff-range 1", "--map heat --diff x.png"}) {
+    const Outcome result = runInspect(both() + options);
+    EXPECT_EQ(result.code, kExitUsage) << options << ": " << result.output;
+  }
+  const Outcome normals = runInspect(both() + "--layer N --map flip --diff " + path("d.png"));
+  EXPECT_EQ(normals.code, kExitUsage);
+  EXPECT_TRUE(contains(normals.output, "layer 'N'")) << normals.output;
+  EXPECT_FALSE(fs::exists(at("d.png")));
+}
+
+TEST_F(CompareCli, AMaskChoosesThePixels) {
+  std::vector<uint8_t> rgb8(4 * 3 * 3, 0);
+  rgb8[0] = rgb8[1] = rgb8[2] = 255;
+  writePng(at("first.png"), 4, 3, rgb8);
+  EXPECT_EQ(json("--mask " + path("first.png"))["channels"][0]["rmse"], 0.0);
+  EXPECT_EQ(json("--mask " + path("first.png"))["mask_pixels"], 1.0);
+  EXPECT_EQ(json("")["mask_pixels"], nullptr);
+  writePng(at("small.png"), 3, 4, rgb8);
+  const Outcome wrong = runInspect(both() + "--mask " + path("small.png"));
+  EXPECT_EQ(wrong.code, kExitInput);
+  EXPECT_TRUE(contains(wrong.output, "small.png: 3 x 4") &&
+              contains(wrong.output, "b.exr has 4 x 3"))
+      << wrong.output;
+}
+
+TEST_F(CompareCli, EveryMapIsAnotherPicture) {
+  std::vector<std::string> pictures;
+  for (const char* map : {"difference", "relmse", "smape", "flip", "hdr-flip"}) {
+    const Outcome result = runInspect(both() + "--diff " + path("d.png") + " --map " + map);
+    EXPECT_EQ(result.code, kExitOk) << result.output;
+    for (const std::string& other : pictures) EXPECT_NE(other, readAll(at("d.png"))) << map;
+    pictures.push_back(readAll(at("d.png")));
+  }
+  runInspect(both() + "--diff " + path("d.png"));
+  EXPECT_EQ(readAll(at("d.png")), pictures[0]);
+  runInspect(both() + "--diff " + path("d.png") + " --map smape --diff-range 0.5");
+  EXPECT_NE(readAll(at("d.png")), pictures[2]);
+  EXPECT_EQ(runInspect(both() + "--diff " + path("absent/d.png")).code, kExitOutput);
+}
+
+TEST_F(CompareCli, BothHalvesMakeTheReferenceOfFlipAndMaps) {
+  writeExr(at("s.exr"), flatImage(4, 3, 4, 4, 4), ExrPixelType::Float);  // mean with b: 3, but one
+  writeExr(at("c.exr"), flatImage(4, 3, 2, 2, 2), ExrPixelType::Float);
+  const Outcome result = runInspect("compare " + path("a.exr") + " " + path("c.exr") +
+                                    " --second-half " + path("s.exr") + " --json --exposure -3");
+  const Json halves = Json::parse(result.output, nullptr, false);
+  EXPECT_EQ(halves["flip"], 0.0) << result.output;
+  EXPECT_EQ(halves["hdr_flip"], 0.0);
+  EXPECT_EQ(halves["smape"], 0.0);
+  EXPECT_GT(json("--exposure -3")["flip"].get<double>(), 0.0);
+}
+
+TEST_F(CompareCli, TheSecondHalfIsCheckedToo) {
+  Image bad = flatImage(4, 3, 2, 2, 2);
+  bad.channels[1].data[5] = INFINITY;
+  writeExr(at("bad.exr"), bad, ExrPixelType::Float);
+  const Outcome result = runInspect(both() + "--second-half " + path("bad.exr"));
+  EXPECT_EQ(result.code, kExitInput);
+  EXPECT_TRUE(contains(result.output, "bad.exr: channel G is not finite")) << result.output;
+}
+
+}  // namespace
+}  // namespace bnvpl

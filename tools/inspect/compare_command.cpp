@@ -1,0 +1,204 @@
+// `vpl-inspect compare`: its options, and from files to figures and pictures.
+#include <cctype>
+#include <cstdio>
+#include <optional>
+
+#include "formats/exr_io.h"
+#include "formats/png_io.h"
+#include "tools/common/choice.h"
+#include "tools/inspect/commands.h"
+#include "tools/inspect/difference_image.h"
+
+namespace bnvpl {
+namespace {
+
+const Choices<MapKind> kMaps{{"difference", MapKind::Difference},
+                             {"relmse", MapKind::RelMse},
+                             {"smape", MapKind::Smape},
+                             {"flip", MapKind::Flip},
+                             {"hdr-flip", MapKind::HdrFlip}};
+
+constexpr double kMostEv = 64.0;  // either way; light * 2^64 squared is far inside a double
+
+// The number that `text` is from `from` to `to`, or none.
+std::optional<double> numberIn(const std::string& text, double from, double to) {
+  double value = 0.0;
+  char rest = 0;
+  if (text.empty() || std::isspace(static_cast<unsigned char>(text[0])) ||
+      std::sscanf(text.c_str(), "%lf%c", &value, &rest) != 1 || !(value >= from && value <= to)) {
+    return {};
+  }
+  return value;
+}
+
+std::optional<double> parseExposure(const std::string& text) {
+  if (text.empty() || text == "auto") return {};
+  if (const auto ev = numberIn(text, -kMostEv, kMostEv)) return ev;
+  throw UsageError("--exposure '" + text + "' is neither 'auto' nor a number of stops up to 64");
+}
+
+std::optional<std::array<double, 2>> parseRange(const std::string& text) {
+  if (text == "auto") return {};
+  const size_t colon = text.find(':');
+  if (colon != std::string::npos) {
+    const auto start = numberIn(text.substr(0, colon), -kMostEv, kMostEv);
+    const auto stop = numberIn(text.substr(colon + 1), -kMostEv, kMostEv);
+    if (start && stop && *start <= *stop) return {{*start, *stop}};
+  }
+  throw UsageError("--flip-exposures '" + text +
+                   "' is neither 'auto' nor START:STOP in stops, such as -4:10, up to 64");
+}
+
+// What there is to compare, with the images that the layers point into.
+struct Sides {
+  Image imageA, imageB, imageSecond, imageMean;
+  Layer a, b, second;
+  Layer reference;  // b, or the mean of both halves
+  Mask mask;
+  bool halves = false;
+};
+
+void readSides(const CompareCommand& command, Sides& s) {
+  s.imageA = readExr(command.imageA);
+  s.imageB = readExr(command.imageB);
+  s.a =
+      findLayer(command.imageA, s.imageA, command.layerA.empty() ? command.layer : command.layerA);
+  s.b =
+      findLayer(command.imageB, s.imageB, command.layerB.empty() ? command.layer : command.layerB);
+  s.reference = s.b;
+  s.halves = !command.secondB.empty();
+  if (s.halves) {
+    s.imageSecond = readExr(command.secondB);
+    s.second = findLayer(command.secondB, s.imageSecond, s.b.name);
+    requireSameShape(command.secondB, s.second, command.imageB.string(), s.b);
+    requireFinite(command.secondB, s.second);
+    s.imageMean = meanOf(s.b, s.second);
+    s.reference = findLayer(command.imageB, s.imageMean, s.b.name);
+  }
+  if (!command.mask.empty()) s.mask = readMask(command.mask, command.imageB, s.b);
+}
+
+ErrorMap errorMapOf(const CompareCommand& command, const Sides& s, double epsilon,
+                    const std::optional<FlipMaps>& flip) {
+  switch (command.map) {
+    case MapKind::RelMse:
+      return relMseMap(s.a, s.reference, epsilon);
+    case MapKind::Flip:
+      return flipMap(*flip);
+    case MapKind::HdrFlip:
+      return hdrFlipMap(*flip);
+    default:
+      return smapeMap(s.a, s.reference);
+  }
+}
+
+Picture pictureOf(const CompareCommand& command, const Sides& s, double epsilon,
+                  const std::optional<FlipMaps>& flip) {
+  if (command.map == MapKind::Difference) {
+    constexpr double kRange = 0.5;  // half as much or as much again: the strongest colours
+    return differencePicture(s.a, s.reference, command.diffRange.value_or(kRange), s.mask);
+  }
+  ErrorMap map = errorMapOf(command, s, epsilon, flip);
+  map.largest = command.diffRange.value_or(map.largest);
+  return errorPicture(map, s.b.width, s.b.height, s.mask);
+}
+
+void addReferenceOptions(CLI::App& sub, CompareCommand& c) {
+  sub.add_option("--second-half", c.secondB,
+                 "the reference again, with another seed: takes its noise out of RMSE and relMSE");
+  sub.add_option("--mask", c.mask,
+                 "PNG of the images' size: white pixels count, black ones do not, greys in part");
+  sub.add_option("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
+  sub.add_option("--layer-a", c.layerA, "of A only");
+  sub.add_option("--layer-b", c.layerB, "of B only");
+}
+
+void addLimitOptions(CLI::App& sub, CompareCommand& c) {
+  sub.add_option("--epsilon", c.limits.epsilon, "of relMSE, times the squared mean of B")
+      ->check(inRange(0.0, 1e300))
+      ->capture_default_str();
+  sub.add_option("--max-relmse", c.limits.maxRelMse, "largest relMSE allowed")
+      ->check(inRange(0.0, 1e300));
+  sub.add_option("--max-rmse", c.limits.maxRmse, "largest RMSE allowed")
+      ->check(inRange(0.0, 1e300));
+  sub.add_option("--max-rmse-over-mean", c.limits.maxRmseOverMean, "largest RMSE / mean(B) allowed")
+      ->check(inRange(0.0, 1e300));
+}
+
+void addFlipOptions(CLI::App& sub, CompareCommand& c) {
+  char range[64] = "";
+  std::snprintf(range, sizeof range, "%g:%g", (*c.flip.rangeEv)[0], (*c.flip.rangeEv)[1]);
+  sub.add_option("--exposure", c.exposure,
+                 "of FLIP, in stops (EV); auto: B's logarithmic mean to middle grey")
+      ->type_name("EV|auto")
+      ->default_str("auto");
+  sub.add_option("--flip-exposures", c.flipExposures,
+                 "first and last exposure of HDR-FLIP, in stops; auto: from B, as in the paper")
+      ->type_name("START:STOP|auto")
+      ->default_str(range);
+  sub.add_option("--ppd", c.flip.ppd, "pixels in a degree of the viewer's field, for FLIP")
+      ->check(inRange(1.0, 1000.0))
+      ->capture_default_str();
+}
+
+void addPictureOptions(CLI::App& sub, CompareCommand& c) {
+  CLI::Option* diff = sub.add_option("--diff", c.diff, "false-colour picture (.png) with a legend");
+  addChoice(sub, "--map", c.map, kMaps,
+            "what it shows; difference: (a-b) / (b + 0.1 mean(b)), blue darker, red brighter")
+      ->needs(diff);
+  sub.add_option("--diff-range", c.diffRange,
+                 "value at the end of its colours; of the difference, 1 = 100 %")
+      ->check(inRange(1e-6, 1e6))
+      ->default_str("0.5 of the difference, else 1")
+      ->needs(diff);
+}
+
+}  // namespace
+
+CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
+  CLI::App* sub = cli.add_subcommand(
+      "compare",
+      "Measure image A against the reference B over all pixels of R, G, B or one layer.\n"
+      "relMSE is the mean of (a-b)^2 / (b^2 + e), e = epsilon * mean(b)^2.\n"
+      "SMAPE is the mean of |a-b| / (|a| + |b|).\n"
+      "FLIP and HDR-FLIP are Andersson et al. 2020 and 2021, of layers of R, G, B.\n"
+      "Exits with 5 when a limit is exceeded.");
+  sub->add_option("A", c.imageA, "image (.exr)")->required();
+  sub->add_option("B", c.imageB, "reference (.exr)")->required();
+  addReferenceOptions(*sub, c);
+  addLimitOptions(*sub, c);
+  addFlipOptions(*sub, c);
+  addPictureOptions(*sub, c);
+  sub->add_flag("--json", c.json, "the measures as JSON");
+  return sub;
+}
+
+int runCompare(const CompareCommand& command) {
+  FlipOptions flipOptions = command.flip;
+  flipOptions.exposureEv = parseExposure(command.exposure);
+  if (!command.flipExposures.empty()) flipOptions.rangeEv = parseRange(command.flipExposures);
+  if (!command.diff.empty()) requireWritable({command.diff});
+
+  Sides s;
+  readSides(command, s);
+  Comparison c = compareLayers(command.imageA, s.a, command.imageB, s.b, command.limits,
+                               s.halves ? &s.second : nullptr, s.mask);
+  std::optional<FlipMaps> flip;
+  if (s.b.isColour() && s.a.isColour()) {
+    flip = flipMaps(rgbOf(s.reference), rgbOf(s.a), flipOptions);
+    addFlip(*flip, s.mask, c);
+  } else if (command.map == MapKind::Flip || command.map == MapKind::HdrFlip) {
+    throw UsageError("--map " + nameOf(command.map, kMaps) + " needs R, G, B, but layer '" +
+                     (s.b.isColour() ? s.a : s.b).name + "' is none; choose another map");
+  }
+  if (!command.diff.empty()) {
+    const Picture picture = pictureOf(command, s, c.epsilon, flip);
+    writePng(command.diff, picture.width, picture.height, picture.rgb8);
+  }
+  const std::string text = command.json ? comparisonJson(c, command.limits).dump(2) + "\n"
+                                        : comparisonText(c, command.limits);
+  std::fputs(text.c_str(), stdout);
+  return comparisonExitCode(c, command.limits);
+}
+
+}  // namespace bnvpl
