@@ -6,6 +6,7 @@ A table stands between '<!-- table ID -->' and '<!-- end -->'; ID is that of rep
 
 import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -84,6 +85,9 @@ def main() -> int:
     for scene in report["scenes"]:
         for view in scene["views"][:1]:
             write_strip(folder, view, DOCS / "images" / f"methods-{scene['id']}.png")
+    for plot in report["plots"]:
+        subprocess.run([sys.executable, settings.EVAL / "report/plots.py", folder / "report.json", plot["id"],
+                        "-o", DOCS / "images" / f"{plot['id']}.png"], check=True)
     return 0
 
 

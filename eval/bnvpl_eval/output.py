@@ -70,8 +70,7 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
             pixels = images.read(image["file"], "indirect" if layer == "indirect" else "")
             images.write_half(target, {"": pixels}, image["label"])
             files[layer] = str(target.relative_to(folder))
-        entry["images"].append({"id": image["id"], "label": image["label"], "files": files,
-                                "caption": image["label"]})
+        entry["images"].append({"id": image["id"], "label": image["label"], "files": files})
     for picture in shown["maps"]:
         target = place / f"{picture['id']}.png"
         if "channel" in picture:
@@ -79,7 +78,7 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
         else:
             shutil.copyfile(picture["file"], target)
         entry["pictures"].append({"id": picture["id"], "label": picture["label"],
-                                  "file": str(target.relative_to(folder)), "caption": picture["label"]})
+                                  "file": str(target.relative_to(folder))})
     return entry
 
 

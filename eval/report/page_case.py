@@ -84,6 +84,7 @@ class PageCase(unittest.TestCase):
             else:
                 chain.send_keys(key)
         chain.perform()
+        self.until(lambda: self.viewer.get_attribute("aria-busy") == "false")  # decoding
 
     def colour(self, x: float, y: float) -> list[int]:
         """What the canvas shows at a place given in image pixels at zoom 1."""

@@ -6,6 +6,8 @@ from ..pipeline import METHODS
 from ..settings import ROOT, View
 from .equal_time import picture_spp
 
+MAPS = {"difference": "Difference to the reference", "flip": "FLIP"}
+
 
 def run(context: Context) -> None:
     for view in context.views():
@@ -16,15 +18,16 @@ def run(context: Context) -> None:
         shown = [{"id": "reference", "label": f"path tracer, {context.size['picture_reference_spp']} spp",
                   "file": reference}]
         maps = []
-        for method in context.size["methods"]:
+        for method in reversed(context.size["methods"]):  # ours first, beside the reference
             c = context.configuration(view, method, picture=True)
             file, _ = pipeline.image(context.runner, view, c, 1)
             shown.append({"id": method, "label": METHODS[method], "file": file})
-            maps.append(error_map(context, method, file, reference))
+            maps += [error_map(context, method, file, reference, kind) for kind in MAPS]
             if method == "local":
-                maps.append(cut_map(context, view, c))
+                maps.append({"id": "cut", "label": "Cut size, clusters a sample", "file": file,
+                             "channel": "cutsize"})
         shown.append(equal_time(context, view))
-        context.pictures[view.name] = {"images": shown, "maps": dots(context, view) + [m for m in maps if m]}
+        context.pictures[view.name] = {"images": shown, "maps": dots(context, view) + maps}
 
 
 def equal_time(context: Context, view: View) -> dict:
@@ -35,17 +38,11 @@ def equal_time(context: Context, view: View) -> dict:
     return {"id": "path", "label": f"path tracer, time of ours ({spp} spp)", "file": file}
 
 
-def error_map(context: Context, method: str, image, reference) -> dict:
-    run = context.runner.run("vpl-inspect",
-                             ["compare", "{image}", "{reference}", "--layer", "indirect", "--diff", "@diff.png"],
-                             {"image": image, "reference": reference}, ["diff.png"])
-    return {"id": f"diff-{method}", "label": f"Difference to the reference: {METHODS[method]}",
-            "file": run["diff.png"]}
-
-
-def cut_map(context: Context, view: View, c: pipeline.Configuration) -> dict:
-    file, _ = pipeline.image(context.runner, view, c, 1)
-    return {"id": "cut", "label": "Cut size, clusters a sample", "file": file, "channel": "cutsize"}
+def error_map(context: Context, method: str, image, reference, kind: str) -> dict:
+    run = context.runner.run("vpl-inspect", ["compare", "{image}", "{reference}", "--layer", "indirect",
+                                             "--diff", "@map.png", "--map", kind],
+                             {"image": image, "reference": reference}, ["map.png"])
+    return {"id": f"{kind}-{method}", "label": f"{MAPS[kind]}: {METHODS[method]}", "file": run["map.png"]}
 
 
 def dots(context: Context, view: View) -> list[dict]:
@@ -59,7 +56,7 @@ def dots(context: Context, view: View) -> list[dict]:
                                                     "-o", "@v.vpl", "--quiet"],
                                   {"c": placed["candidates.vpl"]}, ["v.vpl"])
         plot = context.runner.run("vpl-inspect", ["plot", "{v}", "--scene", "{scene}", "-o", "@dots.png", "--quiet",
-                                                  "--dot", 2, "--size", view.scene.film(640)],
+                                                  "--dot", 3, "--size", view.scene.film(640)],
                                   {"v": kept["v.vpl"], "scene": ROOT / view.file}, ["dots.png"])
         made.append({"id": f"dots-{method}", "label": f"{count} VPLs, {METHODS[method]}", "file": plot["dots.png"]})
     return made
