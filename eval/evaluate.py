@@ -49,6 +49,7 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--parts", default=",".join(PARTS), help=f"some of {','.join(PARTS)}")
     parser.add_argument("--settings", type=Path, default=settings.EVAL / "settings.toml")
     parser.add_argument("--scenes", help="some of the size's scenes, by id")
+    parser.add_argument("--views", help="some of main,second")
     parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools")
     parser.add_argument("-o", "--output", type=Path, help="folder; build/eval/SIZE unless given")
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache",
@@ -66,6 +67,8 @@ def main() -> int:
     if unknown := [part for part in parts if part not in PARTS]:
         raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(PARTS)}")
     size = table["size"][arguments.size]
+    if arguments.views:
+        size["views"] = arguments.views.split(",")
     wanted = arguments.scenes.split(",") if arguments.scenes else size["scenes"]
     chosen = []
     for scene in (scene for scene in scenes if scene.id in wanted):

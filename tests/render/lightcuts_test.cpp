@@ -93,5 +93,38 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
   EXPECT_EQ(below[0].size(), vpls.size());
 }
 
+// The sampled gather and the sum over all VPLs agree on the mean, point by point and channel by channel.
+TEST(SampledGather, IsTheSumOverAllOnAverage) {
+  const Lit& l = lit();
+  const VplLights vpls = makeVplLights(l.vpls, l.world.rays, 1.0f);
+  const Gatherer gatherer(l.world.rays, vpls, {.lightcuts = false}, 1);
+  const Vec3 middle = l.world.scene.camera.position;
+  Rng rng(streamKey(5, Stream::PixelSamples), 0);
+  int points = 0;
+  while (points < 6) {
+    SurfacePoint hit;
+    const Vec3 direction = normalize(
+        l.world.scene.camera.forward + 0.3f * Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.0f});
+    if (!l.world.rays.closestHit(middle, direction, hit)) continue;
+    const Bsdf bsdf(l.world.scene, hit);
+    const Vec3 all = gatherer.gather(bsdf).radiance;
+    if (mean(all) <= 0.0f) continue;
+    ++points;
+    constexpr int kDraws = 4000;
+    Vec3 sum;
+    double squares = 0.0;
+    for (int k = 0; k < kDraws; ++k) {
+      const Vec3 radiance = gatherer.sample(bsdf, rng).radiance;
+      sum += radiance * (1.0f / kDraws);
+      squares += std::pow(double{mean(radiance)} / double{mean(all)}, 2) / kDraws;
+    }
+    const double deviation = std::sqrt(std::max(0.0, squares - 1.0));
+    EXPECT_LT(deviation, 0.8);  // of a draw, relative: the tree knows where the light is
+    const double allowed = 5.0 * deviation / std::sqrt(double{kDraws});
+    EXPECT_NEAR(mean(sum) / mean(all), 1.0, allowed);
+    EXPECT_NEAR(sum.x / all.x, 1.0, 2.0 * allowed);
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl::test

@@ -45,7 +45,7 @@ struct VplSettings {
   EstimateOptions estimate{.photons = 300000};
   float clamp = 1.0f;
   bool nearField = false;
-  unsigned nearFieldRays = 8;
+  unsigned nearFieldRays = 16;
   GatherOptions gather{.lightcuts = false};
   FilmOptions film{.spp = 4};
 };

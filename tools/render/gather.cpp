@@ -1,12 +1,18 @@
 #include "tools/render/gather.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/sampling.h"
 
 namespace bnvpl {
 
 namespace {
+
+// VPLs that sample() takes. What it lights has been found by a ray whose own noise is larger.
+constexpr unsigned kSampledVpls = 8;
+// Squared distance to expect of a cluster around the point, as a share of its diagonal's square.
+constexpr float kLikelyDistance = 0.5f;
 
 // Sums in double: a cut adds and takes back thousands of terms.
 struct Rgb64 {
@@ -68,28 +74,87 @@ bool lessBound(const Cluster& a, const Cluster& b) {
   return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
 }
 
-float errorBound(const LightNode& n, const Bsdf& bsdf) {
-  if (n.leaf()) return 0.0f;
+// Of the cluster's light at the point, summed over the channels, with `distance2` for all of its
+// VPLs; 0 only where there is none.
+float contribution(const LightNode& n, const Bsdf& bsdf, float distance2) {
   const Vec3 at = bsdf.point().position;
   const float emitter = maxEmitterCosine(n, at);
   if (emitter <= 0.0f) return 0.0f;
   const Vec3 value = bsdf.roughUpperBound(maxCosine(n.bounds, at, bsdf.point().ns),
                                           [&](Vec3 axis) { return maxCosine(n.bounds, at, axis); });
-  const Vec3 bound = value * n.intensity;
-  const float sum = (bound.x + bound.y + bound.z) * emitter;
-  return sum > 0.0f ? sum * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
+  const Vec3 light = value * n.intensity;
+  const float sum = (light.x + light.y + light.z) * emitter;
+  return sum > 0.0f ? sum * falloff(distance2, n.clamp2) : 0.0f;
+}
+
+float errorBound(const LightNode& n, const Bsdf& bsdf) {
+  if (n.leaf()) return 0.0f;
+  return contribution(n, bsdf, n.bounds.distanceSquared(bsdf.point().position));
+}
+
+// What to expect of a cluster: most of it is further away than its nearest corner.
+float likelyContribution(const LightNode& n, const Bsdf& bsdf) {
+  const float size2 = lengthSquared(n.bounds.extent());
+  const float near2 = n.bounds.distanceSquared(bsdf.point().position);
+  return contribution(n, bsdf, std::max(near2, kLikelyDistance * size2));
 }
 
 }  // namespace
 
 Gatherer::Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options,
                    uint64_t seed)
-    : rays_(rays), vpls_(vpls), options_(options) {
-  if (options.lightcuts) tree_ = buildLightTree(vpls, seed);
-}
+    : rays_(rays), vpls_(vpls), options_(options), tree_(buildLightTree(vpls, seed)) {}
 
 Gathered Gatherer::gather(const Bsdf& bsdf) const {
   return options_.lightcuts ? gatherCut(bsdf) : gatherAll(bsdf);
+}
+
+Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
+  Gathered out;
+  if (tree_.nodes.empty()) return out;
+  std::array<float, kMaxStartCut> upTo;  // running sums of the bounds of the start cut
+  const size_t starts = tree_.startCut.size();
+  float whole = 0.0f;
+  for (size_t i = 0; i < starts; ++i) {
+    whole += likelyContribution(tree_.nodes[tree_.startCut[i]], bsdf);
+    upTo[i] = whole;
+  }
+  if (whole <= 0.0f) return out;
+  const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  const float shift = rng.next();
+  for (unsigned k = 0; k < kSampledVpls; ++k) {
+    const float pick = (static_cast<float>(k) + shift) / kSampledVpls * whole;
+    const auto slot = std::min(
+        starts - 1, static_cast<size_t>(std::upper_bound(upTo.begin(), upTo.begin() + starts, pick) -
+                                        upTo.begin()));
+    float probability = (upTo[slot] - (slot > 0 ? upTo[slot - 1] : 0.0f)) / whole;
+    const std::optional<uint32_t> leaf = descend(tree_.startCut[slot], bsdf, rng, probability);
+    Coupling c;
+    if (!leaf || !couple(vpls_, *leaf, bsdf, c)) continue;
+    ++out.shadowRays;
+    if (rays_.occluded(from, vpls_.position[*leaf])) continue;
+    const Vec3 light =
+        c.transfer * vpls_.intensity[*leaf] * (1.0f / (probability * float{kSampledVpls}));
+    out.radiance += light;
+    out.clamped += light * c.clamped;
+  }
+  return out;
+}
+
+// To a VPL of the cluster, at each node in proportion to the bounds of the children, whose share
+// `probability` is multiplied by. Empty where neither child can light the point.
+std::optional<uint32_t> Gatherer::descend(uint32_t node, const Bsdf& bsdf, Rng& rng,
+                                          float& probability) const {
+  while (!tree_.nodes[node].leaf()) {
+    const LightNode& n = tree_.nodes[node];
+    const float left = likelyContribution(tree_.nodes[n.left], bsdf);
+    const float both = left + likelyContribution(tree_.nodes[n.right], bsdf);
+    if (both <= 0.0f) return {};
+    const bool toLeft = rng.next() * both < left;
+    probability *= (toLeft ? left : both - left) / both;
+    node = toLeft ? n.left : n.right;
+  }
+  return tree_.nodes[node].representative;
 }
 
 Gathered Gatherer::gatherAll(const Bsdf& bsdf) const {

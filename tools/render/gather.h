@@ -1,6 +1,9 @@
 // Indirect light at a surface point from all VPLs: exactly, or through a cut of the light tree.
 #pragma once
 
+#include <optional>
+
+#include "core/random.h"
 #include "scene/ray_scene.h"
 #include "tools/render/light_tree.h"
 
@@ -24,16 +27,22 @@ class Gatherer {
   Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options,
            uint64_t seed);
 
-  Gathered gather(const Bsdf& bsdf) const;  // thread-safe
+  // Thread-safe, both.
+  Gathered gather(const Bsdf& bsdf) const;
+  // All VPLs on average, by a few that are drawn from the light tree (Estevez & Kulla 2018): for
+  // points whose light reaches the image over one random ray among many.
+  Gathered sample(const Bsdf& bsdf, Rng& rng) const;
 
  private:
+  std::optional<uint32_t> descend(uint32_t node, const Bsdf& bsdf, Rng& rng,
+                                  float& probability) const;
   Gathered gatherAll(const Bsdf& bsdf) const;
   Gathered gatherCut(const Bsdf& bsdf) const;
 
   const RayScene& rays_;
   const VplLights& vpls_;
   GatherOptions options_;
-  LightTree tree_;  // empty for `all`
+  LightTree tree_;
 };
 
 }  // namespace bnvpl

@@ -74,13 +74,15 @@ void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceS
     const NearField::Missing missing = missingFrom(end, rng);
     throughput *= end.throughput;
     if (missing.radiance) light += throughput * *missing.radiance * missing.share;
-    // Roulette for shares below 1.
+    // Roulette: followed with that probability, at full weight.
     const bool follow = !missing.radiance && rng.next() < missing.share;
     if (follow) {
-      throughput *= std::max(1.0f, missing.share);
       const Bsdf found(rays_.scene(), end.hit);
       light += throughput * directLightMis(rays_, lights_, found, LobeGroup::Rough, rng);
-      light += gatherAt(found, out, throughput);
+      const Gathered g = gatherer_.sample(found, rng);
+      light += throughput * g.radiance;
+      out.clamped += throughput * g.clamped;
+      out.shadowRays += g.shadowRays;
     }
     out.extended += light;
     out.indirect += light;

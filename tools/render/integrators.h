@@ -30,7 +30,7 @@ class VplIntegrator {
         lights_(lights),
         gatherer_(gatherer),
         nearField_(nearField),
-        extensions_(nearField != nullptr && nearField->knowsRadiance() ? nearFieldRays : 1),
+        extensions_(nearFieldRays),
         only_(only),
         chains_(hasChainLobes(rays.scene())) {}
   RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
@@ -45,8 +45,7 @@ class VplIntegrator {
   const LightSet& lights_;
   const Gatherer& gatherer_;
   const NearField* nearField_;  // null: what the clamp and the gaps take away stays away
-  // Rays from each shaded point. Without known radiance most would cost a gather of their own: one.
-  unsigned extensions_;
+  unsigned extensions_;  // rays from each shaded point
   Only only_;
   bool chains_;
 };

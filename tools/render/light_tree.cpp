@@ -9,7 +9,6 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kStartCut = 32;
 // A half turn of the normal weighs as much as this share of the scene's extent.
 constexpr float kNormalScale = 0.125f;
 
@@ -132,7 +131,7 @@ std::vector<uint32_t> startCutOf(const LightTree& tree) {
   };
   std::priority_queue<std::pair<float, uint32_t>> open;
   open.emplace(weight(0), 0u);
-  while (open.size() < kStartCut && !tree.nodes[open.top().second].leaf()) {
+  while (open.size() < kMaxStartCut && !tree.nodes[open.top().second].leaf()) {
     const LightNode& n = tree.nodes[open.top().second];
     open.pop();
     open.emplace(weight(n.left), n.left);

@@ -8,6 +8,8 @@
 
 namespace bnvpl {
 
+inline constexpr size_t kMaxStartCut = 32;
+
 struct LightNode {
   Bounds bounds;
   Vec3 axis;  // of the cone of normals

@@ -26,7 +26,7 @@ struct RenderOptions {
   GatherOptions cuts;
   float clamp = 2.0f;     // in units of a VPL's r_max
   bool nearField = true;  // give back what the clamp and the gaps take away
-  unsigned nearFieldRays = 8;
+  unsigned nearFieldRays = 16;
   unsigned maxBounces = 32;
   FilmOptions film;
   std::string size;  // WxH, empty: the scene's film

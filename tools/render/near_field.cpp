@@ -15,10 +15,9 @@ constexpr float kReachWithoutPhotons = 2.0f;
 constexpr uint32_t kAreaPoints = 32;
 constexpr int kMaxLayers = 4;  // surfaces on the way to the VPL's own
 // A ray shorter than this many r_max has found a crevice or a corner, where the light differs from
-// the mean of the VPL's surroundings (measured: docs/theory.md, "Near field"). The point's own light
-// is then found out instead; that is dear, so for this share of such rays, at so much more weight.
+// the mean of the VPL's surroundings: the point's own light is found out instead (measured:
+// docs/theory.md, "Near field").
 constexpr float kShortRay = 0.7f;
-constexpr float kFollowedShare = 0.5f;
 
 std::vector<float> scaled(std::vector<float> values, float factor) {
   for (float& v : values) v *= factor;
@@ -66,7 +65,7 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp)
       clampRadius_(scaled(lit.radius, clamp)),
       radiance_(lit.size()),
       gaps_(lit.reach > 0.0) {
-  if (!knowsRadiance()) return;
+  if (!gaps_) return;  // the flux of a photon says nothing of the area around it
   parallelFor(lit.size(), 16, [&](size_t i) {
     const float reach = lit.radius[i] * static_cast<float>(lit.reach);
     const float area = areaOf(static_cast<uint32_t>(i), lit, reach, coverage_, rays);
@@ -79,9 +78,8 @@ NearField::Missing NearField::missing(const SurfacePoint& seen, float distance, 
   if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
   const float near = distance / clampRadius_[*found.vpl];
   const float share = std::max(0.0f, 1.0f - near * near);  // 1 - d^2 falloff(d^2)
-  if (!radiance_[*found.vpl]) return {share, {}};
-  if (distance >= kShortRay * radius_[*found.vpl]) return {share, radiance_[*found.vpl]};
-  return {rng.next() < kFollowedShare ? share / kFollowedShare : 0.0f, {}};
+  if (distance < kShortRay * radius_[*found.vpl]) return {share, {}};
+  return {share, radiance_[*found.vpl]};
 }
 
 }  // namespace bnvpl

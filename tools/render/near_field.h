@@ -12,7 +12,7 @@ class NearField {
  public:
   // What VPLs do not bring from a point that a ray from a receiver has found.
   struct Missing {
-    float share = 0.0f;  // of the light from there; above 1: for rays that were left out
+    float share = 0.0f;            // of the light from there, 0..1
     std::optional<Vec3> radiance;  // that leaves there, W/(m2 sr); empty: has to be found out
   };
 
@@ -20,10 +20,6 @@ class NearField {
   NearField(const VplTable& lit, const RayScene& rays, float clamp);
 
   Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const;
-
-  // Whether VPLs know the radiance around them: those that photons lit do, those that are photons
-  // do not.
-  bool knowsRadiance() const { return gaps_; }
 
  private:
   Coverage coverage_;
