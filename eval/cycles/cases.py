@@ -47,7 +47,7 @@ SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.
 CASES = (
     Case("cornell", "cornell/scene.toml", (160, 160), 128, 128, 4, (DIRECT, ONE_BOUNCE, INDIRECT)),
     Case("u-shape", "u-shape/scene.toml", (160, 120), 512, 512, 4, (DIRECT, INDIRECT)),
-    Case("veach-ajar", "veach-ajar/scene.toml", (160, 90), 256, 256, 4, (DIRECT, INDIRECT),
+    Case("veach-ajar", "veach-ajar/scene.toml", (160, 90), 256, 256, 12, (DIRECT, INDIRECT),
          note="all diffuse, by the scene's own material library"),
     Case("veach-door", "veach-door/scene.toml", (160, 90), 256, 256, 4, (DIRECT, INDIRECT),
          drop=("Ks",), note="Phong lobes left out of both renderers; the mirror teapot stays"),

@@ -22,6 +22,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -123,6 +124,17 @@ def cycles_bounces(views: tuple[View, ...]) -> list[int]:
     return sorted(limits | ({0} if any(v.quantity == "indirect" for v in views) else set()))
 
 
+def missing_images(limits: list[int], seeds: range, path: Callable[[int, int], Path],
+                   reuse: bool) -> dict[tuple[int, ...], list[int]]:
+    """Seeds to render -> the bounce limits that lack them: each entry is one start of Blender."""
+    jobs: dict[tuple[int, ...], list[int]] = {}
+    for bounces in limits:
+        todo = tuple(s for s in seeds if not (reuse and path(bounces, s).is_file()))
+        if todo:
+            jobs.setdefault(todo, []).append(bounces)
+    return jobs
+
+
 def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
     spp, seconds = samples(case, options)[1], 0.0
     limits, seeds = cycles_bounces(case.views), range(1, case.seeds + 1)
@@ -132,17 +144,17 @@ def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple
     def path(bounces: int, seed: int) -> Path:
         return scene.parent / name.format(bounces=bounces, seed=seed)
 
-    wanted = [path(b, s) for b in limits for s in seeds]
-    if not (options.reuse and all(image.is_file() for image in wanted)):
+    for todo, bounces in missing_images(limits, seeds, path, options.reuse).items():
+        wanted = [path(b, s) for b in bounces for s in todo]
         for image in wanted:
             image.unlink(missing_ok=True)
         command = [options.blender, "-b", "--factory-startup", "--python-exit-code", "3",
                    "--python", str(HERE / "render_cycles.py"), "--", str(scene),
                    "--output", str(scene.parent / name), "--spp", str(spp),
-                   "--bounces", ",".join(map(str, limits)), "--seeds", ",".join(map(str, seeds)),
+                   "--bounces", ",".join(map(str, bounces)), "--seeds", ",".join(map(str, todo)),
                    "--threads", str(options.threads)]
         command += ["--encoded-textures"] if options.encoded_textures else []
-        seconds = run(command, scene.parent / "cycles.log", wanted)
+        seconds += run(command, scene.parent / "cycles.log", wanted)
     stacks = {b: np.stack([compare.read_exr(path(b, s)) for s in seeds]) for b in limits}
     return {v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0)
             for v in case.views}, seconds

@@ -1,11 +1,12 @@
 """What the report's viewer shows of each view: images beside the reference, dots, cut sizes, error maps."""
 
-from .. import pipeline, references
+from .. import pipeline
 from ..context import Context
 from ..pipeline import METHODS
 from ..settings import ROOT, View
 from .equal_time import picture_spp
 
+REFERENCE_SEED = 1000  # away from the seeds that are judged
 MAPS = {"difference": "Difference to the reference", "flip": "FLIP"}
 
 
@@ -13,10 +14,9 @@ def run(context: Context) -> None:
     for view in context.views():
         context.say(f"pictures: {view.name}")
         film = view.scene.film(context.size["picture_width"])
-        references.render_half(context.runner, view, film, context.size["picture_reference_spp"], "a")
-        reference = references.path(view, film, "a")
-        shown = [{"id": "reference", "label": f"path tracer, {context.size['picture_reference_spp']} spp",
-                  "file": reference}]
+        spp = context.size["picture_reference_spp"]
+        reference, _ = pipeline.path_traced(context.runner, view, film, spp, REFERENCE_SEED)
+        shown = [{"id": "reference", "label": f"path tracer, {spp} spp", "file": reference}]
         maps = []
         for method in reversed(context.size["methods"]):  # ours first, beside the reference
             c = context.configuration(view, method, picture=True)
