@@ -11,13 +11,15 @@ COLUMNS = [
     {"key": "render_cpu_s", "label": "render", "unit": "CPU s", "better": "low"},
 ]
 
+SEEDS = 2
+
 
 def run(context: Context) -> None:
     from .. import images, statistics
     rows = []
     for view in context.views("main"):
         context.say(f"gather: {view.name}")
-        seeds = context.seeds(view)[:2]
+        seeds = context.seeds(view)[:SEEDS]
         made = {}
         for gather in ("lightcuts", "all"):
             c = context.configuration(view, "local").but(render=("--gather", gather))
@@ -32,6 +34,6 @@ def run(context: Context) -> None:
         rows += [{"group": title, **row} for row in made.values()]
     context.tables.append({
         "id": "gather", "title": "Lightcuts against all VPLs",
-        "note": "The same VPLs, rays and seeds; the cut's own error is its difference to all VPLs.",
+        "note": f"The same VPLs, rays and {SEEDS} seeds; the cut's own error is its difference to all VPLs.",
         "columns": COLUMNS, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in COLUMNS)]}
                                      for row in rows]})

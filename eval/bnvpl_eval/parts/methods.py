@@ -6,6 +6,7 @@ from ..pipeline import METHODS
 
 COLUMNS = [
     {"key": "label", "label": "VPLs", "better": None},
+    {"key": "seeds", "label": "seeds", "better": None},
     {"key": "mean_ratio", "label": "mean ratio", "better": "one"},
     {"key": "rmse_over_mean", "label": "RMSE / mean", "better": "low"},
     {"key": "bias_over_mean", "label": "bias / mean", "better": "low"},
