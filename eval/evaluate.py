@@ -20,6 +20,7 @@ from bnvpl_eval.runner import Runner
 
 # In the order in which they may use each other's rows.
 PARTS = ["methods", "scatter", "gather", "equal_time", "energy", "convergence", "sensitivity", "pictures"]
+NEED_METHODS = {"equal_time", "energy"}
 
 
 def processor() -> str:
@@ -66,6 +67,9 @@ def main() -> int:
     parts = arguments.parts.split(",")
     if unknown := [part for part in parts if part not in PARTS]:
         raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(PARTS)}")
+    for part in NEED_METHODS & set(parts):
+        if "methods" not in parts:
+            raise SystemExit(f"eval: part '{part}' reads the rows of 'methods'; name that part too")
     size = table["size"][arguments.size]
     if arguments.views:
         size["views"] = arguments.views.split(",")

@@ -5,17 +5,12 @@ import json
 from .. import pipeline
 from ..context import Context
 from ..pipeline import METHODS
+from ..tables import column, table
 
-COLUMNS = [
-    {"key": "label", "label": "VPLs", "better": None},
-    {"key": "mean_ratio", "label": "mean ratio, indirect", "better": "one"},
-    {"key": "mean_ratio_error", "label": "its standard error", "better": None},
-    {"key": "full_mean_ratio", "label": "mean ratio, full image", "better": "one"},
-    {"key": "deposited", "label": "deposited", "unit": "%", "better": None},
-    {"key": "outside", "label": "outside", "unit": "%", "better": None},
-    {"key": "gap", "label": "gap", "unit": "%", "better": None},
-    {"key": "hidden", "label": "hidden", "unit": "%", "better": None},
-]
+COLUMNS = [column("label"), column("mean_ratio", "mean ratio, indirect"),
+           column("mean_ratio_error", "its standard error"),
+           column("full_mean_ratio", "mean ratio, full image", better="one"),
+           *(column(key, key, "%") for key in ("deposited", "outside", "gap", "hidden"))]
 
 
 def run(context: Context) -> None:
@@ -32,10 +27,9 @@ def run(context: Context) -> None:
                 shown |= {"deposited": 100 * account["deposited"] / whole}
                 shown |= {key: 100 * account["dropped_" + key] / whole for key in ("outside", "gap", "hidden")}
             rows.append(shown)
-    context.tables.append({
-        "id": "energy", "title": "Energy",
-        "note": "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because no VPL reaches the "
-                "hit (outside: it lights nothing in view), none on its sheet of surface (gap), none in sight (hidden). "
-                "Near-field rays bring what gap and hidden lose.",
-        "columns": COLUMNS, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in COLUMNS)]}
-                                     for row in rows]})
+    context.tables.append(table(
+        "energy", "Energy",
+        "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because no VPL reaches the "
+        "hit (outside: it lights nothing in view), none on its sheet of surface (gap), none in sight (hidden). "
+        "Near-field rays bring what gap and hidden lose.",
+        COLUMNS, rows))

@@ -6,15 +6,11 @@ over all seeds; the time comes from a picture that is rendered for about as long
 
 from .. import pipeline
 from ..context import Context
+from ..tables import column, table
 
-COLUMNS = [
-    {"key": "label", "label": "film", "better": None},
-    {"key": "pipeline_s", "label": "pipeline", "unit": "CPU s", "better": None},
-    {"key": "pipeline_relmse", "label": "its relMSE", "better": None},
-    {"key": "path_spp", "label": "path tracer in that time", "unit": "spp", "better": None},
-    {"key": "path_relmse", "label": "its relMSE", "better": None},
-    {"key": "gain", "label": "path tracer / pipeline", "better": "high"},
-]
+COLUMNS = [column("label", "film"), column("pipeline_s", "pipeline", "CPU s"),
+           column("pipeline_relmse", "its relMSE"), column("path_spp", "path tracer in that time", "spp"),
+           column("path_relmse", "its relMSE"), column("gain", "path tracer / pipeline", better="high")]
 MEASURED_SPP = 64
 FIRST_SPP = 4  # of the picture that tells how long a sample takes
 
@@ -44,9 +40,9 @@ def run(context: Context) -> None:
                "gain": relmse / judged["relmse"] if judged["relmse"] > 0 else None}
         rows.append({"group": f"{view.scene.title}, {view.title}", **row})
         context.results.append({"part": "equal-time", "method": "local", **row})
-    context.tables.append({
-        "id": "equal-time", "title": "Equal time: whole pipeline against the path tracer",
-        "note": f"All stages with loading, {context.size['spp']} spp; relMSE of the indirect light, "
-                "the path tracer's from the small film at "
-                f"{MEASURED_SPP} spp, as 1 / spp.",
-        "columns": COLUMNS, "rows": rows})
+    context.tables.append(table(
+        "equal-time", "Equal time: whole pipeline against the path tracer",
+        f"All stages with loading, {context.size['spp']} spp; relMSE of the indirect light, "
+        "the path tracer's from the small film at "
+        f"{MEASURED_SPP} spp, as 1 / spp.",
+        COLUMNS, rows))

@@ -1,21 +1,17 @@
 """Lightcuts against all VPLs: the same lit files, error and time."""
 
+from .. import images, statistics
 from ..context import Context
+from ..tables import column, table
 
-COLUMNS = [
-    {"key": "label", "label": "gather", "better": None},
-    {"key": "mean_ratio", "label": "mean ratio", "better": "one"},
-    {"key": "rmse_over_mean", "label": "RMSE / mean", "better": "low"},
-    {"key": "relmse", "label": "relMSE", "better": "low"},
-    {"key": "cut_rmse", "label": "difference to all / mean", "better": "low"},
-    {"key": "render_cpu_s", "label": "render", "unit": "CPU s", "better": "low"},
-]
+COLUMNS = [column("label", "gather"), column("mean_ratio"), column("rmse_over_mean"), column("relmse"),
+           column("cut_rmse", "difference to all / mean", better="low"),
+           column("render_cpu_s", "render", "CPU s", "low")]
 
 SEEDS = 2
 
 
 def run(context: Context) -> None:
-    from .. import images, statistics
     rows = []
     for view in context.views("main"):
         context.say(f"gather: {view.name}")
@@ -32,8 +28,7 @@ def run(context: Context) -> None:
         made["all"]["cut_rmse"] = 0.0
         title = f"{view.scene.title}, {made['all']['vpls']} VPLs"
         rows += [{"group": title, **row} for row in made.values()]
-    context.tables.append({
-        "id": "gather", "title": "Lightcuts against all VPLs",
-        "note": f"The same VPLs, rays and {SEEDS} seeds; the cut's own error is its difference to all VPLs.",
-        "columns": COLUMNS, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in COLUMNS)]}
-                                     for row in rows]})
+    context.tables.append(table(
+        "gather", "Lightcuts against all VPLs",
+        f"The same VPLs, rays and {SEEDS} seeds; the cut's own error is its difference to all VPLs.",
+        COLUMNS, rows))

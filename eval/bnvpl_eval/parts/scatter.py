@@ -5,15 +5,11 @@ import json
 from ..context import Context
 from ..pipeline import METHODS
 from ..settings import ROOT
+from ..tables import column, table
 
-COLUMNS = [
-    {"key": "label", "label": "scatter", "better": None},
-    {"key": "mean_ratio", "label": "mean ratio", "better": "one"},
-    {"key": "rmse_over_mean", "label": "RMSE / mean", "better": "low"},
-    {"key": "bias_over_mean", "label": "bias / mean", "better": "low"},
-    {"key": "std_over_mean", "label": "noise / mean", "better": "low"},
-    {"key": "relmse", "label": "relMSE", "better": "low"},
-]
+COLUMNS = [column("label", "scatter"),
+           *(column(key) for key in ("mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean", "relmse")),
+           column("dark_room", "light in the dark room", "W/(m2 sr)", "low")]
 SEEDS = 2  # errors of several times the light need no more
 ROOMS = ROOT / "scenes/test/two-rooms.toml"  # a lit and a dark room that share floor, ceiling and a thin wall
 
@@ -30,14 +26,11 @@ def run(context: Context) -> None:
     for scatter in ("guarded", "even"):
         rows.append({"group": "Two closed rooms, seen in the dark one: the right answer is 0",
                      "label": f"--scatter {scatter}", "mean_ratio": None, **dark_room(context, scatter)})
-    columns = [*COLUMNS, {"key": "dark_room", "label": "light in the dark room", "unit": "W/(m2 sr)",
-                          "better": "low"}]
-    context.tables.append({
-        "id": "scatter", "title": "The thesis' scatter against the guarded one",
-        "note": "'ours, but the thesis' scatter' changes --scatter alone; the thesis to the letter also spreads VPLs "
-                f"uniformly, does not recentre and has no near-field rays. {SEEDS} seeds.",
-        "columns": columns, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in columns)]}
-                                     for row in rows]})
+    context.tables.append(table(
+        "scatter", "The thesis' scatter against the guarded one",
+        "'ours, but the thesis' scatter' changes --scatter alone; the thesis to the letter also spreads VPLs "
+        f"uniformly, does not recentre and has no near-field rays. {SEEDS} seeds.",
+        COLUMNS, rows))
 
 
 def dark_room(context: Context, scatter: str) -> dict:

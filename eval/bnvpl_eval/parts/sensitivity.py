@@ -2,16 +2,11 @@
 
 from ..context import Context
 from ..settings import View
+from ..tables import column, table
 
-COLUMNS = [
-    {"key": "value", "label": "value", "better": None},
-    {"key": "mean_ratio", "label": "mean ratio", "better": "one"},
-    {"key": "rmse_over_mean", "label": "RMSE / mean", "better": "low"},
-    {"key": "bias_over_mean", "label": "bias / mean", "better": "low"},
-    {"key": "std_over_mean", "label": "noise / mean", "better": "low"},
-    {"key": "relmse", "label": "relMSE", "better": "low"},
-    {"key": "cpu_s", "label": "time", "unit": "CPU s", "better": "low"},
-]
+COLUMNS = [column("value", "value"),
+           *(column(key) for key in ("mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean", "relmse",
+                                     "cpu_s"))]
 
 
 def varied(context: Context, view: View, entry: dict, value):
@@ -37,8 +32,7 @@ def run(context: Context) -> None:
                 row = context.judge("sensitivity", view, c, range(1, 1 + plan["seeds"]),
                                     option=entry["id"], value=value)
                 rows.append({"group": f"{entry['title']}: {view.scene.title}", **row})
-    context.tables.append({
-        "id": "sensitivity", "title": "Sensitivity: one option at a time",
-        "note": f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; the other options at their defaults.",
-        "columns": COLUMNS, "rows": [{key: row.get(key) for key in ["group", *(c["key"] for c in COLUMNS)]}
-                                     for row in rows]})
+    context.tables.append(table(
+        "sensitivity", "Sensitivity: one option at a time",
+        f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; the other options at their defaults.",
+        COLUMNS, rows))

@@ -1,0 +1,32 @@
+"""Tables of the report: columns that several parts share, and rows cut down to what they show."""
+
+SHARED = {
+    "label": {"label": "VPLs", "better": None},
+    "seeds": {"label": "seeds", "better": None},
+    "mean_ratio": {"label": "mean ratio", "better": "one"},
+    "rmse_over_mean": {"label": "RMSE / mean", "better": "low"},
+    "bias_over_mean": {"label": "bias / mean", "better": "low"},
+    "std_over_mean": {"label": "noise / mean", "better": "low"},
+    "relmse": {"label": "relMSE", "better": "low"},
+    "smape": {"label": "SMAPE", "better": "low"},
+    "flip": {"label": "FLIP", "better": "low"},
+    "hdr_flip": {"label": "HDR-FLIP", "better": "low"},
+    "cpu_s": {"label": "time", "unit": "CPU s", "better": "low"},
+}
+
+
+def column(key: str, label: str = "", unit: str = "", better: str | None = None) -> dict:
+    """A shared column, or one of a part's own."""
+    made = {"key": key, **SHARED.get(key, {"label": label, "better": better})}
+    if label:
+        made["label"] = label
+    if unit:
+        made["unit"] = unit
+    return made
+
+
+def table(name: str, title: str, note: str, columns: list[dict], rows: list[dict]) -> dict:
+    """Rows carry 'group' and more than is shown."""
+    keys = ["group", *(c["key"] for c in columns)]
+    return {"id": name, "title": title, "note": note, "columns": columns,
+            "rows": [{key: row.get(key) for key in keys} for row in rows]}
