@@ -17,11 +17,12 @@ TEST_F(Options, HelpListsEveryOption) {
       {"vpl-estimate",
        {"scene", "vpls", "--output", "--photons", "--radius", "--scatter", "even|guarded",
         "--max-bounces", "--seed", "--define", "--depfile"}},
-      {"vpl-render",
-       {"scene",         "lit",      "--output",      "--png",    "--spp",      "--integrator",
-        "path|vpl",      "--gather", "all|lightcuts", "--error",  "--max-cut",  "--clamp",
-        "--max-bounces", "--only",   "--layers",      "--pixels", "float|half", "--exposure",
-        "--seed",        "--define", "--depfile"}},
+      {"vpl-render", {"scene",         "lit",          "--output",     "--png",
+                      "--spp",         "--integrator", "path|vpl",     "--gather",
+                      "all|lightcuts", "--error",      "--max-cut",    "--clamp",
+                      "--max-bounces", "--only",       "--layers",     "--pixels",
+                      "float|half",    "--exposure",   "--seed",       "--define",
+                      "--depfile",     "--size",       "--near-field", "--near-field-rays"}},
       {"vpl-inspect", {"info", "check", "export", "plot", "compare"}}};
   for (const auto& [name, texts] : options) {
     const Outcome help = tool(name, "--help");
@@ -116,6 +117,7 @@ TEST_F(Options, NumbersOutOfRange) {
   fail("vpl-estimate", scene_ + " a -o x --max-bounces 0", kExitUsage, {"--max-bounces"});
   fail("vpl-render", scene_ + " a -o x --error 2", kExitUsage, {"--error"});
   fail("vpl-render", scene_ + " a -o x --clamp -1", kExitUsage, {"--clamp"});
+  fail("vpl-render", scene_ + " a -o x --near-field-rays 0", kExitUsage, {"--near-field-rays"});
 }
 
 TEST_F(Options, VplsAndPathTracerExcludeEachOther) {

@@ -126,6 +126,19 @@ TEST_F(Output, HalfAndFloatImages) {
   EXPECT_TRUE(rounded);
 }
 
+TEST_F(Output, ASizeOtherThanTheScenesFilm) {
+  const auto pathTraced = [&](const std::string& more) {
+    return scene_ + " -o " + path("i.exr") + " --integrator path --spp 1 " + more;
+  };
+  succeed("vpl-render", pathTraced("--quiet --size 12x7"));
+  const Image image = readExr(at("i.exr"));
+  EXPECT_EQ(image.width, 12);
+  EXPECT_EQ(image.height, 7);
+  for (const char* bad : {"12", "12x", "0x7", "12x7x3", "-3x4", "99999x1"}) {
+    fail("vpl-render", pathTraced("--size=" + std::string(bad)), kExitUsage, {"--size", bad});
+  }
+}
+
 TEST_F(Output, LayersAndAttributes) {
   makeStages(scene_);
   const std::string command = scene_ + " " + path("lit.vpl") + " --spp 1 -o " + path("i.exr");

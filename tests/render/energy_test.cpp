@@ -136,8 +136,9 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
   }
 }
 
-// In the furnace every surface sends out rho / (1 - rho) of what is not its own emission. So say the
-// VPLs, from their flux and the area that each is found to speak for, on the average over surfaces.
+// In the furnace every surface sends out rho / (1 - rho) of what is not its own emission. So say
+// the VPLs, from their flux and the area that each is found to speak for, on the average over
+// surfaces.
 TEST(NearField, VplsKnowTheRadianceAroundThem) {
   const World world("furnace/scene.toml");  // rho = 0.5
   VplSettings s;
@@ -151,7 +152,9 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
     // Evenly over the six faces of the unit cube.
     const float side = rng.next() < 0.5f ? -0.5f : 0.5f;
     const float u = rng.next() - 0.5f, v = rng.next() - 0.5f;
-    const Vec3 face = k % 3 == 0 ? Vec3{side, u, v} : k % 3 == 1 ? Vec3{u, side, v} : Vec3{u, v, side};
+    const Vec3 face = k % 3 == 0   ? Vec3{side, u, v}
+                      : k % 3 == 1 ? Vec3{u, side, v}
+                                   : Vec3{u, v, side};
     if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
     const auto missing = nearField.missing(hit, 0.8f * s.clamp * lit.radius[0], rng);
     if (!missing.radiance) continue;

@@ -93,7 +93,8 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
   EXPECT_EQ(below[0].size(), vpls.size());
 }
 
-// The sampled gather and the sum over all VPLs agree on the mean, point by point and channel by channel.
+// The sampled gather and the sum over all VPLs agree on the mean, point by point and channel by
+// channel.
 TEST(SampledGather, IsTheSumOverAllOnAverage) {
   const Lit& l = lit();
   const VplLights vpls = makeVplLights(l.vpls, l.world.rays, 1.0f);
@@ -103,8 +104,8 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
   int points = 0;
   while (points < 6) {
     SurfacePoint hit;
-    const Vec3 direction = normalize(
-        l.world.scene.camera.forward + 0.3f * Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.0f});
+    const Vec3 direction = normalize(l.world.scene.camera.forward +
+                                     0.3f * Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.0f});
     if (!l.world.rays.closestHit(middle, direction, hit)) continue;
     const Bsdf bsdf(l.world.scene, hit);
     const Vec3 all = gatherer.gather(bsdf).radiance;

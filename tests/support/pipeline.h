@@ -62,8 +62,7 @@ inline Image renderVpls(const World& world, const VplTable& lit, const VplSettin
   const Gatherer gatherer(world.rays, vpls, s.gather, s.film.seed);
   const NearField nearField(lit, world.rays, s.clamp);
   const VplIntegrator integrator(world.rays, world.lights, gatherer,
-                                 s.nearField ? &nearField : nullptr, s.nearFieldRays,
-                                 s.film.only);
+                                 s.nearField ? &nearField : nullptr, s.nearFieldRays, s.film.only);
   return renderFilm(
       world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, s.film,
       stats);

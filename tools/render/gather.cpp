@@ -124,9 +124,10 @@ Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
   const float shift = rng.next();
   for (unsigned k = 0; k < kSampledVpls; ++k) {
     const float pick = (static_cast<float>(k) + shift) / kSampledVpls * whole;
-    const auto slot = std::min(
-        starts - 1, static_cast<size_t>(std::upper_bound(upTo.begin(), upTo.begin() + starts, pick) -
-                                        upTo.begin()));
+    const auto slot =
+        std::min(starts - 1,
+                 static_cast<size_t>(std::upper_bound(upTo.begin(), upTo.begin() + starts, pick) -
+                                     upTo.begin()));
     float probability = (upTo[slot] - (slot > 0 ? upTo[slot - 1] : 0.0f)) / whole;
     const std::optional<uint32_t> leaf = descend(tree_.startCut[slot], bsdf, rng, probability);
     Coupling c;

@@ -8,11 +8,11 @@
 namespace bnvpl {
 
 struct RadianceSample {
-  Vec3 direct;  // at most mirrors, glass and sharp lobes between the camera and the first rough
-                // vertex, and nothing between that and a light
-  Vec3 indirect;        // everything else
-  Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
-  Vec3 extended;        // indirect light that sampled rays brought instead; part of `indirect`
+  Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough
+                  // vertex, and nothing between that and a light
+  Vec3 indirect;  // everything else
+  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
+  Vec3 extended;  // indirect light that sampled rays brought instead; part of `indirect`
   Vec3 albedo, normal;  // of the first rough vertex
   float depth = 0.0f;   // of the first hit along the viewing axis; 0: none
   uint32_t cut = 0, shadowRays = 0;
@@ -45,7 +45,7 @@ class VplIntegrator {
   const LightSet& lights_;
   const Gatherer& gatherer_;
   const NearField* nearField_;  // null: what the clamp and the gaps take away stays away
-  unsigned extensions_;  // rays from each shaded point
+  unsigned extensions_;         // rays from each shaded point
   Only only_;
   bool chains_;
 };
