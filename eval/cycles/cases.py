@@ -40,16 +40,16 @@ class Case:
     note: str = ""
 
 
-ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 128, "cycles_spp": 128, "seeds": 4,
+ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 128, "cycles_spp": 128, "seeds": 12,
         "views": (DIRECT, INDIRECT), "drop": ("Ke",)}
 SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.0, 2.5, 2.0]}
 
 CASES = (
-    Case("cornell", "cornell/scene.toml", (160, 160), 128, 128, 4, (DIRECT, ONE_BOUNCE, INDIRECT)),
-    Case("u-shape", "u-shape/scene.toml", (160, 120), 512, 512, 4, (DIRECT, INDIRECT)),
+    Case("cornell", "cornell/scene.toml", (160, 160), 128, 128, 12, (DIRECT, ONE_BOUNCE, INDIRECT)),
+    Case("u-shape", "u-shape/scene.toml", (160, 120), 512, 512, 12, (DIRECT, INDIRECT)),
     Case("veach-ajar", "veach-ajar/scene.toml", (160, 90), 256, 256, 12, (DIRECT, INDIRECT),
          note="all diffuse, by the scene's own material library"),
-    Case("veach-door", "veach-door/scene.toml", (160, 90), 256, 256, 4, (DIRECT, INDIRECT),
+    Case("veach-door", "veach-door/scene.toml", (160, 90), 256, 256, 12, (DIRECT, INDIRECT),
          drop=("Ks",), note="Phong lobes left out of both renderers; the mirror teapot stays"),
     Case("room-point", lights=({"type": "point", "position": [0.3, 0.45, 0.15],
                                 "intensity": [0.2, 0.15, 0.1]},), **ROOM),

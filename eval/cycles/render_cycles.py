@@ -24,6 +24,11 @@ from cycles_lights import make_lamp, make_world, place  # noqa: E402
 from cycles_materials import make_material  # noqa: E402
 from scene_source import SceneError  # noqa: E402
 
+# Cycles 3.4 samples a triangle by solid angle where its longest edge exceeds the distance of its
+# plane divided by twice its area, and takes that angle from arc cosines good to 5e-5 rad: up to
+# 1.4 % of the light of a distant 3 m lamp was lost. Triangles of this size are sampled by area.
+EMITTER_EDGE = 0.1  # scene units
+
 
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="render_cycles.py", description=__doc__.split("\n")[0])
@@ -35,6 +40,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--encoded-textures", action="store_true",
                         help="let Cycles filter the sRGB values, as it does by itself")
+    parser.add_argument("--whole-emitters", action="store_true",
+                        help="leave emitting triangles as large as they are: shows Cycles' bias")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
 
@@ -129,6 +136,9 @@ def set_unbiased(spp: int) -> None:
     cycles.pixel_filter_type = "BOX"  # one pixel wide
     cycles.film_exposure = 1.0
     cycles.use_animated_seed = False
+    # The default tables are shared by all pixels and seeds: 0.3 % off at 256 samples of a lamp of
+    # 2048 triangles, whatever the seed, where Sobol-Burley is right to 0.01 %.
+    cycles.sampling_pattern = "SOBOL"
 
 
 def set_bounces(bounces: int) -> None:
@@ -146,6 +156,8 @@ def run() -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.preferences.addon_enable(module="cycles")
     for number, mesh in enumerate(scene.meshes):
+        if not options.whole_emitters:
+            mesh = source.split_emitters(mesh, EMITTER_EDGE)
         make_mesh(mesh, f"mesh{number}", options.encoded_textures)
     for number, light in enumerate(scene.lights):
         if light["type"] != "environment":

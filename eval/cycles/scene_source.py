@@ -234,6 +234,28 @@ def read_mesh(obj: Path, mtl: Path | None, matrix: np.ndarray) -> Mesh:
     return Mesh(position[keep], normal[keep], uv[keep], material[keep], [library[n] for n in used])
 
 
+def split_emitters(mesh: Mesh, longest: float) -> Mesh:
+    """The same surface with every emitting triangle quartered until no edge exceeds `longest`."""
+    emits = np.array([any(m.ke) for m in mesh.materials])
+    columns = [mesh.position, mesh.normal, mesh.uv]
+    material = mesh.material
+    while True:
+        p = columns[0]
+        edge = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
+        split = emits[material] & (edge > longest)
+        if not split.any():
+            return Mesh(*columns, material, mesh.materials)
+        columns = [np.concatenate([c[~split], _quarters(c[split])]) for c in columns]
+        material = np.concatenate([material[~split], np.tile(material[split], 4)])
+
+
+def _quarters(corners: np.ndarray) -> np.ndarray:
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+    return np.concatenate([np.stack(triangle, axis=1) for triangle in
+                           ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+
+
 def read_scene(path: Path) -> Scene:
     table = read_toml(path)
     try:

@@ -100,6 +100,15 @@ class Reader(InFolder):
         mesh = source.read_mesh(self.write("m.obj", slanted), None, np.diag([2.0, 1, 1, 1]))
         np.testing.assert_allclose(mesh.normal[0, 0], np.array([1, 0, 2]) / np.sqrt(5))
 
+    def test_split_emitters_keep_area_side_and_the_rest(self) -> None:
+        mesh = self.mesh(np.eye(4))
+        fine = source.split_emitters(mesh, 1.0)
+        lamp = fine.position[fine.material == 1]
+        twice = np.cross(lamp[:, 1] - lamp[:, 0], lamp[:, 2] - lamp[:, 0])
+        self.assertEqual(len(lamp), 16)  # edges 2, 3, 3.6 -> 0.5, 0.75, 0.9
+        np.testing.assert_allclose(twice, np.tile([0, 0, 6 / 16], (16, 1)))
+        np.testing.assert_array_equal(fine.position[fine.material == 0], mesh.position[:2])
+
     def test_what_has_no_counterpart_is_refused_by_name(self) -> None:
         for line, said in (("Ks 0.1 0.1 0.1", "Phong"), ("map_d a.png", "mask"),
                            ("illum 7\nTf 0.5 1 1", "coloured glass"), ("Ks 0.9 0.9 0.9\nillum 3",
