@@ -37,11 +37,16 @@ class Case:
     views: tuple[View, ...]
     drop: tuple[str, ...] = ()  # MTL keys taken out of every material that is no mirror
     lights: tuple[dict, ...] = ()  # in place of the scene's own
+    tall_block: str = ""  # MTL lines for the Cornell box's tall block
+    teapot: str = ""  # MTL lines for a teapot put on the short block
     note: str = ""
 
 
 ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 128, "cycles_spp": 128, "seeds": 12,
         "views": (DIRECT, INDIRECT), "drop": ("Ke",)}
+BOX = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 256, "cycles_spp": 256, "seeds": 12,
+       "views": (DIRECT, INDIRECT)}
+TEAPOT = {"scale": 0.09, "rotate_deg": [0.0, 40.0, 0.0], "translate": [0.186, 0.165, 0.168]}
 SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.0, 2.5, 2.0]}
 
 CASES = (
@@ -61,6 +66,12 @@ CASES = (
     Case("room-sky", lights=({"type": "environment", "radiance": [0.5, 0.8, 1.0]},), **ROOM),
     Case("room-sky-image", lights=({"type": "environment", "image": "sky.exr", "scale": 0.5,
                                     "rotate_deg": 130.0},), **ROOM),
+    Case("box-mirror", tall_block="Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n", **BOX),
+    Case("box-polished", tall_block="Kd 0.3 0.4 0.2\nKs 0.5 0.4 0.3\nillum 3\n", **BOX,
+         note="mirror beside diffuse"),
+    Case("teapot-mirror", teapot="Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n", **BOX),
+    Case("teapot-glass", teapot="Kd 0 0 0\nNi 1.5\nillum 7\n", **BOX),
+    Case("box-glass", tall_block="Kd 0 0 0\nNi 1.5\nillum 7\n", **BOX),
 )
 
 
@@ -81,6 +92,17 @@ def _library_of(obj: Path) -> Path:
             if line.startswith("mtllib "):
                 return obj.parent / line.split()[1]
     raise SceneError(f"{obj}: names no material library; name one in 'materials'")
+
+
+def with_tall_block(obj: Path, mtl: Path, lines: str, folder: Path) -> tuple[Path, Path]:
+    """Copies of both files in which the tall block has a material of its own."""
+    before, name, after = obj.read_text().partition("o TallBlock\nusemtl ")
+    if not name:
+        raise SceneError(f"{obj}: has no 'o TallBlock' followed by usemtl; use the Cornell box")
+    new_obj, new_mtl = folder / "block.obj", folder / "block.mtl"
+    new_obj.write_text(before + "o TallBlock\nusemtl Block" + after[after.index("\n"):])
+    new_mtl.write_text(mtl.read_text() + "\nnewmtl Block\n" + lines)
+    return new_obj, new_mtl
 
 
 def _toml_value(value: object) -> str:
@@ -127,7 +149,14 @@ def prepare(case: Case, scenes: Path, folder: Path) -> Path:
             edited = folder / f"mesh{number}.mtl"
             edited.write_text(edit_mtl(mtl.read_text(), case.drop))
             mtl = edited
+        if case.tall_block:
+            obj, mtl = with_tall_block(obj, mtl, case.tall_block, folder)
         text += _toml_table("[[mesh]]", mesh | {"file": str(obj), "materials": str(mtl)})
+    if case.teapot:
+        mtl = folder / "teapot.mtl"
+        mtl.write_text("newmtl Teapot\n" + case.teapot)
+        teapot = {"file": str(scenes / "teapot" / "teapot.obj"), "materials": str(mtl)}
+        text += _toml_table("[[mesh]]", teapot | TEAPOT)
     for light in case.lights or table.get("light", []):
         if "image" in light:
             write_sky(folder / light["image"])

@@ -161,6 +161,8 @@ def check_supported(material: Material, path: Path) -> None:
     if material.glass:  # black stands for white in both fields
         if any(c not in ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for c in (material.ks, material.tf)):
             problem = "is coloured glass"
+        elif material.ior < 1.0:  # ours warns and takes 1.5
+            problem = "has a refractive index below 1 (Ni)"
     elif any(material.ks) and not material.mirror:
         problem = "has a Phong lobe (Ks)"
     elif material.opacity < 0.5 or material.maps:

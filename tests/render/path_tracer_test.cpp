@@ -54,16 +54,63 @@ TEST(PathTracer, SplitsDirectAndIndirectWithoutRest) {
   EXPECT_NEAR(indirect.indirect, all.indirect, 0.02 * all.indirect);
 }
 
-// The VPL renderer's direct light is the path tracer's, by another estimator.
-TEST(PathTracer, DirectLightAgreesWithLightSampling) {
-  World world("cornell/scene.toml");
-  world.scene.film = {32, 32};
-  FilmStats path, light;
-  renderPaths(world, {.spp = 256, .only = Only::Direct}, path);
+// The Cornell box in daylight: its lamp, a sky through the open front, a low sun and a point light.
+Scene boxInDaylight() {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {32, 32};
+  scene.lights.assign(3, LightSpec{});
+  LightSpec &sky = scene.lights[0], &sun = scene.lights[1], &bulb = scene.lights[2];
+  sky.type = LightType::Environment;
+  sky.emission = Vec3{2.0f};
+  sun.type = LightType::Directional;
+  sun.direction = normalize(Vec3{0.2f, -0.3f, 1.0f});
+  sun.emission = Vec3{3.0f};
+  sun.angularRadiusRad = 0.02f;
+  bulb.position = {0.3f, 0.45f, 0.1f};
+  bulb.emission = Vec3{0.1f};
+  return scene;
+}
+
+// The VPL renderer's direct light is the path tracer's, by another estimator: by light sampling
+// alone, and together with the rays that complete the VPLs, which must count no light twice.
+TEST(PathTracer, DirectLightAgreesWithTheVplRenderers) {
+  for (const bool daylight : {false, true}) {
+    World world = daylight ? World(boxInDaylight()) : World("cornell/scene.toml");
+    world.scene.film = {32, 32};
+    FilmStats path, light, both;
+    renderPaths(world, {.spp = 512, .only = Only::Direct}, path);
+    VplSettings s;
+    s.film = {.spp = 512, .only = Only::Direct};
+    renderVpls(world, VplTable{}, s, light);
+    EXPECT_NEAR(light.direct / path.direct, 1.0, 0.01) << daylight;
+    s.nearField = true;
+    s.nearFieldRays = 4;
+    renderVpls(world, VplTable{}, s, both);
+    EXPECT_NEAR(both.direct / light.direct, 1.0, 0.01) << daylight;
+  }
+}
+
+// A sky through a window is found by few shadow rays; the rays that complete the VPLs find it too.
+TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
+  Scene sky = boxInDaylight();
+  sky.lights.resize(1);
+  const World world(std::move(sky));
   VplSettings s;
-  s.film = {.spp = 256, .only = Only::Direct};
-  renderVpls(world, VplTable{}, s, light);
-  EXPECT_NEAR(light.direct / path.direct, 1.0, 0.01);
+  std::array<double, 2> noise{};
+  for (const bool nearField : {false, true}) {
+    s.nearField = nearField;
+    std::array<Image, 2> images;
+    for (uint64_t seed = 0; seed < 2; ++seed) {
+      FilmStats stats;
+      s.film = {.spp = 8, .seed = seed, .only = Only::Direct};
+      images[seed] = renderVpls(world, VplTable{}, s, stats);
+    }
+    const std::vector<float>&a = *images[0].find("G"), &b = *images[1].find("G");
+    for (size_t i = 0; i < a.size(); ++i) {
+      noise[nearField] += std::pow(double{a[i]} - double{b[i]}, 2);
+    }
+  }
+  EXPECT_LT(noise[1], 0.3 * noise[0]);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace bnvpl::test {
 
 // A scene of the project with its acceleration structure, in an order that keeps references valid.
 struct World {
-  explicit World(const std::string& name)
-      : scene(loadScene(fs::path(BNVPL_SCENES_DIR) / name)), rays(scene), lights(rays) {}
+  explicit World(const std::string& name) : World(loadScene(fs::path(BNVPL_SCENES_DIR) / name)) {}
+  explicit World(Scene given) : scene(std::move(given)), rays(scene), lights(rays) {}
   Scene scene;
   RayScene rays;
   LightSet lights;

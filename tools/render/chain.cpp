@@ -29,7 +29,8 @@ ChainEnd followChain(const RayScene& rays, const LightSet& lights, Vec3 origin, 
     if (++end.links > kMaxChain) return end;
     end.throughput *= 1.0f / chainProbability;
     if (!bsdf.chainIsDelta()) {
-      end.metLater += end.throughput * directLightMis(rays, lights, bsdf, LobeGroup::Chain, rng);
+      end.metLater += end.throughput *
+                      directLight(rays, lights, bsdf, LobeGroup::Chain, LightChoice::One, 1, rng);
     }
     BsdfSample next;
     if (!bsdf.sample(LobeGroup::Chain, Transport::Radiance, rng, next)) return end;

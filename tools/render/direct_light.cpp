@@ -6,15 +6,22 @@ namespace bnvpl {
 
 namespace {
 
-// Share of a hit found by the BSDF, against light sampling that picks one light.
-float hitWeight(const Arrival& arrival, float lightPdf) {
-  return arrival.bsdfPdf > 0.0f ? powerHeuristic(arrival.bsdfPdf, lightPdf) : 1.0f;
+// Shadow rays that a vertex sends to a light, in the mean.
+float raysTo(const LightSet& lights, size_t light, LightChoice choice) {
+  if (choice == LightChoice::One) return lights.pickProbability(light);
+  if (lights.size() <= kMaxLightsEach) return 1.0f;
+  return static_cast<float>(kMaxLightsEach) * lights.pickProbability(light);
 }
 
-}  // namespace
+// Share of a hit found by the BSDF, against light sampling.
+float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arrival& arrival) {
+  if (!(arrival.bsdfPdf > 0.0f)) return 1.0f;
+  return powerHeuristic(arrival.bsdfPdf, lightPdf * raysTo(lights, light, arrival.choice));
+}
 
+// One shadow ray towards one light; its share where the light gets `count` in the mean.
 Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 size_t light, float lightProbability, bool mis, Rng& rng) {
+                 size_t light, float count, unsigned bsdfRays, Rng& rng) {
   const SurfacePoint& at = bsdf.point();
   const float u = rng.next(), v = rng.next();
   DirectSample s;
@@ -23,48 +30,39 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
   if (isBlack(reflected)) return {};
   const Vec3 from = rays.lifted(at.position, at.ng);
   if (s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target)) return {};
-  const float weight =
-      mis && s.pdf > 0.0f ? powerHeuristic(s.pdf * lightProbability, bsdf.pdf(group, s.wi)) : 1.0f;
-  return reflected * (weight / lightProbability);
+  const bool mis = bsdfRays > 0 && s.pdf > 0.0f;
+  const float bsdfPdf = mis ? static_cast<float>(bsdfRays) * bsdf.pdf(group, s.wi) : 0.0f;
+  return reflected * ((mis ? powerHeuristic(s.pdf * count, bsdfPdf) : 1.0f) / count);
 }
+
+}  // namespace
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 Rng& rng) {
+                 LightChoice choice, unsigned bsdfRays, Rng& rng) {
   Vec3 sum;
-  if (lights.size() <= kMaxLightsEach) {
-    for (size_t l = 0; l < lights.size(); ++l)
-      sum += sampleLight(rays, lights, bsdf, group, l, 1.0f, false, rng);
-    return sum;
+  const bool all = choice == LightChoice::Each && lights.size() <= kMaxLightsEach;
+  const size_t count = all ? lights.size() : choice == LightChoice::Each ? kMaxLightsEach : 1;
+  for (size_t k = 0; k < count && lights.size() > 0; ++k) {
+    float probability = 1.0f;
+    const size_t light = all ? k : lights.pick(rng.next(), probability);
+    if (!(probability > 0.0f)) continue;
+    sum +=
+        sampleLight(rays, lights, bsdf, group, light, raysTo(lights, light, choice), bsdfRays, rng);
   }
-  for (size_t k = 0; k < kMaxLightsEach; ++k) {
-    float probability = 0.0f;
-    const size_t l = lights.pick(rng.next(), probability);
-    sum += sampleLight(rays, lights, bsdf, group, l, probability, false, rng);
-  }
-  return sum * (1.0f / static_cast<float>(kMaxLightsEach));
-}
-
-Vec3 directLightMis(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                    Rng& rng) {
-  if (lights.size() == 0) return {};
-  float probability = 0.0f;
-  const size_t l = lights.pick(rng.next(), probability);
-  if (!(probability > 0.0f)) return {};
-  return sampleLight(rays, lights, bsdf, group, l, probability, true, rng);
+  return sum;
 }
 
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  return emitted * hitWeight(arrival, lights.pickProbability(light) *
-                                          lights.pdfEmitted(light, hit, arrival.from));
+  return emitted * hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival);
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
-    sum += radiance * hitWeight(arrival, lights.pickProbability(light) * pdf);
+    sum += radiance * hitWeight(lights, light, pdf, arrival);
   });
   return sum;
 }

@@ -33,11 +33,12 @@ RadianceSample VplIntegrator::sample(Vec3 origin, Vec3 direction, Rng& rng) cons
   const Bsdf bsdf(rays_.scene(), seen.hit);
   describeVertex(bsdf, out);
   if (only_ != Only::Indirect) {
-    out.direct += seen.throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough, rng);
+    out.direct += seen.throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough,
+                                                LightChoice::Each, extensions_, rng);
   }
-  if (only_ != Only::Direct) {
-    out.indirect += gatherAt(bsdf, out, seen.throughput);
-    if (chains_ || nearField_) complete(seen, rng, out);
+  if (only_ != Only::Direct) out.indirect += gatherAt(bsdf, out, seen.throughput);
+  for (unsigned k = 0; k < extensions_; ++k) {
+    extend(seen, seen.throughput * (1.0f / static_cast<float>(extensions_)), rng, out);
   }
   return out;
 }
@@ -50,16 +51,10 @@ Vec3 VplIntegrator::gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 through
   return throughput * g.radiance;
 }
 
-// Rays from the vertex for the light that the VPLs do not bring to it.
-void VplIntegrator::complete(const ChainEnd& seen, Rng& rng, RadianceSample& out) const {
-  const float weight = 1.0f / static_cast<float>(extensions_);
-  for (unsigned k = 0; k < extensions_; ++k) extend(seen, seen.throughput * weight, rng, out);
-}
-
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
 // what NearField says is missing: from the radiance that a VPL knows where it speaks for the point
-// that the ray found, else by lighting that point as the first one, and so on. What else the ray
-// meets is left to the VPLs, and lights to light sampling.
+// that the ray found, else by lighting that point as the first one, and so on. A light that it
+// meets is the other half of the MIS of light sampling. All else is left to the VPLs.
 void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const {
   for (unsigned links = 0; links < kMaxExtensions; ++links) {
     const Bsdf bsdf(rays_.scene(), vertex.hit);
@@ -67,10 +62,14 @@ void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceS
     if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return;
     throughput *= next.weight;
     const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
-    const Arrival arrival{next.pdf, vertex.hit.position};
+    const bool first = links == 0;
+    const Arrival arrival = first ? Arrival{next.pdf * static_cast<float>(extensions_),
+                                            vertex.hit.position, LightChoice::Each}
+                                  : Arrival{next.pdf, vertex.hit.position};
     const ChainEnd end = followChain(rays_, lights_, from, next.wi, arrival, rng);
-    // Light met first is the other half of the MIS at the vertices that this loop has lit.
-    Vec3 light = throughput * (end.metLater + (links > 0 ? end.metFirst : Vec3{}));
+    if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
+    if (only_ == Only::Direct) return;
+    Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
     const NearField::Missing missing = missingFrom(end, rng);
     throughput *= end.throughput;
     if (missing.radiance) light += throughput * *missing.radiance * missing.share;
@@ -78,7 +77,8 @@ void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceS
     const bool follow = !missing.radiance && rng.next() < missing.share;
     if (follow) {
       const Bsdf found(rays_.scene(), end.hit);
-      light += throughput * directLightMis(rays_, lights_, found, LobeGroup::Rough, rng);
+      light += throughput *
+               directLight(rays_, lights_, found, LobeGroup::Rough, LightChoice::One, 1, rng);
       const Gathered g = gatherer_.sample(found, rng);
       light += throughput * g.radiance;
       out.clamped += throughput * g.clamped;
@@ -106,7 +106,8 @@ RadianceSample PathTracer::sample(Vec3 origin, Vec3 direction, Rng& rng) const {
     if (bounce == 0) describeVertex(bsdf, out);
     if (only_ == Only::Direct && bounce > 0) return out;
     Vec3& sum = bounce == 0 ? out.direct : out.indirect;
-    sum += throughput * directLightMis(rays_, lights_, bsdf, LobeGroup::Rough, rng);
+    sum +=
+        throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::One, 1, rng);
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
     if (rng.next() >= survive) return out;

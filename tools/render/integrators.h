@@ -30,13 +30,11 @@ class VplIntegrator {
         lights_(lights),
         gatherer_(gatherer),
         nearField_(nearField),
-        extensions_(nearFieldRays),
-        only_(only),
-        chains_(hasChainLobes(rays.scene())) {}
+        extensions_(nearField || hasChainLobes(rays.scene()) ? nearFieldRays : 0),
+        only_(only) {}
   RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
 
  private:
-  void complete(const ChainEnd& seen, Rng& rng, RadianceSample& out) const;
   void extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const;
   NearField::Missing missingFrom(const ChainEnd& end, Rng& rng) const;
   Vec3 gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 throughput) const;
@@ -47,7 +45,6 @@ class VplIntegrator {
   const NearField* nearField_;  // null: what the clamp and the gaps take away stays away
   unsigned extensions_;         // rays from each shaded point
   Only only_;
-  bool chains_;
 };
 
 // The reference: unbiased path tracing with next-event estimation and multiple importance sampling,
