@@ -1,17 +1,16 @@
-// vpl-eliminate's core: end to end, by part, and the neighbour searches that it could use.
+// vpl-eliminate's core: end to end and by part.
 // Arguments are candidates and, end to end, VPLs kept.
 #include <benchmark/benchmark.h>
 
-#include <atomic>
 #include <cmath>
 #include <map>
+#include <numeric>
 
-#include "core/parallel.h"
 #include "core/random.h"
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "spatial/point_grid.h"
+#include "spatial/cell_lists.h"
 #include "tools/eliminate/conflict_graph.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/greedy.h"
@@ -85,7 +84,7 @@ void endToEnd(benchmark::State& state, Density density, bool uneven) {
 }
 
 void radii(benchmark::State& state, Density density, bool uneven) {
-  const Cloud& cloud = room(state.range(0), uneven);
+  const Cloud& cloud = sortedRoom(state.range(0), uneven);
   const EliminateOptions options = optionsFor(state, density);
   for (auto _ : state) {
     benchmark::DoNotOptimize(candidateRadii(cloud.position, cloud.normal, options));
@@ -97,65 +96,45 @@ void sorting(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(mortonOrder(cloud.position));
 }
 
+ConflictGraph graphOf(const Cloud& cloud, const std::vector<float>& radius) {
+  std::vector<uint32_t> row(cloud.position.size());
+  std::iota(row.begin(), row.end(), 0u);
+  return ConflictGraph(cloud.position, cloud.normal, radius, std::move(row), PairWeight{});
+}
+
 void conflicts(benchmark::State& state, Density density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
   const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
-  for (auto _ : state) {
-    const ConflictGraph graph(cloud.position, cloud.normal, r.radius, PairWeight{});
-    state.counters["pairs"] = static_cast<double>(graph.pairCount());
-  }
+  for (auto _ : state) benchmark::DoNotOptimize(graphOf(cloud, r.radius));
 }
 
 void greedy(benchmark::State& state, Density density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
   const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
-  const ConflictGraph graph(cloud.position, cloud.normal, r.radius, PairWeight{});
-  const std::vector<uint32_t> row = mortonOrder(cloud.position);
+  const ConflictGraph graph = graphOf(cloud, r.radius);
   const auto keep = static_cast<size_t>(state.range(1));
-  for (auto _ : state) benchmark::DoNotOptimize(weightsAtRemoval(graph, row, keep));
+  for (auto _ : state) {
+    state.PauseTiming();
+    ConflictGraph used = graph;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(eliminateHeaviest(used, keep));
+  }
 }
 
-template <typename Search>
-size_t queryAll(const Search& search, const Cloud& cloud, const std::vector<float>& radius) {
-  std::atomic<size_t> found{0};
-  parallelRanges(cloud.position.size(), 1024, [&](size_t begin, size_t end) {
-    std::vector<Neighbour> near;
-    size_t count = 0;
-    for (size_t i = begin; i < end; ++i) {
-      search.withinRadius(cloud.position[i], 2.0f * radius[i], near);
-      count += near.size();
-    }
-    found += count;
-  });
-  return found;
-}
-
-// Builds the index and asks once for each candidate.
-void radiusSearch(benchmark::State& state, bool flann, Density density, bool uneven) {
+void cellLists(benchmark::State& state, Density density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
   const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
-  const auto cell = static_cast<float>(2.0 * r.rMax);
-  for (auto _ : state) {
-    const size_t found = flann ? queryAll(KdTree(cloud.position), cloud, r.radius)
-                               : queryAll(PointGrid(cloud.position, cell), cloud, r.radius);
-    state.counters["found"] = static_cast<double>(found);
-  }
+  for (auto _ : state) benchmark::DoNotOptimize(makeCellLists(cloud.position, r.radius));
 }
 
-void buildIndex(benchmark::State& state, bool flann) {
+void buildTree(benchmark::State& state) {
   const Cloud& cloud = sortedRoom(state.range(0), false);
-  for (auto _ : state) {
-    if (flann) {
-      const KdTree tree(cloud.position);
-    } else {
-      const PointGrid grid(cloud.position, 0.03f);
-    }
-  }
+  for (auto _ : state) const KdTree tree(cloud.position);
 }
 
 // Neighbours of every candidate by FLANN, as the density estimate asks.
 void nearest(benchmark::State& state) {
-  const Cloud& cloud = room(state.range(0), true);
+  const Cloud& cloud = sortedRoom(state.range(0), true);
   const KdTree tree(cloud.position);
   for (auto _ : state) {
     benchmark::DoNotOptimize(surfaceShares(cloud.position, cloud.normal, 20, tree));
@@ -180,14 +159,9 @@ BENCHMARK_CAPTURE(conflicts, local_uneven, Density::Local, true)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(greedy, uniform, Density::Uniform, false)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(greedy, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(greedy, local_uneven, Density::Local, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radiusSearch, flann_uniform, true, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radiusSearch, openvdb_uniform, false, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radiusSearch, flann_uniform_uneven, true, Density::Uniform, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radiusSearch, openvdb_uniform_uneven, false, Density::Uniform, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radiusSearch, flann_local_uneven, true, Density::Local, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radiusSearch, openvdb_local_uneven, false, Density::Local, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(buildIndex, flann, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(buildIndex, openvdb, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(cellLists, uniform, Density::Uniform, false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(cellLists, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK(buildTree)->BNVPL_SIZES;
 BENCHMARK(nearest)->BNVPL_SIZES;
 
 }  // namespace

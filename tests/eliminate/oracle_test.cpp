@@ -146,22 +146,21 @@ TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
             greedyOracle(cloud, radius, 100, 0.0f));
 }
 
-// Where there are too many pairs to store, they are searched for each time.
-TEST(Oracle, SearchedPairsGiveTheSameAsStoredOnes) {
-  const Cloud cloud = cube(3000, 1.0f, 12);
-  std::vector<float> radius(cloud.size());
-  std::vector<uint32_t> row(cloud.size());
-  for (const bool equal : {true, false}) {
-    for (size_t i = 0; i < cloud.size(); ++i) {
-      row[i] = static_cast<uint32_t>(i);
-      radius[i] = equal ? 0.05f : 0.02f + 0.05f * cloud.position[i].x;
-    }
-    const ConflictGraph stored(cloud.position, cloud.normal, radius, PairWeight{});
-    const ConflictGraph searched(cloud.position, cloud.normal, radius, PairWeight{}, 1);
-    ASSERT_TRUE(stored.stored());
-    ASSERT_FALSE(searched.stored());
-    EXPECT_EQ(stored.weights(), searched.weights());
-    EXPECT_EQ(weightsAtRemoval(stored, row, 500), weightsAtRemoval(searched, row, 500));
+// Enough candidates for many blocks, cells of many sizes and removed nodes dropped on the way.
+TEST(Oracle, ManyCandidatesOfDensitiesFarApart) {
+  Cloud cloud = unevenPlane(3000, 13);
+  for (size_t i = 0; i < 500; ++i) {  // and a knot of them
+    cloud.add(cloud.position[7] + (cloud.position[i] - cloud.position[7]) * 1e-3f,
+              cloud.normal[i]);
+  }
+  for (const Density density : {Density::Uniform, Density::Local}) {
+    const EliminateOptions options = keep(100, density);
+    const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+    const std::vector<float> radius =
+        density == Density::Local
+            ? radiusOfAll(cloud, options)
+            : std::vector<float>(cloud.size(), static_cast<float>(result.rMax));
+    EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100));
   }
 }
 

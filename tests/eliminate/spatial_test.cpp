@@ -7,7 +7,7 @@
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "spatial/point_grid.h"
+#include "spatial/cell_lists.h"
 #include "tests/eliminate/clouds.h"
 
 namespace bnvpl {
@@ -60,13 +60,10 @@ TEST(Spatial, RadiusQueriesFindExactlyThePointsWithin) {
   for (const std::vector<Vec3>& points : clouds()) {
     const KdTree tree(points);
     for (const float radius : {0.01f, 0.1f, 1.0f, 2.0f}) {
-      const PointGrid grid(points, radius), fine(points, 0.2f * radius);
       for (size_t q = 0; q < points.size(); q += 97) {
         const Vec3 centre = points[q] + Vec3(0.0f, 0.0f, q % 2 ? 0.5f * radius : 0.0f);
         const std::vector<Neighbour> expected = within(allByDistance(points, centre), radius);
         EXPECT_EQ(sortedWithin(tree, centre, radius), expected);
-        EXPECT_EQ(sortedWithin(grid, centre, radius), expected);
-        EXPECT_EQ(sortedWithin(fine, centre, radius), expected);
       }
     }
   }
@@ -93,7 +90,67 @@ TEST(Spatial, NoPoints) {
   KdTree(none).nearest({}, 3, found);
   EXPECT_TRUE(found.empty());
   EXPECT_TRUE(sortedWithin(KdTree(none), {}, 1.0f).empty());
-  EXPECT_TRUE(sortedWithin(PointGrid(none, 1.0f), {}, 1.0f).empty());
+  EXPECT_TRUE(makeCellLists(none, {}).order.empty());
+}
+
+// The pairs nearer than the sum of their radii: none may be missing, from either end, before or after
+// points are left out; and the lists must not hold everything.
+void expectAllPairs(const std::vector<Vec3>& points, const std::vector<float>& radius) {
+  CellLists lists = makeCellLists(points, radius);
+  std::vector<uint32_t> order = lists.order;
+  ASSERT_EQ(order.size(), points.size());
+  for (const bool compacted : {false, true}) {
+    if (compacted) {
+      std::vector<uint8_t> kept(order.size());
+      std::vector<uint32_t> rest;
+      for (size_t k = 0; k < order.size(); ++k) {
+        kept[k] = (k * 7 + 3) % 5 < 2;
+        if (kept[k]) rest.push_back(order[k]);
+      }
+      lists.compact(kept);
+      EXPECT_EQ(lists.order, rest);
+      order = rest;
+    }
+    for (uint32_t k = 0; k < order.size(); ++k) {
+      std::vector<bool> listed(order.size(), false);
+      for (const CellLists::Range range : lists.near(k)) {
+        ASSERT_LE(range.end, order.size());
+        for (uint32_t n = range.begin; n < range.end; ++n) {
+          ASSERT_FALSE(listed[n]) << "twice";
+          listed[n] = true;
+        }
+      }
+      for (uint32_t n = 0; n < order.size(); ++n) {
+        const float reach = radius[order[k]] + radius[order[n]];
+        if (lengthSquared(points[order[n]] - points[order[k]]) < reach * reach) {
+          ASSERT_TRUE(listed[n]) << k << ' ' << n;
+        }
+      }
+    }
+  }
+}
+
+TEST(Spatial, CellListsMissNoPair) {
+  for (const std::vector<Vec3>& points : clouds()) {
+    for (const float size : {0.01f, 0.1f, 1.0f}) {
+      std::vector<float> equal(points.size(), size), uneven(points.size());
+      Rng rng(streamKey(5, Stream::Plot), 0);
+      for (float& r : uneven) r = size * std::pow(2.0f, -12.0f * rng.next());
+      expectAllPairs(points, equal);
+      expectAllPairs(points, uneven);
+    }
+  }
+}
+
+TEST(Spatial, CellListsLeaveTheFarAway) {
+  const std::vector<Vec3> points = unevenPlane(2000, 2).position;
+  const CellLists lists = makeCellLists(points, std::vector<float>(points.size(), 0.02f));
+  size_t listed = 0, pairs = 0;
+  for (uint32_t k = 0; k < points.size(); ++k) {
+    for (const CellLists::Range range : lists.near(k)) listed += range.end - range.begin;
+    for (const Vec3 p : points) pairs += lengthSquared(p - points[lists.order[k]]) < 0.04f * 0.04f;
+  }
+  EXPECT_LT(listed, 6 * pairs);
 }
 
 TEST(Spatial, SharesAreTheSameWithTheShortQuery) {

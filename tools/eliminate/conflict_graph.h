@@ -2,15 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <memory>
-#include <span>
 #include <vector>
 
 #include "core/vec3.h"
-#include "spatial/kd_tree.h"
-#include "spatial/point_grid.h"
+#include "spatial/cell_lists.h"
 
 namespace bnvpl {
 
@@ -30,79 +28,62 @@ struct PairWeight {
   }
 };
 
-// Pairs (i, j) on the same sheet of surface (plane tolerance kPlaneFactor * (r_i + r_j)) at less
-// than r_i + r_j, with weights in fixed point: sums of them are exact in any order, so what was
-// added can be subtracted again without a remainder, by any thread.
+// The candidates as nodes. Two are neighbours when they are on the same sheet of surface (plane
+// tolerance kPlaneFactor * (r_i + r_j)) at less than r_i + r_j. A node's weight is the sum of the
+// weights of its pairs in fixed point, which is exact in any order: what was added can be
+// subtracted again without a remainder, by any thread.
+//
+// Pairs are not stored: at 40 candidates a VPL they would take half a kilobyte a candidate. They are
+// found anew by a scan of neighbouring cells, which costs little more than reading a list would.
 class ConflictGraph {
  public:
-  // The spans are borrowed. Points should be in an order that keeps neighbours together
-  // (mortonOrder). The pairs are stored, 8 bytes each, unless an estimate says that they are more
-  // than mostPairs: then they are searched anew whenever they are visited. 0: 2^27, a gibibyte.
-  ConflictGraph(std::span<const Vec3> position, std::span<const Vec3> normal,
-                std::span<const float> radius, const PairWeight& rule, size_t mostPairs = 0);
+  static constexpr uint32_t kNone = UINT32_MAX;
 
-  size_t size() const { return position_.size(); }
-  size_t pairCount() const { return pairCount_; }  // an estimate when they are not stored
-  bool stored() const { return stored_; }
+  // One entry a candidate: position, unit normal, radius > 0, and a number that tells equal weights
+  // apart. The vectors are given up so that nothing is in memory twice.
+  ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> normal, std::vector<float> radius,
+                std::vector<uint32_t> row, const PairWeight& rule);
 
-  // Sum of the weights of each node's pairs, in fixed point.
-  const std::vector<uint64_t>& weights() const { return weight_; }
+  size_t size() const { return weight_.size(); }
+  uint32_t row(uint32_t i) const { return row_[i]; }
+  uint64_t weight(uint32_t i) const { return weight_[i]; }
+  bool removed(uint32_t i) const { return !(radius_[i] == radius_[i]); }
 
-  uint64_t pairWeight(uint32_t i, uint32_t j) const {
-    const float distance = length(position_[j] - position_[i]);
-    return static_cast<uint64_t>(rule_(distance, radius_[i] + radius_[j]) * scale_);
+  // Heaviest first; of equal weights, the higher row first.
+  bool outweighs(uint32_t a, uint32_t b) const {
+    return weight_[a] != weight_[b] ? weight_[a] > weight_[b] : row_[a] > row_[b];
   }
+  // Any neighbour that outweighs i, or kNone. i has pairs: its weight is not 0.
+  uint32_t heavierNeighbour(uint32_t i) const;
 
-  // Calls visit(j) for each neighbour j of i, in no particular order, until it returns false.
-  // Returns whether it never did.
-  template <typename Visit>
-  bool visitNeighbours(uint32_t i, const Visit& visit) const {
-    if (!stored_) {
-      const std::span<const uint32_t> all = searchNeighbours(i);
-      return std::all_of(all.begin(), all.end(), visit);
-    }
-    const uint32_t* const found = found_[i / kChunk].data();
-    const uint32_t* const foundBy = foundBy_.data();
-    return std::all_of(found + (i % kChunk == 0 ? 0 : foundEnd_[i - 1]), found + foundEnd_[i],
-                       visit) &&
-           std::all_of(foundBy + foundByBegin_[i], foundBy + foundByBegin_[i + 1], visit);
-  }
+  // Takes the weights of i's pairs from its neighbours. Threads may do this for several nodes at
+  // once, if no two are neighbours; then each is marked as removed, while nothing else goes on.
+  void release(uint32_t i);
+  void markRemoved(uint32_t i);
+
+  // Drops the removed nodes: the others get new numbers.
+  void compact();
 
  private:
-  static constexpr uint32_t kChunk = 1024;
+  template <typename Visit>
+  void visitNeighbours(uint32_t i, const Visit& visit) const;
+  uint64_t pairWeight(uint32_t i, uint32_t j, float distanceSquared) const {
+    const float weight = rule_(std::sqrt(distanceSquared), radius_[i] + radius_[j]);
+    return static_cast<uint64_t>(weight * scale_);
+  }
+  float distanceSquared(uint32_t i, uint32_t j) const {
+    const float x = x_[j] - x_[i], y = y_[j] - y_[i], z = z_[j] - z_[i];
+    return x * x + y * y + z * z;
+  }
+  bool onOneSheet(uint32_t i, uint32_t j) const;
 
-  bool conflict(uint32_t i, uint32_t j, float distanceSquared) const;
-  void search(uint32_t i, float radius, std::vector<Neighbour>& near) const;
-  std::span<const uint32_t> searchNeighbours(uint32_t i) const;  // until the thread's next call
-  // Calls found(j, weight) for the neighbours of i that have a smaller radius, or an equal one and
-  // come later: each pair is found once, and no query needs to reach beyond 2 r_i.
-  template <typename Found>
-  void findPairs(uint32_t i, std::vector<Neighbour>& near, const Found& found) const;
-  size_t estimatePairs() const;
-  void sumWeights();
-  void storePairs();
-  void storePairsOfChunk(uint32_t chunk);
-  void transpose();
-
-  std::span<const Vec3> position_, normal_;
-  std::span<const float> radius_;
+  CellLists cells_;
+  std::vector<float> x_, y_, z_, radius_;  // in the cells' order; the radius of the removed is NaN
+  std::vector<Vec3> normal_;
+  std::vector<uint32_t> row_;
+  std::vector<uint64_t> weight_;
   PairWeight rule_;
   float scale_;
-  float largestRadius_ = 0.0f;
-  size_t pairCount_ = 0;
-  bool stored_ = true;
-  std::vector<uint64_t> weight_;
-  // Queries of one size are the grid's best case; sizes that differ, the tree's. Gone once all is
-  // stored.
-  std::unique_ptr<PointGrid> grid_;
-  std::unique_ptr<KdTree> tree_;
-
-  // A stored pair is in the list `found` of the end that found it, the one with the larger radius,
-  // and in the list `foundBy` of the other.
-  std::vector<std::vector<uint32_t>> found_;  // the lists of each chunk of kChunk nodes, joined
-  std::vector<uint32_t> foundEnd_;            // within the node's chunk
-  std::vector<uint64_t> foundByBegin_;        // size() + 1
-  std::vector<uint32_t> foundBy_;
 };
 
 }  // namespace bnvpl

@@ -24,24 +24,17 @@ std::vector<T> gather(std::span<const T> values, const std::vector<uint32_t>& or
   return out;
 }
 
-// The rows of the `count` smallest keys, ascending.
-std::vector<uint32_t> rowsOfSmallest(std::vector<RemovalKey>& keys, size_t count) {
-  if (count < keys.size()) {
-    std::nth_element(keys.begin(), keys.begin() + static_cast<ptrdiff_t>(count), keys.end());
-  }
-  std::vector<uint32_t> rows(count);
-  for (size_t i = 0; i < count; ++i) rows[i] = keys[i].row;
-  std::sort(rows.begin(), rows.end());
-  return rows;
-}
-
 std::vector<uint32_t> randomRows(size_t candidates, const EliminateOptions& options) {
   const uint64_t key = streamKey(options.seed, Stream::Eliminate);
-  std::vector<RemovalKey> keys(candidates);
+  std::vector<std::pair<uint64_t, uint32_t>> keys(candidates);
   parallelFor(candidates, 4096, [&](size_t i) {
     keys[i] = {random64(key, i, 0), static_cast<uint32_t>(i)};
   });
-  return rowsOfSmallest(keys, options.count);
+  const auto end = keys.begin() + static_cast<ptrdiff_t>(options.count);
+  std::nth_element(keys.begin(), end, keys.end());
+  std::vector<uint32_t> rows(options.count);
+  std::transform(keys.begin(), end, rows.begin(), [](const auto& k) { return k.second; });
+  return rows;
 }
 
 PairWeight pairWeightRule(size_t candidates, const EliminateOptions& options) {
@@ -51,15 +44,6 @@ PairWeight pairWeightRule(size_t candidates, const EliminateOptions& options) {
   const double kept = static_cast<double>(options.count) / static_cast<double>(candidates);
   const double limit = limited ? (1.0 - std::pow(kept, kLimitGamma)) * kLimitBeta : 0.0;
   return {static_cast<float>(options.alpha), static_cast<float>(limit)};
-}
-
-// `order` tells the row of each candidate, `keep` the number that stay.
-std::vector<uint32_t> spreadRows(const ConflictGraph& graph, const std::vector<uint32_t>& order,
-                                 size_t keep) {
-  const std::vector<uint64_t> weights = weightsAtRemoval(graph, order, keep);
-  std::vector<RemovalKey> keys(order.size());
-  for (size_t i = 0; i < keys.size(); ++i) keys[i] = {weights[i], order[i]};
-  return rowsOfSmallest(keys, keep);
 }
 
 }  // namespace
@@ -75,22 +59,24 @@ EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> 
                      std::to_string(options.count) + ")");
   }
   // All searching is done in an order that keeps neighbours together.
-  const std::vector<uint32_t> order = mortonOrder(position);
-  const std::vector<Vec3> sortedPosition = gather<Vec3>(position, order);
-  const std::vector<Vec3> sortedNormal = gather<Vec3>(normal, order);
-  const CandidateRadii radii = candidateRadii(sortedPosition, sortedNormal, options);
+  std::vector<uint32_t> order = mortonOrder(position);
+  std::vector<Vec3> sortedPosition = gather<Vec3>(position, order);
+  std::vector<Vec3> sortedNormal = gather<Vec3>(normal, order);
+  CandidateRadii radii = candidateRadii(sortedPosition, sortedNormal, options);
   EliminateResult result;
   result.rMax = radii.rMax;
   result.area = radii.area;
+  std::vector<float> radiusOfRow(candidates);
+  parallelFor(candidates, 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
   if (options.method == EliminationMethod::Random) {
     result.rows = randomRows(candidates, options);
   } else {
-    const ConflictGraph graph(sortedPosition, sortedNormal, radii.radius,
-                              pairWeightRule(candidates, options));
-    result.rows = spreadRows(graph, order, options.count);
+    ConflictGraph graph(std::move(sortedPosition), std::move(sortedNormal),
+                        std::move(radii.radius), std::move(order),
+                        pairWeightRule(candidates, options));
+    result.rows = eliminateHeaviest(graph, options.count);
   }
-  std::vector<float> radiusOfRow(candidates);
-  parallelFor(candidates, 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
+  std::sort(result.rows.begin(), result.rows.end());
   result.radius = gather<float>(radiusOfRow, result.rows);
   return result;
 }

@@ -1,36 +1,33 @@
 #include "tools/eliminate/greedy.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "core/parallel.h"
 
 namespace bnvpl {
 namespace {
 
-constexpr uint32_t kNone = UINT32_MAX;
 // Each threshold as a share of the greatest weight that is left. Nearer to 1: more passes; farther:
 // nodes are looked at again and again before it is their turn. Measured best of 0.1 to 0.95.
 constexpr double kThresholdStep = 0.3;
+// Scans meet the removed as well, so they are dropped as soon as this share is left.
+constexpr double kCompactBelow = 0.7;
+
+struct Removal {
+  uint64_t weight;
+  uint32_t row;
+  friend bool operator<(const Removal& a, const Removal& b) {
+    return a.weight != b.weight ? a.weight < b.weight : a.row < b.row;
+  }
+};
 
 class Elimination {
  public:
-  Elimination(const ConflictGraph& graph, std::span<const uint32_t> row)
-      : graph_(graph),
-        row_(row),
-        weight_(graph.weights()),
-        alive_(graph.size(), 1),
-        blocker_(graph.size(), kNone),
-        blocks_((graph.size() + kBlock - 1) / kBlock),
-        left_(graph.size()) {
-    parallelFor(blocks_.size(), 1, [&](size_t b) {
-      blocks_[b].begin = static_cast<uint32_t>(b * kBlock);
-      blocks_[b].end = static_cast<uint32_t>(std::min(graph.size(), (b + 1) * kBlock));
-      activate(blocks_[b], UINT64_MAX);
-    });
-  }
+  explicit Elimination(ConflictGraph& graph) : graph_(graph), left_(graph.size()) { makeBlocks(); }
 
   size_t left() const { return left_; }
+  // Of the last threshold.
+  std::vector<Removal> takeRemovals() { return std::move(removals_); }
 
   // Makes every removal at or above the next threshold. False when no pair is left.
   bool advance() {
@@ -39,7 +36,11 @@ class Elimination {
     if (greatest == 0) return false;
     const double threshold = static_cast<double>(greatest) * kThresholdStep;
     threshold_ = std::max<uint64_t>(1, static_cast<uint64_t>(threshold));
-
+    removals_.clear();
+    if (static_cast<double>(left_) < kCompactBelow * static_cast<double>(graph_.size())) {
+      graph_.compact();
+      makeBlocks();
+    }
     busy_.clear();
     for (Block& block : blocks_) {
       if (block.greatestBelow >= threshold_) busy_.push_back(&block);
@@ -48,23 +49,39 @@ class Elimination {
     dropIdle();
     while (!busy_.empty()) {
       forBusy([&](Block& block) { pickMaxima(block); });
-      forBusy([&](Block& block) { removePicked(block); });
-      for (const Block* block : busy_) left_ -= block->picked.size();
+      forBusy([&](Block& block) {
+        for (const uint32_t i : block.picked) graph_.release(i);
+      });
+      for (const Block* block : busy_) {
+        left_ -= block->picked.size();
+        for (const uint32_t i : block->picked) {
+          removals_.push_back({graph_.weight(i), graph_.row(i)});
+          graph_.markRemoved(i);
+        }
+      }
       dropIdle();
     }
     return true;
   }
-
-  std::vector<uint64_t> takeWeights() { return std::move(weight_); }
 
  private:
   static constexpr size_t kBlock = 1024;
   struct Block {
     uint32_t begin = 0, end = 0;   // of its nodes
     uint64_t greatestBelow = 0;    // no weight below the threshold is above this
-    std::vector<uint32_t> active;  // alive and at or above the threshold
+    std::vector<uint32_t> active;  // left, and at or above the threshold
     std::vector<uint32_t> picked;  // to be removed in this round
   };
+
+  void makeBlocks() {
+    blocker_.assign(graph_.size(), ConflictGraph::kNone);
+    blocks_.assign((graph_.size() + kBlock - 1) / kBlock, {});
+    parallelFor(blocks_.size(), 1, [&](size_t b) {
+      blocks_[b].begin = static_cast<uint32_t>(b * kBlock);
+      blocks_[b].end = static_cast<uint32_t>(std::min(graph_.size(), (b + 1) * kBlock));
+      activate(blocks_[b], UINT64_MAX);
+    });
+  }
 
   template <typename Work>
   void forBusy(const Work& work) {
@@ -78,11 +95,11 @@ class Elimination {
     block.active.clear();
     block.greatestBelow = 0;
     for (uint32_t i = block.begin; i < block.end; ++i) {
-      if (!alive_[i]) continue;
-      if (weight_[i] >= threshold) {
+      if (graph_.removed(i)) continue;
+      if (graph_.weight(i) >= threshold) {
         block.active.push_back(i);
       } else {
-        block.greatestBelow = std::max(block.greatestBelow, weight_[i]);
+        block.greatestBelow = std::max(block.greatestBelow, graph_.weight(i));
       }
     }
   }
@@ -92,8 +109,8 @@ class Elimination {
     block.picked.clear();
     size_t kept = 0;
     for (const uint32_t i : block.active) {
-      if (weight_[i] < threshold_) {
-        block.greatestBelow = std::max(block.greatestBelow, weight_[i]);
+      if (graph_.weight(i) < threshold_) {
+        block.greatestBelow = std::max(block.greatestBelow, graph_.weight(i));
       } else if (isMaximum(i)) {
         block.picked.push_back(i);
       } else {
@@ -103,53 +120,49 @@ class Elimination {
     block.active.resize(kept);
   }
 
-  bool outweighs(uint32_t a, uint32_t b) const {
-    return weight_[a] != weight_[b] ? weight_[a] > weight_[b] : row_[a] > row_[b];
-  }
-
-  // Remembers a heavier neighbour: as long as it is one, nothing else needs to be looked at.
+  // Remembers a heavier neighbour: as long as it is one, nothing else needs to be looked at. One
+  // that is removed weighs nothing.
   bool isMaximum(uint32_t i) {
-    const uint32_t known = blocker_[i];
-    if (known != kNone && alive_[known] && outweighs(known, i)) return false;
-    return graph_.visitNeighbours(i, [&](uint32_t j) {
-      if (!alive_[j] || !outweighs(j, i)) return true;
-      blocker_[i] = j;
-      return false;
-    });
+    uint32_t& blocker = blocker_[i];
+    if (blocker != ConflictGraph::kNone && graph_.outweighs(blocker, i)) return false;
+    blocker = graph_.heavierNeighbour(i);
+    return blocker == ConflictGraph::kNone;
   }
 
-  // No two picked nodes are neighbours, so a removed node's own weight stays what it was.
-  void removePicked(Block& block) {
-    for (const uint32_t i : block.picked) {
-      alive_[i] = 0;
-      graph_.visitNeighbours(i, [&](uint32_t j) {
-        if (alive_[j]) {
-          std::atomic_ref(weight_[j]).fetch_sub(graph_.pairWeight(i, j), std::memory_order_relaxed);
-        }
-        return true;
-      });
-    }
-  }
-
-  const ConflictGraph& graph_;
-  std::span<const uint32_t> row_;
-  std::vector<uint64_t> weight_;
-  std::vector<uint8_t> alive_;
+  ConflictGraph& graph_;
   std::vector<uint32_t> blocker_;
   std::vector<Block> blocks_;
   std::vector<Block*> busy_;
+  std::vector<Removal> removals_;
   size_t left_;
   uint64_t threshold_ = UINT64_MAX;
 };
 
 }  // namespace
 
-std::vector<uint64_t> weightsAtRemoval(const ConflictGraph& graph, std::span<const uint32_t> row,
-                                       size_t keep) {
-  Elimination elimination(graph, row);
+std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep) {
+  Elimination elimination(graph);
   while (elimination.left() > keep && elimination.advance()) {
   }
-  return elimination.takeWeights();
+  std::vector<Removal> last = elimination.takeRemovals();
+  std::vector<uint32_t> rows;
+  std::vector<Removal> left;
+  for (uint32_t i = 0; i < graph.size(); ++i) {
+    if (!graph.removed(i)) left.push_back({graph.weight(i), graph.row(i)});
+  }
+  // Too many were removed: the lightest of them stay. Too few, as no pairs are left: the highest
+  // rows go.
+  std::vector<Removal>& part = left.size() < keep ? last : left;
+  const size_t fromPart = left.size() < keep ? keep - left.size() : keep;
+  if (fromPart < part.size()) {
+    std::nth_element(part.begin(), part.begin() + static_cast<ptrdiff_t>(fromPart), part.end());
+    part.resize(fromPart);
+  }
+  if (left.size() < keep) {
+    for (const Removal& r : last) rows.push_back(r.row);
+  }
+  for (const Removal& r : left) rows.push_back(r.row);
+  return rows;
 }
 
 }  // namespace bnvpl

@@ -16,6 +16,7 @@ namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
 // How far above the surface a VPL travels to its new place, as a share of its reach.
+constexpr float kRecentreShare = 0.7f;  // of the way (measured: docs/theory.md, "Recentring")
 constexpr float kRecentreLift = 0.1f;
 // Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
 // commutes, so neither threads nor the order of photons matter, and ranges computed apart can be
@@ -215,8 +216,8 @@ void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
   }
 }
 
-// To the centre of what was received, along the tangent plane and then down to the surface. A VPL
-// from which the new place is not in plain sight stays.
+// Towards the centre of what was received, along the tangent plane and then down to the surface. A
+// VPL from which the new place is not in plain sight stays.
 void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, const RayScene& rays) {
   parallelFor(vpls.size(), 256, [&](size_t i) {
     const double weight = double{mean(vpls.flux[i])} / scatterer.photonPower();
@@ -227,7 +228,7 @@ void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, cons
     for (size_t c = 0; c < 3; ++c) {
       offset[c] = static_cast<float>(double(sums.vpl[i].moment[c]) * 0x1p-24 / weight) * reach;
     }
-    offset += n * -dot(n, offset);
+    offset = (offset + n * -dot(n, offset)) * kRecentreShare;
     const Vec3 above = position + offset + n * lift;
     SurfacePoint hit;
     if (rays.occluded(position + n * lift, above) || !rays.closestHit(above, -n, hit)) return;
