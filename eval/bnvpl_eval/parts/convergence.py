@@ -15,7 +15,7 @@ def run(context: Context) -> None:
                 context.say(f"convergence: {view.name}, {method}, {count} VPLs")
                 c = context.configuration(view, method).but(
                     vpls=count, candidates=count * context.size["candidates_per_vpl"],
-                    photons=plan["photons"])
+                    photons=plan["photons"], spp=plan["spp"])
                 rows.append(context.judge("convergence", view, c, seeds))
         path = []
         for spp in plan["path_spp"]:
@@ -39,7 +39,7 @@ def add_plots(context: Context, view, found: dict, path: list[dict]) -> None:
     name = view.scene.id
     context.plots.append({
         "id": f"convergence-vpls-{name}", "title": f"{view.scene.title}: error against VPLs",
-        "caption": f"{context.size['convergence']['photons'] // 1000}k photons, {context.size['spp']} spp, mean of the seeds.",
+        "caption": f"{context.size['convergence']['photons'] // 1000}k photons, {context.size['convergence']['spp']} spp, mean of the seeds.",
         "x_label": "VPLs", "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()], **common})
     context.plots.append({
         "id": f"convergence-time-{name}", "title": f"{view.scene.title}: error against time",
