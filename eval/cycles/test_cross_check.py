@@ -111,8 +111,8 @@ class Reader(InFolder):
 
     def test_what_has_no_counterpart_is_refused_by_name(self) -> None:
         for line, said in (("Ks 0.1 0.1 0.1", "Phong"), ("map_d a.png", "mask"),
-                           ("illum 7\nTf 0.5 1 1", "coloured glass"), ("Ks 0.9 0.9 0.9\nillum 3",
-                                                                       "more than it receives")):
+                           ("illum 7\nTf 0.5 1 1", "coloured glass"), ("illum 7\nNi 0.6", "below 1"),
+                           ("Ks 0.9 0.9 0.9\nillum 3", "more than it receives")):
             with self.assertRaisesRegex(source.SceneError, f"material 'B'.*{said}"):
                 self.mesh(np.eye(4), MTL + line + "\n")
 
