@@ -147,6 +147,12 @@ void nearest(benchmark::State& state) {
       ->MeasureProcessCPUTime()   \
       ->UseRealTime()             \
       ->Unit(benchmark::kMillisecond)
+// Growth: 5 candidates a VPL, as the yardstick.
+BENCHMARK_CAPTURE(endToEnd, uniform_many, Density::Uniform, false)
+    ->Args({5000000, 1000000})
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(endToEnd, uniform, Density::Uniform, false)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(endToEnd, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
 BENCHMARK_CAPTURE(endToEnd, local_uneven, Density::Local, true)->BNVPL_SIZES;

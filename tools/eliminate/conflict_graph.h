@@ -44,7 +44,7 @@ class ConflictGraph {
   ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> normal, std::vector<float> radius,
                 std::vector<uint32_t> row, const PairWeight& rule);
 
-  size_t size() const { return weight_.size(); }
+  size_t size() const { return row_.size(); }
   uint32_t row(uint32_t i) const { return row_[i]; }
   uint64_t weight(uint32_t i) const { return weight_[i]; }
   bool removed(uint32_t i) const { return !(radius_[i] == radius_[i]); }
@@ -65,20 +65,27 @@ class ConflictGraph {
   void compact();
 
  private:
+  struct Near {
+    float distanceSquared;
+    uint32_t index;
+  };
+  static constexpr uint32_t kAtOnce = 256;
+  static constexpr uint32_t kLanes = 4;
+
+  size_t nearIn(uint32_t i, CellLists::Range range, Near* found) const;
+  template <typename Visit>
+  bool allNear(uint32_t i, const Visit& visit) const;
   template <typename Visit>
   void visitNeighbours(uint32_t i, const Visit& visit) const;
   uint64_t pairWeight(uint32_t i, uint32_t j, float distanceSquared) const {
     const float weight = rule_(std::sqrt(distanceSquared), radius_[i] + radius_[j]);
     return static_cast<uint64_t>(weight * scale_);
   }
-  float distanceSquared(uint32_t i, uint32_t j) const {
-    const float x = x_[j] - x_[i], y = y_[j] - y_[i], z = z_[j] - z_[i];
-    return x * x + y * y + z * z;
-  }
   bool onOneSheet(uint32_t i, uint32_t j) const;
 
   CellLists cells_;
-  std::vector<float> x_, y_, z_, radius_;  // in the cells' order; the radius of the removed is NaN
+  // In the cells' order, kLanes longer than size(); the radius of the removed is NaN.
+  std::vector<float> x_, y_, z_, radius_;
   std::vector<Vec3> normal_;
   std::vector<uint32_t> row_;
   std::vector<uint64_t> weight_;
