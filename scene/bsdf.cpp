@@ -94,11 +94,11 @@ Vec3 Bsdf::eval(LobeGroup group, Vec3 wi) const {
 
 float Bsdf::pdf(LobeGroup group, Vec3 wi) const {
   if (glass_ || dot(point_.ng, wi) <= 0.0f) return 0.0f;
+  const float diffusePdf = pdfCosineHemisphere(dot(point_.ns, wi));
+  if (group == LobeGroup::Rough && diffuseShare_ >= 1.0f) return diffusePdf;
   const float glossyPdf = pdfPowerCosine(dot(glossyAxis(), wi), exponent_);
   if (group == LobeGroup::Chain) return sharp_ ? glossyPdf : 0.0f;
-  const float diffusePdf = pdfCosineHemisphere(dot(point_.ns, wi));
-  return diffuseShare_ >= 1.0f ? diffusePdf
-                               : diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
+  return diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
 }
 
 bool Bsdf::sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const {
@@ -150,7 +150,9 @@ bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& ou
   }
   const float cosGeometric = dot(ng, out.wi), cosShading = dot(ns, out.wi);
   if (cosGeometric <= 0.0f) return false;
-  const float glossyPdf = pdfPowerCosine(dot(lobeAxis, out.wi), exponent_);
+  const bool onlyDiffuse = group == LobeGroup::Rough && diffuseShare_ >= 1.0f;
+  const float glossyPdf =
+      onlyDiffuse ? 0.0f : pdfPowerCosine(dot(lobeAxis, out.wi), exponent_);
   const float diffusePdf = pdfCosineHemisphere(photons ? cosGeometric : cosShading);
   out.pdf = group == LobeGroup::Chain
                 ? glossyPdf

@@ -24,17 +24,18 @@ constexpr float kRecentreLift = 0.1f;
 class FixedPoint {
  public:
   // 2^-26 of the mean photon: the sum of 2^36 of them fits in 63 bits.
-  explicit FixedPoint(double photonPower) : unit_(std::ldexp(1.0, std::ilogb(photonPower) - 26)) {}
+  explicit FixedPoint(double photonPower)
+      : unit_(std::ldexp(1.0, std::ilogb(photonPower) - 26)), perUnit_(1.0 / unit_) {}
   int64_t encode(double value) const {
-    const double units = value / unit_;
+    const double units = value * perUnit_;
     if (!(std::fabs(units) < 0x1p62))
       throw std::overflow_error("flux exceeds its fixed-point range");
-    return static_cast<int64_t>(std::llround(units));
+    return static_cast<int64_t>(std::llrint(units));
   }
   double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
 
  private:
-  double unit_;
+  double unit_, perUnit_;  // powers of two: exact
 };
 
 void addChecked(int64_t& sum, int64_t term) {
@@ -87,6 +88,7 @@ class Scatterer {
         options_(options),
         fixed_(photonPower),
         photonPower_(photonPower),
+        perPhotonPower_(1.0 / photonPower),
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
 
   // Hands the flux that leaves a diffuse hit to the VPLs around it.
@@ -113,12 +115,12 @@ class Scatterer {
   void deposit(uint32_t vpl, const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
     VplSum& s = sums.vpl[vpl];
     for (size_t c = 0; c < 3; ++c) addChecked(s.flux[c], fixed_.encode(double{flux[c]}));
-    const double relative = double{mean(flux)} / photonPower_;
-    addChecked(s.squares, std::llround(relative * relative * 0x1p20));
+    const double relative = double{mean(flux)} * perPhotonPower_;
+    addChecked(s.squares, std::llrint(relative * relative * 0x1p20));
     const Vec3 offset =
         (hit.position - vpls_.position[vpl]) / (options_.radius * vpls_.radius[vpl]);
     for (size_t c = 0; c < 3; ++c)
-      addChecked(s.moment[c], std::llround(relative * double{offset[c]} * 0x1p24));
+      addChecked(s.moment[c], std::llrint(relative * double{offset[c]} * 0x1p24));
     ++s.photons;
   }
 
@@ -151,7 +153,7 @@ class Scatterer {
   const VplTable& vpls_;
   const EstimateOptions& options_;
   FixedPoint fixed_;
-  double photonPower_;
+  double photonPower_, perPhotonPower_;
   Coverage coverage_;
 };
 
