@@ -7,10 +7,10 @@
 #include <numeric>
 
 #include "core/random.h"
+#include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "spatial/cell_lists.h"
 #include "tools/eliminate/conflict_graph.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/greedy.h"

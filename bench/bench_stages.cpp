@@ -51,7 +51,7 @@ void tracePhotons(benchmark::State& state) {
 
 void renderSamples(benchmark::State& state) {
   VplSettings s;
-  s.gather.lightcuts = state.range(0) != 0;
+  s.gather.method = static_cast<GatherMethod>(state.range(0));
   s.nearField = true;
   s.clamp = 2.0f;
   s.film.spp = 1;
@@ -72,9 +72,8 @@ void renderSamples(benchmark::State& state) {
 BENCHMARK(placeCandidates)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(tracePhotons)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(renderSamples)
-    ->ArgName("lightcuts")
-    ->Arg(1)
-    ->Arg(0)
+    ->ArgName("gather")  // as GatherMethod: tile cuts, lightcuts, all
+    ->DenseRange(0, 2)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

@@ -74,8 +74,6 @@ float Bsdf::photonShadingFactor() const {
   return geometric > 0.0f ? std::max(0.0f, dot(point_.ns, point_.wo)) / geometric : 0.0f;
 }
 
-Vec3 Bsdf::diffuseBound() const { return diffuse_ * (1.0f / kPi); }
-
 // Modified Phong (Lafortune & Willems 1994): reciprocal, and never reflects more than Ks.
 Vec3 Bsdf::glossyBound(float cosAlpha) const {
   if (cosAlpha <= 0.0f) return {};
@@ -86,7 +84,7 @@ Vec3 Bsdf::glossyBound(float cosAlpha) const {
 Vec3 Bsdf::eval(LobeGroup group, Vec3 wi) const {
   const float cosine = dot(point_.ns, wi);
   if (glass_ || dot(point_.ng, wi) <= 0.0f || cosine <= 0.0f) return {};
-  Vec3 value = group == LobeGroup::Rough ? diffuseBound() : Vec3{};
+  Vec3 value = group == LobeGroup::Rough ? diffuseValue() : Vec3{};
   if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_))
     value += glossyBound(dot(glossyAxis(), wi));
   return value * cosine;
@@ -151,14 +149,13 @@ bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& ou
   const float cosGeometric = dot(ng, out.wi), cosShading = dot(ns, out.wi);
   if (cosGeometric <= 0.0f) return false;
   const bool onlyDiffuse = group == LobeGroup::Rough && diffuseShare_ >= 1.0f;
-  const float glossyPdf =
-      onlyDiffuse ? 0.0f : pdfPowerCosine(dot(lobeAxis, out.wi), exponent_);
+  const float glossyPdf = onlyDiffuse ? 0.0f : pdfPowerCosine(dot(lobeAxis, out.wi), exponent_);
   const float diffusePdf = pdfCosineHemisphere(photons ? cosGeometric : cosShading);
   out.pdf = group == LobeGroup::Chain
                 ? glossyPdf
                 : diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
   if (!(out.pdf > 0.0f)) return false;
-  Vec3 value = group == LobeGroup::Rough ? diffuseBound() : Vec3{};
+  Vec3 value = group == LobeGroup::Rough ? diffuseValue() : Vec3{};
   if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_))
     value += glossyBound(dot(lobeAxis, out.wi));
   const float cosine = photons ? cosGeometric * shading : std::max(0.0f, cosShading);

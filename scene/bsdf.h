@@ -9,6 +9,7 @@
 #pragma once
 
 #include "core/random.h"
+#include "core/sampling.h"
 #include "scene/ray_scene.h"
 
 namespace bnvpl {
@@ -36,6 +37,9 @@ class Bsdf {
   // Fraction of the incident flux that leaves through the rough lobes, 0..1 (at normal incidence).
   Vec3 roughAlbedo() const { return diffuse_ + roughGlossy(); }
   bool hasRough() const { return !isBlack(roughAlbedo()); }
+  // The part of the rough group's value that no direction changes, 1/sr, and whether it is all.
+  Vec3 diffuseValue() const { return diffuse_ * (1.0f / kPi); }
+  bool diffuseOnly() const { return isBlack(roughGlossy()); }
   // Probability with which a path should take the chain group; 0 or 1 where there is but one.
   float chainProbability() const { return chainProbability_; }
   bool chainIsDelta() const {
@@ -52,7 +56,7 @@ class Bsdf {
   // whose cosine with any axis a is at most maxCosine(a).
   template <typename MaxCosine>
   Vec3 roughUpperBound(float maxCosNs, const MaxCosine& maxCosine) const {
-    Vec3 bound = diffuseBound();
+    Vec3 bound = diffuseValue();
     if (!isBlack(roughGlossy())) bound += glossyBound(maxCosine(glossyAxis()));
     return bound * std::max(0.0f, maxCosNs);
   }
@@ -67,7 +71,6 @@ class Bsdf {
 
  private:
   Vec3 roughGlossy() const { return sharp_ ? Vec3{} : glossy_; }
-  Vec3 diffuseBound() const;
   Vec3 glossyBound(float cosAlpha) const;  // Phong lobe without the cosine
   Vec3 glossyAxis() const { return reflect(point_.wo, point_.ns); }
   bool sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const;

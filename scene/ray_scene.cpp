@@ -159,6 +159,41 @@ bool RayScene::occluded(Vec3 from, Vec3 to) const {
   return impl_->occluded(makeRay(from, to - from, 1.0f));
 }
 
+uint32_t RayScene::occluded(const RayPacket& from, Vec3 to, uint32_t active) const {
+  alignas(64) RTCRay16 rays;
+  alignas(64) std::array<int, RayPacket::kSize> valid;
+  for (uint32_t l = 0; l < RayPacket::kSize; ++l) {
+    valid[l] = (active >> l & 1u) != 0 ? -1 : 0;
+    rays.org_x[l] = from.x[l];
+    rays.org_y[l] = from.y[l];
+    rays.org_z[l] = from.z[l];
+    rays.dir_x[l] = to.x - from.x[l];
+    rays.dir_y[l] = to.y - from.y[l];
+    rays.dir_z[l] = to.z - from.z[l];
+    rays.tnear[l] = 0.0f;
+    rays.tfar[l] = 1.0f;
+    rays.time[l] = 0.0f;
+    rays.mask[l] = ~0u;
+    rays.id[l] = rays.flags[l] = 0;
+  }
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid.data(), impl_->scene, &rays, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcOccluded16(valid.data(), impl_->scene, &context, &rays);
+#endif
+  uint32_t hidden = 0;
+  for (uint32_t l = 0; l < RayPacket::kSize; ++l) {
+    hidden |= static_cast<uint32_t>(rays.tfar[l] < 0.0f) << l;
+  }
+  return hidden & active;
+}
+
 bool RayScene::occludedToInfinity(Vec3 from, Vec3 direction) const {
   return impl_->occluded(makeRay(from, direction, std::numeric_limits<float>::infinity()));
 }

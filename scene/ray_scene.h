@@ -1,6 +1,7 @@
 // Ray queries against a Scene. The only file behind it that knows Embree is ray_scene.cpp.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "scene/scene.h"
@@ -20,6 +21,13 @@ struct SurfacePoint {
   bool front = true;  // wo lies on the side of the triangle's winding
 };
 
+// Starts of rays that are traced together.
+struct RayPacket {
+  static constexpr uint32_t kSize = 16;
+  alignas(64) std::array<float, kSize> x{}, y{}, z{};
+  void set(uint32_t lane, Vec3 p) { x[lane] = p.x, y[lane] = p.y, z[lane] = p.z; }
+};
+
 // Owns the acceleration structure; the Scene must outlive it. Queries are thread-safe.
 // Alpha masks are honoured by every query.
 class RayScene {
@@ -35,6 +43,9 @@ class RayScene {
 
   // Whether anything lies strictly between two points, both lifted by the caller.
   bool occluded(Vec3 from, Vec3 to) const;
+  // The same from several points to one: a mask of lanes, of which only those of `active` are
+  // asked. A multiple of the speed when the points are neighbours.
+  uint32_t occluded(const RayPacket& from, Vec3 to, uint32_t active) const;
   bool occludedToInfinity(Vec3 from, Vec3 direction) const;
 
   // A point moved off its surface towards `side` (unit, a normal of the side to leave by), far

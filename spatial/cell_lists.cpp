@@ -175,7 +175,9 @@ void Builder::numberCellsOf(const Level& level, const Leaf& leaf, uint32_t first
     if (end == before) continue;
     Cell& cell = cells_[firstCell];
     cell = {{firstPoint + before, firstPoint + end},
-            static_cast<uint32_t>(&level - levels_.data()), 0.0f, {}};
+            static_cast<uint32_t>(&level - levels_.data()),
+            0.0f,
+            {}};
     for (uint32_t k = before; k < end; ++k) {
       const uint32_t i = level.members[static_cast<uint32_t>(leaf.indices()[k])];
       lists_.order[firstPoint + k] = i;

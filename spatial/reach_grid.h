@@ -57,8 +57,8 @@ class ReachGrid {
     uint64_t mask = 0;
     std::vector<Slot> slots;  // open addressing, at most half full
     std::vector<Disk> disks;  // by cell
-    // One bit for eight hash values each: most points that nothing reaches, which in a large scene are
-    // most points, are told by these, which fit a cache.
+    // One bit for eight hash values each: most points that nothing reaches, which in a large scene
+    // are most points, are told by these, which fit a cache.
     std::vector<uint64_t> filter;
     uint64_t filterMask = 0;
 
@@ -83,8 +83,8 @@ class ReachGrid {
     const auto bits = [&](int64_t v) { return static_cast<uint64_t>(v >> shift) & kAxisMask; };
     return mix64(bits(c.x) | bits(c.y) << 21 | bits(c.z) << 42);
   }
-  void buildLevel(Level& level, const std::vector<uint32_t>& members,
-                  std::span<const Vec3> points, std::span<const float> radii) const;
+  void buildLevel(Level& level, const std::vector<uint32_t>& members, std::span<const Vec3> points,
+                  std::span<const float> radii) const;
 
   Vec3 origin_;  // cells count from here, so that scenes far from the world's origin keep precision
   float cellsPerUnit_ = 1.0f;  // of the finest level: a power of two, so that all cells nest

@@ -150,8 +150,7 @@ TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
 TEST(Oracle, ManyCandidatesOfDensitiesFarApart) {
   Cloud cloud = unevenPlane(3000, 13);
   for (size_t i = 0; i < 500; ++i) {  // and a knot of them
-    cloud.add(cloud.position[7] + (cloud.position[i] - cloud.position[7]) * 1e-3f,
-              cloud.normal[i]);
+    cloud.add(cloud.position[7] + (cloud.position[i] - cloud.position[7]) * 1e-3f, cloud.normal[i]);
   }
   for (const Density density : {Density::Uniform, Density::Local}) {
     const EliminateOptions options = keep(100, density);

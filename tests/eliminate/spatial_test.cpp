@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "core/random.h"
+#include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "spatial/cell_lists.h"
 #include "tests/eliminate/clouds.h"
 
 namespace bnvpl {
@@ -93,8 +93,8 @@ TEST(Spatial, NoPoints) {
   EXPECT_TRUE(makeCellLists(none, {}).order.empty());
 }
 
-// The pairs nearer than the sum of their radii: none may be missing, from either end, before or after
-// points are left out; and the lists must not hold everything.
+// The pairs nearer than the sum of their radii: none may be missing, from either end, before or
+// after points are left out; and the lists must not hold everything.
 void expectAllPairs(const std::vector<Vec3>& points, const std::vector<float>& radius) {
   CellLists lists = makeCellLists(points, radius);
   std::vector<uint32_t> order = lists.order;

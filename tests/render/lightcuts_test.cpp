@@ -42,23 +42,23 @@ double relativeDifference(const Image& a, const Image& b) {
 }
 
 TEST(Lightcuts, WithoutToleratedErrorIsTheSumOverAll) {
-  const Image all = render({.lightcuts = false});
-  const Image cuts = render({.lightcuts = true, .error = 0.0f, .maxCut = 1000000});
+  const Image all = render({.method = GatherMethod::All});
+  const Image cuts = render({.method = GatherMethod::Lightcuts, .error = 0.0f, .maxCut = 1000000});
   const auto &x = *all.find("R"), &y = *cuts.find("R");
   for (size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(y[i], x[i], 1e-5f * (x[i] + 1e-3f)) << i;
 }
 
 TEST(Lightcuts, AtTwoPercentStaysNearTwoPercent) {
-  const Image all = render({.lightcuts = false});
-  const Image cuts = render({.lightcuts = true});
+  const Image all = render({.method = GatherMethod::All});
+  const Image cuts = render({.method = GatherMethod::Lightcuts});
   EXPECT_LT(relativeDifference(cuts, all), 0.02);
   EXPECT_GT(relativeDifference(cuts, all), 0.0);  // it did save work
 }
 
 TEST(Lightcuts, TheCutIsBounded) {
-  const Image cuts = render({.lightcuts = true, .error = 0.0f, .maxCut = 100});
+  const Image cuts = render({.method = GatherMethod::Lightcuts, .error = 0.0f, .maxCut = 100});
   for (const float c : *cuts.find("cutsize")) EXPECT_LE(c, 100.0f);
-  const Image loose = render({.lightcuts = true, .error = 0.2f});
+  const Image loose = render({.method = GatherMethod::Lightcuts, .error = 0.2f});
   double mean = 0.0;
   for (const float c : *loose.find("cutsize")) mean += double{c} / double(loose.pixelCount());
   EXPECT_LT(mean, 500.0);
@@ -98,7 +98,7 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
 TEST(SampledGather, IsTheSumOverAllOnAverage) {
   const Lit& l = lit();
   const VplLights vpls = makeVplLights(l.vpls, l.world.rays, 1.0f);
-  const Gatherer gatherer(l.world.rays, vpls, {.lightcuts = false}, 1);
+  const Gatherer gatherer(l.world.rays, vpls, {.method = GatherMethod::All}, 1);
   const Vec3 middle = l.world.scene.camera.position;
   Rng rng(streamKey(5, Stream::PixelSamples), 0);
   int points = 0;
@@ -108,7 +108,10 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
                                      0.3f * Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.0f});
     if (!l.world.rays.closestHit(middle, direction, hit)) continue;
     const Bsdf bsdf(l.world.scene, hit);
-    const Vec3 all = gatherer.gather(bsdf).radiance;
+    const std::array<const Bsdf*, 1> receiver{&bsdf};
+    std::array<Gathered, 1> gathered;
+    gatherer.gather({.bsdf = receiver, .pixels = 1}, gathered);
+    const Vec3 all = gathered[0].radiance;
     if (mean(all) <= 0.0f) continue;
     ++points;
     constexpr int kDraws = 4000;

@@ -46,7 +46,7 @@ struct VplSettings {
   float clamp = 1.0f;
   bool nearField = false;
   unsigned nearFieldRays = 16;
-  GatherOptions gather{.lightcuts = false};
+  GatherOptions gather{.method = GatherMethod::All};
   FilmOptions film{.spp = 4};
 };
 
@@ -64,16 +64,14 @@ inline Image renderVpls(const World& world, const VplTable& lit, const VplSettin
   const VplIntegrator integrator(world.rays, world.lights, gatherer,
                                  s.nearField ? &nearField : nullptr, s.nearFieldRays, s.film.only);
   return renderFilm(
-      world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, s.film,
-      stats);
+      world.scene, [&](const TileSamples& tile) { integrator.render(tile); }, s.film, stats);
 }
 
 inline Image renderPaths(const World& world, const FilmOptions& film, FilmStats& stats,
                          unsigned maxBounces = 32) {
   const PathTracer integrator(world.rays, world.lights, maxBounces, film.only);
   return renderFilm(
-      world.scene, [&](Vec3 o, Vec3 d, Rng& rng) { return integrator.sample(o, d, rng); }, film,
-      stats);
+      world.scene, [&](const TileSamples& tile) { integrator.render(tile); }, film, stats);
 }
 
 // Mean over pixels and channels of a layer ("" for R, G, B).

@@ -73,8 +73,8 @@ inline bool ConflictGraph::onOneSheet(uint32_t i, uint32_t j) const {
 }
 
 // Those of a range, of at most kAtOnce, that are nearer than both radii together; never a removed
-// one. Four at a time: a scan meets about three nodes for each that is near, and half of the stage's
-// time was spent on telling them apart.
+// one. Four at a time: a scan meets about three nodes for each that is near, and half of the
+// stage's time was spent on telling them apart.
 size_t ConflictGraph::nearIn(uint32_t i, CellLists::Range range, Near* found) const {
   const __m128 x = _mm_set1_ps(x_[i]), y = _mm_set1_ps(y_[i]), z = _mm_set1_ps(z_[i]);
   const __m128 radius = _mm_set1_ps(radius_[i]);

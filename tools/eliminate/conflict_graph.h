@@ -33,8 +33,9 @@ struct PairWeight {
 // weights of its pairs in fixed point, which is exact in any order: what was added can be
 // subtracted again without a remainder, by any thread.
 //
-// Pairs are not stored: at 40 candidates a VPL they would take half a kilobyte a candidate. They are
-// found anew by a scan of neighbouring cells, which costs little more than reading a list would.
+// Pairs are not stored: at 40 candidates a VPL they would take half a kilobyte a candidate. They
+// are found anew by a scan of neighbouring cells, which costs little more than reading a list
+// would.
 class ConflictGraph {
  public:
   static constexpr uint32_t kNone = UINT32_MAX;

@@ -71,9 +71,8 @@ EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> 
   if (options.method == EliminationMethod::Random) {
     result.rows = randomRows(candidates, options);
   } else {
-    ConflictGraph graph(std::move(sortedPosition), std::move(sortedNormal),
-                        std::move(radii.radius), std::move(order),
-                        pairWeightRule(candidates, options));
+    ConflictGraph graph(std::move(sortedPosition), std::move(sortedNormal), std::move(radii.radius),
+                        std::move(order), pairWeightRule(candidates, options));
     result.rows = eliminateHeaviest(graph, options.count);
   }
   std::sort(result.rows.begin(), result.rows.end());

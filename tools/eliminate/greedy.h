@@ -14,10 +14,10 @@ namespace bnvpl {
 //
 // Why it can be done in parallel: weights only fall. A node that outweighs all its neighbours goes
 // before any of them, whatever happens elsewhere, and with the weight that it has now. So all such
-// local maxima can go at once. A falling threshold holds back the light nodes: all removals above it
-// are made before any below, so that only those of the last threshold can be too many, and of them
-// the ones that the sequential algorithm would have made last are taken back: those of the smallest
-// (weight, row), as its sequence of weights never rises.
+// local maxima can go at once. A falling threshold holds back the light nodes: all removals above
+// it are made before any below, so that only those of the last threshold can be too many, and of
+// them the ones that the sequential algorithm would have made last are taken back: those of the
+// smallest (weight, row), as its sequence of weights never rises.
 std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep);
 
 }  // namespace bnvpl

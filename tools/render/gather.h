@@ -1,7 +1,8 @@
-// Indirect light at a surface point from all VPLs: exactly, or through a cut of the light tree.
+// Indirect light at surface points from all VPLs: exactly, or through cuts of the light tree.
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "core/random.h"
 #include "scene/ray_scene.h"
@@ -9,9 +10,21 @@
 
 namespace bnvpl {
 
+enum class GatherMethod {
+  TileCuts,   // a cut for each tile, a random VPL of each cluster for each sample (tile_gather.h)
+  Lightcuts,  // a cut for each sample, the same VPL of each cluster for all (Walter et al. 2005)
+  All         // every VPL: the truth for a VPL set
+};
+
 struct GatherOptions {
-  bool lightcuts = true;   // else every VPL: the truth for a VPL set
-  float error = 0.02f;     // largest error bound of a cluster, over the running total
+  GatherMethod method = GatherMethod::TileCuts;
+  // Tile cuts: standard deviation to allow a pixel, over the light in its tile; a prediction, which
+  // so far has been three to five times what was measured (docs/theory.md). Lightcuts: largest
+  // error bound of a cluster, over the running total. Empty: 0.05 and 0.02.
+  std::optional<float> error = std::nullopt;
+  float allowedError() const {
+    return error.value_or(method == GatherMethod::TileCuts ? 0.05f : 0.02f);
+  }
   uint32_t maxCut = 1000;  // clusters
 };
 
@@ -22,13 +35,22 @@ struct Gathered {
   uint32_t shadowRays = 0;
 };
 
+// The samples of a tile in some of its slots; a slot is one sample of each pixel.
+struct TileReceivers {
+  std::span<const Bsdf* const> bsdf;  // slot by slot, pixel by pixel; null: nothing to light
+  uint32_t pixels = 0;                // in each slot
+  uint32_t firstSlot = 0;             // of all slots of the image's samples
+  uint32_t allSlots = 1;              // samples a pixel
+  uint64_t key = 0;                   // of the tile's random numbers
+};
+
 class Gatherer {
  public:
   Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options,
            uint64_t seed);
 
-  // Thread-safe, both.
-  Gathered gather(const Bsdf& bsdf) const;
+  // Thread-safe, both. One result for each receiver.
+  void gather(const TileReceivers& tile, std::span<Gathered> out) const;
   // All VPLs on average, by a few that are drawn from the light tree (Estevez & Kulla 2018): for
   // points whose light reaches the image over one random ray among many.
   Gathered sample(const Bsdf& bsdf, Rng& rng) const;

@@ -26,29 +26,47 @@ void describeVertex(const Bsdf& bsdf, RadianceSample& out) {
 
 }  // namespace
 
-RadianceSample VplIntegrator::sample(Vec3 origin, Vec3 direction, Rng& rng) const {
-  RadianceSample out;
-  const ChainEnd seen = seeFrom(rays_, lights_, origin, direction, rng, out);
-  if (!seen.rough) return out;
-  const Bsdf bsdf(rays_.scene(), seen.hit);
-  describeVertex(bsdf, out);
-  if (only_ != Only::Indirect) {
-    out.direct += seen.throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough,
-                                                LightChoice::Each, extensions_, rng);
+void VplIntegrator::render(const TileSamples& tile) const {
+  // All vertices first, then their VPLs together, then the rest sample by sample.
+  const size_t count = tile.samples.size();
+  std::vector<ChainEnd> seen(count);
+  std::vector<Bsdf> made;
+  std::vector<const Bsdf*> bsdf(count, nullptr);
+  made.reserve(count);
+  for (size_t i = 0; i < count; ++i) {
+    CameraSample& s = tile.samples[i];
+    s.radiance = {};
+    seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance);
+    if (!seen[i].rough) continue;
+    bsdf[i] = &made.emplace_back(rays_.scene(), seen[i].hit);
+    describeVertex(*bsdf[i], s.radiance);
   }
-  if (only_ != Only::Direct) out.indirect += gatherAt(bsdf, out, seen.throughput);
-  for (unsigned k = 0; k < extensions_; ++k) {
-    extend(seen, seen.throughput * (1.0f / static_cast<float>(extensions_)), rng, out);
+  if (only_ != Only::Direct) gather(tile, seen, bsdf);
+  for (size_t i = 0; i < count; ++i) {
+    if (!bsdf[i]) continue;
+    CameraSample& s = tile.samples[i];
+    const Vec3 throughput = seen[i].throughput;
+    if (only_ != Only::Indirect) {
+      s.radiance.direct += throughput * directLight(rays_, lights_, *bsdf[i], LobeGroup::Rough,
+                                                    LightChoice::Each, extensions_, s.rng);
+    }
+    for (unsigned k = 0; k < extensions_; ++k) {
+      extend(seen[i], throughput * (1.0f / static_cast<float>(extensions_)), s.rng, s.radiance);
+    }
   }
-  return out;
 }
 
-Vec3 VplIntegrator::gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 throughput) const {
-  const Gathered g = gatherer_.gather(bsdf);
-  out.clamped += throughput * g.clamped;
-  out.cut += g.cut;
-  out.shadowRays += g.shadowRays;
-  return throughput * g.radiance;
+void VplIntegrator::gather(const TileSamples& tile, std::span<const ChainEnd> seen,
+                           std::span<const Bsdf* const> bsdf) const {
+  std::vector<Gathered> gathered(bsdf.size());
+  gatherer_.gather({bsdf, tile.pixels, tile.firstSlot, tile.allSlots, tile.key}, gathered);
+  for (size_t i = 0; i < gathered.size(); ++i) {
+    RadianceSample& out = tile.samples[i].radiance;
+    out.indirect += seen[i].throughput * gathered[i].radiance;
+    out.clamped += seen[i].throughput * gathered[i].clamped;
+    out.cut += gathered[i].cut;
+    out.shadowRays += gathered[i].shadowRays;
+  }
 }
 
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
@@ -97,9 +115,13 @@ NearField::Missing VplIntegrator::missingFrom(const ChainEnd& end, Rng& rng) con
   return nearField_ ? nearField_->missing(end.hit, end.hit.distance, rng) : NearField::Missing{};
 }
 
-RadianceSample PathTracer::sample(Vec3 origin, Vec3 direction, Rng& rng) const {
+void PathTracer::render(const TileSamples& tile) const {
+  for (CameraSample& s : tile.samples) s.radiance = trace(s, s.rng);
+}
+
+RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
   RadianceSample out;
-  ChainEnd vertex = seeFrom(rays_, lights_, origin, direction, rng, out);
+  ChainEnd vertex = seeFrom(rays_, lights_, sample.origin, sample.direction, rng, out);
   Vec3 throughput = vertex.throughput;
   for (unsigned bounce = 0; vertex.rough; ++bounce) {
     const Bsdf bsdf(rays_.scene(), vertex.hit);

@@ -1,4 +1,4 @@
-// Radiance along one camera ray, split into what the image's layers need.
+// Radiance along camera rays, split into what the image's layers need.
 #pragma once
 
 #include "tools/render/chain.h"
@@ -18,6 +18,22 @@ struct RadianceSample {
   uint32_t cut = 0, shadowRays = 0;
 };
 
+// One sample of a pixel.
+struct CameraSample {
+  Vec3 origin, direction;
+  Rng rng{0, 0};
+  RadianceSample radiance;  // what an integrator finds
+};
+
+// Samples of a tile: slot by slot, a slot being one sample of each of its pixels, row by row.
+struct TileSamples {
+  std::span<CameraSample> samples;
+  uint32_t pixels = 0;     // in each slot
+  uint32_t firstSlot = 0;  // of all slots
+  uint32_t allSlots = 1;   // samples a pixel
+  uint64_t key = 0;        // of the tile's own random numbers
+};
+
 enum class Only { Everything, Direct, Indirect };
 
 // The thesis: direct light by shadow rays, indirect light from the VPLs. What the VPLs do not carry
@@ -32,12 +48,13 @@ class VplIntegrator {
         nearField_(nearField),
         extensions_(nearField || hasChainLobes(rays.scene()) ? nearFieldRays : 0),
         only_(only) {}
-  RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
+  void render(const TileSamples& tile) const;
 
  private:
   void extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const;
   NearField::Missing missingFrom(const ChainEnd& end, Rng& rng) const;
-  Vec3 gatherAt(const Bsdf& bsdf, RadianceSample& out, Vec3 throughput) const;
+  void gather(const TileSamples& tile, std::span<const ChainEnd> seen,
+              std::span<const Bsdf* const> bsdf) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
@@ -54,9 +71,11 @@ class PathTracer {
  public:
   PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only)
       : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only) {}
-  RadianceSample sample(Vec3 origin, Vec3 direction, Rng& rng) const;
+  void render(const TileSamples& tile) const;
 
  private:
+  RadianceSample trace(const CameraSample& sample, Rng& rng) const;
+
   const RayScene& rays_;
   const LightSet& lights_;
   unsigned maxBounces_;

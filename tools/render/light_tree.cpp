@@ -25,16 +25,24 @@ class Builder {
   uint32_t build(size_t begin, size_t end) {
     const auto index = static_cast<uint32_t>(tree_.nodes.size());
     tree_.nodes.emplace_back();
+    const auto range = [&] {
+      tree_.nodes[index].begin = static_cast<uint32_t>(begin);
+      tree_.nodes[index].end = static_cast<uint32_t>(end);
+    };
     if (end - begin == 1) {
       tree_.nodes[index] = leafOf(order_[begin]);
+      range();
       return index;
     }
     const size_t middle = split(begin, end);
     const uint32_t left = build(begin, middle);
     const uint32_t right = build(middle, end);
     tree_.nodes[index] = parentOf(left, right, index);
+    range();
     return index;
   }
+
+  std::vector<uint32_t> takeOrder() { return std::move(order_); }
 
  private:
   float coordinate(uint32_t i, size_t axis) const {
@@ -80,6 +88,9 @@ class Builder {
     n.bounds = a.bounds;
     n.bounds.extend(b.bounds);
     mergeCones(a, b, n);
+    n.sinHalfAngle = n.cosHalfAngle <= 0.0f
+                         ? 1.0f
+                         : std::sqrt(std::max(0.0f, 1.0f - n.cosHalfAngle * n.cosHalfAngle));
     n.intensity = a.intensity + b.intensity;
     n.clamp2 = std::min(a.clamp2, b.clamp2);
     const float share = mean(a.intensity) / mean(n.intensity);
@@ -144,11 +155,26 @@ std::vector<uint32_t> startCutOf(const LightTree& tree) {
 
 }  // namespace
 
+VplDraw LightTree::draw(const LightNode& n, float u) const {
+  if (n.leaf()) return {n.representative, 1.0f};
+  const double whole = upTo[n.end] - upTo[n.begin];
+  const auto first = upTo.begin() + n.begin + 1, last = upTo.begin() + n.end;
+  const auto at = std::upper_bound(first, last, upTo[n.begin] + double{u} * whole);
+  const auto k = std::min(n.end - 1, static_cast<uint32_t>(at - upTo.begin()) - 1);
+  return {order[k], static_cast<float>(whole / (upTo[k + 1] - upTo[k]))};
+}
+
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed) {
   LightTree tree;
   if (vpls.size() == 0) return tree;
   tree.nodes.reserve(2 * vpls.size());
-  Builder(vpls, seed, tree).build(0, vpls.size());
+  Builder builder(vpls, seed, tree);
+  builder.build(0, vpls.size());
+  tree.order = builder.takeOrder();
+  tree.upTo.assign(1, 0.0);
+  for (const uint32_t i : tree.order) {
+    tree.upTo.push_back(tree.upTo.back() + double{mean(vpls.intensity[i])});
+  }
   tree.startCut = startCutOf(tree);
   return tree;
 }

@@ -10,14 +10,21 @@ namespace bnvpl {
 
 inline constexpr size_t kMaxStartCut = 32;
 
+// One VPL of a cluster, and what its intensity counts for to stand for the whole.
+struct VplDraw {
+  uint32_t index;
+  float weight;
+};
+
 struct LightNode {
   Bounds bounds;
-  Vec3 axis;  // of the cone of normals
-  float cosHalfAngle = 1.0f;
-  Vec3 intensity;       // sum over the cluster, W/sr
+  Vec3 axis;                                       // of the cone of normals
+  float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
+  Vec3 intensity;                                  // sum over the cluster, W/sr
   float clamp2 = 0.0f;  // smallest of the cluster, so that the bound holds for all
   uint32_t representative = 0;
   uint32_t left = 0, right = 0;  // both 0: a leaf
+  uint32_t begin = 0, end = 0;   // its VPLs, in LightTree::order
   bool leaf() const { return left == 0; }
 };
 
@@ -26,6 +33,11 @@ struct LightTree {
   // Where every cut starts. Not at the root: one occluded representative would make the total 0,
   // one very near would end refinement at once (METHOD 4).
   std::vector<uint32_t> startCut;
+  std::vector<uint32_t> order;  // VPLs from left to right
+  std::vector<double> upTo;     // running sum of their mean intensities; one more than VPLs
+
+  // In proportion to intensity, by u in [0, 1).
+  VplDraw draw(const LightNode& n, float u) const;
 };
 
 // Splits from the top along the longest side of position and (scaled) normal, O(N log N);

@@ -18,12 +18,10 @@ namespace bnvpl {
 namespace {
 
 enum class IntegratorKind { Vpl, Path };
-enum class GatherKind { Lightcuts, All };
 
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::Vpl;
-  GatherKind gather = GatherKind::Lightcuts;
-  GatherOptions cuts;
+  GatherOptions gather;
   float clamp = 2.0f;     // in units of a VPL's r_max
   bool nearField = true;  // give back what the clamp and the gaps take away
   unsigned nearFieldRays = 16;
@@ -37,7 +35,9 @@ struct RenderOptions {
 
 const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl},
                                            {"path", IntegratorKind::Path}};
-const Choices<GatherKind> kGathers{{"lightcuts", GatherKind::Lightcuts}, {"all", GatherKind::All}};
+const Choices<GatherMethod> kGathers{{"tilecuts", GatherMethod::TileCuts},
+                                     {"lightcuts", GatherMethod::Lightcuts},
+                                     {"all", GatherMethod::All}};
 const Choices<Only> kOnlys{
     {"all", Only::Everything}, {"direct", Only::Direct}, {"indirect", Only::Indirect}};
 const Choices<ExrPixelType> kPixels{{"half", ExrPixelType::Half}, {"float", ExrPixelType::Float}};
@@ -75,13 +75,13 @@ Json describe(const RenderOptions& o) {
     json["max-bounces"] = o.maxBounces;
     return json;
   }
-  json["gather"] = nameOf(o.gather, kGathers);
+  json["gather"] = nameOf(o.gather.method, kGathers);
   json["clamp"] = o.clamp;
   json["near-field"] = o.nearField;
   if (o.nearField) json["near-field-rays"] = o.nearFieldRays;
-  if (o.gather == GatherKind::Lightcuts) {
-    json["error"] = o.cuts.error;
-    json["max-cut"] = o.cuts.maxCut;
+  if (o.gather.method != GatherMethod::All) {
+    json["error"] = o.gather.allowedError();
+    json["max-cut"] = o.gather.maxCut;
   }
   return json;
 }
@@ -140,9 +140,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
                      "rerun the pipeline from vpl-place on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);
-  o.cuts.lightcuts = o.gather == GatherKind::Lightcuts;
   const VplLights vpls = makeVplLights(lit, rays, o.clamp);
-  const Gatherer gatherer(rays, vpls, o.cuts, o.film.seed);
+  const Gatherer gatherer(rays, vpls, o.gather, o.film.seed);
   std::optional<NearField> nearField;
   if (vpl && o.nearField) nearField.emplace(lit, rays, o.clamp);
   const VplIntegrator byVpls(rays, lights, gatherer, nearField ? &*nearField : nullptr,
@@ -152,10 +151,7 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   ProgressMeter meter("pixels", uint64_t{scene.film.width} * scene.film.height, tool.quiet);
   FilmStats stats;
   Image image = renderFilm(
-      scene,
-      [&](Vec3 origin, Vec3 direction, Rng& rng) {
-        return vpl ? byVpls.sample(origin, direction, rng) : byPaths.sample(origin, direction, rng);
-      },
+      scene, [&](const TileSamples& tile) { vpl ? byVpls.render(tile) : byPaths.render(tile); },
       o.film, stats, meter.callback());
 
   Json inputs{{"scene", hashText(scene.contentHash)}};
@@ -217,13 +213,15 @@ void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut
       ->type_name("WxH");
   addChoice(cli, "--integrator", o.integrator, kIntegrators,
             "vpl: the method; path: the reference, takes no VPLs");
-  addChoice(cli, "--gather", o.gather, kGathers,
-            "lightcuts: a cut of the light tree; all: every VPL");
-  cli.add_option("--error", o.cuts.error,
-                 "lightcuts: largest error of a cluster, as a share of the total")
-      ->check(inRange(0.0f, 1.0f))
-      ->capture_default_str();
-  addCount(cli, "--max-cut", maxCut, "lightcuts: most clusters at a point");
+  addChoice(
+      cli, "--gather", o.gather.method, kGathers,
+      "tilecuts: a cut of the light tree for each tile, random VPLs of its clusters; lightcuts: "
+      "a cut for each sample; all: every VPL");
+  cli.add_option("--error", o.gather.error,
+                 "tilecuts: deviation to allow a pixel, as a share of its tile's light [0.05]; "
+                 "lightcuts: largest error of a cluster, as a share of the total [0.02]")
+      ->check(inRange(0.0f, 1.0f));
+  addCount(cli, "--max-cut", maxCut, "most clusters of a cut");
   cli.add_option("--clamp", o.clamp, "1/d^2 grows no further inside this many r_max of a VPL")
       ->check(inRange(0.0f, 1000.0f))
       ->capture_default_str();
@@ -259,7 +257,7 @@ int main(int argc, char** argv) {
   ToolOptions tool;
   SceneOptions scene;
   Paths paths;
-  uint64_t spp = options.film.spp, maxCut = options.cuts.maxCut;
+  uint64_t spp = options.film.spp, maxCut = options.gather.maxCut;
   addSceneOptions(cli, scene);
   cli.add_option("lit", paths.lit, "from vpl-estimate or vpl-place --method light (.vpl)");
   cli.add_option("-o,--output", paths.output, "image (.exr)")->required();
@@ -271,7 +269,7 @@ int main(int argc, char** argv) {
     if (spp > UINT32_MAX || maxCut > UINT32_MAX)
       throw UsageError("--spp and --max-cut must be below 2^32");
     options.film.spp = static_cast<uint32_t>(spp);
-    options.cuts.maxCut = static_cast<uint32_t>(maxCut);
+    options.gather.maxCut = static_cast<uint32_t>(maxCut);
     return runRender(scene, paths, options, tool);
   });
 }

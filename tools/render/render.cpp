@@ -10,7 +10,8 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint32_t kTile = 8;  // pixels; a tile's samples meet the same surfaces
+constexpr uint32_t kTile = 8;          // pixels; a tile's samples meet the same surfaces
+constexpr uint32_t kSlotsAtOnce = 16;  // samples of each pixel that are held in memory together
 
 // Means over a pixel's samples, in the order of the channels below.
 struct Pixel {
@@ -37,32 +38,64 @@ struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, notFinite = 0;
 };
 
-void samplePixel(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 uint64_t key, uint32_t x, uint32_t y, Pixel& pixel, PixelCounts& counts) {
+void addSample(const RadianceSample& r, Pixel& pixel, PixelCounts& counts) {
+  if (!isFinite(r.direct) || !isFinite(r.indirect) || !isFinite(r.clamped)) {
+    ++counts.notFinite;
+    return;
+  }
+  addTo(pixel, kDirect, r.direct);
+  addTo(pixel, kIndirect, r.indirect);
+  addTo(pixel, kClamped, r.clamped);
+  addTo(pixel, kExtended, r.extended);
+  addTo(pixel, kAlbedo, r.albedo);
+  addTo(pixel, kNormal, r.normal);
+  pixel.sum[kDepth] += double{r.depth};
+  if (r.depth > 0.0f) pixel.sum[kHits] += 1.0;
+  counts.cut += r.cut;
+  counts.shadowRays += r.shadowRays;
+}
+
+// The pixels of one tile, row by row.
+struct Tile {
+  uint32_t x0, y0, x1, y1;
+  uint32_t pixels() const { return (x1 - x0) * (y1 - y0); }
+  uint32_t x(uint32_t p) const { return x0 + p % (x1 - x0); }
+  uint32_t y(uint32_t p) const { return y0 + p / (x1 - x0); }
+};
+
+CameraSample makeSample(const Scene& scene, uint64_t key, uint32_t spp, uint32_t x, uint32_t y,
+                        uint32_t slot) {
   const uint64_t index = uint64_t{y} * scene.film.width + x;
-  const double shiftX = double{toUnitFloat(random64(key, index, 0))};
-  const double shiftY = double{toUnitFloat(random64(key, index, 1))};
-  for (uint32_t s = 0; s < options.spp; ++s) {
-    const Point2 jitter = r2Sequence(s, shiftX, shiftY);
-    Rng rng(key + 1, index * options.spp + s);
-    const Vec3 direction =
-        cameraDirection(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
-                        (float(y) + jitter.y) / float(scene.film.height));
-    const RadianceSample r = integrator(scene.camera.position, direction, rng);
-    if (!isFinite(r.direct) || !isFinite(r.indirect) || !isFinite(r.clamped)) {
-      ++counts.notFinite;
-      continue;
+  const Point2 jitter = r2Sequence(slot, double{toUnitFloat(random64(key, index, 0))},
+                                   double{toUnitFloat(random64(key, index, 1))});
+  CameraSample s;
+  s.origin = scene.camera.position;
+  s.direction =
+      cameraDirection(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
+                      (float(y) + jitter.y) / float(scene.film.height));
+  s.rng = Rng(key + 1, index * spp + slot);
+  return s;
+}
+
+void renderTile(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+                uint64_t key, const Tile& tile, std::vector<Pixel>& pixels,
+                std::vector<PixelCounts>& counts) {
+  const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
+  std::vector<CameraSample> samples;
+  for (uint32_t slot = 0; slot < options.spp; slot += kSlotsAtOnce) {
+    const uint32_t slotEnd = std::min(options.spp, slot + kSlotsAtOnce);
+    samples.clear();
+    for (uint32_t s = slot; s < slotEnd; ++s) {
+      for (uint32_t p = 0; p < tile.pixels(); ++p) {
+        samples.push_back(makeSample(scene, key, options.spp, tile.x(p), tile.y(p), s));
+      }
     }
-    addTo(pixel, kDirect, r.direct);
-    addTo(pixel, kIndirect, r.indirect);
-    addTo(pixel, kClamped, r.clamped);
-    addTo(pixel, kExtended, r.extended);
-    addTo(pixel, kAlbedo, r.albedo);
-    addTo(pixel, kNormal, r.normal);
-    pixel.sum[kDepth] += double{r.depth};
-    if (r.depth > 0.0f) pixel.sum[kHits] += 1.0;
-    counts.cut += r.cut;
-    counts.shadowRays += r.shadowRays;
+    integrator({samples, tile.pixels(), slot, options.spp, tileKey});
+    for (size_t k = 0; k < samples.size(); ++k) {
+      const auto p = static_cast<uint32_t>(k % tile.pixels());
+      const size_t i = size_t{tile.y(p)} * scene.film.width + tile.x(p);
+      addSample(samples[k].radiance, pixels[i], counts[i]);
+    }
   }
 }
 
@@ -111,17 +144,12 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   std::vector<PixelCounts> counts(image.pixelCount());
 
   const size_t tilesX = (width + kTile - 1) / kTile, tilesY = (height + kTile - 1) / kTile;
-  parallelFor(tilesX * tilesY, 1, [&](size_t tile) {
-    const auto x0 = static_cast<uint32_t>(tile % tilesX) * kTile,
-               y0 = static_cast<uint32_t>(tile / tilesX) * kTile;
-    const uint32_t x1 = std::min(width, x0 + kTile), y1 = std::min(height, y0 + kTile);
-    for (uint32_t y = y0; y < y1; ++y) {
-      for (uint32_t x = x0; x < x1; ++x) {
-        const size_t i = size_t{y} * width + x;
-        samplePixel(scene, integrator, options, key, x, y, pixels[i], counts[i]);
-      }
-    }
-    if (progress) progress(uint64_t{x1 - x0} * (y1 - y0));
+  parallelFor(tilesX * tilesY, 1, [&](size_t index) {
+    const auto x0 = static_cast<uint32_t>(index % tilesX) * kTile,
+               y0 = static_cast<uint32_t>(index / tilesX) * kTile;
+    const Tile tile{x0, y0, std::min(width, x0 + kTile), std::min(height, y0 + kTile)};
+    renderTile(scene, integrator, options, key, tile, pixels, counts);
+    if (progress) progress(tile.pixels());
   });
 
   const double perSample = 1.0 / options.spp;

@@ -36,10 +36,10 @@ struct FilmStats {
   uint64_t notFinite = 0;  // samples left out because a value was NaN or infinite
 };
 
-// Radiance along one camera ray.
-using Integrator = std::function<RadianceSample(Vec3 origin, Vec3 direction, Rng& rng)>;
+// Finds the radiance of all samples of a tile.
+using Integrator = std::function<void(const TileSamples& tile)>;
 
-// Box filter, samples stratified in each pixel. Pixels depend on the seed and their place only.
+// Box filter, samples stratified in each pixel. A tile depends on the seed and its place only.
 // Progress counts pixels.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress = {});

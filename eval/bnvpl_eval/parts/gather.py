@@ -1,4 +1,4 @@
-"""Lightcuts against all VPLs: the same lit files, error and time."""
+"""Tile cuts and Lightcuts against all VPLs: the same lit files, error and time."""
 
 from .. import images, statistics
 from ..context import Context
@@ -17,18 +17,19 @@ def run(context: Context) -> None:
         context.say(f"gather: {view.name}")
         seeds = context.seeds(view)[:SEEDS]
         made = {}
-        for gather in ("lightcuts", "all"):
+        for gather in ("tilecuts", "lightcuts", "all"):
             c = context.configuration(view, "local").but(render=("--gather", gather))
             made[gather] = context.judge("gather", view, c, seeds, label=gather)
         # The same samples and VPLs, so that only the cut differs.
-        cut, every = ([images.read(file, "indirect") for file in made[g]["images"]] for g in ("lightcuts", "all"))
-        difference = sum(((a - b)**2).mean() for a, b in zip(cut, every)) / len(cut)
+        every = [images.read(file, "indirect") for file in made["all"]["images"]]
         mean = sum(b.mean() for b in every) / len(every)
-        made["lightcuts"]["cut_rmse"] = statistics.root(difference) / float(mean)
-        made["all"]["cut_rmse"] = 0.0
+        for gather, row in made.items():
+            cut = [images.read(file, "indirect") for file in row["images"]]
+            difference = sum(((a - b)**2).mean() for a, b in zip(cut, every)) / len(cut)
+            row["cut_rmse"] = statistics.root(difference) / float(mean)
         title = f"{view.scene.title}, {made['all']['vpls']} VPLs"
         rows += [{"group": title, **row} for row in made.values()]
     context.tables.append(table(
-        "gather", "Lightcuts against all VPLs",
+        "gather", "Cuts against all VPLs",
         f"The same VPLs, rays and {SEEDS} seeds; the cut's own error is its difference to all VPLs.",
         COLUMNS, rows))

@@ -1,0 +1,159 @@
+// The gather through tile cuts against the sum over all VPLs.
+#include <gtest/gtest.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+struct Case {
+  Case(const char* name, uint32_t width, uint32_t height, uint64_t vpls) : world(name) {
+    world.scene.film = {width, height};
+    settings.vpls = vpls;
+    settings.film = {.spp = 4, .only = Only::Indirect, .layers = kLayerCutSize};
+    lit = lightUp(world, settings);
+  }
+  Image render(const GatherOptions& gather, uint32_t spp = 4, uint64_t seed = 1) const {
+    VplSettings s = settings;
+    s.gather = gather;
+    s.film.spp = spp;
+    s.film.seed = seed;
+    FilmStats stats;
+    return renderVpls(world, lit, s, stats);
+  }
+  World world;
+  VplSettings settings;
+  VplTable lit;
+};
+
+const Case& cornell() {
+  static const Case c("cornell/scene.toml", 28, 20, 1000);  // tiles at the rims are not whole
+  return c;
+}
+// Has Phong lobes, a mirror and a door with a slit of light.
+const Case& door() {
+  static const Case c("veach-door/scene.toml", 32, 18, 1000);
+  return c;
+}
+
+constexpr GatherOptions kAll{.method = GatherMethod::All};
+
+double sumOver(const Image& image, size_t x0, size_t x1, size_t y0, size_t y1) {
+  double sum = 0.0;
+  for (const char* c : {"R", "G", "B"}) {
+    const std::vector<float>& v = *image.find(c);
+    for (size_t y = y0; y < y1; ++y) {
+      for (size_t x = x0; x < x1; ++x) sum += double{v[y * static_cast<size_t>(image.width) + x]};
+    }
+  }
+  return sum;
+}
+
+// A pixel's error and light, over the channels.
+double errorAt(const Image& a, const Image& b, size_t i) {
+  double e = 0.0;
+  for (const char* c : {"R", "G", "B"}) {
+    e += std::pow(double{(*a.find(c))[i]} - double{(*b.find(c))[i]}, 2);
+  }
+  return e;
+}
+double lightAt(const Image& a, size_t i) {
+  return double{(*a.find("R"))[i]} + double{(*a.find("G"))[i]} + double{(*a.find("B"))[i]};
+}
+
+TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
+  for (const Case* c : {&cornell(), &door()}) {
+    const Image all = c->render(kAll);
+    const Image cuts = c->render({.error = 0.0f, .maxCut = 1000000});
+    size_t different = 0;  // a ray along an edge may be decided otherwise in a packet
+    for (size_t i = 0; i < all.pixelCount(); ++i) {
+      const double light = lightAt(all, i);
+      different += std::sqrt(errorAt(cuts, all, i)) > 1e-4 * (light + 1e-3);
+    }
+    EXPECT_LT(different, all.pixelCount() / 100);
+    EXPECT_NEAR(sumOver(cuts, 0, 28, 0, 18) / sumOver(all, 0, 28, 0, 18), 1.0, 1e-3);
+  }
+}
+
+// The coarsest cut there is: much noise, no bias, in no part of the image, for any number of
+// samples held in memory together.
+TEST(TileCuts, IsUnbiased) {
+  for (const Case* c : {&cornell(), &door()}) {
+    constexpr uint32_t kSpp = 17;
+    std::array<Image, 6> all, cuts;  // of a seed, both see the same points
+    for (uint64_t seed = 0; seed < cuts.size(); ++seed) {
+      all[seed] = c->render(kAll, kSpp, seed + 1);
+      cuts[seed] = c->render({.error = 0.1f, .maxCut = 32}, kSpp, seed + 1);
+    }
+    const auto width = static_cast<size_t>(all[0].width),
+               height = static_cast<size_t>(all[0].height);
+    for (size_t part = 0; part < 4; ++part) {
+      const size_t x0 = part % 2 * width / 2, y0 = part / 2 * height / 2;
+      const auto sum = [&](const Image& image) {
+        return sumOver(image, x0, x0 + width / 2, y0, y0 + height / 2);
+      };
+      double mean = 0.0;
+      for (size_t k = 0; k < cuts.size(); ++k) mean += sum(cuts[k]) / sum(all[k]) / 6.0;
+      EXPECT_NEAR(mean, 1.0, 0.01) << part;
+    }
+  }
+}
+
+TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
+  const Image all = cornell().render(kAll, 8);
+  double before = 1.0, cutBefore = 1e9;
+  for (const float error : {0.02f, 0.08f}) {
+    const Image cuts = cornell().render({.error = error}, 8);
+    double squares = 0.0, cut = 0.0;
+    for (size_t i = 0; i < all.pixelCount(); ++i) {
+      const double light = lightAt(all, i);
+      if (light > 0.0) squares += errorAt(cuts, all, i) / (light * light);
+      cut += double{(*cuts.find("cutsize"))[i]};
+    }
+    const double measured = std::sqrt(squares / double(all.pixelCount()));
+    EXPECT_LT(measured, double{error});
+    if (error == 0.02f) {
+      before = measured, cutBefore = cut;
+    } else {
+      EXPECT_GT(measured, before);
+      EXPECT_LT(cut, 0.8 * cutBefore);
+    }
+  }
+}
+
+// Pixels beside a border of tiles (8 pixels) are not much worse than the others, and the step
+// across a border not much larger than between the packets (4 pixels) inside. Over several widths
+// of the film, so that no edge of the scene is always at a border.
+TEST(TileCuts, BordersDoNotShow) {
+  double error[2] = {}, step[2] = {};
+  size_t pixels[2] = {}, steps[2] = {};
+  Case c("cornell/scene.toml", 40, 32, 2000);
+  for (uint32_t width = 37; width < 45; ++width) {
+    c.world.scene.film = {width, 32};
+    const Image reference = c.render(kAll), cuts = c.render({.error = 0.05f});
+    // Relative, and bounded, so that the pixel of an edge does not decide.
+    const auto relative = [&](size_t i) {
+      const double light = lightAt(reference, i);
+      return light > 0.0 ? std::clamp(lightAt(cuts, i) / light - 1.0, -0.1, 0.1) : 0.0;
+    };
+    for (size_t y = 0; y < 32; ++y) {
+      for (size_t x = 1; x < width / 8 * 8; ++x) {
+        const size_t i = y * width + x;
+        const bool beside = x % 8 == 0 || x % 8 == 7, across = x % 8 == 0;
+        error[beside] += std::pow(relative(i), 2);
+        ++pixels[beside];
+        if (x % 4 != 0) continue;
+        step[across] += std::pow(relative(i) - relative(i - 1), 2);
+        ++steps[across];
+      }
+    }
+  }
+  const double inside = error[0] / double(pixels[0]), beside = error[1] / double(pixels[1]);
+  EXPECT_GT(inside, 0.0);
+  EXPECT_LT(beside / inside, 1.6);
+  const double within = step[0] / double(steps[0]), across = step[1] / double(steps[1]);
+  EXPECT_LT(across / within, 2.2);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

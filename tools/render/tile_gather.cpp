@@ -1,0 +1,337 @@
+#include "tools/render/tile_gather.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "tools/render/cluster_bounds.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Receivers that stand for the tile when its cut is chosen.
+constexpr uint32_t kProbes = 8;
+// Deviation of a cluster's light from VPL to VPL, as a share of it: by the cluster's size over its
+// distance, for falloff, cosines and partial visibility together, and by the spread of its normals
+// (measured: docs/theory.md, "Tile cuts").
+constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
+
+// A probe that is darker than this share of the tile's mean counts as if it were not.
+constexpr float kDarkest = 0.02f;
+
+// A single draw may be this many times the deviation that is allowed to a sample.
+constexpr float kMostDraw = 4.0f;
+// Roulette on small contributions may add this share to the variance that is allowed.
+constexpr float kRouletteShare = 0.5f;
+
+// Dimensions of a tile's random numbers.
+enum Draw : uint32_t { kDrawProbe, kDrawVpl, kDrawShift, kDrawRoulette };
+
+// What to expect of a cluster by the middle of its box: cheaper than a bound, and cosines are taken
+// at the side of the box that sees most, so that it is 0 only where nothing can arrive.
+struct Expected {
+  float deviation = 0.0f;
+  float most = 0.0f;  // of a single draw: the nearest VPL counts for all
+};
+Expected expect(const LightNode& n, const Bsdf& bsdf) {
+  if (n.leaf()) return {};
+  const Vec3 d = n.bounds.center() - bsdf.point().position;
+  const float size2 = lengthSquared(n.bounds.extent());
+  const float distance2 = std::max(lengthSquared(d), 0.25f * size2);
+  const float perDistance = 1.0f / std::sqrt(distance2);
+  const float angle = std::sqrt(size2) * perDistance;  // that the box fills, at most 2
+  const float receiver = dot(bsdf.point().ns, d) * perDistance + 0.5f * angle;
+  const float emitter = -dot(n.axis, d) * perDistance + 0.5f * angle + n.sinHalfAngle;
+  if (receiver <= 0.0f || emitter <= 0.0f) return {};
+  const Vec3 light =
+      bsdf.roughUpperBound(std::min(1.0f, receiver), [](Vec3) { return 1.0f; }) * n.intensity;
+  const float spread =
+      std::min(1.0f, kSizeSpread * angle + kNormalSpread * (1.0f - n.cosHalfAngle));
+  const float sent = (light.x + light.y + light.z) * std::min(1.0f, emitter);
+  const float nearest2 = n.bounds.distanceSquared(bsdf.point().position);
+  return {spread * sent * falloff(distance2, n.clamp2), sent * falloff(nearest2, n.clamp2)};
+}
+
+}  // namespace
+
+// Sixteen receivers that are lit together, and their sums.
+struct TileGatherer::Packet {
+  static constexpr uint32_t kSize = RayPacket::kSize;
+  using Lanes = std::array<float, kSize>;
+
+  RayPacket from;                                                       // lifted positions
+  alignas(64) Lanes x{}, y{}, z{}, sx{}, sy{}, sz{}, gx{}, gy{}, gz{};  // point; ns; ng
+  alignas(64) Lanes red{}, green{}, blue{};                             // irradiance, W/m2
+  alignas(64) Lanes clampedRed{}, clampedGreen{}, clampedBlue{};
+  std::array<Vec3, kSize> glossy{}, glossyClamped{};  // radiance, of receivers with a lobe
+  std::array<const Bsdf*, kSize> bsdf{};
+  std::array<uint32_t, kSize> shadowRays{};
+  uint32_t used = 0, lobes = 0;  // masks of lanes
+  Bounds bounds;                 // of the points
+  float brightest = 0.0f;        // value of any receiver in any channel, 1/sr
+
+  void set(uint32_t lane, const Bsdf& b, Vec3 lifted) {
+    const SurfacePoint& p = b.point();
+    bsdf[lane] = &b;
+    from.set(lane, lifted);
+    x[lane] = p.position.x, y[lane] = p.position.y, z[lane] = p.position.z;
+    sx[lane] = p.ns.x, sy[lane] = p.ns.y, sz[lane] = p.ns.z;
+    gx[lane] = p.ng.x, gy[lane] = p.ng.y, gz[lane] = p.ng.z;
+    bounds.extend(p.position);
+    brightest =
+        std::max(brightest, maxComponent(b.roughUpperBound(1.0f, [](Vec3) { return 1.0f; })));
+    used |= 1u << lane;
+    if (!b.diffuseOnly()) lobes |= 1u << lane;
+  }
+};
+
+void TileGatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const {
+  std::fill(out.begin(), out.end(), Gathered{});
+  if (tree_.nodes.empty()) return;
+  const Cut cut = chooseCut(tile);
+  if (cut.nodes.empty()) return;
+  const auto slots = static_cast<uint32_t>(tile.bsdf.size() / tile.pixels);
+  for (uint32_t slot = 0; slot < slots; ++slot) gatherSlot(tile, slot, cut, out);
+}
+
+std::vector<const Bsdf*> TileGatherer::chooseProbes(const TileReceivers& tile) const {
+  std::vector<const Bsdf*> lit, probes;
+  for (const Bsdf* b : tile.bsdf) {
+    if (b) lit.push_back(b);
+  }
+  for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
+    probes.push_back(lit[random64(tile.key, k, kDrawProbe) % lit.size()]);
+  }
+  return probes;
+}
+
+// Light at each probe, by one VPL of each cluster of the start cut: coarse, but it knows of
+// shadows. As the probes also stand for their neighbours, and as one draw may miss or overstate the
+// light, each is drawn to the geometric mean of all: to that rather than the mean, for the dark
+// ones' sake.
+std::vector<float> TileGatherer::lightAt(const std::vector<const Bsdf*>& probes,
+                                         uint64_t key) const {
+  std::vector<float> light;
+  uint32_t draw = 0;
+  for (const Bsdf* b : probes) {
+    float sum = 0.0f;
+    const Vec3 from = rays_.lifted(b->point().position, b->point().ng);
+    for (const uint32_t node : tree_.startCut) {
+      const LightNode& n = tree_.nodes[node];
+      const VplDraw vpl = tree_.draw(n, toUnitFloat(random64(key, draw++, kDrawVpl)));
+      Coupling c;
+      if (!couple(vpls_, vpl.index, *b, c)) continue;
+      if (rays_.occluded(from, vpls_.position[vpl.index])) continue;
+      const Vec3 part = c.transfer * vpls_.intensity[vpl.index] * vpl.weight;
+      sum += part.x + part.y + part.z;
+    }
+    light.push_back(sum);
+  }
+  const auto count = static_cast<float>(light.size());
+  const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / count;
+  if (!(mean > 0.0f)) return light;
+  float logarithms = 0.0f;
+  for (float& l : light) {
+    l = std::max(l, kDarkest * mean);
+    logarithms += std::log(l);
+  }
+  const float typical = std::exp(logarithms / count);
+  for (float& l : light) l = std::sqrt(l * typical);
+  return light;
+}
+
+// Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
+// small as the samples of a pixel need it.
+TileGatherer::Cut TileGatherer::chooseCut(const TileReceivers& tile) const {
+  const std::vector<const Bsdf*> probes = chooseProbes(tile);
+  if (probes.empty()) return {};
+  struct Open {
+    float variance;
+    uint32_t node;
+    bool operator<(const Open& o) const {
+      return variance != o.variance ? variance < o.variance : node < o.node;
+    }
+  };
+  std::vector<float> perLight = lightAt(probes, tile.key);
+  Cut cut;
+  cut.allowed = options_.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
+  const double most = double{cut.allowed} * double{cut.allowed} * double(probes.size());
+  const float darkest = *std::min_element(perLight.begin(), perLight.end());
+  cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
+  cut.allowed *= darkest;
+  for (float& l : perLight) l = l > 0.0f ? 1.0f / l : 0.0f;
+  double sum = 0.0;
+  std::vector<Open> heap;
+  const auto insert = [&](uint32_t node) {
+    Open open{0.0f, node};
+    for (size_t k = 0; k < probes.size(); ++k) {
+      const float d = expect(tree_.nodes[node], *probes[k]).deviation * perLight[k];
+      open.variance += d * d;
+    }
+    sum += double{open.variance};
+    heap.push_back(open);
+    std::push_heap(heap.begin(), heap.end());
+  };
+  for (const uint32_t node : tree_.startCut) insert(node);
+  while (sum > most && heap.size() < options_.maxCut && heap.front().variance > 0.0f) {
+    const Open widest = heap.front();
+    std::pop_heap(heap.begin(), heap.end());
+    heap.pop_back();
+    sum -= double{widest.variance};
+    insert(tree_.nodes[widest.node].left);
+    insert(tree_.nodes[widest.node].right);
+  }
+  for (const Open& open : heap) cut.nodes.push_back(open.node);
+  std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
+  return cut;
+}
+
+// Each slot deals the pixels out to packets anew, so that no group of pixels shares its VPLs, and
+// with them its error, throughout. Over all packets of the tile the draws from a cluster are
+// stratified, and over the slots of one pixel too.
+void TileGatherer::gatherSlot(const TileReceivers& tile, uint32_t slot, const Cut& cut,
+                              std::span<Gathered> out) const {
+  const uint32_t imageSlot = tile.firstSlot + slot;
+  const uint64_t slotKey = mix64(tile.key + imageSlot);
+  std::vector<uint32_t> lit;
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    if (tile.bsdf[size_t{slot} * tile.pixels + p]) lit.push_back(slot * tile.pixels + p);
+  }
+  std::stable_sort(lit.begin(), lit.end(), [&](uint32_t a, uint32_t b) {
+    const auto block = [&](uint32_t i) {
+      const uint32_t p = i % tile.pixels;
+      return p / 32 * 2 + p % 8 / 4;
+    };
+    return block(a) < block(b);
+  });
+  const size_t packets = (lit.size() + Packet::kSize - 1) / Packet::kSize;
+  for (size_t number = 0; number < packets; ++number) {
+    const size_t begin = number * lit.size() / packets, end = (number + 1) * lit.size() / packets;
+    Packet packet;
+    for (size_t k = begin; k < end; ++k) {
+      const Bsdf& b = *tile.bsdf[lit[k]];
+      packet.set(static_cast<uint32_t>(k - begin), b,
+                 rays_.lifted(b.point().position, b.point().ng));
+    }
+    const float stratum = (static_cast<float>(imageSlot) +
+                           (static_cast<float>(number) + 0.5f) / static_cast<float>(packets)) /
+                          static_cast<float>(tile.allSlots);
+    uint32_t clusters = 0;
+    std::vector<uint32_t> open;
+    for (const uint32_t ofCut : cut.nodes) {
+      open.assign(1, ofCut);
+      while (!open.empty()) {
+        const uint32_t node = open.back();
+        open.pop_back();
+        const LightNode& n = tree_.nodes[node];
+        if (tooNear(n, cut.allowed, packet)) {
+          open.push_back(n.right);
+          open.push_back(n.left);
+          continue;
+        }
+        const float u = stratum + toUnitFloat(random64(tile.key, node, kDrawShift));
+        const float roulette =
+            toUnitFloat(random64(slotKey, node, kDrawRoulette + uint32_t(number)));
+        addCluster(n, u < 1.0f ? u : u - 1.0f, roulette, cut.negligible, packet);
+        ++clusters;
+      }
+    }
+    for (size_t k = begin; k < end; ++k) {
+      const auto lane = static_cast<uint32_t>(k - begin);
+      Gathered& g = out[lit[k]];
+      const Vec3 value = packet.bsdf[lane]->diffuseValue();
+      g.radiance = value * Vec3(packet.red[lane], packet.green[lane], packet.blue[lane]) +
+                   packet.glossy[lane];
+      g.clamped = value * Vec3(packet.clampedRed[lane], packet.clampedGreen[lane],
+                               packet.clampedBlue[lane]) +
+                  packet.glossyClamped[lane];
+      g.cut = clusters;
+      g.shadowRays = packet.shadowRays[lane];
+    }
+  }
+}
+
+// Whether a cluster of the tile's cut must be opened for a packet, because it is much nearer to one
+// of its receivers than the probes knew: it alone would deviate by all that is allowed.
+bool TileGatherer::tooNear(const LightNode& n, float allowed, const Packet& p) const {
+  if (n.leaf()) return false;
+  // First for all at once and without cosines, which rules out nearly all.
+  const float light = (n.intensity.x + n.intensity.y + n.intensity.z) * (1.0f / kPi);
+  const Vec3 gap =
+      max(max(n.bounds.lower - p.bounds.upper, p.bounds.lower - n.bounds.upper), Vec3{});
+  if (light * falloff(lengthSquared(gap), n.clamp2) <= allowed) return false;
+  for (uint32_t rest = p.used; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+    const float d2 = n.bounds.distanceSquared(p.bsdf[l]->point().position);
+    if (light * falloff(d2, n.clamp2) <= allowed) continue;
+    const Expected e = expect(n, *p.bsdf[l]);
+    if (e.deviation > allowed || e.most > kMostDraw * allowed) return true;
+  }
+  return false;
+}
+
+// One VPL for all lanes. The loops over lanes are written for the compiler to vectorise.
+void TileGatherer::addCluster(const LightNode& cluster, float u, float roulette, float negligible,
+                              Packet& p) const {
+  const VplDraw vpl = tree_.draw(cluster, u);
+  const Vec3 at = vpls_.position[vpl.index], normal = vpls_.normal[vpl.index];
+  const float clamp2 = vpls_.clamp2[vpl.index];
+  alignas(64) Packet::Lanes transfer, clamped;
+  alignas(64) std::array<int, Packet::kSize> faces;
+  for (uint32_t l = 0; l < Packet::kSize; ++l) {
+    const float dx = at.x - p.x[l], dy = at.y - p.y[l], dz = at.z - p.z[l];
+    const float d2 = dx * dx + dy * dy + dz * dz;
+    const float emitter = -(normal.x * dx + normal.y * dy + normal.z * dz);
+    const float receiver = p.sx[l] * dx + p.sy[l] * dy + p.sz[l] * dz;
+    const float above = p.gx[l] * dx + p.gy[l] * dy + p.gz[l] * dz;
+    const float far2 = d2 > clamp2 ? d2 : clamp2;
+    faces[l] = (emitter > 0.0f) & (receiver > 0.0f) & (above > 0.0f);
+    transfer[l] = emitter * receiver / (d2 * far2);
+    clamped[l] = far2 / d2 - 1.0f;
+  }
+  uint32_t mask = 0;
+  for (uint32_t l = 0; l < Packet::kSize; ++l) mask |= static_cast<uint32_t>(faces[l]) << l;
+  mask &= p.used;
+  if (mask == 0) return;
+  // What is too little to matter to any lane is looked at now and then, and counted the more.
+  Vec3 light = vpls_.intensity[vpl.index] * vpl.weight;
+  float most = 0.0f;
+  for (uint32_t l = 0; l < Packet::kSize; ++l) {
+    most = std::max(most, (mask >> l & 1u) != 0 ? transfer[l] : 0.0f);
+  }
+  const float chance = most * p.brightest * (light.x + light.y + light.z) / negligible;
+  if (chance < 1.0f) {
+    if (roulette >= chance) return;
+    light *= 1.0f / chance;
+  }
+  for (uint32_t rest = mask; rest != 0; rest &= rest - 1) ++p.shadowRays[std::countr_zero(rest)];
+  mask &= ~rays_.occluded(p.from, at, mask);
+  if (mask == 0) return;
+
+  for (uint32_t l = 0; l < Packet::kSize; ++l) {
+    const float t = (mask >> l & 1u) != 0 ? transfer[l] : 0.0f;
+    const float c = (mask >> l & 1u) != 0 ? transfer[l] * clamped[l] : 0.0f;
+    p.red[l] += t * light.x;
+    p.green[l] += t * light.y;
+    p.blue[l] += t * light.z;
+    p.clampedRed[l] += c * light.x;
+    p.clampedGreen[l] += c * light.y;
+    p.clampedBlue[l] += c * light.z;
+  }
+  // A lobe depends on the direction: what it adds to the diffuse value, one by one.
+  for (uint32_t rest = mask & p.lobes; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+    const Vec3 direction = normalize(at - p.bsdf[l]->point().position);
+    const float cosine = dot(p.bsdf[l]->point().ns, direction);
+    const Vec3 lobe =
+        p.bsdf[l]->eval(LobeGroup::Rough, direction) * (1.0f / cosine) - p.bsdf[l]->diffuseValue();
+    const Vec3 reflected = lobe * light * transfer[l];
+    p.glossy[l] += reflected;
+    p.glossyClamped[l] += reflected * clamped[l];
+  }
+}
+
+}  // namespace bnvpl

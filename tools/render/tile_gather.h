@@ -1,0 +1,47 @@
+// Indirect light at all samples of a tile from one cut of the light tree: the clusters are chosen
+// once for the tile, and each sample takes one random VPL of each. Shared cuts are those of
+// LightSlice (Ou & Pellacini 2011), random representatives those of Stochastic Lightcuts
+// (Yuksel 2019); each packet of samples takes the same VPL, so that their shadow rays run together.
+#pragma once
+
+#include <span>
+
+#include "tools/render/gather.h"
+
+namespace bnvpl {
+
+class TileGatherer {
+ public:
+  // Borrows all. options.error: the standard deviation to expect of a pixel's mean, as a share of
+  // the tile's light; a prediction, not a bound.
+  TileGatherer(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+               const GatherOptions& options)
+      : rays_(rays), vpls_(vpls), tree_(tree), options_(options) {}
+
+  // One result for each receiver. Unbiased: on average the sum over all VPLs. Thread-safe.
+  void gather(const TileReceivers& tile, std::span<Gathered> out) const;
+
+ private:
+  struct Packet;
+  // Clusters, and the deviation that is allowed to one sample, W/(m2 sr), summed over channels.
+  struct Cut {
+    std::vector<uint32_t> nodes;
+    float allowed = 0.0f;
+    float negligible = 0.0f;  // contributions below are left to chance, W/(m2 sr)
+  };
+  Cut chooseCut(const TileReceivers& tile) const;
+  std::vector<const Bsdf*> chooseProbes(const TileReceivers& tile) const;
+  std::vector<float> lightAt(const std::vector<const Bsdf*>& probes, uint64_t key) const;
+  void gatherSlot(const TileReceivers& tile, uint32_t slot, const Cut& cut,
+                  std::span<Gathered> out) const;
+  bool tooNear(const LightNode& cluster, float allowed, const Packet& packet) const;
+  void addCluster(const LightNode& cluster, float u, float roulette, float negligible,
+                  Packet& packet) const;
+
+  const RayScene& rays_;
+  const VplLights& vpls_;
+  const LightTree& tree_;
+  GatherOptions options_;
+};
+
+}  // namespace bnvpl
