@@ -12,6 +12,8 @@
 #include <tiny_obj_loader.h>
 #pragma GCC diagnostic pop
 
+#include "core/parallel.h"
+
 namespace bnvpl {
 
 namespace {
@@ -124,19 +126,46 @@ uint32_t ObjLoader::texture(const fs::path& folder, const fs::path& otherFolder,
     warn(file.string() + ": no such texture; the plain material colour is used");
     return kNone;
   }
-  try {
-    Texture t = loadTexture(file, srgb, mask);
-    t.scale = {scale[0], scale[1]};
-    t.offset = {offset[0], offset[1]};
-    scene_.textures.push_back(std::move(t));
-  } catch (const InputError& e) {
-    warn(std::string(e.what()) + "; the plain material colour is used");
-    return kNone;
+  it->second = kWanted + static_cast<uint32_t>(wanted_.size());
+  wanted_.push_back({key, file, srgb, mask, {scale[0], scale[1]}, {offset[0], offset[1]}});
+  return it->second;
+}
+
+// Images decode side by side; what they bring is taken over in the order in which they were named.
+void ObjLoader::loadWantedTextures(size_t firstMaterial) {
+  std::vector<Texture> loaded(wanted_.size());
+  std::vector<std::string> problem(wanted_.size());
+  parallelFor(wanted_.size(), 1, [&](size_t i) {
+    const WantedTexture& w = wanted_[i];
+    try {
+      loaded[i] = loadTexture(w.file, w.srgb, w.mask);
+      loaded[i].scale = w.scale;
+      loaded[i].offset = w.offset;
+    } catch (const InputError& e) {
+      problem[i] = e.what();
+    }
+  });
+  std::vector<uint32_t> index(wanted_.size(), kNone);
+  for (size_t i = 0; i < wanted_.size(); ++i) {
+    const WantedTexture& w = wanted_[i];
+    if (!problem[i].empty()) {
+      warn(problem[i] + "; the plain material colour is used");
+    } else {
+      index[i] = static_cast<uint32_t>(scene_.textures.size());
+      scene_.textures.push_back(std::move(loaded[i]));
+      if (std::find(scene_.files.begin(), scene_.files.end(), w.file) == scene_.files.end()) {
+        scene_.files.push_back(w.file);
+      }
+    }
+    textures_[w.key] = index[i];
   }
-  if (std::find(scene_.files.begin(), scene_.files.end(), file) == scene_.files.end()) {
-    scene_.files.push_back(file);
+  for (size_t m = firstMaterial; m < scene_.materials.size(); ++m) {
+    Material& material = scene_.materials[m];
+    for (uint32_t* map : {&material.diffuseMap, &material.glossyMap, &material.opacityMap}) {
+      if (*map != kNone && *map >= kWanted) *map = index[*map - kWanted];
+    }
   }
-  return it->second = static_cast<uint32_t>(scene_.textures.size() - 1);
+  wanted_.clear();
 }
 
 uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, const void* source) {
@@ -314,10 +343,12 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
       if (id >= 0 && static_cast<size_t>(id) < used.size()) used[static_cast<size_t>(id)] = true;
     }
   }
+  const size_t firstMaterial = scene_.materials.size();
   parsed.materialOf.assign(source.size(), kNone);
   for (size_t i = 0; i < source.size(); ++i) {
     if (used[i]) parsed.materialOf[i] = addMaterial(reader.origin[i], obj, &source[i]);
   }
+  loadWantedTextures(firstMaterial);
   addTriangles(obj, parsed, transform);
 }
 

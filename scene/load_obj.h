@@ -35,6 +35,15 @@ class ObjLoader {
 
  private:
   struct Parsed;
+  struct WantedTexture {
+    std::string key;  // in textures_
+    fs::path file;
+    bool srgb, mask;
+    std::array<float, 2> scale, offset;
+  };
+  // From here on a number stands for an entry of wanted_ rather than for a texture.
+  static constexpr uint32_t kWanted = 1u << 31;
+
   void warn(const std::string& text);
   uint32_t texture(const fs::path& folder, const fs::path& otherFolder, std::string name, bool srgb,
                    bool mask, const float* scale, const float* offset);
@@ -42,11 +51,13 @@ class ObjLoader {
   // OBJ.
   uint32_t addMaterial(const fs::path& library, const fs::path& obj, const void* source);
   uint32_t fallbackMaterial(const fs::path& obj);
+  void loadWantedTextures(size_t firstMaterial);
   void addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform);
 
   Scene& scene_;
   std::set<std::string> warned_;
   std::map<std::string, uint32_t> textures_;  // by path and use
+  std::vector<WantedTexture> wanted_;         // of the OBJ that is being loaded
 };
 
 }  // namespace bnvpl
