@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+#include "core/parallel.h"
+#include "scene/photon_path.h"
 #include "tests/support/pipeline.h"
 
 namespace bnvpl::test {
@@ -49,6 +51,39 @@ void tracePhotons(benchmark::State& state) {
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
 }
 
+// The rays that photons take, from hit to hit in the same order, without anything else: the limit for
+// tracePhotons and, nearly, for placeCandidates.
+void bareRays(benchmark::State& state) {
+  struct Segment {
+    Vec3 origin, direction;
+  };
+  std::vector<Segment> segments;
+  for (uint64_t photon = 0; segments.size() < 400000; ++photon) {
+    Rng rng(streamKey(3, Stream::Photons), photon);
+    const LightSet& lights = world().lights;
+    float probability = 0.0f;
+    const PhotonStart start = lights.emit(lights.pick(rng.next(), probability), rng);
+    Vec3 from = start.origin;
+    tracePhoton(world().rays, start, 32, rng, [&](const Bsdf& bsdf, Vec3) {
+      const Vec3 to = bsdf.point().position - from;
+      if (lengthSquared(to) > 0.0f) segments.push_back({from, normalize(to)});
+      from = world().rays.lifted(bsdf.point().position, bsdf.point().ng);
+    });
+  }
+  double rays = 0;
+  for (auto _ : state) {
+    parallelRanges(segments.size(), 4096, [&](size_t begin, size_t end) {
+      SurfacePoint hit;
+      for (size_t i = begin; i < end; ++i) {
+        benchmark::DoNotOptimize(
+            world().rays.closestHit(segments[i].origin, segments[i].direction, hit));
+      }
+    });
+    rays += double(segments.size());
+  }
+  state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
+}
+
 void renderSamples(benchmark::State& state) {
   VplSettings s;
   s.gather.method = static_cast<GatherMethod>(state.range(0));
@@ -71,6 +106,7 @@ void renderSamples(benchmark::State& state) {
 
 BENCHMARK(placeCandidates)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(tracePhotons)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(bareRays)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(renderSamples)
     ->ArgName("gather")  // as GatherMethod: tile cuts, lightcuts, all
     ->DenseRange(0, 2)
