@@ -6,12 +6,19 @@
 
 namespace bnvpl {
 
+// A receiver with what is worked out once for all clusters.
+struct ClusterReceiver {
+  explicit ClusterReceiver(const Bsdf& b) : bsdf(b), normal(b.point().ns) {}
+  const Bsdf& bsdf;
+  AxisFrame normal;
+};
+
 // Upper bound on the error of taking one VPL for the whole cluster, summed over the channels;
 // visibility counts as full (Walter et al. 2005, section 4.1). 0 for a leaf.
-float errorBound(const LightNode& n, const Bsdf& bsdf);
+float errorBound(const LightNode& n, const ClusterReceiver& receiver);
 
 // The same with the distance to expect of its VPLs rather than the nearest: most of a cluster is
 // further away than its nearest corner. 0 only where nothing can arrive.
-float likelyContribution(const LightNode& n, const Bsdf& bsdf);
+float likelyContribution(const LightNode& n, const ClusterReceiver& receiver);
 
 }  // namespace bnvpl

@@ -60,11 +60,12 @@ void Gatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const 
 Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
   Gathered out;
   if (tree_.nodes.empty()) return out;
+  const ClusterReceiver receiver(bsdf);
   std::array<float, kMaxStartCut> upTo;  // running sums of the bounds of the start cut
   const size_t starts = tree_.startCut.size();
   float whole = 0.0f;
   for (size_t i = 0; i < starts; ++i) {
-    whole += likelyContribution(tree_.nodes[tree_.startCut[i]], bsdf);
+    whole += likelyContribution(tree_.nodes[tree_.startCut[i]], receiver);
     upTo[i] = whole;
   }
   if (whole <= 0.0f) return out;
@@ -77,7 +78,7 @@ Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
                  static_cast<size_t>(std::upper_bound(upTo.begin(), upTo.begin() + starts, pick) -
                                      upTo.begin()));
     float probability = (upTo[slot] - (slot > 0 ? upTo[slot - 1] : 0.0f)) / whole;
-    const std::optional<uint32_t> leaf = descend(tree_.startCut[slot], bsdf, rng, probability);
+    const std::optional<uint32_t> leaf = descend(tree_.startCut[slot], receiver, rng, probability);
     Coupling c;
     if (!leaf || !couple(vpls_, *leaf, bsdf, c)) continue;
     ++out.shadowRays;
@@ -92,12 +93,12 @@ Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
 
 // To a VPL of the cluster, at each node in proportion to the bounds of the children, whose share
 // `probability` is multiplied by. Empty where neither child can light the point.
-std::optional<uint32_t> Gatherer::descend(uint32_t node, const Bsdf& bsdf, Rng& rng,
+std::optional<uint32_t> Gatherer::descend(uint32_t node, const ClusterReceiver& receiver, Rng& rng,
                                           float& probability) const {
   while (!tree_.nodes[node].leaf()) {
     const LightNode& n = tree_.nodes[node];
-    const float left = likelyContribution(tree_.nodes[n.left], bsdf);
-    const float both = left + likelyContribution(tree_.nodes[n.right], bsdf);
+    const float left = likelyContribution(tree_.nodes[n.left], receiver);
+    const float both = left + likelyContribution(tree_.nodes[n.right], receiver);
     if (both <= 0.0f) return {};
     const bool toLeft = rng.next() * both < left;
     probability *= (toLeft ? left : both - left) / both;
@@ -129,6 +130,7 @@ Gathered Gatherer::gatherCut(const Bsdf& bsdf) const {
   Gathered out;
   if (tree_.nodes.empty()) return out;
   const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  const ClusterReceiver receiver(bsdf);
   thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
   heap.clear();
   Rgb64 total, clamped;
@@ -139,7 +141,7 @@ Gathered Gatherer::gatherCut(const Bsdf& bsdf) const {
     clamped.add(light * c.clamped, sign);
   };
   const auto evaluate = [&](uint32_t node) {
-    Cluster c{errorBound(tree_.nodes[node], bsdf), node, {}, 0.0f};
+    Cluster c{errorBound(tree_.nodes[node], receiver), node, {}, 0.0f};
     const uint32_t r = tree_.nodes[node].representative;
     Coupling coupling;
     if (couple(vpls_, r, bsdf, coupling)) {
@@ -169,7 +171,7 @@ Gathered Gatherer::gatherCut(const Bsdf& bsdf) const {
     for (const uint32_t child : {n.left, n.right}) {
       if (tree_.nodes[child].representative == n.representative) {
         // The representative is the parent's: nothing to trace again.
-        insert({errorBound(tree_.nodes[child], bsdf), child, worst.transfer, worst.clamped});
+        insert({errorBound(tree_.nodes[child], receiver), child, worst.transfer, worst.clamped});
       } else {
         insert(evaluate(child));
       }

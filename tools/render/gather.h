@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "scene/ray_scene.h"
+#include "tools/render/cluster_bounds.h"
 #include "tools/render/light_tree.h"
 
 namespace bnvpl {
@@ -56,7 +57,7 @@ class Gatherer {
   Gathered sample(const Bsdf& bsdf, Rng& rng) const;
 
  private:
-  std::optional<uint32_t> descend(uint32_t node, const Bsdf& bsdf, Rng& rng,
+  std::optional<uint32_t> descend(uint32_t node, const ClusterReceiver& receiver, Rng& rng,
                                   float& probability) const;
   Gathered gatherAll(const Bsdf& bsdf) const;
   Gathered gatherCut(const Bsdf& bsdf) const;

@@ -76,6 +76,7 @@ class Builder {
     LightNode n;
     n.bounds.extend(vpls_.position[i]);
     n.axis = vpls_.normal[i];
+    n.frame = AxisFrame(n.axis);
     n.intensity = vpls_.intensity[i];
     n.clamp2 = vpls_.clamp2[i];
     n.representative = i;
@@ -88,6 +89,7 @@ class Builder {
     n.bounds = a.bounds;
     n.bounds.extend(b.bounds);
     mergeCones(a, b, n);
+    n.frame = AxisFrame(n.axis);
     n.sinHalfAngle = n.cosHalfAngle <= 0.0f
                          ? 1.0f
                          : std::sqrt(std::max(0.0f, 1.0f - n.cosHalfAngle * n.cosHalfAngle));

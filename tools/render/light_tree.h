@@ -16,9 +16,22 @@ struct VplDraw {
   float weight;
 };
 
+// A basis about an axis, by coordinate: x holds the x of both tangents and of the axis.
+struct AxisFrame {
+  alignas(16) float x[4] = {}, y[4] = {}, z[4] = {};
+  AxisFrame() = default;
+  explicit AxisFrame(Vec3 axis) {
+    const Basis b(axis);
+    x[0] = b.s.x, x[1] = b.t.x, x[2] = b.n.x;
+    y[0] = b.s.y, y[1] = b.t.y, y[2] = b.n.y;
+    z[0] = b.s.z, z[1] = b.t.z, z[2] = b.n.z;
+  }
+};
+
 struct LightNode {
   Bounds bounds;
   Vec3 axis;                                       // of the cone of normals
+  AxisFrame frame;                                 // about it
   float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
   Vec3 intensity;                                  // sum over the cluster, W/sr
   float clamp2 = 0.0f;  // smallest of the cluster, so that the bound holds for all
