@@ -29,6 +29,7 @@ struct CameraSample {
 struct TileSamples {
   std::span<CameraSample> samples;
   uint32_t pixels = 0;     // in each slot
+  uint32_t width = 1;      // of a row
   uint32_t firstSlot = 0;  // of all slots
   uint32_t allSlots = 1;   // samples a pixel
   uint64_t key = 0;        // of the tile's own random numbers
