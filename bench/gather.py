@@ -19,20 +19,15 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-import OpenImageIO as oiio
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "eval"))
+from bnvpl_eval import images, statistics  # noqa: E402
+
 TILE_ERRORS = [0.025, 0.05, 0.1, 0.2, 0.4]
-
-
-def read(path: Path) -> np.ndarray:
-    image = oiio.ImageInput.open(str(path))
-    pixels = image.read_image(oiio.FLOAT)[..., :3].astype(np.float64)
-    image.close()
-    return pixels
 
 
 def run(command: list) -> float:
@@ -67,19 +62,18 @@ class Bench:
         seconds = run([self.bin / "vpl-render", ROOT / "scenes" / scene / "scene.toml", self.lit(scene, count), "-o",
                        image, "--size", self.options.size, "--spp", self.options.spp, "--near-field", "off", "--quiet",
                        *extra])
-        return read(image), seconds
+        return images.read(image), seconds
 
     def measure(self, scene: str, count: int) -> dict:
         exact = count <= self.options.most_all
         how = ["--gather", "all"] if exact else ["--error", 0.004, "--max-cut", 100000]
         reference, all_s = self.render(scene, count, "--only", "indirect", *how)
         _, idle_s = self.render(scene, count, "--only", "direct")
-        epsilon = 1e-4 * reference.mean()**2
 
         def judged(*words) -> tuple[float, float]:
             image, seconds = self.render(scene, count, "--only", "indirect", *words)
-            relmse = ((image - reference)**2 / (reference**2 + epsilon)).mean()
-            return float(relmse), max(1e-3, seconds - idle_s)
+            relmse = statistics.summarise([image], (reference, reference))["relmse"]
+            return relmse, max(1e-3, seconds - idle_s)
 
         error, lightcuts_s = judged("--gather", "lightcuts")
         tiles = [judged("--gather", "tilecuts", "--error", e) for e in TILE_ERRORS]

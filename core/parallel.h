@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace bnvpl {
@@ -23,6 +25,14 @@ void parallelFor(size_t count, size_t grain, const Body& body) {
   parallelRanges(count, grain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) body(i);
   });
+}
+
+// The values that `order` names, one after the other.
+template <typename T>
+std::vector<T> inOrder(std::span<const T> values, std::span<const uint32_t> order) {
+  std::vector<T> out(order.size());
+  parallelFor(order.size(), 4096, [&](size_t i) { out[i] = values[order[i]]; });
+  return out;
 }
 
 // Sum of term(i) over [0, count): one partial sum for each fixed chunk, added in chunk order, so

@@ -92,11 +92,16 @@ Vec3 Bsdf::eval(LobeGroup group, Vec3 wi) const {
 
 float Bsdf::pdf(LobeGroup group, Vec3 wi) const {
   if (glass_ || dot(point_.ng, wi) <= 0.0f) return 0.0f;
-  const float diffusePdf = pdfCosineHemisphere(dot(point_.ns, wi));
-  if (group == LobeGroup::Rough && diffuseShare_ >= 1.0f) return diffusePdf;
-  const float glossyPdf = pdfPowerCosine(dot(glossyAxis(), wi), exponent_);
-  if (group == LobeGroup::Chain) return sharp_ ? glossyPdf : 0.0f;
-  return diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
+  if (group == LobeGroup::Chain && !sharp_) return 0.0f;
+  return groupPdf(group, dot(point_.ns, wi), dot(glossyAxis(), wi));
+}
+
+// By the cosines to the diffuse lobe's axis and the glossy one's.
+float Bsdf::groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const {
+  if (group == LobeGroup::Chain) return pdfPowerCosine(cosGlossy, exponent_);
+  const float diffusePdf = pdfCosineHemisphere(cosDiffuse);
+  if (diffuseShare_ >= 1.0f) return diffusePdf;
+  return diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * pdfPowerCosine(cosGlossy, exponent_);
 }
 
 bool Bsdf::sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const {
@@ -148,12 +153,7 @@ bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& ou
   }
   const float cosGeometric = dot(ng, out.wi), cosShading = dot(ns, out.wi);
   if (cosGeometric <= 0.0f) return false;
-  const bool onlyDiffuse = group == LobeGroup::Rough && diffuseShare_ >= 1.0f;
-  const float glossyPdf = onlyDiffuse ? 0.0f : pdfPowerCosine(dot(lobeAxis, out.wi), exponent_);
-  const float diffusePdf = pdfCosineHemisphere(photons ? cosGeometric : cosShading);
-  out.pdf = group == LobeGroup::Chain
-                ? glossyPdf
-                : diffuseShare_ * diffusePdf + (1.0f - diffuseShare_) * glossyPdf;
+  out.pdf = groupPdf(group, photons ? cosGeometric : cosShading, dot(lobeAxis, out.wi));
   if (!(out.pdf > 0.0f)) return false;
   Vec3 value = group == LobeGroup::Rough ? diffuseValue() : Vec3{};
   if (sharp_ == (group == LobeGroup::Chain) && !isBlack(glossy_))

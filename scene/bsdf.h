@@ -71,6 +71,7 @@ class Bsdf {
 
  private:
   Vec3 roughGlossy() const { return sharp_ ? Vec3{} : glossy_; }
+  float groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const;
   Vec3 glossyBound(float cosAlpha) const;  // Phong lobe without the cosine
   Vec3 glossyAxis() const { return reflect(point_.wo, point_.ns); }
   bool sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const;

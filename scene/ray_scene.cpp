@@ -179,12 +179,10 @@ uint32_t RayScene::occluded(const RayPacket& from, Vec3 to, uint32_t active) con
 #if RTC_VERSION_MAJOR >= 4
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   rtcOccluded16(valid.data(), impl_->scene, &rays, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded16(valid.data(), impl_->scene, &context, &rays);
 #endif
   uint32_t hidden = 0;

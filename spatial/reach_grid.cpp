@@ -1,5 +1,6 @@
 #include "spatial/reach_grid.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -16,10 +17,11 @@ ReachGrid::ReachGrid(std::span<const Vec3> points, std::span<const float> radii)
   for (size_t i = 0; i < points.size(); ++i) {
     byExponent[std::ilogb(radii[i])].push_back(static_cast<uint32_t>(i));
   }
-  const int finest = byExponent.begin()->first;
+  constexpr int kFinestOfAll = -100;  // the cells of a denormal radius cannot be counted
+  const int finest = std::max(byExponent.begin()->first, kFinestOfAll);
   cellsPerUnit_ = std::ldexp(1.0f, -finest - 1);
   for (const auto& [exponent, members] : byExponent) {
-    levels_.emplace_back().shift = std::min(exponent - finest, 62);
+    levels_.emplace_back().shift = std::clamp(exponent, finest, finest + 62) - finest;
     buildLevel(levels_.back(), members, points, radii);
   }
 }

@@ -8,6 +8,7 @@
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
+#include "spatial/reach_grid.h"
 #include "tests/eliminate/clouds.h"
 
 namespace bnvpl {
@@ -151,6 +152,27 @@ TEST(Spatial, CellListsLeaveTheFarAway) {
     for (const Vec3 p : points) pairs += lengthSquared(p - points[lists.order[k]]) < 0.04f * 0.04f;
   }
   EXPECT_LT(listed, 6 * pairs);
+}
+
+// Of radii from denormal to larger than everything.
+TEST(Spatial, DisksThatReachAreAllFound) {
+  for (const std::vector<Vec3>& points : clouds()) {
+    std::vector<float> radius(points.size());
+    Rng rng(streamKey(6, Stream::Plot), 0);
+    for (float& r : radius) r = std::pow(2.0f, 3.0f - 12.0f * rng.next());
+    if (points.size() > 1) radius[0] = 1e-42f, radius[1] = 1e6f;
+    const ReachGrid grid(points, radius);
+    for (size_t q = 0; q < points.size(); q += 37) {
+      const Vec3 at = points[q] + Vec3(0.0f, 0.0f, q % 2 ? 0.5f * radius[q] : 0.0f);
+      std::vector<uint32_t> found, expected;
+      grid.forEachReaching(at, [&](uint32_t i, float) { found.push_back(i); });
+      std::sort(found.begin(), found.end());
+      for (uint32_t i = 0; i < points.size(); ++i) {
+        if (lengthSquared(points[i] - at) < radius[i] * radius[i]) expected.push_back(i);
+      }
+      EXPECT_EQ(found, expected);
+    }
+  }
 }
 
 TEST(Spatial, SharesAreTheSameWithTheShortQuery) {

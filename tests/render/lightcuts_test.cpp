@@ -110,7 +110,7 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
     const Bsdf bsdf(l.world.scene, hit);
     const std::array<const Bsdf*, 1> receiver{&bsdf};
     std::array<Gathered, 1> gathered;
-    gatherer.gather({.bsdf = receiver, .pixels = 1}, gathered);
+    gatherer.gather({{.pixels = 1}, receiver}, gathered);
     const Vec3 all = gathered[0].radiance;
     if (mean(all) <= 0.0f) continue;
     ++points;

@@ -18,13 +18,6 @@ float fixedPointScale(size_t size) {
 }
 
 template <typename T>
-void reorder(std::vector<T>& values, const std::vector<uint32_t>& order) {
-  std::vector<T> out(order.size());
-  parallelFor(order.size(), 4096, [&](size_t i) { out[i] = values[order[i]]; });
-  values = std::move(out);
-}
-
-template <typename T>
 void keepOnly(std::vector<T>& values, const std::vector<uint8_t>& keep, size_t padding = 0) {
   size_t kept = 0;
   for (size_t i = 0; i < keep.size(); ++i) {
@@ -53,12 +46,12 @@ ConflictGraph::ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> norma
     x_[k] = p.x, y_[k] = p.y, z_[k] = p.z;
   });
   position = {};
-  reorder(radius_, order);
+  radius_ = inOrder<float>(radius_, order);
   radius_.resize(padded);
-  reorder(normal_, order);
-  reorder(row_, order);
+  normal_ = inOrder<Vec3>(normal_, order);
+  row_ = inOrder<uint32_t>(row_, order);
   cells_.order = {};
-  weight_.resize(x_.size());
+  weight_.resize(size());
   parallelFor(size(), 256, [&](size_t k) {
     const auto i = static_cast<uint32_t>(k);
     uint64_t sum = 0;
@@ -98,29 +91,20 @@ size_t ConflictGraph::nearIn(uint32_t i, CellLists::Range range, Near* found) co
   return count;
 }
 
-// Calls visit(near) until it returns false; returns whether it never did.
+// Calls visit(j, distanceSquared).
 template <typename Visit>
-bool ConflictGraph::allNear(uint32_t i, const Visit& visit) const {
+void ConflictGraph::visitNeighbours(uint32_t i, const Visit& visit) const {
   Near near[kAtOnce];
   for (CellLists::Range range : cells_.near(i)) {
     for (; range.begin < range.end; range.begin += kAtOnce) {
       const uint32_t end = std::min(range.end, range.begin + kAtOnce);
       const size_t count = nearIn(i, {range.begin, end}, near);
       for (size_t n = 0; n < count; ++n) {
-        if (!visit(near[n])) return false;
+        const uint32_t j = near[n].index;
+        if (j != i && onOneSheet(i, j)) visit(j, near[n].distanceSquared);
       }
     }
   }
-  return true;
-}
-
-// Calls visit(j, distanceSquared).
-template <typename Visit>
-void ConflictGraph::visitNeighbours(uint32_t i, const Visit& visit) const {
-  allNear(i, [&](const Near& near) {
-    if (near.index != i && onOneSheet(i, near.index)) visit(near.index, near.distanceSquared);
-    return true;
-  });
 }
 
 uint32_t ConflictGraph::heavierNeighbour(uint32_t i) const {

@@ -75,8 +75,6 @@ class ConflictGraph {
 
   size_t nearIn(uint32_t i, CellLists::Range range, Near* found) const;
   template <typename Visit>
-  bool allNear(uint32_t i, const Visit& visit) const;
-  template <typename Visit>
   void visitNeighbours(uint32_t i, const Visit& visit) const;
   uint64_t pairWeight(uint32_t i, uint32_t j, float distanceSquared) const {
     const float weight = rule_(std::sqrt(distanceSquared), radius_[i] + radius_[j]);

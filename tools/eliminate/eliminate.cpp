@@ -17,13 +17,6 @@ namespace {
 // Yuksel 2015, section 4.2: where to stop telling near pairs apart.
 constexpr double kLimitBeta = 0.65, kLimitGamma = 1.5;
 
-template <typename T>
-std::vector<T> gather(std::span<const T> values, const std::vector<uint32_t>& order) {
-  std::vector<T> out(order.size());
-  parallelFor(order.size(), 4096, [&](size_t i) { out[i] = values[order[i]]; });
-  return out;
-}
-
 std::vector<uint32_t> randomRows(size_t candidates, const EliminateOptions& options) {
   const uint64_t key = streamKey(options.seed, Stream::Eliminate);
   std::vector<std::pair<uint64_t, uint32_t>> keys(candidates);
@@ -60,8 +53,8 @@ EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> 
   }
   // All searching is done in an order that keeps neighbours together.
   std::vector<uint32_t> order = mortonOrder(position);
-  std::vector<Vec3> sortedPosition = gather<Vec3>(position, order);
-  std::vector<Vec3> sortedNormal = gather<Vec3>(normal, order);
+  std::vector<Vec3> sortedPosition = inOrder<Vec3>(position, order);
+  std::vector<Vec3> sortedNormal = inOrder<Vec3>(normal, order);
   CandidateRadii radii = candidateRadii(sortedPosition, sortedNormal, options);
   EliminateResult result;
   result.rMax = radii.rMax;
@@ -76,7 +69,7 @@ EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> 
     result.rows = eliminateHeaviest(graph, options.count);
   }
   std::sort(result.rows.begin(), result.rows.end());
-  result.radius = gather<float>(radiusOfRow, result.rows);
+  result.radius = inOrder<float>(radiusOfRow, result.rows);
   return result;
 }
 

@@ -15,9 +15,11 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
-// How far above the surface a VPL travels to its new place, as a share of its reach.
-constexpr float kRecentreShare = 0.7f;  // of the way (measured: docs/theory.md, "Recentring")
+// How far of the way a VPL moves (measured: docs/theory.md, "Recentring"), and how far above the
+// surface it travels, as a share of its reach.
+constexpr float kRecentreShare = 0.7f;
 constexpr float kRecentreLift = 0.1f;
+
 // Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
 // commutes, so neither threads nor the order of photons matter, and ranges computed apart can be
 // added up.

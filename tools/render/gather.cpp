@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "core/sampling.h"
 #include "tools/render/cluster_bounds.h"
 #include "tools/render/tile_gather.h"
 

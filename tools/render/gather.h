@@ -36,14 +36,19 @@ struct Gathered {
   uint32_t shadowRays = 0;
 };
 
-// The samples of a tile in some of its slots; a slot is one sample of each pixel.
-struct TileReceivers {
-  std::span<const Bsdf* const> bsdf;  // slot by slot, pixel by pixel; null: nothing to light
-  uint32_t pixels = 0;                // in each slot, row by row
-  uint32_t width = 1;                 // of a row
-  uint32_t firstSlot = 0;             // of all slots of the image's samples
-  uint32_t allSlots = 1;              // samples a pixel
-  uint64_t key = 0;                   // of the tile's random numbers
+// How the samples of a tile lie behind each other: slot by slot, a slot being one sample of each
+// pixel, row by row.
+struct TileSlots {
+  uint32_t pixels = 0;     // in each slot
+  uint32_t width = 1;      // of a row
+  uint32_t firstSlot = 0;  // of all slots
+  uint32_t allSlots = 1;   // samples a pixel
+  uint64_t key = 0;        // of the tile's own random numbers
+};
+
+// The points of a tile's samples; null: nothing to light.
+struct TileReceivers : TileSlots {
+  std::span<const Bsdf* const> bsdf;
 };
 
 class Gatherer {

@@ -59,8 +59,7 @@ void VplIntegrator::render(const TileSamples& tile) const {
 void VplIntegrator::gather(const TileSamples& tile, std::span<const ChainEnd> seen,
                            std::span<const Bsdf* const> bsdf) const {
   std::vector<Gathered> gathered(bsdf.size());
-  gatherer_.gather({bsdf, tile.pixels, tile.width, tile.firstSlot, tile.allSlots, tile.key},
-                   gathered);
+  gatherer_.gather({tile, bsdf}, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) {
     RadianceSample& out = tile.samples[i].radiance;
     out.indirect += seen[i].throughput * gathered[i].radiance;

@@ -25,14 +25,8 @@ struct CameraSample {
   RadianceSample radiance;  // what an integrator finds
 };
 
-// Samples of a tile: slot by slot, a slot being one sample of each of its pixels, row by row.
-struct TileSamples {
+struct TileSamples : TileSlots {
   std::span<CameraSample> samples;
-  uint32_t pixels = 0;     // in each slot
-  uint32_t width = 1;      // of a row
-  uint32_t firstSlot = 0;  // of all slots
-  uint32_t allSlots = 1;   // samples a pixel
-  uint64_t key = 0;        // of the tile's own random numbers
 };
 
 enum class Only { Everything, Direct, Indirect };

@@ -90,7 +90,7 @@ void renderTile(const Scene& scene, const Integrator& integrator, const FilmOpti
         samples.push_back(makeSample(scene, key, options.spp, tile.x(p), tile.y(p), s));
       }
     }
-    integrator({samples, tile.pixels(), tile.x1 - tile.x0, slot, options.spp, tileKey});
+    integrator({{tile.pixels(), tile.x1 - tile.x0, slot, options.spp, tileKey}, samples});
     for (size_t k = 0; k < samples.size(); ++k) {
       const auto p = static_cast<uint32_t>(k % tile.pixels());
       const size_t i = size_t{tile.y(p)} * scene.film.width + tile.x(p);
