@@ -17,6 +17,7 @@ inline constexpr int kExitUsage = 2;      // options that make no sense
 inline constexpr int kExitInput = 3;      // input missing, damaged, stale or of the wrong kind
 inline constexpr int kExitOutput = 4;     // output could not be written
 inline constexpr int kExitDifferent = 5;  // vpl-inspect compare: the limit was exceeded
+inline constexpr int kExitMemory = 6;     // not enough memory for what was asked
 
 // Each carries one line: file, position, problem; cure.
 class InputError : public std::runtime_error {

@@ -1,59 +1,196 @@
 #include "formats/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <set>
 #include <utility>
 
 namespace bnvpl {
+namespace {
 
-AtomicFile::AtomicFile(fs::path target)
-    : target_(std::move(target)),
-      partial_(target_.string() + ".partial-" + std::to_string(::getpid())) {
+constexpr const char* kPartial = ".partial-";
+
+// Paths for removePartialFiles(), in fixed places: a signal handler can neither lock nor allocate.
+// A run has at most five files open; one that found no place would be removed by the next run.
+std::array<std::atomic<const char*>, 16> partialFiles;
+std::atomic<bool> outputReplaced{false};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+void remember(const char* path) {
+  for (auto& place : partialFiles) {
+    const char* empty = nullptr;
+    if (place.compare_exchange_strong(empty, path)) return;
+  }
+}
+void forget(const char* path) {
+  for (auto& place : partialFiles) {
+    const char* same = path;
+    if (place.compare_exchange_strong(same, nullptr)) return;
+  }
+}
+
+fs::path folderOf(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+// Whether `name` is `prefix`, digits, a dash, digits.
+bool isPartialName(const std::string& name, const std::string& prefix) {
+  if (!name.starts_with(prefix)) return false;
+  const std::string rest = name.substr(prefix.size());
+  return rest.find_first_not_of("0123456789-") == std::string::npos &&
+         std::count(rest.begin(), rest.end(), '-') == 1 && rest.front() != '-' &&
+         rest.back() != '-';
+}
+
+// Removes the partial files of `target` whose writers were killed: nobody has them locked any more.
+void removeAbandoned(const fs::path& target) {
+  const std::string prefix = target.filename().string() + kPartial;
+  std::error_code ignored;
+  for (fs::directory_iterator it(folderOf(target), ignored), end; it != end;
+       it.increment(ignored)) {
+    if (!isPartialName(it->path().filename().string(), prefix)) continue;
+    const int fd = ::open(it->path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (fd < 0) continue;
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(it->path().c_str());
+    ::close(fd);
+  }
+}
+
+// Some file systems cannot be told to write at once; that is no failure of the write.
+bool syncDescriptor(int fd) {
+  while (::fsync(fd) != 0) {
+    if (errno == EINTR) continue;
+    return errno == EINVAL || errno == ENOTSUP || errno == ENOSYS || errno == EROFS;
+  }
+  return true;
+}
+
+void syncFolder(const fs::path& target) {
+  const int fd = ::open(folderOf(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;  // write permission alone suffices for the rename
+  const bool done = syncDescriptor(fd);
+  const int error = errno;
+  ::close(fd);
+  if (!done) {
+    throw OutputError(target, std::string("was replaced, but the disk did not confirm it: ") +
+                                  std::strerror(error) + "; check the disk and run it again");
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   std::error_code ignored;
   if (fs::is_directory(target_, ignored)) {
     throw OutputError(target_, "is a folder; name a file");
   }
-  // Renaming over /dev/null or a pipe would replace the device itself.
-  if (fs::exists(target_, ignored) && !fs::is_regular_file(target_, ignored)) {
-    throw OutputError(target_, "is a device or pipe, which cannot be replaced; name a file");
+  if (fs::exists(target_, ignored)) {
+    // Renaming over /dev/null or a pipe would replace the device itself.
+    if (!fs::is_regular_file(target_, ignored)) {
+      throw OutputError(target_, "is a device or pipe, which cannot be replaced; name a file");
+    }
+    // It would also replace a read-only file, which somebody made so in order to keep it.
+    if (::faccessat(AT_FDCWD, target_.c_str(), W_OK, AT_EACCESS) != 0) {
+      throw OutputError(target_, std::string("cannot replace: ") + std::strerror(errno) +
+                                     "; make it writable or name another file");
+    }
   }
-  const int fd = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) {
-    throw OutputError(target_, std::string("cannot write: ") + std::strerror(errno) +
-                                   "; choose a folder that exists and is writable");
-  }
-  ::close(fd);
+  removeAbandoned(target_);
+  open();
 }
 
 AtomicFile::~AtomicFile() {
-  if (!committed_) ::unlink(partial_.c_str());
+  if (!replaced_) ::unlink(partial_.c_str());
+  forget(partial_.c_str());
+  ::close(descriptor_);  // and with it goes the lock
 }
 
-void AtomicFile::commit() {
+void AtomicFile::open() {
+  static std::atomic<unsigned> number{0};  // a name is never used twice
+  struct stat info {};
+  while (true) {
+    partial_ = target_.string() + kPartial + std::to_string(::getpid()) + "-" +
+               std::to_string(number.fetch_add(1));
+    remember(partial_.c_str());
+    descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+      const int error = errno;
+      forget(partial_.c_str());
+      if (error == EEXIST) continue;  // of another machine or container
+      throw OutputError(target_, std::string("cannot write: ") + std::strerror(error) +
+                                     "; choose a folder that exists and is writable");
+    }
+    while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+    // Another run may have taken it for abandoned before it was locked.
+    if (::fstat(descriptor_, &info) == 0 && info.st_nlink > 0) return;
+    ::close(descriptor_);
+    forget(partial_.c_str());
+  }
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done =
+        ::write(descriptor_, bytes.data(), std::min(bytes.size(), size_t{1} << 30));
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) fail(errno);
+    bytes = bytes.subspan(static_cast<size_t>(done));
+  }
+}
+
+void AtomicFile::sync() {
+  if (!syncDescriptor(descriptor_)) fail(errno);
+}
+
+void AtomicFile::replace() {
   if (::rename(partial_.c_str(), target_.c_str()) != 0) {
     throw OutputError(target_, std::string("cannot replace: ") + std::strerror(errno));
   }
-  committed_ = true;
+  replaced_ = true;
+  outputReplaced = true;
+}
+
+void AtomicFile::commit() {
+  sync();
+  replace();
+  syncFolder(target_);
+}
+
+void AtomicFile::fail(int error) const {
+  throw OutputError(target_, std::string("write failed: ") + std::strerror(error) +
+                                 "; the old file, if any, is unchanged");
+}
+
+void OutputSet::commit() {
+  for (AtomicFile& file : files_) file.sync();
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->replace();
+  std::set<fs::path> folders;
+  for (const AtomicFile& file : files_) {
+    if (folders.insert(folderOf(file.target_)).second) syncFolder(file.target_);
+  }
 }
 
 void writeFileAtomically(const fs::path& target, const std::string& bytes) {
   AtomicFile file(target);
-  std::FILE* out = std::fopen(file.path().c_str(), "wb");
-  bool ok = out && std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-  int writeErrno = errno;
-  if (out && std::fclose(out) != 0 && ok) {  // the last buffer is written here
-    ok = false;
-    writeErrno = errno;
-  }
-  if (!ok) {
-    throw OutputError(target, std::string("write failed: ") + std::strerror(writeErrno) +
-                                  "; the old file is unchanged");
-  }
+  file.write(bytes);
   file.commit();
 }
+
+void removePartialFiles() noexcept {
+  for (auto& place : partialFiles) {
+    if (const char* path = place.exchange(nullptr)) ::unlink(path);
+  }
+}
+
+bool anyOutputReplaced() noexcept { return outputReplaced; }
 
 }  // namespace bnvpl

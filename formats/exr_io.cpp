@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/atomic_file.h"
-
 namespace bnvpl {
 namespace {
 
@@ -145,8 +143,8 @@ Image readChecked(const fs::path& file) {
 
 }  // namespace
 
-uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
-  refuseMalformed(file, image);
+uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
+  refuseMalformed(file.target(), image);
   uint64_t clamped = 0;
   // Through memory, because OpenEXR's own file stream keeps silent when its last write fails.
   Imf::StdOSStream bytes;
@@ -164,10 +162,19 @@ uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
     Imf::OutputFile out(bytes, header, kNoThreads);
     out.setFrameBuffer(frame);
     out.writePixels(image.height);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& problem) {
-    throw OutputError(file, std::string("OpenEXR: ") + problem.what());
+    throw OutputError(file.target(), std::string("OpenEXR: ") + problem.what());
   }
-  writeFileAtomically(file, bytes.str());
+  file.write(bytes.str());
+  return clamped;
+}
+
+uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
+  AtomicFile out(file);
+  const uint64_t clamped = writeExr(out, image, type);
+  out.commit();
   return clamped;
 }
 
@@ -179,6 +186,8 @@ Image readExr(const fs::path& file) {
   try {
     return readChecked(file);
   } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& problem) {
     throw InputError(

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/errors.h"
+#include "formats/atomic_file.h"
 #include "formats/image.h"
 
 namespace bnvpl {
@@ -12,8 +12,9 @@ enum class ExrPixelType { Half, Float };
 
 // Replaces `file` atomically; equal images give equal bytes. Returns how many values lay beyond the
 // half range (+-65504, infinity too) and were clamped to it: always 0 for Float.
-// Throws OutputError.
+// An AtomicFile is left for the caller to commit. Throws OutputError.
 uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type);
+uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
 
 // Reads every channel (half, float or uint) as float, in the order of their names, and every string
 // attribute. The image is the display window: pixels outside the data window are 0, data outside

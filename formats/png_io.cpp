@@ -1,12 +1,15 @@
 #include "formats/png_io.h"
 
+#include "core/checked_malloc.h"
+
+#define STBIW_MALLOC(bytes) bnvpl::mallocOrThrow(bytes)
+#define STBIW_REALLOC(old, bytes) bnvpl::reallocOrThrow(old, bytes)
+#define STBIW_FREE(memory) std::free(memory)
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #include <stb/stb_image_write.h>
 
 #include <string>
-
-#include "formats/atomic_file.h"
 
 namespace bnvpl {
 namespace {
@@ -20,18 +23,24 @@ void appendBytes(void* to, void* bytes, int count) {
 
 }  // namespace
 
-void writePng(const fs::path& file, int width, int height, std::span<const uint8_t> rgb8) {
+void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
       rgb8.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height)) {
-    throw OutputError(file, "a PNG of " + std::to_string(width) + " x " + std::to_string(height) +
-                                " pixels from " + std::to_string(rgb8.size()) +
-                                " bytes cannot be written");
+    throw OutputError(file.target(), "a PNG of " + std::to_string(width) + " x " +
+                                         std::to_string(height) + " pixels from " +
+                                         std::to_string(rgb8.size()) + " bytes cannot be written");
   }
   std::string png;
   if (!stbi_write_png_to_func(appendBytes, &png, width, height, 3, rgb8.data(), 3 * width)) {
-    throw OutputError(file, "the PNG could not be compressed");
+    throw OutputError(file.target(), "the PNG could not be compressed");
   }
-  writeFileAtomically(file, png);
+  file.write(png);
+}
+
+void writePng(const fs::path& file, int width, int height, std::span<const uint8_t> rgb8) {
+  AtomicFile out(file);
+  writePng(out, width, height, rgb8);
+  out.commit();
 }
 
 }  // namespace bnvpl

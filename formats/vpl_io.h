@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/errors.h"
+#include "formats/atomic_file.h"
 #include "formats/vpl_format.h"
 #include "formats/vpl_table.h"
 
@@ -21,10 +22,11 @@ VplTable readVpl(const fs::path& file, VplStage expected);
 // Header and directory, verified against the real file size; the content is not looked at.
 VplHeader readVplHeader(const fs::path& file);
 
-// Replaces `file` atomically. An empty provenance is written as "[]".
-// Throws OutputError when the table holds a value that readVpl would refuse (naming its column and
-// row) or when a write fails; the old file then stays as it was.
+// Replaces `file` atomically; an AtomicFile is left for the caller to commit. An empty provenance
+// is written as "[]". Throws OutputError when the table holds a value that readVpl would refuse
+// (naming its column and row) or when a write fails; the old file then stays as it was.
 void writeVpl(const fs::path& file, const VplTable& table);
+void writeVpl(AtomicFile& file, const VplTable& table);
 
 // "candidates", "eliminated" or "lit"; and the tool that makes such a file.
 std::string_view stageName(VplStage stage);

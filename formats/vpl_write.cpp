@@ -1,9 +1,5 @@
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <stdexcept>
 
-#include "formats/atomic_file.h"
 #include "formats/vpl_io.h"
 #include "formats/vpl_layout.h"
 
@@ -24,26 +20,6 @@ std::vector<Bytes> filePieces(const VplHeader& header, const VplLayout& layout,
   forEachColumn(table, [&](const auto& column) { addPadded(std::as_bytes(std::span(column))); });
   pieces.push_back(bytesOf(kVplEndMark));
   return pieces;
-}
-
-void writePieces(const fs::path& target, const std::vector<Bytes>& pieces) {
-  AtomicFile file(target);
-  errno = 0;
-  std::FILE* out = std::fopen(file.path().c_str(), "wb");
-  bool ok = out != nullptr;
-  for (const Bytes& piece : pieces) {
-    ok = ok && std::fwrite(piece.data(), 1, piece.size(), out) == piece.size();
-  }
-  int problem = errno;
-  if (out && std::fclose(out) != 0 && ok) {  // the last buffer is written here
-    ok = false;
-    problem = errno;
-  }
-  if (!ok) {
-    throw OutputError(target, std::string("write failed: ") + std::strerror(problem) +
-                                  "; the old file, if any, is unchanged");
-  }
-  file.commit();
 }
 
 void refuseUnwritable(const fs::path& file, const VplTable& table, const std::string& provenance) {
@@ -77,9 +53,9 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
 
 }  // namespace
 
-void writeVpl(const fs::path& file, const VplTable& table) {
+void writeVpl(AtomicFile& file, const VplTable& table) {
   const std::string provenance = table.provenance.empty() ? "[]" : table.provenance;
-  refuseUnwritable(file, table, provenance);
+  refuseUnwritable(file.target(), table, provenance);
   const VplLayout layout = makeLayout(table.stage, table.size(), provenance.size());
   VplHeader header;
   header.stage = table.stage;
@@ -92,7 +68,13 @@ void writeVpl(const fs::path& file, const VplTable& table) {
   header.areaEstimate = table.areaEstimate;
   header.reach = table.reach;
   header.checksum = hashPieces(filePieces(header, layout, provenance, table));
-  writePieces(file, filePieces(header, layout, provenance, table));
+  for (const Bytes piece : filePieces(header, layout, provenance, table)) file.write(piece);
+}
+
+void writeVpl(const fs::path& file, const VplTable& table) {
+  AtomicFile out(file);
+  writeVpl(out, table);
+  out.commit();
 }
 
 }  // namespace bnvpl

@@ -7,7 +7,14 @@
 namespace bnvpl {
 namespace {
 
-class Export : public InspectTest {};
+class Export : public InspectTest {
+ protected:
+  void exportTo(const std::string& name, const VplTable& table) const {
+    AtomicFile file(at(name));
+    exportTable(table, file);
+    file.commit();
+  }
+};
 
 TEST_F(Export, PlyParsesBack) {
   const VplTable table = threeRows(VplStage::Lit);
@@ -98,13 +105,13 @@ TEST_F(Export, CsvGivesEveryValueBack) {
 
 TEST_F(Export, WritesByExtension) {
   const VplTable table = threeRows(VplStage::Eliminated);
-  exportTable(table, at("a.ply"));
-  exportTable(table, at("a.csv"));
+  exportTo("a.ply", table);
+  exportTo("a.csv", table);
   EXPECT_EQ(readAll(at("a.ply")), plyBytes(table));
   EXPECT_EQ(readAll(at("a.csv")), csvText(table));
-  EXPECT_THROW(exportTable(table, at("a.obj")), UsageError);
-  EXPECT_THROW(exportTable(table, at("a")), UsageError);
-  EXPECT_THROW(exportTable(table, at("absent/a.ply")), OutputError);
+  EXPECT_THROW(exportTo("a.obj", table), UsageError);
+  EXPECT_THROW(exportTo("a", table), UsageError);
+  EXPECT_THROW(exportTo("absent/a.ply", table), OutputError);
 }
 
 }  // namespace

@@ -6,11 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
+#include <cstring>
 #include <new>
 #include <sstream>
 
-#include "formats/atomic_file.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/standard_streams.h"
 
 namespace bnvpl {
 
@@ -24,6 +25,22 @@ double peakMemoryMiB() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+constexpr const char* kOutOfMemory =
+    "out of memory; lower the counts or the film size, or raise the limit on memory";
+
+// False when the answer was --help or --version.
+bool parse(CLI::App& cli, int argc, char** argv) {
+  try {
+    cli.parse(argc, argv);
+    return true;
+  } catch (const CLI::Success& e) {
+    std::ostringstream text;
+    cli.exit(e, text, text);
+    print(text.str());
+    return false;
+  }
 }
 
 }  // namespace
@@ -87,32 +104,41 @@ CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work) {
   const std::string name = cli.get_name();
-  const auto fail = [&](int code, const std::string& what) {
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), what.c_str());
+  const auto fail = [&](int code, const char* what, const char* more = "") {
+    std::fprintf(stderr, "%s: %s%s\n", name.c_str(), what, more);
     return code;
   };
+  occupyClosedStreams();
+  catchInterrupts(name);
   try {
-    cli.parse(argc, argv);
+    if (!parse(cli, argc, argv)) return kExitOk;
     tbb::global_control limit(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0
             ? options.threads
             : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
     return work();
-  } catch (const CLI::Success& e) {  // --help, --version
-    return cli.exit(e, std::cout, std::cerr);
   } catch (const CLI::ParseError& e) {
-    return fail(kExitUsage, std::string(e.what()) + "; see " + name + " --help");
+    return fail(kExitUsage, e.what(), ("; see " + name + " --help").c_str());
   } catch (const UsageError& e) {
     return fail(kExitUsage, e.what());
   } catch (const InputError& e) {
     return fail(kExitInput, e.what());
   } catch (const OutputError& e) {
     return fail(kExitOutput, e.what());
+  } catch (const Interrupted& e) {
+    endInterrupted(e);
   } catch (const std::bad_alloc&) {
-    return fail(kExitInput, "out of memory; lower the counts or the film size");
+    return fail(kExitMemory, kOutOfMemory);
+  } catch (const std::length_error&) {  // a container of more elements than there are addresses
+    return fail(kExitMemory, kOutOfMemory);
   } catch (const std::exception& e) {
-    return fail(kExitInternal, std::string("internal error: ") + e.what());
+    if (std::strstr(e.what(), "pthread_create")) {  // oneTBB's words, which Embree hands on
+      return fail(kExitMemory,
+                  "a thread cannot be started; lower --threads, or raise the limits on "
+                  "memory and processes");
+    }
+    return fail(kExitInternal, "internal error: ", e.what());
   }
 }
 
@@ -161,16 +187,22 @@ void Summary::add(const std::string& key, Json value, const std::string& text) {
   if (!text.empty()) lines_.push_back(text);
 }
 
-void Summary::finish(const ToolOptions& options) const {
+void Summary::finish(const ToolOptions& options, OutputSet& files) const {
   Json values = values_;
-  values["time_s"] = nowS() - startS_;
-  values["peak_memory_MiB"] = peakMemoryMiB();
-  if (!options.stats.empty()) writeFileAtomically(options.stats, values.dump(2) + "\n");
+  const double timeS = nowS() - startS_, memoryMiB = peakMemoryMiB();
+  values["time_s"] = timeS;
+  values["peak_memory_MiB"] = memoryMiB;
+  if (!options.stats.empty()) files.add(options.stats).write(values.dump(2) + "\n");
+  files.commit();
   if (options.quiet) return;
-  for (const std::string& line : lines_) std::printf("%s: %s\n", tool_.c_str(), line.c_str());
-  std::printf("%s: %.2f s, peak memory %.0f MiB\n", tool_.c_str(), values["time_s"].get<double>(),
-              values["peak_memory_MiB"].get<double>());
-  std::fflush(stdout);
+  std::string text;
+  for (const std::string& line : lines_) text += tool_ + ": " + line + "\n";
+  char last[64];
+  std::snprintf(last, sizeof last, ": %.2f s, peak memory %.0f MiB\n", timeS, memoryMiB);
+  // The files are whole: a log that is full is no reason for Make to remove them.
+  if (!tryPrint(text + tool_ + last)) {
+    printWarnings(tool_, {std::string("the summary cannot be printed: ") + std::strerror(errno)});
+  }
 }
 
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
@@ -179,8 +211,8 @@ void printWarnings(const std::string& tool, const std::vector<std::string>& warn
   }
 }
 
-void writeDepfile(const fs::path& depfile, const fs::path& target,
-                  const std::vector<fs::path>& files) {
+void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,
+                const std::vector<fs::path>& files) {
   if (depfile.empty()) return;
   const auto escape = [](const fs::path& path) {  // what both Make and ninja understand
     std::string out;
@@ -193,7 +225,7 @@ void writeDepfile(const fs::path& depfile, const fs::path& target,
   };
   std::string text = escape(target) + ":";
   for (const fs::path& f : files) text += " \\\n  " + escape(f);
-  writeFileAtomically(depfile, text + "\n");
+  outputs.add(depfile).write(text + "\n");
 }
 
 std::string formatSi(double value) {

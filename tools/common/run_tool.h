@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "formats/atomic_file.h"
 
 namespace bnvpl {
 
@@ -34,7 +35,7 @@ CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
 uint64_t parseCount(const std::string& text);
 
 // Parses argv, limits oneTBB to --threads, calls `work`, and turns exceptions into one line on
-// stderr and the documented exit code. The only try/catch of a tool.
+// stderr and the documented exit code. The only try/catch of a tool. Signals: interrupt.h.
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
 
@@ -50,14 +51,14 @@ std::string extendProvenance(const std::string& earlier, const std::string& tool
                              const Json& options, const Json& inputs);
 std::string hashText(uint64_t hash);  // 16 hexadecimal digits
 
-// Ends a tool's work: prints "name: key value, ..." to stdout unless quiet, writes the same with
-// time and peak memory to --stats.
+// Ends a tool's work: the figures go to --stats, with time and peak memory; then all files that the
+// run made are replaced together, and the lines for people are printed to stdout unless quiet.
 class Summary {
  public:
   explicit Summary(std::string tool);
   // `text` is for people, `value` for the JSON file. Keys carry their units: "time_s".
   void add(const std::string& key, Json value, const std::string& text = "");
-  void finish(const ToolOptions& options) const;
+  void finish(const ToolOptions& options, OutputSet& files) const;
 
  private:
   std::string tool_;
@@ -69,9 +70,10 @@ class Summary {
 // Prints each warning once, by name, to stderr. Warnings are not silenced by --quiet.
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
 
-// Writes "target: file file ..." in Make syntax, atomically. Does nothing when `depfile` is empty.
-void writeDepfile(const fs::path& depfile, const fs::path& target,
-                  const std::vector<fs::path>& files);
+// Adds "target: file file ..." in Make syntax to what the run makes. Does nothing when `depfile` is
+// empty.
+void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,
+                const std::vector<fs::path>& files);
 
 std::string formatSi(double value);  // 12345678 -> "12.3M"
 

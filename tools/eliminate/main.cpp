@@ -78,8 +78,9 @@ int runEliminate(const fs::path& input, const fs::path& output, const EliminateO
   VplTable vpls = keepRows(candidates, kept);
   vpls.provenance = extendProvenance(candidates.provenance, "vpl-eliminate", describe(options),
                                      {{"candidates", hashText(candidates.checksum)}});
-  writeVpl(output, vpls);
-  writeDepfile(tool.depfile, output, {input});
+  OutputSet files;
+  writeVpl(files.add(output), vpls);
+  addDepfile(files, tool.depfile, output, {input});
 
   summary.add("candidates", candidates.size());
   summary.add("kept", vpls.size(),
@@ -88,7 +89,7 @@ int runEliminate(const fs::path& input, const fs::path& output, const EliminateO
   summary.add("area", kept.area);
   summary.add("r_max", kept.rMax,
               "area " + formatSi(kept.area) + ", r_max " + formatSi(kept.rMax) + " (scene units)");
-  summary.finish(tool);
+  summary.finish(tool, files);
   return kExitOk;
 }
 

@@ -85,12 +85,13 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
   vpls.provenance =
       extendProvenance(vpls.provenance, "vpl-estimate", describe(options),
                        {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
-  writeVpl(output, vpls);
+  OutputSet files;
+  writeVpl(files.add(output), vpls);
   std::vector<fs::path> read = scene.files;
   read.push_back(input);
-  writeDepfile(tool.depfile, output, read);
+  addDepfile(files, tool.depfile, output, read);
   report(account, vpls, summary);
-  summary.finish(tool);
+  summary.finish(tool, files);
   return kExitOk;
 }
 

@@ -5,6 +5,7 @@
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
 #include "tools/common/film_size.h"
+#include "tools/common/standard_streams.h"
 #include "tools/inspect/check.h"
 #include "tools/inspect/export_table.h"
 #include "tools/inspect/info.h"
@@ -14,7 +15,7 @@ namespace bnvpl {
 int runInfo(const InfoCommand& command) {
   const Json description = describeFile(command.file);
   const std::string text = command.json ? description.dump(2) + "\n" : infoText(description);
-  std::fputs(text.c_str(), stdout);
+  print(text);
   return kExitOk;
 }
 
@@ -22,26 +23,28 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   std::vector<CheckedFile> checked;
   for (const fs::path& file : command.files) {
     checked.push_back(checkFile(file));
-    if (!tool.quiet) std::printf("%s: OK (%s)\n", file.c_str(), checked.back().what.c_str());
+    if (!tool.quiet) print(file.string() + ": OK (" + checked.back().what + ")\n");
   }
-  std::fflush(stdout);  // before the message that a mixture gets on stderr
   checkTogether(checked);
-  if (!tool.quiet && checked.size() > 1) std::printf("no contradiction between the files\n");
+  if (!tool.quiet && checked.size() > 1) print("no contradiction between the files\n");
   return kExitOk;
 }
 
 int runExport(const ExportCommand& command, const ToolOptions& tool) {
   requireExportable(command.output);
   Summary summary("vpl-inspect");
+  requireWritable({command.output, tool.stats});
   const VplTable table = readVpl(command.file);
-  exportTable(table, command.output);
+  OutputSet files;
+  exportTable(table, files.add(command.output));
   summary.add("rows", table.size(), "wrote " + std::to_string(table.size()) + " rows");
-  summary.finish(tool);
+  summary.finish(tool, files);
   return kExitOk;
 }
 
 int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
+  requireWritable({command.output, tool.stats, tool.depfile});
   const VplTable table = readVpl(command.file);
   Scene scene = loadSceneFor("vpl-inspect", command.scene);
   requireSameScene(command.file, table.sceneHash, scene,
@@ -55,10 +58,11 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   std::vector<Dot> dots = visibleDots(table, rays, options, counts);
   Canvas canvas = shadeView(rays, options.samples);
   canvas.paint(std::move(dots), options.dotPixels);
-  writePng(command.output, canvas.width, canvas.height, canvas.rgb8());
+  OutputSet files;
+  writePng(files.add(command.output), canvas.width, canvas.height, canvas.rgb8());
   std::vector<fs::path> read = scene.files;
   read.push_back(command.file);
-  writeDepfile(tool.depfile, command.output, read);
+  addDepfile(files, tool.depfile, command.output, read);
 
   char line[160];
   std::snprintf(line, sizeof line,
@@ -69,7 +73,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   summary.add("facing_away", counts.facingAway);
   summary.add("hidden", counts.occluded);
   summary.add("outside_film", counts.outside);
-  summary.finish(tool);
+  summary.finish(tool, files);
   return kExitOk;
 }
 

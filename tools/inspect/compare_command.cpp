@@ -6,6 +6,7 @@
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
 #include "tools/common/choice.h"
+#include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
 #include "tools/inspect/difference_image.h"
 
@@ -197,7 +198,7 @@ int runCompare(const CompareCommand& command) {
   }
   const std::string text = command.json ? comparisonJson(c, command.limits).dump(2) + "\n"
                                         : comparisonText(c, command.limits);
-  std::fputs(text.c_str(), stdout);
+  print(text);
   return comparisonExitCode(c, command.limits);
 }
 

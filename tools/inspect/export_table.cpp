@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "formats/atomic_file.h"
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
 #include "tools/inspect/column_names.h"
@@ -96,9 +95,9 @@ void requireExportable(const fs::path& output) {
   throw UsageError("--output " + output.string() + ": the extension must be .ply or .csv");
 }
 
-void exportTable(const VplTable& table, const fs::path& output) {
-  requireExportable(output);
-  writeFileAtomically(output, output.extension() == ".ply" ? plyBytes(table) : csvText(table));
+void exportTable(const VplTable& table, AtomicFile& output) {
+  requireExportable(output.target());
+  output.write(output.target().extension() == ".ply" ? plyBytes(table) : csvText(table));
 }
 
 }  // namespace bnvpl

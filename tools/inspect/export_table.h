@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/errors.h"
+#include "formats/atomic_file.h"
 #include "formats/vpl_format.h"
 #include "formats/vpl_table.h"
 
@@ -16,9 +16,10 @@ std::string plyBytes(const VplTable& table);
 // A header line, then one line for each row; 9 significant digits give every float back.
 std::string csvText(const VplTable& table);
 
-// Writes PLY or CSV, by the extension of `output`, atomically. Throws UsageError on any other
-// extension (call requireExportable first to find that out before reading) and OutputError.
-void exportTable(const VplTable& table, const fs::path& output);
+// Writes PLY or CSV, by the extension of `output`, which is left for the caller to commit. Throws
+// UsageError on any other extension (call requireExportable first to find that out before reading)
+// and OutputError.
+void exportTable(const VplTable& table, AtomicFile& output);
 void requireExportable(const fs::path& output);
 
 }  // namespace bnvpl

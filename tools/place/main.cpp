@@ -35,15 +35,16 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
 
   placed.table.provenance = extendProvenance("", "vpl-place", describe(options),
                                              {{"scene", hashText(scene.contentHash)}});
-  writeVpl(output, placed.table);
-  writeDepfile(tool.depfile, output, scene.files);
+  OutputSet files;
+  writeVpl(files.add(output), placed.table);
+  addDepfile(files, tool.depfile, output, scene.files);
 
   summary.add("placed", placed.table.size(),
               "placed " + std::to_string(placed.table.size()) + " on " +
                   std::to_string(placed.paths) + " paths");
   summary.add("paths", placed.paths);
   summary.add("rays", placed.rays);
-  summary.finish(tool);
+  summary.finish(tool, files);
   return kExitOk;
 }
 

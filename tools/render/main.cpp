@@ -160,14 +160,15 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
       extendProvenance(lit.provenance, "vpl-render", describe(o), inputs);
   image.attributes["bnvpl.samplesPerPixel"] = std::to_string(o.film.spp);
   const float ev = paths.png.empty() ? 0.0f : exposureOf(image, o.exposure);
-  const uint64_t overflow = writeExr(paths.output, image, o.pixels);
+  OutputSet files;
+  const uint64_t overflow = writeExr(files.add(paths.output), image, o.pixels);
   if (!paths.png.empty()) {
-    writePng(paths.png, image.width, image.height,
+    writePng(files.add(paths.png), image.width, image.height,
              toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
   }
   std::vector<fs::path> read = scene.files;
   if (vpl) read.push_back(paths.lit);
-  writeDepfile(tool.depfile, paths.output, read);
+  addDepfile(files, tool.depfile, paths.output, read);
 
   std::vector<std::string> warnings;
   if (stats.notFinite > 0)
@@ -203,7 +204,7 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
                   paths.png.c_str());
     summary.add("exposure_ev", ev, line);
   }
-  summary.finish(tool);
+  summary.finish(tool, files);
   return kExitOk;
 }
 

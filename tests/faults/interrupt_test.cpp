@@ -1,0 +1,95 @@
+// The signals that ask a tool to stop: at once, or when a loop has saved what it has done.
+#include "tools/common/interrupt.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "formats/atomic_file.h"
+
+namespace bnvpl {
+namespace {
+
+using ::testing::ExitedWithCode;
+using ::testing::KilledBySignal;
+
+TEST(Interrupt, EndsTheToolAtOnceBySignal) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) {
+    const auto run = [&] {
+      catchInterrupts("tool");
+      std::raise(signal);
+    };
+    EXPECT_EXIT(run(), KilledBySignal(signal),
+                "^tool: interrupted \\(SIG[A-Z]+\\); no output was touched\n$");
+  }
+}
+
+TEST(Interrupt, RemovesPartialFilesAndTellsWhatWasReplaced) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("bnvpl-interrupt-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const auto run = [&] {
+    catchInterrupts("tool");
+    writeFileAtomically(folder / "whole", "whole");
+    AtomicFile partial(folder / "partial");
+    partial.write("half");
+    std::raise(SIGTERM);
+  };
+  EXPECT_EXIT(run(), KilledBySignal(SIGTERM), "replaced are whole, the others untouched");
+  EXPECT_TRUE(fs::exists(folder / "whole"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  fs::remove_all(folder);
+}
+
+TEST(Interrupt, ALoopThatDefersMaySaveAndSayHowToGoOn) {
+  const auto run = [] {
+    catchInterrupts("tool");
+    try {
+      const DeferInterrupts defer;
+      std::raise(SIGINT);
+      if (interrupted()) throw Interrupted("FILE holds 3 of 8 passes; the same command continues");
+    } catch (const Interrupted& reason) {
+      endInterrupted(reason);
+    }
+  };
+  EXPECT_EXIT(run(), KilledBySignal(SIGINT),
+              "^tool: interrupted \\(SIGINT\\); FILE holds 3 of 8 passes; the same command "
+              "continues\n$");
+}
+
+TEST(Interrupt, ASecondSignalDoesNotWait) {
+  const auto run = [] {
+    catchInterrupts("tool");
+    const DeferInterrupts defer;
+    std::raise(SIGINT);
+    std::raise(SIGTERM);
+    std::exit(0);
+  };
+  EXPECT_EXIT(run(), KilledBySignal(SIGTERM), "no output was touched");
+}
+
+TEST(Interrupt, WhatNobodyActedUponEndsTheToolAfterTheLoop) {
+  const auto run = [] {
+    catchInterrupts("tool");
+    {
+      const DeferInterrupts defer;
+      std::raise(SIGTERM);
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(run(), KilledBySignal(SIGTERM), "no output was touched");
+}
+
+TEST(Interrupt, IgnoredSignalsStayIgnored) {
+  const auto run = [] {
+    std::signal(SIGHUP, SIG_IGN);  // as nohup does
+    catchInterrupts("tool");
+    std::raise(SIGHUP);
+    std::exit(0);
+  };
+  EXPECT_EXIT(run(), ExitedWithCode(0), "");
+}
+
+}  // namespace
+}  // namespace bnvpl

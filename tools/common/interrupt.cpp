@@ -1,0 +1,105 @@
+#include "tools/common/interrupt.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <string_view>
+
+#include "formats/atomic_file.h"
+
+namespace bnvpl {
+namespace {
+
+struct Stop {
+  int signal;
+  const char* name;
+};
+constexpr std::array<Stop, 4> kStops{
+    {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}, {SIGXCPU, "SIGXCPU"}}};
+
+std::array<char, 64> toolName{};  // what a handler needs is ready before it runs
+std::atomic<bool> onTerminal{false}, deferring{false}, ending{false};
+std::atomic<int> pending{0};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+// A line on stderr, without the C library's streams, whose locks the interrupted code may hold.
+void sayInterrupted(int signal, const char* what) {
+  std::array<char, 8192> line;  // longer than any two paths
+  size_t length = 0;
+  const auto add = [&](std::string_view text) {
+    const size_t fits = std::min(text.size(), line.size() - length);
+    std::memcpy(line.data() + length, text.data(), fits);
+    length += fits;
+  };
+  if (onTerminal) add("\r\x1b[K");  // over the progress
+  add(toolName.data());
+  add(": interrupted (");
+  for (const Stop& stop : kStops) {
+    if (stop.signal == signal) add(stop.name);
+  }
+  add("); ");
+  add(what);
+  add("\n");
+  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, line.data(), length);
+}
+
+// Inside the handler the signal waits until it returns.
+void end(int signal, const char* what) {
+  if (ending.exchange(true)) return;
+  removePartialFiles();
+  sayInterrupted(signal, what);
+  std::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+void endAtOnce(int signal) {
+  end(signal, anyOutputReplaced() ? "outputs that were replaced are whole, the others untouched"
+                                  : "no output was touched");
+}
+
+extern "C" void onStop(int signal) {
+  const int saved = errno;
+  int none = 0;
+  if (!deferring || !pending.compare_exchange_strong(none, signal)) endAtOnce(signal);
+  errno = saved;
+}
+
+}  // namespace
+
+void catchInterrupts(const std::string& tool) {
+  std::strncpy(toolName.data(), tool.c_str(), toolName.size() - 1);
+  onTerminal = ::isatty(STDERR_FILENO) == 1;
+  std::signal(SIGXFSZ, SIG_IGN);
+  struct sigaction action {};
+  action.sa_handler = onStop;
+  action.sa_flags = SA_RESTART;
+  for (const Stop& stop : kStops) sigaddset(&action.sa_mask, stop.signal);
+  for (const Stop& stop : kStops) {
+    struct sigaction old {};
+    ::sigaction(stop.signal, nullptr, &old);
+    if (old.sa_handler != SIG_IGN) ::sigaction(stop.signal, &action, nullptr);
+  }
+}
+
+DeferInterrupts::DeferInterrupts() : exceptions_(std::uncaught_exceptions()) { deferring = true; }
+
+DeferInterrupts::~DeferInterrupts() {
+  deferring = false;
+  if (pending != 0 && std::uncaught_exceptions() == exceptions_) endAtOnce(pending);
+}
+
+bool interrupted() { return pending.load(std::memory_order_relaxed) != 0; }
+
+void endInterrupted(const Interrupted& reason) {
+  const int signal = pending;
+  end(signal, reason.what());
+  ::_exit(128 + signal);  // not reached, unless the signal is blocked
+}
+
+}  // namespace bnvpl
