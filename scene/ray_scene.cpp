@@ -6,7 +6,11 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <array>
+#include <atomic>
+#include <cstring>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -55,11 +59,25 @@ RTCRay makeRay(Vec3 origin, Vec3 direction, float tfar) {
 struct RayScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::string error;  // what the device reported last
+  // What the device reported first. From any thread, and perhaps for want of memory: no allocation.
+  std::atomic<RTCError> error{RTC_ERROR_NONE};
+  std::array<char, 256> errorText{};
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
+  }
+
+  static void report(void* user, RTCError error, const char* text) {
+    Impl& impl = *static_cast<Impl*>(user);
+    RTCError none = RTC_ERROR_NONE;
+    if (!impl.error.compare_exchange_strong(none, error) || !text) return;
+    std::strncpy(impl.errorText.data(), text, impl.errorText.size() - 1);
+  }
+  void throwIfFailed() const {
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(std::string("Embree: ") + errorText.data());
   }
 
   void attach(const Scene& s, uint32_t begin, uint32_t end, unsigned id) {
@@ -94,20 +112,19 @@ struct RayScene::Impl {
 
 RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<Impl>()) {
   impl_->device = rtcNewDevice(nullptr);
-  if (!impl_->device) throw std::runtime_error("Embree cannot start on this machine");
-  rtcSetDeviceErrorFunction(
-      impl_->device,
-      [](void* user, RTCError, const char* text) {
-        static_cast<Impl*>(user)->error = text ? text : "unknown";
-      },
-      impl_.get());
+  if (!impl_->device) {
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error("Embree cannot start on this machine");
+  }
+  rtcSetDeviceErrorFunction(impl_->device, Impl::report, impl_.get());
   impl_->scene = rtcNewScene(impl_->device);
+  impl_->throwIfFailed();
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
   const auto count = static_cast<uint32_t>(scene.triangles.size());
   if (scene.maskedBegin > 0) impl_->attach(scene, 0, scene.maskedBegin, 0);
   if (scene.maskedBegin < count) impl_->attach(scene, scene.maskedBegin, count, 1);
   rtcCommitScene(impl_->scene);
-  if (!impl_->error.empty()) throw std::runtime_error("Embree: " + impl_->error);
+  impl_->throwIfFailed();
   liftBase_ = scene.bounds.diagonal() * 0x1p-20f;
 }
 

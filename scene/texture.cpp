@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/checked_malloc.h"
 #include "formats/exr_io.h"
 
 #pragma GCC diagnostic push
@@ -9,6 +10,9 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#define STBI_MALLOC(bytes) bnvpl::mallocOrThrow(bytes)
+#define STBI_REALLOC(old, bytes) bnvpl::reallocOrThrow(old, bytes)
+#define STBI_FREE(memory) std::free(memory)
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO_WRITE
 #define STBI_NO_GIF

@@ -1,5 +1,15 @@
 #include "spatial/kd_tree.h"
 
+#include "core/checked_malloc.h"
+
+#include <stdlib.h>
+
+// FLANN's pool returns null when memory is short, and the tree writes there.
+using bnvpl::mallocOrThrow;
+#define malloc mallocOrThrow
+#include <flann/util/allocator.h>
+#undef malloc
+
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>
 
