@@ -13,6 +13,7 @@
 #pragma GCC diagnostic pop
 
 #include "core/parallel.h"
+#include "scene/read_guard.h"
 
 namespace bnvpl {
 
@@ -38,6 +39,7 @@ class LibraryReader : public tinyobj::MaterialReader {
     std::string path = name;
     std::replace(path.begin(), path.end(), '\\', '/');
     const fs::path file = override_.empty() ? (folder_ / path).lexically_normal() : override_;
+    const ReadGuard guard(file);
     std::ifstream in(file);
     if (!in) {
       missing.push_back(file);
@@ -45,6 +47,8 @@ class LibraryReader : public tinyobj::MaterialReader {
     }
     files.push_back(file);
     tinyobj::LoadMtl(byName, materials, &in, warn, err);
+    if (in.bad()) throw InputError(file, "cannot be read to its end; check the disk");
+    guard.check();
     origin.resize(materials->size(), file);
     return true;
   }
@@ -137,6 +141,7 @@ void ObjLoader::loadWantedTextures(size_t firstMaterial) {
   std::vector<std::string> problem(wanted_.size());
   parallelFor(wanted_.size(), 1, [&](size_t i) {
     const WantedTexture& w = wanted_[i];
+    const ReadGuard guard(w.file);
     try {
       loaded[i] = loadTexture(w.file, w.srgb, w.mask);
       loaded[i].scale = w.scale;
@@ -144,6 +149,7 @@ void ObjLoader::loadWantedTextures(size_t firstMaterial) {
     } catch (const InputError& e) {
       problem[i] = e.what();
     }
+    guard.check();
   });
   std::vector<uint32_t> index(wanted_.size(), kNone);
   for (size_t i = 0; i < wanted_.size(); ++i) {
@@ -308,6 +314,7 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
 }
 
 void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affine& transform) {
+  const ReadGuard guard(obj);
   std::ifstream file(obj);
   if (!file || !fs::is_regular_file(obj)) {
     throw InputError(obj, "no such OBJ file; check 'file' in the scene.toml");
@@ -320,6 +327,8 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   // tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
   if (!materials.empty()) in << "mtllib override\n";
   in << file.rdbuf();
+  if (in.bad()) throw InputError(obj, "cannot be read to its end; check the disk");
+  guard.check();
 
   Parsed parsed;
   std::vector<tinyobj::material_t> source;

@@ -8,6 +8,7 @@
 
 #include "core/sampling.h"
 #include "scene/load_obj.h"
+#include "scene/read_guard.h"
 #include "scene/scene.h"
 #include "scene/scene_hash.h"
 
@@ -241,7 +242,9 @@ LightSpec readLight(const fs::path& file, const Section& s, const Defines& defin
     } else {
       const fs::path image = resolve(file, expandDefines(s, "image", defines));
       light.image = static_cast<uint32_t>(scene.environments.size());
+      const ReadGuard guard(image);
       scene.environments.push_back(loadEnvironment(image));
+      guard.check();
       scene.files.push_back(image);
     }
   } else {
@@ -277,8 +280,11 @@ const toml::table& tableOf(const fs::path& file, const toml::table& root, const 
 
 toml::table parseToml(const fs::path& path) {
   if (!fs::is_regular_file(path)) throw InputError(path, "no such file; name a scene.toml");
+  const ReadGuard guard(path);
   try {
-    return toml::parse_file(path.string());
+    toml::table root = toml::parse_file(path.string());
+    guard.check();
+    return root;
   } catch (const toml::parse_error& e) {
     throw InputError(path.string() + ":" + std::to_string(e.source().begin.line) + ": " +
                      std::string(e.description()));
