@@ -35,6 +35,10 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+class MemoryError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 class OutputError : public std::runtime_error {
  public:
   OutputError(const fs::path& file, const std::string& problem)

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/vpl_layout.h"
+
 namespace bnvpl {
 namespace {
 
@@ -176,6 +178,26 @@ uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
   const uint64_t clamped = writeExr(out, image, type);
   out.commit();
   return clamped;
+}
+
+uint64_t hashImage(const Image& image, ExrPixelType type) {
+  std::map<std::string, uint64_t> channels;  // sorted, as OpenEXR keeps them
+  for (const ImageChannel& channel : image.channels) {
+    std::vector<half> halves;
+    std::vector<float> rounded;
+    if (type == ExrPixelType::Half) {
+      toHalf(channel.data, halves);
+      rounded.assign(halves.begin(), halves.end());
+    }
+    const std::vector<float>& data = type == ExrPixelType::Half ? rounded : channel.data;
+    channels[channel.name] = hashPieces({std::as_bytes(std::span(data))});
+  }
+  std::string text = std::to_string(image.width) + "x" + std::to_string(image.height);
+  for (const auto& [name, hash] : channels) text += "\n" + name + "=" + std::to_string(hash);
+  for (const auto& [name, value] : image.attributes) {
+    if (name != kImageHashAttribute) text += "\n" + name + ":" + value;
+  }
+  return hashPieces({std::as_bytes(std::span(text))});
 }
 
 Image readExr(const fs::path& file) {

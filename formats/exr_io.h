@@ -16,6 +16,13 @@ enum class ExrPixelType { Half, Float };
 uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type);
 uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
 
+// Attribute of our images: hash of the image, 16 hexadecimal digits, by which tampering shows.
+inline constexpr const char* kImageHashAttribute = "bnvpl.hash";
+
+// XXH3-64 of size, channels in the order of their names, and all other attributes. It is that of the
+// image which readExr gives back when `image` was written as `type`.
+uint64_t hashImage(const Image& image, ExrPixelType type);
+
 // Reads every channel (half, float or uint) as float, in the order of their names, and every string
 // attribute. The image is the display window: pixels outside the data window are 0, data outside
 // the display window is dropped. Of a multi-part file the first part is read.

@@ -12,27 +12,29 @@ class Check : public InspectTest {
     const Json sceneInput{{"scene", hashText(scene)}};
     VplTable table = threeRows(VplStage::Candidates);
     table.sceneHash = scene;
-    table.provenance = extendProvenance("", "vpl-place", {{"seed", seed}}, sceneInput);
+    table.provenance = extendProvenance("", stageRecord("vpl-place", {{"seed", seed}}, sceneInput));
     writeVpl(at(prefix + "candidates.vpl"), table);
     const std::string placed = hashText(readVpl(at(prefix + "candidates.vpl")).checksum);
 
     VplTable kept = threeRows(VplStage::Eliminated);
     kept.sceneHash = scene;
-    kept.provenance = extendProvenance(table.provenance, "vpl-eliminate", Json::object(),
-                                       {{"candidates", placed}});
+    kept.provenance = extendProvenance(
+        table.provenance, stageRecord("vpl-eliminate", Json::object(), {{"candidates", placed}}));
     writeVpl(at(prefix + "vpls.vpl"), kept);
     const std::string eliminated = hashText(readVpl(at(prefix + "vpls.vpl")).checksum);
 
     VplTable lit = threeRows(VplStage::Lit);
     lit.sceneHash = scene;
-    lit.provenance = extendProvenance(kept.provenance, "vpl-estimate", Json::object(),
-                                      {{"scene", hashText(scene)}, {"vpls", eliminated}});
+    lit.provenance = extendProvenance(
+        kept.provenance, stageRecord("vpl-estimate", Json::object(),
+                                     {{"scene", hashText(scene)}, {"vpls", eliminated}}));
     writeVpl(at(prefix + "lit.vpl"), lit);
 
     Image image = flatImage(2, 1, 1, 1, 1);
     image.attributes["bnvpl.provenance"] = extendProvenance(
-        lit.provenance, "vpl-render", Json::object(),
-        {{"scene", hashText(scene)}, {"lit", hashText(readVpl(at(prefix + "lit.vpl")).checksum)}});
+        lit.provenance, stageRecord("vpl-render", Json::object(),
+                                    {{"scene", hashText(scene)},
+                                     {"lit", hashText(readVpl(at(prefix + "lit.vpl")).checksum)}}));
     writeExr(at(prefix + "image.exr"), image, ExrPixelType::Half);
   }
   std::string problem(const std::vector<std::string>& names) {

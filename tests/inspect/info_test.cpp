@@ -50,7 +50,7 @@ TEST_F(Info, DescribesAnImage) {
   Image image = flatImage(2, 2, 1, 2, 3);
   image.add("Z") = {1, 3, INFINITY, 2};
   image.attributes["bnvpl.provenance"] =
-      extendProvenance("", "vpl-render", {{"spp", 4}}, Json::object());
+      extendProvenance("", stageRecord("vpl-render", {{"spp", 4}}, Json::object()));
   image.attributes["bnvpl.samplesPerPixel"] = "4";
   writeExr(at("a.exr"), image, ExrPixelType::Float);
   const Json info = describeFile(at("a.exr"));

@@ -48,8 +48,8 @@ inline VplTable threeRows(VplStage stage) {
   table.albedo = {{0.5f, 0.25f, 0.125f}, {1, 0, 0.75f}, {0, 0, 0}};
   table.id = {7, 258, 4000000000u};
   table.sceneHash = 0x1234;
-  table.provenance = extendProvenance("", "vpl-place", {{"count", 3}, {"seed", 1}},
-                                      {{"scene", hashText(table.sceneHash)}});
+  table.provenance = extendProvenance("", stageRecord("vpl-place", {{"count", 3}, {"seed", 1}},
+                                                      {{"scene", hashText(table.sceneHash)}}));
   if (stage >= VplStage::Eliminated) {
     table.radius = {0.5f, 1.0f, 2.0f};
     table.rMax = 0.5;

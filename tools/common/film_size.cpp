@@ -20,4 +20,8 @@ Film parseSize(const std::string& text) {
   return {width, height};
 }
 
+std::string sizeText(const Film& film) {
+  return std::to_string(film.width) + "x" + std::to_string(film.height);
+}
+
 }  // namespace bnvpl

@@ -126,6 +126,8 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
     return fail(kExitInput, e.what());
   } catch (const OutputError& e) {
     return fail(kExitOutput, e.what());
+  } catch (const MemoryError& e) {
+    return fail(kExitMemory, e.what());
   } catch (const Interrupted& e) {
     endInterrupted(e);
   } catch (const std::bad_alloc&) {
@@ -169,11 +171,13 @@ std::string hashText(uint64_t hash) {
   return text;
 }
 
-std::string extendProvenance(const std::string& earlier, const std::string& tool,
-                             const Json& options, const Json& inputs) {
+Json stageRecord(const std::string& tool, const Json& options, const Json& inputs) {
+  return {{"tool", tool}, {"version", BNVPL_VERSION}, {"options", options}, {"inputs", inputs}};
+}
+
+std::string extendProvenance(const std::string& earlier, const Json& record) {
   Json chain = earlier.empty() ? Json::array() : Json::parse(earlier);
-  chain.push_back(
-      {{"tool", tool}, {"version", BNVPL_VERSION}, {"options", options}, {"inputs", inputs}});
+  chain.push_back(record);
   return chain.dump();
 }
 

@@ -45,10 +45,10 @@ void requireWritable(const std::vector<fs::path>& outputs);
 // Numbers from least to most. CLI::Range lets NaN through.
 CLI::Validator inRange(double least, double most);
 
-// Appends a stage's record to the chain of its input (empty for the first stage).
+// What a stage did, and that record behind those of its input (empty for the first stage).
 //   {"tool": "vpl-place", "version": "0.1.0", "options": {...}, "inputs": {"scene": "<hash>"}}
-std::string extendProvenance(const std::string& earlier, const std::string& tool,
-                             const Json& options, const Json& inputs);
+Json stageRecord(const std::string& tool, const Json& options, const Json& inputs);
+std::string extendProvenance(const std::string& earlier, const Json& record);
 std::string hashText(uint64_t hash);  // 16 hexadecimal digits
 
 // Ends a tool's work: the figures go to --stats, with time and peak memory; then all files that the

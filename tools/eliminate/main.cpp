@@ -2,11 +2,14 @@
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
 #include "formats/vpl_io.h"
 #include "tools/common/choice.h"
+#include "tools/common/memory.h"
 #include "tools/common/run_tool.h"
 #include "tools/eliminate/eliminate.h"
 
 namespace bnvpl {
 namespace {
+
+constexpr double kBytesPerCandidate = 120;  // measured: 140 to 150
 
 const Choices<EliminationMethod> kMethods{{"elimination", EliminationMethod::Elimination},
                                           {"random", EliminationMethod::Random}};
@@ -71,13 +74,16 @@ int runEliminate(const fs::path& input, const fs::path& output, const EliminateO
                  const ToolOptions& tool) {
   Summary summary("vpl-eliminate");
   requireWritable({output, tool.stats, tool.depfile});
+  requireMemoryFor(input, kBytesPerCandidate, "place fewer with vpl-place -n");
   const VplTable candidates = readVpl(input, VplStage::Candidates);
 
   const EliminateResult kept = eliminate(candidates.position, candidates.normal, options);
 
   VplTable vpls = keepRows(candidates, kept);
-  vpls.provenance = extendProvenance(candidates.provenance, "vpl-eliminate", describe(options),
-                                     {{"candidates", hashText(candidates.checksum)}});
+  vpls.provenance =
+      extendProvenance(candidates.provenance,
+                       stageRecord("vpl-eliminate", describe(options),
+                                   {{"candidates", hashText(candidates.checksum)}}));
   OutputSet files;
   writeVpl(files.add(output), vpls);
   addDepfile(files, tool.depfile, output, {input});

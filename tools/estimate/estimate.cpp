@@ -46,7 +46,7 @@ void addChecked(int64_t& sum, int64_t term) {
   }
 }
 
-struct VplSum {
+struct VplSum {  // without padding: it is saved as it lies
   std::array<int64_t, 3> flux{};
   int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
   // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of
@@ -76,11 +76,39 @@ enum Tally {
   kTallies
 };
 
-struct Sums {  // of one thread
+struct Sums {
   std::vector<VplSum> vpl;
   std::array<int64_t, kTallies> tally{};
   uint64_t hits = 0, rays = 0, guardRays = 0;
+
+  void add(const Sums& o) {
+    for (size_t i = 0; i < vpl.size(); ++i) vpl[i].add(o.vpl[i]);
+    for (size_t t = 0; t < kTallies; ++t) addChecked(tally[t], o.tally[t]);
+    hits += o.hits;
+    rays += o.rays;
+    guardRays += o.guardRays;
+  }
 };
+
+// What is done, for a checkpoint: the ranges of photons and their sums.
+std::string encode(const std::vector<uint8_t>& done, const Sums& sums) {
+  std::string bytes;
+  appendArray(bytes, done);
+  appendArray(bytes, sums.vpl);
+  appendArray(bytes, sums.tally);
+  appendArray(bytes, std::array{sums.hits, sums.rays, sums.guardRays});
+  return bytes;
+}
+
+void decode(std::string_view bytes, std::vector<uint8_t>& done, Sums& sums) {
+  takeArray(bytes, done);
+  takeArray(bytes, sums.vpl);
+  takeArray(bytes, sums.tally);
+  std::array<uint64_t, 3> counts{};
+  takeArray(bytes, counts);
+  requireAllTaken(bytes);
+  sums.hits = counts[0], sums.rays = counts[1], sums.guardRays = counts[2];
+}
 
 class Scatterer {
  public:
@@ -161,7 +189,8 @@ class Scatterer {
 
 Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
                   const PhotonShares& shares, const Scatterer& scatterer,
-                  const EstimateOptions& options, const ProgressFn& progress) {
+                  const EstimateOptions& options, const ProgressFn& progress,
+                  const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::Photons);
   const auto fresh = [&] {
     Sums s;
@@ -169,8 +198,7 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
     return s;
   };
   tbb::enumerable_thread_specific<Sums> perThread(fresh);
-  parallelRanges(shares.total(), kPhotonsPerRange, [&](size_t begin, size_t end) {
-    Sums& sums = perThread.local();
+  const auto trace = [&](uint64_t begin, uint64_t end, Sums& sums) {
     for (uint64_t photon = begin; photon < end; ++photon) {
       Rng rng(key, photon);
       const size_t light = shares.lightOf(photon);
@@ -185,17 +213,30 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
       scatterer.tally(sums, kAbsorbed, fate.absorbed);
       sums.rays += fate.rays;
     }
-    if (progress) progress(end - begin);
-  });
-  Sums total = fresh();
-  for (const Sums& s : perThread) {
-    for (size_t i = 0; i < total.vpl.size(); ++i) total.vpl[i].add(s.vpl[i]);
-    for (size_t t = 0; t < kTallies; ++t) addChecked(total.tally[t], s.tally[t]);
-    total.hits += s.hits;
-    total.rays += s.rays;
-    total.guardRays += s.guardRays;
+  };
+  std::vector<uint8_t> done((shares.total() + kPhotonsPerRange - 1) / kPhotonsPerRange);
+  Sums before = fresh();
+  if (!resume.state.empty()) decode(resume.state, done, before);
+  const auto photonsOf = [&](size_t range) {
+    return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
+  };
+  for (size_t range = 0; progress && range < done.size(); ++range) {
+    if (done[range]) progress(photonsOf(range));
   }
-  return total;
+  const auto soFar = [&] {
+    Sums total = before;
+    for (const Sums& s : perThread) total.add(s);
+    return total;
+  };
+  forUnitsLeft(
+      done, resume,
+      [&](size_t range) {
+        const uint64_t begin = range * kPhotonsPerRange, count = photonsOf(range);
+        trace(begin, begin + count, perThread.local());
+        if (progress) progress(count);
+      },
+      [&] { return encode(done, soFar()); });
+  return soFar();
 }
 
 void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
@@ -245,7 +286,8 @@ void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, cons
 }  // namespace
 
 EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
-                           const EstimateOptions& options, const ProgressFn& progress) {
+                           const EstimateOptions& options, const ProgressFn& progress,
+                           const Resume& resume) {
   const double power = double{mean(lights.totalPower())};
   if (!(power > 0.0)) {
     throw InputError(
@@ -253,7 +295,7 @@ EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet&
   }
   const PhotonShares shares(lights, options.photons);
   const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()));
-  const Sums sums = tracePhotons(vpls, rays, lights, shares, scatterer, options, progress);
+  const Sums sums = tracePhotons(vpls, rays, lights, shares, scatterer, options, progress, resume);
   fillTable(vpls, sums, scatterer);
   if (options.recentre) recentre(vpls, sums, scatterer, rays);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "core/resume.h"
 #include "formats/vpl_table.h"
 #include "scene/lights.h"
 #include "scene/ray_scene.h"
@@ -37,8 +38,10 @@ struct EnergyAccount {
 
 // Fills flux, photons and relativeError, and moves position and normal as options.recentre says, of
 // `vpls` (stage Eliminated) and makes it stage Lit. Flux is summed in 64-bit fixed point: any
-// number of threads gives the same bits. Throws InputError when no light has power.
+// number of threads, and any interruption that `resume` mends, gives the same bits. Throws
+// InputError when no light has power.
 EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
-                           const EstimateOptions& options, const ProgressFn& progress = {});
+                           const EstimateOptions& options, const ProgressFn& progress = {},
+                           const Resume& resume = {});
 
 }  // namespace bnvpl

@@ -4,13 +4,17 @@
 #include <cstdio>
 
 #include "formats/vpl_io.h"
+#include "tools/common/checkpoint.h"
 #include "tools/common/choice.h"
+#include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/scene_options.h"
 #include "tools/estimate/estimate.h"
 
 namespace bnvpl {
 namespace {
+
+constexpr double kBytesPerVpl = 1000;  // measured: 1200 and 64 a thread
 
 const Choices<Scatter> kScatters{{"guarded", Scatter::Guarded}, {"even", Scatter::Even}};
 
@@ -70,21 +74,26 @@ void report(const EnergyAccount& a, const VplTable& vpls, Summary& summary) {
 }
 
 int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const fs::path& output,
-                const EstimateOptions& options, const ToolOptions& tool) {
+                const EstimateOptions& options, const CheckpointOptions& checkpoints,
+                const ToolOptions& tool) {
   Summary summary("vpl-estimate");
   requireWritable({output, tool.stats, tool.depfile});
+  requireMemoryFor(input, kBytesPerVpl, "keep fewer with vpl-eliminate -n");
   VplTable vpls = readVpl(input, VplStage::Eliminated);
   const Scene scene = loadSceneFor("vpl-estimate", sceneOptions);
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);
 
+  const Json record =
+      stageRecord("vpl-estimate", describe(options),
+                  {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
+  Checkpoint checkpoint("vpl-estimate", checkpoints, record);
   ProgressMeter meter("photons", options.photons, tool.quiet);
-  const EnergyAccount account = estimateFlux(vpls, rays, lights, options, meter.callback());
+  const EnergyAccount account =
+      estimateFlux(vpls, rays, lights, options, meter.callback(), checkpoint.resume());
 
-  vpls.provenance =
-      extendProvenance(vpls.provenance, "vpl-estimate", describe(options),
-                       {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
+  vpls.provenance = extendProvenance(vpls.provenance, record);
   OutputSet files;
   writeVpl(files.add(output), vpls);
   std::vector<fs::path> read = scene.files;
@@ -92,6 +101,7 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
   addDepfile(files, tool.depfile, output, read);
   report(account, vpls, summary);
   summary.finish(tool, files);
+  checkpoint.remove();
   return kExitOk;
 }
 
@@ -121,8 +131,11 @@ int main(int argc, char** argv) {
       ->check(inRange(1, 1000))
       ->capture_default_str();
   cli.add_option("--seed", options.seed, "random seed")->capture_default_str();
+  CheckpointOptions checkpoints;
+  addCheckpointOptions(cli, checkpoints);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv,
-                 [&] { return runEstimate(scene, input, output, options, tool); });
+  return runTool(cli, tool, argc, argv, [&] {
+    return runEstimate(scene, input, output, options, checkpoints, tool);
+  });
 }

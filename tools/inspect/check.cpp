@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "formats/exr_io.h"
 #include "formats/vpl_io.h"
@@ -35,6 +36,16 @@ void refuseNan(const fs::path& file, const Image& image) {
   }
 }
 
+void refuseTampering(const fs::path& file, const Image& image) {
+  const auto found = image.attributes.find(kImageHashAttribute);
+  if (found == image.attributes.end() ||
+      found->second == hashText(hashImage(image, ExrPixelType::Float)))
+    return;
+  throw InputError(file,
+                   "pixels or history are not those that vpl-render wrote: another program changed "
+                   "them; rerun vpl-render");
+}
+
 // Every scene hash in the history must be the file's own.
 void settleScene(CheckedFile& checked) {
   for (const StageRecord& record : checked.chain) {
@@ -61,14 +72,33 @@ CheckedFile checkVpl(const fs::path& file) {
   return checked;
 }
 
+// " --size 640x480 --layers N,direct": layers are told by their channels, "direct.R" and so on.
+std::string renderOptions(const Image& image) {
+  std::string options =
+      " --size " + std::to_string(image.width) + "x" + std::to_string(image.height);
+  std::set<std::string> layers;
+  for (const ImageChannel& channel : image.channels) {
+    const std::string layer = channel.name.substr(0, channel.name.find('.'));
+    if (layer != "R" && layer != "G" && layer != "B") layers.insert(layer);
+  }
+  std::string separator = " --layers ";
+  for (const std::string& layer : layers) {
+    options += separator + layer;
+    separator = ",";
+  }
+  return options;
+}
+
 CheckedFile checkExr(const fs::path& file) {
   const Image image = readExr(file);
   refuseNan(file, image);
+  refuseTampering(file, image);
   CheckedFile checked;
   checked.file = file;
   checked.what = "OpenEXR, " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                  " pixels, " + std::to_string(image.channels.size()) + " channels";
   checked.chain = parseProvenance(file, provenanceOf(image));
+  checked.moreOptions = renderOptions(image);
   return checked;
 }
 

@@ -15,6 +15,7 @@ struct CheckedFile {
   std::optional<VplStage> stage;  // of a .vpl file
   std::string checksum;           // of a .vpl file, 16 hex digits
   std::string scene;              // content hash, 16 hex digits; empty where the file names none
+  std::string moreOptions;        // of an image: those of its command that no history tells
   std::vector<StageRecord> chain;
 };
 

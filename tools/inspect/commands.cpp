@@ -6,6 +6,7 @@
 #include "formats/vpl_io.h"
 #include "tools/common/film_size.h"
 #include "tools/common/standard_streams.h"
+#include "tools/inspect/chain.h"
 #include "tools/inspect/check.h"
 #include "tools/inspect/export_table.h"
 #include "tools/inspect/info.h"
@@ -24,6 +25,15 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   for (const fs::path& file : command.files) {
     checked.push_back(checkFile(file));
     if (!tool.quiet) print(file.string() + ": OK (" + checked.back().what + ")\n");
+  }
+  if (command.deep) {
+    std::string sceneHash;
+    if (!command.scene.file.empty())
+      sceneHash = hashText(loadSceneFor("vpl-inspect", command.scene).contentHash);
+    checkChain(checked, command.scene.file.empty() ? "SCENE" : command.scene.file.string(),
+               sceneHash);
+    if (!tool.quiet) print("one whole chain\n");
+    return kExitOk;
   }
   checkTogether(checked);
   if (!tool.quiet && checked.size() > 1) print("no contradiction between the files\n");

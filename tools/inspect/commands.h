@@ -14,6 +14,8 @@ struct InfoCommand {
 };
 struct CheckCommand {
   std::vector<fs::path> files;
+  bool deep = false;
+  SceneOptions scene;  // for deep; no file: its content is not asked for
 };
 struct ExportCommand {
   fs::path file, output;

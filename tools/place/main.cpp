@@ -2,12 +2,15 @@
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include "formats/vpl_io.h"
 #include "tools/common/choice.h"
+#include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/scene_options.h"
 #include "tools/place/place.h"
 
 namespace bnvpl {
 namespace {
+
+constexpr double kBytesPerRow = 40;  // measured: 42
 
 const Choices<PlaceMethod> kMethods{{"camera", PlaceMethod::Camera}, {"light", PlaceMethod::Light}};
 
@@ -25,6 +28,8 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
   Summary summary("vpl-place");
   requireWritable({output, tool.stats, tool.depfile});
   if (options.count > UINT32_MAX) throw UsageError("-n is above 2^32 - 1, the largest row number");
+  requireMemory(kBytesPerRow * double(options.count), std::to_string(options.count) + " VPLs",
+                "ask for fewer with -n");
   const Scene scene = loadSceneFor("vpl-place", sceneOptions);
   const RayScene rays(scene);
 
@@ -33,8 +38,8 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
                            ? placeFromCamera(rays, options, meter.callback())
                            : placeFromLights(rays, LightSet(rays), options, meter.callback());
 
-  placed.table.provenance = extendProvenance("", "vpl-place", describe(options),
-                                             {{"scene", hashText(scene.contentHash)}});
+  placed.table.provenance = extendProvenance(
+      "", stageRecord("vpl-place", describe(options), {{"scene", hashText(scene.contentHash)}}));
   OutputSet files;
   writeVpl(files.add(output), placed.table);
   addDepfile(files, tool.depfile, output, scene.files);

@@ -10,8 +10,9 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint32_t kTile = 8;          // pixels; a tile's samples meet the same surfaces
-constexpr uint32_t kSlotsAtOnce = 16;  // samples of each pixel that are held in memory together
+constexpr uint32_t kTile = 8;           // pixels; a tile's samples meet the same surfaces
+constexpr uint32_t kSlotsAtOnce = 16;   // samples of each pixel that are held in memory together
+constexpr uint32_t kSlotsPerPass = 64;  // over the whole image; work stops between tiles of a pass
 
 // Means over a pixel's samples, in the order of the channels below.
 struct Pixel {
@@ -55,6 +56,28 @@ void addSample(const RadianceSample& r, Pixel& pixel, PixelCounts& counts) {
   counts.shadowRays += r.shadowRays;
 }
 
+// What is done, for a checkpoint: the tiles of a pass, and the sums of all pixels.
+std::string encode(uint64_t pass, const std::vector<uint8_t>& done,
+                   const std::vector<Pixel>& pixels, const std::vector<PixelCounts>& counts) {
+  std::string bytes;
+  appendArray(bytes, std::array{pass});
+  appendArray(bytes, done);
+  appendArray(bytes, pixels);
+  appendArray(bytes, counts);
+  return bytes;
+}
+
+uint64_t decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<Pixel>& pixels,
+                std::vector<PixelCounts>& counts) {
+  std::array<uint64_t, 1> pass{};
+  takeArray(bytes, pass);
+  takeArray(bytes, done);
+  takeArray(bytes, pixels);
+  takeArray(bytes, counts);
+  requireAllTaken(bytes);
+  return pass[0];
+}
+
 // The pixels of one tile, row by row.
 struct Tile {
   uint32_t x0, y0, x1, y1;
@@ -78,12 +101,12 @@ CameraSample makeSample(const Scene& scene, uint64_t key, uint32_t spp, uint32_t
 }
 
 void renderTile(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                uint64_t key, const Tile& tile, std::vector<Pixel>& pixels,
-                std::vector<PixelCounts>& counts) {
+                uint64_t key, const Tile& tile, uint32_t firstSlot, uint32_t endSlot,
+                std::vector<Pixel>& pixels, std::vector<PixelCounts>& counts) {
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
-  for (uint32_t slot = 0; slot < options.spp; slot += kSlotsAtOnce) {
-    const uint32_t slotEnd = std::min(options.spp, slot + kSlotsAtOnce);
+  for (uint32_t slot = firstSlot; slot < endSlot; slot += kSlotsAtOnce) {
+    const uint32_t slotEnd = std::min(endSlot, slot + kSlotsAtOnce);
     samples.clear();
     for (uint32_t s = slot; s < slotEnd; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
@@ -134,7 +157,7 @@ void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmO
 }  // namespace
 
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 FilmStats& stats, const ProgressFn& progress) {
+                 FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint32_t width = scene.film.width, height = scene.film.height;
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
   Image image;
@@ -144,13 +167,36 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   std::vector<PixelCounts> counts(image.pixelCount());
 
   const size_t tilesX = (width + kTile - 1) / kTile, tilesY = (height + kTile - 1) / kTile;
-  parallelFor(tilesX * tilesY, 1, [&](size_t index) {
+  const auto tileOf = [&](size_t index) {
     const auto x0 = static_cast<uint32_t>(index % tilesX) * kTile,
                y0 = static_cast<uint32_t>(index / tilesX) * kTile;
-    const Tile tile{x0, y0, std::min(width, x0 + kTile), std::min(height, y0 + kTile)};
-    renderTile(scene, integrator, options, key, tile, pixels, counts);
-    if (progress) progress(tile.pixels());
-  });
+    return Tile{x0, y0, std::min(width, x0 + kTile), std::min(height, y0 + kTile)};
+  };
+  std::vector<uint8_t> done(tilesX * tilesY);
+  uint64_t pass = 0;
+  if (!resume.state.empty()) pass = decode(resume.state, done, pixels, counts);
+  const uint64_t passes = (uint64_t{options.spp} + kSlotsPerPass - 1) / kSlotsPerPass;
+  const auto slotsBefore = [&](uint64_t p) {
+    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * kSlotsPerPass));
+  };
+  if (progress) progress(image.pixelCount() * slotsBefore(pass));
+  for (; pass < passes; ++pass, std::fill(done.begin(), done.end(), 0)) {
+    const uint32_t begin = slotsBefore(pass), end = slotsBefore(pass + 1);
+    const auto report = [&](const Tile& tile) {
+      if (progress) progress(uint64_t{tile.pixels()} * (end - begin));
+    };
+    for (size_t index = 0; index < done.size(); ++index) {
+      if (done[index]) report(tileOf(index));
+    }
+    forUnitsLeft(
+        done, resume,
+        [&](size_t index) {
+          const Tile tile = tileOf(index);
+          renderTile(scene, integrator, options, key, tile, begin, end, pixels, counts);
+          report(tile);
+        },
+        [&] { return encode(pass, done, pixels, counts); });
+  }
 
   const double perSample = 1.0 / options.spp;
   addChannels(pixels, perSample, options, image);

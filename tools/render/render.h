@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/progress.h"
+#include "core/resume.h"
 #include "formats/image.h"
 #include "tools/render/integrators.h"
 
@@ -40,8 +41,8 @@ struct FilmStats {
 using Integrator = std::function<void(const TileSamples& tile)>;
 
 // Box filter, samples stratified in each pixel. A tile depends on the seed and its place only.
-// Progress counts pixels.
+// Progress counts samples; `resume` mends interruptions, and its state holds every pixel's sums.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 FilmStats& stats, const ProgressFn& progress = {});
+                 FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
 
 }  // namespace bnvpl

@@ -1,0 +1,57 @@
+#include "formats/checkpoint.h"
+
+#include <cstring>
+#include <fstream>
+
+#include "formats/atomic_file.h"
+#include "formats/vpl_layout.h"
+
+namespace bnvpl {
+namespace {
+
+uint64_t checksumOf(CheckpointHeader header, const std::string& run, const std::string& state) {
+  header.checksum = 0;
+  return hashPieces(
+      {bytesOf(header), std::as_bytes(std::span(run)), std::as_bytes(std::span(state))});
+}
+
+}  // namespace
+
+CheckpointFile readCheckpoint(const fs::path& file) {
+  const auto damaged = [&](const std::string& what) {
+    return InputError(file, what + "; delete it and start again");
+  };
+  std::ifstream in(file, std::ios::binary);
+  CheckpointHeader header;
+  if (!in) throw InputError(file, "cannot be read as a checkpoint; is it readable?");
+  std::error_code failed;
+  const uint64_t size = fs::file_size(file, failed);
+  if (failed || size < sizeof header) throw damaged("is no checkpoint");
+  in.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (header.magic != CheckpointHeader{}.magic) throw damaged("is no checkpoint");
+  if (header.version != CheckpointHeader{}.version)
+    throw damaged("is a checkpoint of another version");
+  const uint64_t rest = size - sizeof header;
+  if (header.runBytes > rest || header.stateBytes != rest - header.runBytes)
+    throw damaged("is cut short or damaged");
+  CheckpointFile found{std::string(header.runBytes, '\0'), std::string(header.stateBytes, '\0')};
+  in.read(found.run.data(), static_cast<std::streamsize>(found.run.size()));
+  in.read(found.state.data(), static_cast<std::streamsize>(found.state.size()));
+  if (!in || header.checksum != checksumOf(header, found.run, found.state))
+    throw damaged("is damaged (wrong checksum)");
+  return found;
+}
+
+void writeCheckpoint(const fs::path& file, const CheckpointFile& checkpoint) {
+  CheckpointHeader header;
+  header.runBytes = checkpoint.run.size();
+  header.stateBytes = checkpoint.state.size();
+  header.checksum = checksumOf(header, checkpoint.run, checkpoint.state);
+  AtomicFile out(file);
+  out.write(bytesOf(header));
+  out.write(checkpoint.run);
+  out.write(checkpoint.state);
+  out.commit();
+}
+
+}  // namespace bnvpl

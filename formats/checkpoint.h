@@ -1,0 +1,37 @@
+// What a stopped stage has done so far. The bytes, little-endian:
+//
+//     0  CheckpointHeader, 64 bytes
+//    64  run: UTF-8 JSON, which run the state belongs to
+//     .  state: the stage's own
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "core/errors.h"
+
+namespace bnvpl {
+
+struct CheckpointHeader {
+  std::array<char, 8> magic{'\x89', 'V', 'P', 'L', 'C', 'K', 'P', '\n'};
+  uint32_t version = 1;
+  uint32_t reserved0 = 0;
+  uint64_t runBytes = 0;
+  uint64_t stateBytes = 0;
+  uint64_t checksum = 0;  // XXH3-64 of the whole file with this field taken as zero
+  std::array<char, 24> reserved{};
+};
+static_assert(sizeof(CheckpointHeader) == 64);
+
+struct CheckpointFile {
+  std::string run, state;
+};
+
+// Throws InputError when the file cannot be read or is damaged, cut short or of another version.
+CheckpointFile readCheckpoint(const fs::path& file);
+
+// Replaces `file` atomically. Throws OutputError; the old file then stays.
+void writeCheckpoint(const fs::path& file, const CheckpointFile& checkpoint);
+
+}  // namespace bnvpl

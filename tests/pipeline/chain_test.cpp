@@ -1,0 +1,64 @@
+// vpl-inspect check --deep on what the stages really write.
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+class Chain : public PipelineTest {
+ protected:
+  void SetUp() override {
+    makeStages(scene_);
+    succeed("vpl-render", scene_ + " " + path("lit.vpl") + " -o " + path("image.exr") +
+                              " --size 24x16 --spp 2 --layers N,direct --near-field off");
+  }
+  std::string all() const {
+    return "check --deep " + path("candidates.vpl") + " " + path("vpls.vpl") + " " +
+           path("lit.vpl") + " " + path("image.exr");
+  }
+};
+
+TEST_F(Chain, AWholeOnePasses) {
+  const Outcome r = tool("vpl-inspect", all() + " --scene " + scene_);
+  EXPECT_EQ(r.code, kExitOk) << r.err;
+  EXPECT_TRUE(contains(r.out, "one whole chain")) << r.out;
+}
+
+// The message's commands, run as they are, make it whole, and change nothing that was right.
+TEST_F(Chain, TheCommandsOfTheMessageMendIt) {
+  const std::string image = readAll(at("image.exr"));
+  succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300 --seed 2");
+  Outcome r = tool("vpl-inspect", all() + " --quiet --scene " + scene_);
+  EXPECT_EQ(r.code, kExitInput);
+  const size_t run = r.err.find("; run: ");
+  ASSERT_NE(run, std::string::npos) << r.err;
+  const std::string commands = r.err.substr(run + 7);
+  EXPECT_TRUE(contains(commands, "vpl-eliminate ")) << commands;
+  write("mend.sh", "PATH='" BNVPL_BIN "':$PATH\n" + commands);
+  r = shell("bash -e " + path("mend.sh"));
+  ASSERT_EQ(r.code, 0) << commands << r.err;
+  EXPECT_EQ(tool("vpl-inspect", all() + " --scene " + scene_).code, kExitOk);
+  EXPECT_NE(readAll(at("image.exr")), image);
+  // Back to the first candidates, everything else again by the same commands: the first image.
+  succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300");
+  ASSERT_EQ(shell("bash -e " + path("mend.sh")).code, 0);
+  EXPECT_EQ(readAll(at("image.exr")), image);
+}
+
+TEST_F(Chain, AnotherSceneAGapAndATwinAreRefused) {
+  fail("vpl-inspect",
+       all() + " --quiet --scene " + "'" BNVPL_SOURCE "/scenes/veach-door/scene.toml'", kExitInput,
+       {"candidates.vpl: made from scene", "; run: vpl-place "});
+  fail("vpl-inspect", "check --deep --quiet " + path("candidates.vpl") + " " + path("lit.vpl"),
+       kExitInput, {"lit.vpl: was made from vpls ", "not among the files"});
+  fail("vpl-inspect",
+       "check --deep --quiet " + path("candidates.vpl") + " " + path("candidates.vpl"), kExitInput,
+       {"same stage"});
+}
+
+TEST_F(Chain, APathTracedImageIsAChainOfItsOwn) {
+  succeed("vpl-render", scene_ + " --integrator path -o " + path("p.exr") + " --size 8x8 --spp 1");
+  succeed("vpl-inspect", "check --deep --quiet " + path("p.exr"));
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,55 @@
+// Requests that no memory could serve are refused at once, with an estimate.
+#include <fstream>
+
+#include "formats/vpl_layout.h"
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+constexpr const char* kFourGib = "ulimit -v 4194304;";
+
+class Memory : public PipelineTest {
+ protected:
+  // Header and directory of a file of a thousand million rows, the rest a hole.
+  void writeHuge(const std::string& name, VplStage stage) const {
+    VplHeader header;
+    header.stage = stage;
+    header.count = 1000000000;
+    header.provenanceBytes = 2;
+    const VplLayout layout = makeLayout(stage, header.count, header.provenanceBytes);
+    header.fileBytes = layout.fileBytes;
+    header.columnCount = static_cast<uint32_t>(layout.directory.size());
+    std::ofstream out(at(name), std::ios::binary);
+    out.write(reinterpret_cast<const char*>(&header), sizeof header);
+    const Bytes directory = std::as_bytes(std::span(layout.directory));
+    out.write(reinterpret_cast<const char*>(directory.data()),
+              static_cast<std::streamsize>(directory.size()));
+    out.close();
+    fs::resize_file(at(name), layout.fileBytes);
+  }
+};
+
+TEST_F(Memory, CountsAndFilms) {
+  fail("vpl-place", scene_ + " -o " + path("x.vpl") + " -n 4G", kExitMemory,
+       {"4000000000 VPLs needs about 149 GiB", "are available", "with -n"}, kFourGib);
+  fail("vpl-render",
+       scene_ + " --integrator path -o " + path("x.exr") + " --size 16384x16384 --spp 1",
+       kExitMemory, {"16384x16384 pixels needs about 45 GiB", "--size"}, kFourGib);
+  EXPECT_EQ(listing(), std::vector<std::string>{});
+}
+
+TEST_F(Memory, Files) {
+  writeHuge("c.vpl", VplStage::Candidates);
+  writeHuge("v.vpl", VplStage::Eliminated);
+  writeHuge("l.vpl", VplStage::Lit);
+  fail("vpl-eliminate", path("c.vpl") + " -o " + path("x") + " -n 10", kExitMemory,
+       {"c.vpl: work on its 1000000000 rows needs about 112 GiB", "vpl-place -n"}, kFourGib);
+  fail("vpl-estimate", scene_ + " " + path("v.vpl") + " -o " + path("x"), kExitMemory,
+       {"v.vpl", "vpl-eliminate -n"}, kFourGib);
+  fail("vpl-render", scene_ + " " + path("l.vpl") + " -o " + path("x"), kExitMemory,
+       {"l.vpl", "vpl-eliminate -n"}, kFourGib);
+}
+
+}  // namespace
+}  // namespace bnvpl

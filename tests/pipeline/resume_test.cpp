@@ -1,0 +1,94 @@
+// --checkpoint: stages that are stopped and continued.
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+class ResumeRun : public PipelineTest {
+ protected:
+  // Stops the command with SIGINT, first early and then ever later, and starts it again until it
+  // ends by itself. Returns how often it was stopped.
+  int runInPieces(const std::string& name, const std::string& arguments) const {
+    double seconds = 0.2;
+    for (int stopped = 0; stopped < 30; ++stopped, seconds *= 1.3) {
+      const Outcome r =
+          shell("timeout --foreground -s INT " + std::to_string(seconds) + " '" BNVPL_BIN "/" +
+                name + "' " + arguments + " --quiet --checkpoint " + path("work.checkpoint"));
+      if (r.code == kExitOk) return stopped;
+      EXPECT_EQ(r.code, 124) << r.err;          // what `timeout` says of a command that it stopped
+      if (fs::exists(at("work.checkpoint"))) {  // else stopped before it had begun
+        EXPECT_TRUE(contains(r.err, "same command goes on from")) << r.err;
+      }
+    }
+    ADD_FAILURE() << name << " did not end";
+    return 0;
+  }
+};
+
+TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 3M";
+  const std::string render =
+      scene_ + " " + path("lit.vpl") + " --size 64x48 --spp 160 --layers all";
+  succeed("vpl-estimate", estimate + " -o " + path("whole.vpl"));
+  EXPECT_GE(runInPieces("vpl-estimate", estimate + " -o " + path("pieces.vpl")), 1);
+  EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
+  succeed("vpl-render", render + " -o " + path("whole.exr"));
+  EXPECT_GE(runInPieces("vpl-render", render + " -o " + path("pieces.exr")), 1);
+  EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
+  EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to go on from
+}
+
+TEST_F(ResumeRun, SavingAllTheTimeGivesTheSameBytes) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 200k -o ";
+  succeed("vpl-estimate", estimate + path("a.vpl"));
+  succeed("vpl-estimate", estimate + path("b.vpl") + " --checkpoint-every 0 --checkpoint " +
+                              path("work.checkpoint"));
+  EXPECT_EQ(readAll(at("a.vpl")), readAll(at("b.vpl")));
+}
+
+TEST_F(ResumeRun, CheckpointsOfOtherRunsAndDamagedOnesAreRefused) {
+  makeStages(scene_);
+  const std::string estimate =
+      scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl") + " --checkpoint " + path("c");
+  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate +
+        " --photons 1G --quiet");
+  ASSERT_TRUE(fs::exists(at("c")));
+  const std::string bytes = readAll(at("c"));
+  fail("vpl-estimate", estimate + " --photons 2G", kExitInput,
+       {"/c:", "another run", "photons was 1000000000 and is now 2000000000"});
+  fail("vpl-estimate", estimate + " --photons 1G --seed 3", kExitInput,
+       {"seed was 1 and is now 3"});
+  fail("vpl-render",
+       scene_ + " " + path("lit.vpl") + " -o " + path("x.exr") + " --checkpoint " + path("c"),
+       kExitInput, {"another run", "vpl-estimate"});
+  succeed("vpl-eliminate", path("candidates.vpl") + " -o " + path("vpls.vpl") + " -n 61");
+  fail("vpl-estimate", estimate + " --photons 1G", kExitInput, {"inputs vpls was"});
+  for (const size_t length : {size_t{0}, size_t{30}, size_t{64}, bytes.size() - 1}) {
+    write("c", bytes.substr(0, length));
+    fail("vpl-estimate", estimate + " --photons 1G", kExitInput, {"/c:", "delete it"});
+  }
+  for (const size_t at : {size_t{0}, size_t{9}, size_t{70}, bytes.size() / 2}) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    write("c", damaged);
+    fail("vpl-estimate", estimate + " --photons 1G", kExitInput, {"/c:", "delete it"});
+  }
+  EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+TEST_F(ResumeRun, AnotherViewIsAnotherRun) {
+  const std::string scene = copyVeachDoor();
+  const std::string render =
+      scene + " --integrator path --spp 1M -o " + path("x.exr") + " --checkpoint " + path("c");
+  shell("timeout --foreground -s INT 3 '" BNVPL_BIN "/vpl-render' " + render + " --quiet");
+  ASSERT_TRUE(fs::exists(at("c")));
+  std::string toml = readAll(at("veach-door/scene.toml"));
+  toml.replace(toml.find("width = 48"), 10, "width = 32");
+  write("veach-door/scene.toml", toml);
+  fail("vpl-render", render, kExitInput, {"another run", "view size was \"48x27\""});
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,86 @@
+#include "tools/common/checkpoint.h"
+
+#include <chrono>
+
+#include "formats/checkpoint.h"
+
+namespace bnvpl {
+namespace {
+
+double nowS() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The first thing in which two runs differ: "options photons: 10000000, now 5000000".
+std::string difference(const Json& before, const Json& now, const std::string& path) {
+  if (!before.is_object() || !now.is_object())
+    return path + " was " + before.dump() + " and is now " + now.dump();
+  const auto differing = [&](const std::string& key) {
+    return before.value(key, Json()) != now.value(key, Json());
+  };
+  const auto describe = [&](const std::string& key) {
+    return difference(before.value(key, Json()), now.value(key, Json()),
+                      path.empty() ? key : path + " " + key);
+  };
+  for (const auto& [key, value] : now.items()) {
+    if (differing(key)) return describe(key);
+  }
+  for (const auto& [key, value] : before.items()) {
+    if (differing(key)) return describe(key);
+  }
+  return path;
+}
+
+}  // namespace
+
+void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
+  cli.add_option(
+      "--checkpoint", options.file,
+      "save the work to this file now and then, and go on from it where it exists; it is "
+      "removed when the output is written");
+  cli.add_option("--checkpoint-every", options.everyS, "seconds between two savings")
+      ->check(inRange(0.0, 1e6))
+      ->capture_default_str();
+}
+
+Checkpoint::Checkpoint(std::string tool, CheckpointOptions options, Json run)
+    : tool_(std::move(tool)),
+      options_(std::move(options)),
+      run_(std::move(run)),
+      nextS_(nowS() + options_.everyS) {
+  if (options_.file.empty()) return;
+  requireWritable({options_.file});
+  if (!fs::exists(options_.file)) return;
+  CheckpointFile found = readCheckpoint(options_.file);
+  const Json theirs = Json::parse(found.run, nullptr, /*allow_exceptions=*/false);
+  if (theirs != run_) {
+    throw InputError(options_.file, "is the checkpoint of another run (" +
+                                        difference(theirs, run_, "") +
+                                        "); repeat that run's command, or name another file");
+  }
+  earlier_ = std::move(found.state);
+}
+
+Resume Checkpoint::resume() {
+  if (options_.file.empty()) return {};
+  defer_.emplace();
+  return {std::move(earlier_), [this] { return due(); },
+          [this](const std::string& state) { save(state); }};
+}
+
+bool Checkpoint::due() const { return interrupted() || nowS() >= nextS_; }
+
+void Checkpoint::save(const std::string& state) {
+  const bool last = interrupted();
+  writeCheckpoint(options_.file, {run_.dump(), state});
+  if (last) throw Interrupted("the same command goes on from " + options_.file.string());
+  nextS_ = nowS() + options_.everyS;
+}
+
+void Checkpoint::remove() {
+  std::error_code ignored;
+  if (!options_.file.empty()) fs::remove(options_.file, ignored);
+  defer_.reset();
+}
+
+}  // namespace bnvpl

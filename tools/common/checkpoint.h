@@ -1,0 +1,46 @@
+// --checkpoint FILE: a long stage can be stopped and continued, with the same bytes in the end.
+#pragma once
+
+#include <optional>
+
+#include "core/resume.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/run_tool.h"
+
+namespace bnvpl {
+
+struct CheckpointOptions {
+  fs::path file;  // empty: none
+  double everyS = 60.0;
+};
+
+// --checkpoint and --checkpoint-every. They do not change what is computed.
+void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options);
+
+class Checkpoint {
+ public:
+  // `run` names everything that decides the result: tool, version, options, inputs. Reads the file
+  // where there is one. Throws InputError when it is damaged or belongs to another run, OutputError
+  // when it could not be written later.
+  Checkpoint(std::string tool, CheckpointOptions options, Json run);
+
+  // For the stage: what was done before; pauses every so often, and when the user interrupts, which
+  // throws Interrupted once the work is saved. Without --checkpoint: nothing. Must not outlive
+  // this.
+  Resume resume();
+
+  void remove();  // once the output stands; interruptions are no longer deferred
+
+ private:
+  bool due() const;
+  void save(const std::string& state);
+
+  std::string tool_;
+  CheckpointOptions options_;
+  Json run_;
+  std::string earlier_;
+  double nextS_;
+  std::optional<DeferInterrupts> defer_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,166 @@
+#include "tools/inspect/chain.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <unordered_map>
+
+#include "formats/vpl_io.h"
+
+namespace bnvpl {
+namespace {
+
+using Links = std::vector<const CheckedFile*>;  // by length of history
+
+bool sameRecord(const StageRecord& a, const StageRecord& b) {
+  return a.tool == b.tool && a.version == b.version && a.options == b.options &&
+         a.inputs == b.inputs;
+}
+
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) ||
+           std::string_view("-_./+=:,%@").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (plain) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string optionText(const Json& value) {
+  if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
+  if (value.is_string()) return quoted(value.get<std::string>());
+  if (!value.is_number_float()) return value.dump();
+  char text[32];  // options are floats: the shortest text that gives this one back
+  const auto end = std::to_chars(text, text + sizeof text, value.get<float>());
+  return {text, end.ptr};
+}
+
+bool readsScene(const StageRecord& record) { return record.inputs.count("scene") > 0; }
+
+// From link `first` on, each stage on its predecessor's output.
+std::string mending(const Links& links, size_t first, const std::string& scene) {
+  std::string commands;
+  for (size_t i = first; i < links.size(); ++i) {
+    if (links[i]->chain.empty()) continue;
+    const StageRecord& record = links[i]->chain.back();
+    std::vector<std::string> inputs;
+    if (readsScene(record)) inputs.push_back(scene);
+    if (i > 0) inputs.push_back(links[i - 1]->file.string());
+    commands += (commands.empty() ? "" : " && ") + commandOf(record, inputs, links[i]->file) +
+                links[i]->moreOptions;
+  }
+  return commands;
+}
+
+void requireOneOfEachStage(const Links& links) {
+  for (size_t i = 1; i < links.size(); ++i) {
+    if (links[i]->chain.size() == links[i - 1]->chain.size())
+      throw InputError(links[i]->file, "is of the same stage as " + links[i - 1]->file.string() +
+                                           "; name the files of one chain");
+  }
+}
+
+// Candidates that no earlier file made have one record; whatever has more was made from a file.
+void requireNoGap(const Links& links) {
+  size_t before = 0;
+  for (const CheckedFile* link : links) {
+    if (link->chain.empty())
+      throw InputError(link->file, "has no history; make it again with the tools");
+    if (link->chain.size() != before + 1) {
+      std::string missing = "its input";
+      for (const auto& [name, checksum] : link->chain.back().inputs) {
+        if (name != "scene") missing = name + " " + checksum;
+      }
+      throw InputError(link->file,
+                       "was made from " + missing +
+                           ", which is not among the files; name that file too, or make the "
+                           "chain again from vpl-place");
+    }
+    before = link->chain.size();
+  }
+}
+
+// What is wrong between two neighbours by their histories, or empty.
+std::string brokenHistory(const CheckedFile& earlier, const CheckedFile& later) {
+  const StageRecord& record = later.chain.back();
+  for (const auto& [name, checksum] : record.inputs) {
+    if (name != "scene" && checksum != earlier.checksum)
+      return record.tool + " read " + name + " " + checksum + ", but " + earlier.file.string() +
+             " is " + earlier.checksum;
+  }
+  if (!std::equal(earlier.chain.begin(), earlier.chain.end(), later.chain.begin(), sameRecord))
+    return "its history does not continue that of " + earlier.file.string();
+  return {};
+}
+
+std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
+  if (!earlier.stage || !later.stage) return {};
+  const VplTable from = readVpl(earlier.file), to = readVpl(later.file);
+  const bool kept = to.stage == VplStage::Eliminated;
+  if (!kept && to.size() != from.size())
+    return "has " + std::to_string(to.size()) + " rows, " + earlier.file.string() + " " +
+           std::to_string(from.size());
+  std::unordered_map<uint32_t, size_t> rowOf;
+  for (size_t row = 0; kept && row < from.size(); ++row) rowOf[from.id[row]] = row;
+  for (size_t row = 0; row < to.size(); ++row) {
+    const auto found = rowOf.find(to.id[row]);
+    const size_t source = kept ? (found == rowOf.end() ? from.size() : found->second) : row;
+    const bool same =
+        source < from.size() && to.id[row] == from.id[source] &&
+        to.albedo[row] == from.albedo[source] &&
+        (kept ? to.position[row] == from.position[source] && to.normal[row] == from.normal[source]
+              : to.radius[row] == from.radius[source] &&
+                    double{length(to.position[row] - from.position[source])} <=
+                        to.reach * double{to.radius[row]});
+    if (!same)
+      return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +
+             ") is not that of " + earlier.file.string();
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string commandOf(const StageRecord& record, const std::vector<std::string>& inputs,
+                      const fs::path& output) {
+  std::string command = record.tool;
+  for (const std::string& input : inputs) command += " " + quoted(input);
+  command += " -o " + quoted(output.string());
+  for (const auto& [name, value] : record.options.items()) {
+    command += " --" + name + " " + optionText(value);
+  }
+  return command;
+}
+
+void checkChain(std::span<const CheckedFile> files, const std::string& scene,
+                const std::string& sceneHash) {
+  Links links;
+  for (const CheckedFile& f : files) links.push_back(&f);
+  std::stable_sort(links.begin(), links.end(), [](const CheckedFile* a, const CheckedFile* b) {
+    return a->chain.size() < b->chain.size();
+  });
+  requireOneOfEachStage(links);
+  requireNoGap(links);
+  const std::string& version = links.front()->chain.front().version;
+  for (size_t i = 0; i < links.size(); ++i) {
+    const CheckedFile& link = *links[i];
+    std::string broken;
+    size_t first = i;  // to make again
+    if (!sceneHash.empty() && link.scene != sceneHash) {
+      broken = "made from scene " + link.scene + ", but " + scene + " is " + sceneHash;
+      first = 0;
+    } else if (i > 0) {
+      broken = brokenHistory(*links[i - 1], link);
+      if (broken.empty()) broken = brokenRows(*links[i - 1], link);
+    }
+    if (broken.empty() && link.chain.back().version != version)
+      broken =
+          "made by version " + link.chain.back().version + ", the files before it by " + version;
+    if (!broken.empty())
+      throw InputError(link.file, broken + "; run: " + mending(links, first, scene));
+  }
+}
+
+}  // namespace bnvpl
