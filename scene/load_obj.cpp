@@ -4,11 +4,13 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
 #define TINYOBJLOADER_IMPLEMENTATION
+#define TINYOBJLOADER_USE_DOUBLE
 #include <tiny_obj_loader.h>
 #pragma GCC diagnostic pop
 
@@ -22,7 +24,18 @@ namespace {
 // Above this Phong exponent a Ks without Kd is a perfect mirror (roughness below 0.015).
 constexpr float kMirrorExponent = 1e4f;
 
-Vec3 toVec3(const tinyobj::real_t* v) { return {v[0], v[1], v[2]}; }
+// Phong exponents above this are taken for it: floats hold no narrower lobe.
+constexpr float kMostExponent = 1e6f;
+constexpr double kMostIor = 100.0;
+// Distance from the origin, in sizes of the scene, above which coordinates count from the scene.
+// Below, floats resolve a millionth of its size, and files keep the coordinates of their OBJs.
+constexpr double kFarAway = 16.0;
+
+Point toPoint(const tinyobj::real_t* v) { return {v[0], v[1], v[2]}; }
+Vec3 toVec3(const tinyobj::real_t* v) { return fromOrigin(toPoint(v), {}); }
+bool isFinite(const Point& p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
 
 Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
 
@@ -58,6 +71,23 @@ class LibraryReader : public tinyobj::MaterialReader {
   fs::path folder_, override_;
 };
 
+// The vertices, by number, that are not given by numbers: tinyobj reads a word such as nan as 0.
+std::vector<size_t> verticesOfWords(std::string_view obj) {
+  std::vector<size_t> found;
+  size_t vertex = 0;
+  for (size_t begin = 0; begin < obj.size();) {
+    const size_t end = std::min(obj.find_first_of("\r\n", begin), obj.size());
+    std::string_view line = obj.substr(begin, end - begin);
+    begin = end + 1;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.size() < 2 || line[0] != 'v' || (line[1] != ' ' && line[1] != '\t')) continue;
+    line = line.substr(1, line.find('#') - 1);
+    if (line.find_first_not_of("0123456789+-.eE \t") != line.npos) found.push_back(vertex);
+    ++vertex;
+  }
+  return found;
+}
+
 std::string firstLine(std::string text) {
   text = text.substr(0, text.find('\n'));
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
@@ -66,40 +96,64 @@ std::string firstLine(std::string text) {
 
 }  // namespace
 
-Vec3 Affine::point(Vec3 p) const {
-  Vec3 q;
-  for (size_t i = 0; i < 3; ++i) q[i] = m[i][0] * p.x + m[i][1] * p.y + m[i][2] * p.z + m[i][3];
+Point Affine::point(const Point& p) const {
+  Point q;
+  for (size_t i = 0; i < 3; ++i) q[i] = m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2] + m[i][3];
   return q;
 }
 
-Vec3 Affine::normal(Vec3 n) const {
-  const Vec3 r0{m[0][0], m[0][1], m[0][2]}, r1{m[1][0], m[1][1], m[1][2]},
-      r2{m[2][0], m[2][1], m[2][2]};
+Vec3 Affine::normal(const Point& n) const {
   // The cofactor matrix is the inverse transpose but for the determinant, whose sign matters.
-  const Vec3 q{dot(cross(r1, r2), n), dot(cross(r2, r0), n), dot(cross(r0, r1), n)};
-  const float len = length(q);
-  return len > 0.0f ? q * ((determinant() < 0.0f ? -1.0f : 1.0f) / len) : n;
+  Point q{};
+  for (size_t i = 0; i < 3; ++i) {
+    const auto &a = m[(i + 1) % 3], &b = m[(i + 2) % 3];
+    q[i] = (a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1] +
+           (a[0] * b[1] - a[1] * b[0]) * n[2];
+  }
+  const double length = std::hypot(q[0], q[1], q[2]);
+  if (!(length > 0.0) || !std::isfinite(length)) return {};
+  const double perLength = (determinant() < 0.0 ? -1.0 : 1.0) / length;
+  return fromOrigin({q[0] * perLength, q[1] * perLength, q[2] * perLength}, {});
 }
 
-float Affine::determinant() const {
-  const Vec3 r0{m[0][0], m[0][1], m[0][2]}, r1{m[1][0], m[1][1], m[1][2]},
-      r2{m[2][0], m[2][1], m[2][2]};
-  return dot(r0, cross(r1, r2));
+double Affine::determinant() const {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
+         m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-Affine Affine::fromParts(Vec3 translate, Vec3 rotateRad, Vec3 scale) {
-  const float cx = std::cos(rotateRad.x), sx = std::sin(rotateRad.x);
-  const float cy = std::cos(rotateRad.y), sy = std::sin(rotateRad.y);
-  const float cz = std::cos(rotateRad.z), sz = std::sin(rotateRad.z);
-  const float r[3][3] = {{cy * cz, sx * sy * cz - cx * sz, cx * sy * cz + sx * sz},
-                         {cy * sz, sx * sy * sz + cx * cz, cx * sy * sz - sx * cz},
-                         {-sy, sx * cy, cx * cy}};
+Affine Affine::fromParts(const Point& translate, const Point& rotateRad, const Point& scale) {
+  const double cx = std::cos(rotateRad[0]), sx = std::sin(rotateRad[0]);
+  const double cy = std::cos(rotateRad[1]), sy = std::sin(rotateRad[1]);
+  const double cz = std::cos(rotateRad[2]), sz = std::sin(rotateRad[2]);
+  const double r[3][3] = {{cy * cz, sx * sy * cz - cx * sz, cx * sy * cz + sx * sz},
+                          {cy * sz, sx * sy * sz + cx * cz, cx * sy * sz - sx * cz},
+                          {-sy, sx * cy, cx * cy}};
   Affine a;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = 0; j < 3; ++j) a.m[i][j] = r[i][j] * scale[j];
     a.m[i][3] = translate[i];
   }
   return a;
+}
+
+Point sceneOrigin(const Point& lower, const Point& upper) {
+  double size2 = 0.0, furthest = 0.0;
+  for (size_t i = 0; i < 3; ++i) {
+    size2 += (upper[i] - lower[i]) * (upper[i] - lower[i]);
+    furthest = std::max({furthest, std::fabs(lower[i]), std::fabs(upper[i])});
+  }
+  const double size = std::sqrt(size2);
+  if (!(furthest > kFarAway * size) || !(size > 0.0)) return {};
+  const double step = std::exp2(std::ceil(std::log2(size)));  // round numbers, for messages
+  Point origin;
+  for (size_t i = 0; i < 3; ++i) origin[i] = std::round(0.5 * (lower[i] + upper[i]) / step) * step;
+  return origin;
+}
+
+Vec3 fromOrigin(const Point& p, const Point& origin) {
+  return {static_cast<float>(p[0] - origin[0]), static_cast<float>(p[1] - origin[1]),
+          static_cast<float>(p[2] - origin[2])};
 }
 
 struct ObjLoader::Parsed {
@@ -182,7 +236,8 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, co
   m.name = in.name;
   m.diffuse = nonNegative(toVec3(in.diffuse));
   const Vec3 ks = nonNegative(toVec3(in.specular));
-  m.exponent = std::isfinite(in.shininess) ? std::max(0.0f, in.shininess) : 0.0f;
+  const auto exponent = static_cast<float>(in.shininess);
+  m.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMostExponent) : 0.0f;
   m.emission = nonNegative(toVec3(in.emission));
   const int illum = in.illum;
   m.glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
@@ -191,13 +246,14 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, co
   if (m.glass) {
     m.diffuse = {};
     m.mirror = isBlack(ks) ? Vec3{1, 1, 1} : min(ks, Vec3{1, 1, 1});
-    m.ior = in.ior >= 1.0f && std::isfinite(in.ior) ? in.ior : 1.5f;
-    if (m.ior != in.ior) warn(where + "Ni is not a refractive index of at least 1; 1.5 is used");
+    const bool index = in.ior >= 1.0 && in.ior <= kMostIor;
+    m.ior = index ? static_cast<float>(in.ior) : 1.5f;
+    if (!index) warn(where + "Ni is not a refractive index of at least 1; 1.5 is used");
     const Vec3 tf = nonNegative(toVec3(in.transmittance));
     m.transmission = isBlack(tf) ? Vec3{1, 1, 1} : min(tf, Vec3{1, 1, 1});
   } else {
     (mirror ? m.mirror : m.glossy) = ks;
-    m.opacity = std::isfinite(in.dissolve) ? in.dissolve : 1.0f;
+    m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
   }
   const float limit = maxComponent(m.diffuse + m.glossy + (m.glass ? Vec3{} : m.mirror));
   const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
@@ -212,7 +268,8 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, co
   }
   const auto map = [&](const std::string& name, const tinyobj::texture_option_t& o, bool srgb,
                        bool mask) {
-    return texture(folder, obj.parent_path(), name, srgb, mask, o.scale, o.origin_offset);
+    const Vec3 scale = toVec3(o.scale), offset = toVec3(o.origin_offset);
+    return texture(folder, obj.parent_path(), name, srgb, mask, &scale.x, &offset.x);
   };
   if (!m.glass) {
     m.diffuseMap = map(in.diffuse_texname, in.diffuse_texopt, true, false);
@@ -242,20 +299,19 @@ uint32_t ObjLoader::fallbackMaterial(const fs::path& obj) {
 }
 
 void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform) {
-  const auto base = std::array{scene_.positions.size(), scene_.normals.size(), scene_.uvs.size()};
+  const auto base = std::array{points_.size(), scene_.normals.size(), scene_.uvs.size()};
   const auto& a = parsed.attrib;
   const size_t counts[3] = {a.vertices.size() / 3, a.normals.size() / 3, a.texcoords.size() / 2};
   for (size_t i = 0; i < counts[0]; ++i)
-    scene_.positions.push_back(transform.point(toVec3(&a.vertices[3 * i])));
-  for (size_t i = 0; i < counts[1]; ++i) {
-    const Vec3 n = toVec3(&a.normals[3 * i]);
-    scene_.normals.push_back(lengthSquared(n) > 0 && isFinite(n) ? transform.normal(n) : Vec3{});
-  }
+    points_.push_back(transform.point(toPoint(&a.vertices[3 * i])));
+  for (size_t i = 0; i < counts[1]; ++i)
+    scene_.normals.push_back(transform.normal(toPoint(&a.normals[3 * i])));
   for (size_t i = 0; i < counts[2]; ++i)
-    scene_.uvs.push_back({a.texcoords[2 * i], a.texcoords[2 * i + 1]});
+    scene_.uvs.push_back(
+        {static_cast<float>(a.texcoords[2 * i]), static_cast<float>(a.texcoords[2 * i + 1])});
 
-  const bool mirrored = transform.determinant() < 0.0f;
-  size_t degenerate = 0, damaged = 0;
+  const bool mirrored = transform.determinant() < 0.0;
+  size_t damaged = 0;
   const auto resolve = [&](int index, size_t which) {
     const bool valid = index >= 0 && static_cast<size_t>(index) < counts[which];
     return valid ? static_cast<uint32_t>(base[which] + static_cast<size_t>(index)) : kNone;
@@ -273,19 +329,9 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
         t.uv[k] = resolve(i.texcoord_index, 2);
         if (t.normal[k] != kNone && isBlack(scene_.normals[t.normal[k]])) t.normal[k] = kNone;
       }
-      if (t.position[0] == kNone || t.position[1] == kNone || t.position[2] == kNone) {
+      const auto usable = [&](uint32_t p) { return p != kNone && isFinite(points_[p]); };
+      if (!std::all_of(t.position.begin(), t.position.end(), usable)) {
         ++damaged;
-        continue;
-      }
-      const Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
-                 p2 = scene_.positions[t.position[2]];
-      const float doubleArea = length(cross(p1 - p0, p2 - p0));
-      if (!isFinite(p0) || !isFinite(p1) || !isFinite(p2)) {
-        ++damaged;
-        continue;
-      }
-      if (!(doubleArea > 0.0f) || !std::isfinite(doubleArea)) {
-        ++degenerate;
         continue;
       }
       const int id = mesh.material_ids[f];
@@ -305,12 +351,11 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
       scene_.triangles.push_back(t);
     }
   }
-  if (degenerate > 0)
-    warn(obj.string() + ": " + std::to_string(degenerate) + " triangles without area are left out");
   if (damaged > 0) {
     warn(obj.string() + ": " + std::to_string(damaged) +
          " triangles with missing or non-finite vertices are left out");
   }
+  parts_.push_back({obj, scene_.triangles.size()});
 }
 
 void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affine& transform) {
@@ -333,6 +378,7 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   Parsed parsed;
   std::vector<tinyobj::material_t> source;
   std::string warnings, errors;
+  const std::vector<size_t> words = verticesOfWords(in.view());
   LibraryReader reader(obj.parent_path(), materials);
   const bool ok =
       tinyobj::LoadObj(&parsed.attrib, &parsed.shapes, &source, &warnings, &errors, &in, &reader,
@@ -340,6 +386,7 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   if (!ok || !errors.empty()) {
     throw InputError(obj, "cannot read the mesh: " + firstLine(errors.empty() ? warnings : errors));
   }
+  for (const size_t vertex : words) parsed.attrib.vertices.at(3 * vertex) = NAN;
   for (const fs::path& library : reader.missing) {
     warn(library.string() + ": no such material library; its materials are grey");
   }
@@ -361,7 +408,86 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   addTriangles(obj, parsed, transform);
 }
 
+void ObjLoader::roundPositions() {
+  Point lower, upper;
+  lower.fill(INFINITY);
+  upper.fill(-INFINITY);
+  for (const Triangle& t : scene_.triangles) {
+    for (const uint32_t p : t.position) {
+      for (size_t i = 0; i < 3; ++i) {
+        lower[i] = std::min(lower[i], points_[p][i]);
+        upper[i] = std::max(upper[i], points_[p][i]);
+      }
+    }
+  }
+  if (!scene_.triangles.empty()) scene_.origin = sceneOrigin(lower, upper);
+  scene_.positions.reserve(points_.size() + 1);
+  for (const Point& p : points_) scene_.positions.push_back(fromOrigin(p, scene_.origin));
+  points_ = {};
+  if (scene_.origin != Point{}) {
+    std::ostringstream text;
+    text << scene_.name() << ": lies far from its origin; coordinates count from ("
+         << scene_.origin[0] << ", " << scene_.origin[1] << ", " << scene_.origin[2] << ")";
+    warn(text.str());
+  }
+}
+
+// A triangle is of use when its normal can be computed in floats, as every ray that hits it will.
+void ObjLoader::dropUnusable() {
+  size_t kept = 0, next = 0;
+  for (const Part& part : parts_) {
+    size_t flat = 0, extreme = 0;
+    for (; next < part.endTriangle; ++next) {
+      const Triangle& t = scene_.triangles[next];
+      const Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
+                 p2 = scene_.positions[t.position[2]];
+      const Vec3 normal = cross(p1 - p0, p2 - p0);
+      const float length2 = lengthSquared(normal);
+      if (std::isnormal(length2)) {
+        scene_.triangles[kept++] = t;
+      } else {
+        ++(isBlack(normal) ? flat : extreme);
+      }
+    }
+    if (flat > 0) {
+      warn(part.obj.string() + ": " + std::to_string(flat) +
+           " triangles without area are left out");
+    }
+    if (extreme > 0) {
+      warn(part.obj.string() + ": " + std::to_string(extreme) +
+           " triangles too small or too large for floats are left out; change their scale");
+    }
+  }
+  scene_.triangles.resize(kept);
+}
+
+// Of emissive triangles that lie on each other, winding included, one stays: light sampling would
+// count both, while a ray meets one.
+void ObjLoader::dropDoubledLamps() {
+  std::set<std::array<float, 9>> seen;
+  const auto doubled = [&](const Triangle& t) {
+    if (isBlack(scene_.materials[t.material].emission)) return false;
+    std::array<std::array<float, 3>, 3> corners;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3 p = scene_.positions[t.position[k]];
+      corners[k] = {p.x, p.y, p.z};
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    std::array<float, 9> key;
+    for (size_t i = 0; i < 9; ++i) key[i] = corners[i / 3][i % 3];
+    return !seen.insert(key).second;
+  };
+  const size_t dropped = std::erase_if(scene_.triangles, doubled);
+  if (dropped > 0) {
+    warn(scene_.name() + ": " + std::to_string(dropped) +
+         " emissive triangles lie on others; one of each is left, or it would shine twice");
+  }
+}
+
 void ObjLoader::finish() {
+  roundPositions();
+  dropUnusable();
+  dropDoubledLamps();
   std::stable_partition(scene_.triangles.begin(), scene_.triangles.end(),
                         [&](const Triangle& t) { return !scene_.materials[t.material].masked(); });
   const auto firstMasked =

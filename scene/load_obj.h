@@ -10,16 +10,25 @@
 
 namespace bnvpl {
 
+// A place or direction as the files give it, before anything is rounded to floats.
+using Point = std::array<double, 3>;
+
 // Row-major 3x4 matrix, applied to column vectors.
 struct Affine {
-  std::array<std::array<float, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
-  Vec3 point(Vec3 p) const;
-  Vec3 normal(Vec3 n) const;  // by the inverse transpose; unit length
-  float determinant() const;  // negative: mirrors, so that windings must turn
+  Point point(const Point& p) const;
+  Vec3 normal(const Point& n) const;  // by the inverse transpose; unit length, or 0
+  double determinant() const;         // negative: mirrors, so that windings must turn
   // Scales, then turns about x, then y, then z, then moves.
-  static Affine fromParts(Vec3 translate, Vec3 rotateRad, Vec3 scale);
+  static Affine fromParts(const Point& translate, const Point& rotateRad, const Point& scale);
 };
+
+// Where coordinates should count from so that floats resolve a scene of these bounds: the origin of
+// the files unless the scene lies many times its own size away from it.
+Point sceneOrigin(const Point& lower, const Point& upper);
+// A place of the files in the coordinates of the scene.
+Vec3 fromOrigin(const Point& p, const Point& origin);
 
 class ObjLoader {
  public:
@@ -30,7 +39,8 @@ class ObjLoader {
   // scene.warnings.
   void load(const fs::path& obj, const fs::path& materials, const Affine& transform);
 
-  // After the last OBJ: puts opaque triangles first, computes bounds, pads the vertex buffer.
+  // After the last OBJ: rounds the vertices to floats, leaves out the triangles that have no area
+  // or normal then, puts opaque ones first, computes bounds and origin, pads the vertex buffer.
   void finish();
 
  private:
@@ -53,8 +63,17 @@ class ObjLoader {
   uint32_t fallbackMaterial(const fs::path& obj);
   void loadWantedTextures(size_t firstMaterial);
   void addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform);
+  void roundPositions();
+  void dropUnusable();
+  void dropDoubledLamps();
 
   Scene& scene_;
+  std::vector<Point> points_;  // what scene_.positions will be
+  struct Part {
+    fs::path obj;
+    size_t endTriangle;
+  };
+  std::vector<Part> parts_;
   std::set<std::string> warned_;
   std::map<std::string, uint32_t> textures_;  // by path and use
   std::vector<WantedTexture> wanted_;         // of the OBJ that is being loaded

@@ -77,6 +77,9 @@ struct Scene {
   std::vector<Triangle> triangles;  // opaque ones first
   uint32_t maskedBegin = 0;         // first triangle whose material has an alpha mask
   Bounds bounds;
+  // What the coordinates count from, in the coordinates of the files: 0 but for scenes that lie far
+  // from their own origin, which floats would resolve coarsely there (placeScene in load_obj.h).
+  std::array<double, 3> origin{};
 
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -87,6 +90,9 @@ struct Scene {
   std::vector<fs::path> files;  // everything that was read, for depfiles
   std::vector<std::string> warnings;  // each names what was ignored or repaired
 
+  std::string name() const {  // for messages
+    return files.empty() ? "the scene" : files.front().string();
+  }
   Vec3 corner(uint32_t triangle, size_t i) const {
     return positions[triangles[triangle].position[i]];
   }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -17,6 +18,10 @@ namespace bnvpl {
 namespace {
 
 constexpr float kRadPerDeg = kPi / 180.0f;
+// A smaller sun is a point: the direction of no float ray lies in it.
+constexpr float kLeastSunDeg = 1e-4f;
+// Sizes of scenes that floats hold: products of four lengths must stay in range.
+constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
 constexpr uint32_t kMaxFilmSide = 65536;
 constexpr uint64_t kMaxFilmPixels = uint64_t{1} << 31;
 
@@ -32,6 +37,15 @@ size_t editDistance(const std::string& a, const std::string& b) {
     }
   }
   return row.back();
+}
+
+// The direction from one place to another, of unit length. False: there is none.
+bool toUnit(const Point& to, const Point& from, Vec3& unit) {
+  const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+  if (!(length > 0.0)) return false;
+  unit = fromOrigin(
+      {(to[0] - from[0]) / length, (to[1] - from[1]) / length, (to[2] - from[2]) / length}, {});
+  return true;
 }
 
 // A table of the file, read key by key; every key must be known, every value in range.
@@ -56,7 +70,7 @@ class Section {
   }
 
   float number(const char* key, float least, float most) const {
-    return numberOf(node(key), key, least, most);
+    return static_cast<float>(numberOf(node(key), key, double{least}, double{most}));
   }
   float number(const char* key, float least, float most, float otherwise) const {
     return has(key) ? number(key, least, most) : otherwise;
@@ -74,13 +88,14 @@ class Section {
     if (!v) fail(node(key), std::string("'") + key + "' must be a text in quotes");
     return *v;
   }
-  Vec3 vector(const char* key) const {
+  Point point(const char* key) const {
     const toml::array* a = node(key).as_array();
     if (!a || a->size() != 3) fail(node(key), std::string("'") + key + "' must be [x, y, z]");
-    Vec3 v;
-    for (size_t i = 0; i < 3; ++i) v[i] = numberOf(*a->get(i), key, -1e30f, 1e30f);
+    Point v;
+    for (size_t i = 0; i < 3; ++i) v[i] = numberOf(*a->get(i), key, -1e30, 1e30);
     return v;
   }
+  Vec3 vector(const char* key) const { return fromOrigin(point(key), {}); }
   Vec3 color(const char* key) const {  // W-like: three numbers that are not negative
     const Vec3 c = vector(key);
     if (c.x < 0 || c.y < 0 || c.z < 0)
@@ -88,20 +103,20 @@ class Section {
     return c;
   }
   Vec3 direction(const char* key) const {
-    const Vec3 d = vector(key);
-    const float len = length(d);
-    if (!(len > 0.0f)) fail(node(key), std::string("'") + key + "' must not be zero");
-    return d / len;
+    Vec3 unit;
+    if (!toUnit(point(key), {}, unit))
+      fail(node(key), std::string("'") + key + "' must not be zero");
+    return unit;
   }
-  float numberOf(const toml::node& n, const char* key, float least, float most) const {
+  double numberOf(const toml::node& n, const char* key, double least, double most) const {
     const auto v = n.value<double>();
     if (!v || !std::isfinite(*v)) fail(n, std::string("'") + key + "' must be a number");
-    if (*v < double{least} || *v > double{most}) {
+    if (*v < least || *v > most) {
       std::ostringstream range;
       range << "'" << key << "' is " << *v << ", outside " << least << " to " << most;
       fail(n, range.str());
     }
-    return static_cast<float>(*v);
+    return *v;
   }
 
  private:
@@ -146,17 +161,15 @@ fs::path resolve(const fs::path& sceneFile, const std::string& name) {
   return (sceneFile.parent_path() / name).lexically_normal();
 }
 
-Camera readCamera(const Section& s) {
+Camera readCamera(const Section& s, const Point& origin) {
   Camera c;
-  c.position = s.vector("position");
+  c.position = fromOrigin(s.point("position"), origin);
   if (s.has("look_at") == s.has("forward")) s.fail("needs exactly one of 'look_at' and 'forward'");
   if (s.has("forward")) {
     c.forward = s.direction("forward");
   } else {
-    const Vec3 d = s.vector("look_at") - c.position;
-    if (!(length(d) > 0.0f))
+    if (!toUnit(s.point("look_at"), s.point("position"), c.forward))
       s.fail(s.node("look_at"), "'look_at' equals 'position'; move one of them");
-    c.forward = normalize(d);
   }
   const Vec3 up = s.has("up") ? s.direction("up") : Vec3{0, 1, 0};
   const Vec3 right = cross(c.forward, up);
@@ -179,21 +192,25 @@ Affine readTransform(const Section& s) {
       if (!row || row->size() != 4)
         s.fail(s.node("transform"), "'transform' must be four rows of four numbers");
       for (size_t j = 0; j < 4; ++j) {
-        const float v = s.numberOf(*row->get(j), "transform", -1e30f, 1e30f);
+        const double v = s.numberOf(*row->get(j), "transform", -1e30, 1e30);
         if (i < 3)
           a.m[i][j] = v;
-        else if (v != (j == 3 ? 1.0f : 0.0f))
+        else if (v != (j == 3 ? 1.0 : 0.0))
           s.fail(*row, "the last row of 'transform' must be 0, 0, 0, 1");
       }
     }
     return a;
   }
-  Vec3 scale{1, 1, 1};
+  Point scale{1, 1, 1}, rotate{}, translate{};
   if (s.has("scale")) {
-    scale = s.node("scale").is_array() ? s.vector("scale") : Vec3{s.number("scale", -1e30f, 1e30f)};
+    if (s.node("scale").is_array())
+      scale = s.point("scale");
+    else
+      scale.fill(s.numberOf(s.node("scale"), "scale", -1e30, 1e30));
   }
-  const Vec3 rotate = s.has("rotate_deg") ? s.vector("rotate_deg") * kRadPerDeg : Vec3{};
-  const Vec3 translate = s.has("translate") ? s.vector("translate") : Vec3{};
+  if (s.has("rotate_deg")) rotate = s.point("rotate_deg");
+  for (double& angle : rotate) angle *= std::numbers::pi / 180.0;
+  if (s.has("translate")) translate = s.point("translate");
   return Affine::fromParts(translate, rotate, scale);
 }
 
@@ -212,7 +229,7 @@ LightSpec readLight(const fs::path& file, const Section& s, const Defines& defin
   };
   if (type == "point" || type == "spot") {
     light.type = type == "point" ? LightType::Point : LightType::Spot;
-    light.position = s.vector("position");
+    light.position = fromOrigin(s.point("position"), scene.origin);
     light.emission = s.color("intensity");
     if (type == "point") {
       only({"position", "intensity"});
@@ -229,8 +246,8 @@ LightSpec readLight(const fs::path& file, const Section& s, const Defines& defin
     light.type = LightType::Directional;
     light.direction = s.direction("direction");
     light.emission = s.color("irradiance");
-    light.angularRadiusRad =
-        0.5f * s.number("angular_diameter_deg", 0.0f, 170.0f, 0.0f) * kRadPerDeg;
+    const float diameterDeg = s.number("angular_diameter_deg", 0.0f, 170.0f, 0.0f);
+    if (diameterDeg >= kLeastSunDeg) light.angularRadiusRad = 0.5f * diameterDeg * kRadPerDeg;
   } else if (type == "environment") {
     only({"radiance", "image", "rotate_deg", "scale"});
     light.type = LightType::Environment;
@@ -303,8 +320,9 @@ Scene loadScene(const fs::path& path, const Defines& defines) {
   scene.film = {film.integer("width", 1, kMaxFilmSide), film.integer("height", 1, kMaxFilmSide)};
   if (uint64_t{scene.film.width} * scene.film.height > kMaxFilmPixels)
     film.fail("has more than 2^31 pixels");
-  scene.camera = readCamera(Section(path, "[camera]", tableOf(path, root, "camera"),
-                                    {"position", "look_at", "forward", "up", "vertical_fov_deg"}));
+  const Section camera(path, "[camera]", tableOf(path, root, "camera"),
+                       {"position", "look_at", "forward", "up", "vertical_fov_deg"});
+  readCamera(camera, {});  // refuses a bad one before the meshes are read
 
   ObjLoader loader(scene);
   for (const toml::table* t : tablesOf(path, root, "mesh")) {
@@ -315,6 +333,7 @@ Scene loadScene(const fs::path& path, const Defines& defines) {
     loader.load(resolve(path, expandDefines(s, "file", defines)), materials, readTransform(s));
   }
   loader.finish();
+  scene.camera = readCamera(camera, scene.origin);
   for (const toml::table* t : tablesOf(path, root, "light")) {
     const Section s(
         path, "[[light]]", *t,
@@ -324,6 +343,13 @@ Scene loadScene(const fs::path& path, const Defines& defines) {
   }
   if (scene.triangles.empty()) {
     throw InputError(path, "has no triangle; name at least one OBJ file in a [[mesh]]");
+  }
+  const float size = scene.bounds.diagonal();
+  if (!(size >= kSmallestScene && size <= kLargestScene)) {
+    std::ostringstream text;
+    text << "is " << size << " units across, outside " << kSmallestScene << " to " << kLargestScene
+         << ", where floats suffice; change the meshes' 'scale' and the lights";
+    throw InputError(path, text.str());
   }
   scene.contentHash = hashScene(scene);
   return scene;
