@@ -1,6 +1,7 @@
 #include "scene/lights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/sampling.h"
@@ -17,28 +18,32 @@ float silhouetteArea(const Bounds& box, Vec3 direction) {
 }
 
 // Index by a running sum that ends at 1, and the share of u inside that entry, to be used again.
-size_t sampleCdf(const std::vector<float>& cdf, float& u) {
-  const auto it = std::upper_bound(cdf.begin(), cdf.end() - 1, u);
+template <typename T>
+size_t sampleCdf(std::span<const T> cdf, float& u) {
+  const auto it = std::upper_bound(cdf.begin(), cdf.end() - 1, static_cast<T>(u));
   const auto i = static_cast<size_t>(it - cdf.begin());
-  const float low = i > 0 ? cdf[i - 1] : 0.0f, width = cdf[i] - low;
-  u = width > 0.0f ? std::min((u - low) / width, 0x1.fffffep-1f) : 0.0f;
+  const T low = i > 0 ? cdf[i - 1] : T{0}, width = cdf[i] - low;
+  u = width > T{0} ? std::min(static_cast<float>((static_cast<T>(u) - low) / width), 0x1.fffffep-1f)
+                   : 0.0f;
   return i;
 }
 
-std::vector<float> makeCdf(const std::vector<double>& weights) {
-  std::vector<float> cdf(weights.size());
+template <typename T>
+std::vector<T> makeCdf(const std::vector<double>& weights) {
+  std::vector<T> cdf(weights.size());
   double sum = 0.0, running = 0.0;
   for (const double w : weights) sum += w;
   for (size_t i = 0; i < weights.size(); ++i) {
     running += weights[i];
-    cdf[i] = sum > 0.0 ? static_cast<float>(running / sum) : 0.0f;
+    cdf[i] = sum > 0.0 ? static_cast<T>(running / sum) : T{0};
   }
-  if (!cdf.empty()) cdf.back() = 1.0f;
+  if (!cdf.empty()) cdf.back() = T{1};
   return cdf;
 }
 
-float cdfShare(const std::vector<float>& cdf, size_t i) {
-  return cdf[i] - (i > 0 ? cdf[i - 1] : 0.0f);
+template <typename T>
+T cdfShare(std::span<const T> cdf, size_t i) {
+  return cdf[i] - (i > 0 ? cdf[i - 1] : T{0});
 }
 
 float spotFalloff(const LightSpec& s, float cosAngle) {
@@ -60,6 +65,17 @@ void texelOf(const LightSpec& s, Vec3 d, float& u, float& v) {
   const float turns = (std::atan2(d.x, -d.z) + s.rotateRad) / (2.0f * kPi) + 0.5f;
   u = std::min(turns - std::floor(turns), 0x1.fffffep-1f);
   v = std::min(std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi, 0x1.fffffep-1f);
+}
+
+// Difference of the cosines of the polar angles that bound a row of texels: as a product, for near
+// the poles of a fine image both round to 1.
+float bandHeight(uint32_t row, uint32_t rows) {
+  const double half = 0.5 * double{kPi} / static_cast<double>(rows);
+  return static_cast<float>(2.0 * std::sin((2.0 * row + 1.0) * half) * std::sin(half));
+}
+
+float texelSolidAngle(const EnvironmentImage& image, uint32_t row) {
+  return 2.0f * kPi / float(image.width) * bandHeight(row, image.height);
 }
 
 // A cone by 1 - cos of its half angle, which keeps its digits where the cosine rounds to 1: at the
@@ -88,9 +104,16 @@ LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
   addAreaLights();
   addSpecLights();
   std::vector<double> weights;
-  for (const Light& l : lights_) weights.push_back(mean(l.power));
-  pickCdf_ = makeCdf(weights);
-  for (size_t i = 0; i < lights_.size(); ++i) lights_[i].pickProbability = cdfShare(pickCdf_, i);
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    if (!std::isfinite(mean(lights_[i].power))) {
+      throw InputError(scene_.name() + ": the power of the " + name(i) +
+                       " is beyond the range of floats; make it weaker or smaller");
+    }
+    weights.push_back(mean(lights_[i].power));
+  }
+  pickCdf_ = makeCdf<float>(weights);
+  for (size_t i = 0; i < lights_.size(); ++i)
+    lights_[i].pickProbability = cdfShare<float>(pickCdf_, i);
 }
 
 void LightSet::addAreaLights() {
@@ -117,7 +140,7 @@ void LightSet::addAreaLights() {
     double total = 0.0;
     for (const double a : areas[i]) total += a;
     lights_[i].areaTotal = static_cast<float>(total);
-    lights_[i].cdf = makeCdf(areas[i]);
+    lights_[i].cdf = makeCdf<float>(areas[i]);
     lights_[i].power = scene_.materials[lights_[i].material].emission *
                        (kPi * lights_[i].areaTotal * (lights_[i].twoSided ? 2.0f : 1.0f));
   }
@@ -155,22 +178,25 @@ void LightSet::addSpecLights() {
           break;
         }
         const EnvironmentImage& image = scene_.environments[s.image];
-        std::vector<double> weights(image.radiance.size());
+        std::vector<double> rows(image.height), row(image.width);
+        std::array<double, 3> power{};  // a float loses count of millions of texels
+        l.cdf.reserve(image.radiance.size());
         for (uint32_t y = 0; y < image.height; ++y) {
-          const float top = kPi * float(y) / float(image.height),
-                      bottom = kPi * float(y + 1) / float(image.height);
-          const float solidAngle =
-              2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom));
+          const float solidAngle = texelSolidAngle(image, y);
           for (uint32_t x = 0; x < image.width; ++x) {
-            const size_t i = size_t{y} * image.width + x;
-            weights[i] = double{mean(image.radiance[i])} * double{solidAngle};
+            const Vec3 radiance = image.radiance[size_t{y} * image.width + x];
+            row[x] = double{mean(radiance)};
+            rows[y] += row[x] * double{solidAngle};
             const Vec3 d = directionOf(s, (float(x) + 0.5f) / float(image.width),
                                        (float(y) + 0.5f) / float(image.height));
-            l.power +=
-                image.radiance[i] * (s.scale * solidAngle * silhouetteArea(scene_.bounds, d));
+            const float part = s.scale * solidAngle * silhouetteArea(scene_.bounds, d);
+            for (size_t c = 0; c < 3; ++c) power[c] += double{radiance[c] * part};
           }
+          const std::vector<float> cdf = makeCdf<float>(row);
+          l.cdf.insert(l.cdf.end(), cdf.begin(), cdf.end());
         }
-        l.cdf = makeCdf(weights);
+        l.rowCdf = makeCdf<double>(rows);
+        for (size_t c = 0; c < 3; ++c) l.power[c] = static_cast<float>(power[c]);
         break;
       }
     }
@@ -188,6 +214,12 @@ Vec3 LightSet::totalPower() const {
   return sum;
 }
 
+void LightSet::requirePower() const {
+  if (mean(totalPower()) > 0.0f) return;
+  throw InputError(scene_.name() +
+                   ": has no light with power; add a [[light]] or an emissive material (Ke)");
+}
+
 std::string LightSet::name(size_t light) const {
   const Light& l = lights_[light];
   if (l.area) return "emissive material '" + scene_.materials[l.material].name + "'";
@@ -196,13 +228,13 @@ std::string LightSet::name(size_t light) const {
 }
 
 size_t LightSet::pick(float u, float& probability) const {
-  const size_t i = sampleCdf(pickCdf_, u);
+  const size_t i = sampleCdf<float>(pickCdf_, u);
   probability = lights_[i].pickProbability;
   return i;
 }
 
 Vec3 LightSet::samplePointOn(const Light& light, float u, float v, Vec3& normal) const {
-  const uint32_t t = light.triangles[sampleCdf(light.cdf, u)];
+  const uint32_t t = light.triangles[sampleCdf<float>(light.cdf, u)];
   const Vec3 p0 = scene_.corner(t, 0), p1 = scene_.corner(t, 1), p2 = scene_.corner(t, 2);
   const Barycentric b = sampleTriangle(u, v);
   normal = normalize(cross(p1 - p0, p2 - p0));
@@ -229,6 +261,14 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectS
   return true;
 }
 
+// Of the directions in a texel, in 1/sr. By row, then by column: over all texels at once, the
+// shares of a fine image would be below the steps of a float.
+float LightSet::texelPdf(const Light& light, size_t x, uint32_t y) const {
+  const EnvironmentImage& image = scene_.environments[light.spec.image];
+  return static_cast<float>(cdfShare<double>(light.rowCdf, y)) *
+         cdfShare(light.cdfOfRow(y, image.width), x) / texelSolidAngle(image, y);
+}
+
 // A direction towards a light at infinity.
 Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radiance,
                                float& pdf) const {
@@ -249,18 +289,15 @@ Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radia
     return sampleSphere(u, v);
   }
   const EnvironmentImage& image = scene_.environments[s.image];
-  const size_t texel = sampleCdf(light.cdf, u);
-  const auto x = static_cast<float>(texel % image.width),
-             y = static_cast<float>(texel / image.width);
+  const auto y = static_cast<uint32_t>(sampleCdf<double>(light.rowCdf, v));
+  const size_t x = sampleCdf(light.cdfOfRow(y, image.width), u);
   // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar
   // angle.
-  const float top = std::cos(kPi * y / float(image.height)),
-              bottom = std::cos(kPi * (y + 1) / float(image.height));
-  const float row = std::acos(std::clamp(top + v * (bottom - top), -1.0f, 1.0f)) / kPi;
-  const float solidAngle = 2.0f * kPi / float(image.width) * (top - bottom);
-  pdf = cdfShare(light.cdf, texel) / solidAngle;
-  radiance = image.radiance[texel] * s.scale;
-  return directionOf(s, (x + u) / float(image.width), row);
+  const float top = std::cos(kPi * float(y) / float(image.height));
+  const float row = std::acos(std::clamp(top - v * bandHeight(y, image.height), -1.0f, 1.0f)) / kPi;
+  pdf = texelPdf(light, x, y);
+  radiance = image.radiance[size_t{y} * image.width + x] * s.scale;
+  return directionOf(s, (float(x) + u) / float(image.width), row);
 }
 
 Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) const {
@@ -278,12 +315,9 @@ Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) cons
   const EnvironmentImage& image = scene_.environments[s.image];
   float u, v;
   texelOf(s, direction, u, v);
-  const auto x = static_cast<size_t>(u * float(image.width)),
-             y = static_cast<size_t>(v * float(image.height));
-  const float top = kPi * float(y) / float(image.height),
-              bottom = kPi * float(y + 1) / float(image.height);
-  pdf = cdfShare(light.cdf, y * image.width + x) /
-        (2.0f * kPi / float(image.width) * (std::cos(top) - std::cos(bottom)));
+  const auto x = static_cast<size_t>(u * float(image.width));
+  const auto y = static_cast<uint32_t>(v * float(image.height));
+  pdf = texelPdf(light, x, y);
   return image.lookup(u, v) * s.scale;
 }
 

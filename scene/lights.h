@@ -2,6 +2,7 @@
 // emissive material), and the lights of scene.toml. Power in W, linear sRGB.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/random.h"
@@ -58,13 +59,20 @@ class LightSet {
 
   PhotonStart emit(size_t light, Rng& rng) const;
 
+  // Throws InputError, naming the scene, when no light has power.
+  void requirePower() const;
+
  private:
   struct Light {
     LightSpec spec;     // of scene.toml
     bool area = false;  // else a light of emissive triangles:
     uint32_t material = kNone;
     std::vector<uint32_t> triangles;
-    std::vector<float> cdf;  // over area, or over texels of an environment image
+    std::vector<float> cdf;  // over area, or over the texels of each row of an environment image
+    std::vector<double> rowCdf;  // over those rows
+    std::span<const float> cdfOfRow(size_t row, size_t width) const {
+      return std::span(cdf).subspan(row * width, width);
+    }
     float areaTotal = 0.0f;
     bool twoSided = false;
     Vec3 power;
@@ -73,6 +81,7 @@ class LightSet {
   void addAreaLights();
   void addSpecLights();
   Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
+  float texelPdf(const Light& light, size_t x, uint32_t y) const;
   Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;
   bool sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const;
   PhotonStart emitFromInfinity(const Light& light, Rng& rng) const;
