@@ -48,7 +48,8 @@ inline Vec3 samplePowerCosine(float u, float v, float exponent) {
   return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
 }
 inline float pdfPowerCosine(float cosAlpha, float exponent) {
-  return cosAlpha <= 0.0f ? 0.0f : (exponent + 1.0f) / (2.0f * kPi) * std::pow(cosAlpha, exponent);
+  if (cosAlpha <= 0.0f) return 0.0f;
+  return (exponent + 1.0f) / (2.0f * kPi) * std::pow(std::min(cosAlpha, 1.0f), exponent);
 }
 
 // Uniform barycentric coordinates (of the second and third corner); density 1/area.
@@ -60,11 +61,12 @@ inline Barycentric sampleTriangle(float u, float v) {
   return {root * (1.0f - v), root * v};
 }
 
-// Power heuristic with exponent 2 (Veach 1997, eq. 9.13) for the technique with density `a`.
+// Power heuristic with exponent 2 (Veach 1997, eq. 9.13) for the technique with density `a`. In
+// double: the squares of the densities of small or distant lights leave the range of floats.
 inline float powerHeuristic(float a, float b) {
   if (std::isinf(a)) return 1.0f;
-  const float a2 = a * a, b2 = b * b;
-  return a2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+  const double a2 = double{a} * double{a}, b2 = double{b} * double{b};
+  return a2 > 0.0 ? static_cast<float>(a2 / (a2 + b2)) : 0.0f;
 }
 
 }  // namespace bnvpl

@@ -8,6 +8,9 @@ namespace bnvpl {
 
 namespace {
 
+// So grazing that one photon would outweigh all others: no surface has such shading normals.
+constexpr float kMostShadingFactor = 1e5f;
+
 bool isSharp(const Material& m) { return m.exponent > kSharpExponent; }
 
 // Unpolarised Fresnel reflectance of a smooth dielectric; cosI >= 0, eta = n_transmitted /
@@ -60,18 +63,21 @@ Bsdf::Bsdf(const Scene& scene, const SurfacePoint& point) : point_(point) {
   const float rough = maxComponent(roughAlbedo());
   const float chain = maxComponent(mirror_ + (sharp_ ? glossy_ : Vec3{}));
   if (chain > 0.0f) chainProbability_ = chain / (chain + rough);
+  if (chainProbability_ < kLeastProbability) chainProbability_ = 0.0f;
   const float d = maxComponent(diffuse_), g = maxComponent(roughGlossy());
   if (g > 0.0f) diffuseShare_ = d / (d + g);
 }
 
 float Bsdf::reflectance() const {
   if (glass_) return 1.0f;
-  return std::min(1.0f, maxComponent(diffuse_ + glossy_ + mirror_));
+  const float largest = std::min(1.0f, maxComponent(diffuse_ + glossy_ + mirror_));
+  return largest < kLeastProbability ? 0.0f : largest;
 }
 
 float Bsdf::photonShadingFactor() const {
   const float geometric = dot(point_.ng, point_.wo);
-  return geometric > 0.0f ? std::max(0.0f, dot(point_.ns, point_.wo)) / geometric : 0.0f;
+  if (!(geometric > 0.0f)) return 0.0f;
+  return std::min(kMostShadingFactor, std::max(0.0f, dot(point_.ns, point_.wo)) / geometric);
 }
 
 // Modified Phong (Lafortune & Willems 1994): reciprocal, and never reflects more than Ks.

@@ -14,6 +14,7 @@ struct PhotonFate {
   Vec3 escaped;
   Vec3 absorbed;  // by surfaces, and at the end of the longest path
   uint32_t hits = 0, rays = 0;
+  bool finite = true;  // false: its flux became NaN or infinite and what was left was dropped
 };
 
 // Follows a photon through the scene. At each hit with rough lobes, visit(bsdf, flux) gets the flux
@@ -27,6 +28,10 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
   Vec3 origin = start.origin, direction = start.direction, flux = start.flux;
   unsigned rough = 0, chain = 0;
   SurfacePoint hit;
+  if (!isFinite(flux)) {
+    fate.finite = false;
+    return fate;
+  }
   while (true) {
     ++fate.rays;
     if (!rays.closestHit(origin, direction, hit)) {
@@ -52,7 +57,12 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
                              rng, next)) {
       return fate;
     }
-    flux *= next.weight * (1.0f / (probability * survive));
+    const Vec3 onward = flux * next.weight * (1.0f / (probability * survive));
+    if (!isFinite(onward)) {
+      fate.finite = false;
+      return fate;
+    }
+    flux = onward;
     fate.absorbed += -flux;
     origin = rays.lifted(hit.position, next.side);
     direction = next.wi;

@@ -59,14 +59,17 @@ Bilinear bilinear(const Texture& t, float u, float v) {
           {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
-bool finite(float u, float v) { return std::isfinite(u) && std::isfinite(v); }
+// The scale of the texture coordinates can take them out of range.
+bool inRange(const Texture& t, float u, float v) {
+  return std::isfinite(u * t.scale[0] + t.offset[0]) && std::isfinite(v * t.scale[1] + t.offset[1]);
+}
 
 }  // namespace
 
 float srgbToLinear(uint8_t encoded) { return srgbTable()[encoded]; }
 
 Vec3 Texture::lookup(float u, float v) const {
-  if (!finite(u, v)) return {};
+  if (!inRange(*this, u, v)) return {};
   const Bilinear b = bilinear(*this, u, v);
   const auto& table = srgbTable();
   Vec3 sum;
@@ -80,7 +83,7 @@ Vec3 Texture::lookup(float u, float v) const {
 }
 
 float Texture::lookupAlpha(float u, float v) const {
-  if (!finite(u, v)) return 1.0f;
+  if (!inRange(*this, u, v)) return 1.0f;
   const Bilinear b = bilinear(*this, u, v);
   float sum = 0.0f;
   for (int k = 0; k < 4; ++k)

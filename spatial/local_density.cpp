@@ -55,7 +55,10 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
   for (const Vec3 p : position) bounds.extend(p);
   const float smallest = 1e-6f * bounds.diagonal();
   const size_t count = rows.empty() ? position.size() : rows.size();
-  if (!(smallest > 0.0f)) return std::vector<float>(count, 1.0f);
+  if (!(smallest > 0.0f)) {
+    const float distance2 = position.empty() ? 0.0f : lengthSquared(position[0]);
+    return std::vector<float>(count, distance2 > 0.0f ? distance2 : 1.0f);
+  }
 
   std::vector<float> share(count);
   parallelRanges(count, 256, [&](size_t begin, size_t end) {

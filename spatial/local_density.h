@@ -15,7 +15,8 @@ namespace bnvpl {
 // all points estimates the area that they cover. Among the 3 k nearest, fewer than k may qualify:
 // then the furthest that does and their number stand in; when none does, the furthest of all and
 // the number of all. Distances are at least 1e-6 of the bounding box's diagonal, so that coincident
-// points get a small positive share; when every point is at one place, each share is 1. `rows`
+// points get a small positive share. When every point is at one place, which has no scale but its
+// distance from the origin, each share is the square of that, or 1 at the origin itself. `rows`
 // picks whose shares are wanted, one result each; empty = all points in order.
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
                                  unsigned k, const KdTree& tree,

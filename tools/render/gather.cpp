@@ -79,7 +79,8 @@ Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
     float probability = (upTo[slot] - (slot > 0 ? upTo[slot - 1] : 0.0f)) / whole;
     const std::optional<uint32_t> leaf = descend(tree_.startCut[slot], receiver, rng, probability);
     Coupling c;
-    if (!leaf || !couple(vpls_, *leaf, bsdf, c)) continue;
+    // The last slot is also taken by the rounding of `pick`, even where its own share is 0.
+    if (!leaf || !(probability > 0.0f) || !couple(vpls_, *leaf, bsdf, c)) continue;
     ++out.shadowRays;
     if (rays_.occluded(from, vpls_.position[*leaf])) continue;
     const Vec3 light =

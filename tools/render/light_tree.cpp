@@ -163,7 +163,9 @@ VplDraw LightTree::draw(const LightNode& n, float u) const {
   const auto first = upTo.begin() + n.begin + 1, last = upTo.begin() + n.end;
   const auto at = std::upper_bound(first, last, upTo[n.begin] + double{u} * whole);
   const auto k = std::min(n.end - 1, static_cast<uint32_t>(at - upTo.begin()) - 1);
-  return {order[k], static_cast<float>(whole / (upTo[k + 1] - upTo[k]))};
+  // A VPL that is lost in the rounding of the sum before it has no share in it.
+  const double own = upTo[k + 1] - upTo[k];
+  return {order[k], own > 0.0 ? static_cast<float>(whole / own) : 0.0f};
 }
 
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "tools/render/cluster_bounds.h"
@@ -43,7 +44,8 @@ Expected expect(const LightNode& n, const Bsdf& bsdf) {
   if (n.leaf()) return {};
   const Vec3 d = n.bounds.center() - bsdf.point().position;
   const float size2 = lengthSquared(n.bounds.extent());
-  const float distance2 = std::max(lengthSquared(d), 0.25f * size2);
+  const float distance2 =
+      std::max({lengthSquared(d), 0.25f * size2, std::numeric_limits<float>::min()});
   const float perDistance = 1.0f / std::sqrt(distance2);
   const float angle = std::sqrt(size2) * perDistance;  // that the box fills, at most 2
   const float receiver = dot(bsdf.point().ns, d) * perDistance + 0.5f * angle;
@@ -293,8 +295,9 @@ void TileGatherer::addCluster(const LightNode& cluster, float u, float roulette,
     const float receiver = p.sx[l] * dx + p.sy[l] * dy + p.sz[l] * dz;
     const float above = p.gx[l] * dx + p.gy[l] * dy + p.gz[l] * dz;
     const float far2 = d2 > clamp2 ? d2 : clamp2;
-    faces[l] = (emitter > 0.0f) & (receiver > 0.0f) & (above > 0.0f);
-    transfer[l] = emitter * receiver / (d2 * far2);
+    const float far4 = d2 * far2;  // 0 where the VPL is at the point
+    faces[l] = (emitter > 0.0f) & (receiver > 0.0f) & (above > 0.0f) & (far4 > 0.0f);
+    transfer[l] = emitter * receiver / far4;
     clamped[l] = far2 / d2 - 1.0f;
   }
   uint32_t mask = 0;
@@ -309,7 +312,7 @@ void TileGatherer::addCluster(const LightNode& cluster, float u, float roulette,
   }
   const float chance = most * p.brightest * (light.x + light.y + light.z) / negligible;
   if (chance < 1.0f) {
-    if (roulette >= chance) return;
+    if (roulette >= chance || chance < kLeastProbability) return;
     light *= 1.0f / chance;
   }
   for (uint32_t rest = mask; rest != 0; rest &= rest - 1) ++p.shadowRays[std::countr_zero(rest)];

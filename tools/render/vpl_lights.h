@@ -13,7 +13,7 @@ struct VplLights {
   std::vector<Vec3> position;  // lifted off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // flux / pi: along the normal, W/sr
-  std::vector<float> clamp2;    // (clamp * radius)^2, world units squared
+  std::vector<float> clamp2;    // (clamp * radius)^2, world units squared; never 0
 
   size_t size() const { return position.size(); }
 };
