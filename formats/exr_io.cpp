@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "formats/vpl_layout.h"
 
@@ -41,12 +42,30 @@ void refuseMalformed(const fs::path& file, const Image& image) {
   }
 }
 
-Imf::Header makeHeader(const Image& image, Imf::PixelType type) {
+void refuseNonFinite(const fs::path& file, const Image& image) {
+  for (const ImageChannel& channel : image.channels) {
+    for (size_t i = 0; i < channel.data.size(); ++i) {
+      const float value = channel.data[i];
+      if (std::isfinite(value) || (isDepth(channel.name) && value > 0.0f)) continue;
+      const auto width = static_cast<size_t>(image.width);
+      throw std::logic_error(file.string() + ": channel " + channel.name + ", column " +
+                             std::to_string(i % width) + ", row " + std::to_string(i / width) +
+                             ": not a finite number; not written, the old file, if any, is "
+                             "unchanged");
+    }
+  }
+}
+
+Imf::PixelType typeOf(const ImageChannel& channel, ExrPixelType type) {
+  return type == ExrPixelType::Half && !isDepth(channel.name) ? Imf::HALF : Imf::FLOAT;
+}
+
+Imf::Header makeHeader(const Image& image, ExrPixelType type) {
   Imf::Header header(image.width,
                      image.height);  // display and data window: (0,0) to the last pixel
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const ImageChannel& channel : image.channels) {
-    header.channels().insert(channel.name, Imf::Channel(type));
+    header.channels().insert(channel.name, Imf::Channel(typeOf(channel, type)));
   }
   for (const auto& [name, text] : image.attributes) {
     header.insert(name, Imf::StringAttribute(text));
@@ -60,7 +79,7 @@ uint64_t toHalf(const std::vector<float>& from, std::vector<half>& to) {
   to.reserve(from.size());
   for (const float value : from) {
     if (std::fabs(value) > kHalfMax) ++clamped;
-    to.emplace_back(std::isnan(value) ? value : std::clamp(value, -kHalfMax, kHalfMax));
+    to.emplace_back(std::clamp(value, -kHalfMax, kHalfMax));
   }
   return clamped;
 }
@@ -147,16 +166,17 @@ Image readChecked(const fs::path& file) {
 
 uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
   refuseMalformed(file.target(), image);
+  refuseNonFinite(file.target(), image);
   uint64_t clamped = 0;
   // Through memory, because OpenEXR's own file stream keeps silent when its last write fails.
   Imf::StdOSStream bytes;
   try {
-    const bool asHalf = type == ExrPixelType::Half;
-    const Imf::Header header = makeHeader(image, asHalf ? Imf::HALF : Imf::FLOAT);
-    std::vector<std::vector<half>> halves(asHalf ? image.channels.size() : 0);
+    const Imf::Header header = makeHeader(image, type);
+    std::vector<std::vector<half>> halves(image.channels.size());
     Imf::FrameBuffer frame;
     for (size_t c = 0; c < image.channels.size(); ++c) {
       const ImageChannel& channel = image.channels[c];
+      const bool asHalf = typeOf(channel, type) == Imf::HALF;
       if (asHalf) clamped += toHalf(channel.data, halves[c]);
       frame.insert(channel.name, asHalf ? sliceOf(Imf::HALF, halves[c], image.width)
                                         : sliceOf(Imf::FLOAT, channel.data, image.width));
@@ -185,11 +205,12 @@ uint64_t hashImage(const Image& image, ExrPixelType type) {
   for (const ImageChannel& channel : image.channels) {
     std::vector<half> halves;
     std::vector<float> rounded;
-    if (type == ExrPixelType::Half) {
+    const bool asHalf = type == ExrPixelType::Half && !isDepth(channel.name);
+    if (asHalf) {
       toHalf(channel.data, halves);
       rounded.assign(halves.begin(), halves.end());
     }
-    const std::vector<float>& data = type == ExrPixelType::Half ? rounded : channel.data;
+    const std::vector<float>& data = asHalf ? rounded : channel.data;
     channels[channel.name] = hashPieces({std::as_bytes(std::span(data))});
   }
   std::string text = std::to_string(image.width) + "x" + std::to_string(image.height);

@@ -10,9 +10,14 @@ namespace bnvpl {
 
 enum class ExrPixelType { Half, Float };
 
+// Depth, "Z": where a view meets nothing it is infinite, and half has too few digits for it.
+inline bool isDepth(const std::string& channel) { return channel == "Z"; }
+
 // Replaces `file` atomically; equal images give equal bytes. Returns how many values lay beyond the
-// half range (+-65504, infinity too) and were clamped to it: always 0 for Float.
-// An AtomicFile is left for the caller to commit. Throws OutputError.
+// half range (+-65504) and were clamped to it: always 0 for Float. Depth is always float.
+// An AtomicFile is left for the caller to commit. Throws OutputError; and std::logic_error, naming
+// channel and pixel, for NaN anywhere and for infinity anywhere but in the depth: the caller should
+// have found it where it arose.
 uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type);
 uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
 

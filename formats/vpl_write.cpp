@@ -41,14 +41,18 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
                            std::string(stageName(table.stage)) + " are filled");
   }
   if (const auto bad = findBadValue(table)) {
-    throw OutputError(file, "column " + std::string(kVplColumns[bad->column].name) + ", row " +
-                                std::to_string(bad->row) + ": " + bad->problem +
-                                "; not written, the old file, if any, is unchanged");
+    throw std::logic_error(file.string() + ": column " +
+                           std::string(kVplColumns[bad->column].name) + ", row " +
+                           std::to_string(bad->row) + ": " + bad->problem +
+                           "; not written, the old file, if any, is unchanged");
   }
-  if (!isMeasure(table.rMax)) throw OutputError(file, "r_max is negative or not finite");
-  if (!isMeasure(table.reach)) throw OutputError(file, "reach is negative or not finite");
-  if (!isMeasure(table.areaEstimate)) throw OutputError(file, "area is negative or not finite");
-  if (!isProvenance(provenance)) throw OutputError(file, "provenance is not a JSON array");
+  const auto require = [&](bool valid, const char* problem) {
+    if (!valid) throw std::logic_error(file.string() + ": " + problem);
+  };
+  require(isMeasure(table.rMax), "r_max is negative or not finite");
+  require(isMeasure(table.reach), "reach is negative or not finite");
+  require(isMeasure(table.areaEstimate), "area is negative or not finite");
+  require(isProvenance(provenance), "provenance is not a JSON array");
 }
 
 }  // namespace

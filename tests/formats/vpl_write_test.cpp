@@ -103,7 +103,8 @@ void expectRefused(const fs::path& file, const std::string& what, const Change& 
   try {
     writeVpl(file, table);
     ADD_FAILURE() << "written: " << what;
-  } catch (const OutputError& error) {
+  } catch (const std::logic_error& error) {
+    EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
   }
   EXPECT_TRUE(readAll(file) == before);

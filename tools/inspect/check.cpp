@@ -24,12 +24,13 @@ const char* inputName(VplStage stage) {
   return "";
 }
 
-void refuseNan(const fs::path& file, const Image& image) {
+void refuseNonFinite(const fs::path& file, const Image& image) {
   for (const ImageChannel& channel : image.channels) {
     for (size_t i = 0; i < channel.data.size(); ++i) {
-      if (!std::isnan(channel.data[i])) continue;
+      const float value = channel.data[i];
+      if (std::isfinite(value) || (isDepth(channel.name) && value > 0.0f)) continue;
       const size_t width = static_cast<size_t>(image.width);
-      throw InputError(file, "channel " + channel.name + " is not a number at pixel (" +
+      throw InputError(file, "channel " + channel.name + " is not finite at pixel (" +
                                  std::to_string(i % width) + ", " + std::to_string(i / width) +
                                  "); rerun vpl-render");
     }
@@ -91,7 +92,7 @@ std::string renderOptions(const Image& image) {
 
 CheckedFile checkExr(const fs::path& file) {
   const Image image = readExr(file);
-  refuseNan(file, image);
+  refuseNonFinite(file, image);
   refuseTampering(file, image);
   CheckedFile checked;
   checked.file = file;
