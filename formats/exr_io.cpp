@@ -205,7 +205,7 @@ uint64_t hashImage(const Image& image, ExrPixelType type) {
   for (const ImageChannel& channel : image.channels) {
     std::vector<half> halves;
     std::vector<float> rounded;
-    const bool asHalf = type == ExrPixelType::Half && !isDepth(channel.name);
+    const bool asHalf = typeOf(channel, type) == Imf::HALF;
     if (asHalf) {
       toHalf(channel.data, halves);
       rounded.assign(halves.begin(), halves.end());

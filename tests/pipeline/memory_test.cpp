@@ -31,8 +31,8 @@ class Memory : public PipelineTest {
 };
 
 TEST_F(Memory, CountsAndFilms) {
-  fail("vpl-place", scene_ + " -o " + path("x.vpl") + " -n 4G", kExitMemory,
-       {"4000000000 VPLs needs about 149 GiB", "are available", "with -n"}, kFourGib);
+  fail("vpl-place", scene_ + " -o " + path("x.vpl") + " -n 2G", kExitMemory,
+       {"2000000000 VPLs needs about 74.5 GiB", "are available", "with -n"}, kFourGib);
   fail("vpl-render",
        scene_ + " --integrator path -o " + path("x.exr") + " --size 16384x16384 --spp 1",
        kExitMemory, {"16384x16384 pixels needs about 45 GiB", "--size"}, kFourGib);

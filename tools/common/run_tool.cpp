@@ -80,8 +80,10 @@ uint64_t parseCount(const std::string& text) {
   else if (!suffix.empty())
     throw fail("has an unknown suffix");
   if (!(value >= 1.0) || value > 0x1p53) throw fail("is out of range");
-  if (value != std::floor(value)) throw fail("is not whole");
-  return static_cast<uint64_t>(value);
+  // 2.01 times 1e3 is 2009.9999999999998: the decimal point may cost the last digits.
+  const double whole = std::round(value);
+  if (std::fabs(value - whole) > 1e-15 * value) throw fail("is not whole");
+  return static_cast<uint64_t>(whole);
 }
 
 CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
@@ -189,6 +191,14 @@ Summary::Summary(std::string tool) : tool_(std::move(tool)), startS_(nowS()) {
 void Summary::add(const std::string& key, Json value, const std::string& text) {
   values_[key] = std::move(value);
   if (!text.empty()) lines_.push_back(text);
+}
+
+void Summary::addNonFinite(uint64_t count, const std::string& what) {
+  add("non_finite_samples", count);
+  if (count == 0) return;
+  printWarnings(tool_, {std::to_string(count) + " " + what +
+                        " were not finite and count as zero; look for values of absurd size in "
+                        "the scene"});
 }
 
 void Summary::finish(const ToolOptions& options, OutputSet& files) const {

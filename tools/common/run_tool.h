@@ -58,6 +58,9 @@ class Summary {
   explicit Summary(std::string tool);
   // `text` is for people, `value` for the JSON file. Keys carry their units: "time_s".
   void add(const std::string& key, Json value, const std::string& text = "");
+  // Samples that became NaN or infinite and count as zero: "non_finite_samples", and one warning
+  // where there are any. `what` names them in the plural.
+  void addNonFinite(uint64_t count, const std::string& what);
   void finish(const ToolOptions& options, OutputSet& files) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/errors.h"
 #include "core/parallel.h"
@@ -39,12 +40,25 @@ PairWeight pairWeightRule(size_t candidates, const EliminateOptions& options) {
   return {static_cast<float>(options.alpha), static_cast<float>(limit)};
 }
 
+// Radii beyond floats, and their squares, come from candidates that lie absurdly far apart or from
+// an absurd --area.
+void requireUsable(const std::vector<float>& radii) {
+  for (const float r : radii) {
+    if (std::isnormal(r * r)) continue;
+    std::ostringstream text;
+    text << "the radius of a VPL would be " << r
+         << ", beyond what floats can square; see --area, and the positions of the candidates";
+    throw InputError(text.str());
+  }
+}
+
 }  // namespace
 
 EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> normal,
                           const EliminateOptions& options) {
   const size_t candidates = position.size();
   if (options.count == 0) throw InputError("cannot keep 0 VPLs; ask for at least 1 with -n");
+  if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");
   if (options.count > candidates) {
     throw InputError("asked to keep " + std::to_string(options.count) + " of " +
                      std::to_string(candidates) + " candidates; rerun vpl-place -n at least " +
@@ -56,6 +70,7 @@ EliminateResult eliminate(std::span<const Vec3> position, std::span<const Vec3> 
   std::vector<Vec3> sortedPosition = inOrder<Vec3>(position, order);
   std::vector<Vec3> sortedNormal = inOrder<Vec3>(normal, order);
   CandidateRadii radii = candidateRadii(sortedPosition, sortedNormal, options);
+  requireUsable(radii.radius);
   EliminateResult result;
   result.rMax = radii.rMax;
   result.area = radii.area;

@@ -2,7 +2,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -25,9 +27,12 @@ constexpr float kRecentreLift = 0.1f;
 // added up.
 class FixedPoint {
  public:
-  // 2^-26 of the mean photon: the sum of 2^36 of them fits in 63 bits.
-  explicit FixedPoint(double photonPower)
-      : unit_(std::ldexp(1.0, std::ilogb(photonPower) - 26)), perUnit_(1.0 / unit_) {}
+  // 2^-26 of the mean photon, coarser from 2^29 photons on: the sum of all fits in 56 bits, which
+  // leaves room for 128 reflections at full power.
+  FixedPoint(double photonPower, uint64_t photons)
+      : unit_(std::ldexp(1.0, std::ilogb(photonPower) -
+                                  std::min(26, 55 - static_cast<int>(std::bit_width(photons))))),
+        perUnit_(1.0 / unit_) {}
   int64_t encode(double value) const {
     const double units = value * perUnit_;
     if (!(std::fabs(units) < 0x1p62))
@@ -79,7 +84,7 @@ enum Tally {
 struct Sums {
   std::vector<VplSum> vpl;
   std::array<int64_t, kTallies> tally{};
-  uint64_t hits = 0, rays = 0, guardRays = 0;
+  uint64_t hits = 0, rays = 0, guardRays = 0, nonFinite = 0;
 
   void add(const Sums& o) {
     for (size_t i = 0; i < vpl.size(); ++i) vpl[i].add(o.vpl[i]);
@@ -87,6 +92,7 @@ struct Sums {
     hits += o.hits;
     rays += o.rays;
     guardRays += o.guardRays;
+    nonFinite += o.nonFinite;
   }
 };
 
@@ -96,7 +102,7 @@ std::string encode(const std::vector<uint8_t>& done, const Sums& sums) {
   appendArray(bytes, done);
   appendArray(bytes, sums.vpl);
   appendArray(bytes, sums.tally);
-  appendArray(bytes, std::array{sums.hits, sums.rays, sums.guardRays});
+  appendArray(bytes, std::array{sums.hits, sums.rays, sums.guardRays, sums.nonFinite});
   return bytes;
 }
 
@@ -104,19 +110,20 @@ void decode(std::string_view bytes, std::vector<uint8_t>& done, Sums& sums) {
   takeArray(bytes, done);
   takeArray(bytes, sums.vpl);
   takeArray(bytes, sums.tally);
-  std::array<uint64_t, 3> counts{};
+  std::array<uint64_t, 4> counts{};
   takeArray(bytes, counts);
   requireAllTaken(bytes);
-  sums.hits = counts[0], sums.rays = counts[1], sums.guardRays = counts[2];
+  sums.hits = counts[0], sums.rays = counts[1];
+  sums.guardRays = counts[2], sums.nonFinite = counts[3];
 }
 
 class Scatterer {
  public:
   Scatterer(const VplTable& vpls, const RayScene& rays, const EstimateOptions& options,
-            double photonPower)
+            double photonPower, uint64_t photons)
       : vpls_(vpls),
         options_(options),
-        fixed_(photonPower),
+        fixed_(photonPower, photons),
         photonPower_(photonPower),
         perPhotonPower_(1.0 / photonPower),
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
@@ -204,7 +211,7 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
       const size_t light = shares.lightOf(photon);
       PhotonStart start = lights.emit(light, rng);
       start.flux *= shares.weight(light);
-      scatterer.tally(sums, kEmitted, start.flux);
+      if (isFinite(start.flux)) scatterer.tally(sums, kEmitted, start.flux);
       const PhotonFate fate =
           tracePhoton(rays, start, options.maxBounces, rng, [&](const Bsdf& bsdf, Vec3 flux) {
             scatterer.scatter(bsdf.point(), flux * bsdf.roughAlbedo(), rng, sums);
@@ -212,6 +219,7 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
       scatterer.tally(sums, kEscaped, fate.escaped);
       scatterer.tally(sums, kAbsorbed, fate.absorbed);
       sums.rays += fate.rays;
+      sums.nonFinite += fate.finite ? 0 : 1;
     }
   };
   std::vector<uint8_t> done((shares.total() + kPhotonsPerRange - 1) / kPhotonsPerRange);
@@ -288,13 +296,11 @@ void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, cons
 EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
                            const EstimateOptions& options, const ProgressFn& progress,
                            const Resume& resume) {
+  lights.requirePower();
   const double power = double{mean(lights.totalPower())};
-  if (!(power > 0.0)) {
-    throw InputError(
-        "the scene has no light with power; add a [[light]] or an emissive material (Ke)");
-  }
   const PhotonShares shares(lights, options.photons);
-  const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()));
+  const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()),
+                            shares.total());
   const Sums sums = tracePhotons(vpls, rays, lights, shares, scatterer, options, progress, resume);
   fillTable(vpls, sums, scatterer);
   if (options.recentre) recentre(vpls, sums, scatterer, rays);
@@ -313,6 +319,7 @@ EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet&
   a.hits = sums.hits;
   a.rays = sums.rays;
   a.guardRays = sums.guardRays;
+  a.nonFinite = sums.nonFinite;
   return a;
 }
 

@@ -13,6 +13,9 @@ namespace bnvpl {
 // Even: every VPL within the radius, as the thesis says; leaks through thin walls.
 enum class Scatter { Guarded, Even };
 
+// Sums of more photons would leave their fixed-point range.
+inline constexpr uint64_t kMostPhotons = uint64_t{1} << 36;
+
 struct EstimateOptions {
   uint64_t photons = 10000000;
   float radius = 2.0f;  // how far a VPL reaches, in units of its own r_max
@@ -34,6 +37,7 @@ struct EnergyAccount {
   double gap = 0;        // VPLs reach the hit, but none is on its sheet of surface
   double hidden = 0;     // some are on its sheet, but none is in sight
   uint64_t photons = 0, hits = 0, rays = 0, guardRays = 0;
+  uint64_t nonFinite = 0;  // photons cut off because their flux became NaN or infinite
 };
 
 // Fills flux, photons and relativeError, and moves position and normal as options.recentre says, of

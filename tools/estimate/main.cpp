@@ -63,6 +63,7 @@ void report(const EnergyAccount& a, const VplTable& vpls, Summary& summary) {
   summary.add("vpls_without_photon", dark);
   summary.add("rays", a.rays);
   summary.add("guard_rays", a.guardRays);
+  summary.addNonFinite(a.nonFinite, "photons");
   summary.add("energy_W", {{"emitted", a.emitted},
                            {"escaped", a.escaped},
                            {"absorbed", a.absorbed},
@@ -77,6 +78,9 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
                 const EstimateOptions& options, const CheckpointOptions& checkpoints,
                 const ToolOptions& tool) {
   Summary summary("vpl-estimate");
+  if (options.photons > kMostPhotons) {
+    throw UsageError("--photons is above 2^36, the most that can be summed up exactly");
+  }
   requireWritable({output, tool.stats, tool.depfile});
   requireMemoryFor(input, kBytesPerVpl, "keep fewer with vpl-eliminate -n");
   VplTable vpls = readVpl(input, VplStage::Eliminated);

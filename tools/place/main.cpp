@@ -27,7 +27,9 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
              const ToolOptions& tool) {
   Summary summary("vpl-place");
   requireWritable({output, tool.stats, tool.depfile});
-  if (options.count > UINT32_MAX) throw UsageError("-n is above 2^32 - 1, the largest row number");
+  if (options.count > INT32_MAX) {
+    throw UsageError("-n is above 2^31 - 1, the most that vpl-eliminate can search");
+  }
   requireMemory(kBytesPerRow * double(options.count), std::to_string(options.count) + " VPLs",
                 "ask for fewer with -n");
   const Scene scene = loadSceneFor("vpl-place", sceneOptions);
@@ -49,6 +51,7 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
                   std::to_string(placed.paths) + " paths");
   summary.add("paths", placed.paths);
   summary.add("rays", placed.rays);
+  summary.addNonFinite(placed.nonFinite, "vertices of paths");
   summary.finish(tool, files);
   return kExitOk;
 }

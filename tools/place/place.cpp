@@ -23,14 +23,22 @@ constexpr uint64_t kFreePaths = 1000000;
 struct Chunk {
   VplTable rows;
   std::vector<uint64_t> path;  // of each row, to know where the count was reached
-  uint64_t rays = 0, escaped = 0, absorbed = 0, complete = 0;
+  uint64_t rays = 0, escaped = 0, absorbed = 0, complete = 0, nonFinite = 0;
 };
 
-void addRow(Chunk& chunk, const Bsdf& bsdf, uint64_t path) {
-  chunk.rows.position.push_back(bsdf.point().position);
-  chunk.rows.normal.push_back(bsdf.point().ng);
-  chunk.rows.albedo.push_back(bsdf.roughAlbedo());
+// False: not added, as a value is NaN or infinite.
+bool addRow(Chunk& chunk, const Bsdf& bsdf, uint64_t path) {
+  const Vec3 position = bsdf.point().position, normal = bsdf.point().ng,
+             albedo = bsdf.roughAlbedo();
+  if (!isFinite(position) || !isFinite(normal) || !isFinite(albedo)) {
+    ++chunk.nonFinite;
+    return false;
+  }
+  chunk.rows.position.push_back(position);
+  chunk.rows.normal.push_back(normal);
+  chunk.rows.albedo.push_back(albedo);
   chunk.path.push_back(path);
+  return true;
 }
 
 void traceCameraPath(const RayScene& rays, const PlaceOptions& options, uint64_t path, uint64_t key,
@@ -79,35 +87,39 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
   start.flux *= 1.0f / probability;
   const PhotonFate fate =
       tracePhoton(rays, start, options.lightDepth, rng, [&](const Bsdf& bsdf, Vec3 flux) {
-        addRow(chunk, bsdf, path);
-        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+        if (addRow(chunk, bsdf, path)) chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
       });
+  chunk.nonFinite += fate.finite ? 0 : 1;
   chunk.rays += fate.rays;
   isBlack(fate.escaped) ? ++chunk.absorbed : ++chunk.escaped;
 }
 
-[[noreturn]] void failTooFew(const PlaceResult& r, const PlaceOptions& options) {
+[[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r,
+                             const PlaceOptions& options) {
   const auto percent = [&](uint64_t n) {
     return std::to_string(static_cast<int>(std::lround(100.0 * double(n) / double(r.paths)))) +
            " %";
   };
-  throw InputError("only " + std::to_string(r.table.size()) + " of " +
+  const bool none = r.table.size() == 0;
+  throw InputError(scene + ": only " + std::to_string(r.table.size()) + " of " +
                    std::to_string(options.count) + " VPLs found on " + std::to_string(r.paths) +
                    " paths: " + percent(r.escaped) + " left the scene, " + percent(r.absorbed) +
                    " met surfaces that reflect nothing, " + percent(r.complete) +
-                   " were complete; point the camera at lit surfaces or ask for fewer with -n");
+                   " were complete; " +
+                   (none ? "point the camera at surfaces that light can bounce to"
+                         : "point the camera at lit surfaces or ask for fewer with -n"));
 }
 
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
 template <typename TracePath>
-PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress,
-                    const TracePath& tracePath) {
+PlaceResult collect(const std::string& scene, const PlaceOptions& options,
+                    const ProgressFn& progress, const TracePath& tracePath) {
   PlaceResult result;
   VplTable& rows = result.table;
   const uint64_t effort = kFreePaths + kPathsPerCandidate * options.count;
   uint64_t firstPath = 0;
   while (rows.size() < options.count) {
-    if (firstPath >= effort) failTooFew(result, options);
+    if (firstPath >= effort) failTooFew(scene, result, options);
     std::vector<Chunk> wave(kChunksPerWave);
     parallelFor(wave.size(), 1, [&](size_t c) {
       const uint64_t begin = firstPath + c * kPathsPerChunk;
@@ -130,6 +142,7 @@ PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress,
       result.escaped += c.escaped;
       result.absorbed += c.absorbed;
       result.complete += c.complete;
+      result.nonFinite += c.nonFinite;
       if (rows.size() == options.count) {
         if (take > 0) result.paths = c.path[take - 1] + 1;
         break;
@@ -147,9 +160,9 @@ PlaceResult collect(const PlaceOptions& options, const ProgressFn& progress,
 PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options,
                             const ProgressFn& progress) {
   const uint64_t key = streamKey(options.seed, Stream::PlaceCamera);
-  PlaceResult result = collect(options, progress, [&](uint64_t path, Chunk& chunk) {
-    traceCameraPath(rays, options, path, key, chunk);
-  });
+  PlaceResult result = collect(
+      rays.scene().name(), options, progress,
+      [&](uint64_t path, Chunk& chunk) { traceCameraPath(rays, options, path, key, chunk); });
   result.table.stage = VplStage::Candidates;
   result.table.sceneHash = rays.scene().contentHash;
   return result;
@@ -157,14 +170,12 @@ PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options,
 
 PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights,
                             const PlaceOptions& options, const ProgressFn& progress) {
-  if (!(mean(lights.totalPower()) > 0.0f)) {
-    throw InputError(
-        "the scene has no light with power; add a [[light]] or an emissive material (Ke)");
-  }
+  lights.requirePower();
   const uint64_t key = streamKey(options.seed, Stream::PlaceLight);
-  PlaceResult result = collect(options, progress, [&](uint64_t path, Chunk& chunk) {
-    tracePhotonPath(rays, lights, options, path, key, chunk);
-  });
+  PlaceResult result =
+      collect(rays.scene().name(), options, progress, [&](uint64_t path, Chunk& chunk) {
+        tracePhotonPath(rays, lights, options, path, key, chunk);
+      });
   VplTable& t = result.table;
   t.stage = VplStage::Lit;
   t.sceneHash = rays.scene().contentHash;

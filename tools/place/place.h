@@ -24,6 +24,7 @@ struct PlaceResult {
   VplTable table;
   uint64_t paths = 0;  // traced until the count was reached
   uint64_t rays = 0;
+  uint64_t nonFinite = 0;  // vertices or photons left out because a value was NaN or infinite
   // How the traced paths ended: in the void, on a surface that reflects nothing, or at full depth.
   uint64_t escaped = 0, absorbed = 0, complete = 0;
 };

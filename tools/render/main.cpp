@@ -193,14 +193,10 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   if (vpl) read.push_back(paths.lit);
   addDepfile(files, tool.depfile, paths.output, read);
 
-  std::vector<std::string> warnings;
-  if (stats.notFinite > 0)
-    warnings.push_back(std::to_string(stats.notFinite) +
-                       " samples were not finite and are left out");
-  if (overflow > 0)
-    warnings.push_back(std::to_string(overflow) +
-                       " values exceed half precision; use --pixels float");
-  printWarnings("vpl-render", warnings);
+  if (overflow > 0) {
+    printWarnings("vpl-render",
+                  {std::to_string(overflow) + " values exceed half precision; use --pixels float"});
+  }
   char line[256];
   std::snprintf(line, sizeof line,
                 "%u x %u pixels, %u spp: mean direct %.5g, indirect %.5g W/(m2 sr)",
@@ -221,7 +217,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
     summary.add("mean_cut", stats.cut);
     summary.add("mean_shadow_rays", stats.shadowRays);
   }
-  summary.add("not_finite", stats.notFinite);
+  summary.addNonFinite(stats.nonFinite, "samples");
+  if (o.pixels == ExrPixelType::Half) summary.add("beyond_half", overflow);
   if (!paths.png.empty()) {
     std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: %s", double{ev},
                   paths.png.c_str());

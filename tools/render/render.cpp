@@ -36,12 +36,17 @@ void addTo(Pixel& p, size_t slot, Vec3 v) {
 }
 
 struct PixelCounts {
-  uint64_t cut = 0, shadowRays = 0, notFinite = 0;
+  uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
 };
 
+bool isFinite(const RadianceSample& r) {
+  return isFinite(r.direct + r.indirect) && isFinite(r.clamped) && isFinite(r.extended) &&
+         isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
+}
+
 void addSample(const RadianceSample& r, Pixel& pixel, PixelCounts& counts) {
-  if (!isFinite(r.direct) || !isFinite(r.indirect) || !isFinite(r.clamped)) {
-    ++counts.notFinite;
+  if (!isFinite(r)) {
+    ++counts.nonFinite;
     return;
   }
   addTo(pixel, kDirect, r.direct);
@@ -105,8 +110,8 @@ void renderTile(const Scene& scene, const Integrator& integrator, const FilmOpti
                 std::vector<Pixel>& pixels, std::vector<PixelCounts>& counts) {
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
-  for (uint32_t slot = firstSlot; slot < endSlot; slot += kSlotsAtOnce) {
-    const uint32_t slotEnd = std::min(endSlot, slot + kSlotsAtOnce);
+  for (uint32_t slot = firstSlot, slotEnd; slot < endSlot; slot = slotEnd) {
+    slotEnd = slot + std::min(endSlot - slot, kSlotsAtOnce);  // no sum beyond 2^32
     samples.clear();
     for (uint32_t s = slot; s < slotEnd; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
@@ -225,7 +230,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   for (const PixelCounts& c : counts) {
     stats.cut += double(c.cut);
     stats.shadowRays += double(c.shadowRays);
-    stats.notFinite += c.notFinite;
+    stats.nonFinite += c.nonFinite;
   }
   stats.cut /= double(stats.samples);
   stats.shadowRays /= double(stats.samples);

@@ -34,7 +34,7 @@ struct FilmStats {
          extended = 0;             // image means of the channels' mean, W/(m2 sr)
   double cut = 0, shadowRays = 0;  // a sample, on average
   uint64_t samples = 0;
-  uint64_t notFinite = 0;  // samples left out because a value was NaN or infinite
+  uint64_t nonFinite = 0;  // samples counted as zero because a value was NaN or infinite
 };
 
 // Finds the radiance of all samples of a tile.
