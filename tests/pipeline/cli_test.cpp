@@ -99,8 +99,8 @@ TEST_F(Options, BadCounts) {
 }
 
 TEST_F(Options, GoodCounts) {
-  for (const auto& [text, count] :
-       {std::pair{"12", "12"}, std::pair{"0.1k", "100"}, std::pair{"1K", "1000"}}) {
+  for (const auto& [text, count] : {std::pair{"12", "12"}, std::pair{"0.1k", "100"},
+                                    std::pair{"1K", "1000"}, std::pair{"2.01k", "2010"}}) {
     const Outcome r = tool("vpl-place", scene_ + " -o " + path("c.vpl") + " -n " + text);
     EXPECT_EQ(r.code, kExitOk) << r.err;
     EXPECT_TRUE(contains(r.out, std::string("placed ") + count + " ")) << r.out;

@@ -155,7 +155,7 @@ TEST_F(Damage, AViewIntoTheVoidIsRefusedInBoundedTime) {
   ASSERT_NE(where, std::string::npos);
   write("test/void.toml", toml.replace(where, 26, "look_at = [0.3, 1.2, 99.0]"));
   fail("vpl-place", path("test/void.toml") + " -n 10 -o " + path("x"), kExitInput,
-       {"only 0 of 10", "100 % left the scene", "paths", "camera"});
+       {"void.toml: only 0 of 10", "100 % left the scene", "paths", "camera"});
   EXPECT_FALSE(fs::exists(at("x")));
 }
 
@@ -172,7 +172,7 @@ TEST_F(Damage, ASceneWithoutLightIsRefused) {
   succeed("vpl-eliminate", path("c.vpl") + " -n 5 -o " + path("v.vpl"));
   fail("vpl-estimate",
        path("dark.toml") + " " + path("v.vpl") + " --photons 100 -o " + path("l.vpl"), kExitInput,
-       {"no light"});
+       {"dark.toml: has no light"});
   fail("vpl-place", path("dark.toml") + " --method light -n 30 -o " + path("l.vpl"), kExitInput,
        {"no light"});
 }

@@ -1,0 +1,65 @@
+// Counts beyond 2^31 and 2^32: nothing wraps around.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/pipeline.h"
+#include "tools/estimate/photon_shares.h"
+
+namespace bnvpl::test {
+namespace {
+
+TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
+  const uint64_t key = streamKey(1, Stream::Photons);
+  std::set<std::pair<float, float>> seen;
+  size_t drawn = 0;
+  for (uint64_t high = 0; high < 64; ++high) {
+    for (const uint64_t low : {0u, 1u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
+      Rng rng(key, high << 32 | low);
+      const float u = rng.next(), v = rng.next();
+      seen.emplace(u, v);
+      ++drawn;
+    }
+  }
+  EXPECT_EQ(seen.size(), drawn);
+}
+
+TEST(Counts, SharesOfManyPhotonsAreExact) {
+  const World world("cornell/scene.toml");
+  for (const uint64_t photons : {uint64_t{1} << 31, uint64_t{5000000000}, kMostPhotons}) {
+    const PhotonShares shares(world.lights, photons);
+    EXPECT_EQ(shares.total(), photons);
+    EXPECT_EQ(shares.lightOf(photons - 1), world.lights.size() - 1);
+    EXPECT_FLOAT_EQ(shares.weight(0) * float(photons), 1.0f);
+  }
+}
+
+// Far too many to trace: the first range shows that sums and ranges hold them.
+TEST(Counts, BillionsOfPhotonsCanBegin) {
+  const World world("cornell/scene.toml");
+  const VplTable start = placeAndEliminate(world, 2000, {.count = 50});
+  struct Enough {};
+  for (const uint64_t photons : {uint64_t{5000000000}, kMostPhotons}) {
+    VplTable vpls = start;
+    EXPECT_THROW(estimateFlux(vpls, world.rays, world.lights, {.photons = photons},
+                              [](uint64_t) { throw Enough{}; }),
+                 Enough);
+  }
+}
+
+// Slots of samples are counted in 32 bits: their last step must not wrap around.
+TEST(Counts, SamplesOfAPixelEndAtTheLargestCount) {
+  World world("cornell/scene.toml");
+  world.scene.film = {1, 1};
+  struct Enough {};
+  uint64_t samples = 0;
+  FilmStats stats;
+  const auto count = [&](const TileSamples& tile) {
+    samples += tile.samples.size();
+    if (samples > 100) throw Enough{};
+  };
+  EXPECT_THROW(renderFilm(world.scene, count, {.spp = UINT32_MAX}, stats), Enough);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

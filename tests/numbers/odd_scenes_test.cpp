@@ -1,0 +1,225 @@
+// Degenerate geometry, dark scenes and odd cameras: the image is that of the rest of the scene, or
+// the message says what is wrong.
+#include "tests/numbers/room.h"
+
+namespace bnvpl::test {
+namespace {
+
+class OddScenes : public RoomTest {
+ protected:
+  Image paths(Scene scene) const {
+    const World world(std::move(scene));
+    FilmStats stats;
+    Image image = renderPaths(world, {.spp = 4, .layers = ~0u}, stats);
+    EXPECT_EQ(stats.nonFinite, 0u);
+    return image;
+  }
+  static bool sameLight(const Image& a, const Image& b) {
+    return *a.find("R") == *b.find("R") && *a.find("G") == *b.find("G") &&
+           *a.find("B") == *b.find("B");
+  }
+  // What vpl-place says of the scene; empty when it finds enough.
+  std::string placeError(const Scene& scene) const {
+    const RayScene rays(scene);
+    try {
+      placeFromCamera(rays, {.count = 20});
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  std::string lightError(const Scene& scene) const {
+    const World world(scene);
+    VplTable vpls = placeAndEliminate(world, 50, {.count = 5});
+    try {
+      estimateFlux(vpls, world.rays, world.lights, {.photons = 100});
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  const Placement metres_{"metres"};
+};
+
+// Vertices that are no numbers, infinite, denormal; triangles without area; one smaller and one
+// larger than floats can compute normals of.
+TEST_F(OddScenes, UnusableTrianglesAreLeftOutAndCounted) {
+  const Scene whole = room(metres_);
+  const Scene odd = room(metres_,
+                         "v 0 0 0\nv 1 0 0\nv 1e400 0 0\nv -1e999 1 1\nv 1e39 0 0\n"
+                         "v 1e-40 0 0\nv 0 1e-42 0\nv 0 0 1e-45\nv 1e-12 0 0\nv 0 1e-12 0\n"
+                         "usemtl white\n"
+                         "f -10 -9 -8\nf -10 -9 -7\n"   // infinite
+                         "f -10 -9 -9\nf -10 -9 -10\n"  // no area
+                         "f -5 -4 -3\n"                 // denormal: no area in floats
+                         "f -10 -2 -1\n");              // normal underflows
+  EXPECT_EQ(odd.triangles.size(), whole.triangles.size());
+  EXPECT_EQ(countContaining(odd.warnings, "2 triangles with missing or non-finite vertices"), 1u)
+      << joined(odd.warnings);
+  EXPECT_EQ(countContaining(odd.warnings, "triangles without area are left out"), 1u)
+      << joined(odd.warnings);
+  EXPECT_TRUE(sameLight(paths(whole), paths(odd)));
+}
+
+TEST_F(OddScenes, WordsInPlaceOfNumbersAreNamedWithTheirLine) {
+  for (const char* vertex : {"v nan 0 0", "v 0 inf 0", "v 0 0 -nan", "v 1,5 0 0", "v 0 zero 0"}) {
+    const Scene whole = room(metres_);
+    const Scene odd =
+        room(metres_, std::string(vertex) + "\nv 0.5 0 0\nv 0 0.5 0\nusemtl white\nf -3 -2 -1\n");
+    EXPECT_EQ(odd.triangles.size(), whole.triangles.size()) << vertex;
+    EXPECT_EQ(countContaining(odd.warnings, "1 triangles with missing or non-finite vertices"), 1u)
+        << vertex << "\n"
+        << joined(odd.warnings);
+  }
+}
+
+// Each face twice: a ray meets one of them, and a lamp does not shine twice.
+TEST_F(OddScenes, DuplicateTrianglesChangeNothing) {
+  const Scene whole = room(metres_);
+  // Absolute indices, so that the copies name the same vertices.
+  std::ifstream lines(at("room.obj"));
+  std::string faces;
+  int vertices = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("v ")) ++vertices;
+    if (line.starts_with("usemtl")) faces += line + "\n";
+    if (!line.starts_with("f ")) continue;
+    std::istringstream words(line.substr(2));
+    faces += "f";
+    for (int index; words >> index;) faces += " " + std::to_string(vertices + 1 + index);
+    faces += "\n";
+  }
+  const Scene twice = room(metres_, faces);
+  EXPECT_EQ(twice.triangles.size(), 2 * whole.triangles.size() - 2);
+  EXPECT_EQ(countContaining(twice.warnings, "2 emissive triangles lie on others"), 1u)
+      << joined(twice.warnings);
+  const Image once = paths(whole), doubled = paths(twice);
+  EXPECT_NEAR(meanOf(doubled) / meanOf(once), 1.0, 1e-3);
+}
+
+// Which of two surfaces at one place a ray meets is not defined, but the same in every run.
+TEST_F(OddScenes, CoincidentSurfacesOfDifferentMaterials) {
+  const std::string carpet =
+      "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nusemtl red\nf -4 -3 -2 -1\nusemtl lamp\nf -4 -3 "
+      "-2\n";
+  const Image first = paths(room(metres_, carpet)), second = paths(room(metres_, carpet));
+  EXPECT_TRUE(sameLight(first, second));
+  EXPECT_GT(meanOf(first), 0.0);
+  const World world(room(metres_, carpet));
+  VplSettings s;
+  s.candidates = 1000;
+  s.vpls = 50;
+  s.estimate.photons = 10000;
+  s.nearField = true;
+  s.film.spp = 1;
+  FilmStats stats;
+  renderVpls(world, lightUp(world, s), s, stats);
+  EXPECT_EQ(stats.nonFinite, 0u);
+}
+
+TEST_F(OddScenes, ALightOfNoPowerBesideOthersIsNotThere) {
+  const std::string dark =
+      "[[light]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = [0, 0, 0]\n"
+      "[[light]]\ntype = \"environment\"\nradiance = [1, 1, 1]\nscale = 0\n"
+      "[[light]]\ntype = \"directional\"\ndirection = [0, -1, 0]\nirradiance = [0, 0, 0]\n";
+  const std::string lit =
+      "[[light]]\ntype = \"point\"\nposition = [0, 0, 2]\nintensity = [1, 1, 1]\n";
+  const auto flux = [&](const std::string& lights) {
+    World world(
+        loadMesh(kSquareObj + "v -1 -1 2\nv -1 1 2\nv -1 1 0\nv -1 -1 0\nf -4/1 -3/2 -2/3 -1/4\n",
+                 "newmtl paint\nKd 0.5 0.5 0.5\n", "", lights));
+    VplTable vpls = placeAndEliminate(world, 200, {.count = 20});
+    return estimateFlux(vpls, world.rays, world.lights, {.photons = 5000}).reflected;
+  };
+  EXPECT_NEAR(flux(lit + dark) / flux(lit), 1.0, 0.05);
+  EXPECT_GT(flux(lit), 0.0);
+}
+
+TEST_F(OddScenes, LightsWithoutPowerAloneAreRefusedByName) {
+  Scene scene = room(metres_);
+  for (LightSpec& l : scene.lights) l.emission = {};
+  for (Material& m : scene.materials) m.emission = {};
+  EXPECT_NE(lightError(scene).find("scene.toml: has no light with power"), std::string::npos)
+      << lightError(scene);
+}
+
+TEST_F(OddScenes, LightsBeyondFloatsAreRefusedByName) {
+  Scene scene = room(metres_);
+  for (Material& m : scene.materials) {
+    if (m.name == "lamp") m.emission = Vec3(3e38f);
+  }
+  try {
+    const World world(scene);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("power of the emissive material 'lamp'"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+// Light so faint that its floats are denormal still adds up.
+TEST_F(OddScenes, FaintLight) {
+  Scene scene = room(metres_);
+  for (LightSpec& l : scene.lights) l.emission *= 1e-34f;
+  for (Material& m : scene.materials) m.emission *= 1e-34f;
+  const World bright(room(metres_)), faint(scene);
+  const VplTable start = placeAndEliminate(bright, 200, {.count = 20});
+  VplTable a = start, b = start;
+  const EnergyAccount strong = estimateFlux(a, bright.rays, bright.lights, {.photons = 2000});
+  const EnergyAccount weak = estimateFlux(b, faint.rays, faint.lights, {.photons = 2000});
+  EXPECT_NEAR(weak.reflected * 1e34 / strong.reflected, 1.0, 0.01);
+  EXPECT_EQ(weak.nonFinite, 0u);
+}
+
+TEST_F(OddScenes, BlackSurfaces) {
+  Scene scene = room(metres_);
+  for (Material& m : scene.materials) m.diffuse = m.glossy = m.mirror = m.transmission = {};
+  const std::string error = placeError(scene);
+  EXPECT_NE(error.find("scene.toml: only 0 of 20 VPLs"), std::string::npos) << error;
+  EXPECT_NE(error.find("met surfaces that reflect nothing"), std::string::npos) << error;
+  paths(scene);
+}
+
+TEST_F(OddScenes, ACameraInsideAWall) {
+  for (const Vec3 position : {Vec3(-0.7f, 0.3f, -0.9f),     // in the box
+                              Vec3(-2.0f, 1.0f, 0.5f),      // in the plane of a wall
+                              Vec3(-2.0f, 0.0f, -2.0f)}) {  // in a corner
+    Scene scene = room(metres_);
+    scene.camera.position = position;
+    paths(scene);
+    const std::string error = placeError(scene);
+    EXPECT_TRUE(error.empty() || error.find("scene.toml: only") != std::string::npos) << error;
+  }
+}
+
+TEST_F(OddScenes, AViewOfNothingButSky) {
+  Scene scene = room(metres_);
+  scene.camera.position = {0.0f, 1.0f, 50.0f};
+  scene.camera.forward = {0, 0, 1};
+  scene.camera.right = {-1, 0, 0};
+  scene.lights.pop_back();  // the sun, which is in the view
+  const std::string error = placeError(scene);
+  EXPECT_NE(error.find("scene.toml: only 0 of 20 VPLs"), std::string::npos) << error;
+  EXPECT_NE(error.find("100 % left the scene"), std::string::npos) << error;
+  EXPECT_NE(error.find("point the camera at"), std::string::npos) << error;
+  const Image sky = paths(scene);
+  for (const float v : *sky.find("B")) EXPECT_FLOAT_EQ(v, 0.8f);
+  for (const float z : *sky.find("Z")) EXPECT_EQ(z, INFINITY);
+  scene.lights.clear();
+  EXPECT_EQ(meanOf(paths(scene)), 0.0);  // the void
+}
+
+TEST_F(OddScenes, SizesBeyondFloatsAreRefused) {
+  for (const double scale : {1e-8, 1e9}) {
+    try {
+      room({"", scale});
+      ADD_FAILURE() << scale;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("units across"), std::string::npos) << e.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,108 @@
+// The same room in other units and at other places must give the same image.
+#include "tests/numbers/room.h"
+
+namespace bnvpl::test {
+namespace {
+
+using Units = RoomTest;
+
+struct Images {
+  Image vpl, path;
+};
+
+Images renderBoth(Scene scene) {
+  const World world(std::move(scene));
+  VplSettings s;
+  s.candidates = 4000;
+  s.vpls = 200;
+  s.estimate.photons = 40000;
+  s.clamp = 2.0f;
+  s.nearField = true;
+  s.nearFieldRays = 4;
+  s.gather.method = GatherMethod::TileCuts;
+  FilmStats stats;
+  Images images;
+  images.vpl = renderVpls(world, lightUp(world, s), s, stats);
+  EXPECT_EQ(stats.nonFinite, 0u);
+  images.path = renderPaths(world, {.spp = 16}, stats);
+  EXPECT_EQ(stats.nonFinite, 0u);
+  return images;
+}
+
+// Root mean square difference over the mean of the first.
+double difference(const Image& a, const Image& b) {
+  double squared = 0.0;
+  for (const char* c : {"R", "G", "B"}) {
+    const std::vector<float>&x = *a.find(c), &y = *b.find(c);
+    for (size_t i = 0; i < x.size(); ++i) squared += std::pow(double{x[i]} - double{y[i]}, 2);
+  }
+  return std::sqrt(squared / (3.0 * double(a.pixelCount()))) / meanOf(a);
+}
+
+bool sameBits(const Image& a, const Image& b) {
+  return *a.find("R") == *b.find("R") && *a.find("G") == *b.find("G") &&
+         *a.find("B") == *b.find("B");
+}
+
+// Floats of another power of two round alike: any difference comes from a length, an area or a
+// power that is written as a plain number somewhere.
+TEST_F(Units, PowersOfTwoGiveTheSameBits) {
+  const Images metres = renderBoth(room({"metres"}));
+  for (const Placement& p : {Placement{"2^-10", 0x1p-10}, Placement{"2^13", 0x1p13}}) {
+    const Images other = renderBoth(room(p));
+    EXPECT_TRUE(sameBits(metres.vpl, other.vpl)) << p.name << difference(metres.vpl, other.vpl);
+    EXPECT_TRUE(sameBits(metres.path, other.path)) << p.name << difference(metres.path, other.path);
+  }
+}
+
+TEST_F(Units, OtherUnitsAndPlacesGiveTheSameImage) {
+  const Images metres = renderBoth(room({"metres"}));
+  for (const Placement& p :
+       {Placement{"kilometres", 1e-3}, Placement{"0.1 mm", 1e4}, Placement{"1e5 away", 1.0, 1e5},
+        Placement{"1e5 away in the OBJ", 1.0, 1e5, true},
+        Placement{"kilometres, 1e5 away", 1e-3, 1e5, true}, Placement{"0.1 mm, 1e5 away", 1e4, 1e5},
+        Placement{"10 sizes away", 1.0, 60.0}}) {
+    const Images other = renderBoth(room(p));
+    EXPECT_NEAR(meanOf(other.path) / meanOf(metres.path), 1.0, 0.003) << p.name;
+    EXPECT_LT(difference(metres.path, other.path), 0.1) << p.name;
+    // A weight that rounds otherwise changes who is eliminated, and so which VPLs there are.
+    EXPECT_NEAR(meanOf(other.vpl) / meanOf(metres.vpl), 1.0, 0.015) << p.name;
+    EXPECT_LT(difference(metres.vpl, other.vpl), 0.15) << p.name;
+  }
+}
+
+// Coordinates count from a place of the scene's own where it is far away, and only there.
+TEST_F(Units, FarScenesHaveAnOriginOfTheirOwn) {
+  EXPECT_EQ(room({"here"}).origin, Point{});
+  EXPECT_EQ(room({"10 sizes away", 1.0, 60.0}).origin, Point{});
+  const Scene far = room({"far", 1.0, 1e5});
+  EXPECT_EQ(countContaining(far.warnings,
+                            "scene.toml: lies far from its origin; coordinates count "
+                            "from (100000, 100000, 100000)"),
+            1u)
+      << joined(far.warnings);
+  EXPECT_EQ(far.contentHash, room({"here"}).contentHash);  // so VPLs of the one suit the other
+}
+
+// What is left: a scene whose size is that of its distance, such as a room beside a triangle that
+// was left at the origin. The offsets of rays grow with coordinates: they are 4e-6 of them.
+TEST_F(Units, AnOutlierAtTheOriginCoarsensWhatIsFarAway) {
+  const Images near = renderBoth(room({"here"}));
+  const auto besideOutlier = [&](double distance) {
+    std::ostringstream outlier;
+    outlier << "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nusemtl white\nf -3 -2 -1\n";
+    return renderBoth(room({"far", 1.0, distance, true}, outlier.str()));
+  };
+  for (const double distance : {100.0, 1000.0, 10000.0, 100000.0}) {
+    const Images far = besideOutlier(distance);
+    std::printf("outlier %g: path mean %g rms %g vpl mean %g rms %g\n", distance,
+                meanOf(far.path) / meanOf(near.path), difference(near.path, far.path),
+                meanOf(far.vpl) / meanOf(near.vpl), difference(near.vpl, far.vpl));
+    if (distance > 1000.0) continue;
+    EXPECT_NEAR(meanOf(far.path) / meanOf(near.path), 1.0, 0.02) << distance;
+    EXPECT_NEAR(meanOf(far.vpl) / meanOf(near.vpl), 1.0, 0.03) << distance;
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl::test

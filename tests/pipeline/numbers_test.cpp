@@ -1,0 +1,134 @@
+// Extreme films, counts and strengths through the executables. What the stages compute of them is
+// in tests/numbers.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "formats/exr_io.h"
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+using Numbers = PipelineTest;
+using Json = nlohmann::ordered_json;
+
+void expectFinite(const fs::path& exr) {
+  const Image image = readExr(exr);
+  for (const ImageChannel& channel : image.channels) {
+    for (const float v : channel.data) {
+      ASSERT_TRUE(std::isfinite(v) || isDepth(channel.name)) << exr << " " << channel.name;
+    }
+  }
+}
+
+TEST_F(Numbers, FilmsOfOnePixelAndOfOneRow) {
+  makeStages(scene_);
+  for (const std::string size : {"1x1", "16384x1", "1x16384"}) {
+    for (const std::string seed : {"1", "2"}) {
+      succeed("vpl-render", scene_ + " " + path("lit.vpl") + " -o " + path(seed + ".exr") +
+                                " --spp 1 --near-field-rays 2 --layers all --png " + path("i.png") +
+                                " --size " + size + " --seed " + seed);
+    }
+    expectFinite(at("1.exr"));
+    succeed("vpl-inspect", "check " + path("1.exr"));
+    succeed("vpl-inspect", "info " + path("1.exr"));
+    for (const std::string other : {"1", "2"}) {
+      const Outcome compared =
+          tool("vpl-inspect", "compare " + path("1.exr") + " " + path(other + ".exr") + " --diff " +
+                                  path("d.png"));
+      EXPECT_EQ(compared.code, kExitOk) << size << compared.err;
+      EXPECT_FALSE(contains(compared.out, "nan") || contains(compared.out, "inf")) << compared.out;
+    }
+  }
+}
+
+// One candidate, one VPL, through every tool.
+TEST_F(Numbers, OneVpl) {
+  succeed("vpl-place", scene_ + " -n 1 -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 1 -o " + path("v.vpl"));
+  succeed("vpl-estimate", scene_ + " " + path("v.vpl") + " --photons 1k -o " + path("l.vpl"));
+  for (const std::string gather : {"tilecuts", "lightcuts", "all"}) {
+    succeed("vpl-render",
+            scene_ + " " + path("l.vpl") + " --spp 1 --gather " + gather + " -o " + path("i.exr"));
+    expectFinite(at("i.exr"));
+  }
+  succeed("vpl-inspect", "check " + path("c.vpl") + " " + path("v.vpl") + " " + path("l.vpl"));
+  for (const char* file : {"c.vpl", "v.vpl", "l.vpl"}) {
+    const Outcome info = tool("vpl-inspect", "info " + path(file));
+    EXPECT_EQ(info.code, kExitOk) << info.err;
+    EXPECT_FALSE(contains(info.out, "nan") || contains(info.out, "inf ")) << info.out;
+    succeed("vpl-inspect", "export " + path(file) + " -o " + path("x.ply"));
+  }
+  succeed("vpl-inspect", "plot " + path("l.vpl") + " --scene " + scene_ + " -o " + path("p.png"));
+}
+
+TEST_F(Numbers, CountsBeyond32Bits) {
+  makeStages(scene_);
+  const std::string out = " -o " + path("x");
+  fail("vpl-place", scene_ + out + " -n 5G", kExitUsage, {"2^31"});
+  fail("vpl-eliminate", path("candidates.vpl") + out + " -n 5G", kExitInput, {"5000000000 of 300"});
+  fail("vpl-estimate", scene_ + " " + path("vpls.vpl") + out + " --photons 100G", kExitUsage,
+       {"2^36"});
+  // Still busy after a second, and nothing was said against it.
+  const Outcome busy = shell("timeout 1 '" BNVPL_BIN "/vpl-estimate' " + scene_ + " " +
+                             path("vpls.vpl") + out + " --photons 5G");
+  EXPECT_EQ(busy.code, 124) << busy.err;
+  EXPECT_EQ(busy.err, "");
+  fail("vpl-render", scene_ + " " + path("lit.vpl") + out + " --spp 5G", kExitUsage, {"2^32"});
+}
+
+// A light of 1e30 W/sr that nearly touches a surface: its light there is beyond floats.
+TEST_F(Numbers, NonFiniteSamplesAreReportedOnce) {
+  write("bright.obj",
+        "mtllib b.mtl\nusemtl grey\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3 4\n"
+        "v -1 2 -1\nv 1 2 -1\nf 1 4 6 5\n");
+  write("b.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  write("bright.toml",
+        "[film]\nwidth = 16\nheight = 16\n[camera]\nposition = [0, 1, 3]\nlook_at = [0, 0, 0]\n"
+        "vertical_fov_deg = 40\n[[mesh]]\nfile = \"bright.obj\"\n[[light]]\ntype = \"point\"\n"
+        "position = [0, 1e-5, 0.1]\nintensity = [1e30, 1e30, 1e30]\n");
+  const Outcome r = tool("vpl-render", path("bright.toml") + " --integrator path --spp 16 -o " +
+                                           path("i.exr") + " --stats " + path("s.json"));
+  ASSERT_EQ(r.code, kExitOk) << r.err;
+  const auto count = Json::parse(readAll(at("s.json"))).at("non_finite_samples").get<uint64_t>();
+  EXPECT_GT(count, 0u);
+  EXPECT_EQ(r.err, "vpl-render: warning: " + std::to_string(count) +
+                       " samples were not finite and count as zero; look for values of absurd "
+                       "size in the scene\n");
+  expectFinite(at("i.exr"));
+}
+
+TEST_F(Numbers, EveryStageCountsNonFiniteSamples) {
+  const std::string stats = " --stats " + path("s.json");
+  const auto count = [&] { return Json::parse(readAll(at("s.json"))).at("non_finite_samples"); };
+  succeed("vpl-place", scene_ + " -n 300 -o " + path("c.vpl") + stats);
+  EXPECT_EQ(count(), 0);
+  succeed("vpl-eliminate", path("c.vpl") + " -n 30 -o " + path("v.vpl"));
+  succeed("vpl-estimate",
+          scene_ + " " + path("v.vpl") + " --photons 1k -o " + path("l.vpl") + stats);
+  EXPECT_EQ(count(), 0);
+  succeed("vpl-render", scene_ + " " + path("l.vpl") + " --spp 1 -o " + path("i.exr") + stats);
+  EXPECT_EQ(count(), 0);
+}
+
+// Half holds 65504: what is brighter is clamped, counted and said.
+TEST_F(Numbers, LightBeyondHalf) {
+  write("sky.obj", "mtllib s.mtl\nusemtl grey\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nf 1 2 3\n");
+  write("s.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  write("sky.toml",
+        "[film]\nwidth = 4\nheight = 4\n[camera]\nposition = [0, 3, 3]\nlook_at = [0, 3, 0]\n"
+        "vertical_fov_deg = 20\n[[mesh]]\nfile = \"sky.obj\"\n[[light]]\ntype = \"environment\"\n"
+        "radiance = [1e6, 1, 1]\n");
+  const Outcome r =
+      tool("vpl-render", path("sky.toml") + " --integrator path --spp 1 --pixels half" +
+                             " --layers Z -o " + path("i.exr") + " --stats " + path("s.json"));
+  EXPECT_EQ(r.code, kExitOk);
+  EXPECT_TRUE(contains(r.err, "warning: 16 values exceed half precision")) << r.err;
+  EXPECT_EQ(Json::parse(readAll(at("s.json"))).at("beyond_half"), 16);
+  const Image image = readExr(at("i.exr"));
+  EXPECT_EQ((*image.find("R"))[0], 65504.0f);
+  EXPECT_EQ((*image.find("Z"))[0], INFINITY);
+}
+
+}  // namespace
+}  // namespace bnvpl
