@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kFourGib = "ulimit -v 4194304;";
 
-class Memory : public PipelineTest {
+class TooLarge : public PipelineTest {
  protected:
   // Header and directory of a file of a thousand million rows, the rest a hole.
   void writeHuge(const std::string& name, VplStage stage) const {
@@ -30,7 +30,7 @@ class Memory : public PipelineTest {
   }
 };
 
-TEST_F(Memory, CountsAndFilms) {
+TEST_F(TooLarge, CountsAndFilms) {
   fail("vpl-place", scene_ + " -o " + path("x.vpl") + " -n 2G", kExitMemory,
        {"2000000000 VPLs needs about 74.5 GiB", "are available", "with -n"}, kFourGib);
   fail("vpl-render",
@@ -39,7 +39,7 @@ TEST_F(Memory, CountsAndFilms) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
-TEST_F(Memory, Files) {
+TEST_F(TooLarge, Files) {
   writeHuge("c.vpl", VplStage::Candidates);
   writeHuge("v.vpl", VplStage::Eliminated);
   writeHuge("l.vpl", VplStage::Lit);
