@@ -152,11 +152,11 @@ void AtomicFile::sync() {
 }
 
 void AtomicFile::replace() {
+  outputReplaced = true;  // before it is: a signal in between must not deny it
   if (::rename(partial_.c_str(), target_.c_str()) != 0) {
     throw OutputError(target_, std::string("cannot replace: ") + std::strerror(errno));
   }
   replaced_ = true;
-  outputReplaced = true;
 }
 
 void AtomicFile::commit() {

@@ -61,6 +61,6 @@ void writeFileAtomically(const fs::path& target, const std::string& bytes);
 // For a process that is about to end in the middle of something: both may be called from a signal
 // handler.
 void removePartialFiles() noexcept;
-bool anyOutputReplaced() noexcept;  // by this process, so far
+bool anyOutputReplaced() noexcept;  // by this process, or just being so
 
 }  // namespace bnvpl

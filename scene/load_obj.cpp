@@ -15,7 +15,7 @@
 #pragma GCC diagnostic pop
 
 #include "core/parallel.h"
-#include "scene/read_guard.h"
+#include "scene/read_file.h"
 
 namespace bnvpl {
 
@@ -52,16 +52,13 @@ class LibraryReader : public tinyobj::MaterialReader {
     std::string path = name;
     std::replace(path.begin(), path.end(), '\\', '/');
     const fs::path file = override_.empty() ? (folder_ / path).lexically_normal() : override_;
-    const ReadGuard guard(file);
-    std::ifstream in(file);
-    if (!in) {
+    if (!fs::is_regular_file(file) || !std::ifstream(file)) {
       missing.push_back(file);
       return false;
     }
     files.push_back(file);
+    std::istringstream in(readText(file));
     tinyobj::LoadMtl(byName, materials, &in, warn, err);
-    if (in.bad()) throw InputError(file, "cannot be read to its end; check the disk");
-    guard.check();
     origin.resize(materials->size(), file);
     return true;
   }
@@ -359,21 +356,17 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
 }
 
 void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affine& transform) {
-  const ReadGuard guard(obj);
-  std::ifstream file(obj);
-  if (!file || !fs::is_regular_file(obj)) {
+  if (!fs::is_regular_file(obj) || !std::ifstream(obj)) {
     throw InputError(obj, "no such OBJ file; check 'file' in the scene.toml");
   }
   if (!materials.empty() && !fs::is_regular_file(materials)) {
     throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
   }
   scene_.files.push_back(obj);
-  std::stringstream in;
+  std::string text = readText(obj);
   // tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
-  if (!materials.empty()) in << "mtllib override\n";
-  in << file.rdbuf();
-  if (in.bad()) throw InputError(obj, "cannot be read to its end; check the disk");
-  guard.check();
+  if (!materials.empty()) text.insert(0, "mtllib override\n");
+  std::istringstream in(std::move(text));
 
   Parsed parsed;
   std::vector<tinyobj::material_t> source;

@@ -9,7 +9,7 @@
 
 #include "core/sampling.h"
 #include "scene/load_obj.h"
-#include "scene/read_guard.h"
+#include "scene/read_file.h"
 #include "scene/scene.h"
 #include "scene/scene_hash.h"
 
@@ -297,11 +297,9 @@ const toml::table& tableOf(const fs::path& file, const toml::table& root, const 
 
 toml::table parseToml(const fs::path& path) {
   if (!fs::is_regular_file(path)) throw InputError(path, "no such file; name a scene.toml");
-  const ReadGuard guard(path);
+  const std::string text = readText(path);
   try {
-    toml::table root = toml::parse_file(path.string());
-    guard.check();
-    return root;
+    return toml::parse(text, path.string());
   } catch (const toml::parse_error& e) {
     throw InputError(path.string() + ":" + std::to_string(e.source().begin.line) + ": " +
                      std::string(e.description()));

@@ -2,11 +2,14 @@
 
 #include <sys/resource.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <new>
 #include <sstream>
 
@@ -27,8 +30,56 @@ double peakMemoryMiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
 }
 
-constexpr const char* kOutOfMemory =
-    "out of memory; lower the counts or the film size, or raise the limit on memory";
+std::string toolName;  // before each line on stderr
+
+// Formats nothing in memory, of which there may be none left.
+int fail(int code, const char* what, const char* more = "") {
+  std::fprintf(stderr, "%s: %s%s\n", toolName.c_str(), what, more);
+  return code;
+}
+
+int failForMemory() {
+  return fail(kExitMemory,
+              "out of memory; lower the counts or the film size, or raise the limit on memory");
+}
+
+// One line and the exit code for the exception that is being handled.
+int report() {
+  try {
+    throw;
+  } catch (const CLI::ParseError& e) {
+    return fail(kExitUsage, e.what(), ("; see " + toolName + " --help").c_str());
+  } catch (const UsageError& e) {
+    return fail(kExitUsage, e.what());
+  } catch (const InputError& e) {
+    return fail(kExitInput, e.what());
+  } catch (const OutputError& e) {
+    return fail(kExitOutput, e.what());
+  } catch (const MemoryError& e) {
+    return fail(kExitMemory, e.what());
+  } catch (const std::bad_alloc&) {
+    return failForMemory();
+  } catch (const std::length_error&) {  // a container of more elements than there are addresses
+    return failForMemory();
+  } catch (const std::exception& e) {
+    if (std::strstr(e.what(), "pthread_create")) {  // oneTBB's words, which Embree hands on
+      return fail(kExitMemory,
+                  "out of memory for threads; lower --threads, or raise the limits on "
+                  "memory and processes");
+    }
+    return fail(kExitInternal, "internal error: ", e.what());
+  } catch (...) {
+    return fail(kExitInternal, "internal error");
+  }
+}
+
+// For what no catch can reach, such as oneTBB's failure to start a thread.
+[[noreturn]] void onTerminate() {
+  static std::atomic_flag ending;
+  while (ending.test_and_set()) ::pause();  // another thread has it
+  removePartialFiles();
+  ::_exit(std::current_exception() ? report() : fail(kExitInternal, "internal error"));
+}
 
 // False when the answer was --help or --version.
 bool parse(CLI::App& cli, int argc, char** argv) {
@@ -105,13 +156,10 @@ CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
 
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work) {
-  const std::string name = cli.get_name();
-  const auto fail = [&](int code, const char* what, const char* more = "") {
-    std::fprintf(stderr, "%s: %s%s\n", name.c_str(), what, more);
-    return code;
-  };
+  toolName = cli.get_name();
   occupyClosedStreams();
-  catchInterrupts(name);
+  catchInterrupts(toolName);
+  std::set_terminate(onTerminate);
   try {
     if (!parse(cli, argc, argv)) return kExitOk;
     tbb::global_control limit(
@@ -120,29 +168,10 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             ? options.threads
             : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
     return work();
-  } catch (const CLI::ParseError& e) {
-    return fail(kExitUsage, e.what(), ("; see " + name + " --help").c_str());
-  } catch (const UsageError& e) {
-    return fail(kExitUsage, e.what());
-  } catch (const InputError& e) {
-    return fail(kExitInput, e.what());
-  } catch (const OutputError& e) {
-    return fail(kExitOutput, e.what());
-  } catch (const MemoryError& e) {
-    return fail(kExitMemory, e.what());
   } catch (const Interrupted& e) {
     endInterrupted(e);
-  } catch (const std::bad_alloc&) {
-    return fail(kExitMemory, kOutOfMemory);
-  } catch (const std::length_error&) {  // a container of more elements than there are addresses
-    return fail(kExitMemory, kOutOfMemory);
-  } catch (const std::exception& e) {
-    if (std::strstr(e.what(), "pthread_create")) {  // oneTBB's words, which Embree hands on
-      return fail(kExitMemory,
-                  "a thread cannot be started; lower --threads, or raise the limits on "
-                  "memory and processes");
-    }
-    return fail(kExitInternal, "internal error: ", e.what());
+  } catch (...) {
+    return report();
   }
 }
 
