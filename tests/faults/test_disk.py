@@ -1,0 +1,164 @@
+"""Targets that cannot be written, and disks that fill up or fail: exit code 4, one line, and every file as it was."""
+
+import errno
+import os
+import resource
+import shutil
+import subprocess
+import time
+import unittest
+from dataclasses import replace
+
+from workbench import BIN, COMMANDS, FULL, OK, OUTPUT, SOURCE, Workbench, needs_shim, require
+
+
+class Targets(Workbench):
+    def refused(self, command, *parts, **settings):
+        result = self.run_command(command, **settings)
+        self.assertEqual(result.code, OUTPUT, f"{command.name}: {result}")
+        self.assert_one_line(command, result, *parts)
+
+    def test_missing_folder(self):
+        whole = self.folder
+        for command in COMMANDS:
+            self.folder = whole / "absent"
+            self.refused(command, "absent/", "No such file or directory")
+        self.folder = whole
+        self.assertEqual(list(whole.iterdir()), [])
+
+    def test_folder_that_vanishes_during_the_work(self):
+        for command in COMMANDS:
+            self.right(command)
+            whole, self.folder = self.folder, self.folder / "soon gone"
+            self.folder.mkdir()
+            process = self.start(command)
+            time.sleep(self.random.uniform(0, 0.5 * self.seconds[command.name]))
+            shutil.rmtree(self.folder, ignore_errors=True)  # the process may be writing there just now
+            result = self.finish(process, 0)
+            self.assertIn(result.code, (OK, OUTPUT), f"{command.name}: {result}")
+            if result.code == OUTPUT:
+                self.assert_one_line(command, result, "No such file or directory")
+            self.folder = whole
+
+    def test_one_output_without_a_folder_leaves_all_as_they_were(self):
+        for command in COMMANDS:
+            for name in command.outputs:
+                self.put_old(command)
+                elsewhere = command.arguments.replace("{out}/" + name, "{out}/absent/" + name)
+                self.refused(replace(command, arguments=elsewhere), "absent/" + name)
+                self.assert_all(command, "old", f"no folder for {name}")
+
+    def test_read_only_file_system(self):
+        """A read-only bind mount, in a mount namespace of its own: root cannot write there either."""
+        require("unshare")
+        flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
+        script = 'mount --bind "$0" "$0" && mount -o remount,bind,ro "$0" && exec "$@"'
+        probe = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, "true"], capture_output=True)
+        if probe.returncode != 0:
+            self.skipTest(f"no read-only mount: {probe.stderr.decode().strip()}")
+        for command in COMMANDS:
+            for old in (False, True):
+                if old:
+                    self.put_old(command)
+                result = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder,
+                                         *command.line(self.folder)], cwd=SOURCE, capture_output=True, text=True)
+                self.assertEqual(result.returncode, OUTPUT, f"{command.name}: {result}")
+                self.assertRegex(result.stderr, rf"\A{command.tool}: [^\n]*Read-only file system[^\n]*\n\Z")
+                self.assert_all(command, "old" if old else "absent", "read-only file system")
+
+    def test_read_only_folder_and_file(self):
+        """As a user without rights; root borrows the number of one."""
+        user = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+        if user:
+            for folder in (self.folder, self.made):
+                folder.chmod(0o755)
+            try:
+                probe = subprocess.run([BIN / "vpl-place", "--version"], capture_output=True, **user)
+            except PermissionError:
+                self.skipTest(f"cannot run {BIN} as another user")
+            if probe.returncode != 0:
+                self.skipTest(f"cannot run {BIN} as another user: {probe.stderr}")
+        for command in COMMANDS:
+            self.put_old(command)
+            self.folder.chmod(0o555)
+            self.refused(command, "Permission denied", **user)
+            self.folder.chmod(0o777)
+            for name in command.outputs:
+                (self.folder / name).chmod(0o444)
+            self.refused(command, "cannot replace: Permission denied; make it writable", **user)
+            self.assert_all(command, "old", "read-only")
+            self.assertEqual(self.left_over(), [])
+            for name in command.outputs:
+                (self.folder / name).unlink()
+
+
+class FullDisks(Workbench):
+    def test_small_tmpfs(self):
+        """A tmpfs too small for the product, in a mount namespace of its own."""
+        require("unshare")
+        flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
+        # The listing afterwards is the proof; what the folder holds vanishes with the namespace.
+        script = ('mount -t tmpfs -o size=8k none "$0" && cd "$0" && printf old > "$1" && shift && "$@"; code=$?; '
+                  'cd "$0" && echo "left: $(ls -A) $(cat *)"; exit $code')
+        probe = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, "x", "true"], capture_output=True)
+        if probe.returncode != 0:
+            self.skipTest(f"no tmpfs: {probe.stderr.decode().strip()}")
+        for command in COMMANDS:
+            product = command.outputs[0]
+            line = command.line(self.folder)
+            result = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, product, *line, "--quiet"],
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, OUTPUT, f"{command.name}: {result}")
+            self.assertRegex(result.stderr, rf"\A{command.tool}: [^\n]*No space left on device[^\n]*\n\Z")
+            self.assertEqual(result.stdout, f"left: {product} old\n")
+
+    def test_limit_on_file_size(self):
+        """Without a handler of SIGXFSZ the process would end, and not say why."""
+        for command in COMMANDS:
+            self.right(command)
+            self.put_old(command)
+            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
+            result = self.run_command(command, preexec_fn=limit)
+            self.assertEqual(result.code, OUTPUT, f"{command.name}: {result}")
+            self.assert_one_line(command, result, "write failed: File too large; the old file, if any, is unchanged")
+            self.assert_all(command, "old", "limit on file size")
+            self.assertEqual(self.left_over(), [])
+
+    @needs_shim
+    def test_every_call_that_can_fail(self):
+        """Each write (of four, in the quick run), fsync and rename fails in turn, and all later ones of its kind."""
+        for command in COMMANDS:
+            self.right(command)
+            for call, error in (("write", errno.ENOSPC), ("fsync", errno.EIO), ("rename", errno.EIO)):
+                tried = self.fail_each(command, call, error)
+                self.assertGreaterEqual(tried, len(command.outputs), f"{command.name}: {call}")
+                self.say(f"{command.name}: {tried} calls of {call} failed in turn")
+
+    def fail_each(self, command, call, error):
+        tried = 0
+        for at in range(1, 1000):
+            if not FULL and at > 4 and at % 4 != 0:
+                continue
+            self.put_old(command)
+            result = self.run_command(command, {"call": call, "at": at, "errno": error})
+            states = self.states(command)
+            what = f"{command.name}: {call} {at}: {result} {states}"
+            self.assertEqual(self.left_over(), [], what)
+            if result.code == OK:
+                self.assertEqual(set(states.values()), {"new"}, what)
+                return tried
+            tried += 1
+            self.assertEqual(result.code, OUTPUT, what)
+            self.assert_one_line(command, result, os.strerror(error))
+            self.assertLessEqual(set(states.values()), {"old", "new"}, what)
+            if call == "write" or (call, at) == ("rename", 1) or (call == "fsync" and at <= len(command.outputs)):
+                self.assertEqual(set(states.values()), {"old"}, what)
+            if call == "rename":
+                self.assertEqual(states[command.outputs[0]], "old", what)
+            if "was replaced" not in result.err:
+                self.assertEqual(states[command.outputs[0]], "old", what)
+        self.fail(f"{command.name}: more than 999 calls of {call}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,113 @@
+"""Inputs that vanish, shrink, grow, are overwritten or replaced while they are read: the result of a whole file, or exit
+code 3 and one line; never a crash, and never a product of half a file."""
+
+import os
+import shutil
+import time
+import unittest
+from pathlib import Path
+
+from workbench import COMMANDS, FULL, INPUT, OK, SCENE, Command, Workbench, moments, needs_shim
+
+# A disk that takes its time, so that there is some to change what has not been read yet.
+SLOW_DISK = {"read_delay_us": 10000, "read_bytes": 16384}
+
+
+def truncate(path: Path, random) -> None:
+    os.truncate(path, random.randrange(path.stat().st_size))
+
+
+def empty(path: Path, random) -> None:
+    os.truncate(path, 0)
+
+
+def append(path: Path, random) -> None:
+    with path.open("ab") as file:
+        file.write(b"more")
+
+
+def overwrite(path: Path, random) -> None:
+    with path.open("r+b") as file:
+        file.seek(random.randrange(path.stat().st_size))
+        file.write(bytes(random.randrange(256) for _ in range(64)))
+
+
+def vanish(path: Path, random) -> None:
+    path.unlink()
+
+
+def replace(path: Path, random) -> None:
+    """As every tool of ours replaces its output: a reader that has the old file keeps it."""
+    other = path.with_name("other")
+    other.write_bytes(path.read_bytes())
+    other.rename(path)
+
+
+CHANGES = [truncate, empty, append, overwrite, vanish, replace]
+
+
+@needs_shim
+class ChangingInputs(Workbench):
+    def with_copies(self, command):
+        """The command with inputs of its own, that may be spoiled."""
+        inputs = self.folder / "inputs"
+        shutil.rmtree(inputs, ignore_errors=True)
+        shutil.copytree(self.made, inputs)
+        for file in SCENE.parent.glob(SCENE.stem + ".*"):
+            shutil.copy(file, inputs)
+        arguments = command.arguments.replace("{made}", str(inputs)).replace("{scene}", str(inputs / SCENE.name))
+        return Command(command.name, command.tool, arguments, command.outputs), inputs
+
+    def spoil(self, command, name, change, seconds):
+        copied, inputs = self.with_copies(command)
+        self.put_old(command)
+        begin = time.monotonic()
+        process = self.start(copied, SLOW_DISK)
+        time.sleep(self.random.uniform(0, seconds))
+        change(inputs / name, self.random)
+        result = self.finish(process, begin)
+        states = {output: self.state(command, output) for output in command.outputs if not output.endswith(".d")}
+        what = f"{command.name}: {change.__name__} {name}: {result} {states}"
+        self.assertIn(result.code, (OK, INPUT), what)
+        if result.code == INPUT:
+            self.assertRegex(result.err, rf"(\A|\n){command.tool}: [^\n]+\n\Z", what)
+            self.assertEqual(set(states.values()), {"old"}, what)
+        else:
+            self.assertEqual(set(states.values()), {"new"}, what)
+        return result.code
+
+    def test_vpl_files(self):
+        for command in COMMANDS:
+            for name in ("c.vpl", "v.vpl", "l.vpl"):
+                if "{made}/" + name in command.arguments:
+                    self.spoil_often(command, name)
+
+    def test_scenes(self):
+        for command in COMMANDS:
+            if "{scene}" in command.arguments and command.name != "path":
+                for name in (SCENE.name, SCENE.stem + ".obj"):
+                    self.spoil_often(command, name)
+
+    def spoil_often(self, command, name):
+        self.right(command)
+        seconds = self.run_command(command, SLOW_DISK).seconds
+        ends = [self.spoil(command, name, CHANGES[k % len(CHANGES)], seconds) for k in range(moments(6))]
+        self.say(f"{command.name} {name}: {len(ends)} changes: {ends.count(INPUT)} refused, {ends.count(OK)} unharmed")
+
+    def test_read_errors(self):
+        """Each read of an input fails in turn, as does every later one."""
+        for command in COMMANDS:
+            self.right(command)
+            for at in range(1, 1000, 1 if FULL else 5):
+                self.put_old(command)
+                result = self.run_command(command, {"call": "read", "at": at, "errno": 5})
+                what = f"{command.name}: read {at}: {result}"
+                if result.code == OK:
+                    self.assert_all(command, "new", what)
+                    break
+                self.assertEqual(result.code, INPUT, what)
+                self.assert_all(command, "old", what)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,61 @@
+"""Too little memory, at sizes from where a tool starts at all to where it needs no more: exit code 6 and one line.
+
+Below that the libraries fail to load, or end the process before main: log4cplus, which comes with OpenVDB, starts threads."""
+
+import resource
+import subprocess
+import unittest
+
+from workbench import BIN, COMMANDS, FULL, MEMORY, OK, Workbench, needs_shim
+
+MIB = 1 << 20
+
+
+@needs_shim  # a sanitizer's build reserves terabytes of addresses
+class LimitedMemory(Workbench):
+    def limit(self, mib):
+        return lambda: resource.setrlimit(resource.RLIMIT_AS, (int(mib * MIB), int(mib * MIB)))
+
+    def limited(self, command, mib, threads):
+        return self.run_command(command, more=["--threads", str(threads)], preexec_fn=self.limit(mib))
+
+    def starts(self, command, mib):
+        done = subprocess.run([BIN / command.tool, "--version"], capture_output=True, preexec_fn=self.limit(mib))
+        return done.returncode == OK
+
+    def between(self, low, high, enough):
+        """The smallest size that is enough, to a MiB."""
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (low, middle) if enough(middle) else (middle, high)
+        return high
+
+    def test_every_limit(self):
+        for command in COMMANDS:
+            with self.subTest(command.name):
+                self.right(command)
+                least = self.between(1, 4096, lambda mib: self.starts(command, mib))
+                most = self.between(least, 8192, lambda mib: self.limited(command, mib, 2).code == OK)
+                steps = 60 if FULL else 6
+                ends = []
+                for step in range(steps):
+                    mib = least + (most - least) * (step + self.random.random()) / steps
+                    for threads in (1, 2):
+                        ends.append(self.at_limit(command, mib, threads))
+                self.say(f"{command.name}: {least} to {most} MiB: {ends.count(MEMORY)} runs out of memory, "
+                         f"{ends.count(OK)} done")
+
+    def at_limit(self, command, mib, threads):
+        self.put_old(command)
+        result = self.limited(command, mib, threads)
+        what = f"{command.name}, {mib:.1f} MiB, {threads} threads: {result}"
+        self.assertIn(result.code, (OK, MEMORY), what)
+        self.assertEqual(self.left_over(), [], what)
+        if result.code == MEMORY:
+            self.assert_one_line(command, result, "out of memory")
+        self.assert_all(command, "new" if result.code == OK else "old", what)
+        return result.code
+
+
+if __name__ == "__main__":
+    unittest.main()
