@@ -11,13 +11,18 @@ from workbench import COMMANDS, OK, PARTIAL, Workbench, moments, needs_shim
 SLOW_DISK = {"delay_us": 10000}
 
 
+def heed_interrupts():
+    """A shell ignores Ctrl-C in what it starts in the background, and the tools keep to that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class AtRandomMoments(Workbench):
     def strike(self, command, number, faults, seconds):
         """One run that gets the signal at a random moment; returns how it ended."""
         self.put_old(command)
         moment = self.random.uniform(0, 1.1 * seconds)
         begin = time.monotonic()
-        process = self.start(command, faults)
+        process = self.start(command, faults, preexec_fn=heed_interrupts)
         time.sleep(moment)
         process.send_signal(number)
         result = self.finish(process, begin)
