@@ -86,7 +86,7 @@ std::vector<size_t> verticesOfWords(std::string_view obj) {
 }
 
 std::string firstLine(std::string text) {
-  text = text.substr(0, text.find('\n'));
+  text.resize(std::min(text.size(), text.find('\n')));
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   return text;
 }

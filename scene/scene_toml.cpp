@@ -52,7 +52,7 @@ bool toUnit(const Point& to, const Point& from, Vec3& unit) {
 class Section {
  public:
   Section(const fs::path& file, std::string name, const toml::table& table,
-          std::vector<std::string> known)
+          const std::vector<std::string>& known)
       : file_(file), name_(std::move(name)), table_(table) {
     for (const auto& [key, node] : table_) checkKnown(std::string(key.str()), node, known);
   }
@@ -123,7 +123,7 @@ class Section {
   void checkKnown(const std::string& key, const toml::node& node,
                   const std::vector<std::string>& known) const {
     if (std::find(known.begin(), known.end(), key) != known.end()) return;
-    const auto nearest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
+    const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
       return editDistance(key, a) < editDistance(key, b);
     });
     fail(node, "unknown key '" + key + "'; did you mean '" + *nearest + "'?");

@@ -49,7 +49,7 @@ class Elimination {
     dropIdle();
     while (!busy_.empty()) {
       forBusy([&](Block& block) { pickMaxima(block); });
-      forBusy([&](Block& block) {
+      forBusy([&](const Block& block) {
         for (const uint32_t i : block.picked) graph_.release(i);
       });
       for (const Block* block : busy_) {
