@@ -1,0 +1,40 @@
+// Loading again and again takes no more memory than loading a few times.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "scene/lights.h"
+
+namespace bnvpl {
+namespace {
+
+double residentMiB() {
+  std::ifstream statm("/proc/self/statm");
+  double total = 0.0, resident = 0.0;
+  EXPECT_TRUE(statm >> total >> resident);
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+void loadTimes(int times) {
+  for (int i = 0; i < times; ++i) {
+    const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "veach-door/scene.toml");
+    const RayScene rays(scene);
+    const LightSet lights(rays);
+    SurfacePoint hit;
+    ASSERT_TRUE(rays.closestHit(scene.camera.position, {0.0f, -1.0f, 0.0f}, hit));
+  }
+}
+
+TEST(Memory, LoadingAgainTakesNoMore) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers keep what is freed";
+#endif
+  loadTimes(4);  // until allocators and thread pools have what they keep
+  const double few = residentMiB();
+  loadTimes(60);
+  EXPECT_LT(residentMiB() - few, 2.0) << few << " MiB after four";
+}
+
+}  // namespace
+}  // namespace bnvpl
