@@ -3,8 +3,10 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 
@@ -12,6 +14,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/files.h"
+#include "formats/exr_header.h"
 #include "formats/vpl_layout.h"
 
 namespace bnvpl {
@@ -106,7 +110,13 @@ void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
   }
   size_t channels = 0;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
-  const double pixels = std::max(width * height, dataWidth * dataHeight);
+  // OpenEXR keeps a tile, and a row of them.
+  double tiles = 0.0;
+  if (header.hasTileDescription()) {
+    const double tileWidth = header.tileDescription().xSize;
+    tiles = header.tileDescription().ySize * std::max(tileWidth, dataWidth);
+  }
+  const double pixels = std::max({width * height, dataWidth * dataHeight, tiles});
   const double bytes = pixels * static_cast<double>(channels) * sizeof(float);
   if (bytes > kMaxPixelBytes || bytes > kMaxExpansion * static_cast<double>(fs::file_size(file))) {
     throw InputError(file, "claims more pixels than a file of its size can hold; make it again");
@@ -114,7 +124,7 @@ void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
 }
 
 // Reads scanline by scanline and keeps the part of each that lies in the display window.
-void readPixels(Imf::InputFile& in, Image& image) {
+void readPixels(Imf::InputPart& in, Image& image) {
   const Imath::Box2i &display = in.header().displayWindow(), &data = in.header().dataWindow();
   std::vector<std::vector<float>> line(
       image.channels.size(), std::vector<float>(static_cast<size_t>(data.max.x - data.min.x + 1)));
@@ -142,11 +152,17 @@ void readPixels(Imf::InputFile& in, Image& image) {
 }
 
 Image readChecked(const fs::path& file) {
+  refuseDishonestAttributes(file);
   Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // or OpenEXR allocates its line table first
-  Imf::InputFile in(file.c_str(), kNoThreads);
-  const Imf::Header& header = in.header();
+  // Not Imf::InputFile: that allocates lines and tiles of any size as it opens the file, and takes
+  // deep images.
+  Imf::MultiPartInputFile parts(file.c_str(), kNoThreads, /*reconstructChunkOffsetTable=*/false);
+  const Imf::Header& header = parts.header(0);
+  if (header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE) {
+    throw InputError(file, "is a deep image; supply a flat one");
+  }
   refuseAbsurd(file, header);
-  if (!in.isComplete()) throw InputError(file, "scanlines are missing; make it again");
+  if (!parts.partComplete(0)) throw InputError(file, "scanlines are missing; make it again");
   Image image;
   image.width = header.displayWindow().max.x - header.displayWindow().min.x + 1;
   image.height = header.displayWindow().max.y - header.displayWindow().min.y + 1;
@@ -158,6 +174,7 @@ Image readChecked(const fs::path& file) {
     // "type" says how the file is stored, not what the image is.
     if (text && std::string(it.name()) != "type") image.attributes[it.name()] = text->value();
   }
+  Imf::InputPart in(parts, 0);
   readPixels(in, image);
   return image;
 }
@@ -222,10 +239,7 @@ uint64_t hashImage(const Image& image, ExrPixelType type) {
 }
 
 Image readExr(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) {
-    throw InputError(file, "no such file; check the name");
-  }
+  if (!isRegularFile(file)) throw InputError(file, "no such file; check the name");
   try {
     return readChecked(file);
   } catch (const InputError&) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 namespace bnvpl {
@@ -109,13 +108,5 @@ uint64_t hashPieces(const std::vector<Bytes>& pieces) {
 }
 
 bool isMeasure(double value) { return std::isfinite(value) && value >= 0.0; }
-
-bool isProvenance(const std::string& text) {
-  // The parser takes a zero byte for the end of the text; here it would hide what follows.
-  if (text.find('\0') != std::string::npos) return false;
-  const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  return json.is_array() && std::all_of(json.begin(), json.end(),
-                                        [](const auto& record) { return record.is_object(); });
-}
 
 }  // namespace bnvpl

@@ -70,7 +70,4 @@ uint64_t hashPieces(const std::vector<Bytes>& pieces);
 // r_max and area: finite and not negative.
 bool isMeasure(double value);
 
-// Whether `text` is a JSON array of objects, in UTF-8.
-bool isProvenance(const std::string& text);
-
 }  // namespace bnvpl

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "formats/provenance.h"
 #include "formats/vpl_io.h"
 #include "formats/vpl_layout.h"
 
@@ -195,7 +196,8 @@ VplTable makeTable(const InputFile& in, Bytes file, const VplHeader& header,
   table.provenance.assign(reinterpret_cast<const char*>(file.data()) + layout.provenanceOffset,
                           header.provenanceBytes);
   if (!isProvenance(table.provenance)) {
-    in.fail(layout.provenanceOffset, "provenance is not a JSON array of objects");
+    in.fail(layout.provenanceOffset,
+            "provenance is not a JSON array of objects, or is nested too deeply");
   }
   auto entry = layout.directory.begin();
   forEachColumn(table, [&](auto& column) {

@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "formats/provenance.h"
 #include "formats/vpl_io.h"
 #include "formats/vpl_layout.h"
 

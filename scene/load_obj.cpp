@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 
@@ -14,7 +15,9 @@
 #include <tiny_obj_loader.h>
 #pragma GCC diagnostic pop
 
+#include "core/files.h"
 #include "core/parallel.h"
+#include "scene/obj_lines.h"
 #include "scene/read_file.h"
 
 namespace bnvpl {
@@ -48,12 +51,13 @@ class LibraryReader : public tinyobj::MaterialReader {
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* byName, std::string* warn,
                   std::string* err) override {
-    if (!override_.empty() && !files.empty()) return true;
     std::string path = name;
     std::replace(path.begin(), path.end(), '\\', '/');
     const fs::path file = override_.empty() ? (folder_ / path).lexically_normal() : override_;
-    if (!fs::is_regular_file(file) || !std::ifstream(file)) {
-      missing.push_back(file);
+    // Once: an OBJ can name one library in many ways, as often as it has lines.
+    if (std::find(files.begin(), files.end(), file) != files.end()) return true;
+    if (!isRegularFile(file) || !std::ifstream(file)) {
+      missing.insert(file);
       return false;
     }
     files.push_back(file);
@@ -62,7 +66,8 @@ class LibraryReader : public tinyobj::MaterialReader {
     origin.resize(materials->size(), file);
     return true;
   }
-  std::vector<fs::path> files, missing, origin;  // origin: the library of each material
+  std::vector<fs::path> files, origin;  // origin: the library of each material
+  std::set<fs::path> missing;
 
  private:
   fs::path folder_, override_;
@@ -168,16 +173,16 @@ uint32_t ObjLoader::texture(const fs::path& folder, const fs::path& otherFolder,
   if (name.empty()) return kNone;
   std::replace(name.begin(), name.end(), '\\', '/');
   fs::path file = (folder / name).lexically_normal();
-  if (!fs::is_regular_file(file)) {
+  if (!isRegularFile(file)) {
     const fs::path other = (otherFolder / name).lexically_normal();
-    if (fs::is_regular_file(other)) file = other;
+    if (isRegularFile(other)) file = other;
   }
   const std::string key = file.string() + (srgb ? "|s" : "|l") + (mask ? "m" : "") + "|" +
                           std::to_string(scale[0]) + "," + std::to_string(scale[1]) + "," +
                           std::to_string(offset[0]) + "," + std::to_string(offset[1]);
   const auto [it, isNew] = textures_.try_emplace(key, kNone);
   if (!isNew) return it->second;
-  if (!fs::is_regular_file(file)) {
+  if (!isRegularFile(file)) {
     warn(file.string() + ": no such texture; the plain material colour is used");
     return kNone;
   }
@@ -356,14 +361,14 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
 }
 
 void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affine& transform) {
-  if (!fs::is_regular_file(obj) || !std::ifstream(obj)) {
+  if (!isRegularFile(obj) || !std::ifstream(obj)) {
     throw InputError(obj, "no such OBJ file; check 'file' in the scene.toml");
   }
-  if (!materials.empty() && !fs::is_regular_file(materials)) {
+  if (!materials.empty() && !isRegularFile(materials)) {
     throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
   }
   scene_.files.push_back(obj);
-  std::string text = readText(obj);
+  std::string text = meshLines(obj, readText(obj));
   // tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
   if (!materials.empty()) text.insert(0, "mtllib override\n");
   std::istringstream in(std::move(text));

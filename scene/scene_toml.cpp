@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/files.h"
 #include "core/sampling.h"
 #include "scene/load_obj.h"
 #include "scene/read_file.h"
@@ -295,9 +296,26 @@ const toml::table& tableOf(const fs::path& file, const toml::table& root, const 
   return *table;
 }
 
+// toml++ makes a table of each dot of a.b.c.d, and takes them apart by a call for each: enough of
+// them overflow the stack. It limits nested brackets itself.
+void refuseDeepKeys(const fs::path& path, const std::string& text) {
+  constexpr size_t kMaxDots = 100;
+  size_t line = 1, dots = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    } else if (c == '.' && ++dots > kMaxDots) {
+      throw InputError(path.string() + ":" + std::to_string(line) + ": more than " +
+                       std::to_string(kMaxDots) + " dots in a line; break the line");
+    }
+  }
+}
+
 toml::table parseToml(const fs::path& path) {
-  if (!fs::is_regular_file(path)) throw InputError(path, "no such file; name a scene.toml");
+  if (!isRegularFile(path)) throw InputError(path, "no such file; name a scene.toml");
   const std::string text = readText(path);
+  refuseDeepKeys(path, text);
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& e) {

@@ -1,25 +1,11 @@
 #include "scene/texture.h"
 
 #include <cmath>
+#include <optional>
 
-#include "core/checked_malloc.h"
 #include "formats/exr_io.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#define STBI_MALLOC(bytes) bnvpl::mallocOrThrow(bytes)
-#define STBI_REALLOC(old, bytes) bnvpl::reallocOrThrow(old, bytes)
-#define STBI_FREE(memory) std::free(memory)
-#define STB_IMAGE_IMPLEMENTATION
-#define STBI_NO_STDIO_WRITE
-#define STBI_NO_GIF
-#define STBI_NO_PIC
-#define STBI_MAX_DIMENSIONS 32768
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "formats/pixels_io.h"
+#include "scene/radiance_hdr.h"
 
 namespace bnvpl {
 
@@ -42,10 +28,12 @@ struct Bilinear {  // four texels and their weights
   float weight[4];
 };
 
-// The texel centre of column i is at (i + 0.5) / width.
-Bilinear bilinear(const Texture& t, float u, float v) {
+// The texel centre of column i is at (i + 0.5) / width. None for coordinates that are not finite,
+// which an OBJ or the scale of an MTL can make them.
+std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
   u = u * t.scale[0] + t.offset[0];
   v = v * t.scale[1] + t.offset[1];
+  if (!std::isfinite(u) || !std::isfinite(v)) return std::nullopt;
   const float x = (u - std::floor(u)) * static_cast<float>(t.width) - 0.5f;
   const float y = (1.0f - (v - std::floor(v))) * static_cast<float>(t.height) - 0.5f;
   const float fx = x - std::floor(x), fy = y - std::floor(y);
@@ -55,13 +43,18 @@ Bilinear bilinear(const Texture& t, float u, float v) {
   };
   const size_t x0 = wrap(std::floor(x), t.width), x1 = wrap(std::floor(x) + 1.0f, t.width);
   const size_t y0 = wrap(std::floor(y), t.height), y1 = wrap(std::floor(y) + 1.0f, t.height);
-  return {{y0 * t.width + x0, y0 * t.width + x1, y1 * t.width + x0, y1 * t.width + x1},
-          {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+  return Bilinear{{y0 * t.width + x0, y0 * t.width + x1, y1 * t.width + x0, y1 * t.width + x1},
+                  {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
-// The scale of the texture coordinates can take them out of range.
-bool inRange(const Texture& t, float u, float v) {
-  return std::isfinite(u * t.scale[0] + t.offset[0]) && std::isfinite(v * t.scale[1] + t.offset[1]);
+Texture decodeTexture(const fs::path& file, const std::string& bytes, bool srgb) {
+  Pixels pixels = decodePixels(file, bytes, 4);
+  Texture t;
+  t.width = pixels.width;
+  t.height = pixels.height;
+  t.srgb = srgb;
+  t.rgba = std::move(pixels.values);
+  return t;
 }
 
 }  // namespace
@@ -69,25 +62,25 @@ bool inRange(const Texture& t, float u, float v) {
 float srgbToLinear(uint8_t encoded) { return srgbTable()[encoded]; }
 
 Vec3 Texture::lookup(float u, float v) const {
-  if (!inRange(*this, u, v)) return {};
-  const Bilinear b = bilinear(*this, u, v);
+  const std::optional<Bilinear> b = bilinear(*this, u, v);
+  if (!b) return {};
   const auto& table = srgbTable();
   Vec3 sum;
   for (int k = 0; k < 4; ++k) {
-    const uint8_t* p = &rgba[4 * b.texel[k]];
+    const uint8_t* p = &rgba[4 * b->texel[k]];
     const Vec3 c = srgb ? Vec3{table[p[0]], table[p[1]], table[p[2]]}
                         : Vec3{float(p[0]), float(p[1]), float(p[2])} * (1.0f / 255.0f);
-    sum += b.weight[k] * c;
+    sum += b->weight[k] * c;
   }
   return sum;
 }
 
 float Texture::lookupAlpha(float u, float v) const {
-  if (!inRange(*this, u, v)) return 1.0f;
-  const Bilinear b = bilinear(*this, u, v);
+  const std::optional<Bilinear> b = bilinear(*this, u, v);
+  if (!b) return 1.0f;
   float sum = 0.0f;
   for (int k = 0; k < 4; ++k)
-    sum += b.weight[k] * float(rgba[4 * b.texel[k] + 3]) * (1.0f / 255.0f);
+    sum += b->weight[k] * float(rgba[4 * b->texel[k] + 3]) * (1.0f / 255.0f);
   return sum;
 }
 
@@ -98,18 +91,7 @@ Vec3 EnvironmentImage::lookup(float u, float v) const {
 }
 
 Texture loadTexture(const fs::path& file, bool srgb, bool mask) {
-  int w = 0, h = 0, channels = 0;
-  stbi_uc* pixels = stbi_load(file.c_str(), &w, &h, &channels, 4);
-  if (!pixels) {
-    throw InputError(file, std::string("cannot read the image: ") + stbi_failure_reason() +
-                               "; supply a PNG, JPEG, TGA or BMP file");
-  }
-  Texture t;
-  t.width = static_cast<uint32_t>(w);
-  t.height = static_cast<uint32_t>(h);
-  t.srgb = srgb;
-  t.rgba.assign(pixels, pixels + size_t(4) * t.width * t.height);
-  stbi_image_free(pixels);
+  Texture t = decodeTexture(file, readBytes(file), srgb);
   if (mask) {
     bool varies = false;
     for (size_t i = 3; i < t.rgba.size(); i += 4) varies |= t.rgba[i] != 255;
@@ -137,35 +119,23 @@ EnvironmentImage fromExr(const fs::path& file) {
   return e;
 }
 
+EnvironmentImage decodeEnvironment(const fs::path& file) {
+  const std::string bytes = readBytes(file);
+  if (isRadianceHdr(bytes)) return readRadianceHdr(file, bytes);
+  const Texture t = decodeTexture(file, bytes, true);
+  EnvironmentImage e{t.width, t.height, {}};
+  e.radiance.resize(size_t{t.width} * t.height);
+  for (size_t i = 0; i < e.radiance.size(); ++i) {
+    e.radiance[i] = {srgbToLinear(t.rgba[4 * i]), srgbToLinear(t.rgba[4 * i + 1]),
+                     srgbToLinear(t.rgba[4 * i + 2])};
+  }
+  return e;
+}
+
 }  // namespace
 
 EnvironmentImage loadEnvironment(const fs::path& file) {
-  EnvironmentImage e;
-  if (file.extension() == ".exr") {
-    e = fromExr(file);
-  } else {
-    int w = 0, h = 0, channels = 0;
-    // stb decodes 8-bit images with a plain power; we want the sRGB curve.
-    if (stbi_is_hdr(file.c_str())) {
-      float* pixels = stbi_loadf(file.c_str(), &w, &h, &channels, 3);
-      if (!pixels)
-        throw InputError(file, std::string("cannot read the image: ") + stbi_failure_reason());
-      const auto* rgb = reinterpret_cast<const Vec3*>(pixels);
-      e.radiance.assign(rgb, rgb + size_t(w) * size_t(h));
-      stbi_image_free(pixels);
-      e.width = static_cast<uint32_t>(w);
-      e.height = static_cast<uint32_t>(h);
-    } else {
-      const Texture t = loadTexture(file, true, false);
-      e.width = t.width;
-      e.height = t.height;
-      e.radiance.resize(size_t{t.width} * t.height);
-      for (size_t i = 0; i < e.radiance.size(); ++i) {
-        e.radiance[i] = {srgbToLinear(t.rgba[4 * i]), srgbToLinear(t.rgba[4 * i + 1]),
-                         srgbToLinear(t.rgba[4 * i + 2])};
-      }
-    }
-  }
+  EnvironmentImage e = file.extension() == ".exr" ? fromExr(file) : decodeEnvironment(file);
   for (size_t i = 0; i < e.radiance.size(); ++i) {
     const Vec3 L = e.radiance[i];
     if (!isFinite(L) || L.x < 0 || L.y < 0 || L.z < 0) {

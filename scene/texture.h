@@ -28,7 +28,7 @@ struct EnvironmentImage {
   Vec3 lookup(float u, float v) const;  // nearest texel, so that sampling by texel is exact
 };
 
-// PNG, JPEG, TGA, BMP, ... by content. For a mask, the alpha channel is filled from the image's own
+// PNG, JPEG, TGA or BMP, by content. For a mask, the alpha channel is filled from the image's own
 // alpha if it has one that varies, else from its luminance. Throws InputError.
 Texture loadTexture(const fs::path& file, bool srgb, bool mask);
 

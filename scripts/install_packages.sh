@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that the build and the tests need; does nothing when all are
-# there.
+# Installs the Debian 12 packages that the build and the tests need, and those named as arguments;
+# does nothing when all are there.
 set -euo pipefail
 
 packages=(
@@ -14,6 +14,7 @@ packages=(
   libgtest-dev libbenchmark-dev                           # tests, benchmarks
   python3-numpy python3-matplotlib python3-openimageio    # evaluation
   chromium chromium-driver python3-selenium               # test of its report
+  "$@"
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

@@ -200,6 +200,29 @@ TEST_F(Exr, AbsurdSizesAreRefusedBeforeTheyAreAllocated) {
   }
 }
 
+TEST_F(Exr, AttributesThatClaimTooMuchAreRefusedBeforeTheyAreAllocated) {
+  Image image = layeredImage();
+  image.attributes["note"] = "hello";
+  writeExr(at("a.exr"), image, ExrPixelType::Half);
+  const std::string bytes = readAll(at("a.exr"));
+  struct Case {
+    const char *name, *type;
+    uint32_t claim;
+  };
+  for (const Case& c : {Case{"note", "string", 2'000'000'000}, Case{"dataWindow", "box2i", 15},
+                        Case{"channels", "chlist", 18}, Case{"channels", "chlist", 1000}}) {
+    std::string damaged = bytes;
+    poke(damaged, attributeOffset(damaged, c.name, c.type) - 4, c.claim);
+    writeAll(at("b.exr"), damaged);
+    try {
+      readExr(at("b.exr"));
+      ADD_FAILURE() << c.name;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("claims"), std::string::npos) << e.what();
+    }
+  }
+}
+
 TEST_F(Exr, MalformedImagesAndTargetsAreRefused) {
   Image image = layeredImage();
   EXPECT_THROW(writeExr(at("missing") / "a.exr", image, ExrPixelType::Half), OutputError);

@@ -130,6 +130,20 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   EXPECT_EQ(fileCount(), 1u);  // nothing partial stays behind
 }
 
+// Programs that print JSON call themselves once a level: a million of them overflow the stack.
+TEST_F(VplWrite, DeepProvenanceIsRefused) {
+  const auto nested = [](size_t depth) {
+    return "[{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}]";
+  };
+  VplTable table = smallTable(VplStage::Candidates);
+  table.provenance = nested(50);
+  EXPECT_NO_THROW(writeVpl(at("a.vpl"), table));
+  for (const size_t depth : {size_t{70}, size_t{1'000'000}}) {
+    table.provenance = nested(depth);
+    EXPECT_THROW(writeVpl(at("a.vpl"), table), OutputError);
+  }
+}
+
 TEST_F(VplWrite, UnevenOrSurplusColumnsAreOurBug) {
   VplTable uneven = smallTable(VplStage::Lit);
   uneven.photons.pop_back();

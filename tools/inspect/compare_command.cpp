@@ -1,11 +1,11 @@
 // `vpl-inspect compare`: its options, and from files to figures and pictures.
-#include <cctype>
 #include <cstdio>
 #include <optional>
 
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
 #include "tools/common/choice.h"
+#include "tools/common/exposure.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
 #include "tools/inspect/difference_image.h"
@@ -18,37 +18,6 @@ const Choices<MapKind> kMaps{{"difference", MapKind::Difference},
                              {"smape", MapKind::Smape},
                              {"flip", MapKind::Flip},
                              {"hdr-flip", MapKind::HdrFlip}};
-
-constexpr double kMostEv = 64.0;  // either way; light * 2^64 squared is far inside a double
-
-// The number that `text` is from `from` to `to`, or none.
-std::optional<double> numberIn(const std::string& text, double from, double to) {
-  double value = 0.0;
-  char rest = 0;
-  if (text.empty() || std::isspace(static_cast<unsigned char>(text[0])) ||
-      std::sscanf(text.c_str(), "%lf%c", &value, &rest) != 1 || !(value >= from && value <= to)) {
-    return {};
-  }
-  return value;
-}
-
-std::optional<double> parseExposure(const std::string& text) {
-  if (text.empty() || text == "auto") return {};
-  if (const auto ev = numberIn(text, -kMostEv, kMostEv)) return ev;
-  throw UsageError("--exposure '" + text + "' is neither 'auto' nor a number of stops up to 64");
-}
-
-std::optional<std::array<double, 2>> parseRange(const std::string& text) {
-  if (text == "auto") return {};
-  const size_t colon = text.find(':');
-  if (colon != std::string::npos) {
-    const auto start = numberIn(text.substr(0, colon), -kMostEv, kMostEv);
-    const auto stop = numberIn(text.substr(colon + 1), -kMostEv, kMostEv);
-    if (start && stop && *start <= *stop) return {{*start, *stop}};
-  }
-  throw UsageError("--flip-exposures '" + text +
-                   "' is neither 'auto' nor START:STOP in stops, such as -4:10, up to 64");
-}
 
 // What there is to compare, with the images that the layers point into.
 struct Sides {
@@ -176,8 +145,9 @@ CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
 
 int runCompare(const CompareCommand& command) {
   FlipOptions flipOptions = command.flip;
-  flipOptions.exposureEv = parseExposure(command.exposure);
-  if (!command.flipExposures.empty()) flipOptions.rangeEv = parseRange(command.flipExposures);
+  if (!command.exposure.empty()) flipOptions.exposureEv = parseExposure(command.exposure);
+  if (!command.flipExposures.empty())
+    flipOptions.rangeEv = parseExposureRange(command.flipExposures);
   if (!command.diff.empty()) requireWritable({command.diff});
 
   Sides s;

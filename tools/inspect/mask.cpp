@@ -1,39 +1,25 @@
 #include "tools/inspect/mask.h"
 
-#include <fstream>
-#include <iterator>
-#include <memory>
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC  // the scene's textures have their own copy
-#define STBI_ONLY_PNG
-#define STBI_NO_STDIO
-#define STBI_MAX_DIMENSIONS 16384
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "core/files.h"
+#include "formats/pixels_io.h"
 
 namespace bnvpl {
 namespace {
 
-struct FreePixels {
-  void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
-};
-
-std::string readBytes(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || fs::is_directory(file)) {
+Pixels readPng(const fs::path& file) {
+  if (!isRegularFile(file)) {
     throw InputError(file, "cannot be read; name a PNG of the image's size for --mask");
   }
-  return {std::istreambuf_iterator<char>(in), {}};
+  try {
+    const std::string bytes = readBytes(file);
+    if (bytes.starts_with("\x89PNG")) return decodePixels(file, bytes, 0);
+  } catch (const InputError&) {
+  }
+  throw InputError(file, "is no readable PNG; --mask takes a PNG of greys");
 }
 
 // The grey of a pixel with 1 to 4 channels: grey, grey alpha, R G B, R G B alpha.
-double weightOf(const fs::path& file, const stbi_uc* pixel, int channels, size_t x, size_t y) {
+double weightOf(const fs::path& file, const uint8_t* pixel, uint32_t channels, size_t x, size_t y) {
   const std::string where = "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is ";
   if (channels >= 3 && (pixel[0] != pixel[1] || pixel[0] != pixel[2])) {
     throw InputError(file, where + "coloured; a mask is white, black or grey");
@@ -54,25 +40,19 @@ double Mask::sum(size_t pixels) const {
 }
 
 Mask readMask(const fs::path& file, const fs::path& image, const Layer& layer) {
-  const std::string bytes = readBytes(file);
-  int width = 0, height = 0, channels = 0;
-  const std::unique_ptr<stbi_uc, FreePixels> pixels(
-      bytes.size() > 1u << 30  // stb counts bytes in an int
-          ? nullptr
-          : stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                  static_cast<int>(bytes.size()), &width, &height, &channels, 0));
-  if (!pixels) throw InputError(file, "is no readable PNG; --mask takes a PNG of greys");
-  if (width != layer.width || height != layer.height) {
-    throw InputError(file, std::to_string(width) + " x " + std::to_string(height) +
+  const Pixels pixels = readPng(file);
+  const size_t columns = static_cast<size_t>(layer.width), rows = static_cast<size_t>(layer.height);
+  if (pixels.width != columns || pixels.height != rows) {
+    throw InputError(file, std::to_string(pixels.width) + " x " + std::to_string(pixels.height) +
                                " pixels, but " + image.string() + " has " +
                                std::to_string(layer.width) + " x " + std::to_string(layer.height) +
                                "; draw the mask at the image's size");
   }
   Mask mask;
-  const size_t columns = static_cast<size_t>(width), count = columns * static_cast<size_t>(height);
+  const size_t count = columns * rows;
   mask.weights.resize(count);
   for (size_t i = 0; i < count; ++i) {
-    mask.weights[i] = weightOf(file, pixels.get() + i * static_cast<size_t>(channels), channels,
+    mask.weights[i] = weightOf(file, &pixels.values[i * pixels.channels], pixels.channels,
                                i % columns, i / columns);
   }
   if (mask.sum(count) == 0.0) {

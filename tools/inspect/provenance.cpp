@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "formats/provenance.h"
+
 namespace bnvpl {
 namespace {
 
@@ -26,13 +28,12 @@ std::string textAt(const Json& record, const char* key) {
 std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string& text) {
   std::vector<StageRecord> chain;
   if (text.empty()) return chain;
-  const Json json = Json::parse(text, nullptr, false);
-  const auto fail = [&] {
-    return InputError(file, "its provenance is not a JSON array of objects");
-  };
-  if (!json.is_array()) throw fail();
+  if (!isProvenance(text)) {
+    throw InputError(file,
+                     "its provenance is not a JSON array of objects, or is nested too deeply");
+  }
+  const Json json = Json::parse(text);
   for (const Json& entry : json) {
-    if (!entry.is_object()) throw fail();
     StageRecord record;
     record.tool = textAt(entry, "tool");
     record.version = textAt(entry, "version");

@@ -10,6 +10,7 @@
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"
 #include "tools/common/choice.h"
+#include "tools/common/exposure.h"
 #include "tools/common/film_size.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
@@ -91,21 +92,9 @@ Json describe(const RenderOptions& o) {
   return json;
 }
 
-// Empty for "auto".
-std::optional<float> parseExposure(const std::string& text) {
-  if (text == "auto") return {};
-  try {
-    size_t used = 0;
-    const float ev = std::stof(text, &used);
-    if (used == text.size() && std::isfinite(ev)) return ev;
-  } catch (const std::exception&) {
-  }
-  throw UsageError("--exposure '" + text + "' is neither 'auto' nor a number of stops");
-}
-
 // Exposure in EV: as given, or so that the logarithmic mean of the luminance becomes middle grey.
 float exposureOf(const Image& image, const std::string& text) {
-  if (const std::optional<float> given = parseExposure(text)) return *given;
+  if (const auto given = parseExposure(text)) return static_cast<float>(*given);
   const std::vector<float>&r = *image.find("R"), &g = *image.find("G"), &b = *image.find("B");
   double logSum = 0.0;
   size_t lit = 0;

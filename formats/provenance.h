@@ -1,0 +1,15 @@
+// The history that files carry, as text: README.md, "Provenance".
+#pragma once
+
+#include <string>
+
+namespace bnvpl {
+
+// Values inside values; ours are five deep. Programs that print JSON call themselves once a level,
+// and a file of nothing but brackets would overflow their stack.
+inline constexpr int kMaxProvenanceDepth = 64;
+
+// Whether `text` is a JSON array of objects, in UTF-8, at most kMaxProvenanceDepth deep.
+bool isProvenance(const std::string& text);
+
+}  // namespace bnvpl

@@ -1,0 +1,26 @@
+// Textures, environments and masks, in whatever of PNG, JPEG, TGA, BMP and HDR the bytes are.
+#include "fuzz/sane_scene.h"
+#include "tools/inspect/mask.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace bnvpl;
+  static const InputFolder folder;
+  const fs::path file = folder.write("image", {reinterpret_cast<const char*>(data), size});
+
+  EnvironmentImage environment;
+  if (accepted([&] { environment = loadEnvironment(file); })) requireSane(environment);
+
+  Texture texture;
+  if (!accepted([&] { texture = loadTexture(file, true, true); })) return 0;
+  requireSane(texture);
+
+  Layer layer;  // a mask must be of its size
+  layer.width = static_cast<int>(texture.width);
+  layer.height = static_cast<int>(texture.height);
+  Mask mask;
+  if (!accepted([&] { mask = readMask(file, "layer", layer); })) return 0;
+  for (const double weight : mask.weights)
+    require(weight >= 0 && weight <= 1, "weights are shares");
+  require(mask.sum(mask.weights.size()) > 0, "something counts");
+  return 0;
+}

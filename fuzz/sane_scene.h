@@ -1,0 +1,92 @@
+// What loading a scene promises: every index and number can be used as it is.
+#pragma once
+
+#include <cmath>
+
+#include "fuzz/fuzz.h"
+#include "scene/scene.h"
+
+namespace bnvpl {
+
+inline bool isUnit(Vec3 v) { return std::fabs(length(v) - 1.0f) < 1e-3f; }
+inline bool isLight(Vec3 v) { return isFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
+
+inline void requireSane(const Texture& t) {
+  require(t.width > 0 && t.height > 0 && t.rgba.size() == size_t{4} * t.width * t.height,
+          "a texture has all its texels");
+  for (const float u : {-1e30f, -0.3f, 0.0f, 0.5f, 1.0f, 3e38f}) {  // out of bounds: a report
+    t.lookup(u, 1.0f - u);
+    t.lookupAlpha(1.0f - u, u);
+  }
+}
+
+inline void requireSane(const EnvironmentImage& e) {
+  require(e.width > 0 && e.height > 0 && e.radiance.size() == size_t{e.width} * e.height,
+          "an environment has all its texels");
+  for (const Vec3 radiance : e.radiance) require(isLight(radiance), "radiance is light");
+}
+
+inline void requireSane(const Material& m, size_t textures) {
+  for (const Vec3 c : {m.diffuse, m.glossy, m.mirror, m.transmission, m.emission}) {
+    require(isLight(c), "colours of materials are light");
+  }
+  require(std::isfinite(m.exponent) && m.exponent >= 0, "exponents are >= 0");
+  require(std::isfinite(m.ior) && m.ior >= 1, "refractive indices are >= 1");
+  require(std::isfinite(m.opacity), "opacities are finite");
+  for (const uint32_t map : {m.diffuseMap, m.glossyMap, m.opacityMap}) {
+    require(map == kNone || map < textures, "maps are textures");
+  }
+}
+
+inline void requireSane(const Scene& s, const Triangle& t) {
+  require(t.material < s.materials.size(), "triangles have a material");
+  for (size_t k = 0; k < 3; ++k) {
+    require(t.position[k] + 1 < s.positions.size(), "triangles have corners, and one is behind");
+    require(isFinite(s.positions[t.position[k]]), "corners are finite");
+    require(t.normal[k] == kNone || t.normal[k] < s.normals.size(), "corners have a normal");
+    require(t.normal[k] == kNone || isUnit(s.normals[t.normal[k]]), "normals are unit vectors");
+    require(t.uv[k] == kNone || t.uv[k] < s.uvs.size(), "corners have texture coordinates");
+    if (t.uv[k] == kNone) continue;
+    const auto [u, v] = s.uvs[t.uv[k]];
+    const Material& m = s.materials[t.material];
+    if (m.diffuseMap != kNone) s.textures[m.diffuseMap].lookup(u, v);
+    if (m.opacityMap != kNone) s.textures[m.opacityMap].lookupAlpha(u, v);
+  }
+}
+
+// Of meshes, materials and textures.
+inline void requireSaneMeshes(const Scene& s) {
+  for (const Texture& t : s.textures) requireSane(t);
+  for (const Material& m : s.materials) requireSane(m, s.textures.size());
+  for (const Triangle& t : s.triangles) requireSane(s, t);
+  require(s.maskedBegin <= s.triangles.size(), "masked triangles come last");
+  for (size_t i = 0; i < s.triangles.size(); ++i) {
+    require(s.materials[s.triangles[i].material].masked() == (i >= s.maskedBegin),
+            "masked triangles come last");
+  }
+  if (s.triangles.empty()) return;
+  require(isFinite(s.bounds.lower) && isFinite(s.bounds.upper), "bounds are finite");
+}
+
+inline void requireSane(const Scene& s) {
+  requireSaneMeshes(s);
+  require(!s.triangles.empty(), "a scene has a triangle");
+  require(s.film.width > 0 && s.film.height > 0 && s.film.width <= 65536 && s.film.height <= 65536,
+          "the film has a size");
+  const Camera& c = s.camera;
+  require(isFinite(c.position) && isUnit(c.forward) && isUnit(c.right) && isUnit(c.up) &&
+              std::fabs(dot(c.forward, c.right)) < 1e-3f && std::fabs(dot(c.forward, c.up)) < 1e-3f,
+          "the camera is orthonormal");
+  require(c.verticalFovRad > 0 && c.verticalFovRad < 3.15f, "the field of view is an angle");
+  for (const EnvironmentImage& e : s.environments) requireSane(e);
+  for (const LightSpec& l : s.lights) {
+    require(isFinite(l.position) && isUnit(l.direction) && isLight(l.emission), "lights are light");
+    require(l.image == kNone || l.image < s.environments.size(), "images of lights are there");
+    require(l.coneRad >= 0 && l.falloffRad >= 0 && l.falloffRad <= l.coneRad &&
+                l.angularRadiusRad >= 0 && std::isfinite(l.rotateRad) && l.scale >= 0 &&
+                std::isfinite(l.scale),
+            "shapes of lights are angles");
+  }
+}
+
+}  // namespace bnvpl

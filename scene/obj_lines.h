@@ -1,0 +1,16 @@
+// What of an OBJ reaches tinyobjloader: it trusts its input.
+#pragma once
+
+#include <string>
+
+#include "core/errors.h"
+
+namespace bnvpl {
+
+// The lines of an OBJ that a triangle mesh needs. The others (points, lines, weights of skins, tags
+// of subdivision) mean nothing here, and tinyobj copies what they hold again and again: memory that
+// grows as the square of the file. Throws InputError at a face that would take for ever. `file` is
+// for the message.
+std::string meshLines(const fs::path& file, const std::string& text);
+
+}  // namespace bnvpl
