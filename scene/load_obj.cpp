@@ -250,7 +250,7 @@ uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, co
     m.mirror = isBlack(ks) ? Vec3{1, 1, 1} : min(ks, Vec3{1, 1, 1});
     const bool index = in.ior >= 1.0 && in.ior <= kMostIor;
     m.ior = index ? static_cast<float>(in.ior) : 1.5f;
-    if (!index) warn(where + "Ni is not a refractive index of at least 1; 1.5 is used");
+    if (!index) warn(where + "Ni is not a refractive index from 1 to 100; 1.5 is used");
     const Vec3 tf = nonNegative(toVec3(in.transmittance));
     m.transmission = isBlack(tf) ? Vec3{1, 1, 1} : min(tf, Vec3{1, 1, 1});
   } else {
@@ -424,6 +424,7 @@ void ObjLoader::roundPositions() {
   points_ = {};
   if (scene_.origin != Point{}) {
     std::ostringstream text;
+    text.precision(15);
     text << scene_.name() << ": lies far from its origin; coordinates count from ("
          << scene_.origin[0] << ", " << scene_.origin[1] << ", " << scene_.origin[2] << ")";
     warn(text.str());

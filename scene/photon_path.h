@@ -39,13 +39,18 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
       return fate;
     }
     const Bsdf bsdf(rays.scene(), hit);
-    if (bsdf.hasRough()) {
-      ++fate.hits;
-      visit(bsdf, flux * bsdf.photonShadingFactor());
-    }
     // What does not travel on counts as absorbed, roulette included: escaped + absorbed = emitted
     // exactly.
     fate.absorbed += flux;
+    if (bsdf.hasRough()) {
+      const Vec3 arriving = flux * bsdf.photonShadingFactor();
+      if (!isFinite(arriving)) {
+        fate.finite = false;
+        return fate;
+      }
+      ++fate.hits;
+      visit(bsdf, arriving);
+    }
     const float survive = bsdf.reflectance();
     if (rng.next() >= survive) return fate;
     const float chainProbability = bsdf.chainProbability();

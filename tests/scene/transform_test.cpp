@@ -14,6 +14,8 @@ void expectNear(Vec3 a, Vec3 b, float tolerance = 1e-5f) {
       << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
 }
 
+void expectNear(const Point& a, Vec3 b) { expectNear(fromOrigin(a, {}), b); }
+
 // A box around the origin whose faces wind, and whose vertex normals point, outwards.
 std::string boxObj() {
   std::string obj = "mtllib square.mtl\nusemtl paint\n";
