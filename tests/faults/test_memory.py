@@ -52,7 +52,7 @@ class LimitedMemory(Workbench):
         self.assertIn(result.code, (OK, MEMORY), what)
         self.assertEqual(self.left_over(), [], what)
         if result.code == MEMORY:
-            self.assert_one_line(command, result, "out of memory")
+            self.assert_one_line(command, result, "memory")
         self.assert_all(command, "new" if result.code == OK else "old", what)
         return result.code
 

@@ -49,6 +49,8 @@ class AtRandomMoments(Workbench):
     def strike_often(self, number, faults, few):
         for command in COMMANDS:
             with self.subTest(command.name):
+                for left in self.folder.iterdir():
+                    left.unlink()
                 self.right(command)
                 seconds = self.run_command(command, faults).seconds
                 ends = [self.strike(command, number, faults, seconds) for _ in range(moments(few))]
@@ -59,8 +61,6 @@ class AtRandomMoments(Workbench):
                 counts = ", ".join(f"{ends.count(end)} {end}" for end in sorted(set(ends)))
                 self.say(f"{signal.Signals(number).name}{' slow disk' if faults else ''} {command.name}: "
                          f"{len(ends)} moments: {counts}; {left} partial files left, then none")
-                for name in command.outputs:
-                    (self.folder / name).unlink()
 
     def test_killed(self):
         self.strike_often(signal.SIGKILL, None, 3)
