@@ -9,12 +9,14 @@
 #define STB_IMAGE_WRITE_STATIC
 #include <stb/stb_image_write.h>
 
+#include <limits>
 #include <string>
 
 namespace bnvpl {
 namespace {
 
-constexpr int kMaxSide = 1 << 14;  // stb counts the bytes of an image in an int
+constexpr int kMaxSide = 1 << 16;
+constexpr size_t kMostBytes = std::numeric_limits<int>::max();  // in which stb counts them
 
 void appendBytes(void* to, void* bytes, int count) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes),
@@ -25,7 +27,8 @@ void appendBytes(void* to, void* bytes, int count) {
 
 void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
-      rgb8.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height)) {
+      rgb8.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height) ||
+      rgb8.size() + static_cast<size_t>(height) > kMostBytes) {
     throw OutputError(file.target(), "a PNG of " + std::to_string(width) + " x " +
                                          std::to_string(height) + " pixels from " +
                                          std::to_string(rgb8.size()) + " bytes cannot be written");

@@ -27,6 +27,15 @@ TEST_F(Png, WrongSizesAndTargetsAreRefused) {
   EXPECT_THROW(writePng(at("missing") / "a.png", 2, 2, pixels), OutputError);
 }
 
+// As the difference of two images of 1 x 16384, with a frame around it.
+TEST_F(Png, LongSides) {
+  for (const auto& [width, height] : {std::pair{3, 17000}, std::pair{17000, 3}}) {
+    const std::vector<uint8_t> pixels(3 * 3 * 17000, 128);
+    writePng(at("a.png"), width, height, pixels);
+    EXPECT_GT(fs::file_size(at("a.png")), 0u);
+  }
+}
+
 TEST(Tonemap, FollowsTheSrgbCurve) {
   EXPECT_EQ(toSrgb8(0.0f), 0);
   EXPECT_EQ(toSrgb8(1.0f), 255);

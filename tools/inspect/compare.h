@@ -47,7 +47,8 @@ struct Comparison {
   std::optional<Flip> flip;          // of R G B, where it was asked for
   std::optional<double> maskPixels;  // the sum of the mask's weights
 
-  double rmseOverMean() const { return rmse / meanB; }  // NaN or infinite for a black reference
+  // Infinite for a black reference, unless the other is black too.
+  double rmseOverMean() const { return rmse > 0.0 ? rmse / meanB : 0.0; }
   double meanRatio() const { return meanA / meanB; }
 };
 

@@ -10,6 +10,14 @@ namespace {
 
 Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+// Over a black reference some measures are 0/0 or x/0.
+std::string orUndefined(double value) {
+  if (!std::isfinite(value)) return "undefined";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
 struct Limit {
   const char* what;
   double value, most;  // negative: no limit
@@ -65,7 +73,8 @@ void addChannelText(const Comparison& c, Text& out) {
   if (c.channels.size() == 1) return;
   out.add("%-14s %-12s %-12s %s\n", "of each", "RMSE", "relMSE", "SMAPE");
   const auto row = [&](const Comparison::Channel& k) {
-    out.add("  %-12s %-12.6g %-12.6g %.6g\n", k.name.c_str(), k.rmse, k.relMse, k.smape);
+    out.add("  %-12s %-12.6g %-12s %.6g\n", k.name.c_str(), k.rmse, orUndefined(k.relMse).c_str(),
+            k.smape);
   };
   for (const Comparison::Channel& k : c.channels) row(k);
   if (c.luminance) row(*c.luminance);
@@ -96,16 +105,17 @@ Json comparisonJson(const Comparison& c, const CompareOptions& options) {
 
 std::string comparisonText(const Comparison& c, const CompareOptions& options) {
   Text out;
-  out.add("mean ratio     %.6g   (mean %.6g, reference %.6g)\n", c.meanRatio(), c.meanA, c.meanB);
+  out.add("mean ratio     %s   (mean %.6g, reference %.6g)\n", orUndefined(c.meanRatio()).c_str(),
+          c.meanA, c.meanB);
   for (const Comparison::Channel& k : c.channels) {
     if (c.channels.size() == 1) break;
-    out.add("  %-12s %.6g   (mean %.6g, reference %.6g)\n", k.name.c_str(), k.meanA / k.meanB,
-            k.meanA, k.meanB);
+    out.add("  %-12s %s   (mean %.6g, reference %.6g)\n", k.name.c_str(),
+            orUndefined(k.meanA / k.meanB).c_str(), k.meanA, k.meanB);
   }
   out.add("RMSE           %.6g\n", c.rmse);
-  out.add("RMSE / mean    %.6g\n", c.rmseOverMean());
-  out.add("relMSE         %.6g   (epsilon %.6g = %g times the squared mean of the reference)\n",
-          c.relMse, c.epsilon, options.epsilon);
+  out.add("RMSE / mean    %s\n", orUndefined(c.rmseOverMean()).c_str());
+  out.add("relMSE         %s   (epsilon %.6g = %g times the squared mean of the reference)\n",
+          orUndefined(c.relMse).c_str(), c.epsilon, options.epsilon);
   out.add("SMAPE          %.6g\n", c.smape);
   if (c.flip) addFlipText(*c.flip, out);
   addChannelText(c, out);
@@ -113,7 +123,8 @@ std::string comparisonText(const Comparison& c, const CompareOptions& options) {
   if (c.maskPixels) out.add("mask           counts %.6g pixels\n", *c.maskPixels);
   for (const Limit& limit : limits(c, options)) {
     if (!exceeds(limit)) continue;
-    out.add("DIFFERENT: %s %.6g exceeds the limit %g\n", limit.what, limit.value, limit.most);
+    out.add("DIFFERENT: %s %s exceeds the limit %g\n", limit.what, orUndefined(limit.value).c_str(),
+            limit.most);
   }
   return out.text();
 }
