@@ -196,7 +196,7 @@ TEST(Spatial, SharesOfOddPoints) {
   EXPECT_GT(share[1050], 0.0f);
   EXPECT_LT(share[1050], 1e-9f);
   EXPECT_EQ(surfaceShares(std::vector<Vec3>(5, Vec3(1.0f)), std::vector<Vec3>(5, Vec3(0, 0, 1)), 3),
-            std::vector<float>(5, 1.0f));
+            std::vector<float>(5, 3.0f));  // all in one place: its squared distance from the origin
 }
 
 TEST(Spatial, MortonOrderIsAPermutation) {

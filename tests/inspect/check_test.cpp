@@ -1,5 +1,6 @@
 #include "tools/inspect/check.h"
 
+#include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/inspect_files.h"
 
 namespace bnvpl {
@@ -94,7 +95,7 @@ TEST_F(Check, DamageIsFound) {
   }
   Image image = flatImage(2, 2, 1, 1, 1);
   image.channels[2].data[3] = NAN;
-  writeExr(at("nan.exr"), image, ExrPixelType::Float);
+  writeForeignExr(at("nan.exr"), image);
   EXPECT_TRUE(contains(problem({"nan.exr"}), "channel B is not a number at pixel (1, 1)"));
   image = flatImage(2, 2, 1, 1, 1);
   image.attributes["bnvpl.provenance"] = "{";

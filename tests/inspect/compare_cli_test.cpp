@@ -1,5 +1,6 @@
 // `vpl-inspect compare` itself: masks, FLIP and pictures from the command line.
 #include "formats/png_io.h"
+#include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/run_inspect.h"
 
 namespace bnvpl {
@@ -105,7 +106,7 @@ TEST_F(CompareCli, BothHalvesMakeTheReferenceOfFlipAndMaps) {
 TEST_F(CompareCli, TheSecondHalfIsCheckedToo) {
   Image bad = flatImage(4, 3, 2, 2, 2);
   bad.channels[1].data[5] = INFINITY;
-  writeExr(at("bad.exr"), bad, ExrPixelType::Float);
+  writeForeignExr(at("bad.exr"), bad);
   const Outcome result = runInspect(both() + "--second-half " + path("bad.exr"));
   EXPECT_EQ(result.code, kExitInput);
   EXPECT_TRUE(contains(result.output, "bad.exr: channel G is not finite")) << result.output;

@@ -37,7 +37,8 @@ TEST_F(Numbers, FilmsOfOnePixelAndOfOneRow) {
           tool("vpl-inspect", "compare " + path("1.exr") + " " + path(other + ".exr") + " --diff " +
                                   path("d.png"));
       EXPECT_EQ(compared.code, kExitOk) << size << compared.err;
-      EXPECT_FALSE(contains(compared.out, "nan") || contains(compared.out, "inf")) << compared.out;
+      EXPECT_FALSE(contains(compared.out, " nan") || contains(compared.out, " inf"))
+          << compared.out;
     }
   }
 }
@@ -69,11 +70,11 @@ TEST_F(Numbers, CountsBeyond32Bits) {
   fail("vpl-eliminate", path("candidates.vpl") + out + " -n 5G", kExitInput, {"5000000000 of 300"});
   fail("vpl-estimate", scene_ + " " + path("vpls.vpl") + out + " --photons 100G", kExitUsage,
        {"2^36"});
-  // Still busy after a second, and nothing was said against it.
+  // Still busy after a second, and nothing was said against it but that it was stopped.
   const Outcome busy = shell("timeout 1 '" BNVPL_BIN "/vpl-estimate' " + scene_ + " " +
                              path("vpls.vpl") + out + " --photons 5G");
   EXPECT_EQ(busy.code, 124) << busy.err;
-  EXPECT_EQ(busy.err, "");
+  EXPECT_TRUE(contains(busy.err, "interrupted")) << busy.err;
   fail("vpl-render", scene_ + " " + path("lit.vpl") + out + " --spp 5G", kExitUsage, {"2^32"});
 }
 

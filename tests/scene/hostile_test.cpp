@@ -37,10 +37,13 @@ TEST_F(Hostile, DirectionsOfAnyLengthBecomeUnitVectors) {
   }
 }
 
-TEST_F(Hostile, NormalsThatNoFloatHoldsAreLeftOut) {
-  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 3e38 3e38 3e38\nf 1//1 2//1 3//1\n";
-  const Scene s = loadMesh(obj, "", "scale = 1e3\n");
-  EXPECT_EQ(s.triangles.at(0).normal[0], kNone);
+TEST_F(Hostile, NormalsOfAnyLengthBecomeUnitVectorsAndNoneWithoutADirection) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", face = "f 1//1 2//1 3//1\n";
+  const Scene s = loadMesh(triangle + "vn 3e38 3e38 3e38\n" + face, "", "scale = 1e3\n");
+  EXPECT_NEAR(s.normals.at(s.triangles.at(0).normal[0]).x, std::sqrt(1.0f / 3.0f), 1e-6f);
+  for (const char* none : {"vn 0 0 0\n", "vn nan 0 0\n", "vn 1e400 0 0\n"}) {
+    EXPECT_EQ(loadMesh(triangle + none + face, "").triangles.at(0).normal[0], kNone) << none;
+  }
 }
 
 TEST_F(Hostile, DeepKeysAreRefused) {
