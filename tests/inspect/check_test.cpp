@@ -96,7 +96,7 @@ TEST_F(Check, DamageIsFound) {
   Image image = flatImage(2, 2, 1, 1, 1);
   image.channels[2].data[3] = NAN;
   writeForeignExr(at("nan.exr"), image);
-  EXPECT_TRUE(contains(problem({"nan.exr"}), "channel B is not a number at pixel (1, 1)"));
+  EXPECT_TRUE(contains(problem({"nan.exr"}), "channel B is not finite at pixel (1, 1)"));
   image = flatImage(2, 2, 1, 1, 1);
   image.attributes["bnvpl.provenance"] = "{";
   writeExr(at("text.exr"), image, ExrPixelType::Float);
