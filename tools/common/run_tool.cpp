@@ -78,7 +78,9 @@ int report() {
   static std::atomic_flag ending;
   while (ending.test_and_set()) ::pause();  // another thread has it
   removePartialFiles();
-  ::_exit(std::current_exception() ? report() : fail(kExitInternal, "internal error"));
+  if (std::current_exception()) ::_exit(report());
+  // Embree, on its way out of a function for lack of memory, throws again.
+  ::_exit(std::uncaught_exceptions() > 0 ? failForMemory() : fail(kExitInternal, "internal error"));
 }
 
 // False when the answer was --help or --version.
