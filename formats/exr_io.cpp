@@ -220,10 +220,10 @@ uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
 uint64_t hashImage(const Image& image, ExrPixelType type) {
   std::map<std::string, uint64_t> channels;  // sorted, as OpenEXR keeps them
   for (const ImageChannel& channel : image.channels) {
-    std::vector<half> halves;
     std::vector<float> rounded;
     const bool asHalf = typeOf(channel, type) == Imf::HALF;
     if (asHalf) {
+      std::vector<half> halves;
       toHalf(channel.data, halves);
       rounded.assign(halves.begin(), halves.end());
     }

@@ -24,7 +24,7 @@ void expectWholeImages(const World& world, VplTable vpls) {
       s.gather.method = method;
       s.film.spp = 1;
       FilmStats stats;
-      const Image image = renderVpls(world, vpls, s, stats);
+      renderVpls(world, vpls, s, stats);
       EXPECT_EQ(stats.nonFinite, 0u);
       EXPECT_GT(stats.indirect, 0.0);
     }
