@@ -53,7 +53,10 @@ class LimitedMemory(Workbench):
         self.assertEqual(self.left_over(), [], what)
         if result.code == MEMORY:
             self.assert_one_line(command, result, "memory")
-        self.assert_all(command, "new" if result.code == OK else "old", what)
+        # A thread that oneTBB starts late may fail when the outputs stand already.
+        ends = {"new"} if result.code == OK else set(self.states(command).values())
+        self.assertIn(ends, ({"old"}, {"new"}), what)
+        self.assert_all(command, ends.pop(), what)
         return result.code
 
 
