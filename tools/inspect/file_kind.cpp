@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/files.h"
 #include "formats/vpl_format.h"
 
 namespace bnvpl {
@@ -11,8 +12,9 @@ namespace bnvpl {
 FileKind fileKind(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw InputError(file, "is a folder");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file, "cannot be read");
+  std::ifstream in;
+  if (isRegularFile(file)) in.open(file, std::ios::binary);
+  if (!in.is_open()) throw InputError(file, "cannot be read");
   std::array<char, 8> start{};
   in.read(start.data(), start.size());
   constexpr std::array<char, 4> kExrMagic{'\x76', '\x2f', '\x31', '\x01'};
