@@ -1,12 +1,41 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything, runs every test, and fuzzes the readers for a moment.
-# Options go to ctest, and then there is no fuzzing: scripts/test.sh -R pipeline
+# Installs what is missing, builds everything, runs every test, and fuzzes the readers for a moment:
+# what fails soonest comes first, and a table at the end says what was done and how long it took.
+# Options go to ctest, which then is the only step after the build: scripts/test.sh -R pipeline
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/install_packages.sh
-echo "Building everything into build/release"
-cmake --preset release -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON
-cmake --build --preset release
-ctest --preset release "$@"
-if (($# == 0)); then scripts/fuzz.sh; fi
+summary=()
+finish() {
+  local code=$?
+  printf '\n%-40s %8s  %s\n' step seconds result
+  printf '%s\n' "${summary[@]}"
+  exit "$code"
+}
+trap finish EXIT
+
+step() { # name command...
+  local name=$1 start=$SECONDS
+  shift
+  printf '\n== %s\n' "$name"
+  local result=passed
+  "$@" || result=FAILED
+  summary+=("$(printf '%-40s %8d  %s' "$name" $((SECONDS - start)) "$result")")
+  [[ $result == passed ]]
+}
+
+build() {
+  cmake --preset release -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON && cmake --build --preset release
+}
+
+step "install packages" scripts/install_packages.sh
+step "build into build/release" build
+if (($# > 0)); then
+  step "tests: $*" ctest --preset release "$@"
+  exit
+fi
+step "tests of the parts" ctest --preset release -LE 'pipeline|faults|eval'
+step "the tools, through files" ctest --preset release -L pipeline
+step "the tools, through faults" ctest --preset release -L faults
+step "hostile files (scripts/fuzz.sh)" scripts/fuzz.sh
+step "evaluation at its quick size" ctest --preset release -L eval
