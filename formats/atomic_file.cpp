@@ -21,7 +21,7 @@ constexpr const char* kPartial = ".partial-";
 // Paths for removePartialFiles(), in fixed places: a signal handler can neither lock nor allocate.
 // A run has at most five files open; one that found no place would be removed by the next run.
 std::array<std::atomic<const char*>, 16> partialFiles;
-std::atomic<bool> outputReplaced{false};
+std::atomic<bool> outputReplaced{false}, removing{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 void remember(const char* path) {
@@ -35,6 +35,7 @@ void forget(const char* path) {
     const char* same = path;
     if (place.compare_exchange_strong(same, nullptr)) return;
   }
+  while (removing) ::pause();  // another thread reads `path`, and is about to end the process
 }
 
 fs::path folderOf(const fs::path& target) {
@@ -186,6 +187,7 @@ void writeFileAtomically(const fs::path& target, const std::string& bytes) {
 }
 
 void removePartialFiles() noexcept {
+  removing = true;
   for (auto& place : partialFiles) {
     if (const char* path = place.exchange(nullptr)) ::unlink(path);
   }
