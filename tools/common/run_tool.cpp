@@ -164,7 +164,9 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
   std::set_terminate(onTerminate);
   try {
     if (!parse(cli, argc, argv)) return kExitOk;
-    tbb::global_control limit(
+    // Never destroyed: at its end oneTBB would start the threads that were held back, and it ends
+    // the process if it cannot, with all outputs already in place.
+    [[maybe_unused]] static const auto* const limit = new tbb::global_control(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0
             ? options.threads
