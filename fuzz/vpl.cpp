@@ -82,7 +82,7 @@ void read(const InputFolder& folder, const std::string& bytes) {
   require(folder.read("out.vpl") == bytes, "reading and writing back gives the same bytes");
 
   for (const StageRecord& record : parseProvenance(file, table.provenance)) describeRecord(record);
-  extendProvenance(table.provenance, "fuzz", Json::object(), Json::object());
+  extendProvenance(table.provenance, stageRecord("fuzz", Json::object(), Json::object()));
 }
 
 }  // namespace
