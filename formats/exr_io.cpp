@@ -47,16 +47,11 @@ void refuseMalformed(const fs::path& file, const Image& image) {
 }
 
 void refuseNonFinite(const fs::path& file, const Image& image) {
-  for (const ImageChannel& channel : image.channels) {
-    for (size_t i = 0; i < channel.data.size(); ++i) {
-      const float value = channel.data[i];
-      if (std::isfinite(value) || (isDepth(channel.name) && value > 0.0f)) continue;
-      const auto width = static_cast<size_t>(image.width);
-      throw std::logic_error(file.string() + ": channel " + channel.name + ", column " +
-                             std::to_string(i % width) + ", row " + std::to_string(i / width) +
-                             ": not a finite number; not written, the old file, if any, is "
-                             "unchanged");
-    }
+  if (const auto bad = findNonFinite(image)) {
+    throw std::logic_error(file.string() + ": channel " + bad->channel + ", column " +
+                           std::to_string(bad->x) + ", row " + std::to_string(bad->y) +
+                           ": not a finite number; not written, the old file, if any, is "
+                           "unchanged");
   }
 }
 
@@ -215,6 +210,18 @@ uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
   const uint64_t clamped = writeExr(out, image, type);
   out.commit();
   return clamped;
+}
+
+std::optional<NonFinite> findNonFinite(const Image& image) {
+  for (const ImageChannel& channel : image.channels) {
+    for (size_t i = 0; i < channel.data.size(); ++i) {
+      const float value = channel.data[i];
+      if (std::isfinite(value) || (isDepth(channel.name) && value > 0.0f)) continue;
+      const auto width = static_cast<size_t>(image.width);
+      return NonFinite{channel.name, i % width, i / width};
+    }
+  }
+  return {};
 }
 
 uint64_t hashImage(const Image& image, ExrPixelType type) {

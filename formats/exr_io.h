@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "formats/atomic_file.h"
 #include "formats/image.h"
@@ -12,6 +14,13 @@ enum class ExrPixelType { Half, Float };
 
 // Depth, "Z": where a view meets nothing it is infinite, and half has too few digits for it.
 inline bool isDepth(const std::string& channel) { return channel == "Z"; }
+
+// The first value that no image of ours may hold: NaN, and infinity but as a depth.
+struct NonFinite {
+  std::string channel;
+  size_t x, y;  // pixel, from the top left
+};
+std::optional<NonFinite> findNonFinite(const Image& image);
 
 // Replaces `file` atomically; equal images give equal bytes. Returns how many values lay beyond the
 // half range (+-65504) and were clamped to it: always 0 for Float. Depth is always float.
@@ -24,8 +33,8 @@ uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
 // Attribute of our images: hash of the image, 16 hexadecimal digits, by which tampering shows.
 inline constexpr const char* kImageHashAttribute = "bnvpl.hash";
 
-// XXH3-64 of size, channels in the order of their names, and all other attributes. It is that of the
-// image which readExr gives back when `image` was written as `type`.
+// XXH3-64 of size, channels in the order of their names, and all other attributes. It is that of
+// the image which readExr gives back when `image` was written as `type`.
 uint64_t hashImage(const Image& image, ExrPixelType type);
 
 // Reads every channel (half, float or uint) as float, in the order of their names, and every string

@@ -25,12 +25,12 @@ inline void require(bool holds, const char* promise) {
   std::abort();
 }
 
-// False when the input was refused as documented.
-template <typename Read>
+// False when the input was refused as documented: by a Refusal.
+template <typename Refusal = InputError, typename Read>
 bool accepted(const Read& read) {
   try {
     read();
-  } catch (const InputError&) {
+  } catch (const Refusal&) {
     return false;
   }
   return true;

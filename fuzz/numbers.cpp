@@ -13,32 +13,22 @@
 namespace bnvpl {
 namespace {
 
-template <typename Parse>
-bool understood(const Parse& parse) {
-  try {
-    parse();
-  } catch (const UsageError&) {
-    return false;
-  }
-  return true;
-}
-
 void parseAlone(const std::string& text) {
   uint64_t count = 0;
-  if (understood([&] { count = parseCount(text); })) {
+  if (accepted<UsageError>([&] { count = parseCount(text); })) {
     require(count >= 1 && count <= uint64_t{1} << 53, "counts are from 1 to 2^53");
   }
   Film film;
-  if (understood([&] { film = parseSize(text); })) {
+  if (accepted<UsageError>([&] { film = parseSize(text); })) {
     require(film.width >= 1 && film.height >= 1 && film.width <= 16384 && film.height <= 16384,
             "sides are from 1 to 16384");
   }
   std::optional<double> ev;
-  if (understood([&] { ev = parseExposure(text); }) && ev) {
+  if (accepted<UsageError>([&] { ev = parseExposure(text); }) && ev) {
     require(std::fabs(*ev) <= kMostEv, "exposures are within 64 stops");
   }
   std::optional<std::array<double, 2>> range;
-  if (understood([&] { range = parseExposureRange(text); }) && range) {
+  if (accepted<UsageError>([&] { range = parseExposureRange(text); }) && range) {
     require((*range)[0] <= (*range)[1] && (*range)[0] >= -kMostEv && (*range)[1] <= kMostEv,
             "ranges of exposures go up, within 64 stops");
   }

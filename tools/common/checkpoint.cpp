@@ -1,15 +1,10 @@
 #include "tools/common/checkpoint.h"
 
-#include <chrono>
-
 #include "formats/checkpoint.h"
+#include "tools/common/clock.h"
 
 namespace bnvpl {
 namespace {
-
-double nowS() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // The first thing in which two runs differ: "options photons: 10000000, now 5000000".
 std::string difference(const Json& before, const Json& now, const std::string& path) {
@@ -43,11 +38,8 @@ void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
       ->capture_default_str();
 }
 
-Checkpoint::Checkpoint(std::string tool, CheckpointOptions options, Json run)
-    : tool_(std::move(tool)),
-      options_(std::move(options)),
-      run_(std::move(run)),
-      nextS_(nowS() + options_.everyS) {
+Checkpoint::Checkpoint(CheckpointOptions options, Json run)
+    : options_(std::move(options)), run_(std::move(run)), nextS_(nowS() + options_.everyS) {
   if (options_.file.empty()) return;
   requireWritable({options_.file});
   if (!fs::exists(options_.file)) return;

@@ -22,7 +22,7 @@ class Checkpoint {
   // `run` names everything that decides the result: tool, version, options, inputs. Reads the file
   // where there is one. Throws InputError when it is damaged or belongs to another run, OutputError
   // when it could not be written later.
-  Checkpoint(std::string tool, CheckpointOptions options, Json run);
+  Checkpoint(CheckpointOptions options, Json run);
 
   // For the stage: what was done before; pauses every so often, and when the user interrupts, which
   // throws Interrupted once the work is saved. Without --checkpoint: nothing. Must not outlive
@@ -35,7 +35,6 @@ class Checkpoint {
   bool due() const;
   void save(const std::string& state);
 
-  std::string tool_;
   CheckpointOptions options_;
   Json run_;
   std::string earlier_;

@@ -2,17 +2,14 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 
+#include "tools/common/clock.h"
 #include "tools/common/run_tool.h"
 
 namespace bnvpl {
 
 namespace {
-double nowS() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 constexpr double kTerminalIntervalS = 0.2;
 constexpr double kLogIntervalS = 10.0;  // a build log wants a sign of life, not a film
 }  // namespace

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -13,16 +12,13 @@
 #include <new>
 #include <sstream>
 
+#include "tools/common/clock.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/standard_streams.h"
 
 namespace bnvpl {
 
 namespace {
-
-double nowS() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double peakMemoryMiB() {
   rusage usage{};

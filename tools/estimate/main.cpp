@@ -92,7 +92,7 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
   const Json record =
       stageRecord("vpl-estimate", describe(options),
                   {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
-  Checkpoint checkpoint("vpl-estimate", checkpoints, record);
+  Checkpoint checkpoint(checkpoints, record);
   ProgressMeter meter("photons", options.photons, tool.quiet);
   const EnergyAccount account =
       estimateFlux(vpls, rays, lights, options, meter.callback(), checkpoint.resume());

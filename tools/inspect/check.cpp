@@ -1,7 +1,6 @@
 #include "tools/inspect/check.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "formats/exr_io.h"
@@ -25,15 +24,10 @@ const char* inputName(VplStage stage) {
 }
 
 void refuseNonFinite(const fs::path& file, const Image& image) {
-  for (const ImageChannel& channel : image.channels) {
-    for (size_t i = 0; i < channel.data.size(); ++i) {
-      const float value = channel.data[i];
-      if (std::isfinite(value) || (isDepth(channel.name) && value > 0.0f)) continue;
-      const size_t width = static_cast<size_t>(image.width);
-      throw InputError(file, "channel " + channel.name + " is not finite at pixel (" +
-                                 std::to_string(i % width) + ", " + std::to_string(i / width) +
-                                 "); rerun vpl-render");
-    }
+  if (const auto bad = findNonFinite(image)) {
+    throw InputError(file, "channel " + bad->channel + " is not finite at pixel (" +
+                               std::to_string(bad->x) + ", " + std::to_string(bad->y) +
+                               "); rerun vpl-render");
   }
 }
 

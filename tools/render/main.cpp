@@ -160,7 +160,7 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   const Json record = stageRecord("vpl-render", describe(o), inputs);
   Json run = record;
   run["view"] = describeView(scene);
-  Checkpoint checkpoint("vpl-render", checkpoints, run);
+  Checkpoint checkpoint(checkpoints, run);
   ProgressMeter meter(
       "samples", uint64_t{scene.film.width} * scene.film.height * o.film.spp, tool.quiet);
   FilmStats stats;
