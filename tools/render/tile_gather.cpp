@@ -19,8 +19,8 @@ constexpr uint32_t kProbes = 8;
 // distance, for falloff, cosines and partial visibility together, and by the spread of its normals
 // (measured: docs/theory.md, "Tile cuts").
 constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
-// Pixels along the side of a packet.
-constexpr uint32_t kSquare = 4;
+// Pixels along the side of a square that four packets share.
+constexpr uint32_t kSquare = 8;
 // Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
 // see nothing is not searched VPL by VPL.
 constexpr float kBlockedShare = 0.01f;
@@ -32,7 +32,7 @@ constexpr float kMostDraw = 4.0f;
 constexpr float kRouletteShare = 0.5f;
 
 // Dimensions of a tile's random numbers.
-enum Draw : uint32_t { kDrawProbe, kDrawVpl, kDrawShift, kDrawRoulette };
+enum Draw : uint32_t { kDrawProbe, kDrawVpl, kDrawShift, kDrawPacket, kDrawRoulette };
 
 // What to expect of a cluster by the middle of its box: cheaper than a bound, and cosines are taken
 // at the side of the box that sees most, so that it is 0 only where nothing can arrive.
@@ -58,6 +58,13 @@ Expected expect(const LightNode& n, const Bsdf& bsdf) {
   const float sent = (light.x + light.y + light.z) * std::min(1.0f, emitter);
   const float nearest2 = n.bounds.distanceSquared(bsdf.point().position);
   return {spread * sent * falloff(distance2, n.clamp2), sent * falloff(nearest2, n.clamp2)};
+}
+
+// Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
+uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
+  const uint32_t square = y / kSquare << 16 | x / kSquare;
+  const auto turn = static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDrawPacket) % 4);
+  return square << 2 | ((y % 2 << 1 | x % 2) ^ turn);
 }
 
 }  // namespace
@@ -194,25 +201,21 @@ TileGatherer::Cut TileGatherer::chooseCut(const TileReceivers& tile) const {
   return cut;
 }
 
-// A packet is a square of 4 x 4 pixels as far as it has receivers: neighbours' rays are traced
-// fastest together. (Pixels dealt out at random in each slot spread the error more evenly, but cost
-// 15 % more.) Over all packets of the tile the draws from a cluster are stratified, and over the
-// slots of one pixel too.
+// A packet takes a random pixel of each 2 x 2, of 8 x 8 pixels as far as they have receivers. Its
+// pixels share their error: dealt out so, it is fine grain, where packets of 4 x 4 neighbours show
+// as blocks. Over all packets of the tile the draws from a cluster are stratified, and over the
+// slots of one pixel too, which therefore stays in its packet.
 void TileGatherer::gatherSlot(const TileReceivers& tile, uint32_t slot, const Cut& cut,
                               std::span<Gathered> out) const {
   const uint32_t imageSlot = tile.firstSlot + slot;
   const uint64_t slotKey = mix64(tile.key + imageSlot);
-  std::vector<uint32_t> lit;
+  std::vector<uint32_t> lit, packetOf;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
+    packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
     if (tile.bsdf[size_t{slot} * tile.pixels + p]) lit.push_back(slot * tile.pixels + p);
   }
   std::stable_sort(lit.begin(), lit.end(), [&](uint32_t a, uint32_t b) {
-    const auto block = [&](uint32_t i) {
-      const uint32_t p = i % tile.pixels;
-      const uint32_t x = p % tile.width, y = p / tile.width;
-      return y / kSquare << 16 | x / kSquare;
-    };
-    return block(a) < block(b);
+    return packetOf[a % tile.pixels] < packetOf[b % tile.pixels];
   });
   const size_t packets = (lit.size() + Packet::kSize - 1) / Packet::kSize;
   for (size_t number = 0; number < packets; ++number) {
