@@ -16,6 +16,7 @@
 #pragma GCC diagnostic pop
 
 #include "core/files.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "scene/obj_lines.h"
 #include "scene/read_file.h"
@@ -88,6 +89,19 @@ std::vector<size_t> verticesOfWords(std::string_view obj) {
     ++vertex;
   }
   return found;
+}
+
+constexpr const char* kTooLarge = "simplify the mesh";
+
+// What tinyobj and then we take for a mesh at least, beside the text: doubles, indices and faces of
+// its, triangles and points of ours.
+double bytesOf(const MeshLines& lines) {
+  const auto n = [](size_t count) { return static_cast<double>(count); };
+  constexpr double kReal = sizeof(tinyobj::real_t);
+  const double perTriangle = 3.0 * sizeof(tinyobj::index_t) + sizeof(int) + sizeof(Triangle);
+  return n(lines.vertices) * (3.0 * kReal + sizeof(Point)) +
+         n(lines.normals) * (3.0 * kReal + sizeof(Vec3)) +
+         n(lines.coordinates) * 2.0 * (kReal + sizeof(float)) + n(lines.triangles) * perTriangle;
 }
 
 std::string firstLine(std::string text) {
@@ -368,10 +382,14 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
     throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
   }
   scene_.files.push_back(obj);
-  std::string text = meshLines(obj, readText(obj));
+  requireMemory(static_cast<double>(fs::file_size(obj)), obj.string() + ": reading it", kTooLarge);
+  MeshLines lines = meshLines(obj, readText(obj));
+  requireMemory(bytesOf(lines),
+                obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
+                kTooLarge);
   // tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
-  if (!materials.empty()) text.insert(0, "mtllib override\n");
-  std::istringstream in(std::move(text));
+  if (!materials.empty()) lines.text.insert(0, "mtllib override\n");
+  std::istringstream in(std::move(lines.text));
 
   Parsed parsed;
   std::vector<tinyobj::material_t> source;
@@ -384,6 +402,7 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   if (!ok || !errors.empty()) {
     throw InputError(obj, "cannot read the mesh: " + firstLine(errors.empty() ? warnings : errors));
   }
+  in.str({});
   for (const size_t vertex : words) parsed.attrib.vertices.at(3 * vertex) = NAN;
   for (const fs::path& library : reader.missing) {
     warn(library.string() + ": no such material library; its materials are grey");

@@ -24,9 +24,9 @@ size_t cornersOf(const std::string& line) {
 
 }  // namespace
 
-std::string meshLines(const fs::path& file, const std::string& text) {
+MeshLines meshLines(const fs::path& file, const std::string& text) {
   static const std::set<std::string> kNeeded{"v", "vn", "vt", "f", "g", "o", "usemtl", "mtllib"};
-  std::string kept;
+  MeshLines kept;
   size_t number = 1;
   for (size_t at = 0; at < text.size();) {
     const size_t end = std::min(text.find_first_of("\r\n", at), text.size());  // as tinyobj does
@@ -34,11 +34,16 @@ std::string meshLines(const fs::path& file, const std::string& text) {
     std::replace(line.begin(), line.end(), '\0', ' ');  // where tinyobj would stop
     const size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
     const std::string keyword = line.substr(begin, line.find_first_of(" \t", begin) - begin);
-    if (keyword == "f" && cornersOf(line) > kMaxCorners) {
+    const size_t corners = keyword == "f" ? cornersOf(line) : 0;
+    if (corners > kMaxCorners) {
       throw InputError(file.string() + ":" + std::to_string(number) + ": a face of more than " +
                        std::to_string(kMaxCorners) + " corners; triangulate the mesh");
     }
-    if (kNeeded.contains(keyword)) kept += line + '\n';
+    if (kNeeded.contains(keyword)) kept.text += line + '\n';
+    kept.vertices += keyword == "v";
+    kept.normals += keyword == "vn";
+    kept.coordinates += keyword == "vt";
+    kept.triangles += corners >= 3 ? corners - 2 : 0;
     if (end < text.size() && text[end] == '\n') ++number;
     at = end + 1;
   }

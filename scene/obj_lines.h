@@ -7,10 +7,16 @@
 
 namespace bnvpl {
 
-// The lines of an OBJ that a triangle mesh needs. The others (points, lines, weights of skins, tags
-// of subdivision) mean nothing here, and tinyobj copies what they hold again and again: memory that
-// grows as the square of the file. Throws InputError at a face that would take for ever. `file` is
-// for the message.
-std::string meshLines(const fs::path& file, const std::string& text);
+// The lines of an OBJ that a triangle mesh needs, and how much they will come to.
+struct MeshLines {
+  std::string text;
+  size_t vertices = 0, normals = 0, coordinates = 0;
+  size_t triangles = 0;
+};
+
+// The other lines (points, lines, weights of skins, tags of subdivision) mean nothing here, and
+// tinyobj copies what they hold again and again: memory that grows as the square of the file. Throws
+// InputError at a face that would take for ever. `file` is for the message.
+MeshLines meshLines(const fs::path& file, const std::string& text);
 
 }  // namespace bnvpl

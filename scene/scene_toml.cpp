@@ -124,9 +124,9 @@ class Section {
   void checkKnown(const std::string& key, const toml::node& node,
                   const std::vector<std::string>& known) const {
     if (std::find(known.begin(), known.end(), key) != known.end()) return;
-    const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-      return editDistance(key, a) < editDistance(key, b);
-    });
+    const auto nearest = std::min_element(
+        known.begin(), known.end(),
+        [&](const auto& a, const auto& b) { return editDistance(key, a) < editDistance(key, b); });
     fail(node, "unknown key '" + key + "'; did you mean '" + *nearest + "'?");
   }
 

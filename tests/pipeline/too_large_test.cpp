@@ -51,5 +51,25 @@ TEST_F(TooLarge, Files) {
        {"l.vpl", "vpl-eliminate -n"}, kFourGib);
 }
 
+// An OBJ by its size before it is read, a mesh by its faces before it is made.
+TEST_F(TooLarge, Scenes) {
+  write("scene.toml",
+        "[film]\nwidth = 4\nheight = 4\n[camera]\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\n"
+        "vertical_fov_deg = 60\n[[mesh]]\nfile = \"m.obj\"\n");
+  const std::string place = path("scene.toml") + " -n 10 -o " + path("x.vpl");
+  write("m.obj", "v 0 0 0\n");
+  fs::resize_file(at("m.obj"), uint64_t{8} << 30);
+  fail("vpl-place", place, kExitMemory,
+       {"m.obj: reading it needs about 8 GiB", "are available", "simplify the mesh"}, kFourGib);
+  std::string face = "f";
+  for (int corner = 0; corner < 1024; ++corner) face += " 1";
+  std::string text = "v 0 0 0\n";
+  for (int k = 0; k < 4000; ++k) text += face + "\n";
+  write("m.obj", text);
+  fail("vpl-place", place, kExitMemory,
+       {"m.obj: a mesh of 4088000 triangles needs about 0.305 GiB", "simplify the mesh"},
+       "ulimit -v 300000;");
+}
+
 }  // namespace
 }  // namespace bnvpl
