@@ -51,8 +51,8 @@ void tracePhotons(benchmark::State& state) {
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
 }
 
-// The rays that photons take, from hit to hit in the same order, without anything else: the limit for
-// tracePhotons and, nearly, for placeCandidates.
+// The rays that photons take, from hit to hit in the same order, without anything else: the limit
+// for tracePhotons and, nearly, for placeCandidates.
 void bareRays(benchmark::State& state) {
   struct Segment {
     Vec3 origin, direction;

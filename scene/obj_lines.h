@@ -15,8 +15,8 @@ struct MeshLines {
 };
 
 // The other lines (points, lines, weights of skins, tags of subdivision) mean nothing here, and
-// tinyobj copies what they hold again and again: memory that grows as the square of the file. Throws
-// InputError at a face that would take for ever. `file` is for the message.
+// tinyobj copies what they hold again and again: memory that grows as the square of the file.
+// Throws InputError at a face that would take for ever. `file` is for the message.
 MeshLines meshLines(const fs::path& file, const std::string& text);
 
 }  // namespace bnvpl

@@ -1,8 +1,8 @@
 #include "spatial/kd_tree.h"
 
-#include "core/checked_malloc.h"
-
 #include <stdlib.h>
+
+#include "core/checked_malloc.h"
 
 // FLANN's pool returns null when memory is short, and the tree writes there.
 using bnvpl::mallocOrThrow;

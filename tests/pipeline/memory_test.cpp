@@ -19,8 +19,8 @@ class Memory : public PipelineTest {
     succeed(name, arguments + " --quiet --threads 2 --stats " + path("s.json"));
     return nlohmann::json::parse(readAll(at("s.json"))).at("peak_memory_MiB").get<double>();
   }
-  // 2 MiB: peaks differ by 0.2 from run to run; eight bytes left behind by each photon are 2.3. On a
-  // busy machine an allocator may keep more now and then, so that three may try.
+  // 2 MiB: peaks differ by 0.2 from run to run; eight bytes left behind by each photon are 2.3. On
+  // a busy machine an allocator may keep more now and then, so that three may try.
   void expectSamePeak(const std::string& name, const std::string& few,
                       const std::string& many) const {
     const double least = peakMiB(name, few);

@@ -80,10 +80,9 @@ int runEliminate(const fs::path& input, const fs::path& output, const EliminateO
   const EliminateResult kept = eliminate(candidates.position, candidates.normal, options);
 
   VplTable vpls = keepRows(candidates, kept);
-  vpls.provenance =
-      extendProvenance(candidates.provenance,
-                       stageRecord("vpl-eliminate", describe(options),
-                                   {{"candidates", hashText(candidates.checksum)}}));
+  vpls.provenance = extendProvenance(candidates.provenance,
+                                     stageRecord("vpl-eliminate", describe(options),
+                                                 {{"candidates", hashText(candidates.checksum)}}));
   OutputSet files;
   writeVpl(files.add(output), vpls);
   addDepfile(files, tool.depfile, output, {input});

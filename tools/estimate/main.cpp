@@ -139,7 +139,6 @@ int main(int argc, char** argv) {
   addCheckpointOptions(cli, checkpoints);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] {
-    return runEstimate(scene, input, output, options, checkpoints, tool);
-  });
+  return runTool(cli, tool, argc, argv,
+                 [&] { return runEstimate(scene, input, output, options, checkpoints, tool); });
 }

@@ -116,9 +116,9 @@ struct Paths {
 // What decides the samples beside options and inputs: the view, which the scene's hash leaves out.
 Json describeView(const Scene& scene) {
   const Camera& c = scene.camera;
-  Json view{{"size", sizeText(scene.film)},
-            {"fov_rad", c.verticalFovRad}};
-  for (const auto& [name, v] : {std::pair{"position", c.position}, {"forward", c.forward}, {"up", c.up}})
+  Json view{{"size", sizeText(scene.film)}, {"fov_rad", c.verticalFovRad}};
+  for (const auto& [name, v] :
+       {std::pair{"position", c.position}, {"forward", c.forward}, {"up", c.up}})
     view[name] = {v.x, v.y, v.z};
   return view;
 }
@@ -161,8 +161,8 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   Json run = record;
   run["view"] = describeView(scene);
   Checkpoint checkpoint(checkpoints, run);
-  ProgressMeter meter(
-      "samples", uint64_t{scene.film.width} * scene.film.height * o.film.spp, tool.quiet);
+  ProgressMeter meter("samples", uint64_t{scene.film.width} * scene.film.height * o.film.spp,
+                      tool.quiet);
   FilmStats stats;
   Image image = renderFilm(
       scene, [&](const TileSamples& tile) { vpl ? byVpls.render(tile) : byPaths.render(tile); },
