@@ -162,7 +162,8 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
     if (!parse(cli, argc, argv)) return kExitOk;
     // Never destroyed: at its end oneTBB would start the threads that were held back, and it ends
     // the process if it cannot, with all outputs already in place.
-    [[maybe_unused]] static const auto* const limit = new tbb::global_control(
+    alignas(tbb::global_control) static std::byte forever[sizeof(tbb::global_control)];
+    new (forever) tbb::global_control(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0
             ? options.threads
