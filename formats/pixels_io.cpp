@@ -48,7 +48,7 @@ namespace bnvpl {
 namespace {
 
 // Deflate makes a byte of 1032 at most, and a byte of a PNG is 8 pixels at most.
-constexpr size_t kMaxPixelsPerByte = 1032 * 8;
+constexpr size_t kMaxPixelsPerByte = size_t{1032} * 8;
 constexpr size_t kMaxPixels = size_t{1} << 28;
 constexpr size_t kMaxBytes = size_t{1} << 30;  // stb counts them in an int
 

@@ -6,6 +6,10 @@
 #include <embree3/rtcore.h>
 #endif
 
+#if defined(__SANITIZE_THREAD__)
+#include <tbb/task_arena.h>
+#endif
+
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -123,7 +127,13 @@ RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<I
   const auto count = static_cast<uint32_t>(scene.triangles.size());
   if (scene.maskedBegin > 0) impl_->attach(scene, 0, scene.maskedBegin, 0);
   if (scene.maskedBegin < count) impl_->attach(scene, scene.maskedBegin, count, 1);
+#if defined(__SANITIZE_THREAD__)
+  // By this thread alone: Embree is not compiled for the sanitizer, which does not see it wait for
+  // other threads.
+  tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene); });
+#else
   rtcCommitScene(impl_->scene);
+#endif
   impl_->throwIfFailed();
   liftBase_ = scene.bounds.diagonal() * 0x1p-20f;
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include <array>
 
 namespace bnvpl {
@@ -44,7 +46,7 @@ TEST(Resume, SavingSeesWhatIsDoneAndMayEndTheWork) {
 TEST(Resume, NothingLeftSavesNothing) {
   std::vector<uint8_t> done(5);
   Resume resume;
-  size_t ran = 0;
+  std::atomic<size_t> ran = 0;  // pause() is asked by every thread
   resume.pause = [&] { return ++ran == 5; };
   resume.save = [](const std::string&) { FAIL(); };
   forUnitsLeft(
