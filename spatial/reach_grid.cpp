@@ -1,5 +1,7 @@
 #include "spatial/reach_grid.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -40,12 +42,17 @@ void ReachGrid::buildLevel(Level& level, const std::vector<uint32_t>& members,
       }
     }
   }
-  std::sort(listed.begin(), listed.end());
+  tbb::parallel_sort(listed.begin(), listed.end());  // the order is total, so there is one result
   listed.erase(std::unique(listed.begin(), listed.end()), listed.end());
-  level.slots.resize(std::bit_ceil(2 * listed.size() + 1));
+  size_t cells = 0;
+  for (size_t k = 0; k < listed.size(); ++k) {
+    cells += k == 0 || listed[k].first != listed[k - 1].first;
+  }
+  level.slots.resize(std::bit_ceil(2 * cells + 1));
   level.mask = level.slots.size() - 1;
-  level.filter.resize(std::bit_ceil(8 * listed.size() / 64 + 1));
+  level.filter.resize(std::bit_ceil(8 * cells / 64 + 1));
   level.filterMask = 64 * level.filter.size() - 1;
+  level.disks.reserve(listed.size());
   for (size_t begin = 0; begin < listed.size();) {
     size_t end = begin;
     while (end < listed.size() && listed[end].first == listed[begin].first) {

@@ -1,6 +1,5 @@
 #include "tools/render/near_field.h"
 
-#include "core/parallel.h"
 #include "core/random.h"
 #include "core/sampling.h"
 
@@ -18,6 +17,7 @@ constexpr int kMaxLayers = 4;  // surfaces on the way to the VPL's own
 // the mean of the VPL's surroundings: the point's own light is found out instead (measured:
 // docs/theory.md, "Near field").
 constexpr float kShortRay = 0.7f;
+constexpr float kUnknown = -1.0f;  // area that nobody has asked for
 
 std::vector<float> scaled(std::vector<float> values, float factor) {
   for (float& v : values) v *= factor;
@@ -57,20 +57,29 @@ float areaOf(uint32_t i, const VplTable& lit, float reach, const Coverage& cover
 }  // namespace
 
 NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp)
-    : coverage_(lit.position, lit.normal,
+    : lit_(lit),
+      rays_(rays),
+      coverage_(lit.position, lit.normal,
                 scaled(lit.radius,
                        lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),
                 rays),
-      radius_(lit.radius),
       clampRadius_(scaled(lit.radius, clamp)),
-      radiance_(lit.size()),
+      area_(lit.size()),
       gaps_(lit.reach > 0.0) {
-  if (!gaps_) return;  // the flux of a photon says nothing of the area around it
-  parallelFor(lit.size(), 16, [&](size_t i) {
-    const float reach = lit.radius[i] * static_cast<float>(lit.reach);
-    const float area = areaOf(static_cast<uint32_t>(i), lit, reach, coverage_, rays);
-    if (area > 0.0f) radiance_[i] = lit.flux[i] * (1.0f / (kPi * area));
-  });
+  for (std::atomic<float>& area : area_) area = kUnknown;
+}
+
+std::optional<Vec3> NearField::radianceOf(uint32_t vpl) const {
+  if (!gaps_) return {};  // the flux of a photon says nothing of the area around it
+  // Two threads may measure one area; both find the same.
+  float area = area_[vpl].load(std::memory_order_relaxed);
+  if (area == kUnknown) {
+    const float reach = lit_.radius[vpl] * static_cast<float>(lit_.reach);
+    area = areaOf(vpl, lit_, reach, coverage_, rays_);
+    area_[vpl].store(area, std::memory_order_relaxed);
+  }
+  if (!(area > 0.0f)) return {};
+  return lit_.flux[vpl] * (1.0f / (kPi * area));
 }
 
 NearField::Missing NearField::missing(const SurfacePoint& seen, float distance, Rng& rng) const {
@@ -78,8 +87,8 @@ NearField::Missing NearField::missing(const SurfacePoint& seen, float distance, 
   if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
   const float near = distance / clampRadius_[*found.vpl];
   const float share = std::max(0.0f, 1.0f - near * near);  // 1 - d^2 falloff(d^2)
-  if (distance < kShortRay * radius_[*found.vpl]) return {share, {}};
-  return {share, radiance_[*found.vpl]};
+  if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
+  return {share, radianceOf(*found.vpl)};
 }
 
 }  // namespace bnvpl

@@ -3,6 +3,10 @@
 // that back (Kollig & Keller 2006, with the VPLs' own bound and gaps).
 #pragma once
 
+#include <atomic>
+#include <optional>
+#include <vector>
+
 #include "formats/vpl_table.h"
 #include "scene/coverage.h"
 
@@ -22,9 +26,16 @@ class NearField {
   Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const;
 
  private:
+  // Mean of the surface that the VPL speaks for; empty where that is not known.
+  std::optional<Vec3> radianceOf(uint32_t vpl) const;
+
+  const VplTable& lit_;
+  const RayScene& rays_;
   Coverage coverage_;
-  std::vector<float> radius_, clampRadius_;    // of each VPL, world units
-  std::vector<std::optional<Vec3>> radiance_;  // mean of the surface that it speaks for
+  std::vector<float> clampRadius_;  // of each VPL, world units
+  // Of that surface, world units squared; measured when it is first asked for, as an image of few
+  // pixels meets few of many VPLs.
+  mutable std::vector<std::atomic<float>> area_;
   bool gaps_;  // whether a point without a VPL is a gap: not for VPLs from the lights
 };
 
