@@ -51,11 +51,11 @@ double chiSquare(const std::vector<int>& cells, double expected) {
 
 TEST(Random, ConsecutiveNumbersFillTheSquareEvenly) {
   constexpr int kSide = 16, kDraws = 256 * 400;
-  std::vector<int> cells(kSide * kSide);
+  std::vector<int> cells(size_t{kSide} * kSide);
   for (int i = 0; i < kDraws; ++i) {
     Rng rng(streamKey(7, Stream::PixelSamples), uint64_t(i));
-    const int x = int(rng.next() * kSide), y = int(rng.next() * kSide);
-    ++cells[size_t(y * kSide + x)];
+    const auto x = size_t(rng.next() * kSide), y = size_t(rng.next() * kSide);
+    ++cells[y * kSide + x];
   }
   // 255 degrees of freedom: standard deviation 22.6; five of them is 113.
   EXPECT_NEAR(chiSquare(cells, 400.0), 255.0, 113.0);
@@ -81,7 +81,7 @@ TEST(R2Sequence, EveryPrefixIsStratified) {
     for (int i = 0; i < count; ++i) {
       const Point2 p = r2Sequence(uint64_t(i), 0.3, 0.8);
       ASSERT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1);
-      ++cells[size_t(int(p.y * float(side)) * side + int(p.x * float(side)))];
+      ++cells[size_t(p.y * float(side)) * size_t(side) + size_t(p.x * float(side))];
     }
     EXPECT_LT(chiSquare(cells, 4.0) / double(side * side), 0.35) << side;
     for (const int n : cells) EXPECT_GT(n, 0);

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include <array>
+#include <atomic>
 
 namespace bnvpl {
 namespace {

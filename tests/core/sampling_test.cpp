@@ -45,7 +45,7 @@ void expectFollows(const Warp& warp, const Density& pdf, double zLow, double zHi
     expected *= 2.0 * double{kPi} * kDraws;
     EXPECT_NEAR(bands[size_t(b)], expected, 5.0 * std::sqrt(expected)) << "band " << b;
   }
-  for (const int n : sectors) EXPECT_NEAR(n, kDraws / 8, 5.0 * std::sqrt(kDraws / 8.0));
+  for (const int n : sectors) EXPECT_NEAR(n, kDraws / 8.0, 5.0 * std::sqrt(kDraws / 8.0));
 }
 
 TEST(Sampling, DiskIsUniformAndKeepsStrata) {

@@ -48,8 +48,9 @@ std::vector<std::vector<Vec3>> clouds() {
                                      std::vector<Vec3>(100, Vec3(4.0f))};
   std::vector<Vec3> lattice, far;
   for (int i = 0; i < 1000; ++i) {
-    lattice.emplace_back(static_cast<float>(i % 10) - 5.0f, static_cast<float>(i / 10 % 10) - 5.0f,
-                         static_cast<float>(i / 100) - 5.0f);
+    const int x = i % 10, y = i / 10 % 10, z = i / 100;
+    lattice.emplace_back(static_cast<float>(x) - 5.0f, static_cast<float>(y) - 5.0f,
+                         static_cast<float>(z) - 5.0f);
     far.push_back(lattice.back() * 0.01f + Vec3(-3000.0f, 2000.0f, 1000.0f));
   }
   all.push_back(lattice);

@@ -101,6 +101,7 @@ int runEliminate(const fs::path& input, const fs::path& output, const EliminateO
 }  // namespace
 }  // namespace bnvpl
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Keep the candidates that are spread best over the surfaces.", "vpl-eliminate"};

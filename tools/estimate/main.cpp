@@ -112,6 +112,7 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
 }  // namespace
 }  // namespace bnvpl
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Trace photons from the lights and hand their energy to the VPLs.", "vpl-estimate"};

@@ -65,6 +65,7 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
 }  // namespace
 }  // namespace bnvpl
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Look into, check, export, draw and compare what the stages make.", "vpl-inspect"};

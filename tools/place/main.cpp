@@ -59,6 +59,7 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
 }  // namespace
 }  // namespace bnvpl
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Drop candidate VPLs on the surfaces that light the view.", "vpl-place"};

@@ -261,6 +261,7 @@ void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut
 }  // namespace
 }  // namespace bnvpl
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Render the scene, lit by its lights and the VPLs.", "vpl-render"};
