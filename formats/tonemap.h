@@ -20,7 +20,7 @@ inline float encodeSrgb(float linear) {
 
 // 8-bit sRGB of linear * 2^exposureEv.
 inline uint8_t toSrgb8(float linear, float exposureEv = 0.0f) {
-  return static_cast<uint8_t>(encodeSrgb(linear * std::exp2(exposureEv)) * 255.0f + 0.5f);
+  return static_cast<uint8_t>(std::lround(encodeSrgb(linear * std::exp2(exposureEv)) * 255.0f));
 }
 
 // Interleaves three channels of equal length for writePng.

@@ -30,7 +30,7 @@ TEST_F(Png, WrongSizesAndTargetsAreRefused) {
 // As the difference of two images of 1 x 16384, with a frame around it.
 TEST_F(Png, LongSides) {
   for (const auto& [width, height] : {std::pair{3, 17000}, std::pair{17000, 3}}) {
-    const std::vector<uint8_t> pixels(3 * 3 * 17000, 128);
+    const std::vector<uint8_t> pixels(size_t{3} * 3 * 17000, 128);
     writePng(at("a.png"), width, height, pixels);
     EXPECT_GT(fs::file_size(at("a.png")), 0u);
   }
