@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Time and memory of the stages as the work grows: triangles, candidates, VPLs, lights.
 
-  bench/size.py                          all, about a quarter of an hour and 6 GiB
+  bench/size.py                          all, about four minutes and 3 GiB
   bench/size.py --parts lights,vpls      some
   bench/size.py --most 0.01              a hundredth of each size, to see that it works
 
