@@ -44,8 +44,9 @@ TEST_F(Plot, DotsStandWhereTheRowsProject) {
   ASSERT_FALSE(pixels.empty());
   bool centre = false;
   for (const size_t i : pixels) {
-    const float px = static_cast<float>(i % 80), py = static_cast<float>(i / 80);
-    centre |= static_cast<size_t>(x) == i % 80 && static_cast<size_t>(y) == i / 80;
+    const size_t column = i % 80, row = i / 80;
+    const float px = static_cast<float>(column), py = static_cast<float>(row);
+    centre |= static_cast<size_t>(x) == column && static_cast<size_t>(y) == row;
     EXPECT_LT(std::hypot(px + 0.5f - x, py + 0.5f - y), 3.1f);
   }
   EXPECT_TRUE(centre);
