@@ -382,7 +382,9 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
     throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
   }
   scene_.files.push_back(obj);
-  requireMemory(static_cast<double>(fs::file_size(obj)), obj.string() + ": reading it", kTooLarge);
+  std::error_code vanished;  // is readText's to report
+  const auto size = static_cast<double>(fs::file_size(obj, vanished));
+  if (!vanished) requireMemory(size, obj.string() + ": reading it", kTooLarge);
   MeshLines lines = meshLines(obj, readText(obj));
   requireMemory(bytesOf(lines),
                 obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
@@ -402,7 +404,7 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   if (!ok || !errors.empty()) {
     throw InputError(obj, "cannot read the mesh: " + firstLine(errors.empty() ? warnings : errors));
   }
-  in.str({});
+  in.str({});  // its memory is better used by the triangles
   for (const size_t vertex : words) parsed.attrib.vertices.at(3 * vertex) = NAN;
   for (const fs::path& library : reader.missing) {
     warn(library.string() + ": no such material library; its materials are grey");

@@ -218,17 +218,17 @@ Affine readTransform(const Section& s) {
 LightSpec readLight(const fs::path& file, const Section& s, const Defines& defines, Scene& scene) {
   LightSpec light;
   const std::string type = s.text("type");
-  const auto only =
-      [&](const std::set<std::string>& allowed) {  // a key of another type would be ignored
-        for (const char* key :
-             {"position", "direction", "intensity", "irradiance", "radiance", "image", "cone_deg",
-              "falloff_deg", "angular_diameter_deg", "rotate_deg", "scale"}) {
-          if (s.has(key) && !allowed.contains(key)) {
-            s.fail(s.node(key),
-                   "'" + std::string(key) + "' has no meaning for a " + type + " light; remove it");
-          }
-        }
-      };
+  // A key of another type would be ignored.
+  const auto only = [&](const std::set<std::string>& allowed) {
+    for (const char* key :
+         {"position", "direction", "intensity", "irradiance", "radiance", "image", "cone_deg",
+          "falloff_deg", "angular_diameter_deg", "rotate_deg", "scale"}) {
+      if (s.has(key) && !allowed.contains(key)) {
+        s.fail(s.node(key),
+               "'" + std::string(key) + "' has no meaning for a " + type + " light; remove it");
+      }
+    }
+  };
   if (type == "point" || type == "spot") {
     light.type = type == "point" ? LightType::Point : LightType::Spot;
     light.position = fromOrigin(s.point("position"), scene.origin);

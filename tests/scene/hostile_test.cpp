@@ -3,6 +3,7 @@
 
 #include "formats/jpeg_guard.h"
 #include "scene/load_obj.h"
+#include "scene/obj_lines.h"
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {
@@ -80,6 +81,7 @@ TEST_F(Hostile, WhatIsNoMeshIsLeftOut) {
   const Scene s = loadMesh(repeated("l 1 0\rp 0\r\n", 3) + kSquareObj + repeated(waste, 2'000),
                            "newmtl paint\nKd 1 1 1\n");
   EXPECT_EQ(s.triangles.size(), 2u);
+  EXPECT_EQ(meshLines("a.obj", waste).text, "usemtl x\nusemtl y\n");
 }
 
 TEST_F(Hostile, ALibraryIsReadOnce) {
@@ -87,6 +89,7 @@ TEST_F(Hostile, ALibraryIsReadOnce) {
   for (size_t i = 0; i < 100; ++i) obj += "mtllib " + repeated("./", i) + "square.mtl\n";
   const Scene s = loadMesh(obj + kSquareObj, "newmtl paint\n" + repeated("newmtl other\n", 1'000));
   EXPECT_EQ(s.triangles.size(), 2u);
+  EXPECT_EQ(s.files.size(), 3u);  // scene, mesh, and the library that has a hundred names
 }
 
 TEST_F(Hostile, EndlessScalesOfTexturesAreHarmless) {
