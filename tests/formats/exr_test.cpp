@@ -223,6 +223,46 @@ TEST_F(Exr, AttributesThatClaimTooMuchAreRefusedBeforeTheyAreAllocated) {
   }
 }
 
+// Attributes that OpenEXR reads on from another place than their size says: what follows is then a
+// claim of 1.7 GB, the letters "stri" taken for a number.
+TEST_F(Exr, AttributesThatHideTheNextAreRefused) {
+  const auto attribute = [](const std::string& name, const std::string& type,
+                            const std::string& value) {
+    const auto size = static_cast<uint32_t>(value.size());
+    std::string bytes = name + '\0' + type + '\0' + std::string(4, '\0') + value;
+    poke(bytes, name.size() + type.size() + 2, size);
+    return bytes;
+  };
+  const std::string end = attribute("comments", "string", std::string(40, ' '));
+  const std::string hidden = std::string("x\0y\0stri", 8);
+  writeExr(at("a.exr"), layeredImage(), ExrPixelType::Half);
+  const std::string bytes = readAll(at("a.exr"));
+  const size_t opening = 8;
+  const std::vector<std::pair<const char*, std::string>> cases{
+      {"no whole number of floats", attribute("f", "floatvector", std::string("1234x\0", 6)) + end},
+      {"the longest name", std::string(255, 'n') + '\0' + hidden.substr(2)},
+      {"the longest type", std::string("n\0", 2) + std::string(255, 't') + '\0' + "stri"},
+      {"a channel list without an end", attribute("channels", "chlist", "") +
+                                            std::string(255, 'c') + std::string(18, '\0') +
+                                            hidden}};
+  for (const auto& [name, inserted] : cases) {
+    std::string damaged = bytes;
+    damaged.insert(opening, inserted);
+    writeAll(at("b.exr"), damaged);
+    try {
+      readExr(at("b.exr"));
+      ADD_FAILURE() << name;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("claims"), std::string::npos)
+          << name << ": " << e.what();
+    }
+  }
+  Image honest = layeredImage();
+  honest.attributes[std::string(255, 'n')] = "the longest name";
+  writeExr(at("a.exr"), honest, ExrPixelType::Half);
+  EXPECT_EQ(readExr(at("a.exr")).attributes, honest.attributes);
+}
+
 TEST_F(Exr, MalformedImagesAndTargetsAreRefused) {
   Image image = layeredImage();
   EXPECT_THROW(writeExr(at("missing") / "a.exr", image, ExrPixelType::Half), OutputError);
