@@ -65,4 +65,37 @@ constexpr Point2 r2Sequence(uint64_t index, double shiftX, double shiftY) {
   return {toUnitFloat(x), toUnitFloat(y)};
 }
 
+// Owen's scrambling of one coordinate in [0, 1) as 32-bit fixed point, by hashing: each bit is
+// flipped or not as the bits above it and the key decide (Laine & Karras 2011; constants of
+// Vegdahl 2021, "Building a better LK hash").
+constexpr uint32_t reverseBits(uint32_t x) {
+  x = x >> 16 | x << 16;
+  x = (x & 0xff00ff00u) >> 8 | (x & 0x00ff00ffu) << 8;
+  x = (x & 0xf0f0f0f0u) >> 4 | (x & 0x0f0f0f0fu) << 4;
+  x = (x & 0xccccccccu) >> 2 | (x & 0x33333333u) << 2;
+  return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
+}
+constexpr uint32_t owenScramble(uint32_t x, uint32_t key) {
+  x = reverseBits(x);
+  x ^= x * 0x3d20adeau;
+  x += key;
+  x *= (key >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return reverseBits(x);
+}
+
+// Point `index` of the first two dimensions of Sobol's sequence, scrambled by `key`: every 2^k
+// points from a multiple of 2^k are spread over all boxes of area 2^-k, so that a mean over them
+// has less noise than one over independent points (Owen 1997).
+constexpr Point2 owenSobol(uint32_t index, uint64_t key) {
+  uint32_t y = 0;
+  for (uint32_t column = 0x80000000u, rest = index; rest != 0; rest >>= 1, column ^= column >> 1) {
+    if ((rest & 1u) != 0) y ^= column;
+  }
+  const uint64_t bits = mix64(key);
+  return {toUnitFloat(uint64_t{owenScramble(reverseBits(index), uint32_t(bits))} << 32),
+          toUnitFloat(uint64_t{owenScramble(y, uint32_t(bits >> 32))} << 32)};
+}
+
 }  // namespace bnvpl

@@ -135,13 +135,18 @@ bool Bsdf::sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const {
 
 bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const {
   if (glass_) return group == LobeGroup::Chain && sampleGlass(transport, rng, out);
+  const float pick = rng.next(), u = rng.next(), v = rng.next();
+  return sample(group, transport, pick, {u, v}, out);
+}
+bool Bsdf::sample(LobeGroup group, Transport transport, float pick, Point2 at,
+                  BsdfSample& out) const {
+  if (glass_) return false;
   const bool photons = transport == Transport::Photons;
   const Vec3 ng = point_.ng, ns = point_.ns;
   const float shading = photons ? photonShadingFactor() : 1.0f;
   if (shading == 0.0f) return false;
   out.side = ng;
   const Vec3 lobeAxis = glossyAxis();
-  const float pick = rng.next(), u = rng.next(), v = rng.next();
 
   if (group == LobeGroup::Chain && !sharp_) {
     out.wi = lobeAxis;
@@ -152,10 +157,10 @@ bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& ou
   }
   const bool glossyLobe = group == LobeGroup::Chain || pick >= diffuseShare_;
   if (glossyLobe) {
-    out.wi = Basis(lobeAxis).toWorld(samplePowerCosine(u, v, exponent_));
+    out.wi = Basis(lobeAxis).toWorld(samplePowerCosine(at.x, at.y, exponent_));
   } else {
     // A photon leaves by the geometric cosine, so that its weight stays the albedo.
-    out.wi = Basis(photons ? ng : ns).toWorld(sampleCosineHemisphere(u, v));
+    out.wi = Basis(photons ? ng : ns).toWorld(sampleCosineHemisphere(at.x, at.y));
   }
   const float cosGeometric = dot(ng, out.wi), cosShading = dot(ns, out.wi);
   if (cosGeometric <= 0.0f) return false;

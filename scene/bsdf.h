@@ -62,6 +62,8 @@ class Bsdf {
   }
   // Draws a direction. False: absorbed.
   bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
+  // The same by `pick`, for the lobe, and a point of the unit square; not for glass.
+  bool sample(LobeGroup group, Transport transport, float pick, Point2 at, BsdfSample& out) const;
 
   // A photon's flux is measured against the geometric normal, shading against the shading normal:
   // factor |ns.wo| / |ng.wo| of the flux that arrives from wo (Veach 1997, eq. 5.19).

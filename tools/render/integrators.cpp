@@ -7,6 +7,7 @@ namespace {
 // Vertices beyond the first that a near-field ray may add; each follows with the missing share
 // alone.
 constexpr unsigned kMaxExtensions = 16;
+constexpr uint32_t kDrawDirection = 16;  // dimension of a tile's random numbers, after its gather's
 
 // The camera's part of a path, the same for both integrators.
 ChainEnd seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
@@ -50,8 +51,13 @@ void VplIntegrator::render(const TileSamples& tile) const {
       s.radiance.direct += throughput * directLight(rays_, lights_, *bsdf[i], LobeGroup::Rough,
                                                     LightChoice::Each, extensions_, s.rng);
     }
+    // The rays of all samples of a pixel are one set of points: the hemisphere is much the same for
+    // each of them. The sequence repeats after 2^32 points.
+    const auto slot = tile.firstSlot + static_cast<uint32_t>(i / tile.pixels);
+    const uint64_t pixelKey = random64(tile.key, i % tile.pixels, kDrawDirection);
     for (unsigned k = 0; k < extensions_; ++k) {
-      extend(seen[i], throughput * (1.0f / static_cast<float>(extensions_)), s.rng, s.radiance);
+      extend(seen[i], owenSobol(slot * extensions_ + k, pixelKey),
+             throughput * (1.0f / static_cast<float>(extensions_)), s.rng, s.radiance);
     }
   }
 }
@@ -73,14 +79,18 @@ void VplIntegrator::gather(const TileSamples& tile, std::span<const ChainEnd> se
 // what NearField says is missing: from the radiance that a VPL knows where it speaks for the point
 // that the ray found, else by lighting that point as the first one, and so on. A light that it
 // meets is the other half of the MIS of light sampling. All else is left to the VPLs.
-void VplIntegrator::extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const {
+// `firstAt` says where on the hemisphere the first ray goes.
+void VplIntegrator::extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng& rng,
+                           RadianceSample& out) const {
   for (unsigned links = 0; links < kMaxExtensions; ++links) {
     const Bsdf bsdf(rays_.scene(), vertex.hit);
+    const bool first = links == 0;
     BsdfSample next;
-    if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return;
+    const float pick = rng.next();
+    const Point2 at = first ? firstAt : Point2{rng.next(), rng.next()};
+    if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, pick, at, next)) return;
     throughput *= next.weight;
     const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
-    const bool first = links == 0;
     const Arrival arrival = first ? Arrival{next.pdf * static_cast<float>(extensions_),
                                             vertex.hit.position, LightChoice::Each}
                                   : Arrival{next.pdf, vertex.hit.position};

@@ -46,7 +46,8 @@ class VplIntegrator {
   void render(const TileSamples& tile) const;
 
  private:
-  void extend(ChainEnd vertex, Vec3 throughput, Rng& rng, RadianceSample& out) const;
+  void extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng& rng,
+              RadianceSample& out) const;
   NearField::Missing missingFrom(const ChainEnd& end, Rng& rng) const;
   void gather(const TileSamples& tile, std::span<const ChainEnd> seen,
               std::span<const Bsdf* const> bsdf) const;
