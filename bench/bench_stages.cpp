@@ -64,7 +64,7 @@ void bareRays(benchmark::State& state) {
     float probability = 0.0f;
     const PhotonStart start = lights.emit(lights.pick(rng.next(), probability), rng);
     Vec3 from = start.origin;
-    tracePhoton(world().rays, start, 32, rng, [&](const Bsdf& bsdf, Vec3) {
+    tracePhoton(world().rays, start, 32, rng, [&](const Bsdf& bsdf, Vec3, bool) {
       const Vec3 to = bsdf.point().position - from;
       if (lengthSquared(to) > 0.0f) segments.push_back({from, normalize(to)});
       from = world().rays.lifted(bsdf.point().position, bsdf.point().ng);

@@ -47,8 +47,14 @@ double columnValue(const VplTable& table, size_t column, size_t row, size_t comp
       return table.flux[row][component];
     case 6:
       return static_cast<double>(table.photons[row]);
-    default:
+    case 7:
       return table.relativeError[row];
+    case 8:
+      return table.emitPosition[row][component];
+    case 9:
+      return table.emitNormal[row][component];
+    default:
+      return table.straightFlux[row][component];
   }
 }
 

@@ -35,7 +35,7 @@ struct VplColumnInfo {
   }
 };
 
-inline constexpr std::array<VplColumnInfo, 8> kVplColumns{{
+inline constexpr std::array<VplColumnInfo, 11> kVplColumns{{
     {"position", VplType::F32, 3, "scene unit", VplStage::Candidates, "world space"},
     {"normal", VplType::F32, 3, "1", VplStage::Candidates, "geometric, unit length, lit side"},
     {"albedo", VplType::F32, 3, "1", VplStage::Candidates, "diffuse, linear sRGB, 0 to 1"},
@@ -44,9 +44,13 @@ inline constexpr std::array<VplColumnInfo, 8> kVplColumns{{
     {"flux", VplType::F32, 3, "W", VplStage::Lit, "leaving this VPL's surface, linear sRGB"},
     {"photons", VplType::U64, 1, "1", VplStage::Lit, "deposits received"},
     {"relative_error", VplType::F32, 1, "1", VplStage::Lit, "standard error of flux over flux"},
+    {"emit_position", VplType::F32, 3, "scene unit", VplStage::Lit, "where the light leaves from"},
+    {"emit_normal", VplType::F32, 3, "1", VplStage::Lit, "geometric, unit length, there"},
+    {"straight_flux", VplType::F32, 3, "W", VplStage::Lit, "part of flux, straight from a light"},
 }};
 
-inline constexpr uint32_t kVplVersion = 1;
+inline constexpr uint32_t kVplVersion = 2;
+inline constexpr uint32_t kLitSince = 2;  // the other stages are the same in version 1
 inline constexpr uint64_t kVplAlign = 64;
 // The high bit, both line endings and the DOS end-of-file: any text-mode copy breaks one of them.
 inline constexpr std::array<char, 8> kVplMagic{'\x89', 'V', 'P', 'L', '\r', '\n', '\x1a', '\n'};

@@ -95,6 +95,9 @@ std::optional<BadValue> findBadValue(const VplTable& table) {
   if (!bad) bad = findIn(table.radius, 4, radiusProblem);
   if (!bad) bad = findIn(table.flux, 5, fluxProblem);
   if (!bad) bad = findIn(table.relativeError, 7, relativeErrorProblem);
+  if (!bad) bad = findIn(table.emitPosition, 8, positionProblem);
+  if (!bad) bad = findIn(table.emitNormal, 9, normalProblem);
+  if (!bad) bad = findIn(table.straightFlux, 10, fluxProblem);
   return bad;
 }
 

@@ -47,6 +47,9 @@ void forEachColumn(Table& table, const Visit& visit) {
   visit(table.flux);
   visit(table.photons);
   visit(table.relativeError);
+  visit(table.emitPosition);
+  visit(table.emitNormal);
+  visit(table.straightFlux);
 }
 
 // The first value, in file order, that has no business in a .vpl file.

@@ -84,10 +84,15 @@ VplHeader readHeader(InputFile& in) {
   in.read(&header, available);
   checkMagic(in, header, available);
   if (available < sizeof(header)) in.fail(available, "cut short inside the header");
-  if (header.version != kVplVersion) {
+  if (header.version < 1 || header.version > kVplVersion) {
     throw FileError(in.path(), offsetof(VplHeader, version),
-                    "version " + std::to_string(header.version) + ", this build reads version " +
+                    "version " + std::to_string(header.version) + ", this build reads up to " +
                         std::to_string(kVplVersion) + "; use the bnvpl that wrote it");
+  }
+  if (header.version < kLitSince && header.stage == VplStage::Lit) {
+    throw FileError(in.path(), offsetof(VplHeader, version),
+                    "version " + std::to_string(header.version) +
+                        " of lit VPLs does not tell straight light apart; rerun vpl-estimate");
   }
   if (header.stage < VplStage::Candidates || header.stage > VplStage::Lit) {
     in.fail(offsetof(VplHeader, stage),

@@ -33,10 +33,11 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
     }
     ++index;
   });
+  const size_t ofLit = table.flux.size() + table.photons.size() + table.relativeError.size() +
+                       table.emitPosition.size() + table.emitNormal.size() +
+                       table.straightFlux.size();
   const size_t surplus = (table.stage < VplStage::Eliminated ? table.radius.size() : 0) +
-                         (table.stage < VplStage::Lit ? table.flux.size() + table.photons.size() +
-                                                            table.relativeError.size()
-                                                      : 0);
+                         (table.stage < VplStage::Lit ? ofLit : 0);
   if (surplus > 0) {
     throw std::logic_error(file.string() + ": columns beyond stage " +
                            std::string(stageName(table.stage)) + " are filled");

@@ -56,7 +56,8 @@ void requireSane(const VplTable& t) {
   const auto finite = [](const auto& column) {
     return std::all_of(column.begin(), column.end(), isFinite);
   };
-  require(finite(t.position) && finite(t.normal) && finite(t.albedo) && finite(t.flux),
+  require(finite(t.position) && finite(t.normal) && finite(t.albedo) && finite(t.flux) &&
+              finite(t.emitPosition) && finite(t.emitNormal) && finite(t.straightFlux),
           "vectors are finite");
   for (const Vec3 n : t.normal) require(std::fabs(length(n) - 1.0f) < 0.01f, "normals are unit");
   for (const float r : t.radius) require(std::isfinite(r) && r > 0.0f, "radii are above 0");
@@ -67,7 +68,8 @@ void requireSane(const VplTable& t) {
                l = t.stage >= VplStage::Lit ? n : 0;
   require(t.normal.size() == n && t.albedo.size() == n && t.id.size() == n &&
               t.radius.size() == e && t.flux.size() == l && t.photons.size() == l &&
-              t.relativeError.size() == l,
+              t.relativeError.size() == l && t.emitPosition.size() == l &&
+              t.emitNormal.size() == l && t.straightFlux.size() == l,
           "every column of the stage has all rows");
 }
 

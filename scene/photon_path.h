@@ -17,10 +17,10 @@ struct PhotonFate {
   bool finite = true;  // false: its flux became NaN or infinite and what was left was dropped
 };
 
-// Follows a photon through the scene. At each hit with rough lobes, visit(bsdf, flux) gets the flux
-// that arrives (before albedo), shading normals accounted for; at most maxBounces times, counting
-// the rough scatterings so far plus this one. Russian roulette by reflectance keeps the flux about
-// level.
+// Follows a photon through the scene. At each hit with rough lobes, visit(bsdf, flux, straight)
+// gets the flux that arrives (before albedo), shading normals accounted for, and whether nothing
+// was between the light and the hit; at most maxBounces times, counting the rough scatterings so
+// far plus this one. Russian roulette by reflectance keeps the flux about level.
 template <typename Visit>
 PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces,
                        Rng& rng, const Visit& visit) {
@@ -49,7 +49,7 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
         return fate;
       }
       ++fate.hits;
-      visit(bsdf, arriving);
+      visit(bsdf, arriving, rough + chain == 0);
     }
     const float survive = bsdf.reflectance();
     if (rng.next() >= survive) return fate;

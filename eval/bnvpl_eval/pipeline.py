@@ -23,8 +23,8 @@ ELIMINATE = {
     "literal": ("--density", "uniform"),
 }
 ESTIMATE = {
-    "even": ("--scatter", "even"),
-    "literal": ("--scatter", "even", "--recentre", "off"),
+    "even": ("--scatter", "even", "--recentre", "off"),
+    "literal": ("--scatter", "even"),
 }
 RENDER = {
     "literal": ("--near-field", "off"),

@@ -65,8 +65,8 @@ TEST_F(VplDamage, EveryTruncationIsRefusedWhereItEnds) {
 }
 
 TEST_F(VplDamage, BytesAfterTheEndAreRefused) {
-  EXPECT_SAYS(complaint(good_ + '\0'), "byte 1224: bytes after the end");
-  EXPECT_SAYS(complaint(good_ + good_), "byte 1224: bytes after the end");
+  EXPECT_SAYS(complaint(good_ + '\0'), "byte 1608: bytes after the end");
+  EXPECT_SAYS(complaint(good_ + good_), "byte 1608: bytes after the end");
 }
 
 TEST_F(VplDamage, EverySingleBitFlipIsRefused) {
@@ -81,16 +81,17 @@ TEST_F(VplDamage, EverySingleBitFlipIsRefused) {
 
 TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(0, 'x'), "byte 0: not a .vpl file");
-  EXPECT_SAYS(complaintAbout(8, 2u), "byte 8: version 2, this build reads version 1");
+  EXPECT_SAYS(complaintAbout(8, 1u), "byte 8: version 1 of lit VPLs does not");
+  EXPECT_SAYS(complaintAbout(8, 3u), "byte 8: version 3, this build reads up to 2");
   EXPECT_SAYS(complaintAbout(8, 0u), "byte 8: version 0");
   EXPECT_SAYS(complaintAbout(12, 0u), "byte 12: unknown stage 0");
   EXPECT_SAYS(complaintAbout(12, 4u), "byte 12: unknown stage 4");
-  EXPECT_SAYS(complaintAbout(12, 2u), "byte 56: 8 columns");
+  EXPECT_SAYS(complaintAbout(12, 2u), "byte 56: 11 columns");
   EXPECT_SAYS(complaintAbout(32, uint64_t{200}), "byte 16: 2 rows make a file of");
   EXPECT_SAYS(complaintAbout(32, ~uint64_t{0}), "byte 32: provenance does not fit");
-  EXPECT_SAYS(complaintAbout(40, uint64_t{1223}), "byte 1223: bytes after the end");
-  EXPECT_SAYS(complaintAbout(40, uint64_t{1225}), "byte 1224: cut short");
-  EXPECT_SAYS(complaintAbout(40, ~uint64_t{0}), "byte 1224: cut short");
+  EXPECT_SAYS(complaintAbout(40, uint64_t{1607}), "byte 1607: bytes after the end");
+  EXPECT_SAYS(complaintAbout(40, uint64_t{1609}), "byte 1608: cut short");
+  EXPECT_SAYS(complaintAbout(40, ~uint64_t{0}), "byte 1608: cut short");
   EXPECT_SAYS(complaintAbout(56, 7u), "byte 56: 7 columns");
   EXPECT_SAYS(complaintAbout(60, 1u), "byte 60: reserved");
   EXPECT_SAYS(complaintAbout(64, -1.0), "byte 64: r_max");
@@ -134,11 +135,11 @@ TEST_F(VplDamage, TextModeCopiesHaveTheirOwnMessage) {
   std::string sevenBits = good_;
   for (char& c : sevenBits) c = static_cast<char>(c & 0x7f);
   EXPECT_SAYS(complaint(sevenBits), "text mode");
-  EXPECT_SAYS(complaint("[film]\nwidth = 640\n"), "not a .vpl file");
+  EXPECT_SAYS(complaint("[film]\nwidth = 832\n"), "not a .vpl file");
 }
 
 TEST_F(VplDamage, TheDirectoryMustBeTheWriters) {
-  for (size_t i = sizeof(VplHeader); i < 640; ++i) {
+  for (size_t i = sizeof(VplHeader); i < 832; ++i) {
     const size_t entry = (i - sizeof(VplHeader)) / 64;
     const char changed = static_cast<char>(good_[i] ^ 1);
     ASSERT_PRED2(says, complaintAbout(i, changed),
@@ -147,10 +148,10 @@ TEST_F(VplDamage, TheDirectoryMustBeTheWriters) {
 }
 
 TEST_F(VplDamage, PaddingAndEndMarkAreChecked) {
-  EXPECT_SAYS(complaintAbout(640 + 61, '\1'), "byte 701: padding");
-  EXPECT_SAYS(complaintAbout(columnOffset(0) + 24, '\1'), "byte 728: padding");
-  EXPECT_SAYS(complaintAbout(columnOffset(7) + 63, '\1'), "byte 1215: padding");
-  EXPECT_SAYS(complaintAbout(1216, 'v'), "byte 1216: no end mark");
+  EXPECT_SAYS(complaintAbout(832 + 61, '\1'), "byte 893: padding");
+  EXPECT_SAYS(complaintAbout(columnOffset(0) + 24, '\1'), "byte 920: padding");
+  EXPECT_SAYS(complaintAbout(columnOffset(10) + 63, '\1'), "byte 1599: padding");
+  EXPECT_SAYS(complaintAbout(1600, 'v'), "byte 1600: no end mark");
 }
 
 TEST_F(VplDamage, WrongValuesAreRefusedAtTheirByte) {
@@ -158,21 +159,22 @@ TEST_F(VplDamage, WrongValuesAreRefusedAtTheirByte) {
   const auto at = [&](size_t column, size_t row, size_t component) {
     return columnOffset(column) + 4 * (3 * row + component);
   };
-  EXPECT_SAYS(complaintAbout(at(0, 1, 0), nan), "byte 716: column position, row 1: not a finite");
+  EXPECT_SAYS(complaintAbout(at(0, 1, 0), nan), "byte 908: column position, row 1: not a finite");
   EXPECT_SAYS(complaintAbout(at(1, 0, 2), 1.5f), "column normal, row 0: not of unit length");
   EXPECT_SAYS(complaintAbout(at(2, 1, 2), 1.5f), "column albedo, row 1: not between");
   EXPECT_SAYS(complaintAbout(columnOffset(4) + 4, 0.0f), "column radius, row 1: not above 0");
   EXPECT_SAYS(complaintAbout(at(5, 0, 0), -1.0f), "column flux, row 0: negative");
   EXPECT_SAYS(complaintAbout(columnOffset(7), nan), "column relative_error, row 0: not a finite");
+  EXPECT_SAYS(complaintAbout(at(10, 1, 2), -1.0f), "column straight_flux, row 1: negative");
   EXPECT_EQ(complaintAbout(at(2, 0, 0), 1.00005f), "");  // within the tolerance
 }
 
 TEST_F(VplDamage, ProvenanceMustBeAJsonArrayOfObjects) {
-  EXPECT_SAYS(complaintAbout(640, '{'), "byte 640: provenance");
-  EXPECT_SAYS(complaintAbout(641, '\0'), "byte 640: provenance");
-  EXPECT_SAYS(complaintAbout(644, '\xff'), "byte 640: provenance");       // not UTF-8
-  EXPECT_SAYS(complaintAbout(32, uint64_t{62}), "byte 640: provenance");  // a zero inside the text
-  EXPECT_SAYS(complaintAbout(32, uint64_t{60}), "byte 700: padding");
+  EXPECT_SAYS(complaintAbout(832, '{'), "byte 832: provenance");
+  EXPECT_SAYS(complaintAbout(833, '\0'), "byte 832: provenance");
+  EXPECT_SAYS(complaintAbout(836, '\xff'), "byte 832: provenance");       // not UTF-8
+  EXPECT_SAYS(complaintAbout(32, uint64_t{62}), "byte 832: provenance");  // a zero inside the text
+  EXPECT_SAYS(complaintAbout(32, uint64_t{60}), "byte 892: padding");
 }
 
 TEST_F(VplDamage, FilesThatAreNoFilesAreRefused) {

@@ -33,6 +33,9 @@ VplTable manyRows(VplStage stage, size_t count) {
     table.flux.emplace_back(x, x * 2.0f, x * x);
     table.photons.push_back(i << 33);
     table.relativeError.push_back(1.0f / (x + 2.0f));
+    table.emitPosition.emplace_back(x, 1.0f - x, x * 0.2f);
+    table.emitNormal.emplace_back(0.0f, std::sin(x), std::cos(x));
+    table.straightFlux.emplace_back(x, 0.0f, x * 0.5f);
   }
   if (stage >= VplStage::Eliminated) table.rMax = 0.1, table.areaEstimate = 1e9;
   return table;
@@ -48,6 +51,9 @@ void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.flux, b.flux);
   EXPECT_EQ(a.photons, b.photons);
   EXPECT_EQ(a.relativeError, b.relativeError);
+  EXPECT_EQ(a.emitPosition, b.emitPosition);
+  EXPECT_EQ(a.emitNormal, b.emitNormal);
+  EXPECT_EQ(a.straightFlux, b.straightFlux);
   EXPECT_EQ(a.rMax, b.rMax);
   EXPECT_EQ(a.areaEstimate, b.areaEstimate);
   EXPECT_EQ(a.reach, b.reach);
@@ -78,10 +84,14 @@ TEST_F(VplWrite, ColumnsAreAlignedAndListedWithTheirValues) {
   EXPECT_EQ(columnInfo(VplStage::Candidates).size(), 4u);
   EXPECT_EQ(columnInfo(VplStage::Eliminated).size(), 5u);
   const auto columns = columnInfo(VplStage::Lit);
-  ASSERT_EQ(columns.size(), 8u);
+  ASSERT_EQ(columns.size(), 11u);
   EXPECT_EQ(columns[5].name, "flux");
   EXPECT_EQ(columnValue(table, 5, 0, 2), 4.0);
   EXPECT_EQ(columnValue(table, 6, 0, 0), 4294967297.0);
+  EXPECT_EQ(columnValue(table, 7, 0, 0), 0.0625);
+  EXPECT_EQ(columnValue(table, 8, 0, 1), 2.25);
+  EXPECT_EQ(columnValue(table, 9, 0, 1), 1.0);
+  EXPECT_EQ(columnValue(table, 10, 0, 1), 2.0);
   EXPECT_EQ(columnValue(table, 0, 1, 2), -0.125);
 }
 
@@ -123,6 +133,9 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "column flux, row 1", [](VplTable& t) { t.flux[1].x = -1.0f; });
   expectRefused(f, "column flux, row 0", [](VplTable& t) { t.flux[0].x = kNan; });
   expectRefused(f, "column relative_error, row 0", [](VplTable& t) { t.relativeError[0] = kNan; });
+  expectRefused(f, "column emit_position, row 1", [](VplTable& t) { t.emitPosition[1].y = kInf; });
+  expectRefused(f, "column emit_normal, row 0", [](VplTable& t) { t.emitNormal[0].y = 0.5f; });
+  expectRefused(f, "column straight_flux, row 1", [](VplTable& t) { t.straightFlux[1].y = -1.0f; });
   expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
   expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });

@@ -53,6 +53,7 @@ TEST_F(Export, PlyParsesBack) {
   EXPECT_EQ(number(0, "flux_b"), 4.0f);
   EXPECT_EQ(number(1, "photons"), 5.0f);
   EXPECT_EQ(number(0, "relative_error"), 0.0625f);
+  EXPECT_EQ(number(0, "straight_flux_g"), 2.0f);
   uint32_t id = 0;
   std::memcpy(&id, bytes.data() + start + 2 * rowBytes + offset.at("id"), sizeof id);
   EXPECT_EQ(id, 4000000000u);
@@ -81,7 +82,9 @@ TEST_F(Export, CsvGivesEveryValueBack) {
   EXPECT_EQ(
       line,
       "position_x,position_y,position_z,normal_x,normal_y,normal_z,albedo_r,albedo_g,albedo_b,"
-      "id,radius,flux_r,flux_g,flux_b,photons,relative_error");
+      "id,radius,flux_r,flux_g,flux_b,photons,relative_error,"
+      "emit_position_x,emit_position_y,emit_position_z,emit_normal_x,emit_normal_y,emit_normal_z,"
+      "straight_flux_r,straight_flux_g,straight_flux_b");
   for (size_t row = 0; row < table.size(); ++row) {
     ASSERT_TRUE(std::getline(in, line));
     std::istringstream cells(line);

@@ -59,6 +59,9 @@ inline VplTable threeRows(VplStage stage) {
     table.flux = {{1, 2, 4}, {0.5f, 0.0f, 0.0f}, {0, 0, 0}};
     table.photons = {4294967297u, 5, 0};
     table.relativeError = {0.0625f, 0.1f, 0};
+    table.emitPosition = {{0, 0.25f, 0}, {1, 0, 0}, {4, 0, 0}};
+    table.emitNormal = table.normal;
+    table.straightFlux = {{0.25f, 2, 0}, {0, 0, 0}, {0, 0, 0}};
   }
   return table;
 }

@@ -163,7 +163,7 @@ TEST_F(NonFinite, PhotonsAreCutOffAndCounted) {
     Rng rng(1, 1);
     int visits = 0;
     const PhotonFate fate =
-        tracePhoton(world.rays, start, 8, rng, [&](const Bsdf&, Vec3) { ++visits; });
+        tracePhoton(world.rays, start, 8, rng, [&](const Bsdf&, Vec3, bool) { ++visits; });
     EXPECT_FALSE(fate.finite);
     EXPECT_EQ(visits, 0);
     EXPECT_TRUE(isFinite(fate.escaped) && isFinite(fate.absorbed));

@@ -19,7 +19,7 @@ namespace {
 constexpr uint64_t kPhotonsPerRange = 4096;
 // How far of the way a VPL moves (measured: docs/theory.md, "Recentring"), and how far above the
 // surface it travels, as a share of its reach.
-constexpr float kRecentreShare = 0.7f;
+constexpr float kRecentreShare = 0.35f;
 constexpr float kRecentreLift = 0.1f;
 
 // Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
@@ -52,7 +52,7 @@ void addChecked(int64_t& sum, int64_t term) {
 }
 
 struct VplSum {  // without padding: it is saved as it lies
-  std::array<int64_t, 3> flux{};
+  std::array<int64_t, 3> flux{}, straight{};
   int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
   // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of
   // 2^-24.
@@ -62,6 +62,7 @@ struct VplSum {  // without padding: it is saved as it lies
   void add(const VplSum& o) {
     for (size_t c = 0; c < 3; ++c) {
       addChecked(flux[c], o.flux[c]);
+      addChecked(straight[c], o.straight[c]);
       addChecked(moment[c], o.moment[c]);
     }
     addChecked(squares, o.squares);
@@ -129,11 +130,11 @@ class Scatterer {
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
 
   // Hands the flux that leaves a diffuse hit to the VPLs around it.
-  void scatter(const SurfacePoint& hit, Vec3 flux, Rng& rng, Sums& sums) const {
+  void scatter(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng, Sums& sums) const {
     ++sums.hits;
     tally(sums, kReflected, flux);
-    if (options_.scatter == Scatter::Even) return scatterEvenly(hit, flux, sums);
-    scatterGuarded(hit, flux, rng, sums);
+    if (options_.scatter == Scatter::Even) return scatterEvenly(hit, flux, straight, sums);
+    scatterGuarded(hit, flux, straight, rng, sums);
   }
   void tally(Sums& sums, Tally t, Vec3 flux) const {
     addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
@@ -149,9 +150,13 @@ class Scatterer {
     return reach;
   }
 
-  void deposit(uint32_t vpl, const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
+  void deposit(uint32_t vpl, const SurfacePoint& hit, Vec3 flux, bool straight, Sums& sums) const {
     VplSum& s = sums.vpl[vpl];
-    for (size_t c = 0; c < 3; ++c) addChecked(s.flux[c], fixed_.encode(double{flux[c]}));
+    for (size_t c = 0; c < 3; ++c) {
+      const int64_t units = fixed_.encode(double{flux[c]});
+      addChecked(s.flux[c], units);
+      if (straight) addChecked(s.straight[c], units);
+    }
     const double relative = double{mean(flux)} * perPhotonPower_;
     addChecked(s.squares, std::llrint(relative * relative * 0x1p20));
     const Vec3 offset =
@@ -163,21 +168,23 @@ class Scatterer {
 
   // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies
   // between.
-  void scatterEvenly(const SurfacePoint& hit, Vec3 flux, Sums& sums) const {
+  void scatterEvenly(const SurfacePoint& hit, Vec3 flux, bool straight, Sums& sums) const {
     uint32_t found = 0;
     coverage_.forEachReaching(hit.position, [&](uint32_t) { ++found; });
     if (found == 0) return tally(sums, kOutside, flux);
     const Vec3 share = flux * (1.0f / static_cast<float>(found));
-    coverage_.forEachReaching(hit.position, [&](uint32_t i) { deposit(i, hit, share, sums); });
+    coverage_.forEachReaching(hit.position,
+                              [&](uint32_t i) { deposit(i, hit, share, straight, sums); });
     tally(sums, kDeposited, flux);
   }
 
   // Evenly among those on the same sheet and in sight, in expectation: one of them gets all.
-  void scatterGuarded(const SurfacePoint& hit, Vec3 flux, Rng& rng, Sums& sums) const {
+  void scatterGuarded(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng,
+                      Sums& sums) const {
     const Coverage::Found found = coverage_.pick(hit.position, hit.ng, rng);
     sums.guardRays += found.rays;
     if (found.vpl) {
-      deposit(*found.vpl, hit, flux, sums);
+      deposit(*found.vpl, hit, flux, straight, sums);
       return tally(sums, kDeposited, flux);
     }
     tally(sums,
@@ -212,9 +219,9 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
       PhotonStart start = lights.emit(light, rng);
       start.flux *= shares.weight(light);
       if (isFinite(start.flux)) scatterer.tally(sums, kEmitted, start.flux);
-      const PhotonFate fate =
-          tracePhoton(rays, start, options.maxBounces, rng, [&](const Bsdf& bsdf, Vec3 flux) {
-            scatterer.scatter(bsdf.point(), flux * bsdf.roughAlbedo(), rng, sums);
+      const PhotonFate fate = tracePhoton(
+          rays, start, options.maxBounces, rng, [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+            scatterer.scatter(bsdf.point(), flux * bsdf.roughAlbedo(), straight, rng, sums);
           });
       scatterer.tally(sums, kEscaped, fate.escaped);
       scatterer.tally(sums, kAbsorbed, fate.absorbed);
@@ -253,6 +260,9 @@ void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
   vpls.flux.resize(vpls.size());
   vpls.photons.resize(vpls.size());
   vpls.relativeError.resize(vpls.size());
+  vpls.straightFlux.resize(vpls.size());
+  vpls.emitPosition = vpls.position;
+  vpls.emitNormal = vpls.normal;
   for (size_t i = 0; i < vpls.size(); ++i) {
     const VplSum& s = sums.vpl[i];
     double sum = 0.0;
@@ -260,6 +270,7 @@ void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
       const double value = scatterer.fixed().decode(s.flux[c]);
       vpls.flux[i][c] = static_cast<float>(value);
       sum += value / 3.0;
+      vpls.straightFlux[i][c] = static_cast<float>(scatterer.fixed().decode(s.straight[c]));
     }
     vpls.photons[i] = s.photons;
     // Deposits taken as independent: sqrt(sum of squares) over the sum.
@@ -286,8 +297,8 @@ void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, cons
     SurfacePoint hit;
     if (rays.occluded(position + n * lift, above) || !rays.closestHit(above, -n, hit)) return;
     if (hit.distance > 2.0f * lift || dot(hit.ng, n) < kMinNormalDot) return;
-    vpls.position[i] = hit.position;
-    vpls.normal[i] = hit.ng;
+    vpls.emitPosition[i] = hit.position;
+    vpls.emitNormal[i] = hit.ng;
   });
 }
 

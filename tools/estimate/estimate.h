@@ -18,11 +18,11 @@ inline constexpr uint64_t kMostPhotons = uint64_t{1} << 36;
 
 struct EstimateOptions {
   uint64_t photons = 10000000;
-  float radius = 2.0f;  // how far a VPL reaches, in units of its own r_max
+  float radius = 1.7f;  // how far a VPL reaches, in units of its own r_max
   Scatter scatter = Scatter::Guarded;
   unsigned maxBounces = 32;  // diffuse hits of a photon
-  // Move each VPL to the centre of the energy that it received. Elimination favours the rims of
-  // surfaces, where a VPL lies in the plane of the neighbouring wall and cannot light it.
+  // Let each VPL shine from the centre of the energy that it received. Elimination favours the rims
+  // of surfaces, where a VPL lies in the plane of the neighbouring wall and cannot light it.
   bool recentre = true;
   uint64_t seed = 1;
 };
@@ -40,10 +40,9 @@ struct EnergyAccount {
   uint64_t nonFinite = 0;  // photons cut off because their flux became NaN or infinite
 };
 
-// Fills flux, photons and relativeError, and moves position and normal as options.recentre says, of
-// `vpls` (stage Eliminated) and makes it stage Lit. Flux is summed in 64-bit fixed point: any
-// number of threads, and any interruption that `resume` mends, gives the same bits. Throws
-// InputError when no light has power.
+// Fills the columns since Lit of `vpls` (stage Eliminated) and makes it stage Lit. Flux is summed
+// in 64-bit fixed point: any number of threads, and any interruption that `resume` mends, gives the
+// same bits. Throws InputError when no light has power.
 EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet& lights,
                            const EstimateOptions& options, const ProgressFn& progress = {},
                            const Resume& resume = {});

@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   addChoice(cli, "--scatter", options.scatter, kScatters,
             "guarded: to VPLs on the same sheet and in sight; even: to all within reach (leaks)");
   addChoice(cli, "--recentre", options.recentre, kOnOff,
-            "move each VPL to the centre of the energy that it received");
+            "let each VPL shine from the centre of the energy that it received");
   cli.add_option("--max-bounces", options.maxBounces, "diffuse hits of a photon")
       ->check(inRange(1, 1000))
       ->capture_default_str();

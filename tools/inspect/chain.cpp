@@ -109,11 +109,8 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
     const size_t source = kept ? (found == rowOf.end() ? from.size() : found->second) : row;
     const bool same =
         source < from.size() && to.id[row] == from.id[source] &&
-        to.albedo[row] == from.albedo[source] &&
-        (kept ? to.position[row] == from.position[source] && to.normal[row] == from.normal[source]
-              : to.radius[row] == from.radius[source] &&
-                    double{length(to.position[row] - from.position[source])} <=
-                        to.reach * double{to.radius[row]});
+        to.albedo[row] == from.albedo[source] && to.position[row] == from.position[source] &&
+        to.normal[row] == from.normal[source] && (kept || to.radius[row] == from.radius[source]);
     if (!same)
       return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +
              ") is not that of " + earlier.file.string();

@@ -12,7 +12,7 @@ inline std::string componentName(const VplColumnInfo& info, size_t component,
                                  char separator = '.') {
   std::string name(info.name);
   if (info.components == 1) return name;
-  const bool colour = info.name == "albedo" || info.name == "flux";
+  const bool colour = info.name == "albedo" || info.unit == "W";
   name += separator;
   name += (colour ? "rgb" : "xyz")[component];
   return name;

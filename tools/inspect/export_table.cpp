@@ -36,7 +36,8 @@ std::string plyHeader(const VplTable& table) {
   header += "property uint id\n";
   if (table.stage >= VplStage::Eliminated) header += "property float radius\n";
   if (table.stage >= VplStage::Lit) {
-    for (const char* name : {"flux_r", "flux_g", "flux_b", "photons", "relative_error"}) {
+    for (const char* name : {"flux_r", "flux_g", "flux_b", "photons", "relative_error",
+                             "straight_flux_r", "straight_flux_g", "straight_flux_b"}) {
       header += std::string("property float ") + name + "\n";
     }
   }
@@ -58,6 +59,7 @@ std::string plyBytes(const VplTable& table) {
       appendVec(bytes, table.flux[i]);
       appendValue(bytes, static_cast<float>(table.photons[i]));
       appendValue(bytes, table.relativeError[i]);
+      appendVec(bytes, table.straightFlux[i]);
     }
   }
   return bytes;

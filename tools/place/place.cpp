@@ -85,9 +85,11 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
   const size_t light = lights.pick(rng.next(), probability);
   PhotonStart start = lights.emit(light, rng);
   start.flux *= 1.0f / probability;
-  const PhotonFate fate =
-      tracePhoton(rays, start, options.lightDepth, rng, [&](const Bsdf& bsdf, Vec3 flux) {
-        if (addRow(chunk, bsdf, path)) chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+  const PhotonFate fate = tracePhoton(
+      rays, start, options.lightDepth, rng, [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+        if (!addRow(chunk, bsdf, path)) return;
+        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+        chunk.rows.straightFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
       });
   chunk.nonFinite += fate.finite ? 0 : 1;
   chunk.rays += fate.rays;
@@ -138,6 +140,7 @@ PlaceResult collect(const std::string& scene, const PlaceOptions& options,
       append(rows.normal, c.rows.normal);
       append(rows.albedo, c.rows.albedo);
       append(rows.flux, c.rows.flux);
+      append(rows.straightFlux, c.rows.straightFlux);
       result.rays += c.rays;
       result.escaped += c.escaped;
       result.absorbed += c.absorbed;
@@ -181,6 +184,9 @@ PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights,
   t.sceneHash = rays.scene().contentHash;
   // Each VPL carries the flux of its photon; the estimate divides by the photons that were started.
   for (Vec3& f : t.flux) f *= 1.0f / static_cast<float>(result.paths);
+  t.emitPosition = t.position;
+  t.emitNormal = t.normal;
+  for (Vec3& f : t.straightFlux) f *= 1.0f / static_cast<float>(result.paths);
   t.photons.assign(t.size(), 1);
   t.relativeError.assign(t.size(), 1.0f);
   constexpr unsigned kNeighbours = 20;  // as vpl-eliminate, so that clamps compare

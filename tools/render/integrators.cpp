@@ -1,5 +1,7 @@
 #include "tools/render/integrators.h"
 
+#include <cstdlib>
+
 namespace bnvpl {
 
 namespace {
@@ -76,9 +78,9 @@ void VplIntegrator::gather(const TileSamples& tile, std::span<const ChainEnd> se
 }
 
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
-// what NearField says is missing: from the radiance that a VPL knows where it speaks for the point
-// that the ray found, else by lighting that point as the first one, and so on. A light that it
-// meets is the other half of the MIS of light sampling. All else is left to the VPLs.
+// what NearField says is missing: from the scattered light that a VPL knows where it speaks for the
+// point that the ray found, else by lighting that point as the first one, and so on. A light that
+// it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
 // `firstAt` says where on the hemisphere the first ray goes.
 void VplIntegrator::extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng& rng,
                            RadianceSample& out) const {
@@ -100,21 +102,26 @@ void VplIntegrator::extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
     const NearField::Missing missing = missingFrom(end, rng);
     throughput *= end.throughput;
-    if (missing.radiance) light += throughput * *missing.radiance * missing.share;
-    // Roulette: followed with that probability, at full weight.
-    const bool follow = !missing.radiance && rng.next() < missing.share;
-    if (follow) {
+    // Where a VPL knows the scattered light the path ends, so nothing shares the straight light
+    // with the shadow ray. Else it goes on, by roulette at full weight.
+    const bool known = missing.scattered.has_value();
+    const bool lit = known ? missing.share > 0.0f : rng.next() < missing.share;
+    if (lit) {
       const Bsdf found(rays_.scene(), end.hit);
-      light += throughput *
-               directLight(rays_, lights_, found, LobeGroup::Rough, LightChoice::One, 1, rng);
-      const Gathered g = gatherer_.sample(found, rng);
-      light += throughput * g.radiance;
-      out.clamped += throughput * g.clamped;
-      out.shadowRays += g.shadowRays;
+      const Vec3 leaving = directLight(rays_, lights_, found, LobeGroup::Rough, LightChoice::One,
+                                       known ? 0 : 1, rng);
+      if (known) {
+        light += throughput * (leaving + *missing.scattered) * missing.share;
+      } else {
+        const Gathered g = gatherer_.sample(found, rng);
+        light += throughput * (leaving + g.radiance);
+        out.clamped += throughput * g.clamped;
+        out.shadowRays += g.shadowRays;
+      }
     }
     out.extended += light;
     out.indirect += light;
-    if (!follow) return;
+    if (known || !lit) return;
     vertex = end;
   }
 }

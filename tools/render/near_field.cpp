@@ -10,8 +10,10 @@ namespace {
 // VPLs that were placed from the lights stand for all surfaces by chance, without a reach of their
 // own.
 constexpr float kReachWithoutPhotons = 2.0f;
-// Points of a VPL's disk that its area is measured with; the error of one area is about 5 %.
-constexpr uint32_t kAreaPoints = 32;
+// Points of a VPL's disk that its area is measured with: as many as find its surface so often.
+// Where the last still fall short there are slivers, whose area, and so whose radiance, is not
+// known.
+constexpr uint32_t kAreaPoints = 32, kMostAreaPoints = 256, kLeastFound = 8;
 constexpr int kMaxLayers = 4;  // surfaces on the way to the VPL's own
 // A ray shorter than this many r_max has found a crevice or a corner, where the light differs from
 // the mean of the VPL's surroundings: the point's own light is found out instead (measured:
@@ -38,20 +40,25 @@ bool sheetBelow(const RayScene& rays, Vec3 at, Vec3 position, Vec3 normal, float
 }
 
 // Area of the surface that VPL i speaks for, world units squared: each point counts with the
-// probability that Coverage::pick() names i there, as photons did in vpl-estimate.
+// probability that Coverage::pick() names i there, as photons did in vpl-estimate. 0: not known.
 float areaOf(uint32_t i, const VplTable& lit, float reach, const Coverage& coverage,
              const RayScene& rays) {
   const Vec3 position = lit.position[i], normal = lit.normal[i];
   const Basis basis(normal);
   float sum = 0.0f;
-  for (uint32_t k = 0; k < kAreaPoints; ++k) {
-    const Point2 point = r2Sequence(k, 0.5, 0.5);
+  uint32_t points = 0, found = 0;
+  for (; points < kAreaPoints || (found < kLeastFound && points < kMostAreaPoints); ++points) {
+    const Point2 point = r2Sequence(points, 0.5, 0.5);
     const Vec3 at = position + basis.toWorld(sampleDisk(point.x, point.y) * reach);
     SurfacePoint hit;
     if (!sheetBelow(rays, at, position, normal, kPlaneFactor * reach, hit)) continue;
-    sum += coverage.shareOf(i, hit.position, hit.ng) / dot(hit.ng, normal);
+    const float share = coverage.shareOf(i, hit.position, hit.ng);
+    if (!(share > 0.0f)) continue;
+    sum += share / dot(hit.ng, normal);
+    ++found;
   }
-  return sum / static_cast<float>(kAreaPoints) * kPi * reach * reach;
+  if (found < kLeastFound) return 0.0f;
+  return sum / static_cast<float>(points) * kPi * reach * reach;
 }
 
 }  // namespace
@@ -69,7 +76,7 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp)
   for (std::atomic<float>& area : area_) area = kUnknown;
 }
 
-std::optional<Vec3> NearField::radianceOf(uint32_t vpl) const {
+std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
   if (!gaps_) return {};  // the flux of a photon says nothing of the area around it
   // Two threads may measure one area; both find the same.
   float area = area_[vpl].load(std::memory_order_relaxed);
@@ -79,7 +86,7 @@ std::optional<Vec3> NearField::radianceOf(uint32_t vpl) const {
     area_[vpl].store(area, std::memory_order_relaxed);
   }
   if (!(area > 0.0f)) return {};
-  return lit_.flux[vpl] * (1.0f / (kPi * area));
+  return (lit_.flux[vpl] - lit_.straightFlux[vpl]) * (1.0f / (kPi * area));
 }
 
 NearField::Missing NearField::missing(const SurfacePoint& seen, float distance, Rng& rng) const {
@@ -88,7 +95,7 @@ NearField::Missing NearField::missing(const SurfacePoint& seen, float distance, 
   const float near = distance / clampRadius_[*found.vpl];
   const float share = std::max(0.0f, 1.0f - near * near);  // 1 - d^2 falloff(d^2)
   if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
-  return {share, radianceOf(*found.vpl)};
+  return {share, scatteredBy(*found.vpl)};
 }
 
 }  // namespace bnvpl

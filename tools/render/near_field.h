@@ -16,8 +16,10 @@ class NearField {
  public:
   // What VPLs do not bring from a point that a ray from a receiver has found.
   struct Missing {
-    float share = 0.0f;            // of the light from there, 0..1
-    std::optional<Vec3> radiance;  // that leaves there, W/(m2 sr); empty: has to be found out
+    float share = 0.0f;  // of the light from there, 0..1
+    // Radiance that leaves there of light that came by way of other surfaces, W/(m2 sr); empty: has
+    // to be found out, as straight light always has, whose edges a VPL does not know.
+    std::optional<Vec3> scattered;
   };
 
   // Borrows the table and the scene. `clamp` as for makeVplLights().
@@ -26,8 +28,8 @@ class NearField {
   Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const;
 
  private:
-  // Mean of the surface that the VPL speaks for; empty where that is not known.
-  std::optional<Vec3> radianceOf(uint32_t vpl) const;
+  // Of Missing: mean of the surface that the VPL speaks for; empty where that is not known.
+  std::optional<Vec3> scatteredBy(uint32_t vpl) const;
 
   const VplTable& lit_;
   const RayScene& rays_;
