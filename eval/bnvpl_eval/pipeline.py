@@ -23,8 +23,8 @@ ELIMINATE = {
     "literal": ("--density", "uniform"),
 }
 ESTIMATE = {
-    "even": ("--scatter", "even", "--recentre", "off"),
-    "literal": ("--scatter", "even"),
+    "even": ("--scatter", "even"),
+    "literal": ("--scatter", "even", "--recentre", "off"),
 }
 RENDER = {
     "literal": ("--near-field", "off"),
