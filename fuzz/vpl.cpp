@@ -81,7 +81,12 @@ void read(const InputFolder& folder, const std::string& bytes) {
   require(readVplHeader(file).count == table.size(), "the header counts the rows");
 
   writeVpl(folder.at("out.vpl"), table);
-  require(folder.read("out.vpl") == bytes, "reading and writing back gives the same bytes");
+  if (readVplHeader(file).version == kVplVersion) {
+    require(folder.read("out.vpl") == bytes, "reading and writing back gives the same bytes");
+  } else {
+    require(readVpl(folder.at("out.vpl")).position == table.position,
+            "an older version has the same rows in the newest");
+  }
 
   for (const StageRecord& record : parseProvenance(file, table.provenance)) describeRecord(record);
   extendProvenance(table.provenance, stageRecord("fuzz", Json::object(), Json::object()));
