@@ -8,7 +8,8 @@ namespace bnvpl {
 // OpenEXR 3.1 allocates what an attribute claims before it reads it: 2 GiB for a file of a hundred
 // bytes. And it believes the claim for some types and not for others, so that an attribute with a
 // wrong size can hide the next from whoever walks over them.
-// Throws InputError when an attribute claims more than the file has, or another size than its type.
+// Throws InputError when an attribute claims more than the file has, or another size than its type,
+// and for ID manifests, of which OpenEXR 3.1 reads more than there is.
 // Damage beyond that is left to OpenEXR.
 void refuseDishonestAttributes(const fs::path& file);
 

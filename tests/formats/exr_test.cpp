@@ -257,6 +257,15 @@ TEST_F(Exr, AttributesThatHideTheNextAreRefused) {
           << name << ": " << e.what();
     }
   }
+  std::string manifest = bytes;
+  manifest.insert(opening, attribute("m", "idmanifest", std::string(8, '\0')) + end);
+  writeAll(at("b.exr"), manifest);
+  try {
+    readExr(at("b.exr"));
+    ADD_FAILURE() << "ID manifest";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("ID manifest"), std::string::npos) << e.what();
+  }
   Image honest = layeredImage();
   honest.attributes[std::string(255, 'n')] = "the longest name";
   writeExr(at("a.exr"), honest, ExrPixelType::Half);
