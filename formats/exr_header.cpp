@@ -107,8 +107,8 @@ void refuseDishonestAttributes(const fs::path& file) {
     const auto type = walk.name();
     const auto claimed = type ? walk.number() : std::nullopt;
     if (!claimed) return;
-    // OpenEXR 3.1 takes eight bytes for a size that it counts as four, and so reads on into the next
-    // attribute.
+    // OpenEXR 3.1 takes eight bytes for a size that it counts as four, and so reads on into the
+    // next attribute.
     if (*type == "idmanifest") {
       throw InputError(file, "attribute '" + std::string(*name) +
                                  "' is an ID manifest, which OpenEXR 3.1 cannot read; save the "
