@@ -78,10 +78,11 @@ void read(const InputFolder& folder, const std::string& bytes) {
   VplTable table;
   if (!accepted([&] { table = readVpl(file); })) return;
   requireSane(table);
-  require(readVplHeader(file).count == table.size(), "the header counts the rows");
+  const VplHeader header = readVplHeader(file);
+  require(header.count == table.size(), "the header counts the rows");
 
   writeVpl(folder.at("out.vpl"), table);
-  if (readVplHeader(file).version == kVplVersion) {
+  if (header.version == kVplVersion) {
     require(folder.read("out.vpl") == bytes, "reading and writing back gives the same bytes");
   } else {
     require(readVpl(folder.at("out.vpl")).position == table.position,

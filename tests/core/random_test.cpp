@@ -42,6 +42,28 @@ TEST(Random, StreamsAndSeedsShareNoKey) {
   EXPECT_EQ(keys.size(), 8000u);
 }
 
+// One point in each box of area 1/256, whatever its shape, for any 256 points in a row from a
+// multiple of that and any key.
+TEST(Random, SobolPointsFillEveryBoxOnce) {
+  std::set<float> firsts;
+  for (const uint64_t key : {0u, 1u, 77u}) {
+    firsts.insert(owenSobol(0, key).x);
+    for (const uint32_t begin : {0u, 256u, 0xffffff00u}) {
+      for (uint32_t columns = 1; columns <= 256; columns *= 2) {
+        const uint32_t rows = 256 / columns;
+        std::set<uint32_t> boxes;
+        for (uint32_t i = 0; i < 256; ++i) {
+          const Point2 p = owenSobol(begin + i, key);
+          boxes.insert(static_cast<uint32_t>(p.y * static_cast<float>(rows)) * columns +
+                       static_cast<uint32_t>(p.x * static_cast<float>(columns)));
+        }
+        EXPECT_EQ(boxes.size(), 256u) << "key " << key << ", " << columns << " columns";
+      }
+    }
+  }
+  EXPECT_EQ(firsts.size(), 3u);
+}
+
 // Chi-square of counts that should be equal; its mean is the cells less one.
 double chiSquare(const std::vector<int>& cells, double expected) {
   double sum = 0.0;

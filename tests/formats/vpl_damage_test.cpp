@@ -166,6 +166,7 @@ TEST_F(VplDamage, WrongValuesAreRefusedAtTheirByte) {
   EXPECT_SAYS(complaintAbout(at(5, 0, 0), -1.0f), "column flux, row 0: negative");
   EXPECT_SAYS(complaintAbout(columnOffset(7), nan), "column relative_error, row 0: not a finite");
   EXPECT_SAYS(complaintAbout(at(10, 1, 2), -1.0f), "column straight_flux, row 1: negative");
+  EXPECT_SAYS(complaintAbout(at(10, 0, 0), 1.5f), "column straight_flux, row 0: above the flux");
   EXPECT_EQ(complaintAbout(at(2, 0, 0), 1.00005f), "");  // within the tolerance
 }
 

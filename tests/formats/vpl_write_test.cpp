@@ -136,6 +136,8 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "column emit_position, row 1", [](VplTable& t) { t.emitPosition[1].y = kInf; });
   expectRefused(f, "column emit_normal, row 0", [](VplTable& t) { t.emitNormal[0].y = 0.5f; });
   expectRefused(f, "column straight_flux, row 1", [](VplTable& t) { t.straightFlux[1].y = -1.0f; });
+  expectRefused(f, "column straight_flux, row 0: above the flux",
+                [](VplTable& t) { t.straightFlux[0].z = 4.5f; });
   expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
   expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });

@@ -51,6 +51,11 @@ TEST_F(DeepCheck, ChangedRowsAreRefused) {
   lit_.radius[0] = kept_.radius[0];
   lit_.position[0].y += 0.001f;
   EXPECT_TRUE(contains(problem(), "l.vpl: row 0 (id 7)"));
+  lit_.position[0] = kept_.position[0];
+  lit_.emitPosition[0].y = 0.9f;  // within its reach of 2 * 0.5
+  EXPECT_EQ(problem(), "");
+  lit_.emitPosition[0].y = 1.1f;
+  EXPECT_TRUE(contains(problem(), "l.vpl: row 0 (id 7)"));
 }
 
 TEST_F(DeepCheck, AHistoryThatWasRewrittenIsRefused) {

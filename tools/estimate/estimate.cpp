@@ -17,7 +17,7 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
-// How far of the way a VPL moves (measured: docs/theory.md, "Recentring"), and how far above the
+// How far of the way a VPL moves (measured: docs/theory.md, "Radius"), and how far above the
 // surface it travels, as a share of its reach.
 constexpr float kRecentreShare = 0.35f;
 constexpr float kRecentreLift = 0.1f;

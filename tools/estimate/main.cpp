@@ -14,7 +14,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kBytesPerVpl = 400;  // measured: 600 and, by now, 88 a thread
+constexpr double kBytesPerVpl = 400;  // measured: 600, and a VplSum (88) a thread
 
 const Choices<Scatter> kScatters{{"guarded", Scatter::Guarded}, {"even", Scatter::Even}};
 

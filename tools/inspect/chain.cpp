@@ -107,10 +107,13 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
   for (size_t row = 0; row < to.size(); ++row) {
     const auto found = rowOf.find(to.id[row]);
     const size_t source = kept ? (found == rowOf.end() ? from.size() : found->second) : row;
-    const bool same =
-        source < from.size() && to.id[row] == from.id[source] &&
-        to.albedo[row] == from.albedo[source] && to.position[row] == from.position[source] &&
-        to.normal[row] == from.normal[source] && (kept || to.radius[row] == from.radius[source]);
+    const bool same = source < from.size() && to.id[row] == from.id[source] &&
+                      to.albedo[row] == from.albedo[source] &&
+                      to.position[row] == from.position[source] &&
+                      to.normal[row] == from.normal[source] &&
+                      (kept || (to.radius[row] == from.radius[source] &&
+                                double{length(to.emitPosition[row] - to.position[row])} <=
+                                    to.reach * double{to.radius[row]}));
     if (!same)
       return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +
              ") is not that of " + earlier.file.string();

@@ -10,7 +10,8 @@
 namespace bnvpl {
 
 // Binary little-endian PLY point cloud: x y z nx ny nz, red green blue (8-bit sRGB), id, and as
-// floats radius, flux_r flux_g flux_b, photons, relative_error, straight_flux_r and so on where the stage has them.
+// floats radius, flux_r flux_g flux_b, photons, relative_error, straight_flux_r straight_flux_g
+// straight_flux_b where the stage has them.
 std::string plyBytes(const VplTable& table);
 
 // A header line, then one line for each row; 9 significant digits give every float back.

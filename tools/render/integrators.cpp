@@ -1,7 +1,5 @@
 #include "tools/render/integrators.h"
 
-#include <cstdlib>
-
 namespace bnvpl {
 
 namespace {

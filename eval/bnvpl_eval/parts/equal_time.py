@@ -32,26 +32,24 @@ def balanced(c: pipeline.Configuration, size: dict) -> pipeline.Configuration:
 
 def run(context: Context) -> None:
     rows = []
-    for view, balance in [(view, balance) for view in context.views() for balance in (False, True)]:
-        context.say(f"equal time: {view.name}{', balanced' if balance else ''}")
-        c = context.configuration(view, "local", picture=True)
-        if balance:
-            c = balanced(c, context.size)
-        _, runs = pipeline.image(context.runner, view, c, 1)
-        pipeline_s = sum(run.cpu_s for run in runs)
-        spp = picture_spp(context, view, c, pipeline_s)
-        _, picture = pipeline.path_traced(context.runner, view, c.film, spp, 1)
-        equal_spp = spp * pipeline_s / picture[0].cpu_s
-        judged = context.judge("equal-time", view, c.but(film=view.scene.film(context.size["film_width"])),
-                               context.seeds(view))
-        path = context.judge_path("equal-time", view, view.scene.film(context.size["film_width"]), MEASURED_SPP,
-                                  context.seeds(view))
-        relmse = path["relmse"] * MEASURED_SPP / equal_spp
-        row = {"view": view.name, "spp": c.spp, "film": c.film, "pipeline_s": pipeline_s,
-               "pipeline_relmse": judged["relmse"], "path_spp": round(equal_spp), "path_relmse": relmse,
-               "gain": relmse / judged["relmse"] if judged["relmse"] > 0 else None}
-        rows.append({"group": f"{view.scene.title}, {view.title}", **row})
-        context.results.append({"part": "equal-time", "method": "local", **row})
+    for view in context.views():
+        small = view.scene.film(context.size["film_width"])
+        path = context.judge_path("equal-time", view, small, MEASURED_SPP, context.seeds(view))
+        as_compared = context.configuration(view, "local", picture=True)
+        for c in (as_compared, balanced(as_compared, context.size)):
+            context.say(f"equal time: {view.name}, {c.spp} spp")
+            _, runs = pipeline.image(context.runner, view, c, 1)
+            pipeline_s = sum(run.cpu_s for run in runs)
+            spp = picture_spp(context, view, c, pipeline_s)
+            _, picture = pipeline.path_traced(context.runner, view, c.film, spp, 1)
+            equal_spp = spp * pipeline_s / picture[0].cpu_s
+            judged = context.judge("equal-time", view, c.but(film=small), context.seeds(view))
+            relmse = path["relmse"] * MEASURED_SPP / equal_spp
+            row = {"view": view.name, "spp": c.spp, "film": c.film, "pipeline_s": pipeline_s,
+                   "pipeline_relmse": judged["relmse"], "path_spp": round(equal_spp), "path_relmse": relmse,
+                   "gain": relmse / judged["relmse"] if judged["relmse"] > 0 else None}
+            rows.append({"group": f"{view.scene.title}, {view.title}", **row})
+            context.results.append({"part": "equal-time", "method": "local", **row})
     context.tables.append(table(
         "equal-time", "Equal time: whole pipeline against the path tracer",
         "All stages with loading; relMSE of the indirect light, "
