@@ -48,6 +48,12 @@ class Configuration:
         return replace(self, **changes)
 
 
+def sampled(c: Configuration, plan: dict) -> Configuration:
+    """With the samples a pixel, near-field rays and error of cuts that a part of settings.toml asks for."""
+    return c.but(spp=plan["spp"], render=(*c.render, "--near-field-rays", plan["near_field_rays"],
+                                          "--error", plan["error"]))
+
+
 def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:
     return runner.run("vpl-place", ["{scene}", "-n", c.candidates, "--seed", seed, *c.place,
                                     "-o", "@candidates.vpl", "--quiet"],

@@ -121,7 +121,7 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
     EXPECT_TRUE(isFinite(out[0].radiance) && isFinite(out[0].clamped));
     for (uint64_t i = 0; i < 100; ++i) {
       Rng rng(7, i);
-      const Gathered sampled = gatherer.sample(bsdf, rng);
+      const Gathered sampled = gatherer.sample(bsdf, 8, rng);
       EXPECT_TRUE(isFinite(sampled.radiance) && isFinite(sampled.clamped));
     }
     return out[0].radiance;

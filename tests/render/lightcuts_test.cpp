@@ -114,19 +114,22 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
     const Vec3 all = gathered[0].radiance;
     if (mean(all) <= 0.0f) continue;
     ++points;
-    constexpr int kDraws = 4000;
-    Vec3 sum;
-    double squares = 0.0;
-    for (int k = 0; k < kDraws; ++k) {
-      const Vec3 radiance = gatherer.sample(bsdf, rng).radiance;
-      sum += radiance * (1.0f / kDraws);
-      squares += std::pow(double{mean(radiance)} / double{mean(all)}, 2) / kDraws;
+    for (const unsigned draws : {8u, 2u, 1u}) {
+      constexpr int kTimes = 4000;
+      Vec3 sum;
+      double squares = 0.0;
+      for (int k = 0; k < kTimes; ++k) {
+        const Vec3 radiance = gatherer.sample(bsdf, draws, rng).radiance;
+        sum += radiance * (1.0f / kTimes);
+        squares += std::pow(double{mean(radiance)} / double{mean(all)}, 2) / kTimes;
+      }
+      // Of one gather, relative: the tree knows where the light is.
+      const double deviation = std::sqrt(std::max(0.0, squares - 1.0));
+      EXPECT_LT(deviation, 0.8 * std::sqrt(8.0 / draws));
+      const double allowed = 5.0 * deviation / std::sqrt(double{kTimes});
+      EXPECT_NEAR(mean(sum) / mean(all), 1.0, allowed);
+      EXPECT_NEAR(sum.x / all.x, 1.0, 2.0 * allowed);
     }
-    const double deviation = std::sqrt(std::max(0.0, squares - 1.0));
-    EXPECT_LT(deviation, 0.8);  // of a draw, relative: the tree knows where the light is
-    const double allowed = 5.0 * deviation / std::sqrt(double{kDraws});
-    EXPECT_NEAR(mean(sum) / mean(all), 1.0, allowed);
-    EXPECT_NEAR(sum.x / all.x, 1.0, 2.0 * allowed);
   }
 }
 

@@ -10,9 +10,6 @@ namespace bnvpl {
 
 namespace {
 
-// VPLs that sample() takes. What it lights has been found by a ray whose own noise is larger.
-constexpr unsigned kSampledVpls = 8;
-
 // Sums in double: a cut adds and takes back thousands of terms.
 struct Rgb64 {
   double r = 0, g = 0, b = 0;
@@ -56,7 +53,7 @@ void Gatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const 
   }
 }
 
-Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
+Gathered Gatherer::sample(const Bsdf& bsdf, unsigned draws, Rng& rng) const {
   Gathered out;
   if (tree_.nodes.empty()) return out;
   const ClusterReceiver receiver(bsdf);
@@ -69,9 +66,9 @@ Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
   }
   if (whole <= 0.0f) return out;
   const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
-  const float shift = rng.next();
-  for (unsigned k = 0; k < kSampledVpls; ++k) {
-    const float pick = (static_cast<float>(k) + shift) / kSampledVpls * whole;
+  const float shift = rng.next(), perDraw = 1.0f / static_cast<float>(draws);
+  for (unsigned k = 0; k < draws; ++k) {
+    const float pick = (static_cast<float>(k) + shift) * perDraw * whole;
     const auto slot =
         std::min(starts - 1,
                  static_cast<size_t>(std::upper_bound(upTo.begin(), upTo.begin() + starts, pick) -
@@ -83,8 +80,7 @@ Gathered Gatherer::sample(const Bsdf& bsdf, Rng& rng) const {
     if (!leaf || !(probability > 0.0f) || !couple(vpls_, *leaf, bsdf, c)) continue;
     ++out.shadowRays;
     if (rays_.occluded(from, vpls_.position[*leaf])) continue;
-    const Vec3 light =
-        c.transfer * vpls_.intensity[*leaf] * (1.0f / (probability * float{kSampledVpls}));
+    const Vec3 light = c.transfer * vpls_.intensity[*leaf] * (perDraw / probability);
     out.radiance += light;
     out.clamped += light * c.clamped;
   }

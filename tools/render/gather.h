@@ -58,9 +58,9 @@ class Gatherer {
 
   // Thread-safe, both. One result for each receiver.
   void gather(const TileReceivers& tile, std::span<Gathered> out) const;
-  // All VPLs on average, by a few that are drawn from the light tree (Estevez & Kulla 2018): for
-  // points whose light reaches the image over one random ray among many.
-  Gathered sample(const Bsdf& bsdf, Rng& rng) const;
+  // All VPLs on average, by `draws` (> 0) that are taken from the light tree (Estevez & Kulla
+  // 2018): for points whose light reaches the image over one random ray among many.
+  Gathered sample(const Bsdf& bsdf, unsigned draws, Rng& rng) const;
 
  private:
   std::optional<uint32_t> descend(uint32_t node, const ClusterReceiver& receiver, Rng& rng,

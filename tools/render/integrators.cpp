@@ -7,6 +7,9 @@ namespace {
 // Vertices beyond the first that a near-field ray may add; each follows with the missing share
 // alone.
 constexpr unsigned kMaxExtensions = 16;
+// VPLs that light what a near-field ray found, which has more noise of its own the further it is
+// down the path (measured: docs/theory.md, "Near field").
+constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 constexpr uint32_t kDrawDirection = 16;  // dimension of a tile's random numbers, after its gather's
 
 // The camera's part of a path, the same for both integrators.
@@ -111,7 +114,7 @@ void VplIntegrator::extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng
       if (known) {
         light += throughput * (leaving + *missing.scattered) * missing.share;
       } else {
-        const Gathered g = gatherer_.sample(found, rng);
+        const Gathered g = gatherer_.sample(found, first ? kFirstDraws : kLaterDraws, rng);
         light += throughput * (leaving + g.radiance);
         out.clamped += throughput * g.clamped;
         out.shadowRays += g.shadowRays;

@@ -1,7 +1,7 @@
 """Error against the number of VPLs, and against time, beside the path tracer."""
 
 from ..context import Context
-from ..pipeline import METHODS
+from ..pipeline import METHODS, sampled
 from ..statistics import slope
 
 
@@ -13,9 +13,8 @@ def run(context: Context) -> None:
         for method, rows in found.items():
             for count in plan["counts"]:
                 context.say(f"convergence: {view.name}, {method}, {count} VPLs")
-                c = context.configuration(view, method).but(
-                    vpls=count, candidates=count * context.size["candidates_per_vpl"],
-                    photons=plan["photons"], spp=plan["spp"])
+                c = sampled(context.configuration(view, method), plan).but(
+                    vpls=count, candidates=count * plan["candidates_per_vpl"], photons=plan["photons"])
                 rows.append(context.judge("convergence", view, c, seeds))
         path = []
         for spp in plan["path_spp"]:

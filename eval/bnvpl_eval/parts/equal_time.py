@@ -4,15 +4,16 @@ Both errors are measured on the small film, over all seeds. The path tracer's re
 any spp follows from one measurement; the time comes from a picture that is rendered for about as long as the
 pipeline takes.
 
-The pipeline runs twice: as in the comparison of methods, and balanced for its time: at 8 samples a pixel most of the
-error is that of the pixel's own footprint, so the same near-field rays are spread over more samples.
+The pipeline runs twice: as in the comparison of methods, and balanced for its time, as settings.toml says: at 8
+samples a pixel most of the error is that of the pixel's own footprint, so near-field rays are spread over more samples.
 """
 
 from .. import pipeline
 from ..context import Context
+from ..pipeline import sampled
 from ..tables import column, table
 
-COLUMNS = [column("spp", "samples a pixel"), column("film", "film"), column("pipeline_s", "pipeline", "CPU s"),
+COLUMNS = [column("vpls", "VPLs"), column("spp", "samples a pixel"), column("film", "film"), column("pipeline_s", "pipeline", "CPU s"),
            column("pipeline_relmse", "its relMSE"), column("path_spp", "path tracer in that time", "spp"),
            column("path_relmse", "its relMSE"), column("gain", "path tracer / pipeline", better="high")]
 MEASURED_SPP = 64
@@ -25,9 +26,9 @@ def picture_spp(context: Context, view, c, target_s: float) -> int:
 
 
 def balanced(c: pipeline.Configuration, size: dict) -> pipeline.Configuration:
-    o = size["equal_time"]
-    return c.but(candidates=c.vpls * o["candidates_per_vpl"], photons=o["photons"], spp=o["spp"],
-                 render=("--near-field-rays", o["near_field_rays"], "--error", o["error"]))
+    plan = size["equal_time"]
+    return sampled(c, plan).but(vpls=plan["vpls"], candidates=plan["vpls"] * plan["candidates_per_vpl"],
+                                photons=plan["photons"])
 
 
 def run(context: Context) -> None:
@@ -37,7 +38,7 @@ def run(context: Context) -> None:
         path = context.judge_path("equal-time", view, small, MEASURED_SPP, context.seeds(view))
         as_compared = context.configuration(view, "local", picture=True)
         for c in (as_compared, balanced(as_compared, context.size)):
-            context.say(f"equal time: {view.name}, {c.spp} spp")
+            context.say(f"equal time: {view.name}, {c.vpls} VPLs, {c.spp} spp")
             _, runs = pipeline.image(context.runner, view, c, 1)
             pipeline_s = sum(run.cpu_s for run in runs)
             spp = picture_spp(context, view, c, pipeline_s)
@@ -45,7 +46,7 @@ def run(context: Context) -> None:
             equal_spp = spp * pipeline_s / picture[0].cpu_s
             judged = context.judge("equal-time", view, c.but(film=small), context.seeds(view))
             relmse = path["relmse"] * MEASURED_SPP / equal_spp
-            row = {"view": view.name, "spp": c.spp, "film": c.film, "pipeline_s": pipeline_s,
+            row = {"view": view.name, "vpls": c.vpls, "spp": c.spp, "film": c.film, "pipeline_s": pipeline_s,
                    "pipeline_relmse": judged["relmse"], "path_spp": round(equal_spp), "path_relmse": relmse,
                    "gain": relmse / judged["relmse"] if judged["relmse"] > 0 else None}
             rows.append({"group": f"{view.scene.title}, {view.title}", **row})

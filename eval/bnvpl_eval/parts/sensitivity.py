@@ -1,6 +1,7 @@
 """One option at a time, the others at their defaults; main views alone."""
 
 from ..context import Context
+from ..pipeline import sampled
 from ..settings import View
 from ..tables import column, table
 
@@ -11,14 +12,14 @@ COLUMNS = [column("value", "value"),
 
 def varied(context: Context, view: View, entry: dict, value):
     plan = context.size["sensitivity"]
-    c = context.configuration(view, "local").but(photons=plan["photons"])
+    c = sampled(context.configuration(view, "local"), plan).but(photons=plan["photons"])
     match entry["stage"]:
         case "photons":
             return c.but(photons=max(1, int(c.photons * value)))
         case "candidates":
             return c.but(candidates=c.vpls * value)
         case stage:
-            return c.but(**{stage: (entry["option"], value)})
+            return c.but(**{stage: (*getattr(c, stage), entry["option"], value)})
 
 
 def run(context: Context) -> None:
