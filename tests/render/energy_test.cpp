@@ -1,6 +1,7 @@
 // Energy and leaks of the whole method, against numbers that are known without it.
 #include <gtest/gtest.h>
 
+#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
 
 namespace bnvpl::test {
@@ -169,6 +170,45 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   }
   ASSERT_GT(known, 3000);
   EXPECT_NEAR(sum / known, 0.5, 0.015);
+}
+
+// A VPL in the middle of a board that is narrower than its disk: the area is that of the board
+// under the disk, and where points of the disk hardly ever meet the board, nothing is claimed.
+TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
+  const auto radianceOfBoard = [](float width) {
+    Scene scene;
+    addSquare(scene, {-2, 0, width / 2}, {4, 0, 0}, {0, 0, -width}, lambert(Vec3(0.5f)));
+    addSquare(scene, {-2, -3, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));  // far below
+    finishScene(scene);
+    const RayScene rays(scene);
+    VplTable lit;
+    lit.stage = VplStage::Lit;
+    lit.reach = 1.0;
+    lit.position = lit.emitPosition = {Vec3()};
+    lit.normal = lit.emitNormal = {Vec3(0, 1, 0)};
+    lit.albedo = {Vec3(0.5f)};
+    lit.id = {1};
+    lit.radius = {1.0f};
+    lit.flux = {Vec3(3.0f)};
+    lit.straightFlux = {Vec3(1.0f)};
+    lit.photons = {10};
+    lit.relativeError = {0.1f};
+    SurfacePoint hit;
+    EXPECT_TRUE(rays.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
+    Rng rng(streamKey(1, Stream::PixelSamples), 0);
+    const NearField::Missing missing = NearField(lit, rays, 2.0f).missing(hit, 1.0f, rng);
+    EXPECT_NEAR(missing.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
+    return missing.scattered;
+  };
+  const auto known = [](float area) { return (3.0f - 1.0f) / (kPi * area); };
+  for (const float width : {3.0f, 1.0f, 0.25f}) {
+    const std::optional<Vec3> radiance = radianceOfBoard(width);
+    ASSERT_TRUE(radiance.has_value()) << width;
+    const float half = std::min(1.0f, width / 2);  // area of a disk between two parallel chords
+    const float area = 2.0f * (half * std::sqrt(1.0f - half * half) + std::asin(half));
+    EXPECT_NEAR(radiance->x / known(area), 1.0f, 0.25f) << width;
+  }
+  EXPECT_FALSE(radianceOfBoard(0.01f).has_value());
 }
 
 // More rays bring the same light with less noise.
