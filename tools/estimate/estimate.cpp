@@ -3,14 +3,13 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
 #include "scene/coverage.h"
 #include "scene/photon_path.h"
 #include "tools/estimate/photon_shares.h"
+#include "tools/estimate/photon_sums.h"
 
 namespace bnvpl {
 
@@ -21,102 +20,6 @@ constexpr uint64_t kPhotonsPerRange = 4096;
 // surface it travels, as a share of its reach.
 constexpr float kRecentreShare = 0.35f;
 constexpr float kRecentreLift = 0.1f;
-
-// Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
-// commutes, so neither threads nor the order of photons matter, and ranges computed apart can be
-// added up.
-class FixedPoint {
- public:
-  // 2^-26 of the mean photon, coarser from 2^29 photons on: the sum of all fits in 56 bits, which
-  // leaves room for 128 reflections at full power.
-  FixedPoint(double photonPower, uint64_t photons)
-      : unit_(std::ldexp(1.0, std::ilogb(photonPower) -
-                                  std::min(26, 55 - static_cast<int>(std::bit_width(photons))))),
-        perUnit_(1.0 / unit_) {}
-  int64_t encode(double value) const {
-    const double units = value * perUnit_;
-    if (!(std::fabs(units) < 0x1p62))
-      throw std::overflow_error("flux exceeds its fixed-point range");
-    return static_cast<int64_t>(std::llrint(units));
-  }
-  double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
-
- private:
-  double unit_, perUnit_;  // powers of two: exact
-};
-
-void addChecked(int64_t& sum, int64_t term) {
-  if (__builtin_add_overflow(sum, term, &sum)) {
-    throw std::overflow_error("flux sum exceeds its fixed-point range; lower --photons");
-  }
-}
-
-struct VplSum {  // without padding: it is saved as it lies
-  std::array<int64_t, 3> flux{}, straight{};
-  int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
-  // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of
-  // 2^-24.
-  std::array<int64_t, 3> moment{};
-  uint64_t photons = 0;
-
-  void add(const VplSum& o) {
-    for (size_t c = 0; c < 3; ++c) {
-      addChecked(flux[c], o.flux[c]);
-      addChecked(straight[c], o.straight[c]);
-      addChecked(moment[c], o.moment[c]);
-    }
-    addChecked(squares, o.squares);
-    photons += o.photons;
-  }
-};
-
-enum Tally {
-  kEmitted,
-  kEscaped,
-  kAbsorbed,
-  kReflected,
-  kDeposited,
-  kOutside,
-  kGap,
-  kHidden,
-  kTallies
-};
-
-struct Sums {
-  std::vector<VplSum> vpl;
-  std::array<int64_t, kTallies> tally{};
-  uint64_t hits = 0, rays = 0, guardRays = 0, nonFinite = 0;
-
-  void add(const Sums& o) {
-    for (size_t i = 0; i < vpl.size(); ++i) vpl[i].add(o.vpl[i]);
-    for (size_t t = 0; t < kTallies; ++t) addChecked(tally[t], o.tally[t]);
-    hits += o.hits;
-    rays += o.rays;
-    guardRays += o.guardRays;
-    nonFinite += o.nonFinite;
-  }
-};
-
-// What is done, for a checkpoint: the ranges of photons and their sums.
-std::string encode(const std::vector<uint8_t>& done, const Sums& sums) {
-  std::string bytes;
-  appendArray(bytes, done);
-  appendArray(bytes, sums.vpl);
-  appendArray(bytes, sums.tally);
-  appendArray(bytes, std::array{sums.hits, sums.rays, sums.guardRays, sums.nonFinite});
-  return bytes;
-}
-
-void decode(std::string_view bytes, std::vector<uint8_t>& done, Sums& sums) {
-  takeArray(bytes, done);
-  takeArray(bytes, sums.vpl);
-  takeArray(bytes, sums.tally);
-  std::array<uint64_t, 4> counts{};
-  takeArray(bytes, counts);
-  requireAllTaken(bytes);
-  sums.hits = counts[0], sums.rays = counts[1];
-  sums.guardRays = counts[2], sums.nonFinite = counts[3];
-}
 
 class Scatterer {
  public:
@@ -130,13 +33,14 @@ class Scatterer {
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
 
   // Hands the flux that leaves a diffuse hit to the VPLs around it.
-  void scatter(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng, Sums& sums) const {
+  void scatter(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng,
+               PhotonSums& sums) const {
     ++sums.hits;
     tally(sums, kReflected, flux);
     if (options_.scatter == Scatter::Even) return scatterEvenly(hit, flux, straight, sums);
     scatterGuarded(hit, flux, straight, rng, sums);
   }
-  void tally(Sums& sums, Tally t, Vec3 flux) const {
+  void tally(PhotonSums& sums, Tally t, Vec3 flux) const {
     addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
   }
   const FixedPoint& fixed() const { return fixed_; }
@@ -150,7 +54,8 @@ class Scatterer {
     return reach;
   }
 
-  void deposit(uint32_t vpl, const SurfacePoint& hit, Vec3 flux, bool straight, Sums& sums) const {
+  void deposit(uint32_t vpl, const SurfacePoint& hit, Vec3 flux, bool straight,
+               PhotonSums& sums) const {
     VplSum& s = sums.vpl[vpl];
     for (size_t c = 0; c < 3; ++c) {
       const int64_t units = fixed_.encode(double{flux[c]});
@@ -168,7 +73,7 @@ class Scatterer {
 
   // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies
   // between.
-  void scatterEvenly(const SurfacePoint& hit, Vec3 flux, bool straight, Sums& sums) const {
+  void scatterEvenly(const SurfacePoint& hit, Vec3 flux, bool straight, PhotonSums& sums) const {
     uint32_t found = 0;
     coverage_.forEachReaching(hit.position, [&](uint32_t) { ++found; });
     if (found == 0) return tally(sums, kOutside, flux);
@@ -180,7 +85,7 @@ class Scatterer {
 
   // Evenly among those on the same sheet and in sight, in expectation: one of them gets all.
   void scatterGuarded(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng,
-                      Sums& sums) const {
+                      PhotonSums& sums) const {
     const Coverage::Found found = coverage_.pick(hit.position, hit.ng, rng);
     sums.guardRays += found.rays;
     if (found.vpl) {
@@ -201,18 +106,18 @@ class Scatterer {
   Coverage coverage_;
 };
 
-Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
-                  const PhotonShares& shares, const Scatterer& scatterer,
-                  const EstimateOptions& options, const ProgressFn& progress,
-                  const Resume& resume) {
+PhotonSums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
+                        const PhotonShares& shares, const Scatterer& scatterer,
+                        const EstimateOptions& options, const ProgressFn& progress,
+                        const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::Photons);
   const auto fresh = [&] {
-    Sums s;
+    PhotonSums s;
     s.vpl.resize(vpls.size());
     return s;
   };
-  tbb::enumerable_thread_specific<Sums> perThread(fresh);
-  const auto trace = [&](uint64_t begin, uint64_t end, Sums& sums) {
+  tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
+  const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
     for (uint64_t photon = begin; photon < end; ++photon) {
       Rng rng(key, photon);
       const size_t light = shares.lightOf(photon);
@@ -230,7 +135,7 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
     }
   };
   std::vector<uint8_t> done((shares.total() + kPhotonsPerRange - 1) / kPhotonsPerRange);
-  Sums before = fresh();
+  PhotonSums before = fresh();
   if (!resume.state.empty()) decode(resume.state, done, before);
   const auto photonsOf = [&](size_t range) {
     return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
@@ -239,8 +144,8 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
     if (done[range]) progress(photonsOf(range));
   }
   const auto soFar = [&] {
-    Sums total = before;
-    for (const Sums& s : perThread) total.add(s);
+    PhotonSums total = before;
+    for (const PhotonSums& s : perThread) total.add(s);
     return total;
   };
   forUnitsLeft(
@@ -254,7 +159,7 @@ Sums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& li
   return soFar();
 }
 
-void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
+void fillTable(VplTable& vpls, const PhotonSums& sums, const Scatterer& scatterer) {
   vpls.stage = VplStage::Lit;
   vpls.reach = double{scatterer.reach()};
   vpls.flux.resize(vpls.size());
@@ -282,7 +187,8 @@ void fillTable(VplTable& vpls, const Sums& sums, const Scatterer& scatterer) {
 
 // Towards the centre of what was received, along the tangent plane and then down to the surface. A
 // VPL from which the new place is not in plain sight stays.
-void recentre(VplTable& vpls, const Sums& sums, const Scatterer& scatterer, const RayScene& rays) {
+void recentre(VplTable& vpls, const PhotonSums& sums, const Scatterer& scatterer,
+              const RayScene& rays) {
   parallelFor(vpls.size(), 256, [&](size_t i) {
     const double weight = double{mean(vpls.flux[i])} / scatterer.photonPower();
     if (!(weight > 0.0)) return;
@@ -312,7 +218,8 @@ EnergyAccount estimateFlux(VplTable& vpls, const RayScene& rays, const LightSet&
   const PhotonShares shares(lights, options.photons);
   const Scatterer scatterer(vpls, rays, options, power / static_cast<double>(shares.total()),
                             shares.total());
-  const Sums sums = tracePhotons(vpls, rays, lights, shares, scatterer, options, progress, resume);
+  const PhotonSums sums =
+      tracePhotons(vpls, rays, lights, shares, scatterer, options, progress, resume);
   fillTable(vpls, sums, scatterer);
   if (options.recentre) recentre(vpls, sums, scatterer, rays);
 
