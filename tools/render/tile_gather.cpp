@@ -4,8 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "tools/render/cluster_bounds.h"
 
@@ -13,52 +11,10 @@ namespace bnvpl {
 
 namespace {
 
-// Receivers that stand for the tile when its cut is chosen.
-constexpr uint32_t kProbes = 8;
-// Deviation of a cluster's light from VPL to VPL, as a share of it: by the cluster's size over its
-// distance, for falloff, cosines and partial visibility together, and by the spread of its normals
-// (measured: docs/theory.md, "Tile cuts").
-constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
 // Pixels along the side of a square that four packets share.
 constexpr uint32_t kSquare = 8;
-// Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
-// see nothing is not searched VPL by VPL.
-constexpr float kBlockedShare = 0.01f;
-// A probe that is darker than this share of the tile's mean counts as if it were not.
-constexpr float kDarkest = 0.02f;
 // A single draw may be this many times the deviation that is allowed to a sample.
 constexpr float kMostDraw = 4.0f;
-// Roulette on small contributions may add this share to the variance that is allowed.
-constexpr float kRouletteShare = 0.5f;
-
-// Dimensions of a tile's random numbers.
-enum Draw : uint32_t { kDrawProbe, kDrawVpl, kDrawShift, kDrawPacket, kDrawRoulette };
-
-// What to expect of a cluster by the middle of its box: cheaper than a bound, and cosines are taken
-// at the side of the box that sees most, so that it is 0 only where nothing can arrive.
-struct Expected {
-  float deviation = 0.0f;
-  float most = 0.0f;  // of a single draw: the nearest VPL counts for all
-};
-Expected expect(const LightNode& n, const Bsdf& bsdf) {
-  if (n.leaf()) return {};
-  const Vec3 d = n.bounds.center() - bsdf.point().position;
-  const float size2 = lengthSquared(n.bounds.extent());
-  const float distance2 =
-      std::max({lengthSquared(d), 0.25f * size2, std::numeric_limits<float>::min()});
-  const float perDistance = 1.0f / std::sqrt(distance2);
-  const float angle = std::sqrt(size2) * perDistance;  // that the box fills, at most 2
-  const float receiver = dot(bsdf.point().ns, d) * perDistance + 0.5f * angle;
-  const float emitter = -dot(n.axis, d) * perDistance + 0.5f * angle + n.sinHalfAngle;
-  if (receiver <= 0.0f || emitter <= 0.0f) return {};
-  const Vec3 light =
-      bsdf.roughUpperBound(std::min(1.0f, receiver), [](Vec3) { return 1.0f; }) * n.intensity;
-  const float spread =
-      std::min(1.0f, kSizeSpread * angle + kNormalSpread * (1.0f - n.cosHalfAngle));
-  const float sent = (light.x + light.y + light.z) * std::min(1.0f, emitter);
-  const float nearest2 = n.bounds.distanceSquared(bsdf.point().position);
-  return {spread * sent * falloff(distance2, n.clamp2), sent * falloff(nearest2, n.clamp2)};
-}
 
 // Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
 uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
@@ -103,115 +59,27 @@ struct TileGatherer::Packet {
 void TileGatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const {
   std::fill(out.begin(), out.end(), Gathered{});
   if (tree_.nodes.empty()) return;
-  const Cut cut = chooseCut(tile);
+  const TileCut cut = chooseTileCut(rays_, vpls_, tree_, options_, tile);
   if (cut.nodes.empty()) return;
   const auto slots = static_cast<uint32_t>(tile.bsdf.size() / tile.pixels);
-  for (uint32_t slot = 0; slot < slots; ++slot) gatherSlot(tile, slot, cut, out);
-}
-
-std::vector<const Bsdf*> TileGatherer::chooseProbes(const TileReceivers& tile) const {
-  std::vector<const Bsdf*> lit, probes;
-  for (const Bsdf* b : tile.bsdf) {
-    if (b) lit.push_back(b);
+  std::vector<uint32_t> packetOf;  // pixel
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
   }
-  for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
-    probes.push_back(lit[random64(tile.key, k, kDrawProbe) % lit.size()]);
-  }
-  return probes;
-}
-
-// Light at each probe, by one VPL of each cluster of the start cut: coarse, but it knows of
-// shadows. As the probes also stand for their neighbours, and as one draw may miss or overstate the
-// light, each is drawn to the geometric mean of all: to that rather than the mean, for the dark
-// ones' sake.
-std::vector<float> TileGatherer::lightAt(const std::vector<const Bsdf*>& probes,
-                                         uint64_t key) const {
-  std::vector<float> light;
-  uint32_t draw = 0;
-  for (const Bsdf* b : probes) {
-    float sum = 0.0f;
-    const Vec3 from = rays_.lifted(b->point().position, b->point().ng);
-    for (const uint32_t node : tree_.startCut) {
-      const LightNode& n = tree_.nodes[node];
-      const VplDraw vpl = tree_.draw(n, toUnitFloat(random64(key, draw++, kDrawVpl)));
-      Coupling c;
-      if (!couple(vpls_, vpl.index, *b, c)) continue;
-      const Vec3 part = c.transfer * vpls_.intensity[vpl.index] * vpl.weight;
-      const bool blocked = rays_.occluded(from, vpls_.position[vpl.index]);
-      sum += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
-    }
-    light.push_back(sum);
-  }
-  const auto count = static_cast<float>(light.size());
-  const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / count;
-  if (!(mean > 0.0f)) return light;
-  float logarithms = 0.0f;
-  for (float& l : light) {
-    l = std::max(l, kDarkest * mean);
-    logarithms += std::log(l);
-  }
-  const float typical = std::exp(logarithms / count);
-  for (float& l : light) l = std::sqrt(l * typical);
-  return light;
-}
-
-// Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
-// small as the samples of a pixel need it.
-TileGatherer::Cut TileGatherer::chooseCut(const TileReceivers& tile) const {
-  const std::vector<const Bsdf*> probes = chooseProbes(tile);
-  if (probes.empty()) return {};
-  struct Open {
-    float variance;
-    uint32_t node;
-    bool operator<(const Open& o) const {
-      return variance != o.variance ? variance < o.variance : node < o.node;
-    }
-  };
-  std::vector<float> perLight = lightAt(probes, tile.key);
-  Cut cut;
-  cut.allowed = options_.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
-  const double most = double{cut.allowed} * double{cut.allowed} * double(probes.size());
-  const float darkest = *std::min_element(perLight.begin(), perLight.end());
-  cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
-  cut.allowed *= darkest;
-  for (float& l : perLight) l = l > 0.0f ? 1.0f / l : 0.0f;
-  double sum = 0.0;
-  std::vector<Open> heap;
-  const auto insert = [&](uint32_t node) {
-    Open open{0.0f, node};
-    for (size_t k = 0; k < probes.size(); ++k) {
-      const float d = expect(tree_.nodes[node], *probes[k]).deviation * perLight[k];
-      open.variance += d * d;
-    }
-    sum += double{open.variance};
-    heap.push_back(open);
-    std::push_heap(heap.begin(), heap.end());
-  };
-  for (const uint32_t node : tree_.startCut) insert(node);
-  while (sum > most && heap.size() < options_.maxCut && heap.front().variance > 0.0f) {
-    const Open widest = heap.front();
-    std::pop_heap(heap.begin(), heap.end());
-    heap.pop_back();
-    sum -= double{widest.variance};
-    insert(tree_.nodes[widest.node].left);
-    insert(tree_.nodes[widest.node].right);
-  }
-  for (const Open& open : heap) cut.nodes.push_back(open.node);
-  std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
-  return cut;
+  for (uint32_t slot = 0; slot < slots; ++slot) gatherSlot(tile, slot, packetOf, cut, out);
 }
 
 // A packet takes a random pixel of each 2 x 2, of 8 x 8 pixels as far as they have receivers. Its
 // pixels share their error: dealt out so, it is fine grain, where packets of 4 x 4 neighbours show
 // as blocks. Over all packets of the tile the draws from a cluster are stratified, and over the
 // slots of one pixel too, which therefore stays in its packet.
-void TileGatherer::gatherSlot(const TileReceivers& tile, uint32_t slot, const Cut& cut,
+void TileGatherer::gatherSlot(const TileReceivers& tile, uint32_t slot,
+                              std::span<const uint32_t> packetOf, const TileCut& cut,
                               std::span<Gathered> out) const {
   const uint32_t imageSlot = tile.firstSlot + slot;
   const uint64_t slotKey = mix64(tile.key + imageSlot);
-  std::vector<uint32_t> lit, packetOf;
+  std::vector<uint32_t> lit;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
-    packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
     if (tile.bsdf[size_t{slot} * tile.pixels + p]) lit.push_back(slot * tile.pixels + p);
   }
   std::stable_sort(lit.begin(), lit.end(), [&](uint32_t a, uint32_t b) {
@@ -277,7 +145,7 @@ bool TileGatherer::tooNear(const LightNode& n, float allowed, const Packet& p) c
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     const float d2 = n.bounds.distanceSquared(p.bsdf[l]->point().position);
     if (light * falloff(d2, n.clamp2) <= allowed) continue;
-    const Expected e = expect(n, *p.bsdf[l]);
+    const ExpectedLight e = expectedLight(n, *p.bsdf[l]);
     if (e.deviation > allowed || e.most > kMostDraw * allowed) return true;
   }
   return false;

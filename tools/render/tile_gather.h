@@ -7,6 +7,7 @@
 #include <span>
 
 #include "tools/render/gather.h"
+#include "tools/render/tile_cut.h"
 
 namespace bnvpl {
 
@@ -23,17 +24,8 @@ class TileGatherer {
 
  private:
   struct Packet;
-  // Clusters, and the deviation that is allowed to one sample, W/(m2 sr), summed over channels.
-  struct Cut {
-    std::vector<uint32_t> nodes;
-    float allowed = 0.0f;
-    float negligible = 0.0f;  // contributions below are left to chance, W/(m2 sr)
-  };
-  Cut chooseCut(const TileReceivers& tile) const;
-  std::vector<const Bsdf*> chooseProbes(const TileReceivers& tile) const;
-  std::vector<float> lightAt(const std::vector<const Bsdf*>& probes, uint64_t key) const;
-  void gatherSlot(const TileReceivers& tile, uint32_t slot, const Cut& cut,
-                  std::span<Gathered> out) const;
+  void gatherSlot(const TileReceivers& tile, uint32_t slot, std::span<const uint32_t> packetOf,
+                  const TileCut& cut, std::span<Gathered> out) const;
   bool tooNear(const LightNode& cluster, float allowed, const Packet& packet) const;
   void addCluster(const LightNode& cluster, float u, float roulette, float negligible,
                   Packet& packet) const;

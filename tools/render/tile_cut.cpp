@@ -1,0 +1,143 @@
+#include "tools/render/tile_cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "tools/render/cluster_bounds.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Receivers that stand for the tile when its cut is chosen.
+constexpr uint32_t kProbes = 8;
+// Deviation of a cluster's light from VPL to VPL, as a share of it: by the cluster's size over its
+// distance, for falloff, cosines and partial visibility together, and by the spread of its normals
+// (measured: docs/theory.md, "Tile cuts").
+constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
+// Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
+// see nothing is not searched VPL by VPL.
+constexpr float kBlockedShare = 0.01f;
+// A probe that is darker than this share of the tile's mean counts as if it were not.
+constexpr float kDarkest = 0.02f;
+// Roulette on small contributions may add this share to the variance that is allowed.
+constexpr float kRouletteShare = 0.5f;
+
+std::vector<const Bsdf*> chooseProbes(const TileReceivers& tile) {
+  std::vector<const Bsdf*> lit, probes;
+  for (const Bsdf* b : tile.bsdf) {
+    if (b) lit.push_back(b);
+  }
+  for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
+    probes.push_back(lit[random64(tile.key, k, kDrawProbe) % lit.size()]);
+  }
+  return probes;
+}
+
+// Light at each probe, by one VPL of each cluster of the start cut: coarse, but it knows of
+// shadows. As the probes also stand for their neighbours, and as one draw may miss or overstate the
+// light, each is drawn to the geometric mean of all: to that rather than the mean, for the dark
+// ones' sake.
+std::vector<float> lightAt(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+                           const std::vector<const Bsdf*>& probes, uint64_t key) {
+  std::vector<float> light;
+  uint32_t draw = 0;
+  for (const Bsdf* b : probes) {
+    float sum = 0.0f;
+    const Vec3 from = rays.lifted(b->point().position, b->point().ng);
+    for (const uint32_t node : tree.startCut) {
+      const LightNode& n = tree.nodes[node];
+      const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDrawVpl)));
+      Coupling c;
+      if (!couple(vpls, vpl.index, *b, c)) continue;
+      const Vec3 part = c.transfer * vpls.intensity[vpl.index] * vpl.weight;
+      const bool blocked = rays.occluded(from, vpls.position[vpl.index]);
+      sum += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
+    }
+    light.push_back(sum);
+  }
+  const auto count = static_cast<float>(light.size());
+  const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / count;
+  if (!(mean > 0.0f)) return light;
+  float logarithms = 0.0f;
+  for (float& l : light) {
+    l = std::max(l, kDarkest * mean);
+    logarithms += std::log(l);
+  }
+  const float typical = std::exp(logarithms / count);
+  for (float& l : light) l = std::sqrt(l * typical);
+  return light;
+}
+
+}  // namespace
+
+ExpectedLight expectedLight(const LightNode& n, const Bsdf& bsdf) {
+  if (n.leaf()) return {};
+  const Vec3 d = n.bounds.center() - bsdf.point().position;
+  const float size2 = lengthSquared(n.bounds.extent());
+  const float distance2 =
+      std::max({lengthSquared(d), 0.25f * size2, std::numeric_limits<float>::min()});
+  const float perDistance = 1.0f / std::sqrt(distance2);
+  const float angle = std::sqrt(size2) * perDistance;  // that the box fills, at most 2
+  const float receiver = dot(bsdf.point().ns, d) * perDistance + 0.5f * angle;
+  const float emitter = -dot(n.axis, d) * perDistance + 0.5f * angle + n.sinHalfAngle;
+  if (receiver <= 0.0f || emitter <= 0.0f) return {};
+  const Vec3 light =
+      bsdf.roughUpperBound(std::min(1.0f, receiver), [](Vec3) { return 1.0f; }) * n.intensity;
+  const float spread =
+      std::min(1.0f, kSizeSpread * angle + kNormalSpread * (1.0f - n.cosHalfAngle));
+  const float sent = (light.x + light.y + light.z) * std::min(1.0f, emitter);
+  const float nearest2 = n.bounds.distanceSquared(bsdf.point().position);
+  return {spread * sent * falloff(distance2, n.clamp2), sent * falloff(nearest2, n.clamp2)};
+}
+
+// Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
+// small as the samples of a pixel need it.
+TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+                      const GatherOptions& options, const TileReceivers& tile) {
+  const std::vector<const Bsdf*> probes = chooseProbes(tile);
+  if (probes.empty()) return {};
+  struct Open {
+    float variance;
+    uint32_t node;
+    bool operator<(const Open& o) const {
+      return variance != o.variance ? variance < o.variance : node < o.node;
+    }
+  };
+  std::vector<float> perLight = lightAt(rays, vpls, tree, probes, tile.key);
+  TileCut cut;
+  cut.allowed = options.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
+  const double most = double{cut.allowed} * double{cut.allowed} * double(probes.size());
+  const float darkest = *std::min_element(perLight.begin(), perLight.end());
+  cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
+  cut.allowed *= darkest;
+  for (float& l : perLight) l = l > 0.0f ? 1.0f / l : 0.0f;
+  double sum = 0.0;
+  std::vector<Open> heap;
+  const auto insert = [&](uint32_t node) {
+    Open open{0.0f, node};
+    for (size_t k = 0; k < probes.size(); ++k) {
+      const float d = expectedLight(tree.nodes[node], *probes[k]).deviation * perLight[k];
+      open.variance += d * d;
+    }
+    sum += double{open.variance};
+    heap.push_back(open);
+    std::push_heap(heap.begin(), heap.end());
+  };
+  for (const uint32_t node : tree.startCut) insert(node);
+  while (sum > most && heap.size() < options.maxCut && heap.front().variance > 0.0f) {
+    const Open widest = heap.front();
+    std::pop_heap(heap.begin(), heap.end());
+    heap.pop_back();
+    sum -= double{widest.variance};
+    insert(tree.nodes[widest.node].left);
+    insert(tree.nodes[widest.node].right);
+  }
+  for (const Open& open : heap) cut.nodes.push_back(open.node);
+  std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
+  return cut;
+}
+
+}  // namespace bnvpl
