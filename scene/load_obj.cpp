@@ -7,41 +7,21 @@
 #include <sstream>
 #include <string_view>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
 #define TINYOBJLOADER_IMPLEMENTATION
-#define TINYOBJLOADER_USE_DOUBLE
-#include <tiny_obj_loader.h>
-#pragma GCC diagnostic pop
-
 #include "core/files.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "scene/obj_lines.h"
 #include "scene/read_file.h"
+#include "scene/tinyobj.h"
 
 namespace bnvpl {
 
 namespace {
 
-// Above this Phong exponent a Ks without Kd is a perfect mirror (roughness below 0.015).
-constexpr float kMirrorExponent = 1e4f;
-
-// Phong exponents above this are taken for it: floats hold no narrower lobe.
-constexpr float kMostExponent = 1e6f;
-constexpr double kMostIor = 100.0;
-// Distance from the origin, in sizes of the scene, above which coordinates count from the scene.
-// Below, floats resolve a millionth of its size, and files keep the coordinates of their OBJs.
-constexpr double kFarAway = 16.0;
-
-Point toPoint(const tinyobj::real_t* v) { return {v[0], v[1], v[2]}; }
-Vec3 toVec3(const tinyobj::real_t* v) { return fromOrigin(toPoint(v), {}); }
-bool isFinite(const Point& p) {
+FilePoint toPoint(const tinyobj::real_t* v) { return {v[0], v[1], v[2]}; }
+bool isFinite(const FilePoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
-
-Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
 
 // Reads the libraries that an OBJ names, or one override instead, and notes which files were read.
 class LibraryReader : public tinyobj::MaterialReader {
@@ -99,220 +79,18 @@ double bytesOf(const MeshLines& lines) {
   const auto n = [](size_t count) { return static_cast<double>(count); };
   constexpr double kReal = sizeof(tinyobj::real_t);
   const double perTriangle = 3.0 * sizeof(tinyobj::index_t) + sizeof(int) + sizeof(Triangle);
-  return n(lines.vertices) * (3.0 * kReal + sizeof(Point)) +
+  return n(lines.vertices) * (3.0 * kReal + sizeof(FilePoint)) +
          n(lines.normals) * (3.0 * kReal + sizeof(Vec3)) +
          n(lines.coordinates) * 2.0 * (kReal + sizeof(float)) + n(lines.triangles) * perTriangle;
 }
 
-std::string firstLine(std::string text) {
-  text.resize(std::min(text.size(), text.find('\n')));
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  return text;
-}
-
 }  // namespace
-
-Point Affine::point(const Point& p) const {
-  Point q;
-  for (size_t i = 0; i < 3; ++i) q[i] = m[i][0] * p[0] + m[i][1] * p[1] + m[i][2] * p[2] + m[i][3];
-  return q;
-}
-
-Vec3 Affine::normal(const Point& n) const {
-  // The cofactor matrix is the inverse transpose but for the determinant, whose sign matters.
-  Point q{};
-  for (size_t i = 0; i < 3; ++i) {
-    const auto &a = m[(i + 1) % 3], &b = m[(i + 2) % 3];
-    q[i] = (a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1] +
-           (a[0] * b[1] - a[1] * b[0]) * n[2];
-  }
-  const double length = std::hypot(q[0], q[1], q[2]);
-  if (!(length > 0.0) || !std::isfinite(length)) return {};
-  const double perLength = (determinant() < 0.0 ? -1.0 : 1.0) / length;
-  return fromOrigin({q[0] * perLength, q[1] * perLength, q[2] * perLength}, {});
-}
-
-double Affine::determinant() const {
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
-         m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
-         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-}
-
-Affine Affine::fromParts(const Point& translate, const Point& rotateRad, const Point& scale) {
-  const double cx = std::cos(rotateRad[0]), sx = std::sin(rotateRad[0]);
-  const double cy = std::cos(rotateRad[1]), sy = std::sin(rotateRad[1]);
-  const double cz = std::cos(rotateRad[2]), sz = std::sin(rotateRad[2]);
-  const double r[3][3] = {{cy * cz, sx * sy * cz - cx * sz, cx * sy * cz + sx * sz},
-                          {cy * sz, sx * sy * sz + cx * cz, cx * sy * sz - sx * cz},
-                          {-sy, sx * cy, cx * cy}};
-  Affine a;
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t j = 0; j < 3; ++j) a.m[i][j] = r[i][j] * scale[j];
-    a.m[i][3] = translate[i];
-  }
-  return a;
-}
-
-Point sceneOrigin(const Point& lower, const Point& upper) {
-  double size2 = 0.0, furthest = 0.0;
-  for (size_t i = 0; i < 3; ++i) {
-    size2 += (upper[i] - lower[i]) * (upper[i] - lower[i]);
-    furthest = std::max({furthest, std::fabs(lower[i]), std::fabs(upper[i])});
-  }
-  const double size = std::sqrt(size2);
-  if (!(furthest > kFarAway * size) || !(size > 0.0)) return {};
-  const double step = std::exp2(std::ceil(std::log2(size)));  // round numbers, for messages
-  Point origin;
-  for (size_t i = 0; i < 3; ++i) origin[i] = std::round(0.5 * (lower[i] + upper[i]) / step) * step;
-  return origin;
-}
-
-Vec3 fromOrigin(const Point& p, const Point& origin) {
-  return {static_cast<float>(p[0] - origin[0]), static_cast<float>(p[1] - origin[1]),
-          static_cast<float>(p[2] - origin[2])};
-}
 
 struct ObjLoader::Parsed {
   tinyobj::attrib_t attrib;
   std::vector<tinyobj::shape_t> shapes;
   std::vector<uint32_t> materialOf;  // tinyobj material -> ours
 };
-
-void ObjLoader::warn(const std::string& text) {
-  if (warned_.insert(text).second) scene_.warnings.push_back(text);
-}
-
-uint32_t ObjLoader::texture(const fs::path& folder, const fs::path& otherFolder, std::string name,
-                            bool srgb, bool mask, const float* scale, const float* offset) {
-  if (name.empty()) return kNone;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  fs::path file = (folder / name).lexically_normal();
-  if (!isRegularFile(file)) {
-    const fs::path other = (otherFolder / name).lexically_normal();
-    if (isRegularFile(other)) file = other;
-  }
-  const std::string key = file.string() + (srgb ? "|s" : "|l") + (mask ? "m" : "") + "|" +
-                          std::to_string(scale[0]) + "," + std::to_string(scale[1]) + "," +
-                          std::to_string(offset[0]) + "," + std::to_string(offset[1]);
-  const auto [it, isNew] = textures_.try_emplace(key, kNone);
-  if (!isNew) return it->second;
-  if (!isRegularFile(file)) {
-    warn(file.string() + ": no such texture; the plain material colour is used");
-    return kNone;
-  }
-  it->second = kWanted + static_cast<uint32_t>(wanted_.size());
-  wanted_.push_back({key, file, srgb, mask, {scale[0], scale[1]}, {offset[0], offset[1]}});
-  return it->second;
-}
-
-// Images decode side by side; what they bring is taken over in the order in which they were named.
-void ObjLoader::loadWantedTextures(size_t firstMaterial) {
-  std::vector<Texture> loaded(wanted_.size());
-  std::vector<std::string> problem(wanted_.size());
-  parallelFor(wanted_.size(), 1, [&](size_t i) {
-    const WantedTexture& w = wanted_[i];
-    const ReadGuard guard(w.file);
-    try {
-      loaded[i] = loadTexture(w.file, w.srgb, w.mask);
-      loaded[i].scale = w.scale;
-      loaded[i].offset = w.offset;
-    } catch (const InputError& e) {
-      problem[i] = e.what();
-    }
-    guard.check();
-  });
-  std::vector<uint32_t> index(wanted_.size(), kNone);
-  for (size_t i = 0; i < wanted_.size(); ++i) {
-    const WantedTexture& w = wanted_[i];
-    if (!problem[i].empty()) {
-      warn(problem[i] + "; the plain material colour is used");
-    } else {
-      index[i] = static_cast<uint32_t>(scene_.textures.size());
-      scene_.textures.push_back(std::move(loaded[i]));
-      if (std::find(scene_.files.begin(), scene_.files.end(), w.file) == scene_.files.end()) {
-        scene_.files.push_back(w.file);
-      }
-    }
-    textures_[w.key] = index[i];
-  }
-  for (size_t m = firstMaterial; m < scene_.materials.size(); ++m) {
-    Material& material = scene_.materials[m];
-    for (uint32_t* map : {&material.diffuseMap, &material.glossyMap, &material.opacityMap}) {
-      if (*map != kNone && *map >= kWanted) *map = index[*map - kWanted];
-    }
-  }
-  wanted_.clear();
-}
-
-uint32_t ObjLoader::addMaterial(const fs::path& library, const fs::path& obj, const void* source) {
-  const auto& in = *static_cast<const tinyobj::material_t*>(source);
-  const fs::path folder = library.parent_path();
-  const std::string where = library.string() + ": material '" + in.name + "': ";
-  Material m;
-  m.name = in.name;
-  m.diffuse = nonNegative(toVec3(in.diffuse));
-  const Vec3 ks = nonNegative(toVec3(in.specular));
-  const auto exponent = static_cast<float>(in.shininess);
-  m.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMostExponent) : 0.0f;
-  m.emission = nonNegative(toVec3(in.emission));
-  const int illum = in.illum;
-  m.glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
-  const bool mirror = !m.glass && (illum == 3 || illum == 5 || illum == 8 ||
-                                   (isBlack(m.diffuse) && m.exponent >= kMirrorExponent));
-  if (m.glass) {
-    m.diffuse = {};
-    m.mirror = isBlack(ks) ? Vec3{1, 1, 1} : min(ks, Vec3{1, 1, 1});
-    const bool index = in.ior >= 1.0 && in.ior <= kMostIor;
-    m.ior = index ? static_cast<float>(in.ior) : 1.5f;
-    if (!index) warn(where + "Ni is not a refractive index from 1 to 100; 1.5 is used");
-    const Vec3 tf = nonNegative(toVec3(in.transmittance));
-    m.transmission = isBlack(tf) ? Vec3{1, 1, 1} : min(tf, Vec3{1, 1, 1});
-  } else {
-    (mirror ? m.mirror : m.glossy) = ks;
-    m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
-  }
-  const float limit = maxComponent(m.diffuse + m.glossy + (m.glass ? Vec3{} : m.mirror));
-  const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
-  if (limit > 1.0f && !hasMap) {
-    warn(where + "Kd + Ks exceeds 1; both are scaled down so that energy is conserved");
-  }
-  if (const auto it = in.unknown_parameter.find("emission_sides");
-      it != in.unknown_parameter.end()) {
-    m.twoSidedEmission = firstLine(it->second) == "2";
-    if (!m.twoSidedEmission && firstLine(it->second) != "1")
-      warn(where + "emission_sides must be 1 or 2; 1 is used");
-  }
-  const auto map = [&](const std::string& name, const tinyobj::texture_option_t& o, bool srgb,
-                       bool mask) {
-    const Vec3 scale = toVec3(o.scale), offset = toVec3(o.origin_offset);
-    return texture(folder, obj.parent_path(), name, srgb, mask, &scale.x, &offset.x);
-  };
-  if (!m.glass) {
-    m.diffuseMap = map(in.diffuse_texname, in.diffuse_texopt, true, false);
-    m.glossyMap = map(in.specular_texname, in.specular_texopt, true, false);
-    m.opacityMap = map(in.alpha_texname, in.alpha_texopt, false, true);
-  }
-  const std::pair<const std::string&, const char*> ignored[] = {
-      {in.bump_texname, "map_Bump (height map)"}, {in.normal_texname, "norm (normal map)"},
-      {in.displacement_texname, "disp"},          {in.emissive_texname, "map_Ke"},
-      {in.specular_highlight_texname, "map_Ns"},  {in.reflection_texname, "refl"}};
-  for (const auto& [name, field] : ignored) {
-    if (!name.empty()) warn(where + field + " is ignored");
-  }
-  scene_.materials.push_back(std::move(m));
-  return static_cast<uint32_t>(scene_.materials.size() - 1);
-}
-
-uint32_t ObjLoader::fallbackMaterial(const fs::path& obj) {
-  warn(obj.string() + ": has faces without a known material; they are grey (Kd 0.5)");
-  for (size_t i = 0; i < scene_.materials.size(); ++i) {
-    if (scene_.materials[i].name.empty()) return static_cast<uint32_t>(i);
-  }
-  Material grey;
-  grey.diffuse = Vec3{0.5f};
-  scene_.materials.push_back(grey);
-  return static_cast<uint32_t>(scene_.materials.size() - 1);
-}
 
 void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform) {
   const auto base = std::array{points_.size(), scene_.normals.size(), scene_.uvs.size()};
@@ -354,22 +132,22 @@ void ObjLoader::addTriangles(const fs::path& obj, const Parsed& parsed, const Af
       if (id >= 0 && static_cast<size_t>(id) < parsed.materialOf.size()) {
         t.material = parsed.materialOf[static_cast<size_t>(id)];
       } else {
-        if (fallback == kNone) fallback = fallbackMaterial(obj);
+        if (fallback == kNone) fallback = materials_.fallback(obj);
         t.material = fallback;
       }
       const Material& m = scene_.materials[t.material];
       if (t.uv[0] == kNone &&
           (m.diffuseMap != kNone || m.glossyMap != kNone || m.opacityMap != kNone)) {
-        warn(obj.string() + ": material '" + m.name +
-             "' has a texture but faces without texture coordinates; "
-             "the plain material colour is used there");
+        warnings_.add(obj.string() + ": material '" + m.name +
+                      "' has a texture but faces without texture coordinates; "
+                      "the plain material colour is used there");
       }
       scene_.triangles.push_back(t);
     }
   }
   if (damaged > 0) {
-    warn(obj.string() + ": " + std::to_string(damaged) +
-         " triangles with missing or non-finite vertices are left out");
+    warnings_.add(obj.string() + ": " + std::to_string(damaged) +
+                  " triangles with missing or non-finite vertices are left out");
   }
   parts_.push_back({obj, scene_.triangles.size()});
 }
@@ -407,7 +185,7 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   in.str({});  // its memory is better used by the triangles
   for (const size_t vertex : words) parsed.attrib.vertices.at(3 * vertex) = NAN;
   for (const fs::path& library : reader.missing) {
-    warn(library.string() + ": no such material library; its materials are grey");
+    warnings_.add(library.string() + ": no such material library; its materials are grey");
   }
   scene_.files.insert(scene_.files.end(), reader.files.begin(), reader.files.end());
   reader.origin.resize(source.size(), obj);
@@ -421,14 +199,14 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   const size_t firstMaterial = scene_.materials.size();
   parsed.materialOf.assign(source.size(), kNone);
   for (size_t i = 0; i < source.size(); ++i) {
-    if (used[i]) parsed.materialOf[i] = addMaterial(reader.origin[i], obj, &source[i]);
+    if (used[i]) parsed.materialOf[i] = materials_.add(reader.origin[i], obj, source[i]);
   }
-  loadWantedTextures(firstMaterial);
+  materials_.loadTextures(firstMaterial);
   addTriangles(obj, parsed, transform);
 }
 
 void ObjLoader::roundPositions() {
-  Point lower, upper;
+  FilePoint lower, upper;
   lower.fill(INFINITY);
   upper.fill(-INFINITY);
   for (const Triangle& t : scene_.triangles) {
@@ -441,14 +219,14 @@ void ObjLoader::roundPositions() {
   }
   if (!scene_.triangles.empty()) scene_.origin = sceneOrigin(lower, upper);
   scene_.positions.reserve(points_.size() + 1);
-  for (const Point& p : points_) scene_.positions.push_back(fromOrigin(p, scene_.origin));
+  for (const FilePoint& p : points_) scene_.positions.push_back(fromOrigin(p, scene_.origin));
   points_ = {};
-  if (scene_.origin != Point{}) {
+  if (scene_.origin != FilePoint{}) {
     std::ostringstream text;
     text.precision(15);
     text << scene_.name() << ": lies far from its origin; coordinates count from ("
          << scene_.origin[0] << ", " << scene_.origin[1] << ", " << scene_.origin[2] << ")";
-    warn(text.str());
+    warnings_.add(text.str());
   }
 }
 
@@ -470,12 +248,13 @@ void ObjLoader::dropUnusable() {
       }
     }
     if (flat > 0) {
-      warn(part.obj.string() + ": " + std::to_string(flat) +
-           " triangles without area are left out");
+      warnings_.add(part.obj.string() + ": " + std::to_string(flat) +
+                    " triangles without area are left out");
     }
     if (extreme > 0) {
-      warn(part.obj.string() + ": " + std::to_string(extreme) +
-           " triangles too small or too large for floats are left out; change their scale");
+      warnings_.add(
+          part.obj.string() + ": " + std::to_string(extreme) +
+          " triangles too small or too large for floats are left out; change their scale");
     }
   }
   scene_.triangles.resize(kept);
@@ -499,8 +278,9 @@ void ObjLoader::dropDoubledLamps() {
   };
   const size_t dropped = std::erase_if(scene_.triangles, doubled);
   if (dropped > 0) {
-    warn(scene_.name() + ": " + std::to_string(dropped) +
-         " emissive triangles lie on others; one of each is left, or it would shine twice");
+    warnings_.add(
+        scene_.name() + ": " + std::to_string(dropped) +
+        " emissive triangles lie on others; one of each is left, or it would shine twice");
   }
 }
 

@@ -50,4 +50,10 @@ MeshLines meshLines(const fs::path& file, const std::string& text) {
   return kept;
 }
 
+std::string firstLine(std::string text) {
+  text.resize(std::min(text.size(), text.find('\n')));
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  return text;
+}
+
 }  // namespace bnvpl

@@ -19,4 +19,7 @@ struct MeshLines {
 // Throws InputError at a face that would take for ever. `file` is for the message.
 MeshLines meshLines(const fs::path& file, const std::string& text);
 
+// Without white space at its end.
+std::string firstLine(std::string text);
+
 }  // namespace bnvpl

@@ -78,7 +78,7 @@ struct Scene {
   uint32_t maskedBegin = 0;         // first triangle whose material has an alpha mask
   Bounds bounds;
   // What the coordinates count from, in the coordinates of the files: 0 but for scenes that lie far
-  // from their own origin, which floats would resolve coarsely there (placeScene in load_obj.h).
+  // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).
   std::array<double, 3> origin{};
 
   std::vector<Material> materials;

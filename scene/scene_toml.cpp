@@ -41,7 +41,7 @@ size_t editDistance(const std::string& a, const std::string& b) {
 }
 
 // The direction from one place to another, of unit length. False: there is none.
-bool toUnit(const Point& to, const Point& from, Vec3& unit) {
+bool toUnit(const FilePoint& to, const FilePoint& from, Vec3& unit) {
   const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
   if (!(length > 0.0)) return false;
   unit = fromOrigin(
@@ -89,10 +89,10 @@ class Section {
     if (!v) fail(node(key), std::string("'") + key + "' must be a text in quotes");
     return *v;
   }
-  Point point(const char* key) const {
+  FilePoint point(const char* key) const {
     const toml::array* a = node(key).as_array();
     if (!a || a->size() != 3) fail(node(key), std::string("'") + key + "' must be [x, y, z]");
-    Point v;
+    FilePoint v;
     for (size_t i = 0; i < 3; ++i) v[i] = numberOf(*a->get(i), key, -1e30, 1e30);
     return v;
   }
@@ -162,7 +162,7 @@ fs::path resolve(const fs::path& sceneFile, const std::string& name) {
   return (sceneFile.parent_path() / name).lexically_normal();
 }
 
-Camera readCamera(const Section& s, const Point& origin) {
+Camera readCamera(const Section& s, const FilePoint& origin) {
   Camera c;
   c.position = fromOrigin(s.point("position"), origin);
   if (s.has("look_at") == s.has("forward")) s.fail("needs exactly one of 'look_at' and 'forward'");
@@ -202,7 +202,7 @@ Affine readTransform(const Section& s) {
     }
     return a;
   }
-  Point scale{1, 1, 1}, rotate{}, translate{};
+  FilePoint scale{1, 1, 1}, rotate{}, translate{};
   if (s.has("scale")) {
     if (s.node("scale").is_array())
       scale = s.point("scale");

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "scene/load_obj.h"
+#include "scene/affine.h"
 #include "tests/scene/scene_files.h"
 #include "tests/support/pipeline.h"
 
@@ -34,14 +34,14 @@ class RoomTest : public SceneFiles {
       const double s = p.inObj ? p.scale : 1.0, m = p.inObj ? p.move : 0.0;
       obj << "v " << x * s + m << " " << y * s + m << " " << z * s + m << "\n";
     };
-    const auto quad = [&](const char* material, Point a, Point b, Point c) {
-      for (const Point& q :
-           {a, b, c, Point{a[0] + c[0] - b[0], a[1] + c[1] - b[1], a[2] + c[2] - b[2]}}) {
+    const auto quad = [&](const char* material, FilePoint a, FilePoint b, FilePoint c) {
+      for (const FilePoint& q :
+           {a, b, c, FilePoint{a[0] + c[0] - b[0], a[1] + c[1] - b[1], a[2] + c[2] - b[2]}}) {
         corner(q[0], q[1], q[2]);
       }
       obj << "usemtl " << material << "\nf -4 -3 -2 -1\n";
     };
-    const auto box = [&](const char* material, Point low, Point high) {
+    const auto box = [&](const char* material, FilePoint low, FilePoint high) {
       for (int i = 0; i < 8; ++i) {
         corner((i & 1 ? high : low)[0], (i & 2 ? high : low)[1], (i & 4 ? high : low)[2]);
       }

@@ -73,8 +73,8 @@ TEST_F(Units, OtherUnitsAndPlacesGiveTheSameImage) {
 
 // Coordinates count from a place of the scene's own where it is far away, and only there.
 TEST_F(Units, FarScenesHaveAnOriginOfTheirOwn) {
-  EXPECT_EQ(room({"here"}).origin, Point{});
-  EXPECT_EQ(room({"10 sizes away", 1.0, 60.0}).origin, Point{});
+  EXPECT_EQ(room({"here"}).origin, FilePoint{});
+  EXPECT_EQ(room({"10 sizes away", 1.0, 60.0}).origin, FilePoint{});
   const Scene far = room({"far", 1.0, 1e5});
   EXPECT_EQ(countContaining(far.warnings,
                             "scene.toml: lies far from its origin; coordinates count "

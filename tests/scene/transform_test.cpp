@@ -1,5 +1,5 @@
 #include "core/sampling.h"
-#include "scene/load_obj.h"
+#include "scene/affine.h"
 #include "scene/ray_scene.h"
 #include "tests/scene/scene_files.h"
 
@@ -14,7 +14,7 @@ void expectNear(Vec3 a, Vec3 b, float tolerance = 1e-5f) {
       << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
 }
 
-void expectNear(const Point& a, Vec3 b) { expectNear(fromOrigin(a, {}), b); }
+void expectNear(const FilePoint& a, Vec3 b) { expectNear(fromOrigin(a, {}), b); }
 
 // A box around the origin whose faces wind, and whose vertex normals point, outwards.
 std::string boxObj() {
