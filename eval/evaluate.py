@@ -19,8 +19,8 @@ from bnvpl_eval.context import Context
 from bnvpl_eval.runner import Runner
 
 # In the order in which they may use each other's rows.
-PARTS = ["methods", "scatter", "gather", "equal_time", "energy", "convergence", "sensitivity", "pictures"]
-NEED_METHODS = {"energy"}
+PARTS = ["methods", "scatter", "gather", "equal_time", "energy", "reference_quality", "convergence", "sensitivity", "pictures"]
+NEED_METHODS = {"energy", "reference_quality"}
 
 
 def processor() -> str:
@@ -35,11 +35,15 @@ def git(*words: str) -> str:
     return done.stdout.strip()
 
 
-def provenance(size: str, runner: Runner) -> dict:
+def commit() -> str:
     changed = git("status", "--porcelain", "--untracked-files=no", "--", "core", "formats", "scene", "spatial", "tools")
-    return {"commit": git("rev-parse", "--short", "HEAD") + (" with changes" if changed else ""),
-            "size": size, "processor": processor(), "threads": len(os.sched_getaffinity(0)),
-            "date": datetime.date.today().isoformat(), "runs": len(runner.runs),
+    return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
+
+
+def provenance(size: str, runner: Runner) -> dict:
+    return {**runner.provenance, "size": size, "runs": len(runner.runs),
+            "commits of the runs": ", ".join(sorted({run.record.get("commit", "unknown")
+                                                     for run in runner.runs.values()})),
             "CPU seconds": round(sum(run.cpu_s for run in runner.runs.values())),
             "peak memory MiB": max((run.record["peak_mib"] for run in runner.runs.values()), default=0)}
 
@@ -47,6 +51,7 @@ def provenance(size: str, runner: Runner) -> dict:
 def arguments_of() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--size", default="standard", help="of settings.toml: quick, standard, full")
+    parser.add_argument("--quick", action="store_const", dest="size", const="quick", help="the same as --size quick")
     parser.add_argument("--parts", default=",".join(PARTS), help=f"some of {','.join(PARTS)}")
     parser.add_argument("--settings", type=Path, default=settings.EVAL / "settings.toml")
     parser.add_argument("--scenes", help="some of the size's scenes, by id")
@@ -55,6 +60,7 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("-o", "--output", type=Path, help="folder; build/eval/SIZE unless given")
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache",
                         help="where runs are kept for the next time")
+    parser.add_argument("--commit", help="of the tools in --bin; that of the working tree unless given")
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
 
@@ -74,6 +80,10 @@ def main() -> int:
     if arguments.views:
         size["views"] = arguments.views.split(",")
     wanted = arguments.scenes.split(",") if arguments.scenes else size["scenes"]
+    for kind, asked, there in (("scene", wanted, {scene.id for scene in scenes}),
+                               ("view", size["views"], {view.id for scene in scenes for view in scene.views})):
+        if unknown := [name for name in asked if name not in there]:
+            raise SystemExit(f"eval: no {kind} '{unknown[0]}'; settings.toml has {', '.join(sorted(there))}")
     chosen = []
     for scene in (scene for scene in scenes if scene.id in wanted):
         if scene.available:
@@ -83,11 +93,15 @@ def main() -> int:
     if not chosen:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
-    runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet)
+    # What holds at the beginning: hours later the working tree may be another.
+    begin = {"commit": arguments.commit or commit(), "processor": processor(),
+             "threads": len(os.sched_getaffinity(0)), "date": datetime.date.today().isoformat()}
+    runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet, begin)
+    modules = [importlib.import_module(f"bnvpl_eval.parts.{part}") for part in PARTS if part in parts]
     context = Context(arguments.size, size, table, chosen, runner)
-    for part in PARTS:
-        if part in parts:
-            importlib.import_module(f"bnvpl_eval.parts.{part}").run(context)
+    context.require_references()
+    for module in modules:
+        module.run(context)
     report = output.write_all(context, folder, provenance(arguments.size, runner))
     print(f"eval: {len(runner.runs)} runs; {report}")
     return 0

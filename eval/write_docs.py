@@ -25,6 +25,10 @@ def number(value, better) -> str:
         return ""
     if isinstance(value, str):
         return value
+    if isinstance(value, dict):  # an error to as many decimals as its value
+        text = number(value["value"], better)
+        decimals = len(text.partition(".")[2])
+        return text if "e" in text else f"{text} ± {value['error']:.{decimals}f}"
     if better == "one":
         return f"{value:.3f}"
     return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"

@@ -31,6 +31,11 @@ class Context:
         return Configuration(method, vpls, self.size["photons"], vpls * self.size["candidates_per_vpl"],
                              self.size["spp"], view.scene.film(width))
 
+    def require_references(self) -> None:
+        """Now rather than after an hour of runs."""
+        for view in self.views():
+            references.require(view, view.scene.film(self.size["film_width"]))
+
     def seeds(self, view: View) -> range:
         return range(1, 1 + self.size["seeds" if view.id == "main" else "second_seeds"])
 
@@ -42,7 +47,8 @@ class Context:
         image, seconds and peak memory of every stage."""
         made = [pipeline.image(self.runner, view, c, seed) for seed in seeds]
         row = {"part": part, "view": view.name, "method": c.method, "vpls": c.vpls, "photons": c.photons,
-               "candidates": c.candidates, "spp": c.spp, "film": c.film, **labels}
+               "candidates": c.candidates, "spp": c.spp, "film": c.film, "seed_numbers": " ".join(map(str, seeds)),
+               **pipeline.options_of(c), **labels}
         return self.add_row(row, view, made)
 
     def judge_path(self, part: str, view: View, film: str, spp: int, seeds: range) -> dict:
@@ -59,6 +65,7 @@ class Context:
             runs: list[Run] = [runs[stage] for _, runs in made]
             tool = runs[0].record["tool"].removeprefix("vpl-")
             row[f"{tool}_cpu_s"] = sum(run.cpu_s for run in runs) / len(runs)
+            row[f"{tool}_wall_s"] = sum(run.record["wall_s"] for run in runs) / len(runs)
             row[f"{tool}_peak_mib"] = max(run.record["peak_mib"] for run in runs)
         row["cpu_s"] = sum(value for key, value in row.items() if key.endswith("_cpu_s"))
         row["images"] = [str(file) for file in files]

@@ -1,6 +1,7 @@
 """Writes what a run found: results.json, results.csv, runs.csv, and report.json with its pictures."""
 
 import csv
+import io
 import json
 import os
 import shutil
@@ -49,10 +50,11 @@ def write_all(context: Context, folder: Path, provenance: dict) -> Path:
 
 def write_csv(path: Path, rows: list[dict]) -> None:
     columns = list(dict.fromkeys(key for row in rows for key in row))
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, columns)
-        writer.writeheader()
-        writer.writerows(rows)
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, columns)
+    writer.writeheader()
+    writer.writerows(rows)
+    write_text(path, text.getvalue())
 
 
 def view_entry(context: Context, view: View, folder: Path) -> dict:
@@ -70,11 +72,12 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
             pixels = images.read(image["file"], "indirect" if layer == "indirect" else "")
             images.write_half(target, {"": pixels}, image["label"])
             files[layer] = str(target.relative_to(folder))
-        entry["images"].append({"id": image["id"], "label": image["label"], "files": files})
+        entry["images"].append({"id": image["id"], "label": image["label"], "numbers": image.get("numbers", ""),
+                                "files": files})
     for picture in shown["maps"]:
         target = place / f"{picture['id']}.png"
         if "channel" in picture:
-            heat_map(images.read_channel(picture["file"], picture["channel"]), picture["label"], target)
+            picture["label"] += heat_map(images.read_channel(picture["file"], picture["channel"]), target)
         else:
             shutil.copyfile(picture["file"], target)
         entry["pictures"].append({"id": picture["id"], "label": picture["label"],
@@ -82,10 +85,8 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
     return entry
 
 
-def heat_map(values: np.ndarray, label: str, target: Path) -> None:
-    figure, axes = plt.subplots(figsize=(6.4, 6.4 * values.shape[0] / values.shape[1]), layout="constrained")
-    drawn = axes.imshow(values, cmap="viridis", vmin=0, interpolation="nearest")
-    axes.set_axis_off()
-    figure.colorbar(drawn, ax=axes, label=label, shrink=0.9)
-    figure.savefig(target, dpi=100, metadata={"Software": None})
-    plt.close(figure)
+def heat_map(values: np.ndarray, target: Path) -> str:
+    """A pixel for each of the image, so that the viewer can lay it over; returns the scale, in words."""
+    most = float(values.max())
+    plt.imsave(target, values, cmap="viridis", vmin=0, vmax=max(most, 1e-30), metadata={"Software": None})
+    return f": dark 0, yellow {most:.3g}"

@@ -54,6 +54,17 @@ def sampled(c: Configuration, plan: dict) -> Configuration:
                                           "--error", plan["error"]))
 
 
+def told(plan: dict) -> str:
+    return (f"{plan['spp']} samples a pixel with {plan['near_field_rays']} near-field rays each and an error of cuts of "
+            f"{plan['error']}")
+
+
+def options_of(c: Configuration) -> dict[str, str]:
+    """Of each stage, beside its counts: what tells two configurations of one method apart."""
+    return {f"{stage}_options": " ".join(map(str, (*method.get(c.method, ()), *getattr(c, stage))))
+            for stage, method in (("place", {}), ("eliminate", ELIMINATE), ("estimate", ESTIMATE), ("render", RENDER))}
+
+
 def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:
     return runner.run("vpl-place", ["{scene}", "-n", c.candidates, "--seed", seed, *c.place,
                                     "-o", "@candidates.vpl", "--quiet"],

@@ -24,11 +24,11 @@ def path(view: View, film: str, half: str) -> Path:
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
     target = path(view, film, half)
-    key = digest(json.dumps([scene_key(ROOT / view.file), film, spp, half]).encode())
-    if target.is_file() and json.loads(target.with_suffix(".json").read_text())["key"] == key:
-        return
     chunk = min(spp, CHUNK)
     count = -(-spp // chunk)
+    key = reference_key(view, film, chunk * count, half)
+    if target.is_file() and json.loads(target.with_suffix(".json").read_text())["key"] == key:
+        return
     sums = {"": 0.0, "indirect": 0.0}
     cpu_s = 0.0
     for i in range(count):
@@ -48,18 +48,27 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
          "cpu_s": round(cpu_s, 1)}, indent=1) + "\n")
 
 
-def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
-    halves = []
+def reference_key(view: View, film: str, spp: int, half: str) -> str:
+    return digest(json.dumps([scene_key(ROOT / view.file), film, spp, half]).encode())
+
+
+def require(view: View, film: str) -> dict:
+    """The records of both halves; ends the program where one is missing or of another scene."""
+    records = {}
+    cure = f"eval/references.py --film-width {film.split('x')[0]} {view.name}"
     for half in "ab":
         file = path(view, film, half)
         if not file.is_file():
-            raise SystemExit(f"eval: {file}: no such reference; make it with 'make -C eval references'")
-        record = json.loads(file.with_suffix(".json").read_text())
-        if record["key"] != digest(json.dumps(
-                [scene_key(ROOT / view.file), film, record["spp"], half]).encode()):
-            raise SystemExit(f"eval: {file}: made from another version of {view.file}; "
-                             "delete it and run 'make -C eval references'")
-        halves.append(images.read(file, layer))
+            raise SystemExit(f"eval: {file}: no such reference; make it with '{cure}'")
+        records[half] = json.loads(file.with_suffix(".json").read_text())
+        if records[half]["key"] != reference_key(view, film, records[half]["spp"], half):
+            raise SystemExit(f"eval: {file}: made from another version of {view.file}; delete it and run '{cure}'")
+    return records
+
+
+def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
+    require(view, film)
+    halves = [images.read(path(view, film, half), layer) for half in "ab"]
     return halves[0], halves[1]
 
 

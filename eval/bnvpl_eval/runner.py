@@ -51,9 +51,10 @@ class Runner:
     bin: Path
     cache: Path
     quiet: bool = False
-    nice: int = 0
+    provenance: dict = field(default_factory=dict)  # commit, processor, date: goes into every run.json
     runs: dict[str, Run] = field(default_factory=dict)  # every run that was asked for, by key
     _files: dict[Path, str] = field(default_factory=dict)
+    _tools: dict[Path, tuple] = field(default_factory=dict)  # time and size when first used
 
     def file_key(self, path: Path) -> str:
         """A product of ours by its key, so that no bytes need be read; another file by its bytes, a scene with
@@ -68,6 +69,7 @@ class Runner:
         """`options` may hold '{name}' for an input and '@name' for an output, which stands in the run's folder."""
         words = [str(word) for word in options]
         executable = self.bin / tool
+        self._require_unchanged(executable)
         key = digest(json.dumps([tool, self.file_key(executable), words,
                                  {name: self.file_key(path) for name, path in inputs.items()}]).encode())
         if key in self.runs:
@@ -81,6 +83,13 @@ class Runner:
         run = Run(folder, json.loads((folder / "run.json").read_text()))
         self.runs[key] = run
         return run
+
+    def _require_unchanged(self, executable: Path) -> None:
+        """Results of two versions of a tool must not meet in one report."""
+        now = executable.stat()
+        if self._tools.setdefault(executable, (now.st_mtime_ns, now.st_size)) != (now.st_mtime_ns, now.st_size):
+            raise SystemExit(f"eval: {executable}: was built anew during the run; start again, or evaluate a copy of "
+                             "the tools (--bin)")
 
     def _execute(self, key: str, executable: Path, words: list[str], inputs: dict[str, Path],
                  folder: Path) -> None:
@@ -98,8 +107,7 @@ class Runner:
             print(f"eval: {executable.name} {' '.join(words)}", file=sys.stderr, flush=True)
         begin = time.monotonic()
         with (partial / "log.txt").open("wb") as log:
-            child = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=ROOT,
-                                     preexec_fn=(lambda: os.nice(self.nice)) if self.nice else None)
+            child = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=ROOT)
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
         wall = time.monotonic() - begin
@@ -110,6 +118,9 @@ class Runner:
         record = {"tool": executable.name, "options": words,
                   "inputs": {name: self.file_key(path) for name, path in inputs.items()}, "key": key,
                   "wall_s": round(wall, 3), "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
-                  "peak_mib": round(usage.ru_maxrss / 1024, 1)}
+                  "peak_mib": round(usage.ru_maxrss / 1024, 1), **self.provenance}
         (partial / "run.json").write_text(json.dumps(record, indent=1))
-        os.rename(partial, folder)
+        try:
+            os.rename(partial, folder)
+        except OSError:  # another evaluation has made the same run meanwhile: equal bytes
+            shutil.rmtree(partial)

@@ -39,7 +39,8 @@ def summarise(images: list[np.ndarray], halves: tuple[np.ndarray, np.ndarray]) -
         middle = stack.mean(axis=0)
         squared_bias = (middle - a) * (middle - b) - variance / count
         result |= {
-            "mean_ratio_error": float(ratios.std(ddof=1) / np.sqrt(count)),
+            # Of the images and of the reference: they have nothing to do with each other.
+            "mean_ratio_error": float(np.hypot(ratios.std(ddof=1) / np.sqrt(count), reference_ratio_error)),
             "relmse_error": float(relative.std(ddof=1) / np.sqrt(count)),
             "rmse_error": float(mse.std(ddof=1) / np.sqrt(count) / (2 * max(root(mse.mean()), 1e-30)) / mean),
             "bias_over_mean": root(squared_bias.mean()) / mean,

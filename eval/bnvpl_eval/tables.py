@@ -25,8 +25,17 @@ def column(key: str, label: str = "", unit: str = "", better: str | None = None)
     return made
 
 
+# Standard errors that rows carry, shown behind their values.
+ERRORS = {"mean_ratio": "mean_ratio_error", "rmse_over_mean": "rmse_error", "relmse": "relmse_error"}
+
+
+def cell(row: dict, key: str):
+    value, error = row.get(key), row.get(ERRORS.get(key, ""))
+    return value if value is None or error is None else {"value": value, "error": error}
+
+
 def table(name: str, title: str, note: str, columns: list[dict], rows: list[dict]) -> dict:
     """Rows carry 'group' and more than is shown."""
     keys = ["group", *(c["key"] for c in columns)]
     return {"id": name, "title": title, "note": note, "columns": columns,
-            "rows": [{key: row.get(key) for key in keys} for row in rows]}
+            "rows": [{key: cell(row, key) for key in keys} for row in rows]}

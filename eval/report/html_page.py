@@ -104,7 +104,7 @@ def view_html(scene: dict[str, Any], view: dict[str, Any], store: HdrStore,
         width, height, data = read_png(picture["file"])
         at = f"picture-{index}-{k}"
         figures.append(figure_html(picture, at, width, height, data))
-        if (width, height) == size:
+        if width * size[1] == height * size[0]:  # of another shape: below the viewer alone
             pictures.append({"id": picture["id"], "label": picture["label"],
                              "caption": picture["caption"], "element": at})
     views.append({"title": f"{scene['title']}, {view['title']}", "reference": view["reference"],
@@ -136,7 +136,7 @@ def pack_images(view: dict[str, Any], store: HdrStore) -> tuple[list[dict[str, A
             indices[image["id"]][layer] = at
     for image in view["images"]:
         result.append({"id": image["id"], "label": image["label"], "caption": image["caption"],
-                       "files": indices[image["id"]]})
+                       "numbers": image["numbers"], "files": indices[image["id"]]})
     return result, size
 
 

@@ -206,7 +206,8 @@ def image(node: Node, layers: list[str]) -> dict[str, Any]:
         else:
             found[layer] = (node.source.parent / entry.typed(str, "a file name"), "")
     return {"id": identity(node), "label": node.text("label"),
-            "caption": node.text("caption", ""), "files": found}
+            "caption": node.text("caption", ""), "numbers": node.text("numbers", ""),
+            "files": found}
 
 
 def plot(node: Node) -> dict[str, Any]:

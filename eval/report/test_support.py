@@ -89,7 +89,8 @@ def report() -> dict[str, Any]:
     main = {"id": "main", "title": "Main view", "note": "8x6 pixels", "reference": "reference",
             "exposure": 0, "layers": layers,
             "images": [image("reference", full={"file": "layers.exr", "layer": "full"}),
-                       image("a", full="a-full.exr"), image("b"), image("wild")],
+                       image("a", full="a-full.exr"),
+                       {**image("b"), "numbers": "relMSE 0.5 of seven seeds"}, image("wild")],
             "pictures": [{"id": "dots", "label": "Dots", "file": "dots.png", "caption": "VPLs."},
                          {"id": "tall", "label": "Tall", "file": "tall.png"}]}
     second = {**main, "id": "second", "title": "Second view", "pictures": []}
@@ -128,7 +129,7 @@ def write_report(folder: Path, change: dict[str, Any] | None = None) -> Path:
     full = images()["reference-full"]
     write_exr(folder / "layers.exr", np.concatenate([full * 9, full], axis=2),
               ("R", "G", "B", "full.R", "full.G", "full.B"))
-    write_png(folder / "dots.png", WIDTH, HEIGHT, (10, 200, 30))
+    write_png(folder / "dots.png", WIDTH // 2, HEIGHT // 2, (10, 200, 30))
     write_png(folder / "tall.png", WIDTH, HEIGHT + 26, (1, 2, 3))
     path = folder / "report.json"
     path.write_text(json.dumps({**report(), **(change or {})}), encoding="utf-8")

@@ -161,6 +161,7 @@ class ViewerTest(PageCase):
         error = np.mean(reference ** 2 / (reference ** 2 + epsilon))
         self.assertIn(f"mean ratio 2.000, relMSE {error:.2f}", rows[1])
         self.assertNotIn("relMSE", rows[0])
+        self.assertIn("relMSE 0.5 of seven seeds", rows[2])
 
     def test_relative_map_and_legend(self) -> None:
         self.keys("m")
@@ -196,12 +197,14 @@ class ViewerTest(PageCase):
 
     def test_pictures(self) -> None:
         names = [n.text for n in self.viewer.find_elements("css selector", ".list .name")]
-        self.assertEqual(names[4:], ["Dots"], "the tall one is of another size")
+        self.assertEqual(names[4:], ["Dots"], "the tall one is of another shape")
         self.assertEqual(len(self.all(".figures img")), 2)
         self.keys("5", "e")
         self.until(lambda: self.colour(1.5, 2.5) == [10, 200, 30])
         self.keys(Keys.ARROW_LEFT)
         self.assertEqual(self.readout()[0], ["10", "200", "30", "8 bit"])
+        self.keys(Keys.END, at=".handle")
+        self.assertEqual(self.colour(WIDTH - 0.5, HEIGHT - 0.5), [10, 200, 30], "it fills the stage")
 
 
 def wild_as_stored() -> np.ndarray:

@@ -1,7 +1,7 @@
 """Error against the number of VPLs, and against time, beside the path tracer."""
 
 from ..context import Context
-from ..pipeline import METHODS, sampled
+from ..pipeline import METHODS, sampled, told
 from ..statistics import slope
 
 
@@ -36,9 +36,11 @@ def series(label: str, rows: list[dict], x: str) -> dict:
 def add_plots(context: Context, view, found: dict, path: list[dict]) -> None:
     common = {"y_label": "RMSE / mean of the indirect light", "x_log": True, "y_log": True}
     name = view.scene.id
+    plan = context.size["convergence"]
     context.plots.append({
         "id": f"convergence-vpls-{name}", "title": f"{view.scene.title}: error against VPLs",
-        "caption": f"{context.size['convergence']['photons'] // 1000}k photons, {context.size['convergence']['spp']} spp, mean of the seeds.",
+        "caption": f"{plan['photons'] // 1000}k photons, {plan['candidates_per_vpl']} candidates a VPL, {told(plan)}; "
+                   f"{plan['seeds']} seeds.",
         "x_label": "VPLs", "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()], **common})
     context.plots.append({
         "id": f"convergence-time-{name}", "title": f"{view.scene.title}: error against time",

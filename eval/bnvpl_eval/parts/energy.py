@@ -8,7 +8,6 @@ from ..pipeline import METHODS
 from ..tables import column, table
 
 COLUMNS = [column("label"), column("mean_ratio", "mean ratio, indirect"),
-           column("mean_ratio_error", "its standard error"),
            column("full_mean_ratio", "mean ratio, full image", better="one"),
            *(column(key, key, "%") for key in ("deposited", "outside", "gap", "hidden"))]
 

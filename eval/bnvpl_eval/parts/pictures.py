@@ -4,8 +4,9 @@ from .. import pipeline
 from ..context import Context
 from ..pipeline import METHODS
 from ..settings import ROOT, View
-from .equal_time import picture_spp
+from .equal_time import balanced, picture_spp
 
+LEAKING = ["even", "literal"]
 REFERENCE_SEED = 1000  # away from the seeds that are judged
 MAPS = {"difference": "Difference to the reference", "flip": "FLIP"}
 
@@ -18,24 +19,45 @@ def run(context: Context) -> None:
         reference, _ = pipeline.path_traced(context.runner, view, film, spp, REFERENCE_SEED)
         shown = [{"id": "reference", "label": f"path tracer, {spp} spp", "file": reference}]
         maps = []
-        for method in reversed(context.size["methods"]):  # ours first, beside the reference
+        leaking = LEAKING if view.id == "main" else []  # as many as the comparison of scatters
+        for method in [*reversed(context.size["methods"]), *leaking]:  # ours first, beside the reference
             c = context.configuration(view, method, picture=True)
             file, _ = pipeline.image(context.runner, view, c, 1)
-            shown.append({"id": method, "label": METHODS[method], "file": file})
+            shown.append({"id": method, "label": METHODS[method], "file": file,
+                          "numbers": numbers(context, view, method)})
             maps += [error_map(context, method, file, reference, kind) for kind in MAPS]
             if method == "local":
-                maps.append({"id": "cut", "label": "Cut size, clusters a sample", "file": file,
+                maps.append({"id": "cut", "label": "Cut size, clusters a sample (tile cuts)", "file": file,
                              "channel": "cutsize"})
-        shown.append(equal_time(context, view))
+                maps.append(lightcuts(context, view, c))
+        shown += equal_time(context, view)
         context.pictures[view.name] = {"images": shown, "maps": dots(context, view) + maps}
 
 
-def equal_time(context: Context, view: View) -> dict:
-    c = context.configuration(view, "local", picture=True)
-    _, runs = pipeline.image(context.runner, view, c, 1)
+def numbers(context: Context, view: View, method: str) -> str:
+    """By the small film's reference, which is far better than the one that the viewer can show."""
+    for row in context.results:
+        if row["view"] == view.name and row["method"] == method and row["part"] in ("methods", "scatter"):
+            return f"mean ratio {row['mean_ratio']:.3f}, relMSE {row['relmse']:.3g} ({row['seeds']} seeds)"
+    return ""
+
+
+def lightcuts(context: Context, view: View, c: pipeline.Configuration) -> dict:
+    file, _ = pipeline.image(context.runner, view, c.but(render=("--gather", "lightcuts")), 1)
+    return {"id": "cut-lightcuts", "label": "Cut size, clusters a sample (Lightcuts)", "file": file, "channel": "cutsize"}
+
+
+def equal_time(context: Context, view: View) -> list[dict]:
+    """Ours balanced for its time, and the path tracer in the time of that."""
+    c = balanced(context.configuration(view, "local", picture=True), context.size)
+    ours, runs = pipeline.image(context.runner, view, c, 1)
     spp = picture_spp(context, view, c, sum(run.cpu_s for run in runs))
-    file, _ = pipeline.path_traced(context.runner, view, c.film, spp, 1)
-    return {"id": "path", "label": f"path tracer, time of ours ({spp} spp)", "file": file}
+    path, _ = pipeline.path_traced(context.runner, view, c.film, spp, 1)
+    row = next((r for r in context.results if r["part"] == "equal-time" and r["view"] == view.name and
+                "gain" in r and r["spp"] == c.spp), None)
+    told = [f"relMSE {row[key]:.3g}" if row else "" for key in ("pipeline_relmse", "path_relmse")]
+    return [{"id": "balanced", "label": f"ours, balanced ({c.spp} spp)", "file": ours, "numbers": told[0]},
+            {"id": "path", "label": f"path tracer, time of that ({spp} spp)", "file": path, "numbers": told[1]}]
 
 
 def error_map(context: Context, method: str, image, reference, kind: str) -> dict:

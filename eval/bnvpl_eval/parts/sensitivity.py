@@ -1,7 +1,7 @@
-"""One option at a time, the others at their defaults; main views alone."""
+"""One option at a time, main views alone; the others at their defaults, but samples and rays as settings.toml says."""
 
 from ..context import Context
-from ..pipeline import sampled
+from ..pipeline import sampled, told
 from ..settings import View
 from ..tables import column, table
 
@@ -35,5 +35,5 @@ def run(context: Context) -> None:
                 rows.append({"group": f"{entry['title']}: {view.scene.title}", **row})
     context.tables.append(table(
         "sensitivity", "Sensitivity: one option at a time",
-        f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; the other options at their defaults.",
+        f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the other options at their defaults.",
         COLUMNS, rows))

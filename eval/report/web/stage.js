@@ -82,9 +82,10 @@ class Stage {
       context.beginPath();
       context.rect(from, 0, to - from, height);
       context.clip();
-      context.imageSmoothingEnabled = this.scale < 1;
+      // A picture may have more pixels than the image that it belongs to.
+      context.imageSmoothingEnabled = this.scale * this.width < this.sources[k].width;
       context.setTransform(this.scale, 0, 0, this.scale, -left, -top);
-      context.drawImage(this.sources[k], 0, 0);
+      context.drawImage(this.sources[k], 0, 0, this.width, this.height);
       context.restore();
     });
     this.place(left, top);

@@ -104,6 +104,10 @@ class Viewer {
         numbers.textContent = "";
         return;
       }
+      if (this.view.images[i].numbers) {  // judged elsewhere, by a better reference than the one shown
+        numbers.textContent = this.view.images[i].numbers;
+        return;
+      }
       const {meanRatio, relMse} = summary(image, reference);
       numbers.textContent = `mean ratio ${meanRatio.toFixed(3)}, relMSE ${numberText(relMse, 3)}`;
     });
@@ -112,7 +116,12 @@ class Viewer {
   valuesAt(i, at, reference) {
     const image = this.decoded(i);
     if (!image) return null;
-    if (image.picture) return {bytes: [0, 1, 2].map((k) => image.pixels[4 * at + k])};
+    if (image.picture) {
+      const {width, height} = image.picture;
+      const column = Math.floor((at % this.view.width + 0.5) * width / this.view.width);
+      const row = Math.floor((Math.floor(at / this.view.width) + 0.5) * height / this.view.height);
+      return {bytes: [0, 1, 2].map((k) => image.pixels[4 * (row * width + column) + k])};
+    }
     const difference = reference && i !== this.reference ? relativeAt(image, reference, at) : null;
     return {rgb: [0, 1, 2].map((k) => channelAt(image, k, at)), difference};
   }
