@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Puts a run's tables into docs/results.md and its pictures into docs/images: write_docs.py build/eval/standard
+"""Puts a run's tables into docs/results.md and README.md and its pictures into docs/images: write_docs.py build/eval/standard
 
 A table stands between '<!-- table ID -->' and '<!-- end -->'; ID is that of report.json.
 """
 
 import json
+import math
 import re
 import subprocess
 import sys
@@ -17,7 +18,11 @@ from bnvpl_eval import images, output, settings
 
 DOCS = settings.ROOT / "docs"
 GAP = 4  # pixels of white between two pictures
-STRIP = ["light", "random", "uniform", "local", "reference"]
+STRIPS = {"methods": ["light", "random", "uniform", "local", "reference"],
+          "scatter": ["reference", "local", "even", "literal"],
+          "equal-time": ["path", "balanced", "reference"]}
+OVERLAYS = {"dots": ["dots-random", "dots-local"], "cuts": ["cut", "cut-lightcuts"]}
+METHODS = ["light", "random", "uniform", "local"]
 
 
 def number(value, better) -> str:
@@ -25,10 +30,10 @@ def number(value, better) -> str:
         return ""
     if isinstance(value, str):
         return value
-    if isinstance(value, dict):  # an error to as many decimals as its value
-        text = number(value["value"], better)
-        decimals = len(text.partition(".")[2])
-        return text if "e" in text else f"{text} ± {value['error']:.{decimals}f}"
+    if isinstance(value, dict):  # three digits of the value, the error to as many decimals
+        size = abs(value["value"])
+        decimals = 3 if better == "one" or size == 0 else max(0, 2 - math.floor(math.log10(size)))
+        return f"{value['value']:.{decimals}f} ± {value['error']:.{decimals}f}"
     if better == "one":
         return f"{value:.3f}"
     return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
@@ -64,19 +69,48 @@ def srgb(pixels: np.ndarray, scale: float) -> np.ndarray:
     return np.rint(255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)).astype(np.uint8)
 
 
-def write_strip(folder: Path, view: dict, target: Path) -> None:
-    """The methods side by side at one exposure, twice as large."""
+def beside(parts: list[np.ndarray]) -> np.ndarray:
+    height, width = parts[0].shape[:2]
+    canvas = np.full((height, len(parts) * (width + GAP) - GAP, 3), 255, np.uint8)
+    for i, part in enumerate(parts):
+        canvas[:, i * (width + GAP):i * (width + GAP) + width] = part
+    return canvas
+
+
+def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> None:
+    """Images side by side at one exposure, twice as large."""
     found = {image["id"]: folder / image["files"]["full"] for image in view["images"]}
     reference = images.read(found["reference"])
     # Middle grey for the logarithmic mean, as vpl-render --exposure auto.
     luminance = reference @ np.array([0.2126, 0.7152, 0.0722])
     scale = 0.18 / np.exp(np.log(luminance[luminance > 0]).mean())
-    parts = [srgb(images.read(found[name]), scale) for name in STRIP if name in found]
-    height, width = parts[0].shape[:2]
-    canvas = np.full((height, len(parts) * (width + GAP) - GAP, 3), 255, np.uint8)
-    for i, part in enumerate(parts):
-        canvas[:, i * (width + GAP):i * (width + GAP) + width] = part
+    canvas = beside([srgb(images.read(found[name]), scale) for name in names])
     Image.fromarray(canvas).resize((canvas.shape[1] * 2, canvas.shape[0] * 2), Image.NEAREST).save(target)
+
+
+def write_overlays(folder: Path, view: dict, names: list[str], target: Path) -> None:
+    found = {picture["id"]: folder / picture["file"] for picture in view["pictures"]}
+    Image.fromarray(beside([np.asarray(Image.open(found[name]).convert("RGB")) for name in names])).save(target)
+
+
+def write_summary(results: dict) -> None:
+    """The README's table: main views, one row a scene."""
+    rows = {(row["view"], row["method"]): row for row in results["results"] if row["part"] == "methods"}
+    lines = ["| scene, VPLs | from the light | random | blue noise, uniform (thesis) | **blue noise, local (ours)** | "
+             "mean ratio, ours | CPU s |", "|---" * 7 + "|"]
+    scenes, _ = settings.load()
+    for scene in scenes:
+        found = [rows[f"{scene.id}-main", method] for method in METHODS]
+        best = min(row["relmse"] for row in found)
+        cells = [f"**{row['relmse']:.3g}**" if row["relmse"] == best else f"{row['relmse']:.3g}" for row in found]
+        ours = found[-1]
+        lines.append(f"| {scene.title}, {ours['vpls']} | {' | '.join(cells)} | {ours['mean_ratio']:.3f} ± "
+                     f"{ours['mean_ratio_error']:.3f} | {ours['cpu_s']:.0f} |")
+    path = settings.ROOT / "README.md"
+    text, count = re.subn(r"<!-- summary -->.*?<!-- end -->", "<!-- summary -->\n" + "\n".join(lines) + "\n<!-- end -->",
+                          path.read_text(), flags=re.S)
+    assert count == 1, f"{path}: one place for the summary"
+    output.write_text(path, text)
 
 
 def main() -> int:
@@ -86,9 +120,13 @@ def main() -> int:
     folder = Path(sys.argv[1])
     report = json.loads((folder / "report.json").read_text())
     write_tables(report)
+    write_summary(json.loads((folder / "results.json").read_text()))
     for scene in report["scenes"]:
-        for view in scene["views"][:1]:
-            write_strip(folder, view, DOCS / "images" / f"methods-{scene['id']}.png")
+        view = scene["views"][0]
+        for strip, names in STRIPS.items():
+            write_strip(folder, view, names, DOCS / "images" / f"{strip}-{scene['id']}.png")
+        for name, overlays in OVERLAYS.items():
+            write_overlays(folder, view, overlays, DOCS / "images" / f"{name}-{scene['id']}.png")
     for plot in report["plots"]:
         subprocess.run([sys.executable, settings.EVAL / "report/plots.py", folder / "report.json", plot["id"],
                         "-o", DOCS / "images" / f"{plot['id']}.png"], check=True)
