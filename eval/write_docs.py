@@ -21,7 +21,8 @@ GAP = 4  # pixels of white between two pictures
 STRIPS = {"methods": ["light", "random", "uniform", "local", "reference"],
           "scatter": ["reference", "local", "even", "literal"],
           "equal-time": ["path", "balanced", "reference"]}
-OVERLAYS = {"dots": ["dots-random", "dots-local"], "cuts": ["cut", "cut-lightcuts"]}
+OVERLAYS = {"dots-u-shape": ["dots-random", "dots-local"], "cuts-sponza": ["cut", "cut-lightcuts"]}
+LEAST_WIDTH = 480  # of an overlay; smaller ones are enlarged by whole numbers
 METHODS = ["light", "random", "uniform", "local"]
 
 
@@ -90,7 +91,9 @@ def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> Non
 
 def write_overlays(folder: Path, view: dict, names: list[str], target: Path) -> None:
     found = {picture["id"]: folder / picture["file"] for picture in view["pictures"]}
-    Image.fromarray(beside([np.asarray(Image.open(found[name]).convert("RGB")) for name in names])).save(target)
+    parts = [np.asarray(Image.open(found[name]).convert("RGB")) for name in names]
+    times = -(-LEAST_WIDTH // parts[0].shape[1])
+    Image.fromarray(beside([part.repeat(times, axis=0).repeat(times, axis=1) for part in parts])).save(target)
 
 
 def write_summary(results: dict) -> None:
@@ -126,7 +129,8 @@ def main() -> int:
         for strip, names in STRIPS.items():
             write_strip(folder, view, names, DOCS / "images" / f"{strip}-{scene['id']}.png")
         for name, overlays in OVERLAYS.items():
-            write_overlays(folder, view, overlays, DOCS / "images" / f"{name}-{scene['id']}.png")
+            if name.endswith(f"-{scene['id']}"):
+                write_overlays(folder, view, overlays, DOCS / "images" / f"{name}.png")
     for plot in report["plots"]:
         subprocess.run([sys.executable, settings.EVAL / "report/plots.py", folder / "report.json", plot["id"],
                         "-o", DOCS / "images" / f"{plot['id']}.png"], check=True)
