@@ -89,4 +89,4 @@ def heat_map(values: np.ndarray, target: Path) -> str:
     """A pixel for each of the image, so that the viewer can lay it over; returns the scale, in words."""
     most = float(values.max())
     plt.imsave(target, values, cmap="viridis", vmin=0, vmax=max(most, 1e-30), metadata={"Software": None})
-    return f": dark 0, yellow {most:.3g}"
+    return f": dark 0, yellow {most:.0f}" if most >= 10 else f": dark 0, yellow {most:.3g}"

@@ -19,12 +19,15 @@ COLUMNS = [column("vpls", "VPLs"), column("spp", "samples a pixel"), column("fil
            column("gain", "path tracer / pipeline", better="high"),
            column("wall_gain", "the same by wall time", better="high")]
 MEASURED_SPP = 64
-FIRST_SPP = 4  # of the picture that tells how long a sample takes
+TRIAL_SPP = 4, 32  # of the pictures that tell how long a sample takes, and how long loading
 
 
 def picture_spp(context: Context, view, c, target_s: float) -> int:
-    _, short = pipeline.path_traced(context.runner, view, c.film, FIRST_SPP, 1)
-    return max(1, round(FIRST_SPP * target_s / short[0].cpu_s))
+    few, many = TRIAL_SPP
+    few_s, many_s = (pipeline.path_traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s for spp in TRIAL_SPP)
+    sample_s = max((many_s - few_s) / (many - few), 1e-6)
+    loading_s = max(0.0, few_s - few * sample_s)
+    return max(1, round((target_s - loading_s) / sample_s))
 
 
 def balanced(c: pipeline.Configuration, size: dict) -> pipeline.Configuration:
