@@ -103,6 +103,8 @@ def write_summary(results: dict) -> None:
              "mean ratio, ours | CPU s |", "|---" * 7 + "|"]
     scenes, _ = settings.load()
     for scene in scenes:
+        if (f"{scene.id}-main", METHODS[0]) not in rows:
+            raise SystemExit(f"eval: the README's summary wants {scene.title}, which the run has left out")
         found = [rows[f"{scene.id}-main", method] for method in METHODS]
         best = min(row["relmse"] for row in found)
         cells = [f"**{row['relmse']:.3g}**" if row["relmse"] == best else f"{row['relmse']:.3g}" for row in found]
@@ -112,7 +114,8 @@ def write_summary(results: dict) -> None:
     path = settings.ROOT / "README.md"
     text, count = re.subn(r"<!-- summary -->.*?<!-- end -->", "<!-- summary -->\n" + "\n".join(lines) + "\n<!-- end -->",
                           path.read_text(), flags=re.S)
-    assert count == 1, f"{path}: one place for the summary"
+    if count != 1:
+        raise SystemExit(f"eval: {path}: has {count} places for the summary, '<!-- summary -->' to '<!-- end -->', not one")
     output.write_text(path, text)
 
 

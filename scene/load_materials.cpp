@@ -20,6 +20,7 @@ constexpr float kMirrorExponent = 1e4f;
 // Phong exponents above this are taken for it: floats hold no narrower lobe.
 constexpr float kMostExponent = 1e6f;
 constexpr double kMostIor = 100.0;
+
 Vec3 toVec3(const tinyobj::real_t* v) { return fromOrigin({v[0], v[1], v[2]}, {}); }
 Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
+#include <set>
 #include <sstream>
 #include <string_view>
 
-#define TINYOBJLOADER_IMPLEMENTATION
+#define TINYOBJLOADER_IMPLEMENTATION  // of scene/tinyobj.h, here alone
 #include "core/files.h"
 #include "core/memory.h"
 #include "scene/obj_lines.h"

@@ -1,6 +1,7 @@
 #include "scene/obj_lines.h"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 namespace bnvpl {

@@ -75,12 +75,12 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
         entry["images"].append({"id": image["id"], "label": image["label"], "numbers": image.get("numbers", ""),
                                 "files": files})
     for picture in shown["maps"]:
-        target = place / f"{picture['id']}.png"
+        target, label = place / f"{picture['id']}.png", picture["label"]
         if "channel" in picture:
-            picture["label"] += heat_map(images.read_channel(picture["file"], picture["channel"]), target)
+            label += heat_map(images.read_channel(picture["file"], picture["channel"]), target)
         else:
             shutil.copyfile(picture["file"], target)
-        entry["pictures"].append({"id": picture["id"], "label": picture["label"],
+        entry["pictures"].append({"id": picture["id"], "label": label,
                                   "file": str(target.relative_to(folder))})
     return entry
 

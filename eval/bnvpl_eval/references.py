@@ -67,7 +67,7 @@ def require(view: View, film: str) -> dict:
 
 
 def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
-    require(view, film)
+    """Both halves. require() has looked at them: hashing a model for each image would take longer than reading it."""
     halves = [images.read(path(view, film, half), layer) for half in "ab"]
     return halves[0], halves[1]
 

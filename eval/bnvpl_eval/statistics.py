@@ -13,6 +13,11 @@ import numpy as np
 EPSILON = 1e-4  # of relMSE, times the squared mean of the reference: as vpl-inspect compare
 
 
+def relative_weight(reference: np.ndarray) -> np.ndarray:
+    """What relMSE multiplies squared errors by."""
+    return 1.0 / (reference**2 + EPSILON * reference.mean()**2)
+
+
 def root(value: float) -> float:
     return float(np.sqrt(max(value, 0.0)))
 
@@ -21,7 +26,7 @@ def summarise(images: list[np.ndarray], halves: tuple[np.ndarray, np.ndarray]) -
     a, b = (half.astype(np.float64) for half in halves)
     reference = (a + b) / 2
     mean = reference.mean()
-    weight = 1.0 / (reference**2 + EPSILON * mean**2)
+    weight = relative_weight(reference)
     stack = np.stack(images).astype(np.float64)
     products = (stack - a) * (stack - b)
     mse = products.mean(axis=(1, 2, 3))

@@ -58,6 +58,18 @@ class Caching(unittest.TestCase):
             runner.run("vpl-fake", ["{in}", "next", "@out.txt"], {"in": made}, ["out.txt"])
         self.assertEqual(self.calls(), 4)
 
+    def test_a_tool_that_is_built_anew_ends_the_evaluation(self):
+        runner = Runner(self.folder, self.folder / "cache", quiet=True)
+        self.run_tool("a", runner)
+        self.tool.write_text(self.tool.read_text() + "# another version\n")
+        with self.assertRaisesRegex(SystemExit, "vpl-fake: was built anew"):
+            self.run_tool("b", runner)
+        self.assertEqual(self.calls(), 1)
+
+    def test_provenance_is_in_every_run(self):
+        runner = Runner(self.folder, self.folder / "cache", True, {"commit": "0123abc"})
+        self.assertEqual(self.run_tool("a", runner).record["commit"], "0123abc")
+
     def test_failure_tells_why_and_leaves_nothing(self):
         with self.assertRaisesRegex(SystemExit, "exit code 3: made to fail"):
             self.run_tool("fail")

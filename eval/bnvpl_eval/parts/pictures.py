@@ -54,7 +54,7 @@ def equal_time(context: Context, view: View) -> list[dict]:
     spp = picture_spp(context, view, c, sum(run.cpu_s for run in runs))
     path, _ = pipeline.path_traced(context.runner, view, c.film, spp, 1)
     row = next((r for r in context.results if r["part"] == "equal-time" and r["view"] == view.name and
-                "gain" in r and r["spp"] == c.spp), None)
+                "gain" in r and (r["vpls"], r["spp"]) == (c.vpls, c.spp)), None)
     told = [f"relMSE {row[key]:.3g}" if row else "" for key in ("pipeline_relmse", "path_relmse")]
     return [{"id": "balanced", "label": f"ours, balanced ({c.spp} spp)", "file": ours, "numbers": told[0]},
             {"id": "path", "label": f"path tracer, time of that ({spp} spp)", "file": path, "numbers": told[1]}]

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import references
 from ..context import Context
-from ..statistics import EPSILON
+from ..statistics import relative_weight
 from ..tables import column, table
 
 COLUMNS = [column("spp", "samples a pixel, both halves"), column("half_difference", "RMS difference of the halves / mean"),
@@ -15,8 +15,7 @@ COLUMNS = [column("spp", "samples a pixel, both halves"), column("half_differenc
 def own_relmse(halves: tuple[np.ndarray, np.ndarray]) -> float:
     """Of the mean of the halves, whose error is half of their difference."""
     a, b = (half.astype(np.float64) for half in halves)
-    reference = (a + b) / 2
-    return float((((a - b) / 2)**2 / (reference**2 + EPSILON * reference.mean()**2)).mean())
+    return float((((a - b) / 2)**2 * relative_weight((a + b) / 2)).mean())
 
 
 def run(context: Context) -> None:
