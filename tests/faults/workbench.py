@@ -114,7 +114,10 @@ class Workbench(unittest.TestCase):
     def start(self, command: Command, faults: dict | None = None, more=(), **settings) -> subprocess.Popen:
         environment = dict(os.environ)
         if faults:
-            environment.update({f"FAULT_{key.upper()}": str(value) for key, value in faults.items()}, LD_PRELOAD=SHIM)
+            # By its name, for a path in LD_PRELOAD ends at a space.
+            folder, name = os.path.split(SHIM)
+            environment.update({f"FAULT_{key.upper()}": str(value) for key, value in faults.items()},
+                               LD_PRELOAD=name, LD_LIBRARY_PATH=folder)
         settings = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | settings
         return subprocess.Popen([*command.line(self.folder), "--quiet", *more], cwd=SOURCE, env=environment,
                                 **settings)
