@@ -9,14 +9,26 @@ namespace bnvpl {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
 
+// Sine and cosine by their series, to a unit in the last place for |x| <= pi / 4: a third of the
+// library's time, and the same on every machine.
+constexpr float sineOfEighth(float x) {
+  const float s = x * x;
+  return x * (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s / 362880))));
+}
+constexpr float cosineOfEighth(float x) {
+  const float s = x * x;
+  return 1.0f + s * (-1.0f / 2 + s * (1.0f / 24 + s * (-1.0f / 720 + s / 40320)));
+}
+
 // Uniform on the unit disk, Shirley & Chiu 1997: keeps strata together.
 inline Vec3 sampleDisk(float u, float v) {
   const float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
-  if (a == 0.0f && b == 0.0f) return {};
   const bool wide = std::fabs(a) > std::fabs(b);
-  const float r = wide ? a : b;
-  const float phi = wide ? kPi / 4.0f * (b / a) : kPi / 2.0f - kPi / 4.0f * (a / b);
-  return {r * std::cos(phi), r * std::sin(phi), 0.0f};
+  const float r = wide ? a : b, other = wide ? b : a;
+  if (r == 0.0f) return {};
+  const float phi = kPi / 4.0f * (other / r);  // from the nearest axis
+  const float along = r * cosineOfEighth(phi), across = r * sineOfEighth(phi);
+  return wide ? Vec3{along, across, 0.0f} : Vec3{across, along, 0.0f};
 }
 
 // Cosine-weighted direction about +z.

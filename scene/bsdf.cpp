@@ -75,6 +75,7 @@ float Bsdf::reflectance() const {
 }
 
 float Bsdf::photonShadingFactor() const {
+  if (point_.ns == point_.ng) return dot(point_.ng, point_.wo) > 0.0f ? 1.0f : 0.0f;
   const float geometric = dot(point_.ng, point_.wo);
   if (!(geometric > 0.0f)) return 0.0f;
   return std::min(kMostShadingFactor, std::max(0.0f, dot(point_.ns, point_.wo)) / geometric);
@@ -138,6 +139,16 @@ bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& ou
   const float pick = rng.next(), u = rng.next(), v = rng.next();
   return sample(group, transport, pick, {u, v}, out);
 }
+// Where there is no other lobe, all but the albedo cancels. A photon leaves by the geometric
+// cosine, so that its weight stays the albedo.
+bool Bsdf::sampleDiffuse(bool photons, float shading, Point2 at, BsdfSample& out) const {
+  const Vec3 axis = photons ? point_.ng : point_.ns;
+  out.wi = Basis(axis).toWorld(sampleCosineHemisphere(at.x, at.y));
+  out.pdf = pdfCosineHemisphere(dot(axis, out.wi));
+  out.weight = diffuse_ * shading;
+  return dot(point_.ng, out.wi) > 0.0f && out.pdf > 0.0f && !isBlack(out.weight);
+}
+
 bool Bsdf::sample(LobeGroup group, Transport transport, float pick, Point2 at,
                   BsdfSample& out) const {
   if (glass_) return false;
@@ -146,6 +157,7 @@ bool Bsdf::sample(LobeGroup group, Transport transport, float pick, Point2 at,
   const float shading = photons ? photonShadingFactor() : 1.0f;
   if (shading == 0.0f) return false;
   out.side = ng;
+  if (group == LobeGroup::Rough && diffuseOnly()) return sampleDiffuse(photons, shading, at, out);
   const Vec3 lobeAxis = glossyAxis();
 
   if (group == LobeGroup::Chain && !sharp_) {

@@ -76,6 +76,7 @@ class Bsdf {
   float groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const;
   Vec3 glossyBound(float cosAlpha) const;  // Phong lobe without the cosine
   Vec3 glossyAxis() const { return reflect(point_.wo, point_.ns); }
+  bool sampleDiffuse(bool photons, float shading, Point2 at, BsdfSample& out) const;
   bool sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const;
 
   const SurfacePoint& point_;

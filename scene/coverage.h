@@ -32,18 +32,22 @@ class Coverage {
         normal_(normal),
         reach_(std::move(reach)),
         rays_(rays),
-        grid_(position, reach_) {}
+        grid_(position, normal, reach_) {}
 
   // One of the VPLs that reach the point, lie on its sheet of surface and are in sight, each with
   // the same probability: they are tried in random order, which takes about one ray.
   Found pick(Vec3 at, Vec3 normal, Rng& rng) const {
+    return pick(at, normal, grid_.lookUp(at), rng);
+  }
+  // The same, looked up in grid() before.
+  Found pick(Vec3 at, Vec3 normal, const ReachGrid::Lookup& lookup, Rng& rng) const {
     std::array<uint32_t, kMaxEligible> eligible;
     size_t left = 0, reaching = 0;
-    grid_.forEachReaching(at, [&](uint32_t i, float) {
+    ReachGrid::forEachReaching(lookup, [&](const ReachGrid::Disk& d) {
       ++reaching;
       if (left < kMaxEligible &&
-          sameSheet(at, normal, position_[i], normal_[i], kPlaneFactor * reach_[i])) {
-        eligible[left++] = i;
+          sameSheet(at, normal, d.centre, d.normal, kPlaneFactor * reach_[d.index])) {
+        eligible[left++] = d.index;
       }
     });
     Found found;
@@ -69,15 +73,14 @@ class Coverage {
     };
     if (!speaks(i)) return 0.0f;
     uint32_t speakers = 1;
-    grid_.forEachReaching(at, [&](uint32_t k, float) { speakers += k != i && speaks(k) ? 1 : 0; });
+    ReachGrid::forEachReaching(grid_.lookUp(at), [&](const ReachGrid::Disk& d) {
+      speakers += d.index != i && speaks(d.index) ? 1 : 0;
+    });
     return 1.0f / static_cast<float>(speakers);
   }
 
-  // Every VPL within reach, whatever lies between: the thesis' rule.
-  template <typename Fn>
-  void forEachReaching(Vec3 at, const Fn& fn) const {
-    grid_.forEachReaching(at, [&](uint32_t i, float) { fn(i); });
-  }
+  // Every VPL within reach, whatever lies between: the thesis' rule, and what pick() looks up.
+  const ReachGrid& grid() const { return grid_; }
 
  private:
   // More VPLs than this around one point: the first ones found. At the default reach there are

@@ -59,7 +59,7 @@ std::vector<size_t> verticesOfWords(std::string_view obj) {
   std::vector<size_t> found;
   size_t vertex = 0;
   for (size_t begin = 0; begin < obj.size();) {
-    const size_t end = std::min(obj.find_first_of("\r\n", begin), obj.size());
+    const size_t end = lineEnd(obj, begin);
     std::string_view line = obj.substr(begin, end - begin);
     begin = end + 1;
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/errors.h"
 
@@ -17,7 +18,10 @@ struct MeshLines {
 // The other lines (points, lines, weights of skins, tags of subdivision) mean nothing here, and
 // tinyobj copies what they hold again and again: memory that grows as the square of the file.
 // Throws InputError at a face that would take for ever. `file` is for the message.
-MeshLines meshLines(const fs::path& file, const std::string& text);
+MeshLines meshLines(const fs::path& file, std::string text);
+
+// Where the line that holds `at` ends: at its "\r" or "\n", as for tinyobj, or with the text.
+size_t lineEnd(std::string_view text, size_t at);
 
 // Without white space at its end.
 std::string firstLine(std::string text);

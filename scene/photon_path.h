@@ -17,61 +17,93 @@ struct PhotonFate {
   bool finite = true;  // false: its flux became NaN or infinite and what was left was dropped
 };
 
-// Follows a photon through the scene. At each hit with rough lobes, visit(bsdf, flux, straight)
-// gets the flux that arrives (before albedo), shading normals accounted for, and whether nothing
-// was between the light and the hit; at most maxBounces times, counting the rough scatterings so
-// far plus this one. Russian roulette by reflectance keeps the flux about level.
-template <typename Visit>
-PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces,
-                       Rng& rng, const Visit& visit) {
-  PhotonFate fate;
-  Vec3 origin = start.origin, direction = start.direction, flux = start.flux;
-  unsigned rough = 0, chain = 0;
-  SurfacePoint hit;
-  if (!isFinite(flux)) {
-    fate.finite = false;
-    return fate;
+// A photon on its way through the scene.
+class PhotonWalk {
+ public:
+  PhotonWalk() = default;
+  // The numbers of `rng` go on from those that made `start`.
+  PhotonWalk(const PhotonStart& start, unsigned maxBounces, const Rng& rng)
+      : rng_(rng),
+        next_{start.origin, start.direction},
+        flux_(start.flux),
+        maxBounces_(maxBounces),
+        goesOn_(isFinite(start.flux)) {
+    fate_.finite = goesOn_;
   }
-  while (true) {
-    ++fate.rays;
-    if (!rays.closestHit(origin, direction, hit)) {
-      fate.escaped += flux;
-      return fate;
+
+  bool goesOn() const { return goesOn_; }
+  const Ray& next() const { return next_; }  // to be traced, where goesOn()
+  const PhotonFate& fate() const { return fate_; }
+  Rng& rng() { return rng_; }
+
+  // Takes what next() has hit; hit.triangle is kNone where it has left the scene. Where the hit has
+  // rough lobes, visit(bsdf, flux, straight) gets the flux that arrives (before albedo), shading
+  // normals accounted for, and whether nothing was between the light and the hit; at most
+  // maxBounces times, counting the rough scatterings so far plus this one. Russian roulette by
+  // reflectance keeps the flux about level.
+  template <typename Visit>
+  void advance(const RayScene& rays, const SurfacePoint& hit, const Visit& visit) {
+    ++fate_.rays;
+    goesOn_ = false;
+    if (hit.triangle == kNone) {
+      fate_.escaped += flux_;
+      return;
     }
     const Bsdf bsdf(rays.scene(), hit);
     // What does not travel on counts as absorbed, roulette included: escaped + absorbed = emitted
     // exactly.
-    fate.absorbed += flux;
+    fate_.absorbed += flux_;
     if (bsdf.hasRough()) {
-      const Vec3 arriving = flux * bsdf.photonShadingFactor();
+      const Vec3 arriving = flux_ * bsdf.photonShadingFactor();
       if (!isFinite(arriving)) {
-        fate.finite = false;
-        return fate;
+        fate_.finite = false;
+        return;
       }
-      ++fate.hits;
-      visit(bsdf, arriving, rough + chain == 0);
+      ++fate_.hits;
+      visit(bsdf, arriving, rough_ + chain_ == 0);
     }
     const float survive = bsdf.reflectance();
-    if (rng.next() >= survive) return fate;
+    if (rng_.next() >= survive) return;
     const float chainProbability = bsdf.chainProbability();
-    const bool takeChain = rng.next() < chainProbability;
+    const bool takeChain = rng_.next() < chainProbability;
     const float probability = takeChain ? chainProbability : 1.0f - chainProbability;
-    BsdfSample next;
-    const bool last = takeChain ? ++chain > kMaxChain : ++rough >= maxBounces;
+    BsdfSample sample;
+    const bool last = takeChain ? ++chain_ > kMaxChain : ++rough_ >= maxBounces_;
     if (last || !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Photons,
-                             rng, next)) {
-      return fate;
+                             rng_, sample)) {
+      return;
     }
-    const Vec3 onward = flux * next.weight * (1.0f / (probability * survive));
+    const Vec3 onward = flux_ * sample.weight * (1.0f / (probability * survive));
     if (!isFinite(onward)) {
-      fate.finite = false;
-      return fate;
+      fate_.finite = false;
+      return;
     }
-    flux = onward;
-    fate.absorbed += -flux;
-    origin = rays.lifted(hit.position, next.side);
-    direction = next.wi;
+    flux_ = onward;
+    fate_.absorbed += -flux_;
+    next_ = {rays.lifted(hit.position, sample.side), sample.wi};
+    goesOn_ = true;
   }
+
+ private:
+  Rng rng_{0, 0};
+  Ray next_;
+  Vec3 flux_;
+  unsigned maxBounces_ = 0, rough_ = 0, chain_ = 0;
+  bool goesOn_ = false;
+  PhotonFate fate_;
+};
+
+// Follows one photon to its end.
+template <typename Visit>
+PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces,
+                       const Rng& rng, const Visit& visit) {
+  PhotonWalk walk(start, maxBounces, rng);
+  SurfacePoint hit;
+  while (walk.goesOn()) {
+    if (!rays.closestHit(walk.next().origin, walk.next().direction, hit)) hit.triangle = kNone;
+    walk.advance(rays, hit, visit);
+  }
+  return walk.fate();
 }
 
 }  // namespace bnvpl

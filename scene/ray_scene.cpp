@@ -1,5 +1,7 @@
 #include "scene/ray_scene.h"
 
+#include "core/prefetch.h"
+
 #if __has_include(<embree4/rtcore.h>) && defined(BNVPL_EMBREE4)
 #include <embree4/rtcore.h>
 #else
@@ -101,6 +103,7 @@ struct RayScene::Impl {
     rtcReleaseGeometry(geometry);
   }
 
+  bool closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const;
   bool occluded(const RTCRay& from) const {
     RTCRay ray = from;
 #if RTC_VERSION_MAJOR >= 4
@@ -140,27 +143,33 @@ RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<I
 
 RayScene::~RayScene() = default;
 
-bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const {
+// Sets triangle, distance, and u and v to the barycentric coordinates.
+bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const {
   RTCRayHit rh{};
-  rh.ray = makeRay(origin, direction, std::numeric_limits<float>::infinity());
+  rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(impl_->scene, &rh);
+  rtcIntersect1(scene, &rh);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcIntersect1(impl_->scene, &context, &rh);
+  rtcIntersect1(scene, &context, &rh);
 #endif
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit.triangle = rh.hit.primID + (rh.hit.geomID == 1 ? s.maskedBegin : 0);
+  hit.distance = rh.ray.tfar;
+  hit.u = rh.hit.u, hit.v = rh.hit.v;
+  return true;
+}
 
-  hit.triangle = rh.hit.primID + (rh.hit.geomID == 1 ? scene_.maskedBegin : 0);
+// The rest of a hit, from its triangle, its distance and the barycentric coordinates in u and v.
+void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
   const Triangle& t = scene_.triangles[hit.triangle];
   const Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
              p2 = scene_.positions[t.position[2]];
-  const float b1 = rh.hit.u, b2 = rh.hit.v, b0 = 1.0f - b1 - b2;
+  const float b1 = hit.u, b2 = hit.v, b0 = 1.0f - b1 - b2;
   // From the corners, not along the ray: exact to a few ulps of the triangle, however long the ray.
   hit.position = b0 * p0 + b1 * p1 + b2 * p2;
-  hit.distance = rh.ray.tfar;
   hit.material = t.material;
   hit.wo = -direction;
   Vec3 ng = normalize(cross(p1 - p0, p2 - p0));
@@ -179,7 +188,37 @@ bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const 
     hit.u = b0 * a[0] + b1 * b[0] + b2 * c[0];
     hit.v = b0 * a[1] + b1 * b[1] + b2 * c[1];
   }
+}
+
+bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const {
+  if (!impl_->closestHit(scene_, {origin, direction}, hit)) return false;
+  describe(direction, hit);
   return true;
+}
+
+void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const {
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (impl_->closestHit(scene_, rays[i], hits[i])) {
+      prefetch(&scene_.triangles[hits[i].triangle]);
+    } else {
+      hits[i].triangle = kNone;
+    }
+  }
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].triangle == kNone) continue;
+    const Triangle& t = scene_.triangles[hits[i].triangle];
+    for (size_t c = 0; c < 3; ++c) {
+      prefetch(&scene_.positions[t.position[c]]);
+      if (t.normal[c] != kNone) prefetch(&scene_.normals[t.normal[c]]);
+      if (t.uv[c] != kNone) prefetch(&scene_.uvs[t.uv[c]]);
+    }
+  }
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].triangle == kNone) continue;
+    describe(rays[i].direction, hits[i]);
+    const uint32_t map = scene_.materials[hits[i].material].diffuseMap;
+    if (map != kNone) scene_.textures[map].prefetch(hits[i].u, hits[i].v);
+  }
 }
 
 bool RayScene::occluded(Vec3 from, Vec3 to) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 
 #include "scene/scene.h"
 
@@ -19,6 +20,10 @@ struct SurfacePoint {
   uint32_t triangle = kNone;
   uint32_t material = kNone;
   bool front = true;  // wo lies on the side of the triangle's winding
+};
+
+struct Ray {
+  Vec3 origin, direction;  // direction unit
 };
 
 // Starts of rays that are traced together.
@@ -40,6 +45,11 @@ class RayScene {
   // Nearest surface along the ray from `origin` (lifted off its own surface by the caller) in the
   // unit direction. False: the ray leaves the scene.
   bool closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const;
+  // The same for rays that have nothing to do with each other, up to kBatch of them: they wait for
+  // memory together, for corners, normals and texels alike. Of a ray that leaves the scene,
+  // hit.triangle is kNone and nothing else is set.
+  static constexpr size_t kBatch = 16;
+  void closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const;
 
   // Whether anything lies strictly between two points, both lifted by the caller.
   bool occluded(Vec3 from, Vec3 to) const;
@@ -60,6 +70,7 @@ class RayScene {
 
  private:
   struct Impl;
+  void describe(Vec3 direction, SurfacePoint& hit) const;
   const Scene& scene_;
   std::unique_ptr<Impl> impl_;
   float liftBase_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/prefetch.h"
 #include "formats/exr_io.h"
 #include "formats/pixels_io.h"
 #include "scene/radiance_hdr.h"
@@ -28,21 +29,28 @@ struct Bilinear {  // four texels and their weights
   float weight[4];
 };
 
+// std::floor, which is a call on the baseline machine; larger numbers are whole.
+float floorOf(float v) {
+  if (!(std::fabs(v) < 0x1p23f)) return v;
+  const auto whole = static_cast<float>(static_cast<int32_t>(v));
+  return whole > v ? whole - 1.0f : whole;
+}
+
 // The texel centre of column i is at (i + 0.5) / width. None for coordinates that are not finite,
 // which an OBJ or the scale of an MTL can make them.
 std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
   u = u * t.scale[0] + t.offset[0];
   v = v * t.scale[1] + t.offset[1];
   if (!std::isfinite(u) || !std::isfinite(v)) return std::nullopt;
-  const float x = (u - std::floor(u)) * static_cast<float>(t.width) - 0.5f;
-  const float y = (1.0f - (v - std::floor(v))) * static_cast<float>(t.height) - 0.5f;
-  const float fx = x - std::floor(x), fy = y - std::floor(y);
-  const auto wrap = [](float i, uint32_t n) {
-    const auto k = static_cast<int64_t>(i) % static_cast<int64_t>(n);
-    return static_cast<size_t>(k < 0 ? k + n : k);
+  const float x = (u - floorOf(u)) * static_cast<float>(t.width) - 0.5f;
+  const float y = (1.0f - (v - floorOf(v))) * static_cast<float>(t.height) - 0.5f;
+  const float left = floorOf(x), top = floorOf(y), fx = x - left, fy = y - top;
+  const auto wrap = [](int64_t i, int64_t n) {  // of -1 to n, as u - floor(u) is 0 to 1
+    return static_cast<size_t>(i < 0 ? i + n : i >= n ? i - n : i);
   };
-  const size_t x0 = wrap(std::floor(x), t.width), x1 = wrap(std::floor(x) + 1.0f, t.width);
-  const size_t y0 = wrap(std::floor(y), t.height), y1 = wrap(std::floor(y) + 1.0f, t.height);
+  const auto column = static_cast<int64_t>(left), row = static_cast<int64_t>(top);
+  const size_t x0 = wrap(column, t.width), x1 = wrap(column + 1, t.width);
+  const size_t y0 = wrap(row, t.height), y1 = wrap(row + 1, t.height);
   return Bilinear{{y0 * t.width + x0, y0 * t.width + x1, y1 * t.width + x0, y1 * t.width + x1},
                   {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
@@ -73,6 +81,13 @@ Vec3 Texture::lookup(float u, float v) const {
     sum += b->weight[k] * c;
   }
   return sum;
+}
+
+void Texture::prefetch(float u, float v) const {
+  const std::optional<Bilinear> b = bilinear(*this, u, v);
+  if (!b) return;
+  bnvpl::prefetch(&rgba[4 * b->texel[0]]);
+  bnvpl::prefetch(&rgba[4 * b->texel[2]]);
 }
 
 float Texture::lookupAlpha(float u, float v) const {

@@ -18,6 +18,7 @@ struct Texture {
   std::array<float, 2> scale{1, 1}, offset{0, 0};  // of the texture coordinates (MTL -s, -o)
 
   Vec3 lookup(float u, float v) const;        // bilinear, linear sRGB
+  void prefetch(float u, float v) const;      // what lookup() will read
   float lookupAlpha(float u, float v) const;  // bilinear; of the mask channel: see loadTexture
 };
 

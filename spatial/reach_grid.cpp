@@ -9,7 +9,8 @@
 
 namespace bnvpl {
 
-ReachGrid::ReachGrid(std::span<const Vec3> points, std::span<const float> radii) {
+ReachGrid::ReachGrid(std::span<const Vec3> points, std::span<const Vec3> normals,
+                     std::span<const float> radii) {
   if (points.empty()) return;
   origin_ = points[0];
   // Levels by powers of two of the radius. A cell is one radius wide at the top of a level and two
@@ -20,16 +21,23 @@ ReachGrid::ReachGrid(std::span<const Vec3> points, std::span<const float> radii)
     byExponent[std::ilogb(radii[i])].push_back(static_cast<uint32_t>(i));
   }
   constexpr int kFinestOfAll = -100;  // the cells of a denormal radius cannot be counted
-  const int finest = std::max(byExponent.begin()->first, kFinestOfAll);
+  const int finest = std::max({byExponent.begin()->first, kFinestOfAll,
+                               byExponent.rbegin()->first - (Lookup::kMaxLevels - 1)});
+  for (auto below = byExponent.begin(); below->first < finest; below = byExponent.begin()) {
+    auto& members = byExponent[finest];
+    members.insert(members.end(), below->second.begin(), below->second.end());
+    byExponent.erase(below);
+  }
   cellsPerUnit_ = std::ldexp(1.0f, -finest - 1);
   for (const auto& [exponent, members] : byExponent) {
-    levels_.emplace_back().shift = std::clamp(exponent, finest, finest + 62) - finest;
-    buildLevel(levels_.back(), members, points, radii);
+    levels_.emplace_back().shift = exponent - finest;
+    buildLevel(levels_.back(), members, points, normals, radii);
   }
 }
 
 void ReachGrid::buildLevel(Level& level, const std::vector<uint32_t>& members,
-                           std::span<const Vec3> points, std::span<const float> radii) const {
+                           std::span<const Vec3> points, std::span<const Vec3> normals,
+                           std::span<const float> radii) const {
   std::vector<std::pair<uint64_t, uint32_t>> listed;  // cell, disk
   const int64_t step = int64_t{1} << level.shift;
   for (const uint32_t i : members) {
@@ -57,7 +65,7 @@ void ReachGrid::buildLevel(Level& level, const std::vector<uint32_t>& members,
     size_t end = begin;
     while (end < listed.size() && listed[end].first == listed[begin].first) {
       const uint32_t i = listed[end++].second;
-      level.disks.push_back({points[i], radii[i] * radii[i], i});
+      level.disks.push_back({points[i], radii[i] * radii[i], normals[i], i});
     }
     const uint64_t key = listed[begin].first, bit = key >> 32 & level.filterMask;
     level.filter[bit / 64] |= uint64_t{1} << (bit % 64);

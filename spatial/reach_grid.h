@@ -4,37 +4,92 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/prefetch.h"
 #include "core/random.h"
 #include "core/vec3.h"
 
 namespace bnvpl {
 
 class ReachGrid {
- public:
-  // Points and their radii (> 0, finite), world units.
-  ReachGrid(std::span<const Vec3> points, std::span<const float> radii);
+  struct Level;
 
-  // Calls fn(index, distanceSquared) for every point with distance < its radius, in a fixed order.
-  template <typename Fn>
-  void forEachReaching(Vec3 at, const Fn& fn) const {
+ public:
+  struct Disk {  // copied, so that a cell is read in one sweep: two to a cache line
+    Vec3 centre;
+    float radiusSquared;
+    Vec3 normal;
+    uint32_t index;
+  };
+
+  // Points, their normals and their radii (> 0, finite), world units.
+  ReachGrid(std::span<const Vec3> points, std::span<const Vec3> normals,
+            std::span<const float> radii);
+
+  // The lists of disks that may reach a point.
+  class Lookup {
+    friend class ReachGrid;
+    static constexpr int kMaxLevels = 24;
+    static constexpr size_t kSweep = 32;  // disks that are tested before any is handed out
+    struct List {
+      const Level* level;
+      uint64_t key;
+      const Disk *begin, *end;
+    };
+    Vec3 at_;
+    uint32_t size_ = 0;
+    std::array<List, kMaxLevels> lists_;  // the first size_ are set
+  };
+
+  Lookup lookUp(Vec3 at) const {
+    Lookup lookup;
+    begin(at, lookup);
+    find(lookup);
+    return lookup;
+  }
+  // lookUp() in two steps: who has many points begins all and then finds all, so that they wait for
+  // memory together.
+  void begin(Vec3 at, Lookup& lookup) const {
+    lookup.at_ = at;
+    lookup.size_ = 0;
     const Cell finest = cellOf(at);
     for (const Level& level : levels_) {
       const uint64_t key = keyOf(finest, level.shift);
-      if (!level.mayHold(key)) continue;
-      for (uint64_t slot = key & level.mask;; slot = (slot + 1) & level.mask) {
-        const Slot& s = level.slots[slot];
-        if (s.begin == s.end) break;  // empty: nothing reaches this cell
-        if (s.key != key) continue;
-        for (uint32_t k = s.begin; k < s.end; ++k) {
-          const Disk& disk = level.disks[k];
-          const float d2 = lengthSquared(disk.centre - at);
-          if (d2 < disk.radiusSquared) fn(disk.index, d2);
+      prefetch(&level.slots[key & level.mask]);
+      lookup.lists_[lookup.size_] = {&level, key, nullptr, nullptr};
+      lookup.size_ += level.mayHold(key);  // no branch: it could not be foreseen
+    }
+  }
+  void find(Lookup& lookup) const {
+    uint32_t found = 0;
+    for (uint32_t l = 0; l < lookup.size_; ++l) {
+      const Lookup::List list = lookup.lists_[l];
+      const Slot& slot = list.level->slotOf(list.key);
+      const Disk* disks = list.level->disks.data();
+      prefetch(disks + slot.begin);
+      lookup.lists_[found++] = {list.level, list.key, disks + slot.begin, disks + slot.end};
+    }
+    lookup.size_ = found;
+  }
+
+  // Calls fn(disk) for every point whose distance is below its radius, in a fixed order.
+  template <typename Fn>
+  static void forEachReaching(const Lookup& lookup, const Fn& fn) {
+    for (uint32_t l = 0; l < lookup.size_; ++l) {
+      const auto& list = lookup.lists_[l];
+      for (const Disk* begin = list.begin; begin != list.end;) {
+        const Disk* end = begin + std::min<ptrdiff_t>(Lookup::kSweep, list.end - begin);
+        std::array<const Disk*, Lookup::kSweep + 1> reaching;
+        size_t count = 0;
+        for (; begin != end; ++begin) {  // no branch: it could not be foreseen
+          reaching[count] = begin;
+          count += lengthSquared(begin->centre - lookup.at_) < begin->radiusSquared;
         }
-        break;
+        for (size_t i = 0; i < count; ++i) fn(*reaching[i]);
       }
     }
   }
@@ -46,11 +101,6 @@ class ReachGrid {
   struct Slot {
     uint64_t key = 0;
     uint32_t begin = 0, end = 0;
-  };
-  struct Disk {  // copied, so that a cell is read in one sweep
-    Vec3 centre;
-    float radiusSquared;
-    uint32_t index;
   };
   struct Level {
     int shift = 0;  // of the finest level's cell numbers
@@ -65,6 +115,13 @@ class ReachGrid {
     bool mayHold(uint64_t key) const {
       const uint64_t bit = key >> 32 & filterMask;
       return (filter[bit / 64] >> (bit % 64) & 1) != 0;
+    }
+    // That of the key, or an empty one.
+    const Slot& slotOf(uint64_t key) const {
+      uint64_t slot = key & mask;
+      while (slots[slot].begin != slots[slot].end && slots[slot].key != key)
+        slot = (slot + 1) & mask;
+      return slots[slot];
     }
   };
 
@@ -84,7 +141,7 @@ class ReachGrid {
     return mix64(bits(c.x) | bits(c.y) << 21 | bits(c.z) << 42);
   }
   void buildLevel(Level& level, const std::vector<uint32_t>& members, std::span<const Vec3> points,
-                  std::span<const float> radii) const;
+                  std::span<const Vec3> normals, std::span<const float> radii) const;
 
   Vec3 origin_;  // cells count from here, so that scenes far from the world's origin keep precision
   float cellsPerUnit_ = 1.0f;  // of the finest level: a power of two, so that all cells nest

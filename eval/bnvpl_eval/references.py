@@ -1,7 +1,7 @@
 """The references: path-traced images in two independent halves, kept in eval/references/.
 
-A half is the mean of renders of CHUNK samples a pixel with different seeds, so that a stopped run goes on
-where it was. `key` names what the image depends on (scene content, film, samples); a stored reference
+A half is the mean of renders of CHUNK samples a pixel with different seeds: a stopped run goes on where it
+was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples); a stored reference
 whose key differs is refused.
 """
 
@@ -23,29 +23,42 @@ def path(view: View, film: str, half: str) -> Path:
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
+    """At least `spp` samples a pixel. A stored half of the same scene is gone on with, not begun anew: its samples
+    keep their weight (that it was rounded to half floats costs 0.02 %)."""
     target = path(view, film, half)
-    chunk = min(spp, CHUNK)
-    count = -(-spp // chunk)
-    key = reference_key(view, film, chunk * count, half)
-    if target.is_file() and json.loads(target.with_suffix(".json").read_text())["key"] == key:
+    stored = _stored(view, film, half)
+    done = stored["spp"] if stored else 0
+    if done >= spp:
         return
-    sums = {"": 0.0, "indirect": 0.0}
-    cpu_s = 0.0
-    for i in range(count):
-        seed = 1000 + 2 * i + (half == "b")  # away from the seeds that are judged
+    chunk = min(spp - done, CHUNK)
+    first_seed = stored["seeds"][1] + 2 if stored else 1000 + (half == "b")  # away from the seeds that are judged
+    seeds = range(first_seed, first_seed + 2 * -(-(spp - done) // chunk), 2)
+    sums = {layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0 for layer in ("", "indirect")}
+    cpu_s = stored["cpu_s"] if stored else 0.0
+    for seed in seeds:
         run = runner.run("vpl-render",
                          ["{scene}", "--size", film, "--integrator", "path", "--spp", chunk, "--seed", seed,
                           "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
                          {"scene": ROOT / view.file}, ["image.exr"])
         cpu_s += run.cpu_s
         for layer in sums:
-            sums[layer] = sums[layer] + images.read(run["image.exr"], layer).astype(np.float64)
-    note = f"bnvpl path tracer, {view.file}, {film}, {chunk * count} spp, half {half}"
-    images.write_half(target, {layer: total / count for layer, total in sums.items()}, note)
+            sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(np.float64)
+    total = done + chunk * len(seeds)
+    note = f"bnvpl path tracer, {view.file}, {film}, {total} spp, half {half}"
+    images.write_half(target, {layer: sum_ / total for layer, sum_ in sums.items()}, note)
     target.with_suffix(".json").write_text(json.dumps(
-        {"key": key, "scene": view.file, "film": film, "spp": chunk * count, "half": half,
-         "seeds": [1000 + (half == "b"), 2 * count + 998 + (half == "b")],
+        {"key": reference_key(view, film, total, half), "scene": view.file, "film": film, "spp": total, "half": half,
+         "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]],
          "cpu_s": round(cpu_s, 1)}, indent=1) + "\n")
+
+
+def _stored(view: View, film: str, half: str) -> dict | None:
+    """The record of a half that is there, if it is of this scene."""
+    record_file = path(view, film, half).with_suffix(".json")
+    if not record_file.is_file():
+        return None
+    record = json.loads(record_file.read_text())
+    return record if record["key"] == reference_key(view, film, record["spp"], half) else None
 
 
 def reference_key(view: View, film: str, spp: int, half: str) -> str:

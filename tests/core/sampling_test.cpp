@@ -69,6 +69,14 @@ TEST(Sampling, DiskIsUniformAndKeepsStrata) {
   }
 }
 
+TEST(Sampling, SeriesAreSineAndCosineOfAnEighthTurn) {
+  for (int i = -1000; i <= 1000; ++i) {
+    const float x = kPi / 4.0f * float(i) / 1000.0f;
+    EXPECT_NEAR(sineOfEighth(x), std::sin(double{x}), 1e-7);
+    EXPECT_NEAR(cosineOfEighth(x), std::cos(double{x}), 1e-7);
+  }
+}
+
 TEST(Sampling, CosineHemisphere) {
   const Density pdf = [](double z) { return double{pdfCosineHemisphere(float(z))}; };
   EXPECT_NEAR(overSphere(pdf), 1.0, 1e-4);

@@ -162,11 +162,13 @@ TEST(Spatial, DisksThatReachAreAllFound) {
     Rng rng(streamKey(6, Stream::Plot), 0);
     for (float& r : radius) r = std::pow(2.0f, 3.0f - 12.0f * rng.next());
     if (points.size() > 1) radius[0] = 1e-42f, radius[1] = 1e6f;
-    const ReachGrid grid(points, radius);
+    const std::vector<Vec3> normals(points.size(), Vec3{0, 0, 1});
+    const ReachGrid grid(points, normals, radius);
     for (size_t q = 0; q < points.size(); q += 37) {
       const Vec3 at = points[q] + Vec3(0.0f, 0.0f, q % 2 ? 0.5f * radius[q] : 0.0f);
       std::vector<uint32_t> found, expected;
-      grid.forEachReaching(at, [&](uint32_t i, float) { found.push_back(i); });
+      ReachGrid::forEachReaching(grid.lookUp(at),
+                                 [&](const ReachGrid::Disk& d) { found.push_back(d.index); });
       std::sort(found.begin(), found.end());
       for (uint32_t i = 0; i < points.size(); ++i) {
         if (lengthSquared(points[i] - at) < radius[i] * radius[i]) expected.push_back(i);

@@ -80,5 +80,24 @@ TEST(Place, DeeperPathsAddCandidatesAtLaterVertices) {
   EXPECT_LT(four.paths * 2, two.paths);  // up to three a path instead of one
 }
 
+// Paths are traced many at a time. In a closed room nearly every second vertex has a third, which
+// comes before the next path's second.
+TEST(Place, VerticesOfOnePathStayTogether) {
+  const World world("u-shape/scene.toml");
+  PlaceOptions deep = options(4000);
+  deep.depth = 3;
+  const VplTable two = placeFromCamera(world.rays, options(2000)).table;
+  const VplTable three = placeFromCamera(world.rays, deep).table;
+  size_t found = 0, apart = 0, before = 0;
+  for (size_t i = 0; i < three.size() && found < two.size(); ++i) {
+    if (three.position[i] != two.position[found]) continue;
+    apart += found > 0 && i - before == 2;
+    before = i;
+    ++found;
+  }
+  EXPECT_GT(found, 1900u);
+  EXPECT_GT(apart, found * 9 / 10);
+}
+
 }  // namespace
 }  // namespace bnvpl::test

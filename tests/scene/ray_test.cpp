@@ -29,6 +29,45 @@ TEST_F(Rays, HitsAreDescribedFromTheSideOfTheRay) {
   EXPECT_FALSE(rays.closestHit({1.5f, 0, 2}, {0, 0, -1}, hit));
 }
 
+// With normals, coordinates and a texture, so that all is asked for ahead that ever is.
+TEST_F(Rays, ManyAtOnceAreWhatTheyAreOneByOne) {
+  const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
+  const RayScene rays(scene);
+  Rng rng(streamKey(9, Stream::Plot), 0);
+  std::array<Ray, RayScene::kBatch> some;
+  std::array<SurfacePoint, RayScene::kBatch> hits;
+  size_t found = 0, left = 0;
+  for (size_t size = 0; size <= some.size(); ++size) {
+    for (size_t i = 0; i < size; ++i) {
+      const float u = rng.next(), v = rng.next();
+      const Vec3 at{rng.next(), rng.next(), rng.next()};
+      some[i] = {scene.bounds.lower + scene.bounds.extent() * at, sampleSphere(u, v)};
+    }
+    rays.closestHits({some.data(), size}, hits);
+    for (size_t i = 0; i < size; ++i) {
+      SurfacePoint alone;
+      if (!rays.closestHit(some[i].origin, some[i].direction, alone)) {
+        EXPECT_EQ(hits[i].triangle, kNone);
+        ++left;
+        continue;
+      }
+      ++found;
+      EXPECT_EQ(hits[i].triangle, alone.triangle);
+      EXPECT_EQ(hits[i].material, alone.material);
+      EXPECT_EQ(hits[i].position, alone.position);
+      EXPECT_EQ(hits[i].ng, alone.ng);
+      EXPECT_EQ(hits[i].ns, alone.ns);
+      EXPECT_EQ(hits[i].wo, alone.wo);
+      EXPECT_EQ(hits[i].distance, alone.distance);
+      EXPECT_EQ(hits[i].front, alone.front);
+      EXPECT_TRUE(hits[i].u == alone.u || (std::isnan(hits[i].u) && std::isnan(alone.u)));
+      EXPECT_TRUE(hits[i].v == alone.v || (std::isnan(hits[i].v) && std::isnan(alone.v)));
+    }
+  }
+  EXPECT_GT(found, 10u);
+  EXPECT_GT(left, 10u);
+}
+
 TEST_F(Rays, NoTextureCoordinatesAreNaN) {
   const Scene scene =
       loadMesh("mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n", kPaint);

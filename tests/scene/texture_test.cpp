@@ -25,9 +25,11 @@ TEST_F(Textures, FirstRowOfTheFileIsTheTop) {
   expectColour(t.lookup(0.75f, 0.75f), {0, 1, 0});
   expectColour(t.lookup(0.25f, 0.25f), {0, 0, 1});
   expectColour(t.lookup(0.75f, 0.25f), {1, 1, 1});
-  expectColour(t.lookup(0.5f, 0.75f), {0.5f, 0.5f, 0});  // bilinear, in linear light
-  expectColour(t.lookup(-1.75f, 5.75f), {1, 0, 0});      // repeats
-  expectColour(t.lookup(0.0f, 0.75f), {0.5f, 0.5f, 0});  // across the seam
+  expectColour(t.lookup(0.5f, 0.75f), {0.5f, 0.5f, 0});    // bilinear, in linear light
+  expectColour(t.lookup(-1.75f, 5.75f), {1, 0, 0});        // repeats
+  expectColour(t.lookup(0.0f, 0.75f), {0.5f, 0.5f, 0});    // across the seam
+  expectColour(t.lookup(-1e-9f, 0.75f), {0.5f, 0.5f, 0});  // less its floor, a whole 1
+  expectColour(t.lookup(3e9f, 0.75f), {0.5f, 0.5f, 0});
   expectColour(t.lookup(NAN, 0.5f), {});
   expectColour(t.lookup(INFINITY, 0.5f), {});
 }

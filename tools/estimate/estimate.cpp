@@ -3,6 +3,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -32,13 +33,14 @@ class Scatterer {
         perPhotonPower_(1.0 / photonPower),
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
 
-  // Hands the flux that leaves a diffuse hit to the VPLs around it.
-  void scatter(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng,
-               PhotonSums& sums) const {
+  const ReachGrid& grid() const { return coverage_.grid(); }
+  // Hands the flux that leaves a diffuse hit to the VPLs around it, which `near` has found.
+  void scatter(const SurfacePoint& hit, const ReachGrid::Lookup& near, Vec3 flux, bool straight,
+               Rng& rng, PhotonSums& sums) const {
     ++sums.hits;
     tally(sums, kReflected, flux);
-    if (options_.scatter == Scatter::Even) return scatterEvenly(hit, flux, straight, sums);
-    scatterGuarded(hit, flux, straight, rng, sums);
+    if (options_.scatter == Scatter::Even) return scatterEvenly(hit, near, flux, straight, sums);
+    scatterGuarded(hit, near, flux, straight, rng, sums);
   }
   void tally(PhotonSums& sums, Tally t, Vec3 flux) const {
     addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
@@ -73,20 +75,21 @@ class Scatterer {
 
   // The thesis to the letter (section 3.4): evenly among all within the radius, whatever lies
   // between.
-  void scatterEvenly(const SurfacePoint& hit, Vec3 flux, bool straight, PhotonSums& sums) const {
+  void scatterEvenly(const SurfacePoint& hit, const ReachGrid::Lookup& near, Vec3 flux,
+                     bool straight, PhotonSums& sums) const {
     uint32_t found = 0;
-    coverage_.forEachReaching(hit.position, [&](uint32_t) { ++found; });
+    ReachGrid::forEachReaching(near, [&](const ReachGrid::Disk&) { ++found; });
     if (found == 0) return tally(sums, kOutside, flux);
     const Vec3 share = flux * (1.0f / static_cast<float>(found));
-    coverage_.forEachReaching(hit.position,
-                              [&](uint32_t i) { deposit(i, hit, share, straight, sums); });
+    ReachGrid::forEachReaching(
+        near, [&](const ReachGrid::Disk& d) { deposit(d.index, hit, share, straight, sums); });
     tally(sums, kDeposited, flux);
   }
 
   // Evenly among those on the same sheet and in sight, in expectation: one of them gets all.
-  void scatterGuarded(const SurfacePoint& hit, Vec3 flux, bool straight, Rng& rng,
-                      PhotonSums& sums) const {
-    const Coverage::Found found = coverage_.pick(hit.position, hit.ng, rng);
+  void scatterGuarded(const SurfacePoint& hit, const ReachGrid::Lookup& near, Vec3 flux,
+                      bool straight, Rng& rng, PhotonSums& sums) const {
+    const Coverage::Found found = coverage_.pick(hit.position, hit.ng, near, rng);
     sums.guardRays += found.rays;
     if (found.vpl) {
       deposit(*found.vpl, hit, flux, straight, sums);
@@ -106,6 +109,75 @@ class Scatterer {
   Coverage coverage_;
 };
 
+// Photons on their way together: each step of one waits for memory, which the others bridge.
+class PhotonBatch {
+ public:
+  PhotonBatch(const RayScene& rays, const Scatterer& scatterer)
+      : rays_(rays),
+        scatterer_(scatterer),
+        photons_(kSize),
+        next_(kSize),
+        hits_(kSize),
+        near_(kSize) {}
+
+  // Follows photons to their ends. start(walk) makes the next one, or tells that there is none
+  // left.
+  template <typename Start>
+  void follow(const Start& start, PhotonSums& sums) {
+    size_t size = 0;
+    while (size < kSize && start(photons_[size])) ++size;
+    while (size > 0) {
+      // Those that have ended give their places to new ones.
+      for (size_t i = 0; i < size;) {
+        PhotonWalk& photon = photons_[i];
+        if (photon.goesOn()) {
+          next_[i++] = photon.next();
+          continue;
+        }
+        finish(photon, sums);
+        if (!start(photon)) photon = photons_[--size];
+      }
+      meet(size);
+      for (size_t i = 0; i < size; ++i) {
+        photons_[i].advance(rays_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+          scatterer_.scatter(bsdf.point(), near_[i], flux * bsdf.roughAlbedo(), straight,
+                             photons_[i].rng(), sums);
+        });
+      }
+    }
+  }
+
+ private:
+  static constexpr size_t kSize = RayScene::kBatch;
+
+  // What the first `size` photons hit, and the VPLs near it.
+  void meet(size_t size) {
+    rays_.closestHits({next_.data(), size}, hits_);
+    const ReachGrid& grid = scatterer_.grid();
+    for (size_t i = 0; i < size; ++i) {
+      if (hits_[i].triangle != kNone) grid.begin(hits_[i].position, near_[i]);
+    }
+    for (size_t i = 0; i < size; ++i) {
+      if (hits_[i].triangle != kNone) grid.find(near_[i]);
+    }
+  }
+  void finish(const PhotonWalk& photon, PhotonSums& sums) const {
+    const PhotonFate& fate = photon.fate();
+    scatterer_.tally(sums, kEscaped, fate.escaped);
+    scatterer_.tally(sums, kAbsorbed, fate.absorbed);
+    sums.rays += fate.rays;
+    sums.nonFinite += fate.finite ? 0 : 1;
+  }
+
+  const RayScene& rays_;
+  const Scatterer& scatterer_;
+  // Of each photon: its walk, its next ray, what that hit, and the VPLs there.
+  std::vector<PhotonWalk> photons_;
+  std::vector<Ray> next_;
+  std::vector<SurfacePoint> hits_;
+  std::vector<ReachGrid::Lookup> near_;
+};
+
 PhotonSums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
                         const PhotonShares& shares, const Scatterer& scatterer,
                         const EstimateOptions& options, const ProgressFn& progress,
@@ -118,21 +190,20 @@ PhotonSums tracePhotons(const VplTable& vpls, const RayScene& rays, const LightS
   };
   tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
   const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
-    for (uint64_t photon = begin; photon < end; ++photon) {
-      Rng rng(key, photon);
-      const size_t light = shares.lightOf(photon);
-      PhotonStart start = lights.emit(light, rng);
-      start.flux *= shares.weight(light);
-      if (isFinite(start.flux)) scatterer.tally(sums, kEmitted, start.flux);
-      const PhotonFate fate = tracePhoton(
-          rays, start, options.maxBounces, rng, [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
-            scatterer.scatter(bsdf.point(), flux * bsdf.roughAlbedo(), straight, rng, sums);
-          });
-      scatterer.tally(sums, kEscaped, fate.escaped);
-      scatterer.tally(sums, kAbsorbed, fate.absorbed);
-      sums.rays += fate.rays;
-      sums.nonFinite += fate.finite ? 0 : 1;
-    }
+    PhotonBatch batch(rays, scatterer);
+    uint64_t photon = begin;
+    batch.follow(
+        [&](PhotonWalk& walk) {
+          if (photon == end) return false;
+          Rng rng(key, photon);
+          const size_t light = shares.lightOf(photon++);
+          PhotonStart start = lights.emit(light, rng);
+          start.flux *= shares.weight(light);
+          walk = PhotonWalk(start, options.maxBounces, rng);
+          if (walk.goesOn()) scatterer.tally(sums, kEmitted, start.flux);
+          return true;
+        },
+        sums);
   };
   std::vector<uint8_t> done((shares.total() + kPhotonsPerRange - 1) / kPhotonsPerRange);
   PhotonSums before = fresh();

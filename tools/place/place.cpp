@@ -1,6 +1,10 @@
 #include "tools/place/place.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <string>
 
 #include "core/parallel.h"
@@ -41,40 +45,89 @@ bool addRow(Chunk& chunk, const Bsdf& bsdf, uint64_t path) {
   return true;
 }
 
-void traceCameraPath(const RayScene& rays, const PlaceOptions& options, uint64_t path, uint64_t key,
-                     Chunk& chunk) {
-  const Scene& scene = rays.scene();
-  const Point2 film = r2Sequence(path, double{toUnitFloat(random64(key, 0, 0))},
-                                 double{toUnitFloat(random64(key, 0, 1))});
-  Rng rng(key, path + 1);
-  Vec3 origin = scene.camera.position;
-  Vec3 direction = cameraDirection(scene.camera, scene.film, film.x, film.y);
-  unsigned rough = 0, chain = 0;
-  SurfacePoint hit;
-  while (true) {
+// Puts the rows from `first` on in path order, those of one path as they came.
+void sortByPath(Chunk& chunk, size_t first) {
+  const auto path = std::span(chunk.path).subspan(first);
+  if (std::is_sorted(path.begin(), path.end())) return;
+  std::vector<uint32_t> order(path.size());
+  std::iota(order.begin(), order.end(), uint32_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return path[a] < path[b]; });
+  const auto sort = [&](auto& column) {
+    const auto rows = std::span(std::as_const(column)).subspan(first);
+    std::ranges::copy(inOrder(rows, order), column.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  sort(chunk.rows.position);
+  sort(chunk.rows.normal);
+  sort(chunk.rows.albedo);
+  sort(chunk.path);
+}
+
+// A path from the camera, on its way.
+class CameraPath {
+ public:
+  CameraPath() = default;
+  CameraPath(const Scene& scene, uint64_t key, uint64_t path) : path_(path), rng_(key, path + 1) {
+    const Point2 film = r2Sequence(path, double{toUnitFloat(random64(key, 0, 0))},
+                                   double{toUnitFloat(random64(key, 0, 1))});
+    next_ = {scene.camera.position, cameraDirection(scene.camera, scene.film, film.x, film.y)};
+  }
+  const Ray& next() const { return next_; }
+  // Takes what next() has hit. False: the path has ended.
+  bool advance(const RayScene& rays, const SurfacePoint& hit, unsigned depth, Chunk& chunk) {
     ++chunk.rays;
-    if (!rays.closestHit(origin, direction, hit)) {
+    if (hit.triangle == kNone) {
       ++chunk.escaped;
-      return;
+      return false;
     }
-    const Bsdf bsdf(scene, hit);
-    const bool takeChain = rng.next() < bsdf.chainProbability();
+    const Bsdf bsdf(rays.scene(), hit);
+    const bool takeChain = rng_.next() < bsdf.chainProbability();
     if (!takeChain && bsdf.hasRough()) {
-      if (++rough >= 2) addRow(chunk, bsdf, path);
-      if (rough >= options.depth) {
+      if (++rough_ >= 2) addRow(chunk, bsdf, path_);
+      if (rough_ >= depth) {
         ++chunk.complete;
-        return;
+        return false;
       }
     }
-    BsdfSample next;
-    if ((takeChain && ++chain > kMaxChain) ||
-        !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Radiance, rng,
-                     next)) {
+    BsdfSample sample;
+    if ((takeChain && ++chain_ > kMaxChain) ||
+        !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Radiance, rng_,
+                     sample)) {
       ++chunk.absorbed;
-      return;
+      return false;
     }
-    origin = rays.lifted(hit.position, next.side);
-    direction = next.wi;
+    next_ = {rays.lifted(hit.position, sample.side), sample.wi};
+    return true;
+  }
+
+ private:
+  uint64_t path_ = 0;
+  Rng rng_{0, 0};
+  Ray next_;
+  unsigned rough_ = 0, chain_ = 0;
+};
+
+// The paths of a chunk, a batch of them together, round by round.
+void traceCameraPaths(const RayScene& rays, const PlaceOptions& options, uint64_t begin,
+                      uint64_t key, Chunk& chunk) {
+  std::array<CameraPath, RayScene::kBatch> paths;
+  std::array<Ray, RayScene::kBatch> next;
+  std::array<SurfacePoint, RayScene::kBatch> hits;
+  const uint64_t end = begin + kPathsPerChunk;
+  for (uint64_t path = begin; path < end;) {
+    const size_t firstRow = chunk.path.size();
+    size_t size = 0;
+    while (size < paths.size() && path < end) paths[size++] = {rays.scene(), key, path++};
+    while (size > 0) {
+      for (size_t i = 0; i < size; ++i) next[i] = paths[i].next();
+      rays.closestHits({next.data(), size}, hits);
+      size_t left = 0;
+      for (size_t i = 0; i < size; ++i) {
+        if (paths[i].advance(rays, hits[i], options.depth, chunk)) paths[left++] = paths[i];
+      }
+      size = left;
+    }
+    sortByPath(chunk, firstRow);
   }
 }
 
@@ -113,9 +166,9 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
 }
 
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
-template <typename TracePath>
+template <typename TracePaths>
 PlaceResult collect(const std::string& scene, const PlaceOptions& options,
-                    const ProgressFn& progress, const TracePath& tracePath) {
+                    const ProgressFn& progress, const TracePaths& tracePaths) {
   PlaceResult result;
   VplTable& rows = result.table;
   const uint64_t effort = kFreePaths + kPathsPerCandidate * options.count;
@@ -123,10 +176,8 @@ PlaceResult collect(const std::string& scene, const PlaceOptions& options,
   while (rows.size() < options.count) {
     if (firstPath >= effort) failTooFew(scene, result, options);
     std::vector<Chunk> wave(kChunksPerWave);
-    parallelFor(wave.size(), 1, [&](size_t c) {
-      const uint64_t begin = firstPath + c * kPathsPerChunk;
-      for (uint64_t p = begin; p < begin + kPathsPerChunk; ++p) tracePath(p, wave[c]);
-    });
+    parallelFor(wave.size(), 1,
+                [&](size_t c) { tracePaths(firstPath + c * kPathsPerChunk, wave[c]); });
     firstPath += kChunksPerWave * kPathsPerChunk;
     const size_t before = rows.size();
     result.paths = firstPath;
@@ -165,7 +216,7 @@ PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options,
   const uint64_t key = streamKey(options.seed, Stream::PlaceCamera);
   PlaceResult result = collect(
       rays.scene().name(), options, progress,
-      [&](uint64_t path, Chunk& chunk) { traceCameraPath(rays, options, path, key, chunk); });
+      [&](uint64_t begin, Chunk& chunk) { traceCameraPaths(rays, options, begin, key, chunk); });
   result.table.stage = VplStage::Candidates;
   result.table.sceneHash = rays.scene().contentHash;
   return result;
@@ -176,8 +227,9 @@ PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights,
   lights.requirePower();
   const uint64_t key = streamKey(options.seed, Stream::PlaceLight);
   PlaceResult result =
-      collect(rays.scene().name(), options, progress, [&](uint64_t path, Chunk& chunk) {
-        tracePhotonPath(rays, lights, options, path, key, chunk);
+      collect(rays.scene().name(), options, progress, [&](uint64_t begin, Chunk& chunk) {
+        for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
+          tracePhotonPath(rays, lights, options, path, key, chunk);
       });
   VplTable& t = result.table;
   t.stage = VplStage::Lit;
