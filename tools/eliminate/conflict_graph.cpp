@@ -1,6 +1,7 @@
 #include "tools/eliminate/conflict_graph.h"
 
 #include <emmintrin.h>
+#include <tbb/parallel_invoke.h>
 
 #include <bit>
 #include <limits>
@@ -134,15 +135,11 @@ void ConflictGraph::markRemoved(uint32_t i) {
 
 void ConflictGraph::compact() {
   std::vector<uint8_t> keep(size());
-  for (uint32_t i = 0; i < size(); ++i) keep[i] = !removed(i);
-  cells_.compact(keep);
-  keepOnly(x_, keep, kLanes);
-  keepOnly(y_, keep, kLanes);
-  keepOnly(z_, keep, kLanes);
-  keepOnly(radius_, keep, kLanes);
-  keepOnly(normal_, keep);
-  keepOnly(row_, keep);
-  keepOnly(weight_, keep);
+  parallelFor(keep.size(), 4096, [&](size_t i) { keep[i] = !removed(static_cast<uint32_t>(i)); });
+  tbb::parallel_invoke([&] { cells_.compact(keep); }, [&] { keepOnly(x_, keep, kLanes); },
+                       [&] { keepOnly(y_, keep, kLanes); }, [&] { keepOnly(z_, keep, kLanes); },
+                       [&] { keepOnly(radius_, keep, kLanes); }, [&] { keepOnly(normal_, keep); },
+                       [&] { keepOnly(row_, keep); }, [&] { keepOnly(weight_, keep); });
 }
 
 }  // namespace bnvpl
