@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/parallel.h"
+#include "scene/camera.h"
 #include "scene/photon_path.h"
 #include "tests/support/pipeline.h"
 
@@ -52,14 +53,10 @@ void tracePhotons(benchmark::State& state) {
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
 }
 
-// The rays that photons take, from hit to hit in the same order, and what closestHit() tells of
-// them, without anything else: the limit for tracePhotons and, nearly, for placeCandidates.
-void bareRays(benchmark::State& state) {
-  struct Segment {
-    Vec3 origin, direction;
-  };
-  std::vector<Segment> segments;
-  for (uint64_t photon = 0; segments.size() < 400000; ++photon) {
+// The first 400,000 rays of photons, from hit to hit in the order in which a photon takes them.
+std::vector<Ray> photonRays() {
+  std::vector<Ray> rays;
+  for (uint64_t photon = 0; rays.size() < 400000; ++photon) {
     Rng rng(streamKey(3, Stream::Photons), photon);
     const LightSet& lights = world().lights;
     float probability = 0.0f;
@@ -67,10 +64,36 @@ void bareRays(benchmark::State& state) {
     Vec3 from = start.origin;
     tracePhoton(world().rays, start, 32, rng, [&](const Bsdf& bsdf, Vec3, bool) {
       const Vec3 to = bsdf.point().position - from;
-      if (lengthSquared(to) > 0.0f) segments.push_back({from, normalize(to)});
+      if (lengthSquared(to) > 0.0f) rays.push_back({from, normalize(to)});
       from = world().rays.lifted(bsdf.point().position, bsdf.point().ng);
     });
   }
+  return rays;
+}
+
+// The first 400,000 of camera paths, two each: to the first hit and on from there.
+std::vector<Ray> cameraRays() {
+  std::vector<Ray> rays;
+  const Scene& scene = world().scene;
+  for (uint64_t path = 0; rays.size() < 400000; ++path) {
+    Rng rng(streamKey(3, Stream::PlaceCamera), path);
+    const Point2 film = r2Sequence(path, 0.0, 0.0);
+    rays.push_back(
+        {scene.camera.position, cameraDirection(scene.camera, scene.film, film.x, film.y)});
+    SurfacePoint hit;
+    BsdfSample next;
+    if (world().rays.closestHit(rays.back().origin, rays.back().direction, hit) &&
+        Bsdf(scene, hit).sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
+      rays.push_back({world().rays.lifted(hit.position, next.side), next.wi});
+    }
+  }
+  return rays;
+}
+
+// The rays alone, with what closestHit() tells of where they end: the limit for tracePhotons
+// (argument 0) and placeCandidates (1).
+void bareRays(benchmark::State& state) {
+  const std::vector<Ray> segments = state.range(0) == 0 ? photonRays() : cameraRays();
   double rays = 0;
   for (auto _ : state) {
     parallelRanges(segments.size(), 4096, [&](size_t begin, size_t end) {
@@ -107,7 +130,11 @@ void renderSamples(benchmark::State& state) {
 
 BENCHMARK(placeCandidates)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(tracePhotons)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(bareRays)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(bareRays)
+    ->ArgName("camera")
+    ->DenseRange(0, 1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK(renderSamples)
     ->ArgName("gather")  // as GatherMethod: tile cuts, lightcuts, all
     ->DenseRange(0, 2)
