@@ -22,7 +22,8 @@ enum class Stream : uint32_t {
   PixelSamples,
   PathTracer,
   LightTree,
-  Plot
+  Plot,
+  AreaEstimate
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

@@ -35,7 +35,8 @@ TEST(Random, StreamsAndSeedsShareNoKey) {
   for (uint64_t seed = 0; seed < 1000; ++seed) {
     for (const Stream s :
          {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
-          Stream::PixelSamples, Stream::PathTracer, Stream::LightTree, Stream::Plot}) {
+          Stream::PixelSamples, Stream::PathTracer, Stream::LightTree, Stream::Plot,
+          Stream::AreaEstimate}) {
       keys.insert(streamKey(seed, s));
     }
   }

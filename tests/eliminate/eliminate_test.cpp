@@ -8,7 +8,9 @@
 
 #include "core/errors.h"
 #include "core/random.h"
+#include "spatial/morton_order.h"
 #include "tests/eliminate/clouds.h"
+#include "tools/eliminate/radii.h"
 
 namespace bnvpl {
 namespace {
@@ -114,6 +116,19 @@ TEST(Eliminate, EstimatesTheArea) {
     EXPECT_NEAR(run(flat, keep(4000, density)).area, 6.0, 0.6);
     EXPECT_NEAR(run(box, keep(4000, density)).area, 24.0, 2.4);
   }
+}
+
+// Of which a random part is looked at; in any order of theirs.
+TEST(Eliminate, EstimatesTheAreaOfMany) {
+  const Cloud flat = plane(500000, 3.0f, 2.0f, 4);
+  EliminateOptions options = keep(1000, Density::Uniform);
+  EXPECT_NEAR(candidateRadii(flat.position, flat.normal, options).area, 6.0, 0.1);
+  Cloud sorted;
+  for (const uint32_t i : mortonOrder(flat.position)) {
+    sorted.position.push_back(flat.position[i]);
+    sorted.normal.push_back(flat.normal[i]);
+  }
+  EXPECT_NEAR(candidateRadii(sorted.position, sorted.normal, options).area, 6.0, 0.1);
 }
 
 TEST(Eliminate, RadiiStandForTheArea) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "core/random.h"
 #include "spatial/local_density.h"
 
 namespace bnvpl {
@@ -13,6 +14,7 @@ namespace {
 constexpr double kTwoSqrt3 = 2.0 * std::numbers::sqrt3;
 // The area enters r_max by its root: the 1 % that this many rows may miss it by is not seen.
 constexpr size_t kMostAreaRows = 16384;
+constexpr size_t kMostAreaCandidates = size_t{1} << 18;
 
 std::vector<uint32_t> evenlySpacedRows(size_t count, size_t most) {
   std::vector<uint32_t> rows(std::min(count, most));
@@ -22,6 +24,31 @@ std::vector<uint32_t> evenlySpacedRows(size_t count, size_t most) {
 
 double sumOf(const std::vector<float>& values) {
   return parallelSum(values.size(), [&](size_t i) { return static_cast<double>(values[i]); });
+}
+
+double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k) {
+  const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMostAreaRows);
+  const KdTree tree(position);
+  return sumOf(surfaceShares(position, normal, k, tree, rows)) *
+         static_cast<double>(position.size()) / static_cast<double>(rows.size());
+}
+
+// The area that the candidates cover, world units squared: by some of a random selection, for which
+// neighbours and areas grow alike. FLANN builds its tree in one thread.
+double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
+                    uint64_t seed) {
+  if (position.size() > kMostAreaCandidates) {
+    const uint64_t key = streamKey(seed, Stream::AreaEstimate);
+    const uint64_t below = UINT64_MAX / position.size() * kMostAreaCandidates;
+    std::vector<Vec3> someOfPosition, someOfNormal;
+    for (size_t i = 0; i < position.size(); ++i) {
+      if (random64(key, i, 0) >= below) continue;
+      someOfPosition.push_back(position[i]);
+      someOfNormal.push_back(normal[i]);
+    }
+    return areaOf(someOfPosition, someOfNormal, k);
+  }
+  return areaOf(position, normal, k);
 }
 
 }  // namespace
@@ -35,13 +62,8 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   const auto k = static_cast<unsigned>(options.neighbours);
   CandidateRadii result;
   if (options.density == Density::Uniform) {
-    result.area = options.area;
-    if (!(options.area > 0.0)) {
-      const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMostAreaRows);
-      const KdTree tree(position);
-      result.area = sumOf(surfaceShares(position, normal, k, tree, rows)) * candidates /
-                    static_cast<double>(rows.size());
-    }
+    result.area =
+        options.area > 0.0 ? options.area : estimateArea(position, normal, k, options.seed);
     result.rMax = packedDiskRadius(result.area, kept);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));
     return result;
