@@ -40,7 +40,7 @@ TEST(Random, StreamsAndSeedsShareNoKey) {
       keys.insert(streamKey(seed, s));
     }
   }
-  EXPECT_EQ(keys.size(), 8000u);
+  EXPECT_EQ(keys.size(), 9000u);
 }
 
 // One point in each box of area 1/256, whatever its shape, for any 256 points in a row from a
