@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -225,37 +226,38 @@ bool RayScene::occluded(Vec3 from, Vec3 to) const {
   return impl_->occluded(makeRay(from, to - from, 1.0f));
 }
 
-uint32_t RayScene::occluded(const RayPacket& from, Vec3 to, uint32_t active) const {
-  alignas(64) RTCRay16 rays;
-  alignas(64) std::array<int, RayPacket::kSize> valid;
-  for (uint32_t l = 0; l < RayPacket::kSize; ++l) {
-    valid[l] = (active >> l & 1u) != 0 ? -1 : 0;
-    rays.org_x[l] = from.x[l];
-    rays.org_y[l] = from.y[l];
-    rays.org_z[l] = from.z[l];
-    rays.dir_x[l] = to.x - from.x[l];
-    rays.dir_y[l] = to.y - from.y[l];
-    rays.dir_z[l] = to.z - from.z[l];
-    rays.tnear[l] = 0.0f;
-    rays.tfar[l] = 1.0f;
-    rays.time[l] = 0.0f;
-    rays.mask[l] = ~0u;
-    rays.id[l] = rays.flags[l] = 0;
-  }
+void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const {
+  constexpr size_t kTogether = 8;  // as wide as AVX
+  for (size_t begin = 0; begin < segments.size(); begin += kTogether) {
+    const size_t count = std::min(kTogether, segments.size() - begin);
+    alignas(32) RTCRay8 rays;
+    alignas(32) std::array<int, kTogether> valid;
+    for (size_t k = 0; k < kTogether; ++k) {
+      const Segment& s = segments[begin + std::min(k, count - 1)];
+      valid[k] = k < count ? -1 : 0;
+      rays.org_x[k] = s.from.x;
+      rays.org_y[k] = s.from.y;
+      rays.org_z[k] = s.from.z;
+      rays.dir_x[k] = s.to.x - s.from.x;
+      rays.dir_y[k] = s.to.y - s.from.y;
+      rays.dir_z[k] = s.to.z - s.from.z;
+      rays.tnear[k] = 0.0f;
+      rays.tfar[k] = 1.0f;
+      rays.time[k] = 0.0f;
+      rays.mask[k] = ~0u;
+      rays.id[k] = rays.flags[k] = 0;
+    }
 #if RTC_VERSION_MAJOR >= 4
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  rtcOccluded16(valid.data(), impl_->scene, &rays, &arguments);
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    rtcOccluded8(valid.data(), impl_->scene, &rays, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded16(valid.data(), impl_->scene, &context, &rays);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid.data(), impl_->scene, &context, &rays);
 #endif
-  uint32_t hidden = 0;
-  for (uint32_t l = 0; l < RayPacket::kSize; ++l) {
-    hidden |= static_cast<uint32_t>(rays.tfar[l] < 0.0f) << l;
+    for (size_t k = 0; k < count; ++k) hidden[begin + k] = rays.tfar[k] < 0.0f;
   }
-  return hidden & active;
 }
 
 bool RayScene::occludedToInfinity(Vec3 from, Vec3 direction) const {

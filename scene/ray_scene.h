@@ -26,11 +26,9 @@ struct Ray {
   Vec3 origin, direction;  // direction unit
 };
 
-// Starts of rays that are traced together.
-struct RayPacket {
-  static constexpr uint32_t kSize = 16;
-  alignas(64) std::array<float, kSize> x{}, y{}, z{};
-  void set(uint32_t lane, Vec3 p) { x[lane] = p.x, y[lane] = p.y, z[lane] = p.z; }
+// A straight way between two points.
+struct Segment {
+  Vec3 from, to;
 };
 
 // Owns the acceleration structure; the Scene must outlive it. Queries are thread-safe.
@@ -53,9 +51,9 @@ class RayScene {
 
   // Whether anything lies strictly between two points, both lifted by the caller.
   bool occluded(Vec3 from, Vec3 to) const;
-  // The same from several points to one: a mask of lanes, of which only those of `active` are
-  // asked. A multiple of the speed when the points are neighbours.
-  uint32_t occluded(const RayPacket& from, Vec3 to, uint32_t active) const;
+  // The same of many, and several times faster where those that lie next to each other in the list
+  // do so in space, from end to end: eight are traced together.
+  void occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const;
   bool occludedToInfinity(Vec3 from, Vec3 direction) const;
 
   // A point moved off its surface towards `side` (unit, a normal of the side to leave by), far

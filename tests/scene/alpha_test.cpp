@@ -15,6 +15,9 @@ bool blocks(const RayScene& rays, float x) {
   EXPECT_EQ(rays.occluded(from, to), closest) << x;
   EXPECT_EQ(rays.occluded(to, from), closest) << x;
   EXPECT_EQ(rays.occludedToInfinity(from, direction), closest) << x;
+  std::array<uint8_t, 3> hidden{};
+  rays.occluded(std::array<Segment, 3>{{{from, to}, {to, from}, {from, {x, 0.1f, 2}}}}, hidden);
+  EXPECT_EQ(hidden, (std::array<uint8_t, 3>{closest, closest, 0})) << x;
   EXPECT_TRUE(!closest || std::fabs(hit.distance - 3.0f) < 1e-5f) << x;
   return closest;
 }

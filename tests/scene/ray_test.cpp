@@ -139,5 +139,35 @@ TEST_F(Rays, OcclusionIsStrictlyBetween) {
   EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, rays.lifted({0, 0.1f, 0}, {0, 0, -1})));
 }
 
+// In a room with a box, in any number, in neighbourhoods and scattered.
+TEST_F(Rays, OcclusionOfManyIsWhatItIsOneByOne) {
+  const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "cornell/scene.toml");
+  const RayScene rays(scene);
+  Rng rng(streamKey(10, Stream::Plot), 0);
+  const auto somewhere = [&](float share, Vec3 about) {
+    const Vec3 at{rng.next() - 0.5f, rng.next() - 0.5f, rng.next() - 0.5f};
+    return about + share * (scene.bounds.extent() * at);
+  };
+  const Vec3 center = scene.bounds.center();
+  std::array<int, 2> seen{};
+  for (size_t size = 0; size <= 40; ++size) {
+    const float share = size % 2 == 0 ? 0.9f : 0.05f;
+    std::vector<Segment> segments;
+    const Vec3 from = somewhere(0.9f, center), to = somewhere(0.9f, center);
+    for (size_t i = 0; i < size; ++i) {
+      segments.push_back({somewhere(share, size % 2 == 0 ? center : from),
+                          somewhere(share, size % 2 == 0 ? center : to)});
+    }
+    std::vector<uint8_t> hidden(size, 7);
+    rays.occluded(segments, hidden);
+    for (size_t i = 0; i < size; ++i) {
+      EXPECT_EQ(hidden[i], rays.occluded(segments[i].from, segments[i].to));
+      ++seen[hidden[i] & 1u];
+    }
+  }
+  EXPECT_GT(seen[0], 100);
+  EXPECT_GT(seen[1], 100);
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -43,7 +43,7 @@ Gatherer::Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOpti
 
 void Gatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const {
   if (options_.method == GatherMethod::TileCuts) {
-    return TileGatherer(rays_, vpls_, tree_, options_).gather(tile, out);
+    return gatherTile(rays_, vpls_, tree_, options_, tile, out);
   }
   for (size_t i = 0; i < out.size(); ++i) {
     const Bsdf* bsdf = tile.bsdf[i];

@@ -1,6 +1,7 @@
 #include "tools/render/tile_cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,10 +14,6 @@ namespace {
 
 // Receivers that stand for the tile when its cut is chosen.
 constexpr uint32_t kProbes = 8;
-// Deviation of a cluster's light from VPL to VPL, as a share of it: by the cluster's size over its
-// distance, for falloff, cosines and partial visibility together, and by the spread of its normals
-// (measured: docs/theory.md, "Tile cuts").
-constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
 // Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
 // see nothing is not searched VPL by VPL.
 constexpr float kBlockedShare = 0.01f;
@@ -24,6 +21,38 @@ constexpr float kBlockedShare = 0.01f;
 constexpr float kDarkest = 0.02f;
 // Roulette on small contributions may add this share to the variance that is allowed.
 constexpr float kRouletteShare = 0.5f;
+
+// The probes, coordinate by coordinate.
+struct Probes {
+  alignas(32) std::array<float, kProbes> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{}, blue{};
+  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light there; 0 past the last
+
+  Probes(const std::vector<const Bsdf*>& probes, const std::vector<float>& light) {
+    for (size_t k = 0; k < probes.size(); ++k) {
+      const Vec3 p = probes[k]->point().position, n = probes[k]->point().ns,
+                 r = mostReflected(*probes[k]);
+      x[k] = p.x, y[k] = p.y, z[k] = p.z;
+      nx[k] = n.x, ny[k] = n.y, nz[k] = n.z;
+      red[k] = r.x, green[k] = r.y, blue[k] = r.z;
+      perLight[k] = light[k] > 0.0f ? 1.0f / light[k] : 0.0f;
+    }
+  }
+
+  // Summed over the probes, each over its light.
+  float variance(const LightNode& n) const {
+    if (n.leaf()) return 0.0f;
+    const Expectation expected(n);
+    alignas(32) std::array<float, kProbes> squares;
+    for (size_t k = 0; k < kProbes; ++k) {
+      const float d =
+          expected.at({x[k], y[k], z[k]}, {nx[k], ny[k], nz[k]}, {red[k], green[k], blue[k]})
+              .deviation *
+          perLight[k];
+      squares[k] = d * d;
+    }
+    return std::accumulate(squares.begin(), squares.end(), 0.0f);
+  }
+};
 
 std::vector<const Bsdf*> chooseProbes(const TileReceivers& tile) {
   std::vector<const Bsdf*> lit, probes;
@@ -73,26 +102,6 @@ std::vector<float> lightAt(const RayScene& rays, const VplLights& vpls, const Li
 
 }  // namespace
 
-ExpectedLight expectedLight(const LightNode& n, const Bsdf& bsdf) {
-  if (n.leaf()) return {};
-  const Vec3 d = n.bounds.center() - bsdf.point().position;
-  const float size2 = lengthSquared(n.bounds.extent());
-  const float distance2 =
-      std::max({lengthSquared(d), 0.25f * size2, std::numeric_limits<float>::min()});
-  const float perDistance = 1.0f / std::sqrt(distance2);
-  const float angle = std::sqrt(size2) * perDistance;  // that the box fills, at most 2
-  const float receiver = dot(bsdf.point().ns, d) * perDistance + 0.5f * angle;
-  const float emitter = -dot(n.axis, d) * perDistance + 0.5f * angle + n.sinHalfAngle;
-  if (receiver <= 0.0f || emitter <= 0.0f) return {};
-  const Vec3 light =
-      bsdf.roughUpperBound(std::min(1.0f, receiver), [](Vec3) { return 1.0f; }) * n.intensity;
-  const float spread =
-      std::min(1.0f, kSizeSpread * angle + kNormalSpread * (1.0f - n.cosHalfAngle));
-  const float sent = (light.x + light.y + light.z) * std::min(1.0f, emitter);
-  const float nearest2 = n.bounds.distanceSquared(bsdf.point().position);
-  return {spread * sent * falloff(distance2, n.clamp2), sent * falloff(nearest2, n.clamp2)};
-}
-
 // Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
 // small as the samples of a pixel need it.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
@@ -106,22 +115,18 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
       return variance != o.variance ? variance < o.variance : node < o.node;
     }
   };
-  std::vector<float> perLight = lightAt(rays, vpls, tree, probes, tile.key);
+  const std::vector<float> light = lightAt(rays, vpls, tree, probes, tile.key);
+  const Probes all(probes, light);
   TileCut cut;
   cut.allowed = options.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
   const double most = double{cut.allowed} * double{cut.allowed} * double(probes.size());
-  const float darkest = *std::min_element(perLight.begin(), perLight.end());
+  const float darkest = *std::min_element(light.begin(), light.end());
   cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
   cut.allowed *= darkest;
-  for (float& l : perLight) l = l > 0.0f ? 1.0f / l : 0.0f;
   double sum = 0.0;
   std::vector<Open> heap;
   const auto insert = [&](uint32_t node) {
-    Open open{0.0f, node};
-    for (size_t k = 0; k < probes.size(); ++k) {
-      const float d = expectedLight(tree.nodes[node], *probes[k]).deviation * perLight[k];
-      open.variance += d * d;
-    }
+    const Open open{all.variance(tree.nodes[node]), node};
     sum += double{open.variance};
     heap.push_back(open);
     std::push_heap(heap.begin(), heap.end());
