@@ -18,7 +18,7 @@ constexpr uint32_t kProbes = 8;
 // see nothing is not searched VPL by VPL.
 constexpr float kBlockedShare = 0.01f;
 // A probe that is darker than this share of the tile's mean counts as if it were not.
-constexpr float kDarkest = 0.02f;
+constexpr float kDarkest = 0.2f;
 // Roulette on small contributions may add this share to the variance that is allowed.
 constexpr float kRouletteShare = 0.5f;
 

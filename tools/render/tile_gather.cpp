@@ -17,7 +17,7 @@ namespace {
 // Pixels along the side of a square that four packets share.
 constexpr uint32_t kSquare = 8;
 // A single draw may be this many times the deviation that is allowed to a sample.
-constexpr float kMostDraw = 4.0f;
+constexpr float kMostDraw = 2.0f;
 
 // Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
 uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
