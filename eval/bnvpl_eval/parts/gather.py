@@ -8,14 +8,12 @@ COLUMNS = [column("label", "gather"), column("mean_ratio"), column("rmse_over_me
            column("cut_rmse", "difference to all / mean", better="low"),
            column("render_cpu_s", "render", "CPU s", "low")]
 
-SEEDS = 2
-
 
 def run(context: Context) -> None:
     rows = []
     for view in context.views("main"):
         context.say(f"gather: {view.name}")
-        seeds = context.seeds(view)[:SEEDS]
+        seeds = context.seeds(view)
         made = {}
         for gather in ("tilecuts", "lightcuts", "all"):
             c = context.configuration(view, "local").but(render=("--gather", gather))
@@ -31,5 +29,5 @@ def run(context: Context) -> None:
         rows += [{"group": title, **row} for row in made.values()]
     context.tables.append(table(
         "gather", "Cuts against all VPLs",
-        f"The same VPLs, rays and {SEEDS} seeds; the cut's own error is its difference to all VPLs.",
+        f"The same VPLs and rays, {context.size['seeds']} seeds; the cut's own error is its difference to all VPLs.",
         COLUMNS, rows))
