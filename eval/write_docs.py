@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Puts a run's tables into docs/results.md and README.md and its pictures into docs/images: write_docs.py build/eval/standard
 
-A table stands between '<!-- table ID -->' and '<!-- end -->'; ID is that of report.json.
+With --tables only these, of a run of some parts, into docs/results.md alone. A table stands between '<!-- table ID -->' and
+'<!-- end -->'; ID is that of report.json.
 """
 
+import argparse
 import json
 import math
 import re
@@ -52,15 +54,24 @@ def markdown(table: dict) -> str:
     return "\n".join(lines)
 
 
-def write_tables(report: dict) -> None:
+def write_tables(report: dict, only: list[str] | None) -> None:
+    """All that the page wants, or those of `only`, each with the tools that made it."""
     path = DOCS / "results.md"
     text = path.read_text()
     tables = {table["id"]: table for table in report["tables"]}
+    places = re.findall(r"<!-- table ([\w-]+) -->", text)
+    wanted = only or places
+    for name in wanted:
+        if name not in places:
+            raise SystemExit(f"eval: {path}: has no place for table '{name}'; it has {', '.join(places)}")
+        if name not in tables:
+            raise SystemExit(f"eval: {path}: wants table '{name}', but report.json has {', '.join(tables)}")
+    made = f"Tools of {report['provenance']['commits of the runs']}, {report['provenance']['date']}."
 
     def filled(match: re.Match) -> str:
-        if match[1] not in tables:
-            raise SystemExit(f"eval: {path}: wants table '{match[1]}', but report.json has {', '.join(tables)}")
-        return f"<!-- table {match[1]} -->\n{markdown(tables[match[1]])}\n<!-- end -->"
+        if match[1] not in wanted:
+            return match[0]
+        return f"<!-- table {match[1]} -->\n{markdown(tables[match[1]])}\n\n{made}\n<!-- end -->"
 
     output.write_text(path, re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, text, flags=re.S))
 
@@ -120,12 +131,15 @@ def write_summary(results: dict) -> None:
 
 
 def main() -> int:
-    if len(sys.argv) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="of the run")
+    parser.add_argument("--tables", help="ids, such as gather,scatter")
+    arguments = parser.parse_args()
+    folder = arguments.folder
     report = json.loads((folder / "report.json").read_text())
-    write_tables(report)
+    write_tables(report, arguments.tables.split(",") if arguments.tables else None)
+    if arguments.tables:
+        return 0
     write_summary(json.loads((folder / "results.json").read_text()))
     for scene in report["scenes"]:
         view = scene["views"][0]
