@@ -1,7 +1,7 @@
 // Ray queries against a Scene. The only file behind it that knows Embree is ray_scene.cpp.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 

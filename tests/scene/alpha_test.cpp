@@ -66,5 +66,26 @@ TEST_F(Alpha, WhatLiesBehindAHoleIsSeen) {
   EXPECT_TRUE(rays.occluded({0.5f, 0, 3}, {0.5f, 0, -0.5f}));
 }
 
+// Enough of them, and near enough to each other, that they are traced as packets.
+TEST_F(Alpha, PacketsMeetTheSameHolesAsSingleRays) {
+  write("mask.tga", tga(2, 1, {{255, 255, 255, 0}, {0, 0, 0, 255}}));
+  const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\nmap_d mask.tga\n");
+  const RayScene rays(scene);
+  std::vector<Segment> segments;
+  for (int i = 0; i < 64; ++i) {
+    const float x = 1e-3f * static_cast<float>(i - 32), y = 0.1f + 1e-4f * static_cast<float>(i);
+    segments.push_back({{x, y, 3}, {x, y, -3}});
+  }
+  std::vector<uint8_t> hidden(segments.size());
+  rays.occluded(segments, hidden);
+  size_t blocked = 0;
+  for (size_t i = 0; i < segments.size(); ++i) {
+    EXPECT_EQ(hidden[i], rays.occluded(segments[i].from, segments[i].to)) << i;
+    blocked += hidden[i];
+  }
+  EXPECT_GT(blocked, 16u);
+  EXPECT_LT(blocked, 48u);
+}
+
 }  // namespace
 }  // namespace bnvpl

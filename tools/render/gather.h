@@ -20,8 +20,8 @@ enum class GatherMethod {
 struct GatherOptions {
   GatherMethod method = GatherMethod::TileCuts;
   // Tile cuts: standard deviation to allow a pixel, over the light in its tile; a prediction, which
-  // so far has been three to five times what was measured (docs/theory.md). Lightcuts: largest
-  // error bound of a cluster, over the running total. Empty: 0.05 and 0.02.
+  // so far has been two and a half to five times what was measured (docs/theory.md). Lightcuts:
+  // largest error bound of a cluster, over the running total. Empty: 0.05 and 0.02.
   std::optional<float> error = std::nullopt;
   float allowedError() const {
     return error.value_or(method == GatherMethod::TileCuts ? 0.05f : 0.02f);

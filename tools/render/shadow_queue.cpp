@@ -1,6 +1,7 @@
 #include "tools/render/shadow_queue.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace bnvpl {

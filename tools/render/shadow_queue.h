@@ -3,6 +3,7 @@
 // spread over the image, what is traced together should be as near to each other as can be.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 

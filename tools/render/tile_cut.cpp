@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-
-#include "tools/render/cluster_bounds.h"
 
 namespace bnvpl {
 
@@ -14,6 +11,7 @@ namespace {
 
 // Receivers that stand for the tile when its cut is chosen.
 constexpr uint32_t kProbes = 8;
+using Probes = std::array<const Bsdf*, kProbes>;
 // Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
 // see nothing is not searched VPL by VPL.
 constexpr float kBlockedShare = 0.01f;
@@ -23,12 +21,12 @@ constexpr float kDarkest = 0.2f;
 constexpr float kRouletteShare = 0.5f;
 
 // The probes, coordinate by coordinate.
-struct Probes {
+struct ProbeLanes {
   alignas(32) std::array<float, kProbes> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{}, blue{};
-  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light there; 0 past the last
+  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light there; 0 where none is
 
-  Probes(const std::vector<const Bsdf*>& probes, const std::vector<float>& light) {
-    for (size_t k = 0; k < probes.size(); ++k) {
+  ProbeLanes(const Probes& probes, const std::array<float, kProbes>& light) {
+    for (size_t k = 0; k < kProbes; ++k) {
       const Vec3 p = probes[k]->point().position, n = probes[k]->point().ns,
                  r = mostReflected(*probes[k]);
       x[k] = p.x, y[k] = p.y, z[k] = p.z;
@@ -54,13 +52,15 @@ struct Probes {
   }
 };
 
-std::vector<const Bsdf*> chooseProbes(const TileReceivers& tile) {
-  std::vector<const Bsdf*> lit, probes;
+// Null where there is no receiver.
+Probes chooseProbes(const TileReceivers& tile) {
+  std::vector<const Bsdf*> lit;
   for (const Bsdf* b : tile.bsdf) {
     if (b) lit.push_back(b);
   }
+  Probes probes{};
   for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
-    probes.push_back(lit[random64(tile.key, k, kDrawProbe) % lit.size()]);
+    probes[k] = lit[random64(tile.key, k, kDrawProbe) % lit.size()];
   }
   return probes;
 }
@@ -69,33 +69,32 @@ std::vector<const Bsdf*> chooseProbes(const TileReceivers& tile) {
 // shadows. As the probes also stand for their neighbours, and as one draw may miss or overstate the
 // light, each is drawn to the geometric mean of all: to that rather than the mean, for the dark
 // ones' sake.
-std::vector<float> lightAt(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
-                           const std::vector<const Bsdf*>& probes, uint64_t key) {
-  std::vector<float> light;
+std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
+                                   const LightTree& tree, const Probes& probes, uint64_t key) {
+  std::array<float, kProbes> light{};
   uint32_t draw = 0;
-  for (const Bsdf* b : probes) {
-    float sum = 0.0f;
-    const Vec3 from = rays.lifted(b->point().position, b->point().ng);
+  for (size_t k = 0; k < kProbes; ++k) {
+    const Bsdf& b = *probes[k];
+    const Vec3 from = rays.lifted(b.point().position, b.point().ng);
     for (const uint32_t node : tree.startCut) {
       const LightNode& n = tree.nodes[node];
       const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDrawVpl)));
       Coupling c;
-      if (!couple(vpls, vpl.index, *b, c)) continue;
+      if (!couple(vpls, vpl.index, b, c)) continue;
       const Vec3 part = c.transfer * vpls.intensity[vpl.index] * vpl.weight;
       const bool blocked = rays.occluded(from, vpls.position[vpl.index]);
-      sum += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
+      light[k] += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
     }
-    light.push_back(sum);
   }
-  const auto count = static_cast<float>(light.size());
-  const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / count;
+  constexpr auto kCount = static_cast<float>(kProbes);
+  const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / kCount;
   if (!(mean > 0.0f)) return light;
   float logarithms = 0.0f;
   for (float& l : light) {
     l = std::max(l, kDarkest * mean);
     logarithms += std::log(l);
   }
-  const float typical = std::exp(logarithms / count);
+  const float typical = std::exp(logarithms / kCount);
   for (float& l : light) l = std::sqrt(l * typical);
   return light;
 }
@@ -106,8 +105,8 @@ std::vector<float> lightAt(const RayScene& rays, const VplLights& vpls, const Li
 // small as the samples of a pixel need it.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
                       const GatherOptions& options, const TileReceivers& tile) {
-  const std::vector<const Bsdf*> probes = chooseProbes(tile);
-  if (probes.empty()) return {};
+  const Probes probes = chooseProbes(tile);
+  if (!probes[0]) return {};
   struct Open {
     float variance;
     uint32_t node;
@@ -115,11 +114,11 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
       return variance != o.variance ? variance < o.variance : node < o.node;
     }
   };
-  const std::vector<float> light = lightAt(rays, vpls, tree, probes, tile.key);
-  const Probes all(probes, light);
+  const std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
+  const ProbeLanes all(probes, light);
   TileCut cut;
   cut.allowed = options.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
-  const double most = double{cut.allowed} * double{cut.allowed} * double(probes.size());
+  const double most = double{cut.allowed} * double{cut.allowed} * double{kProbes};
   const float darkest = *std::min_element(light.begin(), light.end());
   cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
   cut.allowed *= darkest;

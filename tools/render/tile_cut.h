@@ -22,6 +22,8 @@ inline Vec3 mostReflected(const Bsdf& bsdf) {
 // distance, for falloff, cosines and partial visibility together, and by the spread of its normals
 // (measured: docs/theory.md, "Tile cuts").
 inline constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
+// A single draw may be this many times the deviation that is allowed to a sample.
+inline constexpr float kMostDraw = 2.0f;
 
 // What to expect of a cluster, which is no leaf, at a point where one random VPL of it counts for
 // all, W/(m2 sr), summed over channels. It goes by the middle of the cluster's box, which is
@@ -30,6 +32,8 @@ inline constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
 struct ExpectedLight {
   float deviation = 0.0f;
   float most = 0.0f;  // the nearest VPL counts for all
+  // Whether one draw deviates by more than a sample may, or can be more than a few times that.
+  int exceeds(float allowed) const { return (deviation > allowed) | (most > kMostDraw * allowed); }
 };
 class Expectation {
  public:
@@ -68,6 +72,15 @@ class Expectation {
   Vec3 lower_, upper_, middle_, axis_, intensity_;
   float size_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
 };
+
+// Whether at no receiver within the bounds, which reflects at most `brightest` (1/sr), the cluster
+// exceeds what is allowed: without cosines, which rules out nearly all.
+inline bool surelyFar(const LightNode& n, float allowed, const Bounds& receivers, float brightest) {
+  const float light = (n.intensity.x + n.intensity.y + n.intensity.z) * brightest;
+  const Vec3 gap =
+      max(max(n.bounds.lower - receivers.upper, receivers.lower - n.bounds.upper), Vec3{});
+  return light * falloff(lengthSquared(gap), n.clamp2) <= allowed;
+}
 
 // Clusters, and the deviation that is allowed to one sample, W/(m2 sr), summed over channels.
 struct TileCut {

@@ -1,11 +1,8 @@
 #include "tools/render/tile_gather.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
+#include <vector>
 
-#include "tools/render/cluster_bounds.h"
 #include "tools/render/receiver_packet.h"
 #include "tools/render/shadow_queue.h"
 #include "tools/render/tile_cut.h"
@@ -16,8 +13,6 @@ namespace {
 
 // Pixels along the side of a square that four packets share.
 constexpr uint32_t kSquare = 8;
-// A single draw may be this many times the deviation that is allowed to a sample.
-constexpr float kMostDraw = 2.0f;
 
 // Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
 uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
@@ -72,15 +67,6 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
   return packets;
 }
 
-// Whether no receiver within the bounds, which reflects at most `brightest` (1/sr), can be too near
-// to the cluster: without cosines, which rules out nearly all.
-bool surelyFar(const LightNode& n, float allowed, const Bounds& receivers, float brightest) {
-  const float light = (n.intensity.x + n.intensity.y + n.intensity.z) * brightest;
-  const Vec3 gap =
-      max(max(n.bounds.lower - receivers.upper, receivers.lower - n.bounds.upper), Vec3{});
-  return light * falloff(lengthSquared(gap), n.clamp2) <= allowed;
-}
-
 // Whether a cluster of the tile's cut must be opened for a packet, because it is much nearer to one
 // of its receivers than the probes knew: it alone would deviate by all that is allowed.
 bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
@@ -88,9 +74,10 @@ bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
   const Expectation expected(n);
   int near = 0;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
-    const ExpectedLight e = expected.at({p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
-                                        {p.mostRed[l], p.mostGreen[l], p.mostBlue[l]});
-    near |= (e.deviation > allowed) | (e.most > kMostDraw * allowed);
+    near |= expected
+                .at({p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
+                    {p.mostRed[l], p.mostGreen[l], p.mostBlue[l]})
+                .exceeds(allowed);
   }
   return near != 0;
 }
