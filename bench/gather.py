@@ -86,7 +86,7 @@ class Bench:
 
 
 def plot(rows: list[dict], path: Path) -> None:
-    figure, axes = plt.subplots(figsize=(6.4, 4.2))
+    figure, axes = plt.subplots(figsize=(6.4, 4.8))
     for number, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):
         mine = [row for row in rows if row["scene"] == scene]
         colour = f"C{number}"
@@ -100,7 +100,7 @@ def plot(rows: list[dict], path: Path) -> None:
     axes.set_xlabel("VPLs")
     axes.set_ylabel("CPU seconds of the gather")
     axes.grid(True, which="both", alpha=0.3)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=2)  # below the lines
     figure.tight_layout()
     figure.savefig(path, dpi=110)
 
