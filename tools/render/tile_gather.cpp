@@ -36,7 +36,9 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
     packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
   }
   const auto slots = static_cast<uint32_t>(tile.bsdf.size() / tile.pixels);
+  constexpr uint32_t kSize = ReceiverPacket::kSize;
   std::vector<ReceiverPacket> packets;
+  packets.reserve(size_t{slots} * ((tile.pixels + kSize - 1) / kSize));
   std::vector<uint32_t> lit;  // receivers of a slot
   for (uint32_t slot = 0; slot < slots; ++slot) {
     lit.clear();
@@ -46,7 +48,7 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
     std::stable_sort(lit.begin(), lit.end(), [&](uint32_t a, uint32_t b) {
       return packetOf[a % tile.pixels] < packetOf[b % tile.pixels];
     });
-    const size_t ofSlot = (lit.size() + ReceiverPacket::kSize - 1) / ReceiverPacket::kSize;
+    const size_t ofSlot = (lit.size() + kSize - 1) / kSize;
     const uint32_t imageSlot = tile.firstSlot + slot;
     for (size_t number = 0; number < ofSlot; ++number) {
       ReceiverPacket& packet = packets.emplace_back();
