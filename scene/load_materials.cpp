@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/files.h"
-#include "core/parallel.h"
 #include "scene/affine.h"
 #include "scene/obj_lines.h"
 #include "scene/read_file.h"
@@ -24,56 +23,111 @@ constexpr double kMostIor = 100.0;
 Vec3 toVec3(const tinyobj::real_t* v) { return fromOrigin({v[0], v[1], v[2]}, {}); }
 Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
 
+bool isGlass(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
+
 }  // namespace
 
-uint32_t MaterialLoader::texture(const fs::path& folder, const fs::path& otherFolder,
-                                 std::string name, bool srgb, bool mask, const float* scale,
-                                 const float* offset) {
-  if (name.empty()) return kNone;
+struct TextureField {
+  const std::string& name;
+  const tinyobj::texture_option_t& options;
+  bool srgb, mask;
+  uint32_t Material::*map;
+};
+
+namespace {
+
+std::vector<TextureField> textureFields(const tinyobj::material_t& in) {
+  if (isGlass(in.illum)) return {};
+  std::vector<TextureField> fields;
+  const auto add = [&](const std::string& name, const tinyobj::texture_option_t& options, bool srgb,
+                       bool mask, uint32_t Material::*map) {
+    if (!name.empty()) fields.push_back({name, options, srgb, mask, map});
+  };
+  add(in.diffuse_texname, in.diffuse_texopt, true, false, &Material::diffuseMap);
+  add(in.specular_texname, in.specular_texopt, true, false, &Material::glossyMap);
+  add(in.alpha_texname, in.alpha_texopt, false, true, &Material::opacityMap);
+  return fields;
+}
+
+}  // namespace
+
+MaterialLoader::~MaterialLoader() {
+  tasks_.cancel();
+  tasks_.wait();
+}
+
+MaterialLoader::WantedTexture MaterialLoader::describe(const TextureField& field,
+                                                       const fs::path& library,
+                                                       const fs::path& obj) {
+  std::string name = field.name;
   std::replace(name.begin(), name.end(), '\\', '/');
-  fs::path file = (folder / name).lexically_normal();
+  fs::path file = (library.parent_path() / name).lexically_normal();
   if (!isRegularFile(file)) {
-    const fs::path other = (otherFolder / name).lexically_normal();
+    const fs::path other = (obj.parent_path() / name).lexically_normal();
     if (isRegularFile(other)) file = other;
   }
-  const std::string key = file.string() + (srgb ? "|s" : "|l") + (mask ? "m" : "") + "|" +
-                          std::to_string(scale[0]) + "," + std::to_string(scale[1]) + "," +
-                          std::to_string(offset[0]) + "," + std::to_string(offset[1]);
-  const auto [it, isNew] = textures_.try_emplace(key, kNone);
+  const Vec3 scale = toVec3(field.options.scale), offset = toVec3(field.options.origin_offset);
+  const std::string key = file.string() + (field.srgb ? "|s" : "|l") + (field.mask ? "m" : "") +
+                          "|" + std::to_string(scale.x) + "," + std::to_string(scale.y) + "," +
+                          std::to_string(offset.x) + "," + std::to_string(offset.y);
+  return {key, file, field.srgb, field.mask, {scale.x, scale.y}, {offset.x, offset.y}};
+}
+
+// Starts, once.
+void MaterialLoader::decode(const WantedTexture& wanted) {
+  const auto [it, isNew] = decoded_.try_emplace(wanted.key);
+  if (!isNew) return;
+  tasks_.run([wanted, &out = it->second] {
+    try {
+      const ReadGuard guard(wanted.file);
+      try {
+        out.texture = loadTexture(wanted.file, wanted.srgb, wanted.mask);
+        out.texture.scale = wanted.scale;
+        out.texture.offset = wanted.offset;
+      } catch (const InputError& e) {
+        out.problem = e.what();
+      }
+      guard.check();
+    } catch (...) {
+      out.failure = std::current_exception();
+    }
+  });
+}
+
+void MaterialLoader::expectTextures(const fs::path& library, const fs::path& obj,
+                                    const tinyobj::material_t& in) {
+  for (const TextureField& field : textureFields(in)) {
+    const WantedTexture wanted = describe(field, library, obj);
+    if (!textures_.contains(wanted.key) && isRegularFile(wanted.file)) decode(wanted);
+  }
+}
+
+uint32_t MaterialLoader::want(WantedTexture wanted) {
+  const auto [it, isNew] = textures_.try_emplace(wanted.key, kNone);
   if (!isNew) return it->second;
-  if (!isRegularFile(file)) {
-    warnings_.add(file.string() + ": no such texture; the plain material colour is used");
+  if (!isRegularFile(wanted.file)) {
+    warnings_.add(wanted.file.string() + ": no such texture; the plain material colour is used");
     return kNone;
   }
+  decode(wanted);
   it->second = kWanted + static_cast<uint32_t>(wanted_.size());
-  wanted_.push_back({key, file, srgb, mask, {scale[0], scale[1]}, {offset[0], offset[1]}});
+  wanted_.push_back(std::move(wanted));
   return it->second;
 }
 
 // Images decode side by side; what they bring is taken over in the order in which they were named.
 void MaterialLoader::loadTextures(size_t firstMaterial) {
-  std::vector<Texture> loaded(wanted_.size());
-  std::vector<std::string> problem(wanted_.size());
-  parallelFor(wanted_.size(), 1, [&](size_t i) {
-    const WantedTexture& w = wanted_[i];
-    const ReadGuard guard(w.file);
-    try {
-      loaded[i] = loadTexture(w.file, w.srgb, w.mask);
-      loaded[i].scale = w.scale;
-      loaded[i].offset = w.offset;
-    } catch (const InputError& e) {
-      problem[i] = e.what();
-    }
-    guard.check();
-  });
+  tasks_.wait();
   std::vector<uint32_t> index(wanted_.size(), kNone);
   for (size_t i = 0; i < wanted_.size(); ++i) {
     const WantedTexture& w = wanted_[i];
-    if (!problem[i].empty()) {
-      warnings_.add(problem[i] + "; the plain material colour is used");
+    Decoded& decoded = decoded_.at(w.key);
+    if (decoded.failure) std::rethrow_exception(decoded.failure);
+    if (!decoded.problem.empty()) {
+      warnings_.add(decoded.problem + "; the plain material colour is used");
     } else {
       index[i] = static_cast<uint32_t>(scene_.textures.size());
-      scene_.textures.push_back(std::move(loaded[i]));
+      scene_.textures.push_back(std::move(decoded.texture));
       if (std::find(scene_.files.begin(), scene_.files.end(), w.file) == scene_.files.end()) {
         scene_.files.push_back(w.file);
       }
@@ -87,11 +141,11 @@ void MaterialLoader::loadTextures(size_t firstMaterial) {
     }
   }
   wanted_.clear();
+  decoded_.clear();
 }
 
 uint32_t MaterialLoader::add(const fs::path& library, const fs::path& obj,
                              const tinyobj::material_t& in) {
-  const fs::path folder = library.parent_path();
   const std::string where = library.string() + ": material '" + in.name + "': ";
   Material m;
   m.name = in.name;
@@ -101,7 +155,7 @@ uint32_t MaterialLoader::add(const fs::path& library, const fs::path& obj,
   m.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMostExponent) : 0.0f;
   m.emission = nonNegative(toVec3(in.emission));
   const int illum = in.illum;
-  m.glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
+  m.glass = isGlass(illum);
   const bool mirror = !m.glass && (illum == 3 || illum == 5 || illum == 8 ||
                                    (isBlack(m.diffuse) && m.exponent >= kMirrorExponent));
   if (m.glass) {
@@ -127,16 +181,8 @@ uint32_t MaterialLoader::add(const fs::path& library, const fs::path& obj,
     if (!m.twoSidedEmission && firstLine(it->second) != "1")
       warnings_.add(where + "emission_sides must be 1 or 2; 1 is used");
   }
-  const auto map = [&](const std::string& name, const tinyobj::texture_option_t& o, bool srgb,
-                       bool mask) {
-    const Vec3 scale = toVec3(o.scale), offset = toVec3(o.origin_offset);
-    return texture(folder, obj.parent_path(), name, srgb, mask, &scale.x, &offset.x);
-  };
-  if (!m.glass) {
-    m.diffuseMap = map(in.diffuse_texname, in.diffuse_texopt, true, false);
-    m.glossyMap = map(in.specular_texname, in.specular_texopt, true, false);
-    m.opacityMap = map(in.alpha_texname, in.alpha_texopt, false, true);
-  }
+  for (const TextureField& field : textureFields(in))
+    m.*field.map = want(describe(field, library, obj));
   const std::pair<const std::string&, const char*> ignored[] = {
       {in.bump_texname, "map_Bump (height map)"}, {in.normal_texname, "norm (normal map)"},
       {in.displacement_texname, "disp"},          {in.emissive_texname, "map_Ke"},

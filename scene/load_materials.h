@@ -1,7 +1,10 @@
 // Materials of MTL libraries and their textures -> those of a Scene.
 #pragma once
 
+#include <tbb/task_group.h>
+
 #include <array>
+#include <exception>
 #include <map>
 #include <set>
 #include <string>
@@ -28,10 +31,17 @@ class Warnings {
   std::set<std::string> given_;
 };
 
+struct TextureField;  // of an MTL
+
 class MaterialLoader {
  public:
   // Borrows both.
   MaterialLoader(Scene& scene, Warnings& warnings) : scene_(scene), warnings_(warnings) {}
+
+  ~MaterialLoader();
+
+  // Textures that will be wanted, to be read while the mesh is: nothing comes of it but time.
+  void expectTextures(const fs::path& library, const fs::path& obj, const tinyobj::material_t& in);
 
   // Each returns the material's number in the scene. Textures are looked for beside the library,
   // then beside the OBJ; they are read by loadTextures().
@@ -43,21 +53,30 @@ class MaterialLoader {
 
  private:
   struct WantedTexture {
-    std::string key;  // in textures_
+    std::string key;  // file, use and place
     fs::path file;
     bool srgb, mask;
     std::array<float, 2> scale, offset;
   };
+  struct Decoded {
+    Texture texture;
+    std::string problem;         // why there is none
+    std::exception_ptr failure;  // why there can be no scene
+  };
   // From here on a number stands for an entry of wanted_ rather than for a texture.
   static constexpr uint32_t kWanted = 1u << 31;
 
-  uint32_t texture(const fs::path& folder, const fs::path& otherFolder, std::string name, bool srgb,
-                   bool mask, const float* scale, const float* offset);
+  static WantedTexture describe(const TextureField& field, const fs::path& library,
+                                const fs::path& obj);
+  void decode(const WantedTexture& wanted);
+  uint32_t want(WantedTexture wanted);
 
   Scene& scene_;
   Warnings& warnings_;
-  std::map<std::string, uint32_t> textures_;  // by path and use
+  std::map<std::string, uint32_t> textures_;  // by key
   std::vector<WantedTexture> wanted_;         // of the OBJ that is being loaded
+  std::map<std::string, Decoded> decoded_;    // by key, until loadTextures() takes it; see tasks_
+  tbb::task_group tasks_;                     // each writes to its own entry
 };
 
 }  // namespace bnvpl

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -10,6 +12,7 @@
 #define TINYOBJLOADER_IMPLEMENTATION  // of scene/tinyobj.h, here alone
 #include "core/files.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "scene/obj_lines.h"
 #include "scene/read_file.h"
 #include "scene/tinyobj.h"
@@ -26,8 +29,11 @@ bool isFinite(const FilePoint& p) {
 // Reads the libraries that an OBJ names, or one override instead, and notes which files were read.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
-  LibraryReader(fs::path folder, fs::path override)
-      : folder_(std::move(folder)), override_(std::move(override)) {}
+  using OnMaterial = std::function<void(const fs::path& library, const tinyobj::material_t&)>;
+  LibraryReader(fs::path folder, fs::path override, OnMaterial onMaterial)
+      : folder_(std::move(folder)),
+        override_(std::move(override)),
+        onMaterial_(std::move(onMaterial)) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* byName, std::string* warn,
@@ -44,31 +50,85 @@ class LibraryReader : public tinyobj::MaterialReader {
     files.push_back(file);
     std::istringstream in(readText(file));
     tinyobj::LoadMtl(byName, materials, &in, warn, err);
+    for (size_t i = origin.size(); i < materials->size(); ++i) onMaterial_(file, (*materials)[i]);
     origin.resize(materials->size(), file);
+    numbers = *byName;
     return true;
   }
   std::vector<fs::path> files, origin;  // origin: the library of each material
   std::set<fs::path> missing;
+  std::map<std::string, int> numbers;  // of the materials, by name
 
  private:
   fs::path folder_, override_;
+  OnMaterial onMaterial_;
 };
 
-// The vertices, by number, that are not given by numbers: tinyobj reads a word such as nan as 0.
-std::vector<size_t> verticesOfWords(std::string_view obj) {
-  std::vector<size_t> found;
-  size_t vertex = 0;
-  for (size_t begin = 0; begin < obj.size();) {
-    const size_t end = lineEnd(obj, begin);
-    std::string_view line = obj.substr(begin, end - begin);
-    begin = end + 1;
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-    if (line.size() < 2 || line[0] != 'v' || (line[1] != ' ' && line[1] != '\t')) continue;
-    line = line.substr(1, line.find('#') - 1);
-    if (line.find_first_not_of("0123456789+-.eE \t") != line.npos) found.push_back(vertex);
-    ++vertex;
+// For what follows after all libraries have been read.
+class KnownMaterials : public tinyobj::MaterialReader {
+ public:
+  explicit KnownMaterials(const std::map<std::string, int>& numbers) : numbers_(numbers) {}
+  bool operator()(const std::string&, std::vector<tinyobj::material_t>*,
+                  std::map<std::string, int>* byName, std::string*, std::string*) override {
+    *byName = numbers_;
+    return true;
   }
-  return found;
+
+ private:
+  const std::map<std::string, int>& numbers_;
+};
+
+struct Reading {
+  tinyobj::attrib_t attrib;
+  std::vector<tinyobj::shape_t> shapes;
+  std::vector<tinyobj::material_t> materials;
+  std::string problem;  // empty: none
+};
+
+Reading readObj(std::string text, tinyobj::MaterialReader& reader) {
+  Reading out;
+  std::istringstream in(std::move(text));
+  std::string warnings, errors;
+  const bool ok =
+      tinyobj::LoadObj(&out.attrib, &out.shapes, &out.materials, &warnings, &errors, &in, &reader,
+                       /*triangulate=*/true, /*default_vcols_fallback=*/false);
+  if (!ok || !errors.empty()) {
+    out.problem = "cannot read the mesh: " + firstLine(errors.empty() ? warnings : errors);
+  }
+  return out;
+}
+
+// tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
+constexpr const char* kAskForLibrary = "mtllib override\n";
+
+// The pieces side by side, joined in their order.
+Reading readPieces(const MeshLines& lines, bool overridden, LibraryReader& libraries) {
+  Reading out = readObj(overridden ? kAskForLibrary : lines.libraries, libraries);
+  if (!out.problem.empty()) return out;
+  std::vector<Reading> pieces(lines.pieces.size());
+  parallelFor(pieces.size(), 1, [&](size_t i) {
+    const MeshLines::Piece& piece = lines.pieces[i];
+    std::string text = kAskForLibrary;
+    if (!piece.material.empty()) text.append("usemtl ").append(piece.material) += '\n';
+    text.append(lines.text, piece.begin, piece.end - piece.begin);
+    KnownMaterials known(libraries.numbers);
+    pieces[i] = readObj(std::move(text), known);
+  });
+  out.attrib.vertices.reserve(3 * lines.vertices);
+  out.attrib.normals.reserve(3 * lines.normals);
+  out.attrib.texcoords.reserve(2 * lines.coordinates);
+  const auto move = [](auto& from, auto& to) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+    from = {};
+  };
+  for (Reading& piece : pieces) {
+    if (!piece.problem.empty()) return readObj(lines.text, libraries);  // it knows the line
+    move(piece.attrib.vertices, out.attrib.vertices);
+    move(piece.attrib.normals, out.attrib.normals);
+    move(piece.attrib.texcoords, out.attrib.texcoords);
+    move(piece.shapes, out.shapes);
+  }
+  return out;
 }
 
 constexpr const char* kTooLarge = "simplify the mesh";
@@ -163,40 +223,35 @@ void ObjLoader::load(const fs::path& obj, const fs::path& materials, const Affin
   std::error_code vanished;  // is readText's to report
   const auto size = static_cast<double>(fs::file_size(obj, vanished));
   if (!vanished) requireMemory(size, obj.string() + ": reading it", kTooLarge);
-  MeshLines lines = meshLines(obj, readText(obj));
+  const MeshLines lines = meshLines(obj, readText(obj));
   requireMemory(bytesOf(lines),
                 obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
                 kTooLarge);
-  // tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
-  if (!materials.empty()) lines.text.insert(0, "mtllib override\n");
-  std::istringstream in(std::move(lines.text));
-
-  Parsed parsed;
-  std::vector<tinyobj::material_t> source;
-  std::string warnings, errors;
-  const std::vector<size_t> words = verticesOfWords(in.view());
-  LibraryReader reader(obj.parent_path(), materials);
-  const bool ok =
-      tinyobj::LoadObj(&parsed.attrib, &parsed.shapes, &source, &warnings, &errors, &in, &reader,
-                       /*triangulate=*/true, /*default_vcols_fallback=*/false);
-  if (!ok || !errors.empty()) {
-    throw InputError(obj, "cannot read the mesh: " + firstLine(errors.empty() ? warnings : errors));
-  }
-  in.str({});  // its memory is better used by the triangles
-  for (const size_t vertex : words) parsed.attrib.vertices.at(3 * vertex) = NAN;
+  LibraryReader reader(obj.parent_path(), materials,
+                       [&](const fs::path& library, const tinyobj::material_t& material) {
+                         if (std::ranges::binary_search(lines.materials, material.name))
+                           materials_.expectTextures(library, obj, material);
+                       });
+  Reading reading = lines.pieces.size() == 1
+                        ? readObj((materials.empty() ? "" : kAskForLibrary) + lines.text, reader)
+                        : readPieces(lines, !materials.empty(), reader);
+  if (!reading.problem.empty()) throw InputError(obj, reading.problem);
+  for (const size_t vertex : lines.verticesOfWords) reading.attrib.vertices.at(3 * vertex) = NAN;
   for (const fs::path& library : reader.missing) {
     warnings_.add(library.string() + ": no such material library; its materials are grey");
   }
   scene_.files.insert(scene_.files.end(), reader.files.begin(), reader.files.end());
+  const std::vector<tinyobj::material_t>& source = reading.materials;
   reader.origin.resize(source.size(), obj);
   // Only what a face uses is loaded: a library may name textures that nobody needs.
   std::vector<bool> used(source.size(), false);
-  for (const auto& shape : parsed.shapes) {
+  for (const auto& shape : reading.shapes) {
     for (const int id : shape.mesh.material_ids) {
       if (id >= 0 && static_cast<size_t>(id) < used.size()) used[static_cast<size_t>(id)] = true;
     }
   }
   const size_t firstMaterial = scene_.materials.size();
+  Parsed parsed{std::move(reading.attrib), std::move(reading.shapes), {}};
   parsed.materialOf.assign(source.size(), kNone);
   for (size_t i = 0; i < source.size(); ++i) {
     if (used[i]) parsed.materialOf[i] = materials_.add(reader.origin[i], obj, source[i]);

@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "core/parallel.h"
 
 namespace bnvpl {
 namespace {
@@ -11,20 +16,7 @@ namespace {
 // many, weeks for a hundred times as many.
 constexpr size_t kMaxCorners = 1024;
 
-// At most: the words of the line but for "f".
-size_t cornersOf(std::string_view line) {
-  size_t words = 0;
-  char before = ' ';
-  for (const char c : line) {
-    const bool space = c == ' ' || c == '\t';
-    if (!space && (before == ' ' || before == '\t')) ++words;
-    before = c;
-  }
-  return words - 1;
-}
-
-}  // namespace
-
+// Where the line that holds `at` ends: at its "\r" or "\n", as for tinyobj, or with the text.
 size_t lineEnd(std::string_view text, size_t at) {
   // Not find_first_of, which is a call for each character.
   const auto ends = [](char c) { return c == '\n' || c == '\r'; };
@@ -33,33 +25,144 @@ size_t lineEnd(std::string_view text, size_t at) {
       text.begin());
 }
 
-MeshLines meshLines(const fs::path& file, std::string text) {
-  static constexpr std::array<std::string_view, 8> kNeeded{"f", "v", "vn",     "vt",
-                                                           "g", "o", "usemtl", "mtllib"};
-  std::replace(text.begin(), text.end(), '\0', ' ');  // where tinyobj would stop
-  MeshLines kept;
-  kept.text.reserve(text.size() + 1);
-  size_t number = 1;
-  for (size_t at = 0; at < text.size();) {
-    const size_t end = lineEnd(text, at);
-    const std::string_view line = std::string_view(text).substr(at, end - at);
+bool isBlank(char c) { return c == ' ' || c == '\t'; }
+
+// At most: the words of the line but for "f".
+size_t cornersOf(std::string_view line) {
+  size_t words = 0;
+  char before = ' ';
+  for (const char c : line) {
+    words += !isBlank(c) && isBlank(before);
+    before = c;
+  }
+  return words - 1;
+}
+
+// A stretch of whole lines.
+struct Stretch {
+  size_t begin = 0, end = 0;
+  size_t newlines = 0;
+  size_t vertices = 0, normals = 0, coordinates = 0, triangles = 0;
+  std::vector<size_t> verticesOfWords;  // from its first vertex on
+  std::set<std::string_view> materials;
+  std::string_view lastMaterial;
+  bool namesMaterial = false;
+  std::string libraries;
+  bool alone = true;          // its faces need nothing from other stretches
+  size_t endlessFace = kNot;  // line, from its first on
+  static constexpr size_t kNot = ~size_t{0};
+};
+
+// The word after the line's first.
+std::string_view secondWord(std::string_view rest) {
+  const size_t begin = std::min(rest.find_first_not_of(" \t"), rest.size());
+  return rest.substr(begin, rest.find_first_of(" \t", begin) - begin);
+}
+
+// Takes note of a line; false: a mesh does not need it.
+bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
+  if (keyword == "f") {
+    const size_t corners = cornersOf(rest) + 1;
+    if (corners > kMaxCorners) s.endlessFace = std::min(s.endlessFace, s.newlines);
+    if (corners >= 3) s.triangles += corners - 2;
+    s.alone = s.alone && corners == 3 && rest.find('-') == rest.npos;
+  } else if (keyword == "v") {
+    const std::string_view numbers = rest.substr(0, rest.find('#'));
+    const auto isOfNumber = [](char c) {
+      return (c >= '0' && c <= '9') || isBlank(c) || c == '.' || c == '-' || c == '+' || c == 'e' ||
+             c == 'E';
+    };
+    if (!std::all_of(numbers.begin(), numbers.end(), isOfNumber))
+      s.verticesOfWords.push_back(s.vertices);
+    ++s.vertices;
+  } else if (keyword == "vn") {
+    ++s.normals;
+  } else if (keyword == "vt") {
+    ++s.coordinates;
+  } else if (keyword == "usemtl") {
+    s.lastMaterial = secondWord(rest);
+    s.materials.insert(s.lastMaterial);
+    s.namesMaterial = true;
+  } else if (keyword == "mtllib") {
+    s.alone = s.alone && s.triangles == 0 && !s.namesMaterial;
+    s.libraries.append(keyword).append(rest) += '\n';
+  } else {
+    return keyword == "g" || keyword == "o";
+  }
+  return true;
+}
+
+void scan(std::string& text, Stretch& s) {
+  std::replace(text.begin() + static_cast<std::ptrdiff_t>(s.begin),
+               text.begin() + static_cast<std::ptrdiff_t>(s.end), '\0', ' ');  // tinyobj would stop
+  const std::string_view all = std::string_view(text).substr(0, s.end);
+  for (size_t at = s.begin; at < s.end;) {
+    const size_t end = lineEnd(all, at);
+    const std::string_view line = all.substr(at, end - at);
     const size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
-    const std::string_view keyword = line.substr(begin, line.find_first_of(" \t", begin) - begin);
-    const size_t corners = keyword == "f" ? cornersOf(line) : 0;
-    if (corners > kMaxCorners) {
-      throw InputError(file.string() + ":" + std::to_string(number) + ": a face of more than " +
-                       std::to_string(kMaxCorners) + " corners; triangulate the mesh");
-    }
-    if (std::find(kNeeded.begin(), kNeeded.end(), keyword) != kNeeded.end())
-      kept.text.append(line) += '\n';
-    kept.vertices += keyword == "v";
-    kept.normals += keyword == "vn";
-    kept.coordinates += keyword == "vt";
-    kept.triangles += corners >= 3 ? corners - 2 : 0;
-    if (end < text.size() && text[end] == '\n') ++number;
+    const size_t length = std::min(line.find_first_of(" \t", begin), line.size()) - begin;
+    if (length > 0 && !note(line.substr(begin, length), line.substr(begin + length), s))
+      text[at + begin] = '#';
+    s.newlines += end < s.end && all[end] == '\n';
     at = end + 1;
   }
-  return kept;
+}
+
+// Of about `bytes` each.
+std::vector<Stretch> stretchesOf(std::string_view text, size_t bytes) {
+  std::vector<Stretch> out;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t at = std::min(text.size(), begin + bytes) - 1;
+    const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    out.emplace_back().begin = begin;
+    out.back().end = end;
+    begin = end;
+  }
+  return out;
+}
+
+// Whether the stretches can be read one without the other.
+bool independent(std::span<const Stretch> stretches) {
+  bool begun = false;  // whether a face or a material came before
+  for (const Stretch& s : stretches) {
+    if (!s.alone || (begun && !s.libraries.empty())) return false;
+    begun = begun || s.triangles > 0 || s.namesMaterial;
+  }
+  return true;
+}
+
+}  // namespace
+
+MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
+  MeshLines out;
+  out.text = std::move(text);
+  std::vector<Stretch> stretches = stretchesOf(out.text, pieceBytes);
+  parallelFor(stretches.size(), 1, [&](size_t i) { scan(out.text, stretches[i]); });
+
+  const bool many = independent(stretches);
+  if (!many) out.pieces.push_back({0, out.text.size(), {}});
+  std::set<std::string_view> materials;
+  std::string_view material;
+  size_t line = 1;
+  for (const Stretch& s : stretches) {
+    if (s.endlessFace != Stretch::kNot) {
+      throw InputError(file.string() + ":" + std::to_string(line + s.endlessFace) +
+                       ": a face of more than " + std::to_string(kMaxCorners) +
+                       " corners; triangulate the mesh");
+    }
+    line += s.newlines;
+    for (const size_t v : s.verticesOfWords) out.verticesOfWords.push_back(out.vertices + v);
+    out.vertices += s.vertices;
+    out.normals += s.normals;
+    out.coordinates += s.coordinates;
+    out.triangles += s.triangles;
+    out.libraries += s.libraries;
+    materials.insert(s.materials.begin(), s.materials.end());
+    if (many) out.pieces.push_back({s.begin, s.end, std::string(material)});
+    if (s.namesMaterial) material = s.lastMaterial;
+  }
+  out.materials.assign(materials.begin(), materials.end());
+  return out;
 }
 
 std::string firstLine(std::string text) {

@@ -1,8 +1,8 @@
-// What of an OBJ reaches tinyobjloader: it trusts its input.
+// What of an OBJ reaches tinyobjloader: it trusts its input, and reads with one thread.
 #pragma once
 
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "core/errors.h"
 
@@ -10,18 +10,30 @@ namespace bnvpl {
 
 // The lines of an OBJ that a triangle mesh needs, and how much they will come to.
 struct MeshLines {
-  std::string text;
+  std::string text;  // line by line as in the file, the others commented out
   size_t vertices = 0, normals = 0, coordinates = 0;
   size_t triangles = 0;
+  // The vertices, by number, that are not given by numbers: tinyobj reads a word such as nan as 0.
+  std::vector<size_t> verticesOfWords;
+  std::vector<std::string> materials;  // that faces may use: sorted, each once
+  std::string libraries;               // lines that name libraries
+
+  // Lines that can be read on their own, after those that name libraries. All in one where that
+  // cannot be: negative numbers count back from where they stand, polygons are cut by the corners'
+  // positions, and a library holds from its line on.
+  struct Piece {
+    size_t begin, end;     // in `text`
+    std::string material;  // of the first faces; empty: none
+  };
+  std::vector<Piece> pieces;
 };
 
 // The other lines (points, lines, weights of skins, tags of subdivision) mean nothing here, and
 // tinyobj copies what they hold again and again: memory that grows as the square of the file.
-// Throws InputError at a face that would take for ever. `file` is for the message.
-MeshLines meshLines(const fs::path& file, std::string text);
-
-// Where the line that holds `at` ends: at its "\r" or "\n", as for tinyobj, or with the text.
-size_t lineEnd(std::string_view text, size_t at);
+// Throws InputError at a face that would take for ever. `file` is for the message, `pieceBytes` for
+// tests.
+inline constexpr size_t kObjPiece = size_t{1} << 20;
+MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes = kObjPiece);
 
 // Without white space at its end.
 std::string firstLine(std::string text);

@@ -5,10 +5,13 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <utility>
 
 namespace bnvpl {
+
+namespace {
+constexpr size_t kReadAtOnce = size_t{1} << 16;  // beyond what a file says to hold
+}
 
 ReadGuard::ReadGuard(fs::path file) : file_(std::move(file)), before_(look()) {}
 
@@ -31,14 +34,23 @@ std::string readText(const fs::path& file) {
     throw InputError(file, std::string("cannot open: ") + std::strerror(errno) +
                                "; check its name and permissions");
   }
-  std::ostringstream text;
-  text << in.rdbuf();  // fails for an empty file too
-  std::error_code ignored;
-  if (!text && fs::file_size(file, ignored) > 0) {
+  // As long as it says to be, and what follows all the same: some files of the system say 0.
+  std::error_code unknown;
+  uintmax_t size = fs::file_size(file, unknown);
+  if (unknown) size = 0;
+  std::string text(size + 1, '\0');  // one more, to meet the end at once
+  size_t got = 0;
+  do {
+    if (got == text.size()) text.resize(got + kReadAtOnce);
+    in.read(text.data() + got, static_cast<std::streamsize>(text.size() - got));
+    got += static_cast<size_t>(in.gcount());
+  } while (in);
+  if (in.bad() || got < size) {
     throw InputError(file, "cannot be read to its end; check the disk");
   }
+  text.resize(got);
   guard.check();
-  return std::move(text).str();
+  return text;
 }
 
 }  // namespace bnvpl

@@ -81,7 +81,8 @@ TEST_F(Hostile, WhatIsNoMeshIsLeftOut) {
   const Scene s = loadMesh(repeated("l 1 0\rp 0\r\n", 3) + kSquareObj + repeated(waste, 2'000),
                            "newmtl paint\nKd 1 1 1\n");
   EXPECT_EQ(s.triangles.size(), 2u);
-  EXPECT_EQ(meshLines("a.obj", waste).text, "usemtl x\nusemtl y\n");
+  EXPECT_EQ(meshLines("a.obj", waste).text,
+            "# 1 2\n# 3\n# a 9000/9000/9000\n#w 0 1e99 nan\nusemtl x\nusemtl y\n");
 }
 
 TEST_F(Hostile, ALibraryIsReadOnce) {
