@@ -23,11 +23,24 @@ constexpr uint64_t kChunksPerWave = 64;
 constexpr uint64_t kPathsPerCandidate = 200;
 constexpr uint64_t kFreePaths = 1000000;
 
+// The columns that placement fills.
+auto columns(auto& table) {
+  return std::array{&table.position, &table.normal, &table.albedo, &table.flux,
+                    &table.straightFlux};
+}
+
 // What one fixed range of paths yields; chunks are joined in order, so threads do not matter.
 struct Chunk {
   VplTable rows;
   std::vector<uint64_t> path;  // of each row, to know where the count was reached
   uint64_t rays = 0, escaped = 0, absorbed = 0, complete = 0, nonFinite = 0;
+
+  // For another range, in the same memory.
+  void restart() {
+    for (std::vector<Vec3>* column : columns(rows)) column->clear();
+    path.clear();
+    rays = escaped = absorbed = complete = nonFinite = 0;
+  }
 };
 
 // False: not added, as a value is NaN or infinite.
@@ -165,33 +178,39 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
                          : "point the camera at lit surfaces or ask for fewer with -n"));
 }
 
+// The first `count` rows.
+void append(const VplTable& from, size_t count, VplTable& to) {
+  const auto target = columns(to);
+  const auto source = columns(from);
+  for (size_t c = 0; c < target.size(); ++c) {
+    const auto end =
+        source[c]->begin() + static_cast<std::ptrdiff_t>(std::min(count, source[c]->size()));
+    target[c]->insert(target[c]->end(), source[c]->begin(), end);
+  }
+}
+
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
 template <typename TracePaths>
 PlaceResult collect(const std::string& scene, const PlaceOptions& options,
                     const ProgressFn& progress, const TracePaths& tracePaths) {
   PlaceResult result;
   VplTable& rows = result.table;
+  for (auto* column : {&rows.position, &rows.normal, &rows.albedo}) column->reserve(options.count);
   const uint64_t effort = kFreePaths + kPathsPerCandidate * options.count;
   uint64_t firstPath = 0;
+  std::vector<Chunk> wave(kChunksPerWave);
   while (rows.size() < options.count) {
     if (firstPath >= effort) failTooFew(scene, result, options);
-    std::vector<Chunk> wave(kChunksPerWave);
-    parallelFor(wave.size(), 1,
-                [&](size_t c) { tracePaths(firstPath + c * kPathsPerChunk, wave[c]); });
+    parallelFor(wave.size(), 1, [&](size_t c) {
+      wave[c].restart();
+      tracePaths(firstPath + c * kPathsPerChunk, wave[c]);
+    });
     firstPath += kChunksPerWave * kPathsPerChunk;
     const size_t before = rows.size();
     result.paths = firstPath;
     for (const Chunk& c : wave) {
-      const size_t room = options.count - rows.size(), take = std::min(room, c.rows.size());
-      const auto append = [take](auto& to, const auto& from) {
-        to.insert(to.end(), from.begin(),
-                  from.begin() + static_cast<std::ptrdiff_t>(std::min(take, from.size())));
-      };
-      append(rows.position, c.rows.position);
-      append(rows.normal, c.rows.normal);
-      append(rows.albedo, c.rows.albedo);
-      append(rows.flux, c.rows.flux);
-      append(rows.straightFlux, c.rows.straightFlux);
+      const size_t take = std::min(options.count - rows.size(), c.rows.size());
+      append(c.rows, take, rows);
       result.rays += c.rays;
       result.escaped += c.escaped;
       result.absorbed += c.absorbed;
