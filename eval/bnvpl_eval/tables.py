@@ -26,7 +26,8 @@ def column(key: str, label: str = "", unit: str = "", better: str | None = None)
 
 
 # Standard errors that rows carry, shown behind their values.
-ERRORS = {"mean_ratio": "mean_ratio_error", "rmse_over_mean": "rmse_error", "relmse": "relmse_error"}
+ERRORS = {"mean_ratio": "mean_ratio_error", "rmse_over_mean": "rmse_error", "relmse": "relmse_error",
+          "smape": "smape_error", "flip": "flip_error", "hdr_flip": "hdr_flip_error"}
 
 
 def cell(row: dict, key: str):

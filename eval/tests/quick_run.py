@@ -74,6 +74,12 @@ class QuickRun(unittest.TestCase):
             self.assertEqual(row["eliminate_options"], "--density uniform")
             self.assertEqual(row["seed_numbers"], "1 2")
 
+    def test_flip_and_smape_are_of_all_seeds(self):
+        for row in self.rows("methods"):
+            for key in ("smape", "flip", "hdr_flip"):
+                self.assertGreater(row[key], 0.0, key)
+                self.assertGreater(row[f"{key}_error"], 0.0, key)  # two seeds, two images
+
     def test_dark_room(self):
         tables = {t["id"]: t for t in json.loads((FOLDER / "report.json").read_text())["tables"]}
         dark = {row["label"]: row["dark_room"] for row in tables["scatter"]["rows"] if row["dark_room"] is not None}

@@ -17,7 +17,7 @@ def run(context: Context) -> None:
             context.say(f"methods: {view.name}, {method}")
             c = context.configuration(view, method)
             row = context.judge("methods", view, c, context.seeds(view), label=METHODS[method])
-            row |= measures.compare(context, view, row["images"][0])  # of the first seed
+            row |= measures.compare_all(context, view, row["images"])
             rows.append(row | {"group": group(view, c.vpls)})
     context.tables.append(table(
         "methods", "Where VPLs come from: indirect light against the path tracer",
