@@ -9,6 +9,8 @@
 
 namespace bnvpl {
 
+struct ObjReading;
+
 class ObjLoader {
  public:
   explicit ObjLoader(Scene& scene) : scene_(scene) {}
@@ -23,8 +25,9 @@ class ObjLoader {
   void finish();
 
  private:
-  struct Parsed;
-  void addTriangles(const fs::path& obj, const Parsed& parsed, const Affine& transform);
+  // materialOf: numbers in the scene of the reading's materials.
+  void addTriangles(const fs::path& obj, const ObjReading& reading,
+                    const std::vector<uint32_t>& materialOf, const Affine& transform);
   void roundPositions();
   void dropUnusable();
   void dropDoubledLamps();
