@@ -39,7 +39,7 @@ class Coverage {
   Found pick(Vec3 at, Vec3 normal, Rng& rng) const {
     return pick(at, normal, grid_.lookUp(at), rng);
   }
-  // The same, looked up in grid() before.
+  // The same, looked up before.
   Found pick(Vec3 at, Vec3 normal, const ReachGrid::Lookup& lookup, Rng& rng) const {
     std::array<uint32_t, kMaxEligible> eligible;
     size_t left = 0, reaching = 0;
@@ -80,7 +80,13 @@ class Coverage {
   }
 
   // Every VPL within reach, whatever lies between: the thesis' rule, and what pick() looks up.
-  const ReachGrid& grid() const { return grid_; }
+  ReachGrid::Lookup lookUp(Vec3 at) const { return grid_.lookUp(at); }
+  // Of many hits, which wait for memory together; those that hit nothing are passed over.
+  void lookUp(std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) const {
+    grid_.lookUpAll(
+        hits.size(),
+        [&](size_t i) { return hits[i].triangle == kNone ? nullptr : &hits[i].position; }, near);
+  }
 
  private:
   // More VPLs than this around one point: the first ones found. At the default reach there are

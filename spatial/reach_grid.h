@@ -51,8 +51,37 @@ class ReachGrid {
     find(lookup);
     return lookup;
   }
-  // lookUp() in two steps: who has many points begins all and then finds all, so that they wait for
-  // memory together.
+  // The same of many points, which wait for memory together. pointOf(i) is null where there is
+  // none.
+  template <typename PointOf>
+  void lookUpAll(size_t count, const PointOf& pointOf, std::span<Lookup> lookups) const {
+    for (size_t i = 0; i < count; ++i) {
+      if (const Vec3* at = pointOf(i)) begin(*at, lookups[i]);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      if (pointOf(i)) find(lookups[i]);
+    }
+  }
+
+  // Calls fn(disk) for every point whose distance is below its radius, in a fixed order.
+  template <typename Fn>
+  static void forEachReaching(const Lookup& lookup, const Fn& fn) {
+    for (uint32_t l = 0; l < lookup.size_; ++l) {
+      const auto& list = lookup.lists_[l];
+      for (const Disk* begin = list.begin; begin != list.end;) {
+        const Disk* end = begin + std::min<ptrdiff_t>(Lookup::kSweep, list.end - begin);
+        std::array<const Disk*, Lookup::kSweep + 1> reaching;
+        size_t count = 0;
+        for (; begin != end; ++begin) {  // no branch: it could not be foreseen
+          reaching[count] = begin;
+          count += lengthSquared(begin->centre - lookup.at_) < begin->radiusSquared;
+        }
+        for (size_t i = 0; i < count; ++i) fn(*reaching[i]);
+      }
+    }
+  }
+
+ private:
   void begin(Vec3 at, Lookup& lookup) const {
     lookup.at_ = at;
     lookup.size_ = 0;
@@ -76,25 +105,6 @@ class ReachGrid {
     lookup.size_ = found;
   }
 
-  // Calls fn(disk) for every point whose distance is below its radius, in a fixed order.
-  template <typename Fn>
-  static void forEachReaching(const Lookup& lookup, const Fn& fn) {
-    for (uint32_t l = 0; l < lookup.size_; ++l) {
-      const auto& list = lookup.lists_[l];
-      for (const Disk* begin = list.begin; begin != list.end;) {
-        const Disk* end = begin + std::min<ptrdiff_t>(Lookup::kSweep, list.end - begin);
-        std::array<const Disk*, Lookup::kSweep + 1> reaching;
-        size_t count = 0;
-        for (; begin != end; ++begin) {  // no branch: it could not be foreseen
-          reaching[count] = begin;
-          count += lengthSquared(begin->centre - lookup.at_) < begin->radiusSquared;
-        }
-        for (size_t i = 0; i < count; ++i) fn(*reaching[i]);
-      }
-    }
-  }
-
- private:
   struct Cell {
     int64_t x, y, z;
   };

@@ -33,7 +33,9 @@ class Scatterer {
         perPhotonPower_(1.0 / photonPower),
         coverage_(vpls.position, vpls.normal, reachOf(vpls, options.radius), rays) {}
 
-  const ReachGrid& grid() const { return coverage_.grid(); }
+  void lookUp(std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) const {
+    coverage_.lookUp(hits, near);
+  }
   // Hands the flux that leaves a diffuse hit to the VPLs around it, which `near` has found.
   void scatter(const SurfacePoint& hit, const ReachGrid::Lookup& near, Vec3 flux, bool straight,
                Rng& rng, PhotonSums& sums) const {
@@ -153,13 +155,7 @@ class PhotonBatch {
   // What the first `size` photons hit, and the VPLs near it.
   void meet(size_t size) {
     rays_.closestHits({next_.data(), size}, hits_);
-    const ReachGrid& grid = scatterer_.grid();
-    for (size_t i = 0; i < size; ++i) {
-      if (hits_[i].triangle != kNone) grid.begin(hits_[i].position, near_[i]);
-    }
-    for (size_t i = 0; i < size; ++i) {
-      if (hits_[i].triangle != kNone) grid.find(near_[i]);
-    }
+    scatterer_.lookUp({hits_.data(), size}, near_);
   }
   void finish(const PhotonWalk& photon, PhotonSums& sums) const {
     const PhotonFate& fate = photon.fate();

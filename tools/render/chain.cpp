@@ -6,13 +6,21 @@ namespace bnvpl {
 
 ChainEnd followChain(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
                      const Arrival& start, Rng& rng) {
+  SurfacePoint first;
+  if (!rays.closestHit(origin, direction, first)) first.triangle = kNone;
+  return followChain(rays, lights, first, direction, start, rng);
+}
+
+ChainEnd followChain(const RayScene& rays, const LightSet& lights, const SurfacePoint& first,
+                     Vec3 direction, const Arrival& start, Rng& rng) {
   ChainEnd end;
+  end.hit = first;
   end.throughput = Vec3{1.0f};
   Arrival arrival = start;
   while (true) {
     Vec3& met = end.links == 0 ? end.metFirst : end.metLater;
     ++end.rays;
-    if (!rays.closestHit(origin, direction, end.hit)) {
+    if (end.hit.triangle == kNone) {
       met += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
     }
@@ -36,8 +44,9 @@ ChainEnd followChain(const RayScene& rays, const LightSet& lights, Vec3 origin, 
     if (!bsdf.sample(LobeGroup::Chain, Transport::Radiance, rng, next)) return end;
     end.throughput *= next.weight;
     arrival = {next.pdf, end.hit.position};
-    origin = rays.lifted(end.hit.position, next.side);
+    const Vec3 from = rays.lifted(end.hit.position, next.side);
     direction = next.wi;
+    if (!rays.closestHit(from, direction, end.hit)) end.hit.triangle = kNone;
   }
 }
 

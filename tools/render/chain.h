@@ -19,5 +19,8 @@ struct ChainEnd {
 
 ChainEnd followChain(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
                      const Arrival& arrival, Rng& rng);
+// The same where it is known what the ray hits; first.triangle is kNone where that is nothing.
+ChainEnd followChain(const RayScene& rays, const LightSet& lights, const SurfacePoint& first,
+                     Vec3 direction, const Arrival& arrival, Rng& rng);
 
 }  // namespace bnvpl

@@ -6,9 +6,6 @@ namespace bnvpl {
 
 namespace {
 
-// Squared distance to expect of a cluster around the point, as a share of its diagonal's square.
-constexpr float kLikelyDistance = 0.5f;
-
 // Largest cosine between `axis` and any direction from `at` into the box (Walter et al. 2005,
 // section 4.1).
 float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
@@ -42,9 +39,10 @@ float maxEmitterCosine(const LightNode& n, Vec3 at) {
   return std::max(0.0f, cosine * n.cosHalfAngle + sine * n.sinHalfAngle);
 }
 
-// Of the cluster's light at the point, summed over the channels, with `distance2` for all of its
-// VPLs; 0 only where there is none.
-float contribution(const LightNode& n, const ClusterReceiver& receiver, float distance2) {
+}  // namespace
+
+float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
+  if (n.leaf()) return 0.0f;
   const Vec3 at = receiver.bsdf.point().position;
   const float emitter = maxEmitterCosine(n, at);
   if (emitter <= 0.0f) return 0.0f;
@@ -53,21 +51,7 @@ float contribution(const LightNode& n, const ClusterReceiver& receiver, float di
       [&](Vec3 axis) { return maxCosine(n.bounds, at, AxisFrame(axis)); });
   const Vec3 light = value * n.intensity;
   const float sum = (light.x + light.y + light.z) * emitter;
-  return sum > 0.0f ? sum * falloff(distance2, n.clamp2) : 0.0f;
-}
-
-}  // namespace
-
-float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
-  if (n.leaf()) return 0.0f;
-  return contribution(n, receiver, n.bounds.distanceSquared(receiver.bsdf.point().position));
-}
-
-// What to expect of a cluster: most of it is further away than its nearest corner.
-float likelyContribution(const LightNode& n, const ClusterReceiver& receiver) {
-  const float size2 = lengthSquared(n.bounds.extent());
-  const float near2 = n.bounds.distanceSquared(receiver.bsdf.point().position);
-  return contribution(n, receiver, std::max(near2, kLikelyDistance * size2));
+  return sum > 0.0f ? sum * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
 }
 
 }  // namespace bnvpl

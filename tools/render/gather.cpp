@@ -1,7 +1,6 @@
 #include "tools/render/gather.h"
 
 #include <algorithm>
-#include <array>
 
 #include "tools/render/cluster_bounds.h"
 #include "tools/render/tile_gather.h"
@@ -39,7 +38,11 @@ bool lessBound(const Cluster& a, const Cluster& b) {
 
 Gatherer::Gatherer(const RayScene& rays, const VplLights& vpls, const GatherOptions& options,
                    uint64_t seed)
-    : rays_(rays), vpls_(vpls), options_(options), tree_(buildLightTree(vpls, seed)) {}
+    : rays_(rays),
+      vpls_(vpls),
+      options_(options),
+      tree_(buildLightTree(vpls, seed)),
+      sampler_(tree_) {}
 
 void Gatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const {
   if (options_.method == GatherMethod::TileCuts) {
@@ -55,52 +58,21 @@ void Gatherer::gather(const TileReceivers& tile, std::span<Gathered> out) const 
 
 Gathered Gatherer::sample(const Bsdf& bsdf, unsigned draws, Rng& rng) const {
   Gathered out;
-  if (tree_.nodes.empty()) return out;
-  const ClusterReceiver receiver(bsdf);
-  std::array<float, kMaxStartCut> upTo;  // running sums of the bounds of the start cut
-  const size_t starts = tree_.startCut.size();
-  float whole = 0.0f;
-  for (size_t i = 0; i < starts; ++i) {
-    whole += likelyContribution(tree_.nodes[tree_.startCut[i]], receiver);
-    upTo[i] = whole;
-  }
-  if (whole <= 0.0f) return out;
+  const VplSampler::Point point(sampler_, bsdf);
+  if (point.dark()) return out;
   const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
   const float shift = rng.next(), perDraw = 1.0f / static_cast<float>(draws);
   for (unsigned k = 0; k < draws; ++k) {
-    const float pick = (static_cast<float>(k) + shift) * perDraw * whole;
-    const auto slot =
-        std::min(starts - 1,
-                 static_cast<size_t>(std::upper_bound(upTo.begin(), upTo.begin() + starts, pick) -
-                                     upTo.begin()));
-    float probability = (upTo[slot] - (slot > 0 ? upTo[slot - 1] : 0.0f)) / whole;
-    const std::optional<uint32_t> leaf = descend(tree_.startCut[slot], receiver, rng, probability);
+    const auto draw = point.draw((static_cast<float>(k) + shift) * perDraw, rng);
     Coupling c;
-    // The last slot is also taken by the rounding of `pick`, even where its own share is 0.
-    if (!leaf || !(probability > 0.0f) || !couple(vpls_, *leaf, bsdf, c)) continue;
+    if (!draw || !couple(vpls_, draw->vpl, bsdf, c)) continue;
     ++out.shadowRays;
-    if (rays_.occluded(from, vpls_.position[*leaf])) continue;
-    const Vec3 light = c.transfer * vpls_.intensity[*leaf] * (perDraw / probability);
+    if (rays_.occluded(from, vpls_.position[draw->vpl])) continue;
+    const Vec3 light = c.transfer * vpls_.intensity[draw->vpl] * (perDraw / draw->probability);
     out.radiance += light;
     out.clamped += light * c.clamped;
   }
   return out;
-}
-
-// To a VPL of the cluster, at each node in proportion to the bounds of the children, whose share
-// `probability` is multiplied by. Empty where neither child can light the point.
-std::optional<uint32_t> Gatherer::descend(uint32_t node, const ClusterReceiver& receiver, Rng& rng,
-                                          float& probability) const {
-  while (!tree_.nodes[node].leaf()) {
-    const LightNode& n = tree_.nodes[node];
-    const float left = likelyContribution(tree_.nodes[n.left], receiver);
-    const float both = left + likelyContribution(tree_.nodes[n.right], receiver);
-    if (both <= 0.0f) return {};
-    const bool toLeft = rng.next() * both < left;
-    probability *= (toLeft ? left : both - left) / both;
-    node = toLeft ? n.left : n.right;
-  }
-  return tree_.nodes[node].representative;
 }
 
 Gathered Gatherer::gatherAll(const Bsdf& bsdf) const {

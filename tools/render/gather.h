@@ -8,6 +8,7 @@
 #include "scene/ray_scene.h"
 #include "tools/render/cluster_bounds.h"
 #include "tools/render/light_tree.h"
+#include "tools/render/vpl_sampler.h"
 
 namespace bnvpl {
 
@@ -58,13 +59,11 @@ class Gatherer {
 
   // Thread-safe, both. One result for each receiver.
   void gather(const TileReceivers& tile, std::span<Gathered> out) const;
-  // All VPLs on average, by `draws` (> 0) that are taken from the light tree (Estevez & Kulla
-  // 2018): for points whose light reaches the image over one random ray among many.
+  // All VPLs on average, by `draws` (> 0) of a VplSampler: for points whose light reaches the image
+  // over one random ray among many.
   Gathered sample(const Bsdf& bsdf, unsigned draws, Rng& rng) const;
 
  private:
-  std::optional<uint32_t> descend(uint32_t node, const ClusterReceiver& receiver, Rng& rng,
-                                  float& probability) const;
   Gathered gatherAll(const Bsdf& bsdf) const;
   Gathered gatherCut(const Bsdf& bsdf) const;
 
@@ -72,6 +71,7 @@ class Gatherer {
   const VplLights& vpls_;
   GatherOptions options_;
   LightTree tree_;
+  VplSampler sampler_;
 };
 
 }  // namespace bnvpl

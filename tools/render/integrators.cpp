@@ -1,5 +1,8 @@
 #include "tools/render/integrators.h"
 
+#include <algorithm>
+#include <array>
+
 namespace bnvpl {
 
 namespace {
@@ -58,10 +61,7 @@ void VplIntegrator::render(const TileSamples& tile) const {
     // each of them. The sequence repeats after 2^32 points.
     const auto slot = tile.firstSlot + static_cast<uint32_t>(i / tile.pixels);
     const uint64_t pixelKey = random64(tile.key, i % tile.pixels, kDrawDirection);
-    for (unsigned k = 0; k < extensions_; ++k) {
-      extend(seen[i], owenSobol(slot * extensions_ + k, pixelKey),
-             throughput * (1.0f / static_cast<float>(extensions_)), s.rng, s.radiance);
-    }
+    extendAll(*bsdf[i], throughput, slot * extensions_, pixelKey, s.rng, s.radiance);
   }
 }
 
@@ -78,59 +78,102 @@ void VplIntegrator::gather(const TileSamples& tile, std::span<const ChainEnd> se
   }
 }
 
+// The first link of a near-field ray.
+struct VplIntegrator::Extension {
+  Vec3 direction, throughput;
+  Arrival arrival;
+  const SurfacePoint* hit;
+  const ReachGrid::Lookup* near;  // the VPLs there
+};
+
+// Rays from a sample's point wait for memory together. Where on the hemisphere they go is said by
+// the points of the pixel's sequence from `firstPoint` on.
+void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstPoint,
+                              uint64_t pixelKey, Rng& rng, RadianceSample& out) const {
+  constexpr size_t kBatch = RayScene::kBatch;
+  std::array<Ray, kBatch> rays;
+  std::array<SurfacePoint, kBatch> hits;
+  std::array<ReachGrid::Lookup, kBatch> near;
+  std::array<Extension, kBatch> made;
+  for (unsigned begin = 0, end; begin < extensions_; begin = end) {
+    end = begin + std::min(extensions_ - begin, unsigned{kBatch});
+    size_t count = 0;
+    for (unsigned k = begin; k < end; ++k) {
+      BsdfSample next;
+      const float pick = rng.next();
+      if (!from.sample(LobeGroup::Rough, Transport::Radiance, pick,
+                       owenSobol(firstPoint + k, pixelKey), next)) {
+        continue;
+      }
+      const Vec3 position = from.point().position;
+      const auto all = static_cast<float>(extensions_);
+      rays[count] = {rays_.lifted(position, next.side), next.wi};
+      made[count] = {next.wi,
+                     throughput * next.weight * (1.0f / all),
+                     {next.pdf * all, position, LightChoice::Each},
+                     &hits[count],
+                     &near[count]};
+      ++count;
+    }
+    rays_.closestHits({rays.data(), count}, hits);
+    if (nearField_) nearField_->coverage().lookUp({hits.data(), count}, near);
+    for (size_t k = 0; k < count; ++k) extend(made[k], rng, out);
+  }
+}
+
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
 // what NearField says is missing: from the scattered light that a VPL knows where it speaks for the
 // point that the ray found, else by lighting that point as the first one, and so on. A light that
 // it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
-// `firstAt` says where on the hemisphere the first ray goes.
-void VplIntegrator::extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng& rng,
-                           RadianceSample& out) const {
+void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out) const {
+  Vec3 throughput = start.throughput;
+  ChainEnd end = followChain(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
   for (unsigned links = 0; links < kMaxExtensions; ++links) {
-    const Bsdf bsdf(rays_.scene(), vertex.hit);
     const bool first = links == 0;
-    BsdfSample next;
-    const float pick = rng.next();
-    const Point2 at = first ? firstAt : Point2{rng.next(), rng.next()};
-    if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, pick, at, next)) return;
-    throughput *= next.weight;
-    const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
-    const Arrival arrival = first ? Arrival{next.pdf * static_cast<float>(extensions_),
-                                            vertex.hit.position, LightChoice::Each}
-                                  : Arrival{next.pdf, vertex.hit.position};
-    const ChainEnd end = followChain(rays_, lights_, from, next.wi, arrival, rng);
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
     if (only_ == Only::Direct) return;
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
-    const NearField::Missing missing = missingFrom(end, rng);
+    const NearField::Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
     throughput *= end.throughput;
     // Where a VPL knows the scattered light the path ends, so nothing shares the straight light
     // with the shadow ray. Else it goes on, by roulette at full weight.
     const bool known = missing.scattered.has_value();
     const bool lit = known ? missing.share > 0.0f : rng.next() < missing.share;
-    if (lit) {
-      const Bsdf found(rays_.scene(), end.hit);
-      const Vec3 leaving = directLight(rays_, lights_, found, LobeGroup::Rough, LightChoice::One,
-                                       known ? 0 : 1, rng);
-      if (known) {
-        light += throughput * (leaving + *missing.scattered) * missing.share;
-      } else {
-        const Gathered g = gatherer_.sample(found, first ? kFirstDraws : kLaterDraws, rng);
-        light += throughput * (leaving + g.radiance);
-        out.clamped += throughput * g.clamped;
-        out.shadowRays += g.shadowRays;
-      }
+    if (!lit) {
+      out.extended += light;
+      out.indirect += light;
+      return;
+    }
+    const Bsdf found(rays_.scene(), end.hit);
+    const Vec3 leaving =
+        directLight(rays_, lights_, found, LobeGroup::Rough, LightChoice::One, known ? 0 : 1, rng);
+    if (known) {
+      light += throughput * (leaving + *missing.scattered) * missing.share;
+    } else {
+      const Gathered g = gatherer_.sample(found, first ? kFirstDraws : kLaterDraws, rng);
+      light += throughput * (leaving + g.radiance);
+      out.clamped += throughput * g.clamped;
+      out.shadowRays += g.shadowRays;
     }
     out.extended += light;
     out.indirect += light;
-    if (known || !lit) return;
-    vertex = end;
+    BsdfSample next;
+    if (known || !found.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return;
+    throughput *= next.weight;
+    const Vec3 position = end.hit.position;
+    end = followChain(rays_, lights_, rays_.lifted(position, next.side), next.wi,
+                      {next.pdf, position}, rng);
   }
 }
 
-NearField::Missing VplIntegrator::missingFrom(const ChainEnd& end, Rng& rng) const {
+// `near`: of the hit, where that is the first; null: to be looked up.
+NearField::Missing VplIntegrator::missingFrom(const ChainEnd& end, const ReachGrid::Lookup* near,
+                                              Rng& rng) const {
   if (!end.rough) return {};
   if (end.links > 0) return {1.0f, {}};
-  return nearField_ ? nearField_->missing(end.hit, end.hit.distance, rng) : NearField::Missing{};
+  if (!nearField_) return {};
+  return near ? nearField_->missing(end.hit, end.hit.distance, *near, rng)
+              : nearField_->missing(end.hit, end.hit.distance, rng);
 }
 
 void PathTracer::render(const TileSamples& tile) const {

@@ -46,9 +46,12 @@ class VplIntegrator {
   void render(const TileSamples& tile) const;
 
  private:
-  void extend(ChainEnd vertex, Point2 firstAt, Vec3 throughput, Rng& rng,
-              RadianceSample& out) const;
-  NearField::Missing missingFrom(const ChainEnd& end, Rng& rng) const;
+  struct Extension;
+  void extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstPoint, uint64_t pixelKey,
+                 Rng& rng, RadianceSample& out) const;
+  void extend(const Extension& first, Rng& rng, RadianceSample& out) const;
+  NearField::Missing missingFrom(const ChainEnd& end, const ReachGrid::Lookup* near,
+                                 Rng& rng) const;
   void gather(const TileSamples& tile, std::span<const ChainEnd> seen,
               std::span<const Bsdf* const> bsdf) const;
 

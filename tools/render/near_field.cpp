@@ -89,11 +89,12 @@ std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
   return (lit_.flux[vpl] - lit_.straightFlux[vpl]) * (1.0f / (kPi * area));
 }
 
-NearField::Missing NearField::missing(const SurfacePoint& seen, float distance, Rng& rng) const {
-  const Coverage::Found found = coverage_.pick(seen.position, seen.ng, rng);
+NearField::Missing NearField::missing(const SurfacePoint& seen, float distance,
+                                      const ReachGrid::Lookup& near, Rng& rng) const {
+  const Coverage::Found found = coverage_.pick(seen.position, seen.ng, near, rng);
   if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
-  const float near = distance / clampRadius_[*found.vpl];
-  const float share = std::max(0.0f, 1.0f - near * near);  // 1 - d^2 falloff(d^2)
+  const float relative = distance / clampRadius_[*found.vpl];
+  const float share = std::max(0.0f, 1.0f - relative * relative);  // 1 - d^2 falloff(d^2)
   if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
   return {share, scatteredBy(*found.vpl)};
 }

@@ -25,7 +25,14 @@ class NearField {
   // Borrows the table and the scene. `clamp` as for makeVplLights().
   NearField(const VplTable& lit, const RayScene& rays, float clamp);
 
-  Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const;
+  // For a point that a ray has found from `distance`, world units.
+  Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const {
+    return missing(seen, distance, coverage_.lookUp(seen.position), rng);
+  }
+  // The same, looked up in coverage() before.
+  Missing missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
+                  Rng& rng) const;
+  const Coverage& coverage() const { return coverage_; }
 
  private:
   // Of Missing: mean of the surface that the VPL speaks for; empty where that is not known.

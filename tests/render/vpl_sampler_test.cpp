@@ -1,0 +1,111 @@
+// VPLs drawn one at a time: none that lights a point is left out, and the probabilities are right.
+#include "tools/render/vpl_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "core/sampling.h"
+
+namespace bnvpl::test {
+namespace {
+
+VplLights lightsAbout(size_t count, Rng& rng) {
+  VplLights lights;
+  for (size_t i = 0; i < count; ++i) {
+    // Some on one wall, some anywhere; a few bright ones.
+    const bool wall = rng.next() < 0.5f;
+    const float x = rng.next(), y = rng.next(), z = rng.next();
+    lights.position.emplace_back(x, wall ? 0.0f : y, z);
+    const float u = rng.next(), v = rng.next();
+    lights.normal.push_back(wall ? Vec3{0, 1, 0} : sampleSphere(u, v));
+    lights.intensity.push_back(Vec3{x + 0.1f, z, 0.1f} * (rng.next() < 0.1f ? 20.0f : 1.0f));
+    lights.clamp2.push_back(0.01f * rng.next() + 1e-6f);
+  }
+  return lights;
+}
+
+Scene withMaterial(bool glossy) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].diffuse = Vec3{0.5f, 0.3f, 0.1f};
+  if (glossy) {
+    scene.materials[0].glossy = Vec3{0.4f};
+    scene.materials[0].exponent = 15.0f;
+  }
+  return scene;
+}
+
+SurfacePoint pointIn(Rng& rng) {
+  SurfacePoint p;
+  const float x = rng.next(), y = rng.next() + 0.01f, z = rng.next();
+  p.position = {x, y, z};
+  const float u = rng.next(), v = rng.next(), s = rng.next(), t = rng.next();
+  p.ng = p.ns = sampleSphere(u, v);
+  p.wo = normalize(p.ng + 0.8f * sampleSphere(s, t));
+  p.material = 0;
+  return p;
+}
+
+// Each VPL that can light the point counts one over its probability wherever it is drawn: together
+// as many as there are.
+void requireRightProbabilities(size_t count, bool glossy) {
+  Rng rng(streamKey(count, Stream::Plot), glossy);
+  const VplLights lights = lightsAbout(count, rng);
+  const LightTree tree = buildLightTree(lights, 1);
+  const VplSampler sampler(tree);
+  const Scene scene = withMaterial(glossy);
+  int lit = 0;
+  for (int k = 0; k < 40; ++k) {
+    const SurfacePoint at = pointIn(rng);
+    const Bsdf bsdf(scene, at);
+    std::set<uint32_t> canLight;
+    Coupling c;
+    for (uint32_t i = 0; i < count; ++i) {
+      if (couple(lights, i, bsdf, c)) canLight.insert(i);
+    }
+    const VplSampler::Point point(sampler, bsdf);
+    if (point.dark()) {
+      EXPECT_TRUE(canLight.empty());
+      continue;
+    }
+    ++lit;
+    constexpr int kDraws = 40000;
+    double sum = 0.0, squares = 0.0;
+    const float shift = rng.next();
+    for (int d = 0; d < kDraws; ++d) {
+      const auto draw = point.draw((static_cast<float>(d) + shift) / kDraws, rng);
+      if (!draw) continue;
+      ASSERT_LT(draw->vpl, count);
+      ASSERT_GT(draw->probability, 0.0f);
+      ASSERT_LE(draw->probability, 1.0001f);
+      const double value = canLight.contains(draw->vpl) ? 1.0 / double{draw->probability} : 0.0;
+      sum += value / kDraws;
+      squares += value * value / kDraws;
+    }
+    const double deviation = std::sqrt(std::max(0.0, squares - sum * sum) / kDraws);
+    EXPECT_NEAR(sum, double(canLight.size()), 6.0 * deviation + 1e-3 * double(canLight.size()))
+        << count << " VPLs, point " << k;
+  }
+  EXPECT_GT(lit, 4);
+}
+
+TEST(VplSampler, ProbabilitiesAreRight) {
+  for (const size_t count : {1u, 3u, 33u, 500u}) requireRightProbabilities(count, false);
+}
+
+TEST(VplSampler, ProbabilitiesAreRightForLobes) {
+  for (const size_t count : {2u, 40u, 500u}) requireRightProbabilities(count, true);
+}
+
+TEST(VplSampler, WithoutVplsAllIsDark) {
+  const Scene scene = withMaterial(false);
+  Rng rng(1, 1);
+  const SurfacePoint at = pointIn(rng);
+  const Bsdf bsdf(scene, at);
+  EXPECT_TRUE(VplSampler::Point(VplSampler(LightTree{}), bsdf).dark());
+}
+
+}  // namespace
+}  // namespace bnvpl::test
