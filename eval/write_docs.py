@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts a run's tables into docs/results.md and README.md and its pictures into docs/images: write_docs.py build/eval/standard
 
-With --tables only these, of a run of some parts, into docs/results.md alone. A table stands between '<!-- table ID -->' and
+With --only these alone, of a run of some parts. A table stands between '<!-- table ID -->' and
 '<!-- end -->'; ID is that of report.json.
 """
 
@@ -54,16 +54,15 @@ def markdown(table: dict) -> str:
     return "\n".join(lines)
 
 
-def write_tables(report: dict, only: list[str] | None) -> None:
-    """All that the page wants, or those of `only`, each with the tools that made it."""
+def table_places() -> list[str]:
+    return re.findall(r"<!-- table ([\w-]+) -->", (DOCS / "results.md").read_text())
+
+
+def write_tables(report: dict, wanted: list[str]) -> None:
+    """Each with the tools that made it."""
     path = DOCS / "results.md"
-    text = path.read_text()
     tables = {table["id"]: table for table in report["tables"]}
-    places = re.findall(r"<!-- table ([\w-]+) -->", text)
-    wanted = only or places
     for name in wanted:
-        if name not in places:
-            raise SystemExit(f"eval: {path}: has no place for table '{name}'; it has {', '.join(places)}")
         if name not in tables:
             raise SystemExit(f"eval: {path}: wants table '{name}', but report.json has {', '.join(tables)}")
     made = f"Tools of {report['provenance']['commits of the runs']}, {report['provenance']['date']}."
@@ -73,7 +72,13 @@ def write_tables(report: dict, only: list[str] | None) -> None:
             return match[0]
         return f"<!-- table {match[1]} -->\n{markdown(tables[match[1]])}\n\n{made}\n<!-- end -->"
 
-    output.write_text(path, re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, text, flags=re.S))
+    output.write_text(path, re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, path.read_text(), flags=re.S))
+
+
+def write_plots(folder: Path, wanted: list[str]) -> None:
+    for plot in wanted:
+        subprocess.run([sys.executable, settings.EVAL / "report/plots.py", folder / "report.json", plot,
+                        "-o", DOCS / "images" / f"{plot}.png"], check=True)
 
 
 def srgb(pixels: np.ndarray, scale: float) -> np.ndarray:
@@ -133,14 +138,20 @@ def write_summary(results: dict) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="of the run")
-    parser.add_argument("--tables", help="ids, such as gather,scatter")
+    parser.add_argument("--only", help="ids of tables and plots, such as gather,scatter, and 'summary', of the README")
     arguments = parser.parse_args()
     folder = arguments.folder
     report = json.loads((folder / "report.json").read_text())
-    write_tables(report, arguments.tables.split(",") if arguments.tables else None)
-    if arguments.tables:
+    places, plots = table_places(), [plot["id"] for plot in report["plots"]]
+    only = arguments.only.split(",") if arguments.only else [*places, *plots, "summary"]
+    if unknown := set(only) - {*places, *plots, "summary"}:
+        raise SystemExit(f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join([*places, *plots])}, summary")
+    write_tables(report, [name for name in only if name in places])
+    write_plots(folder, [name for name in only if name in plots])
+    if "summary" in only:
+        write_summary(json.loads((folder / "results.json").read_text()))
+    if arguments.only:
         return 0
-    write_summary(json.loads((folder / "results.json").read_text()))
     for scene in report["scenes"]:
         view = scene["views"][0]
         for strip, names in STRIPS.items():
@@ -148,9 +159,6 @@ def main() -> int:
         for name, overlays in OVERLAYS.items():
             if name.endswith(f"-{scene['id']}"):
                 write_overlays(folder, view, overlays, DOCS / "images" / f"{name}.png")
-    for plot in report["plots"]:
-        subprocess.run([sys.executable, settings.EVAL / "report/plots.py", folder / "report.json", plot["id"],
-                        "-o", DOCS / "images" / f"{plot['id']}.png"], check=True)
     return 0
 
 

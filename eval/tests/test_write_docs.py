@@ -1,0 +1,54 @@
+"""Tables get to their places in the page, and what was not asked for stays."""
+
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import write_docs  # noqa: E402 (after the path that it needs)
+
+PAGE = "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- table two -->\nold two\n<!-- end -->\nlast\n"
+
+
+def report(*ids: str) -> dict:
+    columns = [{"key": "label", "label": "VPLs"}, {"key": "relmse", "label": "relMSE", "better": "low"}]
+    rows = [{"group": "a room", "label": "ours", "relmse": {"value": 0.0123456, "error": 0.0004}}]
+    return {"tables": [{"id": name, "columns": columns, "rows": rows} for name in ids], "plots": [], "scenes": [],
+            "provenance": {"commits of the runs": "abc1234", "date": "2026-11-22"}}
+
+
+class Tables(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "results.md").write_text(PAGE)
+
+    def write(self, made: dict, *options: str) -> str:
+        (self.folder / "report.json").write_text(json.dumps(made))
+        with mock.patch.object(write_docs, "DOCS", self.folder), \
+                mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]):
+            write_docs.main()
+        return (self.folder / "results.md").read_text()
+
+    def test_only_what_is_named(self):
+        page = self.write(report("one", "two"), "--only", "two")
+        self.assertIn("old one", page)
+        self.assertNotIn("old two", page)
+        self.assertIn("| a room | ours | 0.0123 ± 0.0004 |", page)
+        self.assertIn("Tools of abc1234, 2026-11-22.", page)
+        self.assertTrue(page.endswith("<!-- end -->\nlast\n"))
+
+    def test_what_is_not_there_is_refused(self):
+        for made, only, message in ((report("one"), "two", "wants table 'two'"), (report("one"), "three", "named 'three'")):
+            with self.assertRaises(SystemExit) as refused:
+                self.write(made, "--only", only)
+            self.assertIn(message, str(refused.exception))
+            self.assertEqual((self.folder / "results.md").read_text(), PAGE)
+
+
+if __name__ == "__main__":
+    unittest.main()
