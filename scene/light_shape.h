@@ -1,0 +1,71 @@
+// Directions and extents of the lights of scene.toml.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sampling.h"
+#include "scene/scene.h"
+
+namespace bnvpl {
+
+// Area of the scene's box seen along a unit direction: what a distant light's photons must cover.
+inline float silhouetteArea(const Bounds& box, Vec3 direction) {
+  const Vec3 e = box.extent();
+  return std::fabs(direction.x) * e.y * e.z + std::fabs(direction.y) * e.x * e.z +
+         std::fabs(direction.z) * e.x * e.y;
+}
+
+inline float spotFalloff(const LightSpec& s, float cosAngle) {
+  const float angle = std::acos(std::clamp(cosAngle, -1.0f, 1.0f));
+  if (angle >= s.coneRad) return 0.0f;
+  const float inner = s.coneRad - s.falloffRad;
+  if (angle <= inner) return 1.0f;
+  const float t = (s.coneRad - angle) / s.falloffRad;
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. The
+// image is turned as rotate_deg turns a mesh: by the right-hand rule.
+inline Vec3 directionOf(const LightSpec& s, float u, float v) {
+  const float phi = 2.0f * kPi * (u - 0.5f) - s.rotateRad, theta = kPi * v;
+  return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+}
+inline void texelOf(const LightSpec& s, Vec3 d, float& u, float& v) {
+  const float turns = (std::atan2(d.x, -d.z) + s.rotateRad) / (2.0f * kPi) + 0.5f;
+  u = std::min(turns - std::floor(turns), 0x1.fffffep-1f);
+  v = std::min(std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi, 0x1.fffffep-1f);
+}
+
+// Difference of the cosines of the polar angles that bound a row of texels: as a product, for near
+// the poles of a fine image both round to 1.
+inline float bandHeight(uint32_t row, uint32_t rows) {
+  const double half = 0.5 * double{kPi} / static_cast<double>(rows);
+  return static_cast<float>(2.0 * std::sin((2.0 * row + 1.0) * half) * std::sin(half));
+}
+
+inline float texelSolidAngle(const EnvironmentImage& image, uint32_t row) {
+  return 2.0f * kPi / float(image.width) * bandHeight(row, image.height);
+}
+
+// A cone by 1 - cos of its half angle, which keeps its digits where the cosine rounds to 1: at the
+// sun's 0.27 degrees the cosine of a float has 8 bits left, below 0.014 none.
+inline float versine(float angleRad) {
+  const float s = std::sin(0.5f * angleRad);
+  return 2.0f * s * s;
+}
+inline Vec3 sampleNarrowCone(float u, float v, float coneVersine) {
+  const float w = u * coneVersine, r = std::sqrt(w * (2.0f - w));
+  return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), 1.0f - w};
+}
+inline float pdfNarrowCone(float coneVersine) { return 1.0f / (2.0f * kPi * coneVersine); }
+inline bool inNarrowCone(Vec3 direction, Vec3 axis, float coneVersine) {  // |a - b|^2 = 2 (1 - cos)
+  return lengthSquared(direction - axis) <= 2.0f * coneVersine;
+}
+
+inline Vec3 sunRadiance(const LightSpec& s) {  // irradiance = radiance * pi sin^2(angular radius)
+  const float sine = std::sin(s.angularRadiusRad);
+  return s.emission * (1.0f / (kPi * sine * sine));
+}
+
+}  // namespace bnvpl
