@@ -2,10 +2,11 @@
 //
 // The input is an OBJ; from a line "# MTL" on it is m.mtl, which the OBJ can name. t.tga lies
 // beside them. It is loaded as a scene names it: plain, and mirrored with m.mtl in place of its
-// libraries.
+// libraries. Reading it in small pieces must bring the same.
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
 #include "scene/load_obj.h"
+#include "scene/read_obj.h"
 
 namespace bnvpl {
 namespace {
@@ -28,6 +29,35 @@ void load(const fs::path& obj, const fs::path& materials, const Affine& transfor
   if (accepted(read)) requireSaneMeshes(scene);
 }
 
+// Of all shapes one after the other: where one ends is up to the reader.
+std::pair<std::vector<int>, std::vector<int>> cornersAndMaterials(const ObjReading& reading) {
+  std::pair<std::vector<int>, std::vector<int>> out;
+  for (const tinyobj::shape_t& shape : reading.shapes) {
+    for (const tinyobj::index_t& i : shape.mesh.indices)
+      out.first.insert(out.first.end(), {i.vertex_index, i.normal_index, i.texcoord_index});
+    const auto& ids = shape.mesh.material_ids;
+    out.second.insert(out.second.end(), ids.begin(), ids.end());
+  }
+  return out;
+}
+
+// As large files are read.
+void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
+  ObjReading whole, pieces;
+  const auto ignore = [](const fs::path&, const tinyobj::material_t&) {};
+  constexpr size_t kPiece = 16, kAll = size_t{1} << 30;
+  const bool asWhole = accepted([&] { whole = readObj(obj, materials, ignore, kAll); });
+  const bool asPieces = accepted([&] { pieces = readObj(obj, materials, ignore, kPiece); });
+  require(asWhole == asPieces, "pieces are accepted where the whole is");
+  if (!asWhole) return;
+  require(whole.attrib.vertices.size() == pieces.attrib.vertices.size() &&
+              whole.attrib.normals.size() == pieces.attrib.normals.size() &&
+              whole.attrib.texcoords.size() == pieces.attrib.texcoords.size(),
+          "pieces have the vertices of the whole");
+  require(cornersAndMaterials(whole) == cornersAndMaterials(pieces),
+          "pieces have the faces of the whole");
+}
+
 }  // namespace
 }  // namespace bnvpl
 
@@ -38,6 +68,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const size_t split = std::min(input.find(kMtl), input.size());
   const fs::path obj = folder.write("m.obj", input.substr(0, split));
   const fs::path mtl = folder.write("m.mtl", input.substr(split));
+  requireSameInPieces(obj, {});
+  requireSameInPieces(obj, mtl);
   load(obj, {}, {});
   load(obj, mtl, Affine::fromParts({1, 2, 3}, {0.1f, 0.2f, 0.3f}, {-1, 2, 1}));
   return 0;

@@ -1,7 +1,6 @@
 #include "scene/obj_lines.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <set>
 #include <span>
@@ -27,15 +26,27 @@ size_t lineEnd(std::string_view text, size_t at) {
 
 bool isBlank(char c) { return c == ' ' || c == '\t'; }
 
-// At most: the words of the line but for "f".
-size_t cornersOf(std::string_view line) {
+// At most: the words after "f".
+size_t cornersOf(std::string_view face) {
   size_t words = 0;
   char before = ' ';
-  for (const char c : line) {
+  for (const char c : face) {
     words += !isBlank(c) && isBlank(before);
     before = c;
   }
-  return words - 1;
+  return words;
+}
+
+// Whether a number may count back from where the face stands: it is below 0, or so long that
+// tinyobj's int wraps.
+bool mayCountBack(std::string_view face) {
+  constexpr size_t kMostDigits = 9;
+  size_t digits = 0;
+  for (const char c : face) {
+    digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+    if (c == '-' || digits > kMostDigits) return true;
+  }
+  return false;
 }
 
 // A stretch of whole lines.
@@ -43,10 +54,11 @@ struct Stretch {
   size_t begin = 0, end = 0;
   size_t newlines = 0;
   size_t vertices = 0, normals = 0, coordinates = 0, triangles = 0;
-  std::vector<size_t> verticesOfWords;  // from its first vertex on
-  std::set<std::string_view> materials;
-  std::string_view lastMaterial;
-  bool namesMaterial = false;
+  std::vector<size_t> verticesOfWords;   // from its first vertex on
+  std::set<std::string_view> materials;  // of faces, but for those before the first name
+  bool facesBeforeNames = false;
+  std::optional<std::string_view> material;  // named last
+  bool materialUsed = false;
   std::string libraries;
   bool alone = true;          // its faces need nothing from other stretches
   size_t endlessFace = kNot;  // line, from its first on
@@ -59,32 +71,49 @@ std::string_view secondWord(std::string_view rest) {
   return rest.substr(begin, rest.find_first_of(" \t", begin) - begin);
 }
 
-// Takes note of a line; false: a mesh does not need it.
+void noteFace(std::string_view rest, Stretch& s) {
+  const size_t corners = cornersOf(rest);
+  if (corners > kMaxCorners) s.endlessFace = std::min(s.endlessFace, s.newlines);
+  if (corners >= 3) s.triangles += corners - 2;
+  s.alone = s.alone && corners == 3 && !mayCountBack(rest);
+  if (!s.material) {
+    s.facesBeforeNames = true;
+  } else if (!s.materialUsed) {
+    s.materials.insert(*s.material);
+    s.materialUsed = true;
+  }
+}
+
+void noteVertex(std::string_view rest, Stretch& s) {
+  const std::string_view numbers = rest.substr(0, rest.find('#'));
+  const auto isOfNumber = [](char c) {
+    return (c >= '0' && c <= '9') || isBlank(c) || c == '.' || c == '-' || c == '+' || c == 'e' ||
+           c == 'E';
+  };
+  if (!std::all_of(numbers.begin(), numbers.end(), isOfNumber))
+    s.verticesOfWords.push_back(s.vertices);
+  ++s.vertices;
+}
+
+// Takes note of a line; false: a mesh does not need it. A keyword alone is nothing to tinyobj
+// either, but for usemtl.
 bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
+  if (keyword == "usemtl") {
+    s.material = secondWord(rest);
+    s.materialUsed = false;
+    return true;
+  }
+  if (rest.empty()) return false;
   if (keyword == "f") {
-    const size_t corners = cornersOf(rest) + 1;
-    if (corners > kMaxCorners) s.endlessFace = std::min(s.endlessFace, s.newlines);
-    if (corners >= 3) s.triangles += corners - 2;
-    s.alone = s.alone && corners == 3 && rest.find('-') == rest.npos;
+    noteFace(rest, s);
   } else if (keyword == "v") {
-    const std::string_view numbers = rest.substr(0, rest.find('#'));
-    const auto isOfNumber = [](char c) {
-      return (c >= '0' && c <= '9') || isBlank(c) || c == '.' || c == '-' || c == '+' || c == 'e' ||
-             c == 'E';
-    };
-    if (!std::all_of(numbers.begin(), numbers.end(), isOfNumber))
-      s.verticesOfWords.push_back(s.vertices);
-    ++s.vertices;
+    noteVertex(rest, s);
   } else if (keyword == "vn") {
     ++s.normals;
   } else if (keyword == "vt") {
     ++s.coordinates;
-  } else if (keyword == "usemtl") {
-    s.lastMaterial = secondWord(rest);
-    s.materials.insert(s.lastMaterial);
-    s.namesMaterial = true;
   } else if (keyword == "mtllib") {
-    s.alone = s.alone && s.triangles == 0 && !s.namesMaterial;
+    s.alone = s.alone && s.triangles == 0 && !s.material;
     s.libraries.append(keyword).append(rest) += '\n';
   } else {
     return keyword == "g" || keyword == "o";
@@ -126,7 +155,7 @@ bool independent(std::span<const Stretch> stretches) {
   bool begun = false;  // whether a face or a material came before
   for (const Stretch& s : stretches) {
     if (!s.alone || (begun && !s.libraries.empty())) return false;
-    begun = begun || s.triangles > 0 || s.namesMaterial;
+    begun = begun || s.triangles > 0 || s.material.has_value();
   }
   return true;
 }
@@ -142,7 +171,7 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
   const bool many = independent(stretches);
   if (!many) out.pieces.push_back({0, out.text.size(), {}});
   std::set<std::string_view> materials;
-  std::string_view material;
+  std::optional<std::string_view> material;
   size_t line = 1;
   for (const Stretch& s : stretches) {
     if (s.endlessFace != Stretch::kNot) {
@@ -158,8 +187,12 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
     out.triangles += s.triangles;
     out.libraries += s.libraries;
     materials.insert(s.materials.begin(), s.materials.end());
-    if (many) out.pieces.push_back({s.begin, s.end, std::string(material)});
-    if (s.namesMaterial) material = s.lastMaterial;
+    if (material && s.facesBeforeNames) materials.insert(*material);
+    if (many) {
+      out.pieces.push_back({s.begin, s.end, {}});
+      if (material) out.pieces.back().material = std::string(*material);
+    }
+    if (s.material) material = s.material;
   }
   out.materials.assign(materials.begin(), materials.end());
   return out;

@@ -1,6 +1,7 @@
 // What of an OBJ reaches tinyobjloader: it trusts its input, and reads with one thread.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,15 @@ struct MeshLines {
   size_t triangles = 0;
   // The vertices, by number, that are not given by numbers: tinyobj reads a word such as nan as 0.
   std::vector<size_t> verticesOfWords;
-  std::vector<std::string> materials;  // that faces may use: sorted, each once
+  std::vector<std::string> materials;  // that faces ask for: sorted, each once
   std::string libraries;               // lines that name libraries
 
   // Lines that can be read on their own, after those that name libraries. All in one where that
   // cannot be: negative numbers count back from where they stand, polygons are cut by the corners'
   // positions, and a library holds from its line on.
   struct Piece {
-    size_t begin, end;     // in `text`
-    std::string material;  // of the first faces; empty: none
+    size_t begin, end;                    // in `text`
+    std::optional<std::string> material;  // in use at its begin, if any was named before
   };
   std::vector<Piece> pieces;
 };

@@ -44,8 +44,11 @@ class LibraryReader : public tinyobj::MaterialReader {
     files.push_back(file);
     std::istringstream in(readText(file));
     tinyobj::LoadMtl(byName, materials, &in, warn, err);
-    for (size_t i = libraryOf.size(); i < materials->size(); ++i)
-      onMaterial_(file, (*materials)[i]);
+    for (size_t i = libraryOf.size(); i < materials->size(); ++i) {
+      const tinyobj::material_t& m = (*materials)[i];
+      const auto named = byName->find(m.name);  // the first of a name
+      if (named != byName->end() && static_cast<size_t>(named->second) == i) onMaterial_(file, m);
+    }
     libraryOf.resize(materials->size(), file);
     numbers = *byName;
     return true;
@@ -65,7 +68,7 @@ class KnownMaterials : public tinyobj::MaterialReader {
   explicit KnownMaterials(const std::map<std::string, int>& numbers) : numbers_(numbers) {}
   bool operator()(const std::string&, std::vector<tinyobj::material_t>*,
                   std::map<std::string, int>* byName, std::string*, std::string*) override {
-    *byName = numbers_;
+    if (byName->empty()) *byName = numbers_;  // once, however many lines name a library
     return true;
   }
 
@@ -99,7 +102,7 @@ Reading readPieces(const MeshLines& lines, bool overridden, LibraryReader& libra
   parallelFor(pieces.size(), 1, [&](size_t i) {
     const MeshLines::Piece& piece = lines.pieces[i];
     std::string text = kAskForLibrary;
-    if (!piece.material.empty()) text.append("usemtl ").append(piece.material) += '\n';
+    if (piece.material) text.append("usemtl ").append(*piece.material) += '\n';
     text.append(lines.text, piece.begin, piece.end - piece.begin);
     KnownMaterials known(libraries.numbers);
     pieces[i] = read(std::move(text), known);
@@ -138,11 +141,12 @@ double bytesOf(const MeshLines& lines) {
 }  // namespace
 
 ObjReading readObj(const fs::path& obj, const fs::path& materials,
-                   const std::function<void(const fs::path&, const tinyobj::material_t&)>& expect) {
+                   const std::function<void(const fs::path&, const tinyobj::material_t&)>& expect,
+                   size_t pieceBytes) {
   std::error_code vanished;  // is readText's to report
   const auto size = static_cast<double>(fs::file_size(obj, vanished));
   if (!vanished) requireMemory(size, obj.string() + ": reading it", kTooLarge);
-  const MeshLines lines = meshLines(obj, readText(obj));
+  MeshLines lines = meshLines(obj, readText(obj), pieceBytes);
   requireMemory(bytesOf(lines),
                 obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
                 kTooLarge);
@@ -152,15 +156,22 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
                             if (std::ranges::binary_search(lines.materials, material.name))
                               expect(library, material);
                           });
-  Reading whole = lines.pieces.size() == 1
-                      ? read((overridden ? kAskForLibrary : "") + lines.text, libraries)
-                      : readPieces(lines, overridden, libraries);
-  if (!whole.problem.empty()) {
-    // The text alone tells the line.
-    const std::string problem = read(lines.text, libraries).problem;
-    throw InputError(obj, "cannot read the mesh: " + (problem.empty() ? whole.problem : problem));
+  const bool whole = lines.pieces.size() == 1;
+  Reading reading;
+  if (!whole) {
+    reading = readPieces(lines, overridden, libraries);
+  } else if (overridden) {
+    reading = read(kAskForLibrary + lines.text, libraries);
+  } else {
+    reading = read(std::move(lines.text), libraries);
   }
-  ObjReading out = std::move(whole.obj);
+  if (!reading.problem.empty()) {
+    // The text alone, in one go, tells the line.
+    std::string problem;
+    if (!whole || overridden) problem = read(std::move(lines.text), libraries).problem;
+    throw InputError(obj, "cannot read the mesh: " + (problem.empty() ? reading.problem : problem));
+  }
+  ObjReading out = std::move(reading.obj);
   for (const size_t vertex : lines.verticesOfWords) out.attrib.vertices.at(3 * vertex) = NAN;
   out.libraries = std::move(libraries.files);
   out.libraryOf = std::move(libraries.libraryOf);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "scene/obj_lines.h"
 #include "scene/tinyobj.h"
 
 namespace bnvpl {
@@ -21,8 +22,10 @@ struct ObjReading {
 
 // `materials` replaces the libraries that the OBJ names; empty: those are used. Calls
 // expect(library, material) for each material that faces may use, while the faces are still to be
-// read. Large files are read by all threads. Throws InputError when the OBJ cannot be read.
+// read. Large files are read by all threads, in pieces of `pieceBytes` (for tests). Throws
+// InputError when the OBJ cannot be read.
 ObjReading readObj(const fs::path& obj, const fs::path& materials,
-                   const std::function<void(const fs::path&, const tinyobj::material_t&)>& expect);
+                   const std::function<void(const fs::path&, const tinyobj::material_t&)>& expect,
+                   size_t pieceBytes = kObjPiece);
 
 }  // namespace bnvpl

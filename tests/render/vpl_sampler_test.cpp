@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "core/sampling.h"
@@ -48,6 +49,15 @@ SurfacePoint pointIn(Rng& rng) {
   return p;
 }
 
+struct Mean {
+  double sum = 0.0, squares = 0.0;
+  void add(double value) { sum += value, squares += value * value; }
+  double over(int n) const { return sum / n; }
+  double deviation(int n) const {  // of the mean
+    return std::sqrt(std::max(0.0, squares / n - over(n) * over(n)) / n);
+  }
+};
+
 // Each VPL that can light the point counts one over its probability wherever it is drawn: together
 // as many as there are.
 void requireRightProbabilities(size_t count, bool glossy) {
@@ -60,19 +70,22 @@ void requireRightProbabilities(size_t count, bool glossy) {
   for (int k = 0; k < 40; ++k) {
     const SurfacePoint at = pointIn(rng);
     const Bsdf bsdf(scene, at);
-    std::set<uint32_t> canLight;
+    std::map<uint32_t, double> sends;  // those that can light the point
+    double all = 0.0;
     Coupling c;
     for (uint32_t i = 0; i < count; ++i) {
-      if (couple(lights, i, bsdf, c)) canLight.insert(i);
+      if (!couple(lights, i, bsdf, c)) continue;
+      all += sends[i] = double{mean(c.transfer * lights.intensity[i])};
     }
     const VplSampler::Point point(sampler, bsdf);
     if (point.dark()) {
-      EXPECT_TRUE(canLight.empty());
+      EXPECT_TRUE(sends.empty());
       continue;
     }
     ++lit;
     constexpr int kDraws = 40000;
-    double sum = 0.0, squares = 0.0;
+    Mean number, light;  // one over the probability: of VPLs, and of what they send
+    std::set<uint32_t> drawn;
     const float shift = rng.next();
     for (int d = 0; d < kDraws; ++d) {
       const auto draw = point.draw((static_cast<float>(d) + shift) / kDraws, rng);
@@ -80,13 +93,20 @@ void requireRightProbabilities(size_t count, bool glossy) {
       ASSERT_LT(draw->vpl, count);
       ASSERT_GT(draw->probability, 0.0f);
       ASSERT_LE(draw->probability, 1.0001f);
-      const double value = canLight.contains(draw->vpl) ? 1.0 / double{draw->probability} : 0.0;
-      sum += value / kDraws;
-      squares += value * value / kDraws;
+      const auto found = sends.find(draw->vpl);
+      if (found == sends.end()) continue;
+      drawn.insert(draw->vpl);
+      number.add(1.0 / double{draw->probability});
+      light.add(found->second / double{draw->probability});
     }
-    const double deviation = std::sqrt(std::max(0.0, squares - sum * sum) / kDraws);
-    EXPECT_NEAR(sum, double(canLight.size()), 6.0 * deviation + 1e-3 * double(canLight.size()))
+    EXPECT_NEAR(number.over(kDraws), double(sends.size()),
+                6.0 * number.deviation(kDraws) + 1e-3 * double(sends.size()))
         << count << " VPLs, point " << k;
+    EXPECT_NEAR(light.over(kDraws), all, 6.0 * light.deviation(kDraws) + 1e-3 * all)
+        << count << " VPLs, point " << k;
+    for (const auto& [vpl, sent] : sends) {
+      EXPECT_TRUE(sent < 0.002 * all || drawn.contains(vpl)) << vpl << " sends " << sent / all;
+    }
   }
   EXPECT_GT(lit, 4);
 }

@@ -1,7 +1,11 @@
 // Large OBJ files are read in pieces, side by side, as if they were read in one go.
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 
 #include "scene/obj_lines.h"
+#include "scene/read_obj.h"
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {
@@ -33,7 +37,20 @@ std::string tower(size_t count) {
 
 std::vector<std::string> startsOf(const MeshLines& lines) {
   std::vector<std::string> out;
-  for (const MeshLines::Piece& p : lines.pieces) out.push_back(p.material);
+  for (const MeshLines::Piece& p : lines.pieces) out.push_back(p.material.value_or("none"));
+  return out;
+}
+
+// Three vertices and the material of each triangle.
+std::vector<std::array<int, 4>> facesOf(const ObjReading& reading) {
+  std::vector<std::array<int, 4>> out;
+  for (const tinyobj::shape_t& shape : reading.shapes) {
+    const auto& mesh = shape.mesh;
+    for (size_t f = 0; f < mesh.material_ids.size(); ++f) {
+      out.push_back({mesh.indices[3 * f].vertex_index, mesh.indices[3 * f + 1].vertex_index,
+                     mesh.indices[3 * f + 2].vertex_index, mesh.material_ids[f]});
+    }
+  }
   return out;
 }
 
@@ -64,8 +81,9 @@ TEST_F(Pieces, StartWithTheMaterialOfThePieceBefore) {
       "a.obj",
       "mtllib m\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl  b \nusemtl c\r\nf 4 5 6\nusemtl\nf 4 5 6\n",
       1);  // line by line
-  EXPECT_EQ(startsOf(lines), (std::vector<std::string>{"", "", "", "a", "a", "b", "c", "c", ""}));
-  EXPECT_EQ(lines.materials, (std::vector<std::string>{"", "a", "b", "c"}));
+  EXPECT_EQ(startsOf(lines),
+            (std::vector<std::string>{"none", "none", "none", "a", "a", "b", "c", "c", ""}));
+  EXPECT_EQ(lines.materials, (std::vector<std::string>{"", "a", "c"}));
   EXPECT_EQ(lines.triangles, 4u);
 }
 
@@ -76,18 +94,53 @@ TEST_F(Pieces, AreOneWhereTheyNeedEachOther) {
   };
   EXPECT_GT(count("mtllib m\n" + plain), 1u);
   EXPECT_GT(count("mtllib m\nmtllib n\nusemtl a\n" + plain), 1u);
-  for (const char* reason : {"f -3 -2 -1\n", "f 1 2 3 4\n", "mtllib late\n", "f 1 2\n"})
+  for (const char* reason :
+       {"f -3 -2 -1\n", "f 4294967295 1 2\n", "f 1 2 3 4\n", "mtllib late\n", "f 1 2\n"})
     EXPECT_EQ(count("mtllib m\n" + plain + reason), 1u) << reason;
   EXPECT_EQ(count("usemtl a\nmtllib m\n" + plain), 1u);
 }
 
 TEST_F(Pieces, ErrorsNameTheLineOfTheFile) {
-  const std::string obj = tower(10'000), before = obj + "p 1\n";
+  const std::string before = tower(20'000) + "p 1\n", obj = before + "f 0 1 2\n";
+  ASSERT_GT(meshLines("a.obj", obj).pieces.size(), 2u);
   write("square.mtl", kLibrary);
-  write("square.obj", before + "f 0 1 2\n" + obj);
+  write("other.mtl", kLibrary);
+  write("square.obj", obj);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::string error = loadError(kFilmAndCamera + "[[mesh]]\nfile = \"square.obj\"\n");
-  EXPECT_NE(error.find("line " + std::to_string(line) + "."), error.npos) << error;
+  for (const char* key : {"", "materials = \"other.mtl\"\n"}) {
+    const std::string error = loadError(kFilmAndCamera + "[[mesh]]\nfile = \"square.obj\"\n" + key);
+    EXPECT_NE(error.find("line " + std::to_string(line) + "."), error.npos) << error;
+  }
+}
+
+// Small pieces of odd texts against the whole.
+TEST_F(Pieces, OddLinesAreReadAsInTheWhole) {
+  write("square.mtl", std::string("Kd 1 0 0\n") + kLibrary);  // the first has no name
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 nan\n";
+  const std::string texts[] = {
+      "v\nvn\nvt\nf\nv nan 0 0\n" + corners + "f 2 3 4\n",
+      "mtllib square.mtl\n" + corners + "usemtl odd\nf 1 2 3\nusemtl\nf 1 2 3\nf 2 3 1\nf 3 1 2\n",
+      "mtllib square.mtl\n" + corners + "f 4294967295 4294967294 4294967293\n" + corners +
+          "f 1 2 3\n",
+      "mtllib square.mtl\nmtllib none.mtl\n" + corners +
+          "usemtl even\nf 1 2 3\nusemtl nobody\nf 1 2 3\ng a\nf 2 3 1\n",
+  };
+  for (const std::string& text : texts) {
+    write("square.obj", text);
+    const auto none = [](const fs::path&, const tinyobj::material_t&) {};
+    const ObjReading whole = readObj(at("square.obj"), {}, none, text.size());
+    for (const size_t bytes : {1u, 20u, 40u}) {
+      const ObjReading pieces = readObj(at("square.obj"), {}, none, bytes);
+      const auto bits = [](const std::vector<double>& v) {
+        std::vector<uint64_t> out;
+        for (const double x : v) out.push_back(std::isnan(x) ? 1 : std::bit_cast<uint64_t>(x));
+        return out;
+      };
+      EXPECT_EQ(bits(pieces.attrib.vertices), bits(whole.attrib.vertices)) << text;
+      EXPECT_EQ(facesOf(pieces), facesOf(whole)) << text;
+      EXPECT_EQ(pieces.missing, whole.missing) << text;
+    }
+  }
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include "core/random.h"
 #include "scene/ray_scene.h"
-#include "tools/render/cluster_bounds.h"
 #include "tools/render/light_tree.h"
 #include "tools/render/vpl_sampler.h"
 

@@ -116,7 +116,8 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
       ++count;
     }
     rays_.closestHits({rays.data(), count}, hits);
-    if (nearField_) nearField_->coverage().lookUp({hits.data(), count}, near);
+    if (nearField_ && only_ != Only::Direct)
+      nearField_->coverage().lookUp({hits.data(), count}, near);
     for (size_t k = 0; k < count; ++k) extend(made[k], rng, out);
   }
 }
@@ -128,8 +129,8 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
 void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out) const {
   Vec3 throughput = start.throughput;
   ChainEnd end = followChain(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
-  for (unsigned links = 0; links < kMaxExtensions; ++links) {
-    const bool first = links == 0;
+  for (unsigned links = 1;; ++links) {
+    const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
     if (only_ == Only::Direct) return;
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
@@ -158,7 +159,10 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     out.extended += light;
     out.indirect += light;
     BsdfSample next;
-    if (known || !found.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return;
+    if (known || links == kMaxExtensions ||
+        !found.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
+      return;
+    }
     throughput *= next.weight;
     const Vec3 position = end.hit.position;
     end = followChain(rays_, lights_, rays_.lifted(position, next.side), next.wi,
