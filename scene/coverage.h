@@ -35,11 +35,8 @@ class Coverage {
         grid_(position, normal, reach_) {}
 
   // One of the VPLs that reach the point, lie on its sheet of surface and are in sight, each with
-  // the same probability: they are tried in random order, which takes about one ray.
-  Found pick(Vec3 at, Vec3 normal, Rng& rng) const {
-    return pick(at, normal, grid_.lookUp(at), rng);
-  }
-  // The same, looked up before.
+  // the same probability: they are tried in random order, which takes about one ray. `lookup`: of
+  // the point.
   Found pick(Vec3 at, Vec3 normal, const ReachGrid::Lookup& lookup, Rng& rng) const {
     std::array<uint32_t, kMaxEligible> eligible;
     size_t left = 0, reaching = 0;

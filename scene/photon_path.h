@@ -100,7 +100,7 @@ PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned 
   PhotonWalk walk(start, maxBounces, rng);
   SurfacePoint hit;
   while (walk.goesOn()) {
-    if (!rays.closestHit(walk.next().origin, walk.next().direction, hit)) hit.triangle = kNone;
+    rays.closestHit(walk.next().origin, walk.next().direction, hit);
     walk.advance(rays, hit, visit);
   }
   return walk.fate();

@@ -156,7 +156,10 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, &rh);
 #endif
-  if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    hit.triangle = kNone;
+    return false;
+  }
   hit.triangle = rh.hit.primID + (rh.hit.geomID == 1 ? s.maskedBegin : 0);
   hit.distance = rh.ray.tfar;
   hit.u = rh.hit.u, hit.v = rh.hit.v;
@@ -199,11 +202,7 @@ bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const 
 
 void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const {
   for (size_t i = 0; i < rays.size(); ++i) {
-    if (impl_->closestHit(scene_, rays[i], hits[i])) {
-      prefetch(&scene_.triangles[hits[i].triangle]);
-    } else {
-      hits[i].triangle = kNone;
-    }
+    if (impl_->closestHit(scene_, rays[i], hits[i])) prefetch(&scene_.triangles[hits[i].triangle]);
   }
   for (size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].triangle == kNone) continue;

@@ -41,11 +41,10 @@ class RayScene {
   RayScene& operator=(const RayScene&) = delete;
 
   // Nearest surface along the ray from `origin` (lifted off its own surface by the caller) in the
-  // unit direction. False: the ray leaves the scene.
+  // unit direction. False: the ray leaves the scene; hit.triangle is kNone then.
   bool closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const;
   // The same for rays that have nothing to do with each other, up to kBatch of them: they wait for
-  // memory together, for corners, normals and texels alike. Of a ray that leaves the scene,
-  // hit.triangle is kNone and nothing else is set.
+  // memory together, for corners, normals and texels alike.
   static constexpr size_t kBatch = 16;
   void closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const;
 

@@ -7,7 +7,7 @@ namespace bnvpl {
 ChainEnd followChain(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
                      const Arrival& start, Rng& rng) {
   SurfacePoint first;
-  if (!rays.closestHit(origin, direction, first)) first.triangle = kNone;
+  rays.closestHit(origin, direction, first);
   return followChain(rays, lights, first, direction, start, rng);
 }
 
@@ -46,7 +46,7 @@ ChainEnd followChain(const RayScene& rays, const LightSet& lights, const Surface
     arrival = {next.pdf, end.hit.position};
     const Vec3 from = rays.lifted(end.hit.position, next.side);
     direction = next.wi;
-    if (!rays.closestHit(from, direction, end.hit)) end.hit.triangle = kNone;
+    rays.closestHit(from, direction, end.hit);
   }
 }
 

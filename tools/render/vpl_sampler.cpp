@@ -13,6 +13,12 @@ namespace {
 constexpr float kClosest = 2.0f;
 
 __m128 all(float v) { return _mm_set1_ps(v); }
+__m128 load(const std::array<float, 4>& lanes) { return _mm_load_ps(lanes.data()); }  // aligned
+std::array<float, 4> store(__m128 v) {
+  std::array<float, 4> out;
+  _mm_storeu_ps(out.data(), v);
+  return out;
+}
 __m128 select(__m128 mask, __m128 yes, __m128 no) {
   return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
 }
@@ -57,29 +63,18 @@ uint32_t VplSampler::add(const LightTree& tree, std::span<const uint32_t> nodes)
 }
 
 void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, uint32_t four) {
-  alignas(16) float v[13][4] = {};  // an empty lane has no intensity
-  std::array<uint32_t, 4> child{};
-  for (size_t lane = 0; lane < 4; ++lane) v[12][lane] = 1.0f;
+  Four f;
   for (size_t lane = 0; lane < nodes.size(); ++lane) {
     const LightNode& n = tree.nodes[nodes[lane]];
     const Vec3 center = n.bounds.center();
-    const float radius2 = 0.25f * lengthSquared(n.bounds.extent());
-    const float values[13] = {center.x,
-                              center.y,
-                              center.z,
-                              radius2,
-                              n.axis.x,
-                              n.axis.y,
-                              n.axis.z,
-                              n.cosHalfAngle,
-                              n.sinHalfAngle,
-                              n.intensity.x,
-                              n.intensity.y,
-                              n.intensity.z,
-                              std::max(n.clamp2, kClosest * radius2)};
-    for (size_t k = 0; k < 13; ++k) v[k][lane] = values[k];
+    f.x[lane] = center.x, f.y[lane] = center.y, f.z[lane] = center.z;
+    f.radius2[lane] = 0.25f * lengthSquared(n.bounds.extent());
+    f.ax[lane] = n.axis.x, f.ay[lane] = n.axis.y, f.az[lane] = n.axis.z;
+    f.cosHalf[lane] = n.cosHalfAngle, f.sinHalf[lane] = n.sinHalfAngle;
+    f.red[lane] = n.intensity.x, f.green[lane] = n.intensity.y, f.blue[lane] = n.intensity.z;
+    f.closest2[lane] = std::max(n.clamp2, kClosest * f.radius2[lane]);
     if (n.leaf()) {
-      child[lane] = kLeaf | n.representative;
+      f.child[lane] = kLeaf | n.representative;
       continue;
     }
     std::array<uint32_t, 4> below{};  // two levels down
@@ -93,13 +88,9 @@ void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, ui
         below[count++] = m.right;
       }
     }
-    child[lane] = add(tree, std::span(below).first(count));
+    f.child[lane] = add(tree, std::span(below).first(count));
   }
-  Four& f = fours_[four];
-  __m128* fields[13] = {&f.x,       &f.y,       &f.z,   &f.radius2, &f.ax,   &f.ay,      &f.az,
-                        &f.cosHalf, &f.sinHalf, &f.red, &f.green,   &f.blue, &f.closest2};
-  for (size_t k = 0; k < 13; ++k) *fields[k] = _mm_load_ps(v[k]);
-  f.child = child;
+  fours_[four] = f;
 }
 
 VplSampler::Point::Point(const VplSampler& sampler, const Bsdf& bsdf)
@@ -114,50 +105,40 @@ VplSampler::Point::Point(const VplSampler& sampler, const Bsdf& bsdf)
   }
 }
 
-std::array<float, 4> VplSampler::Point::likely(uint32_t four) const {
+VplSampler::Lanes VplSampler::Point::likely(uint32_t four) const {
   const Four& f = sampler_.fours_[four];
-  const __m128 x = f.x - all(at_.x), y = f.y - all(at_.y), z = f.z - all(at_.z);
-  const __m128 d2 = x * x + y * y + z * z;
+  const __m128 x = load(f.x) - all(at_.x), y = load(f.y) - all(at_.y), z = load(f.z) - all(at_.z);
+  const __m128 d2 = x * x + y * y + z * z, radius2 = load(f.radius2);
   const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only inside
   Directions to;
-  to.inside = _mm_cmple_ps(d2, f.radius2);
+  to.inside = _mm_cmple_ps(d2, radius2);
   to.x = x * inverse, to.y = y * inverse, to.z = z * inverse;
-  to.sinSphere = _mm_sqrt_ps(f.radius2) * inverse;
+  to.sinSphere = _mm_sqrt_ps(radius2) * inverse;
   to.cosSphere = sineOf(to.sinSphere);
 
-  const __m128 zero = _mm_setzero_ps();
+  const __m128 zero = _mm_setzero_ps(), cosHalf = load(f.cosHalf);
   // The way back is the mirror image of the way there.
-  const __m128 back = to.most(zero - f.ax, zero - f.ay, zero - f.az);
+  const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
   const __m128 emitter =
-      select(_mm_cmple_ps(f.cosHalf, zero), all(1.0f), cosineOfLess(back, f.cosHalf, f.sinHalf));
+      select(_mm_cmple_ps(cosHalf, zero), all(1.0f), cosineOfLess(back, cosHalf, load(f.sinHalf)));
   const __m128 cosine = to.most(all(normal_.x), all(normal_.y), all(normal_.z));
   __m128 value;
   if (diffuse_) {
-    value = all(value_.x) * f.red + all(value_.y) * f.green + all(value_.z) * f.blue;
+    value =
+        all(value_.x) * load(f.red) + all(value_.y) * load(f.green) + all(value_.z) * load(f.blue);
   } else {
-    // Lobes go by their axis as the normal does.
-    alignas(16) float sums[4];
-    std::optional<std::array<float, 4>> toAxis;
-    alignas(16) float red[4], green[4], blue[4];
-    _mm_store_ps(red, f.red), _mm_store_ps(green, f.green), _mm_store_ps(blue, f.blue);
+    alignas(16) Lanes sums;
     for (size_t lane = 0; lane < 4; ++lane) {
+      // Lobes go by their axis as the normal does.
       const Vec3 v = bsdf_.roughUpperBound(1.0f, [&](Vec3 axis) {
-        if (!toAxis) {
-          alignas(16) float cosines[4];
-          _mm_store_ps(cosines, to.most(all(axis.x), all(axis.y), all(axis.z)));
-          toAxis = {cosines[0], cosines[1], cosines[2], cosines[3]};
-        }
-        return (*toAxis)[lane];
+        return store(to.most(all(axis.x), all(axis.y), all(axis.z)))[lane];
       });
-      sums[lane] = v.x * red[lane] + v.y * green[lane] + v.z * blue[lane];
+      sums[lane] = v.x * f.red[lane] + v.y * f.green[lane] + v.z * f.blue[lane];
     }
-    value = _mm_load_ps(sums);
+    value = load(sums);
   }
-  const __m128 sum =
-      value * _mm_max_ps(cosine, zero) * _mm_max_ps(emitter, zero) / _mm_max_ps(d2, f.closest2);
-  std::array<float, 4> out;
-  _mm_storeu_ps(out.data(), sum);
-  return out;
+  return store(value * _mm_max_ps(cosine, zero) * _mm_max_ps(emitter, zero) /
+               _mm_max_ps(d2, load(f.closest2)));
 }
 
 std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {
@@ -167,7 +148,7 @@ std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const
   float probability = (upTo_[slot] - (slot > 0 ? upTo_[slot - 1] : 0.0f)) / whole_;
   uint32_t child = sampler_.fours_[slot / 4].child[slot % 4];
   while ((child & kLeaf) == 0 && probability > 0.0f) {
-    const std::array<float, 4> weight = likely(child);
+    const Lanes weight = likely(child);
     const float sum = weight[0] + weight[1] + weight[2] + weight[3];
     if (!(sum > 0.0f)) return {};
     const float pick = rng.next() * sum;

@@ -2,8 +2,6 @@
 // nodes hold four clusters of the light tree side by side (after Estevez & Kulla 2018).
 #pragma once
 
-#include <xmmintrin.h>
-
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -17,6 +15,8 @@
 namespace bnvpl {
 
 class VplSampler {
+  using Lanes = std::array<float, 4>;
+
  public:
   explicit VplSampler(const LightTree& tree);
 
@@ -38,7 +38,7 @@ class VplSampler {
    private:
     // What each of four clusters will likely send, W/(m2 sr) up to visibility; 0 only where nothing
     // can arrive.
-    std::array<float, 4> likely(uint32_t four) const;
+    Lanes likely(uint32_t four) const;
 
     const VplSampler& sampler_;
     const Bsdf& bsdf_;
@@ -50,14 +50,14 @@ class VplSampler {
   };
 
  private:
-  struct Four {
-    __m128 x, y, z;                 // centres of the spheres about the boxes
-    __m128 radius2;                 // of the spheres
-    __m128 ax, ay, az;              // of the cones of normals
-    __m128 cosHalf, sinHalf;        // of their half angles
-    __m128 red, green, blue;        // intensities, W/sr
-    __m128 closest2;                // squared distance that counts at least
-    std::array<uint32_t, 4> child;  // another four, or kLeaf and a VPL
+  struct alignas(16) Four {
+    Lanes x{}, y{}, z{};              // centres of the spheres about the boxes
+    Lanes radius2{};                  // of the spheres
+    Lanes ax{}, ay{}, az{};           // of the cones of normals
+    Lanes cosHalf{}, sinHalf{};       // of their half angles
+    Lanes red{}, green{}, blue{};     // intensities, W/sr; 0: an empty lane
+    Lanes closest2{1, 1, 1, 1};       // squared distance that counts at least
+    std::array<uint32_t, 4> child{};  // another four, or kLeaf and a VPL
   };
   static constexpr uint32_t kLeaf = 1u << 31;
 
