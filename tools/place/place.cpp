@@ -1,5 +1,7 @@
 #include "tools/place/place.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -190,6 +192,7 @@ void append(const VplTable& from, size_t count, VplTable& to) {
 }
 
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
+// A wave is joined while the next one is traced, for there is but one thread's work in it.
 template <typename TracePaths>
 PlaceResult collect(const std::string& scene, const PlaceOptions& options,
                     const ProgressFn& progress, const TracePaths& tracePaths) {
@@ -197,17 +200,19 @@ PlaceResult collect(const std::string& scene, const PlaceOptions& options,
   VplTable& rows = result.table;
   for (auto* column : {&rows.position, &rows.normal, &rows.albedo}) column->reserve(options.count);
   const uint64_t effort = kFreePaths + kPathsPerCandidate * options.count;
-  uint64_t firstPath = 0;
-  std::vector<Chunk> wave(kChunksPerWave);
-  while (rows.size() < options.count) {
-    if (firstPath >= effort) failTooFew(scene, result, options);
+  uint64_t firstPath = 0, found = 0;
+  using Wave = std::vector<Chunk>;
+  const auto trace = [&](Wave& wave) {
+    wave.resize(kChunksPerWave);
     parallelFor(wave.size(), 1, [&](size_t c) {
       wave[c].restart();
       tracePaths(firstPath + c * kPathsPerChunk, wave[c]);
     });
-    firstPath += kChunksPerWave * kPathsPerChunk;
+    firstPath += wave.size() * kPathsPerChunk;
+    for (const Chunk& c : wave) found += c.rows.size();
+  };
+  const auto join = [&](const Wave& wave) {
     const size_t before = rows.size();
-    result.paths = firstPath;
     for (const Chunk& c : wave) {
       const size_t take = std::min(options.count - rows.size(), c.rows.size());
       append(c.rows, take, rows);
@@ -216,15 +221,25 @@ PlaceResult collect(const std::string& scene, const PlaceOptions& options,
       result.absorbed += c.absorbed;
       result.complete += c.complete;
       result.nonFinite += c.nonFinite;
+      result.paths += kPathsPerChunk;
       if (rows.size() == options.count) {
         if (take > 0) result.paths = c.path[take - 1] + 1;
         break;
       }
     }
     if (progress) progress(rows.size() - before);
+  };
+  Wave traced, next;
+  for (trace(traced); found < options.count; std::swap(traced, next)) {
+    if (firstPath >= effort) {
+      join(traced);
+      failTooFew(scene, result, options);
+    }
+    tbb::parallel_invoke([&] { trace(next); }, [&] { join(traced); });
   }
+  join(traced);
   rows.id.resize(rows.size());
-  for (size_t i = 0; i < rows.size(); ++i) rows.id[i] = static_cast<uint32_t>(i);
+  std::iota(rows.id.begin(), rows.id.end(), 0u);
   return result;
 }
 
