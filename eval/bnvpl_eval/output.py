@@ -74,7 +74,7 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
             files[layer] = str(target.relative_to(folder))
         entry["images"].append({"id": image["id"], "label": image["label"], "numbers": image.get("numbers", ""),
                                 "files": files})
-    for picture in shown["maps"]:
+    for picture in shown["overlays"]:
         target, label = place / f"{picture['id']}.png", picture["label"]
         if "channel" in picture:
             label += heat_map(images.read_channel(picture["file"], picture["channel"]), target)

@@ -16,7 +16,7 @@ from report_json import ReportError
 from svg_plot import plot_svg, slope_text
 
 WEB = Path(__file__).resolve().parent / "web"
-SCRIPTS = ("dom.js", "hdr.js", "colour.js", "errors.js", "stage.js", "panel.js", "viewer.js",
+SCRIPTS = ("dom.js", "hdr.js", "colour.js", "errors.js", "flip.js", "stage.js", "panel.js", "viewer.js",
            "main.js")
 
 

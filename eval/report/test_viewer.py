@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+import importlib.util
 import re
 import unittest
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from selenium.webdriver import ActionChains
@@ -181,8 +185,25 @@ class ViewerTest(PageCase):
         self.assertEqual(self.ticks(), ["10−3", "10−2", "10−1", "1", "101"])
         error = float(re.search(r"relMSE ([\d.]+)", self.viewer.text)[1])
         self.assertEqual(self.colour(1.5, 2.5), self.legend(1 + np.log10(error / 10) / 4))
-        self.keys("m")
+        self.keys("m", "m")
         self.assertFalse(self.one(".legend").is_displayed())
+
+    def test_flip_map_is_that_of_the_exposure_shown(self) -> None:
+        reference = images()["reference"].astype(np.float64)
+        self.keys("m", "m", "m", "4", "f", "f")
+        self.assertIn("LDR-FLIP", self.one(".legend").text)
+        self.assertEqual(self.ticks(), ["0", "0.5", "1"])
+        for ev in (0.0, -0.5):
+            expected = flip_oracle().ldr_flip(*(flip_oracle().encode(np.clip(v * 2 ** ev, 0, 1))
+                                                for v in (reference, wild_as_stored())))
+            self.assertGreater(np.ptp(expected), 0.15)
+            ramp = np.array([self.legend(i / 255) for i in range(256)])
+            for y, x in np.ndindex(expected.shape):
+                steps = np.flatnonzero((ramp == self.colour(x + 0.5, y + 0.5)).all(axis=1)) / 255
+                self.assertLess(np.abs(steps - expected[y, x]).min(), 0.6 / 255, (x, y))
+            self.keys("^e")
+        self.choose_range("0.5")
+        self.assertEqual(self.ticks(), ["0", "0.25", "0.5"])
 
     def choose_range(self, value: str) -> None:
         self.one(f".legend option[value='{value}']").click()
@@ -205,6 +226,16 @@ class ViewerTest(PageCase):
         self.assertEqual(self.readout()[0], ["10", "200", "30", "8 bit"])
         self.keys(Keys.END, at=".handle")
         self.assertEqual(self.colour(WIDTH - 0.5, HEIGHT - 0.5), [10, 200, 30], "it fills the stage")
+
+
+@functools.cache
+def flip_oracle() -> Any:
+    """The one that checks vpl-inspect's FLIP."""
+    path = Path(__file__).resolve().parents[2] / "tests/inspect/flip_oracle.py"
+    spec = importlib.util.spec_from_file_location("flip_oracle", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 def wild_as_stored() -> np.ndarray:

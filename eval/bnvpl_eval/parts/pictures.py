@@ -1,4 +1,4 @@
-"""What the report's viewer shows of each view: images beside the reference, dots, cut sizes, error maps."""
+"""What the report's viewer shows of each view: images beside the reference, dots, cut sizes. Error maps are its own."""
 
 from .. import pipeline
 from ..context import Context
@@ -8,7 +8,6 @@ from .equal_time import balanced, picture_spp
 
 LEAKING = ["even", "literal"]
 REFERENCE_SEED = 1000  # away from the seeds that are judged
-MAPS = {"difference": "Difference to the reference", "flip": "FLIP"}
 
 
 def run(context: Context) -> None:
@@ -18,20 +17,19 @@ def run(context: Context) -> None:
         spp = context.size["picture_reference_spp"]
         reference, _ = pipeline.path_traced(context.runner, view, film, spp, REFERENCE_SEED)
         shown = [{"id": "reference", "label": f"path tracer, {spp} spp", "file": reference}]
-        maps = []
+        cuts = []
         leaking = LEAKING if view.id == "main" else []  # as many as the comparison of scatters
         for method in [*reversed(context.size["methods"]), *leaking]:  # ours first, beside the reference
             c = context.configuration(view, method, picture=True)
             file, _ = pipeline.image(context.runner, view, c, 1)
             shown.append({"id": method, "label": METHODS[method], "file": file,
                           "numbers": numbers(context, view, method)})
-            maps += [error_map(context, method, file, reference, kind) for kind in MAPS]
             if method == "local":
-                maps.append({"id": "cut", "label": "Cut size, clusters a sample (tile cuts)", "file": file,
+                cuts.append({"id": "cut", "label": "Cut size, clusters a sample (tile cuts)", "file": file,
                              "channel": "cutsize"})
-                maps.append(lightcuts(context, view, c))
+                cuts.append(lightcuts(context, view, c))
         shown += equal_time(context, view)
-        context.pictures[view.name] = {"images": shown, "maps": dots(context, view) + maps}
+        context.pictures[view.name] = {"images": shown, "overlays": dots(context, view) + cuts}
 
 
 def numbers(context: Context, view: View, method: str) -> str:
@@ -58,13 +56,6 @@ def equal_time(context: Context, view: View) -> list[dict]:
     told = [f"relMSE {row[key]:.3g}" if row else "" for key in ("pipeline_relmse", "path_relmse")]
     return [{"id": "balanced", "label": f"ours, balanced ({c.spp} spp)", "file": ours, "numbers": told[0]},
             {"id": "path", "label": f"path tracer, time of that ({spp} spp)", "file": path, "numbers": told[1]}]
-
-
-def error_map(context: Context, method: str, image, reference, kind: str) -> dict:
-    run = context.runner.run("vpl-inspect", ["compare", "{image}", "{reference}", "--layer", "indirect",
-                                             "--diff", "@map.png", "--map", kind],
-                             {"image": image, "reference": reference}, ["map.png"])
-    return {"id": f"{kind}-{method}", "label": f"{MAPS[kind]}: {METHODS[method]}", "file": run["map.png"]}
 
 
 def dots(context: Context, view: View) -> list[dict]:

@@ -2,7 +2,7 @@
 
 const kinds = {
   relative: {
-    title: "Relative difference",
+    title: "Difference",
     formula: "(image − reference) / (reference + 0.1 mean), mean of channels",
     ranges: [0.05, 0.1, 0.25, 0.5, 1, 2],
     initial: 0.5,
@@ -22,6 +22,17 @@ const kinds = {
     share: (value, range) => value > 0 ? 1 + Math.log10(value / range) / 4 : 0,
     colours: errorRamp,
     ticks: (r) => [0, 1, 2, 3, 4].map((t) => [t / 4, powerNode(Math.round(Math.log10(r)) + t - 4)]),
+  },
+  flip: {
+    title: "FLIP",
+    formula: "LDR-FLIP at the exposure shown, 67 pixels a degree: 0 looks alike",
+    ranges: [0.1, 0.25, 0.5, 1],
+    initial: 1,
+    exposed: true,
+    rangeText: (r) => `up to ${r}`,
+    share: (value, range) => value / range,
+    colours: errorRamp,
+    ticks: (r) => [0, 0.5, 1].map((t) => [t, String(t * r)]),
   },
 };
 
@@ -60,16 +71,19 @@ function squaredAt(image, reference, i) {
   return sum / 3;
 }
 
-// What `make` returns, kept with the image until it is held against another reference.
-function kept(image, reference, name, make) {
-  if (image.maps.get(name)?.reference !== reference) {
-    image.maps.set(name, {reference, value: make()});
+// What `make` returns, kept with the image until it is held against another reference, or at
+// another exposure where that matters.
+function kept(image, reference, name, make, ev = 0) {
+  const last = image.maps.get(name);
+  if (last?.reference !== reference || last.ev !== ev) {
+    image.maps.set(name, {reference, ev, value: make()});
   }
   return image.maps.get(name).value;
 }
 
 // One value for each pixel.
-function errorMap(image, reference, kind) {
+function errorMap(image, reference, kind, ev) {
+  if (kind === "flip") return kept(image, reference, kind, () => flipMap(image, reference, ev), ev);
   const at = kind === "relative" ? relativeAt : squaredAt;
   return kept(image, reference, kind, () => Float32Array.from(
       image.bits[0], (_, i) => at(image, reference, i)));

@@ -4,7 +4,7 @@ let panelCount = 0;
 
 const keyHelp = [
   ["1–9", "A: image n"], ["Shift 1–9", "B: image n"], ["f", "flip between A and B"],
-  ["s", "split"], ["x", "exchange A and B"], ["m", "image, difference, error"],
+  ["s", "split"], ["x", "exchange A and B"], ["m", "image, difference, error, FLIP"],
   ["l", "next layer"], ["e  Shift e", "exposure ±0.5 EV"], ["a", "automatic exposure"],
   ["z  Shift z", "zoom in, out"], ["< >", "move the split"], ["arrows", "move the pixel"],
   ["r", "reset"], ["h", "these keys"],

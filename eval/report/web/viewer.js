@@ -9,7 +9,8 @@ class Viewer {
     const b = this.reference >= 0 ? this.reference : Math.min(1, this.items.length - 1);
     this.state = {layer: view.layers[0].id, a, b, mode: "split", map: "image",
                   ev: view.exposure ?? 0,
-                  ranges: {relative: kinds.relative.initial, squared: kinds.squared.initial}};
+                  ranges: Object.fromEntries(
+                      Object.entries(kinds).map(([name, kind]) => [name, kind.initial]))};
     this.exposed = view.exposure !== null;
     this.panel = new Panel(view, this.items, this.state, this);
     const label = `${view.title}. The list of keys follows.`;
@@ -59,7 +60,7 @@ class Viewer {
     const sources = ["a", "b"].map((slot, k) => this.paint(k, state[slot], reference));
     this.stage.show(sources, ["a", "b"].map((slot) => {
       const item = this.items[state[slot]], map = this.mapOf(state[slot], reference);
-      return item.label + (map === "image" ? "" : `: ${kinds[map].title.toLowerCase()}`);
+      return item.label + (map === "image" ? "" : `: ${kinds[map].title.replace(/^[A-Z](?=[a-z])/, (c) => c.toLowerCase())}`);
     }), state.mode);
     this.host.setAttribute("aria-busy", String(sources.includes(null)));
     if (this.pixel) this.showPixel(...this.pixel, false);
@@ -77,7 +78,8 @@ class Viewer {
     if (!image) return null;
     if (image.picture) return image.picture;
     const map = this.mapOf(i, reference);
-    const key = [i, state.layer, map, map === "image" ? state.ev : state.ranges[map]].join();
+    const exposed = map === "image" || kinds[map].exposed;
+    const key = [i, state.layer, map, exposed && state.ev, state.ranges[map]].join();
     if (this.painted[k]?.key !== key) {
       const canvas = el("canvas", {width: image.width, height: image.height});
       const pixels = new ImageData(image.width, image.height);
@@ -85,7 +87,7 @@ class Viewer {
         paintExposed(image, state.ev, pixels.data);
       } else {
         const kind = kinds[map], range = state.ranges[map];
-        const shares = errorMap(image, reference, map).map((v) => kind.share(v, range));
+        const shares = errorMap(image, reference, map, state.ev).map((v) => kind.share(v, range));
         paintRamp(shares, kind.colours, pixels.data);
       }
       canvas.getContext("2d").putImageData(pixels, 0, 0);
@@ -212,7 +214,7 @@ class Viewer {
       s: () => this.setMode("split"),
       x: () => this.change({a: state.b, b: state.a}),
       m: () => view.reference !== null &&
-          this.setMap(maps[(maps.indexOf(state.map) + back + 3) % 3]),
+          this.setMap(maps[(maps.indexOf(state.map) + back + maps.length) % maps.length]),
       l: () => {
         const ids = view.layers.map((layer) => layer.id);
         this.setLayer(ids[(ids.indexOf(state.layer) + 1) % ids.length]);
