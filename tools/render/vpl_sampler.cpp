@@ -50,7 +50,7 @@ VplSampler::VplSampler(const LightTree& tree) {
   startFours_ = (cut.size() + 3) / 4;
   fours_.reserve(startFours_ + tree.nodes.size() / 3);
   fours_.resize(startFours_);
-  for (uint32_t f = 0; f < startFours_; ++f) {
+  for (size_t f = 0; f < startFours_; ++f) {
     fill(tree, cut.subspan(4 * f, std::min<size_t>(4, cut.size() - 4 * f)), f);
   }
 }
@@ -62,7 +62,7 @@ uint32_t VplSampler::add(const LightTree& tree, std::span<const uint32_t> nodes)
   return four;
 }
 
-void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, uint32_t four) {
+void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t four) {
   Four f;
   for (size_t lane = 0; lane < nodes.size(); ++lane) {
     const LightNode& n = tree.nodes[nodes[lane]];

@@ -62,7 +62,7 @@ class VplSampler {
   static constexpr uint32_t kLeaf = 1u << 31;
 
   uint32_t add(const LightTree& tree, std::span<const uint32_t> nodes);
-  void fill(const LightTree& tree, std::span<const uint32_t> nodes, uint32_t four);
+  void fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t four);
 
   std::vector<Four> fours_;  // the start cut's first
   size_t startFours_ = 0;
