@@ -1,6 +1,6 @@
 // Which of many disks reach a point: the inverse of a radius query, where every stored point has a
 // radius of its own. Hash grids of cells twice as large from level to level; a disk is listed in
-// the cells of its level that it touches (at most eight), so that a query reads one cell a level.
+// the cells of its level that its box touches (at most 27), so that a query reads one cell a level.
 #pragma once
 
 #include <algorithm>
