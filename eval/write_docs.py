@@ -112,6 +112,17 @@ def write_overlays(folder: Path, view: dict, names: list[str], target: Path) -> 
     Image.fromarray(beside([part.repeat(times, axis=0).repeat(times, axis=1) for part in parts])).save(target)
 
 
+def write_pictures(report: dict, folder: Path) -> None:
+    """Of main views."""
+    for scene in report["scenes"]:
+        view = scene["views"][0]
+        for strip, names in STRIPS.items():
+            write_strip(folder, view, names, DOCS / "images" / f"{strip}-{scene['id']}.png")
+        for name, overlays in OVERLAYS.items():
+            if name.endswith(f"-{scene['id']}"):
+                write_overlays(folder, view, overlays, DOCS / "images" / f"{name}.png")
+
+
 def write_summary(results: dict) -> None:
     """The README's table: main views, one row a scene."""
     rows = {(row["view"], row["method"]): row for row in results["results"] if row["part"] == "methods"}
@@ -138,27 +149,22 @@ def write_summary(results: dict) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, help="of the run")
-    parser.add_argument("--only", help="ids of tables and plots, such as gather,scatter, and 'summary', of the README")
+    parser.add_argument("--only", help="ids of tables and plots, such as gather,scatter, 'pictures', and 'summary', of "
+                        "the README")
     arguments = parser.parse_args()
     folder = arguments.folder
     report = json.loads((folder / "report.json").read_text())
     places, plots = table_places(), [plot["id"] for plot in report["plots"]]
-    only = arguments.only.split(",") if arguments.only else [*places, *plots, "summary"]
-    if unknown := set(only) - {*places, *plots, "summary"}:
-        raise SystemExit(f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join([*places, *plots])}, summary")
+    known = [*places, *plots, "summary", "pictures"]
+    only = arguments.only.split(",") if arguments.only else known
+    if unknown := set(only) - set(known):
+        raise SystemExit(f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join(known)}")
     write_tables(report, [name for name in only if name in places])
     write_plots(folder, [name for name in only if name in plots])
     if "summary" in only:
         write_summary(json.loads((folder / "results.json").read_text()))
-    if arguments.only:
-        return 0
-    for scene in report["scenes"]:
-        view = scene["views"][0]
-        for strip, names in STRIPS.items():
-            write_strip(folder, view, names, DOCS / "images" / f"{strip}-{scene['id']}.png")
-        for name, overlays in OVERLAYS.items():
-            if name.endswith(f"-{scene['id']}"):
-                write_overlays(folder, view, overlays, DOCS / "images" / f"{name}.png")
+    if "pictures" in only:
+        write_pictures(report, folder)
     return 0
 
 

@@ -49,6 +49,14 @@ class Tables(unittest.TestCase):
             self.assertIn(message, str(refused.exception))
             self.assertEqual((self.folder / "results.md").read_text(), PAGE)
 
+    def test_pictures_alone(self):
+        with mock.patch.object(write_docs, "write_pictures") as write:
+            page = self.write(report("one", "two"), "--only", "pictures")
+            self.assertEqual(page, PAGE)
+            write.assert_called_once()
+            self.write(report("one", "two"), "--only", "one")
+            write.assert_called_once()
+
 
 if __name__ == "__main__":
     unittest.main()
