@@ -60,6 +60,8 @@ def main() -> None:
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
     parser.add_argument("--save", action="store_true", help="write bench/baseline.json")
     options = parser.parse_args()
+    if options.runs < 1:
+        parser.error("--runs wants 1 or more")
     then = json.loads(BASELINE.read_text()) if BASELINE.is_file() else {}
     now: dict[str, float] = {}
     for _ in range(options.runs):

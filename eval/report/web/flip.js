@@ -61,13 +61,17 @@ const flipFilters = (() => {
 // Along rows or columns; beyond the borders the last pixel repeats.
 function convolved(plane, kernel, width, along) {
   const height = plane.length / width, radius = kernel.length >> 1;
-  const out = new Float32Array(plane.length);
-  for (let y = 0, i = 0; y < height; ++y) {
-    for (let x = 0; x < width; ++x, ++i) {
-      for (let k = -radius; k <= radius; ++k) {
-        out[i] += kernel[k + radius] * plane[along === "rows"
-            ? y * width + clamp(x + k, 0, width - 1) : clamp(y + k, 0, height - 1) * width + x];
-      }
+  const [length, step, lines, next] =
+      along === "rows" ? [width, 1, height, width] : [height, width, width, 1];
+  const out = new Float32Array(plane.length), padded = new Float64Array(length + 2 * radius);
+  for (let line = 0; line < lines; ++line) {
+    for (let i = 0; i < padded.length; ++i) {
+      padded[i] = plane[line * next + clamp(i - radius, 0, length - 1) * step];
+    }
+    for (let i = 0; i < length; ++i) {
+      let sum = 0;
+      for (let k = 0; k < kernel.length; ++k) sum += kernel[k] * padded[i + k];
+      out[line * next + i * step] = sum;
     }
   }
   return out;

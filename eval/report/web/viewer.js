@@ -60,7 +60,10 @@ class Viewer {
     const sources = ["a", "b"].map((slot, k) => this.paint(k, state[slot], reference));
     this.stage.show(sources, ["a", "b"].map((slot) => {
       const item = this.items[state[slot]], map = this.mapOf(state[slot], reference);
-      return item.label + (map === "image" ? "" : `: ${kinds[map].title.replace(/^[A-Z](?=[a-z])/, (c) => c.toLowerCase())}`);
+      if (map === "image") return item.label;
+      // In a sentence: "squared error", but FLIP.
+      const title = kinds[map].title.replace(/^[A-Z](?=[a-z])/, (c) => c.toLowerCase());
+      return `${item.label}: ${title}`;
     }), state.mode);
     this.host.setAttribute("aria-busy", String(sources.includes(null)));
     if (this.pixel) this.showPixel(...this.pixel, false);
@@ -147,7 +150,16 @@ class Viewer {
 
   setMode = (mode) => this.change({mode});
   setMap = (map) => this.change({map});
-  setExposure = (ev) => this.change({ev});
+
+  // A slider may tell of more steps than can be painted: FLIP takes longer than a frame.
+  setExposure = (ev) => {
+    this.state.ev = ev;
+    this.host.setAttribute("aria-busy", "true");
+    this.frame ??= requestAnimationFrame(() => {
+      this.frame = undefined;
+      this.refresh();
+    });
+  };
 
   setRange = (range) => {
     this.state.ranges[this.state.map] = range;
