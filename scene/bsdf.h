@@ -60,6 +60,7 @@ class Bsdf {
     if (!isBlack(roughGlossy())) bound += glossyBound(maxCosine(glossyAxis()));
     return bound * std::max(0.0f, maxCosNs);
   }
+  Vec3 glossyAxis() const { return reflect(point_.wo, point_.ns); }  // unit
   // Draws a direction. False: absorbed.
   bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
   // The same by `pick`, for the lobe, and a point of the unit square; not for glass.
@@ -75,7 +76,6 @@ class Bsdf {
   Vec3 roughGlossy() const { return sharp_ ? Vec3{} : glossy_; }
   float groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const;
   Vec3 glossyBound(float cosAlpha) const;  // Phong lobe without the cosine
-  Vec3 glossyAxis() const { return reflect(point_.wo, point_.ns); }
   bool sampleDiffuse(bool photons, float shading, Point2 at, BsdfSample& out) const;
   bool sampleGlass(Transport transport, Rng& rng, BsdfSample& out) const;
 

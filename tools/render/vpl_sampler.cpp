@@ -127,12 +127,12 @@ VplSampler::Lanes VplSampler::Point::likely(uint32_t four) const {
     value =
         all(value_.x) * load(f.red) + all(value_.y) * load(f.green) + all(value_.z) * load(f.blue);
   } else {
+    // Lobes go by their axis as the normal does.
+    const Vec3 axis = bsdf_.glossyAxis();
+    const Lanes toAxis = store(to.most(all(axis.x), all(axis.y), all(axis.z)));
     alignas(16) Lanes sums;
     for (size_t lane = 0; lane < 4; ++lane) {
-      // Lobes go by their axis as the normal does.
-      const Vec3 v = bsdf_.roughUpperBound(1.0f, [&](Vec3 axis) {
-        return store(to.most(all(axis.x), all(axis.y), all(axis.z)))[lane];
-      });
+      const Vec3 v = bsdf_.roughUpperBound(1.0f, [&](Vec3) { return toAxis[lane]; });
       sums[lane] = v.x * f.red[lane] + v.y * f.green[lane] + v.z * f.blue[lane];
     }
     value = load(sums);

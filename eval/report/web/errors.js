@@ -1,9 +1,14 @@
 // False-colour maps against the reference. Definitions are those of vpl-inspect compare.
 
+const eachPixel = (at) => (image, reference) =>
+    Float32Array.from(image.bits[0], (_, i) => at(image, reference, i));
+
+// map: one value for each pixel, of an image, the reference and, where `exposed`, the exposure.
 const kinds = {
   relative: {
     title: "Difference",
     formula: "(image − reference) / (reference + 0.1 mean), mean of channels",
+    map: eachPixel(relativeAt),
     ranges: [0.05, 0.1, 0.25, 0.5, 1, 2],
     initial: 0.5,
     rangeText: (r) => `±${100 * r} %`,
@@ -15,6 +20,7 @@ const kinds = {
   squared: {
     title: "Squared error",
     formula: "(image − reference)² / (reference² + 0.0001 mean²); its mean is relMSE",
+    map: eachPixel(squaredAt),
     ranges: [0.001, 0.01, 0.1, 1, 10],
     initial: 1,
     rangeText: (r) => `up to ${r}`,
@@ -28,6 +34,7 @@ const kinds = {
     formula: "LDR-FLIP at the exposure shown, 67 pixels a degree: 0 looks alike",
     ranges: [0.1, 0.25, 0.5, 1],
     initial: 1,
+    map: (image, reference, ev) => flipMap(image, reference, ev),  // of a script that comes later
     exposed: true,
     rangeText: (r) => `up to ${r}`,
     share: (value, range) => value / range,
@@ -81,12 +88,9 @@ function kept(image, reference, name, make, ev = 0) {
   return image.maps.get(name).value;
 }
 
-// One value for each pixel.
 function errorMap(image, reference, kind, ev) {
-  if (kind === "flip") return kept(image, reference, kind, () => flipMap(image, reference, ev), ev);
-  const at = kind === "relative" ? relativeAt : squaredAt;
-  return kept(image, reference, kind, () => Float32Array.from(
-      image.bits[0], (_, i) => at(image, reference, i)));
+  const {map, exposed} = kinds[kind];
+  return kept(image, reference, kind, () => map(image, reference, ev), exposed ? ev : 0);
 }
 
 // What the list says of an image.
