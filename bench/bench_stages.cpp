@@ -62,7 +62,7 @@ std::vector<Ray> photonRays() {
     float probability = 0.0f;
     const PhotonStart start = lights.emit(lights.pick(rng.next(), probability), rng);
     Vec3 from = start.origin;
-    tracePhoton(world().rays, start, 32, rng, [&](const Bsdf& bsdf, Vec3, bool) {
+    followPhoton(world().rays, PhotonWalk(start, 32, rng), [&](const Bsdf& bsdf, Vec3, bool) {
       const Vec3 to = bsdf.point().position - from;
       if (lengthSquared(to) > 0.0f) rays.push_back({from, normalize(to)});
       from = world().rays.lifted(bsdf.point().position, bsdf.point().ng);

@@ -23,7 +23,8 @@ enum class Stream : uint32_t {
   PathTracer,
   LightTree,
   Plot,
-  AreaEstimate
+  AreaEstimate,
+  LightTracer
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

@@ -29,4 +29,11 @@ inline FilmPoint projectToFilm(const Camera& camera, const Film& film, Vec3 p) {
           0.5f - 0.5f * dot(d, camera.up) / (depth * tanHalf), depth};
 }
 
+// Area of a pixel on the plane at distance 1 along the viewing axis.
+inline float pixelAreaAtUnitDepth(const Camera& camera, const Film& film) {
+  const float side =
+      2.0f * std::tan(0.5f * camera.verticalFovRad) / static_cast<float>(film.height);
+  return side * side;
+}
+
 }  // namespace bnvpl

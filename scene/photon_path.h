@@ -35,6 +35,13 @@ class PhotonWalk {
   const Ray& next() const { return next_; }  // to be traced, where goesOn()
   const PhotonFate& fate() const { return fate_; }
   Rng& rng() { return rng_; }
+  // One of several that go on from here instead of this one, with a share of its flux each.
+  PhotonWalk branch(float share, const Rng& rng) const {
+    PhotonWalk b = *this;
+    b.rng_ = rng;
+    b.flux_ *= share;
+    return b;
+  }
 
   // Takes what next() has hit; hit.triangle is kNone where it has left the scene. Where the hit has
   // rough lobes, visit(bsdf, flux, straight) gets the flux that arrives (before albedo), shading
@@ -95,9 +102,7 @@ class PhotonWalk {
 
 // Follows one photon to its end.
 template <typename Visit>
-PhotonFate tracePhoton(const RayScene& rays, const PhotonStart& start, unsigned maxBounces,
-                       const Rng& rng, const Visit& visit) {
-  PhotonWalk walk(start, maxBounces, rng);
+PhotonFate followPhoton(const RayScene& rays, PhotonWalk walk, const Visit& visit) {
   SurfacePoint hit;
   while (walk.goesOn()) {
     rays.closestHit(walk.next().origin, walk.next().direction, hit);

@@ -58,7 +58,7 @@ TEST(Counts, SamplesOfAPixelEndAtTheLargestCount) {
     samples += tile.samples.size();
     if (samples > 100) throw Enough{};
   };
-  EXPECT_THROW(renderFilm(world.scene, count, {.spp = UINT32_MAX}, stats), Enough);
+  EXPECT_THROW(renderFilm(world.scene, {count}, {.spp = UINT32_MAX}, stats), Enough);
 }
 
 }  // namespace

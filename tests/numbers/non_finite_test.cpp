@@ -138,13 +138,12 @@ TEST_F(NonFinite, SamplesAreCountedAsZero) {
   for (const float value : bad) {
     FilmStats stats;
     const Image image = renderFilm(
-        world.scene,
-        [&](const TileSamples& tile) {
+        world.scene, {[&](const TileSamples& tile) {
           for (size_t i = 0; i < tile.samples.size(); ++i) {
             RadianceSample& r = tile.samples[i].radiance;
             r.direct = r.indirect = Vec3(i % 2 == 0 ? 1.0f : value);  // 3e38 twice is infinite
           }
-        },
+        }},
         {.spp = 4, .layers = ~0u}, stats);
     EXPECT_EQ(stats.nonFinite, stats.samples / 2);
     EXPECT_NEAR(meanOf(image), 1.0, 1e-6);
@@ -155,6 +154,26 @@ TEST_F(NonFinite, SamplesAreCountedAsZero) {
   }
 }
 
+// So is light that a photon brings to a pixel, and a photon that was dropped on its way.
+TEST_F(NonFinite, SplatsAreCountedAsZero) {
+  World world(room({"metres"}));
+  world.scene.film = {4, 4};
+  FilmStats stats;
+  const Image image =
+      renderFilm(world.scene,
+                 {[](const TileSamples&) {},
+                  [&](uint64_t begin, uint64_t end, Splats& out) {
+                    for (uint64_t i = begin; i < end; ++i) {
+                      const float value = i % 2 == 0 ? 1.0f : std::nanf("");
+                      out.list.push_back({static_cast<uint32_t>(i / 2 % 16), Vec3(value)});
+                    }
+                    out.nonFinite += end - begin;
+                  }},
+                 {.spp = 2}, stats);
+  EXPECT_EQ(stats.nonFinite, 16u + 32u);
+  EXPECT_FLOAT_EQ(image.find("R")->front(), 0.5f);  // of two samples
+}
+
 // A photon whose flux overflows ends there: it is counted, and the account stays whole.
 TEST_F(NonFinite, PhotonsAreCutOffAndCounted) {
   const World world(room({"metres"}));
@@ -162,8 +181,8 @@ TEST_F(NonFinite, PhotonsAreCutOffAndCounted) {
     PhotonStart start{{0, 1, 0}, {0, -1, 0}, Vec3(flux)};
     Rng rng(1, 1);
     int visits = 0;
-    const PhotonFate fate =
-        tracePhoton(world.rays, start, 8, rng, [&](const Bsdf&, Vec3, bool) { ++visits; });
+    const PhotonFate fate = followPhoton(world.rays, PhotonWalk(start, 8, rng),
+                                         [&](const Bsdf&, Vec3, bool) { ++visits; });
     EXPECT_FALSE(fate.finite);
     EXPECT_EQ(visits, 0);
     EXPECT_TRUE(isFinite(fate.escaped) && isFinite(fate.absorbed));

@@ -17,12 +17,12 @@ TEST_F(Options, HelpListsEveryOption) {
       {"vpl-estimate",
        {"scene", "vpls", "--output", "--photons", "--radius", "--scatter", "even|guarded",
         "--max-bounces", "--seed", "--define", "--depfile"}},
-      {"vpl-render", {"scene",         "lit",          "--output",     "--png",
-                      "--spp",         "--integrator", "path|vpl",     "--gather",
-                      "all|lightcuts", "--error",      "--max-cut",    "--clamp",
-                      "--max-bounces", "--only",       "--layers",     "--pixels",
-                      "float|half",    "--exposure",   "--seed",       "--define",
-                      "--depfile",     "--size",       "--near-field", "--near-field-rays"}},
+      {"vpl-render", {"scene",         "lit",          "--output",       "--png",
+                      "--spp",         "--integrator", "light|path|vpl", "--gather",
+                      "all|lightcuts", "--error",      "--max-cut",      "--clamp",
+                      "--max-bounces", "--only",       "--layers",       "--pixels",
+                      "float|half",    "--exposure",   "--seed",         "--define",
+                      "--depfile",     "--size",       "--near-field",   "--near-field-rays"}},
       {"vpl-inspect", {"info", "check", "export", "plot", "compare"}}};
   for (const auto& [name, texts] : options) {
     const Outcome help = tool(name, "--help");
@@ -120,9 +120,10 @@ TEST_F(Options, NumbersOutOfRange) {
   fail("vpl-render", scene_ + " a -o x --near-field-rays 0", kExitUsage, {"--near-field-rays"});
 }
 
-TEST_F(Options, VplsAndPathTracerExcludeEachOther) {
+TEST_F(Options, VplsAndReferencesExcludeEachOther) {
   fail("vpl-render", scene_ + " -o x", kExitUsage, {"vpl-estimate"});
   fail("vpl-render", scene_ + " a.vpl -o x --integrator path", kExitUsage, {"a.vpl"});
+  fail("vpl-render", scene_ + " a.vpl -o x --integrator light", kExitUsage, {"light", "a.vpl"});
 }
 
 TEST_F(Options, ListsTakeOneWord) {

@@ -62,13 +62,16 @@ TEST_F(Determinism, OtherMethodsForAnyThreads) {
       {"i.exr"});
 }
 
-TEST_F(Determinism, LightPlacementAndPathTracerForAnyThreads) {
+TEST_F(Determinism, LightPlacementAndReferencesForAnyThreads) {
   expectSame("vpl-place", door_ + " -o " + path("l.vpl") + " -n 2k --method light", {"l.vpl"});
   expectSame("vpl-render", door_ + " " + path("l.vpl") + " -o " + path("i.exr") + " --spp 1",
              {"i.exr"});
-  expectSame("vpl-render",
-             door_ + " -o " + path("p.exr") + " --spp 4 --integrator path --layers direct,indirect",
-             {"p.exr"});
+  for (const std::string integrator : {"path", "light"}) {
+    expectSame("vpl-render",
+               door_ + " -o " + path("p.exr") + " --spp 4 --layers direct,indirect --integrator " +
+                   integrator,
+               {"p.exr"});
+  }
 }
 
 // Otherwise the tests above would pass for programs that ignore the seed.

@@ -43,8 +43,9 @@ TEST_F(Memory, PhotonsLeaveNothingBehind) {
 
 // From 16 samples up: so many of each pixel are held at once.
 TEST_F(Memory, SamplesLeaveNothingBehind) {
-  for (const std::string& input : {path("lit.vpl"), path("lit.vpl") + " --gather lightcuts",
-                                   std::string("--integrator path")}) {
+  for (const std::string& input :
+       {path("lit.vpl"), path("lit.vpl") + " --gather lightcuts", std::string("--integrator path"),
+        std::string("--integrator light")}) {
     const std::string command =
         scene_ + " " + input + " -o " + path("i.exr") + " --size 32x24 --spp ";
     expectSamePeak("vpl-render", command + "16", command + "128");

@@ -36,6 +36,10 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   succeed("vpl-render", render + " -o " + path("whole.exr"));
   EXPECT_GE(runInPieces("vpl-render", render + " -o " + path("pieces.exr")), 1);
   EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
+  const std::string photons = scene_ + " --integrator light --size 64x48 --spp 512";
+  succeed("vpl-render", photons + " -o " + path("whole.exr"));
+  EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);
+  EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
   EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to go on from
 }
 

@@ -7,6 +7,7 @@
 #include "tools/eliminate/eliminate.h"
 #include "tools/estimate/estimate.h"
 #include "tools/place/place.h"
+#include "tools/render/light_tracer.h"
 #include "tools/render/render.h"
 
 namespace bnvpl::test {
@@ -63,15 +64,27 @@ inline Image renderVpls(const World& world, const VplTable& lit, const VplSettin
   const NearField nearField(lit, world.rays, s.clamp);
   const VplIntegrator integrator(world.rays, world.lights, gatherer,
                                  s.nearField ? &nearField : nullptr, s.nearFieldRays, s.film.only);
-  return renderFilm(
-      world.scene, [&](const TileSamples& tile) { integrator.render(tile); }, s.film, stats);
+  return renderFilm(world.scene, {[&](const TileSamples& tile) { integrator.render(tile); }},
+                    s.film, stats);
 }
 
 inline Image renderPaths(const World& world, const FilmOptions& film, FilmStats& stats,
                          unsigned maxBounces = 32) {
   const PathTracer integrator(world.rays, world.lights, maxBounces, film.only);
+  return renderFilm(world.scene, {[&](const TileSamples& tile) { integrator.render(tile); }}, film,
+                    stats);
+}
+
+// Indirect light by photons that are connected with the camera.
+inline Image renderPhotons(const World& world, const FilmOptions& film, FilmStats& stats,
+                           unsigned maxBounces = 32) {
+  const PathTracer samples(world.rays, world.lights, maxBounces, film.only, false);
+  const LightTracer photons(world.rays, world.lights, maxBounces, film.seed);
   return renderFilm(
-      world.scene, [&](const TileSamples& tile) { integrator.render(tile); }, film, stats);
+      world.scene,
+      {[&](const TileSamples& tile) { samples.render(tile); },
+       [&](uint64_t begin, uint64_t end, Splats& out) { photons.follow(begin, end, out); }},
+      film, stats);
 }
 
 // Mean over pixels and channels of a layer ("" for R, G, B).

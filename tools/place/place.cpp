@@ -153,12 +153,13 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
   const size_t light = lights.pick(rng.next(), probability);
   PhotonStart start = lights.emit(light, rng);
   start.flux *= 1.0f / probability;
-  const PhotonFate fate = tracePhoton(
-      rays, start, options.lightDepth, rng, [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
-        if (!addRow(chunk, bsdf, path)) return;
-        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
-        chunk.rows.straightFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
-      });
+  const PhotonFate fate =
+      followPhoton(rays, PhotonWalk(start, options.lightDepth, rng),
+                   [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+                     if (!addRow(chunk, bsdf, path)) return;
+                     chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+                     chunk.rows.straightFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
+                   });
   chunk.nonFinite += fate.finite ? 0 : 1;
   chunk.rays += fate.rays;
   isBlack(fate.escaped) ? ++chunk.absorbed : ++chunk.escaped;

@@ -188,10 +188,14 @@ RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
   RadianceSample out;
   ChainEnd vertex = seeFrom(rays_, lights_, sample.origin, sample.direction, rng, out);
   Vec3 throughput = vertex.throughput;
+  const bool directOnly = only_ == Only::Direct || (!indirect_ && vertex.links == 0);
+  if (directOnly && only_ == Only::Indirect && vertex.rough) {
+    describeVertex(Bsdf(rays_.scene(), vertex.hit), out);
+    return out;
+  }
   for (unsigned bounce = 0; vertex.rough; ++bounce) {
     const Bsdf bsdf(rays_.scene(), vertex.hit);
     if (bounce == 0) describeVertex(bsdf, out);
-    if (only_ == Only::Direct && bounce > 0) return out;
     Vec3& sum = bounce == 0 ? out.direct : out.indirect;
     sum +=
         throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::One, 1, rng);
@@ -205,6 +209,7 @@ RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
     const Arrival arrival{next.pdf, vertex.hit.position};
     vertex = followChain(rays_, lights_, from, next.wi, arrival, rng);
     sum += throughput * vertex.metFirst;
+    if (directOnly) return out;
     out.indirect += throughput * vertex.metLater;
     if (bounce == maxBounces_) return out;
     throughput *= vertex.throughput;

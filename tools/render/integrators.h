@@ -68,8 +68,11 @@ class VplIntegrator {
 // photon's hits.
 class PathTracer {
  public:
-  PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only)
-      : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only) {}
+  // `indirect`: whether also the indirect light of the points that the camera sees directly; false
+  // leaves that to the LightTracer.
+  PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only,
+             bool indirect = true)
+      : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}
   void render(const TileSamples& tile) const;
 
  private:
@@ -79,6 +82,7 @@ class PathTracer {
   const LightSet& lights_;
   unsigned maxBounces_;
   Only only_;
+  bool indirect_;
 };
 
 }  // namespace bnvpl

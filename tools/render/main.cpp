@@ -1,4 +1,4 @@
-// vpl-render: direct light plus all VPLs, or the path-traced reference.
+// vpl-render: direct light plus all VPLs, or a reference, traced from the camera or the lights.
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
 #include <cmath>
 #include <cstdio>
@@ -15,6 +15,7 @@
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/scene_options.h"
+#include "tools/render/light_tracer.h"
 #include "tools/render/render.h"
 
 namespace bnvpl {
@@ -23,7 +24,7 @@ namespace {
 // Measured: 190 to 270, by the number of layers; 140, and 670 with the near field.
 constexpr double kBytesPerPixel = 180, kBytesPerVpl = 100;
 
-enum class IntegratorKind { Vpl, Path };
+enum class IntegratorKind { Vpl, Path, Light };
 
 struct RenderOptions {
   IntegratorKind integrator = IntegratorKind::Vpl;
@@ -39,8 +40,8 @@ struct RenderOptions {
   std::string exposure = "auto";
 };
 
-const Choices<IntegratorKind> kIntegrators{{"vpl", IntegratorKind::Vpl},
-                                           {"path", IntegratorKind::Path}};
+const Choices<IntegratorKind> kIntegrators{
+    {"vpl", IntegratorKind::Vpl}, {"path", IntegratorKind::Path}, {"light", IntegratorKind::Light}};
 const Choices<GatherMethod> kGathers{{"tilecuts", GatherMethod::TileCuts},
                                      {"lightcuts", GatherMethod::Lightcuts},
                                      {"all", GatherMethod::All}};
@@ -77,7 +78,7 @@ Json describe(const RenderOptions& o) {
             {"spp", o.film.spp},
             {"seed", o.film.seed},
             {"only", nameOf(o.film.only, kOnlys)}};
-  if (o.integrator == IntegratorKind::Path) {
+  if (o.integrator != IntegratorKind::Vpl) {
     json["max-bounces"] = o.maxBounces;
     return json;
   }
@@ -131,9 +132,11 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   parseExposure(o.exposure);
   requireWritable({paths.output, paths.png, tool.stats, tool.depfile});
   if (vpl && paths.lit.empty())
-    throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path");
-  if (!vpl && !paths.lit.empty())
-    throw UsageError("--integrator path takes no VPLs; leave " + paths.lit.string() + " out");
+    throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path or light");
+  if (!vpl && !paths.lit.empty()) {
+    throw UsageError("--integrator " + nameOf(o.integrator, kIntegrators) +
+                     " takes no VPLs; leave " + paths.lit.string() + " out");
+  }
 
   if (vpl) requireMemoryFor(paths.lit, kBytesPerVpl, "keep fewer VPLs with vpl-eliminate -n");
   VplTable lit;
@@ -153,7 +156,16 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   if (vpl && o.nearField) nearField.emplace(lit, rays, o.clamp);
   const VplIntegrator byVpls(rays, lights, gatherer, nearField ? &*nearField : nullptr,
                              o.nearFieldRays, o.film.only);
-  const PathTracer byPaths(rays, lights, o.maxBounces, o.film.only);
+  const bool photons = o.integrator == IntegratorKind::Light && o.film.only != Only::Direct;
+  const PathTracer byPaths(rays, lights, o.maxBounces, o.film.only, !photons);
+  const LightTracer byPhotons(rays, lights, o.maxBounces, o.film.seed);
+  FilmSources sources{
+      [&](const TileSamples& tile) { vpl ? byVpls.render(tile) : byPaths.render(tile); }};
+  if (photons) {
+    sources.photons = [&](uint64_t begin, uint64_t end, Splats& out) {
+      byPhotons.follow(begin, end, out);
+    };
+  }
 
   Json inputs{{"scene", hashText(scene.contentHash)}};
   if (vpl) inputs["lit"] = hashText(lit.checksum);
@@ -161,12 +173,10 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   Json run = record;
   run["view"] = describeView(scene);
   Checkpoint checkpoint(checkpoints, run);
-  ProgressMeter meter("samples", uint64_t{scene.film.width} * scene.film.height * o.film.spp,
-                      tool.quiet);
+  const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * o.film.spp;
+  ProgressMeter meter("samples", photons ? 2 * samples : samples, tool.quiet);
   FilmStats stats;
-  Image image = renderFilm(
-      scene, [&](const TileSamples& tile) { vpl ? byVpls.render(tile) : byPaths.render(tile); },
-      o.film, stats, meter.callback(), checkpoint.resume());
+  Image image = renderFilm(scene, sources, o.film, stats, meter.callback(), checkpoint.resume());
 
   image.attributes["bnvpl.provenance"] = extendProvenance(lit.provenance, record);
   image.attributes["bnvpl.samplesPerPixel"] = std::to_string(o.film.spp);
@@ -219,11 +229,12 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
 }
 
 void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut) {
-  addCount(cli, "--spp", spp, "samples a pixel");
+  addCount(cli, "--spp", spp, "samples a pixel; light: and photons a pixel");
   cli.add_option("--size", o.size, "of the image, pixels; the scene's film unless given")
       ->type_name("WxH");
   addChoice(cli, "--integrator", o.integrator, kIntegrators,
-            "vpl: the method; path: the reference, takes no VPLs");
+            "vpl: the method; path: the reference, takes no VPLs; light: the same, but indirect "
+            "light by photons connected with the camera, for where paths hardly find the lights");
   addChoice(
       cli, "--gather", o.gather.method, kGathers,
       "tilecuts: a cut of the light tree for each tile, random VPLs of its clusters; lightcuts: "
@@ -243,7 +254,7 @@ void addOptions(CLI::App& cli, RenderOptions& o, uint64_t& spp, uint64_t& maxCut
       ->check(inRange(1, 4096))
       ->capture_default_str();
   cli.add_option("--max-bounces", o.maxBounces,
-                 "path: diffuse bounces after the first surface, as vpl-estimate's")
+                 "path, light: diffuse bounces after the first surface, as vpl-estimate's")
       ->check(inRange(0, 1000))
       ->capture_default_str();
   addChoice(cli, "--only", o.film.only, kOnlys, "which light the image shows");

@@ -61,26 +61,31 @@ void addSample(const RadianceSample& r, Pixel& pixel, PixelCounts& counts) {
   counts.shadowRays += r.shadowRays;
 }
 
-// What is done, for a checkpoint: the tiles of a pass, and the sums of all pixels.
-std::string encode(uint64_t pass, const std::vector<uint8_t>& done,
+// What is done, for a checkpoint: passes and the tiles of one, then photons; the sums of all
+// pixels.
+struct Progress {
+  uint64_t pass = 0;
+  SplatProgress splats;
+};
+std::string encode(const Progress& progress, const std::vector<uint8_t>& done,
                    const std::vector<Pixel>& pixels, const std::vector<PixelCounts>& counts) {
   std::string bytes;
-  appendArray(bytes, std::array{pass});
+  appendArray(bytes, std::array{progress});
   appendArray(bytes, done);
   appendArray(bytes, pixels);
   appendArray(bytes, counts);
   return bytes;
 }
 
-uint64_t decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<Pixel>& pixels,
+Progress decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<Pixel>& pixels,
                 std::vector<PixelCounts>& counts) {
-  std::array<uint64_t, 1> pass{};
-  takeArray(bytes, pass);
+  std::array<Progress, 1> progress{};
+  takeArray(bytes, progress);
   takeArray(bytes, done);
   takeArray(bytes, pixels);
   takeArray(bytes, counts);
   requireAllTaken(bytes);
-  return pass[0];
+  return progress[0];
 }
 
 // The pixels of one tile, row by row.
@@ -161,7 +166,7 @@ void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmO
 
 }  // namespace
 
-Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+Image renderFilm(const Scene& scene, const FilmSources& sources, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint32_t width = scene.film.width, height = scene.film.height;
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
@@ -178,15 +183,16 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
     return Tile{x0, y0, std::min(width, x0 + kTile), std::min(height, y0 + kTile)};
   };
   std::vector<uint8_t> done(tilesX * tilesY);
-  uint64_t pass = 0;
-  if (!resume.state.empty()) pass = decode(resume.state, done, pixels, counts);
+  Progress at;
+  if (!resume.state.empty()) at = decode(resume.state, done, pixels, counts);
   const uint64_t passes = (uint64_t{options.spp} + kSlotsPerPass - 1) / kSlotsPerPass;
   const auto slotsBefore = [&](uint64_t p) {
     return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * kSlotsPerPass));
   };
-  if (progress) progress(image.pixelCount() * slotsBefore(pass));
-  for (; pass < passes; ++pass, std::fill(done.begin(), done.end(), 0)) {
-    const uint32_t begin = slotsBefore(pass), end = slotsBefore(pass + 1);
+  const auto state = [&] { return encode(at, done, pixels, counts); };
+  if (progress) progress(image.pixelCount() * slotsBefore(at.pass) + at.splats.photons);
+  for (; at.pass < passes; ++at.pass, std::fill(done.begin(), done.end(), 0)) {
+    const uint32_t begin = slotsBefore(at.pass), end = slotsBefore(at.pass + 1);
     const auto report = [&](const Tile& tile) {
       if (progress) progress(uint64_t{tile.pixels()} * (end - begin));
     };
@@ -197,10 +203,22 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         done, resume,
         [&](size_t index) {
           const Tile tile = tileOf(index);
-          renderTile(scene, integrator, options, key, tile, begin, end, pixels, counts);
+          renderTile(scene, sources.samples, options, key, tile, begin, end, pixels, counts);
           report(tile);
         },
-        [&] { return encode(pass, done, pixels, counts); });
+        state);
+  }
+  if (sources.photons) {
+    addSplats(
+        sources.photons, uint64_t{options.spp} * image.pixelCount(), at.splats,
+        [&](const Splat& splat) {
+          if (!isFinite(splat.radiance)) {
+            ++counts[splat.pixel].nonFinite;
+            return;
+          }
+          addTo(pixels[splat.pixel], kIndirect, splat.radiance);
+        },
+        progress, resume, state);
   }
 
   const double perSample = 1.0 / options.spp;
@@ -227,6 +245,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   stats.clamped = meanOf(kClamped);
   stats.extended = meanOf(kExtended);
   stats.samples = uint64_t{options.spp} * pixels.size();
+  stats.nonFinite = at.splats.nonFinite;
   for (const PixelCounts& c : counts) {
     stats.cut += double(c.cut);
     stats.shadowRays += double(c.shadowRays);

@@ -7,6 +7,7 @@
 #include "core/resume.h"
 #include "formats/image.h"
 #include "tools/render/integrators.h"
+#include "tools/render/splats.h"
 
 namespace bnvpl {
 
@@ -40,9 +41,17 @@ struct FilmStats {
 // Finds the radiance of all samples of a tile.
 using Integrator = std::function<void(const TileSamples& tile)>;
 
+// What makes a film: samples of its pixels, and photons that bring indirect light besides, as many
+// as samples; none where `photons` is empty.
+struct FilmSources {
+  Integrator samples;
+  Splatter photons = {};
+};
+
 // Box filter, samples stratified in each pixel. A tile depends on the seed and its place only.
-// Progress counts samples; `resume` mends interruptions, and its state holds every pixel's sums.
-Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+// Progress counts samples and photons; `resume` mends interruptions, and its state holds every
+// pixel's sums.
+Image renderFilm(const Scene& scene, const FilmSources& sources, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
 
 }  // namespace bnvpl

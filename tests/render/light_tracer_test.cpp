@@ -1,0 +1,139 @@
+// The light tracer against what is known without it, and against the path tracer, its adjoint.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+constexpr unsigned kBlock = 8;  // pixels
+
+// Means of the indirect light over blocks of pixels, all channels together.
+std::vector<double> blockMeans(const Image& image) {
+  const int across = image.width / int(kBlock), down = image.height / int(kBlock);
+  std::vector<double> means(size_t(across * down));
+  for (const char* channel : {"indirect.R", "indirect.G", "indirect.B"}) {
+    const std::vector<float>& data = *image.find(channel);
+    for (int y = 0; y < down * int(kBlock); ++y) {
+      for (int x = 0; x < across * int(kBlock); ++x) {
+        means[size_t(y / int(kBlock) * across + x / int(kBlock))] +=
+            double{data[size_t(y * image.width + x)]} / (3.0 * kBlock * kBlock);
+      }
+    }
+  }
+  return means;
+}
+
+void expectTheSameImage(const World& world, unsigned maxBounces, double perBlock, double perImage) {
+  FilmStats path, light;
+  FilmOptions film{.spp = 512, .layers = kLayerIndirect};
+  const Image byPaths = renderPaths(world, film, path, maxBounces);
+  film.spp = 64;
+  const Image byPhotons = renderPhotons(world, film, light, maxBounces);
+  EXPECT_NEAR(light.indirect / path.indirect, 1.0, perImage);
+  EXPECT_EQ(light.nonFinite, 0u);
+  const std::vector<double> a = blockMeans(byPaths), b = blockMeans(byPhotons);
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_NEAR(b[i], a[i], perBlock * a[i] + 0.01 * path.indirect) << "block " << i;
+  }
+}
+
+TEST(LightTracer, FurnaceIsTheGeometricSeries) {
+  const World world("furnace/scene.toml");  // Le = 1, rho = 0.5
+  FilmStats stats;
+  renderPhotons(world, {.spp = 32}, stats, 64);
+  EXPECT_NEAR(stats.indirect, 0.5, 0.005);  // rho^2 / (1 - rho)
+  renderPhotons(world, {.spp = 32}, stats, 1);
+  EXPECT_NEAR(stats.indirect, 0.25, 0.0025);  // of one bounce alone
+}
+
+TEST(LightTracer, AgreesWithThePathTracerBlockByBlock) {
+  World world("cornell/scene.toml");
+  world.scene.film = {32, 32};
+  for (const unsigned bounces : {1u, 32u}) expectTheSameImage(world, bounces, 0.06, 0.01);
+}
+
+TEST(LightTracer, AgreesInAFilmThatIsNotSquareAndByAllKindsOfLight) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {48, 24};
+  scene.lights.assign(2, LightSpec{});
+  scene.lights[0].type = LightType::Environment;
+  scene.lights[0].emission = Vec3{2.0f};
+  scene.lights[1].position = {0.3f, 0.45f, 0.1f};
+  scene.lights[1].emission = Vec3{0.1f};
+  expectTheSameImage(World(std::move(scene)), 32, 0.06, 0.01);
+}
+
+TEST(LightTracer, DirectLightIsThePathTracers) {
+  World world("cornell/scene.toml");
+  world.scene.film = {32, 32};
+  FilmStats stats;
+  const FilmOptions film{.spp = 4, .layers = kLayerDirect | kLayerIndirect};
+  const Image paths = renderPaths(world, film, stats), photons = renderPhotons(world, film, stats);
+  EXPECT_EQ(*paths.find("direct.G"), *photons.find("direct.G"));
+  EXPECT_NE(*paths.find("indirect.G"), *photons.find("indirect.G"));
+}
+
+// Shading normals, where the adjoint of a BSDF is not itself (Veach 1997, section 5.3).
+TEST(LightTracer, AgreesOnInterpolatedNormals) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "u-shape/scene.toml");
+  scene.film = {32, 24};
+  // Close to the teapot, with a light in its own room.
+  scene.camera.position = {-1.9f, 0.9f, 4.2f};
+  scene.camera.forward = {0, 0, -1};
+  scene.camera.right = {1, 0, 0};
+  scene.camera.up = {0, 1, 0};
+  scene.lights.assign(1, LightSpec{});
+  scene.lights[0].position = {-2.0f, 2.2f, 5.0f};
+  scene.lights[0].emission = Vec3{10.0f};
+  expectTheSameImage(World(std::move(scene)), 8, 0.08, 0.01);
+}
+
+// RMS difference of two images with different seeds.
+double noiseOf(const std::function<Image(uint64_t seed)>& render) {
+  const Image a = render(1), b = render(2);
+  double sum = 0.0;
+  for (const char* channel : {"R", "G", "B"}) {
+    const std::vector<float>&p = *a.find(channel), &q = *b.find(channel);
+    for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
+  }
+  return std::sqrt(sum);
+}
+
+// Light comes round a bend, which few paths find; its photons branch behind it.
+TEST(LightTracer, HasLessNoiseWhereLightComesRoundACorner) {
+  World world("u-shape/scene.toml");
+  world.scene.film = {32, 24};
+  FilmStats path, light;
+  const double byPaths = noiseOf([&](uint64_t seed) {
+    return renderPaths(world, {.spp = 1024, .seed = seed, .only = Only::Indirect}, path);
+  });
+  const double byPhotons = noiseOf([&](uint64_t seed) {
+    return renderPhotons(world, {.spp = 512, .seed = seed, .only = Only::Indirect}, light);
+  });
+  EXPECT_LT(byPhotons, 0.5 * byPaths);
+  EXPECT_NEAR(light.indirect / path.indirect, 1.0, 0.05);
+}
+
+// What is seen over mirrors, and light that comes by way of them.
+TEST(LightTracer, AgreesWithMirrors) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {32, 32};
+  Material& tall = scene.materials.at(scene.triangles.back().material);
+  tall.diffuse = Vec3{0.2f};
+  tall.mirror = Vec3{0.7f};
+  expectTheSameImage(World(std::move(scene)), 16, 0.08, 0.015);
+}
+
+TEST(LightTracer, ClosedRoomsStayDark) {
+  const World world("test/two-rooms.toml");
+  FilmStats stats;
+  renderPhotons(world, {.spp = 64}, stats);
+  EXPECT_EQ(stats.indirect, 0.0);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,60 @@
+// Light that finds its pixels by itself: photons that are followed from the lights and connected
+// with the camera.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/resume.h"
+#include "core/vec3.h"
+
+namespace bnvpl {
+
+struct Splat {
+  uint32_t pixel;
+  Vec3 radiance;  // times the film's pixels: the mean over as many photons is the pixel's value
+};
+
+struct Splats {
+  std::vector<Splat> list;
+  uint64_t nonFinite = 0;  // photons that were dropped because their flux became NaN or infinite
+};
+
+// Follows the photons [begin, end) and appends what they bring.
+using Splatter = std::function<void(uint64_t begin, uint64_t end, Splats& out)>;
+
+// How far a splatter is.
+struct SplatProgress {
+  uint64_t photons = 0, nonFinite = 0;
+};
+
+// Calls add(splat) for all that the photons from done.photons up to `count` bring, in their order
+// however many threads there are, and moves `done` on. Work stops between rounds of photons only.
+template <typename Add, typename State>
+void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, const Add& add,
+               const ProgressFn& progress, const Resume& resume, const State& state) {
+  constexpr uint64_t kPhotonsPerChunk = 512, kChunksPerRound = 64;
+  std::vector<Splats> chunks(kChunksPerRound);
+  while (done.photons < count) {
+    const uint64_t first = done.photons;
+    const uint64_t end = std::min(count, first + kChunksPerRound * kPhotonsPerChunk);
+    parallelFor(chunks.size(), 1, [&](size_t c) {
+      const uint64_t begin = std::min(end, first + c * kPhotonsPerChunk);
+      chunks[c].list.clear();
+      chunks[c].nonFinite = 0;
+      splatter(begin, std::min(end, begin + kPhotonsPerChunk), chunks[c]);
+    });
+    for (const Splats& chunk : chunks) {
+      for (const Splat& splat : chunk.list) add(splat);
+      done.nonFinite += chunk.nonFinite;
+    }
+    done.photons = end;
+    if (progress) progress(end - first);
+    if (end < count && resume.pause && resume.pause()) resume.save(state());
+  }
+}
+
+}  // namespace bnvpl
