@@ -35,7 +35,8 @@ class PhotonWalk {
   const Ray& next() const { return next_; }  // to be traced, where goesOn()
   const PhotonFate& fate() const { return fate_; }
   Rng& rng() { return rng_; }
-  // One of several that go on from here instead of this one, with a share of its flux each.
+  // One of several that go on from here instead of this one, with a share of its flux each. Their
+  // fates hold the way before once more.
   PhotonWalk branch(float share, const Rng& rng) const {
     PhotonWalk b = *this;
     b.rng_ = rng;

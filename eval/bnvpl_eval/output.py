@@ -38,7 +38,7 @@ def write_all(context: Context, folder: Path, provenance: dict) -> Path:
     report = {
         "title": "Blue-noise virtual point lights: the evaluation",
         "lead": "VPLs from the light, random VPLs from the camera, the thesis' uniform blue noise, and ours at the local "
-                "density of what lights the view; judged against two independent halves of a path-traced reference.",
+                "density of what lights the view; judged against two independent halves of a reference.",
         "provenance": provenance, "tables": context.tables, "plots": context.plots,
         "scenes": [{"id": scene.id, "title": scene.title,
                     "views": [view_entry(context, view, folder) for view in scene.views

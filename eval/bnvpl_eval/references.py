@@ -1,8 +1,8 @@
-"""The references: path-traced images in two independent halves, kept in eval/references/.
+"""The references: images traced path by path in two independent halves, kept in eval/references/.
 
 A half is the mean of renders of CHUNK samples a pixel with different seeds: a stopped run goes on where it
-was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples); a stored reference
-whose key differs is refused.
+was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples, half, integrator); a stored
+reference whose key differs is refused.
 """
 
 import json
@@ -23,7 +23,7 @@ def path(view: View, film: str, half: str) -> Path:
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
-    """At least `spp` samples a pixel. A stored half of the same scene is gone on with, not begun anew: its samples
+    """At least `spp` samples a pixel. A stored half of the same scene and integrator is gone on with, not begun anew: its samples
     keep their weight (that it was rounded to half floats costs 0.02 %)."""
     target = path(view, film, half)
     stored = _stored(view, film, half)
@@ -37,23 +37,23 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     cpu_s = stored["cpu_s"] if stored else 0.0
     for seed in seeds:
         run = runner.run("vpl-render",
-                         ["{scene}", "--size", film, "--integrator", "path", "--spp", chunk, "--seed", seed,
+                         ["{scene}", "--size", film, "--integrator", view.reference_integrator, "--spp", chunk, "--seed", seed,
                           "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
                          {"scene": ROOT / view.file}, ["image.exr"])
         cpu_s += run.cpu_s
         for layer in sums:
             sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(np.float64)
     total = done + chunk * len(seeds)
-    note = f"bnvpl path tracer, {view.file}, {film}, {total} spp, half {half}"
+    note = f"bnvpl {view.reference_integrator} tracer, {view.file}, {film}, {total} spp, half {half}"
     images.write_half(target, {layer: sum_ / total for layer, sum_ in sums.items()}, note)
-    target.with_suffix(".json").write_text(json.dumps(
-        {"key": reference_key(view, film, total, half), "scene": view.file, "film": film, "spp": total, "half": half,
-         "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]],
-         "cpu_s": round(cpu_s, 1)}, indent=1) + "\n")
+    record = {"key": reference_key(view, film, total, half), "scene": view.file, "film": film,
+              "integrator": view.reference_integrator, "spp": total, "half": half,
+              "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]], "cpu_s": round(cpu_s, 1)}
+    target.with_suffix(".json").write_text(json.dumps(record, indent=1) + "\n")
 
 
 def _stored(view: View, film: str, half: str) -> dict | None:
-    """The record of a half that is there, if it is of this scene."""
+    """The record of a half that is there, if it is of this scene and integrator."""
     record_file = path(view, film, half).with_suffix(".json")
     if not record_file.is_file():
         return None
@@ -62,11 +62,15 @@ def _stored(view: View, film: str, half: str) -> dict | None:
 
 
 def reference_key(view: View, film: str, spp: int, half: str) -> str:
-    return digest(json.dumps([scene_key(ROOT / view.file), film, spp, half]).encode())
+    """The path tracer's, which is most scenes', goes unnamed."""
+    what = [scene_key(ROOT / view.file), film, spp, half]
+    if view.reference_integrator != "path":
+        what.append(view.reference_integrator)
+    return digest(json.dumps(what).encode())
 
 
 def require(view: View, film: str) -> dict:
-    """The records of both halves; ends the program where one is missing or of another scene."""
+    """The records of both halves; ends the program where one is missing or made otherwise."""
     records = {}
     cure = f"eval/references.py --film-width {film.split('x')[0]} {view.name}"
     for half in "ab":
@@ -75,7 +79,7 @@ def require(view: View, film: str) -> dict:
             raise SystemExit(f"eval: {file}: no such reference; make it with '{cure}'")
         records[half] = json.loads(file.with_suffix(".json").read_text())
         if records[half]["key"] != reference_key(view, film, records[half]["spp"], half):
-            raise SystemExit(f"eval: {file}: made from another version of {view.file}; delete it and run '{cure}'")
+            raise SystemExit(f"eval: {file}: made from another version of {view.file} or by another integrator; run '{cure}'")
     return records
 
 

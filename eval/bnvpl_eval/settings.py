@@ -16,6 +16,7 @@ class View:
     title: str
     file: str  # scene.toml, relative to the project
     reference_spp: int  # of each half, at the film that numbers are taken from
+    reference_integrator: str = "path"  # vpl-render's --integrator
 
     @property
     def name(self) -> str:

@@ -77,6 +77,35 @@ TEST(LightTracer, DirectLightIsThePathTracers) {
   EXPECT_NE(*paths.find("indirect.G"), *photons.find("indirect.G"));
 }
 
+// Stopped after every round, and gone on with from the bytes that were saved.
+TEST(LightTracer, GoesOnFromEveryRound) {
+  World world("cornell/scene.toml");
+  world.scene.film = {40, 40};
+  FilmStats whole, pieces;
+  const FilmOptions film{.spp = 8};  // 12800 photons
+  const Image expected = renderPhotons(world, film, whole);
+  struct Stopped {};
+  Resume resume;
+  resume.pause = [] { return true; };
+  resume.save = [&](const std::string& state) {
+    resume.state = state;
+    throw Stopped{};
+  };
+  int stops = 0;
+  for (bool ended = false; !ended;) {
+    try {
+      const Resume begin = resume;
+      const Image image = renderPhotons(world, film, pieces, 32, begin);
+      EXPECT_EQ(*image.find("R"), *expected.find("R"));
+      EXPECT_EQ(pieces.indirect, whole.indirect);
+      ended = true;
+    } catch (const Stopped&) {
+      ++stops;
+    }
+  }
+  EXPECT_GT(stops, 3);  // more than the rounds of samples
+}
+
 // Shading normals, where the adjoint of a BSDF is not itself (Veach 1997, section 5.3).
 TEST(LightTracer, AgreesOnInterpolatedNormals) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "u-shape/scene.toml");

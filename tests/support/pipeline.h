@@ -77,14 +77,14 @@ inline Image renderPaths(const World& world, const FilmOptions& film, FilmStats&
 
 // Indirect light by photons that are connected with the camera.
 inline Image renderPhotons(const World& world, const FilmOptions& film, FilmStats& stats,
-                           unsigned maxBounces = 32) {
+                           unsigned maxBounces = 32, const Resume& resume = {}) {
   const PathTracer samples(world.rays, world.lights, maxBounces, film.only, false);
   const LightTracer photons(world.rays, world.lights, maxBounces, film.seed);
   return renderFilm(
       world.scene,
       {[&](const TileSamples& tile) { samples.render(tile); },
        [&](uint64_t begin, uint64_t end, Splats& out) { photons.follow(begin, end, out); }},
-      film, stats);
+      film, stats, {}, resume);
 }
 
 // Mean over pixels and channels of a layer ("" for R, G, B).

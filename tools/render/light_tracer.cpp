@@ -9,7 +9,7 @@ namespace bnvpl {
 namespace {
 
 // Ways in which a photon goes on from where it first comes into the camera's sight. Where few come
-// there, the way costs more than what follows (measured: docs/results.md, "The references").
+// there, the way costs more than what follows (measured: docs/theory.md, "Light tracer").
 constexpr uint64_t kBranches = 32;
 
 }  // namespace
@@ -76,13 +76,18 @@ void LightTracer::connect(const SurfacePoint& vertex, Vec3 flux, Splats& out) co
   const FilmPoint at = projectToFilm(scene.camera, film, vertex.position);
   if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return;
   const Vec3 way = vertex.position - scene.camera.position;
+  if (dot(vertex.ng, way) >= 0.0f) return;  // the photon came to the other side
   const float distance = length(way);
   // The camera's own ray, so that light scatters as it does where a path from there arrives. What
-  // it meets within the rounding of a lifted origin is the vertex.
+  // it meets is the vertex where it is the same triangle, or, at an edge, within the rounding of a
+  // lifted origin.
   SurfacePoint seen;
   if (!rays_.closestHit(scene.camera.position, way / distance, seen)) return;
   const Vec3 tolerance = rays_.lifted(vertex.position, vertex.ng) - vertex.position;
-  if (lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) return;
+  if (seen.triangle != vertex.triangle &&
+      lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
+    return;
+  }
   const float cosShading = dot(seen.ns, vertex.wo);
   if (!(cosShading > 0.0f)) return;
   const Vec3 value = Bsdf(scene, seen).eval(LobeGroup::Rough, vertex.wo) / cosShading;

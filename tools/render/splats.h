@@ -15,12 +15,14 @@ namespace bnvpl {
 
 struct Splat {
   uint32_t pixel;
-  Vec3 radiance;  // times the film's pixels: the mean over as many photons is the pixel's value
+  Vec3 radiance;  // over the film's pixels: the sum over all photons by the samples of a pixel is
+                  // the pixel's value
 };
 
 struct Splats {
   std::vector<Splat> list;
-  uint64_t nonFinite = 0;  // photons that were dropped because their flux became NaN or infinite
+  uint64_t nonFinite =
+      0;  // photons, or branches, that were dropped: their flux became NaN or infinite
 };
 
 // Follows the photons [begin, end) and appends what they bring.
@@ -36,7 +38,7 @@ struct SplatProgress {
 template <typename Add, typename State>
 void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, const Add& add,
                const ProgressFn& progress, const Resume& resume, const State& state) {
-  constexpr uint64_t kPhotonsPerChunk = 512, kChunksPerRound = 64;
+  constexpr uint64_t kPhotonsPerChunk = 64, kChunksPerRound = 64;
   std::vector<Splats> chunks(kChunksPerRound);
   while (done.photons < count) {
     const uint64_t first = done.photons;

@@ -20,7 +20,7 @@ def run(context: Context) -> None:
             row |= measures.compare_all(context, view, row["images"])
             rows.append(row | {"group": group(view, c.vpls)})
     context.tables.append(table(
-        "methods", "Where VPLs come from: indirect light against the path tracer",
+        "methods", "Where VPLs come from: indirect light against the reference",
         "Means over the seeds. RMSE, bias and noise are root mean squares over pixels and channels over "
         "the reference's mean; bias is the mean image against the reference, noise the standard deviation "
         "of one image. Time is the CPU time of all stages together.",

@@ -7,7 +7,7 @@ from ..context import Context
 from ..statistics import relative_weight
 from ..tables import column, table
 
-COLUMNS = [column("spp", "samples a pixel, both halves"), column("half_difference", "RMS difference of the halves / mean"),
+COLUMNS = [column("integrator", "traced from the"), column("spp", "samples or photons a pixel, both halves"), column("half_difference", "RMS difference of the halves / mean"),
            column("own_relmse", "relMSE of their mean"), column("judged", "lowest relMSE that is judged by it"),
            column("ratio", "judged / own", better="high")]
 
@@ -27,6 +27,7 @@ def run(context: Context) -> None:
                      if row["part"] == "methods" and row["view"] == view.name)
         own = own_relmse(halves)
         rows.append({"group": f"{view.scene.title}, {view.title}",
+                     "integrator": {"path": "camera", "light": "lights"}[view.reference_integrator],
                      "spp": sum(record["spp"] for record in references.require(view, film).values()),
                      "half_difference": references.half_difference(halves), "own_relmse": own, "judged": judged,
                      "ratio": judged / own})

@@ -1,0 +1,96 @@
+"""Stored references: taken where they are of the scene and the integrator that are asked for, refused elsewhere."""
+
+import dataclasses
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from bnvpl_eval import images, references, settings  # noqa: E402
+
+FILM = "4x3"
+
+
+class FakeRun(dict):
+    cpu_s = 1.5
+
+
+class FakeRunner:
+    """Renders grey images: each of its seed's value."""
+
+    def __init__(self, folder: Path):
+        self.folder, self.asked = folder, []
+
+    def run(self, tool, arguments, _inputs, _outputs):
+        options = dict(zip(arguments[1::2], arguments[2::2]))
+        self.asked.append((options["--integrator"], options["--spp"], options["--seed"]))
+        file = self.folder / f"{options['--seed']}.exr"
+        grey = np.full((3, 4, 3), float(options["--seed"]), np.float32)
+        images.write_half(file, {"": grey, "indirect": grey}, "test")
+        return FakeRun({"image.exr": file})
+
+
+class References(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.runner = FakeRunner(Path(folder.name))
+        stored = Path(folder.name) / "stored"
+        stored.mkdir()
+        patch = mock.patch.object(references, "FOLDER", stored)
+        patch.start()
+        self.addCleanup(patch.stop)
+        self.view = settings.load()[0][0].views[0]
+
+    def render(self, view, spp):
+        for half in "ab":
+            references.render_half(self.runner, view, FILM, spp, half)
+
+    def test_halves_have_seeds_of_their_own_and_take_more_samples(self):
+        self.render(self.view, 2 * references.CHUNK)
+        self.assertEqual([seed for _, _, seed in self.runner.asked], [1000, 1002, 1001, 1003])
+        a, b = references.load(self.view, FILM, "indirect")
+        self.assertAlmostEqual(float(a.mean()), 1001, delta=0.5)
+        self.assertAlmostEqual(float(b.mean()), 1002, delta=0.5)
+        self.render(self.view, 2 * references.CHUNK)  # is there
+        self.assertEqual(len(self.runner.asked), 4)
+        self.render(self.view, 4 * references.CHUNK)  # goes on
+        self.assertEqual([seed for _, _, seed in self.runner.asked[4:]], [1004, 1006, 1005, 1007])
+        self.assertAlmostEqual(float(references.load(self.view, FILM, "indirect")[0].mean()), 1003, delta=0.5)
+        record = references.require(self.view, FILM)["a"]
+        self.assertEqual((record["spp"], record["seeds"], record["cpu_s"]), (4 * references.CHUNK, [1000, 1006], 6.0))
+
+    def test_another_integrator_begins_anew(self):
+        path = dataclasses.replace(self.view, reference_integrator="path")
+        light = dataclasses.replace(self.view, reference_integrator="light")
+        self.render(path, 8)
+        with self.assertRaisesRegex(SystemExit, "references.py --film-width 4 u-shape-main"):
+            references.require(light, FILM)
+        self.render(light, 8)
+        self.assertEqual(self.runner.asked[2:], [("light", 8, 1000), ("light", 8, 1001)])
+        self.assertEqual(references.require(light, FILM)["b"]["integrator"], "light")
+
+    def test_another_scene_is_refused_and_none_is_told(self):
+        with self.assertRaisesRegex(SystemExit, "no such reference"):
+            references.require(self.view, FILM)
+        self.render(self.view, 8)
+        other = dataclasses.replace(self.view, file="scenes/cornell/scene.toml")
+        with self.assertRaisesRegex(SystemExit, "another version"):
+            references.require(other, FILM)
+
+    def test_the_stored_ones_are_those_of_the_settings(self):
+        mock.patch.stopall()
+        for scene in settings.load()[0]:
+            for view in scene.views if scene.available else []:
+                for record in references.require(view, scene.film(80)).values():
+                    self.assertGreaterEqual(record["spp"], view.reference_spp)
+
+
+if __name__ == "__main__":
+    unittest.main()
