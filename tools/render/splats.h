@@ -21,8 +21,7 @@ struct Splat {
 
 struct Splats {
   std::vector<Splat> list;
-  uint64_t nonFinite =
-      0;  // photons, or branches, that were dropped: their flux became NaN or infinite
+  uint64_t nonFinite = 0;  // photons or their branches, dropped as their flux was NaN or infinite
 };
 
 // Follows the photons [begin, end) and appends what they bring.
