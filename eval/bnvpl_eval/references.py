@@ -1,8 +1,8 @@
 """The references: images traced path by path in two independent halves, kept in eval/references/.
 
 A half is the mean of renders of CHUNK samples a pixel with different seeds: a stopped run goes on where it
-was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples, half, integrator); a stored
-reference whose key differs is refused.
+was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples, half,
+integrator); a stored reference whose key differs is refused.
 """
 
 import json
@@ -23,8 +23,8 @@ def path(view: View, film: str, half: str) -> Path:
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
-    """At least `spp` samples a pixel. A stored half of the same scene and integrator is gone on with, not begun anew: its samples
-    keep their weight (that it was rounded to half floats costs 0.02 %)."""
+    """At least `spp` samples a pixel. A stored half of the same scene and integrator is gone on with, not begun anew: its
+    samples keep their weight (that it was rounded to half floats costs 0.02 %)."""
     target = path(view, film, half)
     stored = _stored(view, film, half)
     done = stored["spp"] if stored else 0
@@ -37,8 +37,8 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     cpu_s = stored["cpu_s"] if stored else 0.0
     for seed in seeds:
         run = runner.run("vpl-render",
-                         ["{scene}", "--size", film, "--integrator", view.reference_integrator, "--spp", chunk, "--seed", seed,
-                          "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
+                         ["{scene}", "--size", film, "--integrator", view.reference_integrator, "--spp", chunk,
+                          "--seed", seed, "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
                          {"scene": ROOT / view.file}, ["image.exr"])
         cpu_s += run.cpu_s
         for layer in sums:
@@ -79,7 +79,8 @@ def require(view: View, film: str) -> dict:
             raise SystemExit(f"eval: {file}: no such reference; make it with '{cure}'")
         records[half] = json.loads(file.with_suffix(".json").read_text())
         if records[half]["key"] != reference_key(view, film, records[half]["spp"], half):
-            raise SystemExit(f"eval: {file}: made from another version of {view.file} or by another integrator; run '{cure}'")
+            raise SystemExit(f"eval: {file}: made from another version of {view.file} or by another integrator; "
+                             f"run '{cure}'")
     return records
 
 

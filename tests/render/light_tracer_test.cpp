@@ -56,7 +56,7 @@ TEST(LightTracer, AgreesWithThePathTracerBlockByBlock) {
   for (const unsigned bounces : {1u, 32u}) expectTheSameImage(world, bounces, 0.06, 0.01);
 }
 
-TEST(LightTracer, AgreesInAFilmThatIsNotSquareAndByAllKindsOfLight) {
+TEST(LightTracer, AgreesInAFilmThatIsNotSquareByLampSkyAndPointLight) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {48, 24};
   scene.lights.assign(2, LightSpec{});

@@ -7,7 +7,8 @@ from ..context import Context
 from ..statistics import relative_weight
 from ..tables import column, table
 
-COLUMNS = [column("integrator", "traced from the"), column("spp", "samples or photons a pixel, both halves"), column("half_difference", "RMS difference of the halves / mean"),
+COLUMNS = [column("integrator", "traced from the"), column("spp", "samples or photons a pixel, both halves"),
+           column("half_difference", "RMS difference of the halves / mean"),
            column("own_relmse", "relMSE of their mean"), column("judged", "lowest relMSE that is judged by it"),
            column("ratio", "judged / own", better="high")]
 
