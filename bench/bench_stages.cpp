@@ -5,9 +5,9 @@
 #include <cstdlib>
 
 #include "core/parallel.h"
-#include "scene/camera.h"
-#include "scene/photon_path.h"
 #include "tests/support/pipeline.h"
+#include "transport/camera.h"
+#include "transport/photon_walk.h"
 
 namespace bnvpl::test {
 namespace {
@@ -65,7 +65,7 @@ std::vector<Ray> photonRays() {
     followPhoton(world().rays, PhotonWalk(start, 32, rng), [&](const Bsdf& bsdf, Vec3, bool) {
       const Vec3 to = bsdf.point().position - from;
       if (lengthSquared(to) > 0.0f) rays.push_back({from, normalize(to)});
-      from = world().rays.lifted(bsdf.point().position, bsdf.point().ng);
+      from = world().rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
     });
   }
   return rays;
@@ -84,7 +84,7 @@ std::vector<Ray> cameraRays() {
     BsdfSample next;
     if (world().rays.closestHit(rays.back().origin, rays.back().direction, hit) &&
         Bsdf(scene, hit).sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
-      rays.push_back({world().rays.lifted(hit.position, next.side), next.wi});
+      rays.push_back({world().rays.offsetOrigin(hit.position, next.side), next.wi});
     }
   }
   return rays;

@@ -38,7 +38,7 @@ constexpr uint64_t random64(uint64_t key, uint64_t index, uint32_t dimension) {
 constexpr float toUnitFloat(uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
 // Nothing of a smaller probability can be drawn by such a number: 0, which is drawn this often,
 // would take it every time, and what one over its probability multiplies would leave all bounds.
-inline constexpr float kLeastProbability = 0x1p-24f;
+inline constexpr float kMinProbability = 0x1p-24f;
 
 // The numbers of one path, photon or pixel sample, in order of use.
 class Rng {

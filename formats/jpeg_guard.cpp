@@ -6,8 +6,8 @@ namespace bnvpl {
 namespace {
 
 constexpr unsigned kHuffmanTables = 0xc4, kScan = 0xda, kStart = 0xd8;  // markers, after an 0xff
-constexpr unsigned kMostSymbols = 256;
-constexpr size_t kMostScans = 100;  // encoders make 10 or so
+constexpr unsigned kMaxSymbols = 256;
+constexpr size_t kMaxScans = 100;  // encoders make 10 or so
 
 // Zero behind the end, as stb reads it.
 unsigned byteAt(std::string_view bytes, size_t at) {
@@ -23,7 +23,7 @@ bool tablesFit(std::string_view bytes, size_t at) {
   for (at += 2; at < end && at < bytes.size();) {
     unsigned symbols = 0;
     for (size_t i = 1; i <= 16; ++i) symbols += byteAt(bytes, at + i);
-    if (symbols > kMostSymbols) return false;
+    if (symbols > kMaxSymbols) return false;
     at += 17 + symbols;
   }
   return true;
@@ -48,7 +48,7 @@ bool isHarmlessJpeg(std::string_view bytes) {
       continue;
     }
     if (marker == kHuffmanTables && !tablesFit(bytes, at)) return false;
-    if (marker == kScan && ++scans > kMostScans) return false;
+    if (marker == kScan && ++scans > kMaxScans) return false;
     // Segments are passed over up to the first scan. From there on stb decides by the coded data
     // where the next one begins, so that every marker counts, wherever it stands.
     if (scans == 0) at += lengthAt(bytes, at);

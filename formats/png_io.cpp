@@ -16,7 +16,7 @@ namespace bnvpl {
 namespace {
 
 constexpr int kMaxSide = 1 << 16;
-constexpr size_t kMostBytes = std::numeric_limits<int>::max();  // in which stb counts them
+constexpr size_t kMaxBytes = std::numeric_limits<int>::max();  // in which stb counts them
 
 void appendBytes(void* to, void* bytes, int count) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes),
@@ -28,7 +28,7 @@ void appendBytes(void* to, void* bytes, int count) {
 void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
       rgb8.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height) ||
-      rgb8.size() + static_cast<size_t>(height) > kMostBytes) {
+      rgb8.size() + static_cast<size_t>(height) > kMaxBytes) {
     throw OutputError(file.target(), "a PNG of " + std::to_string(width) + " x " +
                                          std::to_string(height) + " pixels from " +
                                          std::to_string(rgb8.size()) + " bytes cannot be written");

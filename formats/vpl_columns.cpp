@@ -54,7 +54,7 @@ double columnValue(const VplTable& table, size_t column, size_t row, size_t comp
     case 9:
       return table.emitNormal[row][component];
     default:
-      return table.straightFlux[row][component];
+      return table.firstBounceFlux[row][component];
   }
 }
 

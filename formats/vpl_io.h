@@ -23,9 +23,9 @@ VplTable readVpl(const fs::path& file, VplStage expected);
 VplHeader readVplHeader(const fs::path& file);
 
 // Replaces `file` atomically; an AtomicFile is left for the caller to commit. An empty provenance
-// is written as "[]". Throws std::logic_error when the table holds a value that readVpl would refuse
-// (naming its column and row): the stage should have found it where it arose. Throws OutputError
-// when a write fails. The old file then stays as it was.
+// is written as "[]". Throws std::logic_error when the table holds a value that readVpl would
+// refuse (naming its column and row): the stage should have found it where it arose. Throws
+// OutputError when a write fails. The old file then stays as it was.
 void writeVpl(const fs::path& file, const VplTable& table);
 void writeVpl(AtomicFile& file, const VplTable& table);
 

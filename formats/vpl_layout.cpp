@@ -97,9 +97,9 @@ std::optional<BadValue> findBadValue(const VplTable& table) {
   if (!bad) bad = findIn(table.relativeError, 7, relativeErrorProblem);
   if (!bad) bad = findIn(table.emitPosition, 8, positionProblem);
   if (!bad) bad = findIn(table.emitNormal, 9, normalProblem);
-  if (!bad) bad = findIn(table.straightFlux, 10, fluxProblem);
-  for (size_t row = 0; !bad && row < table.straightFlux.size(); ++row) {
-    const Vec3 rest = table.flux[row] - table.straightFlux[row];
+  if (!bad) bad = findIn(table.firstBounceFlux, 10, fluxProblem);
+  for (size_t row = 0; !bad && row < table.firstBounceFlux.size(); ++row) {
+    const Vec3 rest = table.flux[row] - table.firstBounceFlux[row];
     if (std::min({rest.x, rest.y, rest.z}) < 0.0f) bad = BadValue{10, row, "above the flux"};
   }
   return bad;

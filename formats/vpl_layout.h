@@ -49,7 +49,7 @@ void forEachColumn(Table& table, const Visit& visit) {
   visit(table.relativeError);
   visit(table.emitPosition);
   visit(table.emitNormal);
-  visit(table.straightFlux);
+  visit(table.firstBounceFlux);
 }
 
 // The first value, in file order, that has no business in a .vpl file.

@@ -36,7 +36,7 @@ struct VplTable {
       relativeError;               // standard error of the flux over the flux, 0 where photons = 0
   std::vector<Vec3> emitPosition;  // where its light leaves from, near its position; world units
   std::vector<Vec3> emitNormal;    // geometric, unit length, there
-  std::vector<Vec3> straightFlux;  // W, the part of flux that came straight from a light
+  std::vector<Vec3> firstBounceFlux;  // W, the part of flux that came straight from a light
 
   uint64_t sceneHash = 0;  // content hash of the scene that the rows lie on
   std::string provenance;  // JSON array, oldest stage first; see formats/README.md

@@ -35,7 +35,7 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
   });
   const size_t ofLit = table.flux.size() + table.photons.size() + table.relativeError.size() +
                        table.emitPosition.size() + table.emitNormal.size() +
-                       table.straightFlux.size();
+                       table.firstBounceFlux.size();
   const size_t surplus = (table.stage < VplStage::Eliminated ? table.radius.size() : 0) +
                          (table.stage < VplStage::Lit ? ofLit : 0);
   if (surplus > 0) {

@@ -25,11 +25,11 @@ void parseAlone(const std::string& text) {
   }
   std::optional<double> ev;
   if (accepted<UsageError>([&] { ev = parseExposure(text); }) && ev) {
-    require(std::fabs(*ev) <= kMostEv, "exposures are within 64 stops");
+    require(std::fabs(*ev) <= kMaxEv, "exposures are within 64 stops");
   }
   std::optional<std::array<double, 2>> range;
   if (accepted<UsageError>([&] { range = parseExposureRange(text); }) && range) {
-    require((*range)[0] <= (*range)[1] && (*range)[0] >= -kMostEv && (*range)[1] <= kMostEv,
+    require((*range)[0] <= (*range)[1] && (*range)[0] >= -kMaxEv && (*range)[1] <= kMaxEv,
             "ranges of exposures go up, within 64 stops");
   }
 }

@@ -5,8 +5,8 @@
 // libraries. Reading it in small pieces must bring the same.
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
-#include "scene/load_obj.h"
-#include "scene/read_obj.h"
+#include "scene/read/obj/load_obj.h"
+#include "scene/read/obj/read_obj.h"
 
 namespace bnvpl {
 namespace {

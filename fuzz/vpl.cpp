@@ -57,7 +57,7 @@ void requireSane(const VplTable& t) {
     return std::all_of(column.begin(), column.end(), isFinite);
   };
   require(finite(t.position) && finite(t.normal) && finite(t.albedo) && finite(t.flux) &&
-              finite(t.emitPosition) && finite(t.emitNormal) && finite(t.straightFlux),
+              finite(t.emitPosition) && finite(t.emitNormal) && finite(t.firstBounceFlux),
           "vectors are finite");
   for (const Vec3 n : t.normal) require(std::fabs(length(n) - 1.0f) < 0.01f, "normals are unit");
   for (const float r : t.radius) require(std::isfinite(r) && r > 0.0f, "radii are above 0");
@@ -69,7 +69,7 @@ void requireSane(const VplTable& t) {
   require(t.normal.size() == n && t.albedo.size() == n && t.id.size() == n &&
               t.radius.size() == e && t.flux.size() == l && t.photons.size() == l &&
               t.relativeError.size() == l && t.emitPosition.size() == l &&
-              t.emitNormal.size() == l && t.straightFlux.size() == l,
+              t.emitNormal.size() == l && t.firstBounceFlux.size() == l,
           "every column of the stage has all rows");
 }
 

@@ -10,7 +10,7 @@
 
 #include "core/errors.h"
 #include "core/vec3.h"
-#include "scene/texture.h"
+#include "scene/textures/texture.h"
 
 namespace bnvpl {
 

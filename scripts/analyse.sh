@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # cppcheck (seconds) and clang-tidy (JOBS at a time, default 2) over every file of ours; any finding
-# fails. File names limit clang-tidy to them: scripts/analyse.sh scene/bsdf.cpp
+# fails. File names limit clang-tidy to them: scripts/analyse.sh transport/bsdf.cpp
 # What is left alone, and why: scripts/cppcheck.supp, .clang-tidy, and NOLINT comments in place.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -20,7 +20,7 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 using Range = CellLists::Range;
 
-constexpr int kMostLevels = 32;
+constexpr int kMaxLevels = 32;
 constexpr size_t kCellsAtOnce = 256;
 
 // The interface that OpenVDB partitions through. In cells: its transforms refuse voxels below 1e-5.
@@ -114,11 +114,11 @@ class Builder {
 
 void Builder::splitIntoLevels() {
   const float smallest = *std::min_element(radii_.begin(), radii_.end());
-  levels_.resize(kMostLevels);
+  levels_.resize(kMaxLevels);
   float furthest = 0.0f;
   for (uint32_t i = 0; i < points_.size(); ++i) {
     const int exponent = std::ilogb(radii_[i] / smallest);
-    Level& level = levels_[static_cast<size_t>(std::clamp(exponent, 0, kMostLevels - 1))];
+    Level& level = levels_[static_cast<size_t>(std::clamp(exponent, 0, kMaxLevels - 1))];
     level.members.push_back(i);
     level.largestRadius = std::max(level.largestRadius, radii_[i]);
     furthest = std::max(furthest, maxComponent(max(points_[i], -points_[i])));

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/compatibility.h"
 #include "core/parallel.h"
 #include "core/sampling.h"
+#include "spatial/compatible_surface.h"
 
 namespace bnvpl {
 namespace {
 
-// The distance at which `count` of the nearest were on the sheet.
+// The distance at which `count` of the nearest were on a compatible surface.
 struct Reach {
   float distanceSquared = 0.0f;
   unsigned count = 0;
@@ -23,8 +23,8 @@ Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal,
   const float tolerance = kPlaneFactor * std::sqrt(nearest[kth].distanceSquared);
   Reach reach;
   for (const Neighbour& n : nearest) {
-    if (n.index == self ||
-        !sameSheet(position[self], normal[self], position[n.index], normal[n.index], tolerance)) {
+    if (n.index == self || !compatibleSurfaces(position[self], normal[self], position[n.index],
+                                               normal[n.index], tolerance)) {
       continue;
     }
     reach = {n.distanceSquared, reach.count + 1};

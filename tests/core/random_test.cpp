@@ -33,10 +33,9 @@ TEST(Random, DependsOnKeyIndexAndDimensionOnly) {
 TEST(Random, StreamsAndSeedsShareNoKey) {
   std::set<uint64_t> keys;
   for (uint64_t seed = 0; seed < 1000; ++seed) {
-    for (const Stream s :
-         {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
-          Stream::PixelSamples, Stream::PathTracer, Stream::LightTree, Stream::Plot,
-          Stream::AreaEstimate}) {
+    for (const Stream s : {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate,
+                           Stream::Photons, Stream::PixelSamples, Stream::PathTracer,
+                           Stream::LightTree, Stream::Plot, Stream::AreaEstimate}) {
       keys.insert(streamKey(seed, s));
     }
   }

@@ -72,7 +72,7 @@ inline VplTable smallTable(VplStage stage) {
     table.relativeError = {0.0625f, 0.0f};
     table.emitPosition = {{1.0f, 2.25f, -3.0f}, {0.5f, 0.25f, -0.125f}};
     table.emitNormal = {{0.0f, 1.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}};
-    table.straightFlux = {{0.5f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    table.firstBounceFlux = {{0.5f, 2.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
   }
   return table;
 }

@@ -124,7 +124,7 @@ TEST_P(VplGolden, ReaderReadsTheCommittedFile) {
   EXPECT_EQ(table.provenance, expected.provenance);
   EXPECT_EQ(table.relativeError, expected.relativeError);
   EXPECT_EQ(table.emitPosition, expected.emitPosition);
-  EXPECT_EQ(table.straightFlux, expected.straightFlux);
+  EXPECT_EQ(table.firstBounceFlux, expected.firstBounceFlux);
 }
 
 // Candidates and eliminated VPLs of version 1 have the same columns.

@@ -35,7 +35,7 @@ VplTable manyRows(VplStage stage, size_t count) {
     table.relativeError.push_back(1.0f / (x + 2.0f));
     table.emitPosition.emplace_back(x, 1.0f - x, x * 0.2f);
     table.emitNormal.emplace_back(0.0f, std::sin(x), std::cos(x));
-    table.straightFlux.emplace_back(x, 0.0f, x * 0.5f);
+    table.firstBounceFlux.emplace_back(x, 0.0f, x * 0.5f);
   }
   if (stage >= VplStage::Eliminated) table.rMax = 0.1, table.areaEstimate = 1e9;
   return table;
@@ -53,7 +53,7 @@ void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.relativeError, b.relativeError);
   EXPECT_EQ(a.emitPosition, b.emitPosition);
   EXPECT_EQ(a.emitNormal, b.emitNormal);
-  EXPECT_EQ(a.straightFlux, b.straightFlux);
+  EXPECT_EQ(a.firstBounceFlux, b.firstBounceFlux);
   EXPECT_EQ(a.rMax, b.rMax);
   EXPECT_EQ(a.areaEstimate, b.areaEstimate);
   EXPECT_EQ(a.reach, b.reach);
@@ -135,9 +135,10 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "column relative_error, row 0", [](VplTable& t) { t.relativeError[0] = kNan; });
   expectRefused(f, "column emit_position, row 1", [](VplTable& t) { t.emitPosition[1].y = kInf; });
   expectRefused(f, "column emit_normal, row 0", [](VplTable& t) { t.emitNormal[0].y = 0.5f; });
-  expectRefused(f, "column straight_flux, row 1", [](VplTable& t) { t.straightFlux[1].y = -1.0f; });
+  expectRefused(f, "column straight_flux, row 1",
+                [](VplTable& t) { t.firstBounceFlux[1].y = -1.0f; });
   expectRefused(f, "column straight_flux, row 0: above the flux",
-                [](VplTable& t) { t.straightFlux[0].z = 4.5f; });
+                [](VplTable& t) { t.firstBounceFlux[0].z = 4.5f; });
   expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
   expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });

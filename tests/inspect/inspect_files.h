@@ -61,7 +61,7 @@ inline VplTable threeRows(VplStage stage) {
     table.relativeError = {0.0625f, 0.1f, 0};
     table.emitPosition = {{0, 0.25f, 0}, {1, 0, 0}, {4, 0, 0}};
     table.emitNormal = table.normal;
-    table.straightFlux = {{0.25f, 2, 0}, {0, 0, 0}, {0, 0, 0}};
+    table.firstBounceFlux = {{0.25f, 2, 0}, {0, 0, 0}, {0, 0, 0}};
   }
   return table;
 }

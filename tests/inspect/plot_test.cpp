@@ -1,7 +1,7 @@
 #include "tools/inspect/plot.h"
 
-#include "scene/camera.h"
 #include "tests/inspect/tiny_scene.h"
+#include "transport/camera.h"
 
 namespace bnvpl {
 namespace {

@@ -26,7 +26,7 @@ TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
 
 TEST(Counts, SharesOfManyPhotonsAreExact) {
   const World world("cornell/scene.toml");
-  for (const uint64_t photons : {uint64_t{1} << 31, uint64_t{5000000000}, kMostPhotons}) {
+  for (const uint64_t photons : {uint64_t{1} << 31, uint64_t{5000000000}, kMaxPhotons}) {
     const PhotonShares shares(world.lights, photons);
     EXPECT_EQ(shares.total(), photons);
     EXPECT_EQ(shares.lightOf(photons - 1), world.lights.size() - 1);
@@ -39,7 +39,7 @@ TEST(Counts, BillionsOfPhotonsCanBegin) {
   const World world("cornell/scene.toml");
   const VplTable start = placeAndEliminate(world, 2000, {.count = 50});
   struct Enough {};
-  for (const uint64_t photons : {uint64_t{5000000000}, kMostPhotons}) {
+  for (const uint64_t photons : {uint64_t{5000000000}, kMaxPhotons}) {
     VplTable vpls = start;
     EXPECT_THROW(estimateFlux(vpls, world.rays, world.lights, {.photons = photons},
                               [](uint64_t) { throw Enough{}; }),

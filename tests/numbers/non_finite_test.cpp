@@ -1,8 +1,8 @@
 // Where NaN and infinity arose, and what becomes of those that still do.
 #include "formats/exr_io.h"
-#include "scene/photon_path.h"
 #include "tests/numbers/room.h"
 #include "tests/scene/plain_scene.h"
+#include "transport/photon_walk.h"
 
 namespace bnvpl::test {
 namespace {
@@ -27,7 +27,7 @@ TEST(Lobes, OfAnyExponent) {
     const Scene scene = sceneOf(m);
     const SurfacePoint at = pointSeenFrom({0.3f, 0.1f, 0.9f});
     const Bsdf bsdf(scene, at);
-    const LobeGroup group = exponent > kSharpExponent ? LobeGroup::Chain : LobeGroup::Rough;
+    const LobeGroup group = exponent > kSharpExponent ? LobeGroup::Specular : LobeGroup::Rough;
     for (uint64_t i = 0; i < 20000; ++i) {
       Rng rng(3, i);
       BsdfSample s;
@@ -44,7 +44,7 @@ TEST(Lobes, OfNoStrengthAreNotThere) {
   m.mirror = Vec3(1e-40f);
   const Scene scene = sceneOf(m);
   const SurfacePoint at = pointSeenFrom({0, 0, 1});
-  EXPECT_EQ(Bsdf(scene, at).chainProbability(), 0.0f);
+  EXPECT_EQ(Bsdf(scene, at).specularProbability(), 0.0f);
   const Scene dark = sceneOf(lambert(Vec3(1e-30f)));
   EXPECT_EQ(Bsdf(dark, at).reflectance(), 0.0f);
 }

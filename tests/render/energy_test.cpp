@@ -190,7 +190,7 @@ TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
     lit.id = {1};
     lit.radius = {1.0f};
     lit.flux = {Vec3(3.0f)};
-    lit.straightFlux = {Vec3(1.0f)};
+    lit.firstBounceFlux = {Vec3(1.0f)};
     lit.photons = {10};
     lit.relativeError = {0.1f};
     SurfacePoint hit;

@@ -3,7 +3,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
-#include "tools/render/tile_cut.h"
+#include "tools/render/gather/tilecuts/tile_cut.h"
 
 namespace bnvpl::test {
 namespace {

@@ -1,5 +1,5 @@
 // VPLs drawn one at a time: none that lights a point is left out, and the probabilities are right.
-#include "tools/render/vpl_sampler.h"
+#include "tools/render/light_tree/vpl_sampler.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Alpha masks cut holes for every kind of ray.
-#include "scene/ray_scene.h"
 #include "tests/scene/scene_files.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 namespace {

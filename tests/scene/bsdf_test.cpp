@@ -1,5 +1,5 @@
 // Lambert, Phong and mirror: energy, reciprocity, and sample(), pdf() and eval() that agree.
-#include "scene/bsdf.h"
+#include "transport/bsdf.h"
 
 #include "tests/scene/plain_scene.h"
 
@@ -39,7 +39,7 @@ const std::vector<Vec3>& views() {
       {0, 0, 1}, normalize({1, 0.4f, 1}), normalize({-1, 0.2f, 0.2f})};
   return all;
 }
-constexpr LobeGroup kGroups[] = {LobeGroup::Rough, LobeGroup::Chain};
+constexpr LobeGroup kGroups[] = {LobeGroup::Rough, LobeGroup::Specular};
 
 // Integral of f over the hemisphere about +z by the midpoint rule in (cosine, azimuth).
 Vec3 overHemisphere(const std::function<Vec3(Vec3)>& f) {
@@ -65,7 +65,7 @@ Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, Transport transport, int coun
 }
 
 bool isDelta(const Bsdf& bsdf, LobeGroup group) {
-  return group == LobeGroup::Chain && bsdf.chainIsDelta();
+  return group == LobeGroup::Specular && bsdf.specularIsDelta();
 }
 
 TEST(Bsdf, LambertReflectsItsAlbedoFromEverywhere) {
@@ -77,7 +77,7 @@ TEST(Bsdf, LambertReflectsItsAlbedoFromEverywhere) {
                 {0.8f, 0.5f, 0.1f}, 1e-3f);
     expectClose(meanWeight(bsdf, LobeGroup::Rough, Transport::Radiance, 1000), {0.8f, 0.5f, 0.1f},
                 1e-4f);
-    EXPECT_EQ(bsdf.chainProbability(), 0.0f);
+    EXPECT_EQ(bsdf.specularProbability(), 0.0f);
     EXPECT_FLOAT_EQ(bsdf.reflectance(), 0.8f);
     EXPECT_EQ(bsdf.eval(LobeGroup::Rough, {0, 0, -1}), Vec3());
   }
@@ -212,22 +212,22 @@ TEST(Bsdf, ShadingNormalsScalePhotons) {
 
 TEST(Bsdf, MirrorReturnsTheOneDirection) {
   const Scene scene = sceneOf(mirror({0.9f, 0.8f, 0.7f}));
-  EXPECT_TRUE(hasChainLobes(scene));
+  EXPECT_TRUE(hasSpecularLobes(scene));
   for (const Vec3 wo : views()) {
     const SurfacePoint p = pointSeenFrom(wo);
     const Bsdf bsdf(scene, p);
-    EXPECT_EQ(bsdf.chainProbability(), 1.0f);
+    EXPECT_EQ(bsdf.specularProbability(), 1.0f);
     EXPECT_FALSE(bsdf.hasRough());
-    EXPECT_TRUE(bsdf.chainIsDelta());
+    EXPECT_TRUE(bsdf.specularIsDelta());
     for (const Transport transport : {Transport::Radiance, Transport::Photons}) {
       Rng rng(1, 2);
       BsdfSample s;
-      ASSERT_TRUE(bsdf.sample(LobeGroup::Chain, transport, rng, s));
+      ASSERT_TRUE(bsdf.sample(LobeGroup::Specular, transport, rng, s));
       EXPECT_LT(length(s.wi - Vec3(-wo.x, -wo.y, wo.z)), 1e-5f);
       expectClose(s.weight, {0.9f, 0.8f, 0.7f}, 1e-5f);
       EXPECT_EQ(s.pdf, 0.0f);
     }
-    EXPECT_EQ(bsdf.eval(LobeGroup::Chain, {-wo.x, -wo.y, wo.z}), Vec3());
+    EXPECT_EQ(bsdf.eval(LobeGroup::Specular, {-wo.x, -wo.y, wo.z}), Vec3());
   }
 }
 
@@ -236,9 +236,9 @@ TEST(Bsdf, ExponentPartsRoughFromChain) {
     const Scene scene = sceneOf(phong(Vec3(0.2f), Vec3(0.5f), exponent));
     const SurfacePoint p = pointSeenFrom({0, 0, 1});
     const bool sharp = exponent > kSharpExponent;
-    EXPECT_EQ(hasChainLobes(scene), sharp);
+    EXPECT_EQ(hasSpecularLobes(scene), sharp);
     EXPECT_FLOAT_EQ(Bsdf(scene, p).roughAlbedo().x, sharp ? 0.2f : 0.7f);
-    EXPECT_EQ(Bsdf(scene, p).chainProbability() > 0.0f, sharp);
+    EXPECT_EQ(Bsdf(scene, p).specularProbability() > 0.0f, sharp);
   }
 }
 

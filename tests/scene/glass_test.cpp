@@ -33,7 +33,7 @@ Split split(const Bsdf& bsdf, Transport transport) {
   for (int i = 0; i < kDraws; ++i) {
     Rng rng(8, uint64_t(i));
     BsdfSample s;
-    EXPECT_TRUE(bsdf.sample(LobeGroup::Chain, transport, rng, s));
+    EXPECT_TRUE(bsdf.sample(LobeGroup::Specular, transport, rng, s));
     EXPECT_EQ(s.pdf, 0.0f);
     const bool isUp = s.wi.z > 0.0f;
     EXPECT_EQ(s.side.z > 0.0f, isUp);
@@ -96,13 +96,13 @@ TEST(Glass, IsChainOnly) {
   const Scene scene = sceneOf(glass(1.5f));
   const SurfacePoint p = pointSeenFrom(at(20));
   const Bsdf bsdf(scene, p);
-  EXPECT_EQ(bsdf.chainProbability(), 1.0f);
+  EXPECT_EQ(bsdf.specularProbability(), 1.0f);
   EXPECT_FALSE(bsdf.hasRough());
   EXPECT_EQ(bsdf.reflectance(), 1.0f);
   Rng rng(1, 1);
   BsdfSample s;
   EXPECT_FALSE(bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, s));
-  EXPECT_EQ(bsdf.eval(LobeGroup::Chain, {0, 0, 1}), Vec3());
+  EXPECT_EQ(bsdf.eval(LobeGroup::Specular, {0, 0, 1}), Vec3());
 }
 
 }  // namespace

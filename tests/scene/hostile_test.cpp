@@ -2,8 +2,8 @@
 #include <sys/stat.h>
 
 #include "formats/jpeg_guard.h"
-#include "scene/load_obj.h"
-#include "scene/obj_lines.h"
+#include "scene/read/obj/load_obj.h"
+#include "scene/read/obj/obj_lines.h"
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {

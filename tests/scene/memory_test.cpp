@@ -6,7 +6,7 @@
 #include <fstream>
 #include <limits>
 
-#include "scene/lights.h"
+#include "transport/lights.h"
 
 namespace bnvpl {
 namespace {

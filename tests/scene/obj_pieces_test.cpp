@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "scene/obj_lines.h"
-#include "scene/read_obj.h"
+#include "scene/read/obj/obj_lines.h"
+#include "scene/read/obj/read_obj.h"
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {

@@ -8,8 +8,8 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
-#include "scene/bsdf.h"
-#include "scene/lights.h"
+#include "transport/bsdf.h"
+#include "transport/lights.h"
 
 namespace bnvpl {
 

@@ -1,7 +1,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
-#include "scene/ray_scene.h"
 #include "tests/scene/scene_files.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 namespace {
@@ -119,7 +119,7 @@ TEST_F(Rays, LiftedPointsStayOnTheirSide) {
         direction = start;
         continue;
       }
-      origin = rays.lifted(hit.position, hit.ng);
+      origin = rays.offsetOrigin(hit.position, hit.ng);
       hidden += rays.occluded(origin, center) ? 1 : 0;
       const float u = rng.next(), v = rng.next();
       direction = Basis(hit.ng).toWorld(sampleCosineHemisphere(u, v));
@@ -135,8 +135,8 @@ TEST_F(Rays, OcclusionIsStrictlyBetween) {
   EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, {0, 0.1f, -1}));
   EXPECT_FALSE(rays.occluded({0, 0.1f, 1}, {0, 0.1f, 0.001f}));
   EXPECT_FALSE(rays.occluded({0, 0.1f, -0.001f}, {0, 0.1f, -1}));
-  EXPECT_FALSE(rays.occluded({0, 0.1f, 1}, rays.lifted({0, 0.1f, 0}, {0, 0, 1})));
-  EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, rays.lifted({0, 0.1f, 0}, {0, 0, -1})));
+  EXPECT_FALSE(rays.occluded({0, 0.1f, 1}, rays.offsetOrigin({0, 0.1f, 0}, {0, 0, 1})));
+  EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, rays.offsetOrigin({0, 0.1f, 0}, {0, 0, -1})));
 }
 
 // In a room with a box, in any number, in neighbourhoods and scattered.

@@ -1,6 +1,6 @@
 // Every mistake in a scene.toml is one line with file, line, section and cure.
-#include "scene/camera.h"
 #include "tests/scene/scene_files.h"
+#include "transport/camera.h"
 
 namespace bnvpl {
 namespace {

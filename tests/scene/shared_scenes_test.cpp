@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "scene/lights.h"
+#include "transport/lights.h"
 
 namespace bnvpl {
 namespace {

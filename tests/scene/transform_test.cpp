@@ -1,7 +1,7 @@
 #include "core/sampling.h"
 #include "scene/affine.h"
-#include "scene/ray_scene.h"
 #include "tests/scene/scene_files.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "scene/lights.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/estimate/estimate.h"
 #include "tools/place/place.h"
-#include "tools/render/light_tracer.h"
-#include "tools/render/render.h"
+#include "tools/render/film/film.h"
+#include "tools/render/integrator/light/light_tracer.h"
+#include "transport/lights.h"
 
 namespace bnvpl::test {
 

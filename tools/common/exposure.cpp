@@ -13,7 +13,7 @@ std::optional<double> numberOf(const std::string& text) {
   char rest = 0;
   if (text.empty() || std::isspace(static_cast<unsigned char>(text[0])) ||
       std::sscanf(text.c_str(), "%lf%c", &value, &rest) != 1 ||
-      !(value >= -kMostEv && value <= kMostEv)) {
+      !(value >= -kMaxEv && value <= kMaxEv)) {
     return {};
   }
   return value;

@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-inline constexpr double kMostEv = 64.0;  // either way; light * 2^64 squared is far inside a double
+inline constexpr double kMaxEv = 64.0;  // either way; light * 2^64 squared is far inside a double
 
 // "-1.5", up to 64 either way; none for "auto". Throws UsageError.
 std::optional<double> parseExposure(const std::string& text);

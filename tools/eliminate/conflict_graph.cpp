@@ -6,8 +6,8 @@
 #include <bit>
 #include <limits>
 
-#include "core/compatibility.h"
 #include "core/parallel.h"
+#include "spatial/compatible_surface.h"
 
 namespace bnvpl {
 namespace {
@@ -61,9 +61,9 @@ ConflictGraph::ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> norma
   });
 }
 
-inline bool ConflictGraph::onOneSheet(uint32_t i, uint32_t j) const {
-  return sameSheet({x_[i], y_[i], z_[i]}, normal_[i], {x_[j], y_[j], z_[j]}, normal_[j],
-                   kPlaneFactor * (radius_[i] + radius_[j]));
+inline bool ConflictGraph::compatible(uint32_t i, uint32_t j) const {
+  return compatibleSurfaces({x_[i], y_[i], z_[i]}, normal_[i], {x_[j], y_[j], z_[j]}, normal_[j],
+                            kPlaneFactor * (radius_[i] + radius_[j]));
 }
 
 // Those of a range, of at most kAtOnce, that are nearer than both radii together; never a removed
@@ -102,7 +102,7 @@ void ConflictGraph::visitNeighbours(uint32_t i, const Visit& visit) const {
       const size_t count = nearIn(i, {range.begin, end}, near);
       for (size_t n = 0; n < count; ++n) {
         const uint32_t j = near[n].index;
-        if (j != i && onOneSheet(i, j)) visit(j, near[n].distanceSquared);
+        if (j != i && compatible(i, j)) visit(j, near[n].distanceSquared);
       }
     }
   }
@@ -116,7 +116,7 @@ uint32_t ConflictGraph::heavierNeighbour(uint32_t i) const {
       if (weight[j] < own || !outweighs(j, i)) continue;  // so are the removed, and i itself
       const float x = x_[j] - x_[i], y = y_[j] - y_[i], z = z_[j] - z_[i];
       const float reach = radius_[i] + radius_[j];
-      if (x * x + y * y + z * z < reach * reach && onOneSheet(i, j)) return j;
+      if (x * x + y * y + z * z < reach * reach && compatible(i, j)) return j;
     }
   }
   return kNone;

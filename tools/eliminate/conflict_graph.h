@@ -28,7 +28,7 @@ struct PairWeight {
   }
 };
 
-// The candidates as nodes. Two are neighbours when they are on the same sheet of surface (plane
+// The candidates as nodes. Two are neighbours when they are on a compatible surface (plane
 // tolerance kPlaneFactor * (r_i + r_j)) at less than r_i + r_j. A node's weight is the sum of the
 // weights of its pairs in fixed point, which is exact in any order: what was added can be
 // subtracted again without a remainder, by any thread.
@@ -80,7 +80,7 @@ class ConflictGraph {
     const float weight = rule_(std::sqrt(distanceSquared), radius_[i] + radius_[j]);
     return static_cast<uint64_t>(weight * scale_);
   }
-  bool onOneSheet(uint32_t i, uint32_t j) const;
+  bool compatible(uint32_t i, uint32_t j) const;
 
   CellLists cells_;
   // In the cells' order, kLanes longer than size(); the radius of the removed is NaN.

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kTwoSqrt3 = 2.0 * std::numbers::sqrt3;
 // The area enters r_max by its root: the 1 % that this many rows may miss it by is not seen.
-constexpr size_t kMostAreaRows = 16384;
-constexpr size_t kMostAreaCandidates = size_t{1} << 18;
+constexpr size_t kMaxAreaRows = 16384;
+constexpr size_t kMaxAreaCandidates = size_t{1} << 18;
 
 std::vector<uint32_t> evenlySpacedRows(size_t count, size_t most) {
   std::vector<uint32_t> rows(std::min(count, most));
@@ -27,7 +27,7 @@ double sumOf(const std::vector<float>& values) {
 }
 
 double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k) {
-  const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMostAreaRows);
+  const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMaxAreaRows);
   const KdTree tree(position);
   return sumOf(surfaceShares(position, normal, k, tree, rows)) *
          static_cast<double>(position.size()) / static_cast<double>(rows.size());
@@ -37,9 +37,9 @@ double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsi
 // neighbours and areas grow alike. FLANN builds its tree in one thread.
 double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
                     uint64_t seed) {
-  if (position.size() > kMostAreaCandidates) {
+  if (position.size() > kMaxAreaCandidates) {
     const uint64_t key = streamKey(seed, Stream::AreaEstimate);
-    const uint64_t below = UINT64_MAX / position.size() * kMostAreaCandidates;
+    const uint64_t below = UINT64_MAX / position.size() * kMaxAreaCandidates;
     std::vector<Vec3> someOfPosition, someOfNormal;
     for (size_t i = 0; i < position.size(); ++i) {
       if (random64(key, i, 0) >= below) continue;

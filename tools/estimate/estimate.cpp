@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "scene/coverage.h"
-#include "scene/photon_path.h"
 #include "tools/estimate/photon_shares.h"
 #include "tools/estimate/photon_sums.h"
+#include "transport/coverage.h"
+#include "transport/photon_walk.h"
 
 namespace bnvpl {
 
@@ -88,7 +88,7 @@ class Scatterer {
     tally(sums, kDeposited, flux);
   }
 
-  // Evenly among those on the same sheet and in sight, in expectation: one of them gets all.
+  // Evenly among those on a compatible surface and in sight, in expectation: one of them gets all.
   void scatterGuarded(const SurfacePoint& hit, const ReachGrid::Lookup& near, Vec3 flux,
                       bool straight, Rng& rng, PhotonSums& sums) const {
     const Coverage::Found found = coverage_.pick(hit.position, hit.ng, near, rng);
@@ -232,7 +232,7 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const Scatterer& scattere
   vpls.flux.resize(vpls.size());
   vpls.photons.resize(vpls.size());
   vpls.relativeError.resize(vpls.size());
-  vpls.straightFlux.resize(vpls.size());
+  vpls.firstBounceFlux.resize(vpls.size());
   vpls.emitPosition = vpls.position;
   vpls.emitNormal = vpls.normal;
   for (size_t i = 0; i < vpls.size(); ++i) {
@@ -242,7 +242,7 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const Scatterer& scattere
       const double value = scatterer.fixed().decode(s.flux[c]);
       vpls.flux[i][c] = static_cast<float>(value);
       sum += value / 3.0;
-      vpls.straightFlux[i][c] = static_cast<float>(scatterer.fixed().decode(s.straight[c]));
+      vpls.firstBounceFlux[i][c] = static_cast<float>(scatterer.fixed().decode(s.straight[c]));
     }
     vpls.photons[i] = s.photons;
     // Deposits taken as independent: sqrt(sum of squares) over the sum.

@@ -4,17 +4,17 @@
 #include "core/progress.h"
 #include "core/resume.h"
 #include "formats/vpl_table.h"
-#include "scene/lights.h"
-#include "scene/ray_scene.h"
+#include "transport/lights.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 
-// Guarded: only VPLs that the hit could stand for: on the same sheet of surface and in sight.
+// Guarded: only VPLs that the hit could stand for: on a compatible surface and in sight.
 // Even: every VPL within the radius, as the thesis says; leaks through thin walls.
 enum class Scatter { Guarded, Even };
 
 // Sums of more photons would leave their fixed-point range.
-inline constexpr uint64_t kMostPhotons = uint64_t{1} << 36;
+inline constexpr uint64_t kMaxPhotons = uint64_t{1} << 36;
 
 struct EstimateOptions {
   uint64_t photons = 10000000;
@@ -34,8 +34,8 @@ struct EnergyAccount {
   double reflected = 0;  // flux that leaves the diffuse hits
   double deposited = 0;  // handed to VPLs
   double outside = 0;    // no VPL reaches the hit: it lies outside the region that lights the view
-  double gap = 0;        // VPLs reach the hit, but none is on its sheet of surface
-  double hidden = 0;     // some are on its sheet, but none is in sight
+  double gap = 0;        // VPLs reach the hit, but none on a compatible surface
+  double hidden = 0;     // some are on a compatible surface, but none is in sight
   uint64_t photons = 0, hits = 0, rays = 0, guardRays = 0;
   uint64_t nonFinite = 0;  // photons cut off because their flux became NaN or infinite
 };

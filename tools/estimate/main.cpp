@@ -78,7 +78,7 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
                 const EstimateOptions& options, const CheckpointOptions& checkpoints,
                 const ToolOptions& tool) {
   Summary summary("vpl-estimate");
-  if (options.photons > kMostPhotons) {
+  if (options.photons > kMaxPhotons) {
     throw UsageError("--photons is above 2^36, the most that can be summed up exactly");
   }
   requireWritable({output, tool.stats, tool.depfile});
@@ -128,8 +128,9 @@ int main(int argc, char** argv) {
                  "how far a VPL reaches for photons, in units of its r_max")
       ->check(inRange(0.01f, 100.0f))
       ->capture_default_str();
-  addChoice(cli, "--scatter", options.scatter, kScatters,
-            "guarded: to VPLs on the same sheet and in sight; even: to all within reach (leaks)");
+  addChoice(
+      cli, "--scatter", options.scatter, kScatters,
+      "guarded: to VPLs on a compatible surface and in sight; even: to all within reach (leaks)");
   addChoice(cli, "--recentre", options.recentre, kOnOff,
             "let each VPL shine from the centre of the energy that it received");
   cli.add_option("--max-bounces", options.maxBounces, "diffuse hits of a photon")

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scene/lights.h"
+#include "transport/lights.h"
 
 namespace bnvpl {
 

@@ -59,7 +59,7 @@ std::string plyBytes(const VplTable& table) {
       appendVec(bytes, table.flux[i]);
       appendValue(bytes, static_cast<float>(table.photons[i]));
       appendValue(bytes, table.relativeError[i]);
-      appendVec(bytes, table.straightFlux[i]);
+      appendVec(bytes, table.firstBounceFlux[i]);
     }
   }
   return bytes;

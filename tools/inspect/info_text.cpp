@@ -74,7 +74,7 @@ void appendColumns(std::string& text, const Json& d) {
 }
 
 void appendSpacing(std::string& text, const Json& s) {
-  text += "nearest neighbour on the same sheet of surface:\n";
+  text += "nearest neighbour on a compatible surface:\n";
   const auto line = [&](const char* key, const char* label) {
     if (!s.contains(key)) return;
     append(text, "  %-28s min %s, mean %s\n", label, number(s[key]["min"]).c_str(),

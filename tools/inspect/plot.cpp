@@ -6,14 +6,14 @@
 
 #include "core/parallel.h"
 #include "formats/tonemap.h"
-#include "scene/bsdf.h"
-#include "scene/camera.h"
 #include "tools/inspect/display_colour.h"
+#include "transport/bsdf.h"
+#include "transport/camera.h"
 
 namespace bnvpl {
 namespace {
 
-constexpr unsigned kMaxChain = 8;             // mirrors and glass behind each other
+constexpr unsigned kMaxSpecular = 8;          // mirrors and glass behind each other
 constexpr float kDim = 0.4f;                  // of the view, so that dots stand out
 constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; where a ray leaves the scene
 constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
@@ -21,19 +21,19 @@ constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
 Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
   Vec3 weight(1.0f);
   SurfacePoint hit;
-  for (unsigned depth = 0; depth <= kMaxChain; ++depth) {
+  for (unsigned depth = 0; depth <= kMaxSpecular; ++depth) {
     if (!rays.closestHit(origin, direction, hit)) return weight * kSky;
     const Bsdf bsdf(rays.scene(), hit);
     const Material& material = rays.scene().materials[hit.material];
     if (!isBlack(material.emission) && (hit.front || material.twoSidedEmission)) return weight;
-    if (bsdf.hasRough() || bsdf.chainProbability() <= 0.0f) {
+    if (bsdf.hasRough() || bsdf.specularProbability() <= 0.0f) {
       const float headlight = std::max(0.0f, dot(hit.ns, hit.wo));
       return weight * bsdf.roughAlbedo() * ((0.2f + 0.8f * headlight) * kDim);
     }
     BsdfSample sample;
-    if (!bsdf.sample(LobeGroup::Chain, Transport::Radiance, rng, sample)) return {};
+    if (!bsdf.sample(LobeGroup::Specular, Transport::Radiance, rng, sample)) return {};
     weight = weight * sample.weight;
-    origin = rays.lifted(hit.position, sample.side);
+    origin = rays.offsetOrigin(hit.position, sample.side);
     direction = sample.wi;
   }
   return {};
@@ -138,7 +138,7 @@ std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
       return;
     }
     const Vec3 side = faces ? table.normal[i] : -table.normal[i];
-    const bool hidden = rays.occluded(scene.camera.position, rays.lifted(position, side));
+    const bool hidden = rays.occluded(scene.camera.position, rays.offsetOrigin(position, side));
     if (faces)
       fates[i] = hidden ? Fate::Occluded : Fate::Drawn;
     else

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "formats/vpl_table.h"
-#include "scene/ray_scene.h"
 #include "tools/inspect/plot_canvas.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/compatibility.h"
 #include "core/parallel.h"
+#include "spatial/compatible_surface.h"
 #include "spatial/kd_tree.h"
 
 namespace bnvpl {
@@ -14,7 +14,7 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 struct RowSpacing {
-  float distance = kNone;  // to the nearest row of the same sheet
+  float distance = kNone;  // to the nearest row on a compatible surface
   float own = kNone;       // smallest distance / (r_i + r_j) among the rows that were looked at
 };
 
@@ -29,8 +29,8 @@ RowSpacing measureRow(const VplTable& table, const KdTree& tree, uint32_t row,
       if (n.index == row) continue;
       const float distance = std::sqrt(n.distanceSquared);
       const float reach = radii ? table.radius[row] + table.radius[n.index] : distance;
-      if (!sameSheet(table.position[row], table.normal[row], table.position[n.index],
-                     table.normal[n.index], kPlaneFactor * reach)) {
+      if (!compatibleSurfaces(table.position[row], table.normal[row], table.position[n.index],
+                              table.normal[n.index], kPlaneFactor * reach)) {
         continue;
       }
       result.distance = std::min(result.distance, distance);

@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// Nearest neighbours on the same sheet of surface (core/compatibility.h; the plane tolerance is
+// Nearest neighbours on a compatible surface (spatial/compatible_surface.h; the plane tolerance is
 // that of elimination, or of the pair's own distance where the rows have no radius yet). Rows
 // without such a neighbour among the kSpacingNeighbours nearest rows are left out and counted.
 // `relative` measures are 1 for the densest possible packing: 0 where the radius is not known.

@@ -10,10 +10,10 @@
 #include <string>
 
 #include "core/parallel.h"
-#include "scene/bsdf.h"
-#include "scene/camera.h"
-#include "scene/photon_path.h"
 #include "spatial/local_density.h"
+#include "transport/bsdf.h"
+#include "transport/camera.h"
+#include "transport/photon_walk.h"
 
 namespace bnvpl {
 
@@ -28,7 +28,7 @@ constexpr uint64_t kFreePaths = 1000000;
 // The columns that placement fills.
 auto columns(auto& table) {
   return std::array{&table.position, &table.normal, &table.albedo, &table.flux,
-                    &table.straightFlux};
+                    &table.firstBounceFlux};
 }
 
 // What one fixed range of paths yields; chunks are joined in order, so threads do not matter.
@@ -96,8 +96,8 @@ class CameraPath {
       return false;
     }
     const Bsdf bsdf(rays.scene(), hit);
-    const bool takeChain = rng_.next() < bsdf.chainProbability();
-    if (!takeChain && bsdf.hasRough()) {
+    const bool takeSpecular = rng_.next() < bsdf.specularProbability();
+    if (!takeSpecular && bsdf.hasRough()) {
       if (++rough_ >= 2) addRow(chunk, bsdf, path_);
       if (rough_ >= depth) {
         ++chunk.complete;
@@ -105,13 +105,13 @@ class CameraPath {
       }
     }
     BsdfSample sample;
-    if ((takeChain && ++chain_ > kMaxChain) ||
-        !bsdf.sample(takeChain ? LobeGroup::Chain : LobeGroup::Rough, Transport::Radiance, rng_,
-                     sample)) {
+    if ((takeSpecular && ++chain_ > kMaxSpecular) ||
+        !bsdf.sample(takeSpecular ? LobeGroup::Specular : LobeGroup::Rough, Transport::Radiance,
+                     rng_, sample)) {
       ++chunk.absorbed;
       return false;
     }
-    next_ = {rays.lifted(hit.position, sample.side), sample.wi};
+    next_ = {rays.offsetOrigin(hit.position, sample.side), sample.wi};
     return true;
   }
 
@@ -153,13 +153,13 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, const PlaceOp
   const size_t light = lights.pick(rng.next(), probability);
   PhotonStart start = lights.emit(light, rng);
   start.flux *= 1.0f / probability;
-  const PhotonFate fate =
-      followPhoton(rays, PhotonWalk(start, options.lightDepth, rng),
-                   [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
-                     if (!addRow(chunk, bsdf, path)) return;
-                     chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
-                     chunk.rows.straightFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
-                   });
+  const PhotonFate fate = followPhoton(
+      rays, PhotonWalk(start, options.lightDepth, rng),
+      [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+        if (!addRow(chunk, bsdf, path)) return;
+        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+        chunk.rows.firstBounceFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
+      });
   chunk.nonFinite += fate.finite ? 0 : 1;
   chunk.rays += fate.rays;
   isBlack(fate.escaped) ? ++chunk.absorbed : ++chunk.escaped;
@@ -273,7 +273,7 @@ PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights,
   for (Vec3& f : t.flux) f *= 1.0f / static_cast<float>(result.paths);
   t.emitPosition = t.position;
   t.emitNormal = t.normal;
-  for (Vec3& f : t.straightFlux) f *= 1.0f / static_cast<float>(result.paths);
+  for (Vec3& f : t.firstBounceFlux) f *= 1.0f / static_cast<float>(result.paths);
   t.photons.assign(t.size(), 1);
   t.relativeError.assign(t.size(), 1.0f);
   constexpr unsigned kNeighbours = 20;  // as vpl-eliminate, so that clamps compare

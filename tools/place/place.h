@@ -3,8 +3,8 @@
 
 #include "core/progress.h"
 #include "formats/vpl_table.h"
-#include "scene/lights.h"
-#include "scene/ray_scene.h"
+#include "transport/lights.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 

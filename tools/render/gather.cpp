@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "tools/render/cluster_bounds.h"
-#include "tools/render/tile_gather.h"
+#include "tools/render/gather/tilecuts/tile_gather.h"
+#include "tools/render/light_tree/cluster_bounds.h"
 
 namespace bnvpl {
 
@@ -60,7 +60,7 @@ Gathered Gatherer::sample(const Bsdf& bsdf, unsigned draws, Rng& rng) const {
   Gathered out;
   const VplSampler::Point point(sampler_, bsdf);
   if (point.dark()) return out;
-  const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = rays_.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   const float shift = rng.next(), perDraw = 1.0f / static_cast<float>(draws);
   for (unsigned k = 0; k < draws; ++k) {
     const auto draw = point.draw((static_cast<float>(k) + shift) * perDraw, rng);
@@ -78,7 +78,7 @@ Gathered Gatherer::sample(const Bsdf& bsdf, unsigned draws, Rng& rng) const {
 Gathered Gatherer::gatherAll(const Bsdf& bsdf) const {
   Gathered out;
   out.cut = static_cast<uint32_t>(vpls_.size());
-  const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = rays_.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   Rgb64 total, clamped;
   Coupling c;
   for (size_t i = 0; i < vpls_.size(); ++i) {
@@ -97,7 +97,7 @@ Gathered Gatherer::gatherAll(const Bsdf& bsdf) const {
 Gathered Gatherer::gatherCut(const Bsdf& bsdf) const {
   Gathered out;
   if (tree_.nodes.empty()) return out;
-  const Vec3 from = rays_.lifted(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = rays_.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   const ClusterReceiver receiver(bsdf);
   thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
   heap.clear();

@@ -5,9 +5,9 @@
 #include <span>
 
 #include "core/random.h"
-#include "scene/ray_scene.h"
-#include "tools/render/light_tree.h"
-#include "tools/render/vpl_sampler.h"
+#include "tools/render/light_tree/light_tree.h"
+#include "tools/render/light_tree/vpl_sampler.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 

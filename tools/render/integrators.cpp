@@ -16,9 +16,9 @@ constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 constexpr uint32_t kDrawDirection = 16;  // dimension of a tile's random numbers, after its gather's
 
 // The camera's part of a path, the same for both integrators.
-ChainEnd seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
-                 Rng& rng, RadianceSample& out) {
-  const ChainEnd end = followChain(rays, lights, origin, direction, Arrival{}, rng);
+SpecularPath seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
+                     Rng& rng, RadianceSample& out) {
+  const SpecularPath end = followSpecularPath(rays, lights, origin, direction, Arrival{}, rng);
   out.direct = end.metFirst + end.metLater;
   if (end.firstDistance < INFINITY) {
     out.depth = end.firstDistance * dot(direction, rays.scene().camera.forward);
@@ -36,7 +36,7 @@ void describeVertex(const Bsdf& bsdf, RadianceSample& out) {
 void VplIntegrator::render(const TileSamples& tile) const {
   // All vertices first, then their VPLs together, then the rest sample by sample.
   const size_t count = tile.samples.size();
-  std::vector<ChainEnd> seen(count);
+  std::vector<SpecularPath> seen(count);
   std::vector<Bsdf> made;
   std::vector<const Bsdf*> bsdf(count, nullptr);
   made.reserve(count);
@@ -65,7 +65,7 @@ void VplIntegrator::render(const TileSamples& tile) const {
   }
 }
 
-void VplIntegrator::gather(const TileSamples& tile, std::span<const ChainEnd> seen,
+void VplIntegrator::gather(const TileSamples& tile, std::span<const SpecularPath> seen,
                            std::span<const Bsdf* const> bsdf) const {
   std::vector<Gathered> gathered(bsdf.size());
   gatherer_.gather({tile, bsdf}, gathered);
@@ -107,7 +107,7 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
       }
       const Vec3 position = from.point().position;
       const auto all = static_cast<float>(extensions_);
-      rays[count] = {rays_.lifted(position, next.side), next.wi};
+      rays[count] = {rays_.offsetOrigin(position, next.side), next.wi};
       made[count] = {next.wi,
                      throughput * next.weight * (1.0f / all),
                      {next.pdf * all, position, LightChoice::Each},
@@ -128,7 +128,8 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
 // it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
 void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out) const {
   Vec3 throughput = start.throughput;
-  ChainEnd end = followChain(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
+  SpecularPath end =
+      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
@@ -165,14 +166,14 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     }
     throughput *= next.weight;
     const Vec3 position = end.hit.position;
-    end = followChain(rays_, lights_, rays_.lifted(position, next.side), next.wi,
-                      {next.pdf, position}, rng);
+    end = followSpecularPath(rays_, lights_, rays_.offsetOrigin(position, next.side), next.wi,
+                             {next.pdf, position}, rng);
   }
 }
 
 // `near`: of the hit, where that is the first; null: to be looked up.
-NearField::Missing VplIntegrator::missingFrom(const ChainEnd& end, const ReachGrid::Lookup* near,
-                                              Rng& rng) const {
+NearField::Missing VplIntegrator::missingFrom(const SpecularPath& end,
+                                              const ReachGrid::Lookup* near, Rng& rng) const {
   if (!end.rough) return {};
   if (end.links > 0) return {1.0f, {}};
   if (!nearField_) return {};
@@ -186,7 +187,7 @@ void PathTracer::render(const TileSamples& tile) const {
 
 RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
   RadianceSample out;
-  ChainEnd vertex = seeFrom(rays_, lights_, sample.origin, sample.direction, rng, out);
+  SpecularPath vertex = seeFrom(rays_, lights_, sample.origin, sample.direction, rng, out);
   Vec3 throughput = vertex.throughput;
   const bool directOnly = only_ == Only::Direct || (!indirect_ && vertex.links == 0);
   if (directOnly && only_ == Only::Indirect && vertex.rough) {
@@ -205,9 +206,9 @@ RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
     BsdfSample next;
     if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return out;
     throughput *= next.weight * (1.0f / survive);
-    const Vec3 from = rays_.lifted(vertex.hit.position, next.side);
+    const Vec3 from = rays_.offsetOrigin(vertex.hit.position, next.side);
     const Arrival arrival{next.pdf, vertex.hit.position};
-    vertex = followChain(rays_, lights_, from, next.wi, arrival, rng);
+    vertex = followSpecularPath(rays_, lights_, from, next.wi, arrival, rng);
     sum += throughput * vertex.metFirst;
     if (directOnly) return out;
     out.indirect += throughput * vertex.metLater;

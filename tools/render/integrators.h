@@ -1,9 +1,9 @@
 // Radiance along camera rays, split into what the image's layers need.
 #pragma once
 
-#include "tools/render/chain.h"
+#include "tools/render/compensate/near_field/near_field.h"
 #include "tools/render/gather.h"
-#include "tools/render/near_field.h"
+#include "transport/specular_path.h"
 
 namespace bnvpl {
 
@@ -41,7 +41,7 @@ class VplIntegrator {
         lights_(lights),
         gatherer_(gatherer),
         nearField_(nearField),
-        extensions_(nearField || hasChainLobes(rays.scene()) ? nearFieldRays : 0),
+        extensions_(nearField || hasSpecularLobes(rays.scene()) ? nearFieldRays : 0),
         only_(only) {}
   void render(const TileSamples& tile) const;
 
@@ -50,9 +50,9 @@ class VplIntegrator {
   void extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstPoint, uint64_t pixelKey,
                  Rng& rng, RadianceSample& out) const;
   void extend(const Extension& first, Rng& rng, RadianceSample& out) const;
-  NearField::Missing missingFrom(const ChainEnd& end, const ReachGrid::Lookup* near,
+  NearField::Missing missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
                                  Rng& rng) const;
-  void gather(const TileSamples& tile, std::span<const ChainEnd> seen,
+  void gather(const TileSamples& tile, std::span<const SpecularPath> seen,
               std::span<const Bsdf* const> bsdf) const;
 
   const RayScene& rays_;

@@ -15,8 +15,8 @@
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/scene_options.h"
-#include "tools/render/light_tracer.h"
-#include "tools/render/render.h"
+#include "tools/render/film/film.h"
+#include "tools/render/integrator/light/light_tracer.h"
 
 namespace bnvpl {
 namespace {

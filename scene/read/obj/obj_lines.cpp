@@ -1,0 +1,207 @@
+#include "scene/read/obj/obj_lines.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "core/parallel.h"
+
+namespace bnvpl {
+namespace {
+
+// tinyobj cuts polygons into triangles in up to the cube of the number of corners: seconds for this
+// many, weeks for a hundred times as many.
+constexpr size_t kMaxCorners = 1024;
+
+// Where the line that holds `at` ends: at its "\r" or "\n", as for tinyobj, or with the text.
+size_t lineEnd(std::string_view text, size_t at) {
+  // Not find_first_of, which is a call for each character.
+  const auto ends = [](char c) { return c == '\n' || c == '\r'; };
+  return static_cast<size_t>(
+      std::find_if(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), ends) -
+      text.begin());
+}
+
+bool isBlank(char c) { return c == ' ' || c == '\t'; }
+
+// At most: the words after "f".
+size_t cornersOf(std::string_view face) {
+  size_t words = 0;
+  char before = ' ';
+  for (const char c : face) {
+    words += !isBlank(c) && isBlank(before);
+    before = c;
+  }
+  return words;
+}
+
+// Whether a number may count back from where the face stands: it is below 0, or so long that
+// tinyobj's int wraps.
+bool mayCountBack(std::string_view face) {
+  constexpr size_t kMaxDigits = 9;
+  size_t digits = 0;
+  for (const char c : face) {
+    digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+    if (c == '-' || digits > kMaxDigits) return true;
+  }
+  return false;
+}
+
+// A stretch of whole lines.
+struct Stretch {
+  size_t begin = 0, end = 0;
+  size_t newlines = 0;
+  size_t vertices = 0, normals = 0, coordinates = 0, triangles = 0;
+  std::vector<size_t> verticesOfWords;   // from its first vertex on
+  std::set<std::string_view> materials;  // of faces, but for those before the first name
+  bool facesBeforeNames = false;
+  std::optional<std::string_view> material;  // named last
+  bool materialUsed = false;
+  std::string libraries;
+  bool alone = true;          // its faces need nothing from other stretches
+  size_t endlessFace = kNot;  // line, from its first on
+  static constexpr size_t kNot = ~size_t{0};
+};
+
+// The word after the line's first.
+std::string_view secondWord(std::string_view rest) {
+  const size_t begin = std::min(rest.find_first_not_of(" \t"), rest.size());
+  return rest.substr(begin, rest.find_first_of(" \t", begin) - begin);
+}
+
+void noteFace(std::string_view rest, Stretch& s) {
+  const size_t corners = cornersOf(rest);
+  if (corners > kMaxCorners) s.endlessFace = std::min(s.endlessFace, s.newlines);
+  if (corners >= 3) s.triangles += corners - 2;
+  s.alone = s.alone && corners == 3 && !mayCountBack(rest);
+  if (!s.material) {
+    s.facesBeforeNames = true;
+  } else if (!s.materialUsed) {
+    s.materials.insert(*s.material);
+    s.materialUsed = true;
+  }
+}
+
+void noteVertex(std::string_view rest, Stretch& s) {
+  const std::string_view numbers = rest.substr(0, rest.find('#'));
+  const auto isOfNumber = [](char c) {
+    return (c >= '0' && c <= '9') || isBlank(c) || c == '.' || c == '-' || c == '+' || c == 'e' ||
+           c == 'E';
+  };
+  if (!std::all_of(numbers.begin(), numbers.end(), isOfNumber))
+    s.verticesOfWords.push_back(s.vertices);
+  ++s.vertices;
+}
+
+// Takes note of a line; false: a mesh does not need it. A keyword alone is nothing to tinyobj
+// either, but for usemtl.
+bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
+  if (keyword == "usemtl") {
+    s.material = secondWord(rest);
+    s.materialUsed = false;
+    return true;
+  }
+  if (rest.empty()) return false;
+  if (keyword == "f") {
+    noteFace(rest, s);
+  } else if (keyword == "v") {
+    noteVertex(rest, s);
+  } else if (keyword == "vn") {
+    ++s.normals;
+  } else if (keyword == "vt") {
+    ++s.coordinates;
+  } else if (keyword == "mtllib") {
+    s.alone = s.alone && s.triangles == 0 && !s.material;
+    s.libraries.append(keyword).append(rest) += '\n';
+  } else {
+    return keyword == "g" || keyword == "o";
+  }
+  return true;
+}
+
+void scan(std::string& text, Stretch& s) {
+  std::replace(text.begin() + static_cast<std::ptrdiff_t>(s.begin),
+               text.begin() + static_cast<std::ptrdiff_t>(s.end), '\0', ' ');  // tinyobj would stop
+  const std::string_view all = std::string_view(text).substr(0, s.end);
+  for (size_t at = s.begin; at < s.end;) {
+    const size_t end = lineEnd(all, at);
+    const std::string_view line = all.substr(at, end - at);
+    const size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+    const size_t length = std::min(line.find_first_of(" \t", begin), line.size()) - begin;
+    if (length > 0 && !note(line.substr(begin, length), line.substr(begin + length), s))
+      text[at + begin] = '#';
+    s.newlines += end < s.end && all[end] == '\n';
+    at = end + 1;
+  }
+}
+
+// Of about `bytes` each.
+std::vector<Stretch> stretchesOf(std::string_view text, size_t bytes) {
+  std::vector<Stretch> out;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t at = std::min(text.size(), begin + bytes) - 1;
+    const size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    out.emplace_back().begin = begin;
+    out.back().end = end;
+    begin = end;
+  }
+  return out;
+}
+
+// Whether the stretches can be read one without the other.
+bool independent(std::span<const Stretch> stretches) {
+  bool begun = false;  // whether a face or a material came before
+  for (const Stretch& s : stretches) {
+    if (!s.alone || (begun && !s.libraries.empty())) return false;
+    begun = begun || s.triangles > 0 || s.material.has_value();
+  }
+  return true;
+}
+
+}  // namespace
+
+MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
+  MeshLines out;
+  out.text = std::move(text);
+  std::vector<Stretch> stretches = stretchesOf(out.text, pieceBytes);
+  parallelFor(stretches.size(), 1, [&](size_t i) { scan(out.text, stretches[i]); });
+
+  const bool many = independent(stretches);
+  if (!many) out.pieces.push_back({0, out.text.size(), {}});
+  std::set<std::string_view> materials;
+  std::optional<std::string_view> material;
+  size_t line = 1;
+  for (const Stretch& s : stretches) {
+    if (s.endlessFace != Stretch::kNot) {
+      throw InputError(file.string() + ":" + std::to_string(line + s.endlessFace) +
+                       ": a face of more than " + std::to_string(kMaxCorners) +
+                       " corners; triangulate the mesh");
+    }
+    line += s.newlines;
+    for (const size_t v : s.verticesOfWords) out.verticesOfWords.push_back(out.vertices + v);
+    out.vertices += s.vertices;
+    out.normals += s.normals;
+    out.coordinates += s.coordinates;
+    out.triangles += s.triangles;
+    out.libraries += s.libraries;
+    materials.insert(s.materials.begin(), s.materials.end());
+    if (material && s.facesBeforeNames) materials.insert(*material);
+    if (many) {
+      out.pieces.push_back({s.begin, s.end, {}});
+      if (material) out.pieces.back().material = std::string(*material);
+    }
+    if (s.material) material = s.material;
+  }
+  out.materials.assign(materials.begin(), materials.end());
+  return out;
+}
+
+std::string firstLine(std::string text) {
+  text.resize(std::min(text.size(), text.find('\n')));
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  return text;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,56 @@
+#include "scene/read/read_file.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+namespace bnvpl {
+
+namespace {
+constexpr size_t kReadAtOnce = size_t{1} << 16;  // beyond what a file says to hold
+}
+
+ReadGuard::ReadGuard(fs::path file) : file_(std::move(file)), before_(look()) {}
+
+ReadGuard::Look ReadGuard::look() const {
+  struct stat info {};
+  if (::stat(file_.c_str(), &info) != 0) return {};
+  return {true, info.st_size, static_cast<int64_t>(info.st_ino), info.st_mtim.tv_sec,
+          info.st_mtim.tv_nsec};
+}
+
+void ReadGuard::check() const {
+  if (look() == before_) return;
+  throw InputError(file_, "was changed while it was read; run again when it is complete");
+}
+
+std::string readText(const fs::path& file) {
+  const ReadGuard guard(file);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    throw InputError(file, std::string("cannot open: ") + std::strerror(errno) +
+                               "; check its name and permissions");
+  }
+  // As long as it says to be, and what follows all the same: some files of the system say 0.
+  std::error_code unknown;
+  uintmax_t size = fs::file_size(file, unknown);
+  if (unknown) size = 0;
+  std::string text(size + 1, '\0');  // one more, to meet the end at once
+  size_t got = 0;
+  do {
+    if (got == text.size()) text.resize(got + kReadAtOnce);
+    in.read(text.data() + got, static_cast<std::streamsize>(text.size() - got));
+    got += static_cast<size_t>(in.gcount());
+  } while (in);
+  if (in.bad() || got < size) {
+    throw InputError(file, "cannot be read to its end; check the disk");
+  }
+  text.resize(got);
+  guard.check();
+  return text;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,102 @@
+#include "tools/render/compensate/near_field/near_field.h"
+
+#include "core/random.h"
+#include "core/sampling.h"
+
+namespace bnvpl {
+
+namespace {
+
+// VPLs that were placed from the lights stand for all surfaces by chance, without a reach of their
+// own.
+constexpr float kReachWithoutPhotons = 2.0f;
+// Points of a VPL's disk that its area is measured with: as many as find its surface so often.
+// Where the last still fall short there are slivers, whose area, and so whose radiance, is not
+// known.
+constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
+constexpr int kMaxLayers = 4;  // surfaces on the way to the VPL's own
+// A ray shorter than this many r_max has found a crevice or a corner, where the light differs from
+// the mean of the VPL's surroundings: the point's own light is found out instead (measured:
+// docs/theory.md, "Near field").
+constexpr float kShortRay = 0.7f;
+constexpr float kUnknown = -1.0f;  // area that nobody has asked for
+
+std::vector<float> scaled(std::vector<float> values, float factor) {
+  for (float& v : values) v *= factor;
+  return values;
+}
+
+// The surface compatible with the VPL over or under a point of its tangent plane.
+bool surfaceBelow(const RayScene& rays, Vec3 at, Vec3 position, Vec3 normal, float height,
+                  SurfacePoint& hit) {
+  Vec3 from = at + normal * height;
+  for (int layer = 0; layer < kMaxLayers; ++layer) {
+    if (!rays.closestHit(from, -normal, hit)) return false;
+    if (dot(hit.position - position, normal) < -height) return false;
+    if (compatibleSurfaces(hit.position, hit.ng, position, normal, height)) return true;
+    from = rays.offsetOrigin(hit.position, -hit.ng);
+  }
+  return false;
+}
+
+// Area of the surface that VPL i speaks for, world units squared: each point counts with the
+// probability that Coverage::pick() names i there, as photons did in vpl-estimate. 0: not known.
+float areaOf(uint32_t i, const VplTable& lit, float reach, const Coverage& coverage,
+             const RayScene& rays) {
+  const Vec3 position = lit.position[i], normal = lit.normal[i];
+  const Basis basis(normal);
+  float sum = 0.0f;
+  uint32_t points = 0, found = 0;
+  for (; points < kAreaPoints || (found < kMinFound && points < kMaxAreaPoints); ++points) {
+    const Point2 point = r2Sequence(points, 0.5, 0.5);
+    const Vec3 at = position + basis.toWorld(sampleDisk(point.x, point.y) * reach);
+    SurfacePoint hit;
+    if (!surfaceBelow(rays, at, position, normal, kPlaneFactor * reach, hit)) continue;
+    const float share = coverage.shareOf(i, hit.position, hit.ng);
+    if (!(share > 0.0f)) continue;
+    sum += share / dot(hit.ng, normal);
+    ++found;
+  }
+  if (found < kMinFound) return 0.0f;
+  return sum / static_cast<float>(points) * kPi * reach * reach;
+}
+
+}  // namespace
+
+NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp)
+    : lit_(lit),
+      rays_(rays),
+      coverage_(lit.position, lit.normal,
+                scaled(lit.radius,
+                       lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),
+                rays),
+      clampRadius_(scaled(lit.radius, clamp)),
+      area_(lit.size()),
+      gaps_(lit.reach > 0.0) {
+  for (std::atomic<float>& area : area_) area = kUnknown;
+}
+
+std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
+  if (!gaps_) return {};  // the flux of a photon says nothing of the area around it
+  // Two threads may measure one area; both find the same.
+  float area = area_[vpl].load(std::memory_order_relaxed);
+  if (area == kUnknown) {
+    const float reach = lit_.radius[vpl] * static_cast<float>(lit_.reach);
+    area = areaOf(vpl, lit_, reach, coverage_, rays_);
+    area_[vpl].store(area, std::memory_order_relaxed);
+  }
+  if (!(area > 0.0f)) return {};
+  return (lit_.flux[vpl] - lit_.firstBounceFlux[vpl]) * (1.0f / (kPi * area));
+}
+
+NearField::Missing NearField::missing(const SurfacePoint& seen, float distance,
+                                      const ReachGrid::Lookup& near, Rng& rng) const {
+  const Coverage::Found found = coverage_.pick(seen.position, seen.ng, near, rng);
+  if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
+  const float relative = distance / clampRadius_[*found.vpl];
+  const float share = std::max(0.0f, 1.0f - relative * relative);  // 1 - d^2 falloff(d^2)
+  if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
+  return {share, scatteredBy(*found.vpl)};
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,65 @@
+// Sixteen receivers that take the same VPLs, and the light that has arrived at them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "tools/render/gather/tilecuts/tile_cut.h"
+
+namespace bnvpl {
+
+struct ReceiverPacket {
+  static constexpr uint32_t kSize = 16;
+  using Lanes = std::array<float, kSize>;
+
+  alignas(64) Lanes x{}, y{}, z{}, sx{}, sy{}, sz{}, gx{}, gy{}, gz{};  // point; ns; ng
+  alignas(64) Lanes mostRed{}, mostGreen{}, mostBlue{};  // reflected, 1/sr; 0: no lane
+  alignas(64) Lanes red{}, green{}, blue{};              // irradiance, W/m2
+  alignas(64) Lanes clampedRed{}, clampedGreen{}, clampedBlue{};
+  std::array<Vec3, kSize> offset{};                   // off the surface
+  std::array<Vec3, kSize> glossy{}, glossyClamped{};  // radiance, of receivers with a lobe
+  std::array<const Bsdf*, kSize> bsdf{};
+  std::array<uint32_t, kSize> receiver{};  // of the tile
+  std::array<uint32_t, kSize> place{};     // neighbours in the image have neighbouring places
+  std::array<uint32_t, kSize> shadowRays{};
+  uint32_t count = 0;
+  uint32_t lobes = 0;  // mask of lanes
+  uint32_t clusters = 0;
+  Bounds bounds;           // of the points
+  float brightest = 0.0f;  // value of any receiver in any channel, 1/sr
+  float stratum = 0.0f;    // of its draws, in [0, 1)
+  uint64_t rouletteKey = 0;
+  uint32_t rouletteDraw = 0;
+
+  void add(uint32_t receiverOfTile, const Bsdf& b, Vec3 offsetPoint, uint32_t placeInTile) {
+    const uint32_t lane = count++;
+    const SurfacePoint& p = b.point();
+    bsdf[lane] = &b;
+    receiver[lane] = receiverOfTile;
+    offset[lane] = offsetPoint;
+    place[lane] = placeInTile;
+    x[lane] = p.position.x, y[lane] = p.position.y, z[lane] = p.position.z;
+    sx[lane] = p.ns.x, sy[lane] = p.ns.y, sz[lane] = p.ns.z;
+    gx[lane] = p.ng.x, gy[lane] = p.ng.y, gz[lane] = p.ng.z;
+    bounds.extend(p.position);
+    const Vec3 most = maxReflected(b);
+    mostRed[lane] = most.x, mostGreen[lane] = most.y, mostBlue[lane] = most.z;
+    brightest = std::max(brightest, maxComponent(most));
+    if (!b.diffuseOnly()) lobes |= 1u << lane;
+  }
+
+  void writeTo(std::span<Gathered> out) const {
+    for (uint32_t l = 0; l < count; ++l) {
+      Gathered& g = out[receiver[l]];
+      const Vec3 value = bsdf[l]->diffuseValue();
+      g.radiance = value * Vec3(red[l], green[l], blue[l]) + glossy[l];
+      g.clamped = value * Vec3(clampedRed[l], clampedGreen[l], clampedBlue[l]) + glossyClamped[l];
+      g.cut = clusters;
+      g.shadowRays = shadowRays[l];
+    }
+  }
+};
+
+}  // namespace bnvpl

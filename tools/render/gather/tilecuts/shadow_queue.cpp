@@ -1,0 +1,133 @@
+#include "tools/render/gather/tilecuts/shadow_queue.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace bnvpl {
+
+namespace {
+
+// Rays that wait: enough to find neighbours among them, few enough to stay in the cache.
+constexpr size_t kWaiting = 256;
+
+}  // namespace
+
+ShadowQueue::ShadowQueue(const RayScene& rays, const VplLights& vpls,
+                         std::span<ReceiverPacket> packets)
+    : rays_(rays), vpls_(vpls) {
+  uint32_t places = 0;
+  for (const ReceiverPacket& p : packets) {
+    for (uint32_t l = 0; l < p.count; ++l) places = std::max(places, p.place[l] + 1);
+  }
+  rayCount_.assign(places, 0);
+}
+
+// The loops over lanes are written for the compiler to vectorise.
+void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, float negligible) {
+  Delivery& d = waiting_.emplace_back();
+  d.packet = &p;
+  d.at = vpls_.position[vpl.index];
+  const Vec3 at = d.at, normal = vpls_.normal[vpl.index];
+  const float clamp2 = vpls_.clamp2[vpl.index];
+  alignas(64) std::array<int, ReceiverPacket::kSize> faces;
+  for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
+    const float dx = at.x - p.x[l], dy = at.y - p.y[l], dz = at.z - p.z[l];
+    const float d2 = dx * dx + dy * dy + dz * dz;
+    const float emitter = -(normal.x * dx + normal.y * dy + normal.z * dz);
+    const float receiver = p.sx[l] * dx + p.sy[l] * dy + p.sz[l] * dz;
+    const float above = p.gx[l] * dx + p.gy[l] * dy + p.gz[l] * dz;
+    const float far2 = d2 > clamp2 ? d2 : clamp2;
+    const float far4 = d2 * far2;  // 0 where the VPL is at the point
+    faces[l] = (emitter > 0.0f) & (receiver > 0.0f) & (above > 0.0f) & (far4 > 0.0f);
+    d.transfer[l] = emitter * receiver / far4;
+    d.clamped[l] = far2 / d2 - 1.0f;
+  }
+  uint32_t lanes = 0;
+  for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
+    lanes |= static_cast<uint32_t>(faces[l]) << l;
+  }
+  lanes &= (1u << p.count) - 1;
+  if (lanes == 0) return waiting_.pop_back();
+  d.light = vpls_.intensity[vpl.index] * vpl.weight;
+  float most = 0.0f;
+  for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
+    most = std::max(most, (lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f);
+  }
+  const float chance = most * p.brightest * (d.light.x + d.light.y + d.light.z) / negligible;
+  if (chance < 1.0f) {
+    const float roulette = toUnitFloat(random64(p.rouletteKey, cluster, p.rouletteDraw));
+    if (roulette >= chance || chance < kMinProbability) return waiting_.pop_back();
+    d.light *= 1.0f / chance;
+  }
+  d.lanes = lanes;
+  for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+    ++p.shadowRays[l];
+    ++rayCount_[p.place[l]];
+  }
+  raysWaiting_ += static_cast<size_t>(std::popcount(lanes));
+  if (raysWaiting_ >= kWaiting) flush();
+}
+
+void ShadowQueue::flush() {
+  traceAll();
+  for (const Delivery& d : waiting_) deliver(d);
+  waiting_.clear();
+}
+
+// By place, and for the same place in the order of the VPLs.
+void ShadowQueue::traceAll() {
+  uint32_t begin = 0;
+  for (uint32_t& n : rayCount_) {
+    const uint32_t count = n;
+    n = begin;
+    begin += count;
+  }
+  order_.resize(raysWaiting_);
+  segments_.resize(raysWaiting_);
+  hidden_.resize(raysWaiting_);
+  for (uint32_t i = 0; i < waiting_.size(); ++i) {
+    const Delivery& d = waiting_[i];
+    for (uint32_t rest = d.lanes; rest != 0; rest &= rest - 1) {
+      const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+      const uint32_t at = rayCount_[d.packet->place[l]]++;
+      order_[at] = {i, l};
+      segments_[at] = {d.packet->offset[l], d.at};
+    }
+  }
+  rays_.occluded(segments_, hidden_);
+  for (size_t k = 0; k < order_.size(); ++k) {
+    waiting_[order_[k].delivery].lanes &= ~(uint32_t{hidden_[k]} << order_[k].lane);
+  }
+  std::fill(rayCount_.begin(), rayCount_.end(), 0);
+  raysWaiting_ = 0;
+}
+
+void ShadowQueue::deliver(const Delivery& d) {
+  if (d.lanes == 0) return;
+  ReceiverPacket& p = *d.packet;
+  for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
+    const float t = (d.lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f;
+    const float c = (d.lanes >> l & 1u) != 0 ? d.transfer[l] * d.clamped[l] : 0.0f;
+    p.red[l] += t * d.light.x;
+    p.green[l] += t * d.light.y;
+    p.blue[l] += t * d.light.z;
+    p.clampedRed[l] += c * d.light.x;
+    p.clampedGreen[l] += c * d.light.y;
+    p.clampedBlue[l] += c * d.light.z;
+  }
+  // A lobe depends on the direction: what it adds to the diffuse value, one by one.
+  for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+    const Bsdf& b = *p.bsdf[l];
+    const Vec3 direction = normalize(d.at - b.point().position);
+    const float cosine = dot(b.point().ns, direction);
+    const Vec3 lobe = b.eval(LobeGroup::Rough, direction) * (1.0f / cosine) - b.diffuseValue();
+    const Vec3 reflected = lobe * d.light * d.transfer[l];
+    p.glossy[l] += reflected;
+    p.glossyClamped[l] += reflected * d.clamped[l];
+  }
+}
+
+}  // namespace bnvpl

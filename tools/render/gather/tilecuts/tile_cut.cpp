@@ -1,0 +1,147 @@
+#include "tools/render/gather/tilecuts/tile_cut.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace bnvpl {
+
+namespace {
+
+// Receivers that stand for the tile when its cut is chosen.
+constexpr uint32_t kProbes = 8;
+using Probes = std::array<const Bsdf*, kProbes>;
+// Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
+// see nothing is not searched VPL by VPL.
+constexpr float kBlockedShare = 0.01f;
+// A probe that is darker than this share of the tile's mean counts as if it were not.
+constexpr float kDarkest = 0.2f;
+// Roulette on small contributions may add this share to the variance that is allowed.
+constexpr float kRouletteShare = 0.5f;
+
+// The probes, coordinate by coordinate.
+struct ProbeLanes {
+  alignas(32) std::array<float, kProbes> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{}, blue{};
+  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light there; 0 where none is
+
+  ProbeLanes(const Probes& probes, const std::array<float, kProbes>& light) {
+    for (size_t k = 0; k < kProbes; ++k) {
+      const Vec3 p = probes[k]->point().position, n = probes[k]->point().ns,
+                 r = maxReflected(*probes[k]);
+      x[k] = p.x, y[k] = p.y, z[k] = p.z;
+      nx[k] = n.x, ny[k] = n.y, nz[k] = n.z;
+      red[k] = r.x, green[k] = r.y, blue[k] = r.z;
+      perLight[k] = light[k] > 0.0f ? 1.0f / light[k] : 0.0f;
+    }
+  }
+
+  // Summed over the probes, each over its light.
+  float variance(const LightNode& n) const {
+    if (n.leaf()) return 0.0f;
+    const Expectation expected(n);
+    alignas(32) std::array<float, kProbes> squares;
+    for (size_t k = 0; k < kProbes; ++k) {
+      const float d =
+          expected.at({x[k], y[k], z[k]}, {nx[k], ny[k], nz[k]}, {red[k], green[k], blue[k]})
+              .deviation *
+          perLight[k];
+      squares[k] = d * d;
+    }
+    return std::accumulate(squares.begin(), squares.end(), 0.0f);
+  }
+};
+
+// Null where there is no receiver.
+Probes chooseProbes(const TileReceivers& tile) {
+  std::vector<const Bsdf*> lit;
+  for (const Bsdf* b : tile.bsdf) {
+    if (b) lit.push_back(b);
+  }
+  Probes probes{};
+  for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
+    probes[k] = lit[random64(tile.key, k, kDrawProbe) % lit.size()];
+  }
+  return probes;
+}
+
+// Light at each probe, by one VPL of each cluster of the start cut: coarse, but it knows of
+// shadows. As the probes also stand for their neighbours, and as one draw may miss or overstate the
+// light, each is drawn to the geometric mean of all: to that rather than the mean, for the dark
+// ones' sake.
+std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
+                                   const LightTree& tree, const Probes& probes, uint64_t key) {
+  std::array<float, kProbes> light{};
+  uint32_t draw = 0;
+  for (size_t k = 0; k < kProbes; ++k) {
+    const Bsdf& b = *probes[k];
+    const Vec3 from = rays.offsetOrigin(b.point().position, b.point().ng);
+    for (const uint32_t node : tree.startCut) {
+      const LightNode& n = tree.nodes[node];
+      const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDrawVpl)));
+      Coupling c;
+      if (!couple(vpls, vpl.index, b, c)) continue;
+      const Vec3 part = c.transfer * vpls.intensity[vpl.index] * vpl.weight;
+      const bool blocked = rays.occluded(from, vpls.position[vpl.index]);
+      light[k] += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
+    }
+  }
+  constexpr auto kCount = static_cast<float>(kProbes);
+  const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / kCount;
+  if (!(mean > 0.0f)) return light;
+  float logarithms = 0.0f;
+  for (float& l : light) {
+    l = std::max(l, kDarkest * mean);
+    logarithms += std::log(l);
+  }
+  const float typical = std::exp(logarithms / kCount);
+  for (float& l : light) l = std::sqrt(l * typical);
+  return light;
+}
+
+}  // namespace
+
+// Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
+// small as the samples of a pixel need it.
+TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+                      const GatherOptions& options, const TileReceivers& tile) {
+  const Probes probes = chooseProbes(tile);
+  if (!probes[0]) return {};
+  struct Open {
+    float variance;
+    uint32_t node;
+    bool operator<(const Open& o) const {
+      return variance != o.variance ? variance < o.variance : node < o.node;
+    }
+  };
+  const std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
+  const ProbeLanes all(probes, light);
+  TileCut cut;
+  cut.allowed = options.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
+  const double most = double{cut.allowed} * double{cut.allowed} * double{kProbes};
+  const float darkest = *std::min_element(light.begin(), light.end());
+  cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
+  cut.allowed *= darkest;
+  double sum = 0.0;
+  std::vector<Open> heap;
+  const auto insert = [&](uint32_t node) {
+    const Open open{all.variance(tree.nodes[node]), node};
+    sum += double{open.variance};
+    heap.push_back(open);
+    std::push_heap(heap.begin(), heap.end());
+  };
+  for (const uint32_t node : tree.startCut) insert(node);
+  while (sum > most && heap.size() < options.maxCut && heap.front().variance > 0.0f) {
+    const Open widest = heap.front();
+    std::pop_heap(heap.begin(), heap.end());
+    heap.pop_back();
+    sum -= double{widest.variance};
+    insert(tree.nodes[widest.node].left);
+    insert(tree.nodes[widest.node].right);
+  }
+  for (const Open& open : heap) cut.nodes.push_back(open.node);
+  std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
+  return cut;
+}
+
+}  // namespace bnvpl

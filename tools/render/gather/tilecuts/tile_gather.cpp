@@ -1,0 +1,134 @@
+#include "tools/render/gather/tilecuts/tile_gather.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "tools/render/gather/tilecuts/receiver_packet.h"
+#include "tools/render/gather/tilecuts/shadow_queue.h"
+#include "tools/render/gather/tilecuts/tile_cut.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Pixels along the side of a square that four packets share.
+constexpr uint32_t kSquare = 8;
+
+// Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
+uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
+  const uint32_t square = y / kSquare << 16 | x / kSquare;
+  const auto turn = static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDrawPacket) % 4);
+  return square << 2 | ((y % 2 << 1 | x % 2) ^ turn);
+}
+
+// Pixels of a 2 x 2 after each other.
+uint32_t placeOfPixel(uint32_t x, uint32_t y, uint32_t width) {
+  return (y / 2 * ((width + 1) / 2) + x / 2) << 2 | y % 2 << 1 | x % 2;
+}
+
+// A packet takes a random pixel of each 2 x 2, of 8 x 8 pixels as far as they have receivers. Its
+// pixels share their error: dealt out so, it is fine grain, where packets of 4 x 4 neighbours show
+// as blocks. Over all packets of the tile the draws from a cluster are stratified, and over the
+// slots of one pixel too, which therefore stays in its packet.
+std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceivers& tile) {
+  std::vector<uint32_t> packetOf;  // pixel
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
+  }
+  const auto slots = static_cast<uint32_t>(tile.bsdf.size() / tile.pixels);
+  constexpr uint32_t kSize = ReceiverPacket::kSize;
+  std::vector<ReceiverPacket> packets;
+  packets.reserve(size_t{slots} * ((tile.pixels + kSize - 1) / kSize));
+  std::vector<uint32_t> lit;  // receivers of a slot
+  for (uint32_t slot = 0; slot < slots; ++slot) {
+    lit.clear();
+    for (uint32_t p = 0; p < tile.pixels; ++p) {
+      if (tile.bsdf[size_t{slot} * tile.pixels + p]) lit.push_back(slot * tile.pixels + p);
+    }
+    std::stable_sort(lit.begin(), lit.end(), [&](uint32_t a, uint32_t b) {
+      return packetOf[a % tile.pixels] < packetOf[b % tile.pixels];
+    });
+    const size_t ofSlot = (lit.size() + kSize - 1) / kSize;
+    const uint32_t imageSlot = tile.firstSlot + slot;
+    for (size_t number = 0; number < ofSlot; ++number) {
+      ReceiverPacket& packet = packets.emplace_back();
+      packet.stratum = (static_cast<float>(imageSlot) +
+                        (static_cast<float>(number) + 0.5f) / static_cast<float>(ofSlot)) /
+                       static_cast<float>(tile.allSlots);
+      packet.rouletteKey = mix64(tile.key + imageSlot);
+      packet.rouletteDraw = kDrawRoulette + static_cast<uint32_t>(number);
+      const size_t begin = number * lit.size() / ofSlot, end = (number + 1) * lit.size() / ofSlot;
+      for (size_t k = begin; k < end; ++k) {
+        const uint32_t pixel = lit[k] % tile.pixels;
+        const Bsdf& b = *tile.bsdf[lit[k]];
+        packet.add(lit[k], b, rays.offsetOrigin(b.point().position, b.point().ng),
+                   placeOfPixel(pixel % tile.width, pixel / tile.width, tile.width));
+      }
+    }
+  }
+  return packets;
+}
+
+// Whether a cluster of the tile's cut must be opened for a packet, because it is much nearer to one
+// of its receivers than the probes knew: it alone would deviate by all that is allowed.
+bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
+  if (n.leaf() || surelyFar(n, allowed, p.bounds, p.brightest)) return false;
+  const Expectation expected(n);
+  int near = 0;
+  for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
+    near |= expected
+                .at({p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
+                    {p.mostRed[l], p.mostGreen[l], p.mostBlue[l]})
+                .exceeds(allowed);
+  }
+  return near != 0;
+}
+
+}  // namespace
+
+void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+                const GatherOptions& options, const TileReceivers& tile, std::span<Gathered> out) {
+  std::fill(out.begin(), out.end(), Gathered{});
+  if (tree.nodes.empty()) return;
+  const TileCut cut = chooseTileCut(rays, vpls, tree, options, tile);
+  if (cut.nodes.empty()) return;
+  std::vector<ReceiverPacket> packets = makePackets(rays, tile);
+  ShadowQueue queue(rays, vpls, packets);
+  Bounds bounds;
+  float brightest = 0.0f;
+  for (const ReceiverPacket& packet : packets) {
+    bounds.extend(packet.bounds);
+    brightest = std::max(brightest, packet.brightest);
+  }
+  const auto take = [&](uint32_t node, ReceiverPacket& packet) {
+    const float u = packet.stratum + toUnitFloat(random64(tile.key, node, kDrawShift));
+    queue.add(packet, tree.draw(tree.nodes[node], u < 1.0f ? u : u - 1.0f), node, cut.negligible);
+    ++packet.clusters;
+  };
+  std::vector<uint32_t> open;
+  // Cluster by cluster for all samples, so that rays to the same cluster wait together.
+  for (const uint32_t ofCut : cut.nodes) {
+    const bool far = surelyFar(tree.nodes[ofCut], cut.allowed, bounds, brightest);
+    for (ReceiverPacket& packet : packets) {
+      if (far) {
+        take(ofCut, packet);
+        continue;
+      }
+      open.assign(1, ofCut);
+      while (!open.empty()) {
+        const uint32_t node = open.back();
+        open.pop_back();
+        if (tooNear(tree.nodes[node], cut.allowed, packet)) {
+          open.push_back(tree.nodes[node].right);
+          open.push_back(tree.nodes[node].left);
+        } else {
+          take(node, packet);
+        }
+      }
+    }
+  }
+  queue.flush();
+  for (const ReceiverPacket& packet : packets) packet.writeTo(out);
+}
+
+}  // namespace bnvpl

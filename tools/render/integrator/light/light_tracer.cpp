@@ -1,0 +1,103 @@
+#include "tools/render/integrator/light/light_tracer.h"
+
+#include <algorithm>
+
+#include "transport/camera.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Ways in which a photon goes on from where it first comes into the camera's sight. Where few come
+// there, the way costs more than what follows (measured: docs/theory.md, "Light tracer").
+constexpr uint64_t kBranches = 32;
+
+}  // namespace
+
+LightTracer::LightTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces,
+                         uint64_t seed)
+    : rays_(rays),
+      lights_(lights),
+      maxBounces_(maxBounces),
+      key_(streamKey(seed, Stream::LightTracer)) {}
+
+void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
+  const Film& film = rays_.scene().film;
+  const double pixels = double(film.width) * double(film.height);
+  for (uint64_t index = begin; index < end && lights_.size() > 0; ++index) {
+    Rng rng(key_, index);
+    float probability = 1.0f;
+    const size_t light = lights_.pick(rng.next(), probability);
+    if (!(probability > 0.0f)) continue;
+    PhotonStart start = lights_.emit(light, rng);
+    start.flux *= static_cast<float>(1.0 / (double{probability} * pixels));
+    follow(PhotonWalk(start, maxBounces_ + 1, rng), index, out);
+  }
+}
+
+void LightTracer::follow(PhotonWalk photon, uint64_t index, Splats& out) const {
+  for (SurfacePoint hit; photon.goesOn();) {
+    rays_.closestHit(photon.next().origin, photon.next().direction, hit);
+    const PhotonWalk before = photon;
+    bool seen = false;
+    photon.advance(rays_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+      if (!straight) connect(bsdf.point(), flux, out);
+      seen = inSight(bsdf.point());
+    });
+    if (seen) return followBranches(before, hit, index, out);
+  }
+  out.nonFinite += photon.fate().finite ? 0 : 1;
+}
+
+// From `hit`, whose own light has been connected.
+void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
+                                 Splats& out) const {
+  for (uint64_t k = 0; k < kBranches; ++k) {
+    PhotonWalk branch = photon.branch(1.0f / kBranches, Rng(key_ + 1, index * kBranches + k));
+    branch.advance(rays_, hit, [](const Bsdf&, Vec3, bool) {});
+    const PhotonFate fate = followPhoton(rays_, branch, [&](const Bsdf& bsdf, Vec3 flux, bool) {
+      connect(bsdf.point(), flux, out);
+    });
+    out.nonFinite += fate.finite ? 0 : 1;
+  }
+}
+
+// Whether nothing lies between a vertex and the camera, be it on the film or not.
+bool LightTracer::inSight(const SurfacePoint& vertex) const {
+  return !rays_.occluded(rays_.offsetOrigin(vertex.position, vertex.ng),
+                         rays_.scene().camera.position);
+}
+
+// Radiance of the pixel = 1 / A times the integral of radiance * |cos| / (d^2 cos^3 theta) over the
+// surfaces that it sees, with A the pixel's area on the plane at depth 1 and theta the angle to the
+// viewing axis, so that d cos theta is the depth.
+void LightTracer::connect(const SurfacePoint& vertex, Vec3 flux, Splats& out) const {
+  const Scene& scene = rays_.scene();
+  const Film& film = scene.film;
+  const FilmPoint at = projectToFilm(scene.camera, film, vertex.position);
+  if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return;
+  const Vec3 way = vertex.position - scene.camera.position;
+  if (dot(vertex.ng, way) >= 0.0f) return;  // the photon came to the other side
+  const float distance = length(way);
+  // The camera's own ray, so that light scatters as it does where a path from there arrives. What
+  // it meets is the vertex where it is the same triangle, or, at an edge, within the rounding of a
+  // offset origin.
+  SurfacePoint seen;
+  if (!rays_.closestHit(scene.camera.position, way / distance, seen)) return;
+  const Vec3 tolerance = rays_.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
+  if (seen.triangle != vertex.triangle &&
+      lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
+    return;
+  }
+  const float cosShading = dot(seen.ns, vertex.wo);
+  if (!(cosShading > 0.0f)) return;
+  const Vec3 value = Bsdf(scene, seen).eval(LobeGroup::Rough, vertex.wo) / cosShading;
+  if (isBlack(value)) return;
+  const float weight = dot(seen.ng, seen.wo) * distance /
+                       (at.depth * at.depth * at.depth * pixelAreaAtUnitDepth(scene.camera, film));
+  const auto x = std::min(film.width - 1, static_cast<uint32_t>(at.x * float(film.width)));
+  const auto y = std::min(film.height - 1, static_cast<uint32_t>(at.y * float(film.height)));
+  out.list.push_back({y * film.width + x, flux * value * weight});
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,57 @@
+#include "tools/render/light_tree/cluster_bounds.h"
+
+#include <emmintrin.h>
+
+namespace bnvpl {
+
+namespace {
+
+// Largest cosine between `axis` and any direction from `at` into the box (Walter et al. 2005,
+// section 4.1).
+float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
+  const Vec3 center = box.center() - at, half = 0.5f * box.extent();
+  // The box's own box in the frame, three axes at once: larger, so that the bound holds.
+  const auto along = [](Vec3 v, __m128 x, __m128 y, __m128 z) {
+    return _mm_add_ps(_mm_add_ps(_mm_mul_ps(_mm_set1_ps(v.x), x), _mm_mul_ps(_mm_set1_ps(v.y), y)),
+                      _mm_mul_ps(_mm_set1_ps(v.z), z));
+  };
+  const __m128 x = _mm_load_ps(frame.x), y = _mm_load_ps(frame.y), z = _mm_load_ps(frame.z);
+  const __m128 sign = _mm_set1_ps(-0.0f), zero = _mm_setzero_ps();
+  const __m128 c = along(center, x, y, z);
+  const __m128 r =
+      along(half, _mm_andnot_ps(sign, x), _mm_andnot_ps(sign, y), _mm_andnot_ps(sign, z));
+  const __m128 low = _mm_sub_ps(c, r), high = _mm_add_ps(c, r);
+  alignas(16) float highest[4], nearest[4];
+  _mm_store_ps(highest, high);
+  if (highest[2] <= 0.0f) return 0.0f;
+  _mm_store_ps(nearest, _mm_add_ps(_mm_max_ps(low, zero), _mm_min_ps(high, zero)));
+  return highest[2] /
+         std::sqrt(nearest[0] * nearest[0] + nearest[1] * nearest[1] + highest[2] * highest[2]);
+}
+
+// Largest cosine at the emitters: of the normals' cone against the directions from the box to `at`.
+float maxEmitterCosine(const LightNode& n, Vec3 at) {
+  // From the box towards `at` is the mirror image of from `at` towards the mirrored box.
+  const Bounds mirrored{2.0f * at - n.bounds.upper, 2.0f * at - n.bounds.lower};
+  const float cosine = maxCosine(mirrored, at, n.frame);
+  if (cosine >= n.cosHalfAngle || n.cosHalfAngle <= 0.0f) return 1.0f;
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+  return std::max(0.0f, cosine * n.cosHalfAngle + sine * n.sinHalfAngle);
+}
+
+}  // namespace
+
+float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
+  if (n.leaf()) return 0.0f;
+  const Vec3 at = receiver.bsdf.point().position;
+  const float emitter = maxEmitterCosine(n, at);
+  if (emitter <= 0.0f) return 0.0f;
+  const Vec3 value = receiver.bsdf.roughUpperBound(
+      maxCosine(n.bounds, at, receiver.normal),
+      [&](Vec3 axis) { return maxCosine(n.bounds, at, AxisFrame(axis)); });
+  const Vec3 light = value * n.intensity;
+  const float sum = (light.x + light.y + light.z) * emitter;
+  return sum > 0.0f ? sum * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,20 @@
+// What a cluster of the light tree can send to a point.
+#pragma once
+
+#include "tools/render/light_tree/light_tree.h"
+#include "transport/bsdf.h"
+
+namespace bnvpl {
+
+// A receiver with what is worked out once for all clusters.
+struct ClusterReceiver {
+  explicit ClusterReceiver(const Bsdf& b) : bsdf(b), normal(b.point().ns) {}
+  const Bsdf& bsdf;
+  AxisFrame normal;
+};
+
+// Upper bound on the error of taking one VPL for the whole cluster, summed over the channels;
+// visibility counts as full (Walter et al. 2005, section 4.1). 0 for a leaf.
+float errorBound(const LightNode& n, const ClusterReceiver& receiver);
+
+}  // namespace bnvpl

@@ -1,0 +1,186 @@
+#include "tools/render/light_tree/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <queue>
+
+namespace bnvpl {
+
+namespace {
+
+// A half turn of the normal weighs as much as this share of the scene's extent.
+constexpr float kNormalScale = 0.125f;
+
+class Builder {
+ public:
+  Builder(const VplLights& vpls, uint64_t seed, LightTree& tree)
+      : vpls_(vpls), key_(streamKey(seed, Stream::LightTree)), tree_(tree), order_(vpls.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    Bounds all;
+    for (const Vec3 p : vpls.position) all.extend(p);
+    normalScale_ = kNormalScale * all.diagonal();
+  }
+
+  uint32_t build(size_t begin, size_t end) {
+    const auto index = static_cast<uint32_t>(tree_.nodes.size());
+    tree_.nodes.emplace_back();
+    const auto range = [&] {
+      tree_.nodes[index].begin = static_cast<uint32_t>(begin);
+      tree_.nodes[index].end = static_cast<uint32_t>(end);
+    };
+    if (end - begin == 1) {
+      tree_.nodes[index] = leafOf(order_[begin]);
+      range();
+      return index;
+    }
+    const size_t middle = split(begin, end);
+    const uint32_t left = build(begin, middle);
+    const uint32_t right = build(middle, end);
+    tree_.nodes[index] = parentOf(left, right, index);
+    range();
+    return index;
+  }
+
+  std::vector<uint32_t> takeOrder() { return std::move(order_); }
+
+ private:
+  float coordinate(uint32_t i, size_t axis) const {
+    return axis < 3 ? vpls_.position[i][axis] : normalScale_ * vpls_.normal[i][axis - 3];
+  }
+
+  // The middle of the longest of six sides; halves by count where that leaves one side empty.
+  size_t split(size_t begin, size_t end) {
+    std::array<float, 6> low, high;
+    low.fill(INFINITY);
+    high.fill(-INFINITY);
+    for (size_t k = begin; k < end; ++k) {
+      for (size_t a = 0; a < 6; ++a) {
+        low[a] = std::min(low[a], coordinate(order_[k], a));
+        high[a] = std::max(high[a], coordinate(order_[k], a));
+      }
+    }
+    size_t axis = 0;
+    for (size_t a = 1; a < 6; ++a) {
+      if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
+    }
+    const float middle = 0.5f * (low[axis] + high[axis]);
+    const auto at = [&](size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+    const auto cut = std::stable_partition(
+        at(begin), at(end), [&](uint32_t i) { return coordinate(i, axis) < middle; });
+    const auto position = static_cast<size_t>(cut - order_.begin());
+    return position > begin && position < end ? position : begin + (end - begin) / 2;
+  }
+
+  LightNode leafOf(uint32_t i) const {
+    LightNode n;
+    n.bounds.extend(vpls_.position[i]);
+    n.axis = vpls_.normal[i];
+    n.frame = AxisFrame(n.axis);
+    n.intensity = vpls_.intensity[i];
+    n.clamp2 = vpls_.clamp2[i];
+    n.representative = i;
+    return n;
+  }
+
+  LightNode parentOf(uint32_t left, uint32_t right, uint32_t index) const {
+    const LightNode &a = tree_.nodes[left], &b = tree_.nodes[right];
+    LightNode n;
+    n.bounds = a.bounds;
+    n.bounds.extend(b.bounds);
+    mergeCones(a, b, n);
+    n.frame = AxisFrame(n.axis);
+    n.sinHalfAngle = n.cosHalfAngle <= 0.0f
+                         ? 1.0f
+                         : std::sqrt(std::max(0.0f, 1.0f - n.cosHalfAngle * n.cosHalfAngle));
+    n.intensity = a.intensity + b.intensity;
+    n.clamp2 = std::min(a.clamp2, b.clamp2);
+    const float share = mean(a.intensity) / mean(n.intensity);
+    n.representative =
+        toUnitFloat(random64(key_, index, 0)) < share ? a.representative : b.representative;
+    n.left = left;
+    n.right = right;
+    return n;
+  }
+
+  // Smallest cone about two cones.
+  static void mergeCones(const LightNode& a, const LightNode& b, LightNode& n) {
+    const float ta = std::acos(a.cosHalfAngle), tb = std::acos(b.cosHalfAngle);
+    const float between = std::acos(std::clamp(dot(a.axis, b.axis), -1.0f, 1.0f));
+    const LightNode& wide = ta >= tb ? a : b;
+    const float wideAngle = std::max(ta, tb), narrowAngle = std::min(ta, tb);
+    if (between + narrowAngle <= wideAngle) {
+      n.axis = wide.axis;
+      n.cosHalfAngle = wide.cosHalfAngle;
+      return;
+    }
+    constexpr float kStraight = 3.14159265f;
+    const float angle = 0.5f * (ta + tb + between);
+    const Vec3& other = ta >= tb ? b.axis : a.axis;
+    const Vec3 sideways = other - wide.axis * dot(wide.axis, other);
+    if (angle >= kStraight || lengthSquared(sideways) < 1e-10f) {
+      n.axis = wide.axis;
+      n.cosHalfAngle = -1.0f;
+      return;
+    }
+    const float turn = angle - wideAngle;
+    n.axis = normalize(wide.axis * std::cos(turn) + normalize(sideways) * std::sin(turn));
+    // A little wider than exact, against rounding: the bound must stay a bound.
+    n.cosHalfAngle = std::cos(std::min(kStraight, angle + 1e-3f));
+  }
+
+  const VplLights& vpls_;
+  uint64_t key_;
+  LightTree& tree_;
+  std::vector<uint32_t> order_;
+  float normalScale_ = 1.0f;
+};
+
+// Opens the clusters with the largest intensity times size until there are enough.
+std::vector<uint32_t> startCutOf(const LightTree& tree) {
+  const auto weight = [&](uint32_t i) {
+    const LightNode& n = tree.nodes[i];
+    return n.leaf() ? 0.0f : mean(n.intensity) * n.bounds.diagonal();
+  };
+  std::priority_queue<std::pair<float, uint32_t>> open;
+  open.emplace(weight(0), 0u);
+  while (open.size() < kMaxStartCut && !tree.nodes[open.top().second].leaf()) {
+    const LightNode& n = tree.nodes[open.top().second];
+    open.pop();
+    open.emplace(weight(n.left), n.left);
+    open.emplace(weight(n.right), n.right);
+  }
+  std::vector<uint32_t> cut;
+  for (; !open.empty(); open.pop()) cut.push_back(open.top().second);
+  return cut;
+}
+
+}  // namespace
+
+VplDraw LightTree::draw(const LightNode& n, float u) const {
+  if (n.leaf()) return {n.representative, 1.0f};
+  const double whole = upTo[n.end] - upTo[n.begin];
+  const auto first = upTo.begin() + n.begin + 1, last = upTo.begin() + n.end;
+  const auto at = std::upper_bound(first, last, upTo[n.begin] + double{u} * whole);
+  const auto k = std::min(n.end - 1, static_cast<uint32_t>(at - upTo.begin()) - 1);
+  // A VPL that is lost in the rounding of the sum before it has no share in it.
+  const double own = upTo[k + 1] - upTo[k];
+  return {order[k], own > 0.0 ? static_cast<float>(whole / own) : 0.0f};
+}
+
+LightTree buildLightTree(const VplLights& vpls, uint64_t seed) {
+  LightTree tree;
+  if (vpls.size() == 0) return tree;
+  tree.nodes.reserve(2 * vpls.size());
+  Builder builder(vpls, seed, tree);
+  builder.build(0, vpls.size());
+  tree.order = builder.takeOrder();
+  tree.upTo.assign(1, 0.0);
+  for (const uint32_t i : tree.order) {
+    tree.upTo.push_back(tree.upTo.back() + double{mean(vpls.intensity[i])});
+  }
+  tree.startCut = startCutOf(tree);
+  return tree;
+}
+
+}  // namespace bnvpl

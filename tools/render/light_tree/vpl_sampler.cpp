@@ -1,0 +1,165 @@
+#include "tools/render/light_tree/vpl_sampler.h"
+
+#include <emmintrin.h>
+
+#include <algorithm>
+
+namespace bnvpl {
+
+namespace {
+
+// Squared distance that counts at least, over the squared radius of a cluster: it lies around the
+// point, most of it further away than its middle (measured).
+constexpr float kClosest = 2.0f;
+
+__m128 all(float v) { return _mm_set1_ps(v); }
+__m128 load(const std::array<float, 4>& lanes) { return _mm_load_ps(lanes.data()); }  // aligned
+std::array<float, 4> store(__m128 v) {
+  std::array<float, 4> out;
+  _mm_storeu_ps(out.data(), v);
+  return out;
+}
+__m128 select(__m128 mask, __m128 yes, __m128 no) {
+  return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
+}
+__m128 sineOf(__m128 cosine) {
+  return _mm_sqrt_ps(_mm_max_ps(_mm_setzero_ps(), all(1.0f) - cosine * cosine));
+}
+// Cosine of an angle that is smaller by another, but not below 0.
+__m128 cosineOfLess(__m128 cosine, __m128 cosLess, __m128 sinLess) {
+  const __m128 turned = cosine * cosLess + sineOf(cosine) * sinLess;
+  return select(_mm_cmpge_ps(cosine, cosLess), all(1.0f), turned);
+}
+
+// From a point to four spheres.
+struct Directions {
+  __m128 x, y, z;               // unit, to the centres
+  __m128 cosSphere, sinSphere;  // of half the angle that each takes
+  __m128 inside;                // mask
+  // Largest cosine between an axis and any direction into the sphere.
+  __m128 most(__m128 ax, __m128 ay, __m128 az) const {
+    return select(inside, all(1.0f), cosineOfLess(ax * x + ay * y + az * z, cosSphere, sinSphere));
+  }
+};
+
+}  // namespace
+
+VplSampler::VplSampler(const LightTree& tree) {
+  if (tree.nodes.empty()) return;
+  const std::span<const uint32_t> cut = tree.startCut;
+  startFours_ = (cut.size() + 3) / 4;
+  fours_.reserve(startFours_ + tree.nodes.size() / 3);
+  fours_.resize(startFours_);
+  for (size_t f = 0; f < startFours_; ++f) {
+    fill(tree, cut.subspan(4 * f, std::min<size_t>(4, cut.size() - 4 * f)), f);
+  }
+}
+
+uint32_t VplSampler::add(const LightTree& tree, std::span<const uint32_t> nodes) {
+  const auto four = static_cast<uint32_t>(fours_.size());
+  fours_.emplace_back();
+  fill(tree, nodes, four);
+  return four;
+}
+
+void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t four) {
+  Four f;
+  for (size_t lane = 0; lane < nodes.size(); ++lane) {
+    const LightNode& n = tree.nodes[nodes[lane]];
+    const Vec3 center = n.bounds.center();
+    f.x[lane] = center.x, f.y[lane] = center.y, f.z[lane] = center.z;
+    f.radius2[lane] = 0.25f * lengthSquared(n.bounds.extent());
+    f.ax[lane] = n.axis.x, f.ay[lane] = n.axis.y, f.az[lane] = n.axis.z;
+    f.cosHalf[lane] = n.cosHalfAngle, f.sinHalf[lane] = n.sinHalfAngle;
+    f.red[lane] = n.intensity.x, f.green[lane] = n.intensity.y, f.blue[lane] = n.intensity.z;
+    f.closest2[lane] = std::max(n.clamp2, kClosest * f.radius2[lane]);
+    if (n.leaf()) {
+      f.child[lane] = kLeaf | n.representative;
+      continue;
+    }
+    std::array<uint32_t, 4> below{};  // two levels down
+    size_t count = 0;
+    for (const uint32_t c : {n.left, n.right}) {
+      const LightNode& m = tree.nodes[c];
+      if (m.leaf()) {
+        below[count++] = c;
+      } else {
+        below[count++] = m.left;
+        below[count++] = m.right;
+      }
+    }
+    f.child[lane] = add(tree, std::span(below).first(count));
+  }
+  fours_[four] = f;
+}
+
+VplSampler::Point::Point(const VplSampler& sampler, const Bsdf& bsdf)
+    : sampler_(sampler),
+      bsdf_(bsdf),
+      at_(bsdf.point().position),
+      normal_(bsdf.point().ns),
+      value_(bsdf.diffuseValue()),
+      diffuse_(bsdf.diffuseOnly()) {
+  for (uint32_t f = 0; f < sampler.startFours_; ++f) {
+    for (const float weight : likely(f)) upTo_[starts_++] = whole_ += weight;
+  }
+}
+
+VplSampler::Lanes VplSampler::Point::likely(uint32_t four) const {
+  const Four& f = sampler_.fours_[four];
+  const __m128 x = load(f.x) - all(at_.x), y = load(f.y) - all(at_.y), z = load(f.z) - all(at_.z);
+  const __m128 d2 = x * x + y * y + z * z, radius2 = load(f.radius2);
+  const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only inside
+  Directions to;
+  to.inside = _mm_cmple_ps(d2, radius2);
+  to.x = x * inverse, to.y = y * inverse, to.z = z * inverse;
+  to.sinSphere = _mm_sqrt_ps(radius2) * inverse;
+  to.cosSphere = sineOf(to.sinSphere);
+
+  const __m128 zero = _mm_setzero_ps(), cosHalf = load(f.cosHalf);
+  // The way back is the mirror image of the way there.
+  const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
+  const __m128 emitter =
+      select(_mm_cmple_ps(cosHalf, zero), all(1.0f), cosineOfLess(back, cosHalf, load(f.sinHalf)));
+  const __m128 cosine = to.most(all(normal_.x), all(normal_.y), all(normal_.z));
+  __m128 value;
+  if (diffuse_) {
+    value =
+        all(value_.x) * load(f.red) + all(value_.y) * load(f.green) + all(value_.z) * load(f.blue);
+  } else {
+    // Lobes go by their axis as the normal does.
+    const Vec3 axis = bsdf_.glossyAxis();
+    const Lanes toAxis = store(to.most(all(axis.x), all(axis.y), all(axis.z)));
+    alignas(16) Lanes sums;
+    for (size_t lane = 0; lane < 4; ++lane) {
+      const Vec3 v = bsdf_.roughUpperBound(1.0f, [&](Vec3) { return toAxis[lane]; });
+      sums[lane] = v.x * f.red[lane] + v.y * f.green[lane] + v.z * f.blue[lane];
+    }
+    value = load(sums);
+  }
+  return store(value * _mm_max_ps(cosine, zero) * _mm_max_ps(emitter, zero) /
+               _mm_max_ps(d2, load(f.closest2)));
+}
+
+std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {
+  const auto begin = upTo_.begin(), end = begin + static_cast<std::ptrdiff_t>(starts_);
+  const auto slot =
+      std::min(starts_ - 1, static_cast<size_t>(std::upper_bound(begin, end, u * whole_) - begin));
+  float probability = (upTo_[slot] - (slot > 0 ? upTo_[slot - 1] : 0.0f)) / whole_;
+  uint32_t child = sampler_.fours_[slot / 4].child[slot % 4];
+  while ((child & kLeaf) == 0 && probability > 0.0f) {
+    const Lanes weight = likely(child);
+    const float sum = weight[0] + weight[1] + weight[2] + weight[3];
+    if (!(sum > 0.0f)) return {};
+    const float pick = rng.next() * sum;
+    size_t lane = 0;
+    for (float below = weight[0]; lane < 3 && pick >= below; below += weight[lane]) ++lane;
+    probability *= weight[lane] / sum;
+    child = sampler_.fours_[child].child[lane];
+  }
+  // The last slot or lane is also taken by rounding, even where its own share is 0.
+  if (!(probability > 0.0f)) return {};
+  return Draw{child & ~kLeaf, probability};
+}
+
+}  // namespace bnvpl

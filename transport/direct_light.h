@@ -1,0 +1,34 @@
+// Light that reaches a surface point straight from the lights, by shadow rays.
+#pragma once
+
+#include "transport/bsdf.h"
+#include "transport/lights.h"
+
+namespace bnvpl {
+
+// Which lights a vertex sends shadow rays to.
+enum class LightChoice {
+  One,  // picked in proportion to power
+  Each  // all, one ray each; of more than kMaxLightsEach, as many picks in proportion to power
+};
+inline constexpr size_t kMaxLightsEach = 32;
+
+// Light sampling's part of the light at a vertex: multi-sample MIS by the power heuristic (Veach
+// 1997, section 9.2) against `bsdfRays` rays that the caller sends from there by the BSDF; 0: light
+// sampling is alone.
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 LightChoice choice, unsigned bsdfRays, Rng& rng);
+
+// How the ray that found a light was chosen, for the other half of MIS.
+struct Arrival {
+  float bsdfPdf = 0.0f;  // 1/sr, times the rays sent like this one; 0: camera ray, mirror or glass,
+                         // which light sampling cannot reach
+  Vec3 from;             // where the ray started
+  LightChoice choice = LightChoice::One;  // there
+};
+// Emission met by a ray, with its MIS weight: of the surface that it hit, and of what lies at
+// infinity where it hit nothing.
+Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival);
+Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival);
+
+}  // namespace bnvpl

@@ -1,0 +1,176 @@
+// Of LightSet: directions towards its lights, and photons from them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/cdf.h"
+#include "transport/light_shape.h"
+#include "transport/lights.h"
+
+namespace bnvpl {
+
+Vec3 LightSet::samplePointOn(const Light& light, float u, float v, Vec3& normal) const {
+  const uint32_t t = light.triangles[sampleCdf<float>(light.cdf, u)];
+  const Vec3 p0 = scene_.corner(t, 0), p1 = scene_.corner(t, 1), p2 = scene_.corner(t, 2);
+  const Barycentric b = sampleTriangle(u, v);
+  normal = normalize(cross(p1 - p0, p2 - p0));
+  return (1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2;
+}
+
+bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const {
+  Vec3 n;
+  const Vec3 p = samplePointOn(light, u, v, n);
+  const Vec3 d = p - at;
+  const float d2 = lengthSquared(d);
+  if (!(d2 > 0.0f)) return false;
+  out.wi = d / std::sqrt(d2);
+  float cosine = -dot(n, out.wi);
+  if (light.twoSided && cosine < 0.0f) {
+    cosine = -cosine;
+    n = -n;
+  }
+  if (cosine <= 0.0f) return false;
+  out.pdf = d2 / (cosine * light.areaTotal);
+  out.radianceOverPdf = scene_.materials[light.material].emission * (1.0f / out.pdf);
+  out.infinite = false;
+  out.target = rays_.offsetOrigin(p, n);
+  return true;
+}
+
+// Of the directions in a texel, in 1/sr. By row, then by column: over all texels at once, the
+// shares of a fine image would be below the steps of a float.
+float LightSet::texelPdf(const Light& light, size_t x, uint32_t y) const {
+  const EnvironmentImage& image = scene_.environments[light.spec.image];
+  return static_cast<float>(cdfShare<double>(light.rowCdf, y)) *
+         cdfShare(light.cdfOfRow(y, image.width), x) / texelSolidAngle(image, y);
+}
+
+// A direction towards a light at infinity.
+Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radiance,
+                               float& pdf) const {
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Directional) {
+    if (s.angularRadiusRad == 0.0f) {
+      pdf = 0.0f;
+      radiance = s.emission;
+      return -s.direction;
+    }
+    pdf = pdfNarrowCone(versine(s.angularRadiusRad));
+    radiance = sunRadiance(s);
+    return Basis(-s.direction).toWorld(sampleNarrowCone(u, v, versine(s.angularRadiusRad)));
+  }
+  if (s.image == kNone) {
+    pdf = 1.0f / (4.0f * kPi);
+    radiance = s.emission * s.scale;
+    return sampleSphere(u, v);
+  }
+  const EnvironmentImage& image = scene_.environments[s.image];
+  const auto y = static_cast<uint32_t>(sampleCdf<double>(light.rowCdf, v));
+  const size_t x = sampleCdf(light.cdfOfRow(y, image.width), u);
+  // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar
+  // angle.
+  const float top = std::cos(kPi * float(y) / float(image.height));
+  const float row = std::acos(std::clamp(top - v * bandHeight(y, image.height), -1.0f, 1.0f)) / kPi;
+  pdf = texelPdf(light, x, y);
+  radiance = image.radiance[size_t{y} * image.width + x] * s.scale;
+  return directionOf(s, (float(x) + u) / float(image.width), row);
+}
+
+Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) const {
+  const Light& light = lights_[index];
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Directional) {
+    if (!inNarrowCone(direction, -s.direction, versine(s.angularRadiusRad))) return {};
+    pdf = pdfNarrowCone(versine(s.angularRadiusRad));
+    return sunRadiance(s);
+  }
+  if (s.image == kNone) {
+    pdf = 1.0f / (4.0f * kPi);
+    return s.emission * s.scale;
+  }
+  const EnvironmentImage& image = scene_.environments[s.image];
+  float u, v;
+  texelOf(s, direction, u, v);
+  const auto x = static_cast<size_t>(u * float(image.width));
+  const auto y = static_cast<uint32_t>(v * float(image.height));
+  pdf = texelPdf(light, x, y);
+  return image.lookup(u, v) * s.scale;
+}
+
+bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSample& out) const {
+  const Light& light = lights_[index];
+  if (light.area) return sampleArea(light, at, u, v, out);
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Point || s.type == LightType::Spot) {
+    const Vec3 d = s.position - at;
+    const float d2 = lengthSquared(d);
+    if (!(d2 > 0.0f)) return false;
+    out.wi = d / std::sqrt(d2);
+    const float falloff =
+        s.type == LightType::Spot ? spotFalloff(s, -dot(out.wi, s.direction)) : 1.0f;
+    out.radianceOverPdf = s.emission * (falloff / d2);
+    out.pdf = 0.0f;
+    out.infinite = false;
+    out.target = s.position;
+    return !isBlack(out.radianceOverPdf);
+  }
+  Vec3 radiance;
+  out.wi = sampleDirection(light, u, v, radiance, out.pdf);
+  out.radianceOverPdf = out.pdf > 0.0f ? radiance * (1.0f / out.pdf) : radiance;
+  out.infinite = true;
+  return !isBlack(out.radianceOverPdf);
+}
+
+// Photons from infinity start on the faces of the scene's box that look towards the light,
+// uniformly in projected area: no photon is spent on empty space beside a long scene.
+PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
+  const float u = rng.next(), v = rng.next();
+  Vec3 radiance;
+  float pdf = 0.0f;
+  const Vec3 towards = sampleDirection(light, u, v, radiance, pdf);
+  const Vec3 d = -towards, e = scene_.bounds.extent();
+  const float face[3] = {std::fabs(d.x) * e.y * e.z, std::fabs(d.y) * e.x * e.z,
+                         std::fabs(d.z) * e.x * e.y};
+  const float total = face[0] + face[1] + face[2];
+  const float pick = rng.next() * total;
+  const size_t axis = pick < face[0] ? 0 : pick < face[0] + face[1] ? 1 : 2;
+  Vec3 p = scene_.bounds.lower + e * Vec3{rng.next(), rng.next(), rng.next()};
+  p[axis] = d[axis] > 0.0f ? scene_.bounds.lower[axis] : scene_.bounds.upper[axis];
+  PhotonStart start;
+  start.direction = d;
+  // Back along the ray by a little of the scene's size, so that a surface in the face itself is
+  // met.
+  start.origin = p - d * (0x1p-10f * scene_.bounds.diagonal());
+  start.flux = radiance * (pdf > 0.0f ? total / pdf : total);
+  return start;
+}
+
+PhotonStart LightSet::emit(size_t index, Rng& rng) const {
+  const Light& light = lights_[index];
+  const LightSpec& s = light.spec;
+  PhotonStart start;
+  if (light.area) {
+    Vec3 n;
+    const float u = rng.next(), v = rng.next();
+    const Vec3 p = samplePointOn(light, u, v, n);
+    if (light.twoSided && rng.next() < 0.5f) n = -n;
+    const float a = rng.next(), b = rng.next();
+    start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, b));
+    start.origin = rays_.offsetOrigin(p, n);
+    start.flux = light.power;
+  } else if (s.type == LightType::Point) {
+    const float u = rng.next(), v = rng.next();
+    start = {s.position, sampleSphere(u, v), light.power};
+  } else if (s.type == LightType::Spot) {
+    const float u = rng.next(), v = rng.next();
+    const Vec3 d = sampleNarrowCone(u, v, versine(s.coneRad));
+    start.origin = s.position;
+    start.direction = Basis(s.direction).toWorld(d);
+    start.flux = s.emission * (spotFalloff(s, d.z) / pdfNarrowCone(versine(s.coneRad)));
+  } else {
+    start = emitFromInfinity(light, rng);
+  }
+  return start;
+}
+
+}  // namespace bnvpl

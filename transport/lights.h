@@ -1,0 +1,98 @@
+// All lights of a scene behind one set of questions: emissive triangles (one light for each
+// emissive material), and the lights of scene.toml. Power in W, linear sRGB.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/random.h"
+#include "transport/rays.h"
+
+namespace bnvpl {
+
+// A light seen from a point: a direction and what arrives from it, ready for a shadow ray.
+struct DirectSample {
+  Vec3 wi;                // unit, towards the light
+  Vec3 radianceOverPdf;   // radiance / density; for point-like lights the irradiance on a facing
+                          // surface
+  float pdf = 0.0f;       // of wi in 1/sr, given the light; 0 for lights that no ray can hit
+  bool infinite = false;  // the shadow ray never ends
+  Vec3 target;            // else it ends here, offset off the emitter
+};
+
+struct PhotonStart {
+  Vec3 origin;     // offset
+  Vec3 direction;  // unit
+  Vec3 flux;       // W, as if this were the only photon of its light
+};
+
+class LightSet {
+ public:
+  explicit LightSet(const RayScene& rays);
+
+  size_t size() const { return lights_.size(); }
+  Vec3 power(size_t light) const { return lights_[light].power; }
+  Vec3 totalPower() const;
+  std::string name(size_t light) const;  // for messages
+
+  // A light picked in proportion to power, for estimators that can afford one.
+  size_t pick(float u, float& probability) const;
+  float pickProbability(size_t light) const { return lights_[light].pickProbability; }
+
+  // False: nothing can arrive at `at` (behind the emitter, outside the cone, black).
+  bool sampleDirect(size_t light, Vec3 at, float u, float v, DirectSample& out) const;
+
+  // Radiance that leaves an emissive surface towards wo; `light` is the emitter's or kNone.
+  Vec3 emitted(const SurfacePoint& hit, size_t& light) const;
+  // Density in 1/sr with which sampleDirect() would have chosen this hit from `from`.
+  float pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const;
+
+  // Lights at infinity that a ray can hit: calls fn(light, radiance, pdf) for each.
+  template <typename Fn>
+  void forEachAtInfinity(Vec3 direction, const Fn& fn) const {
+    for (const uint32_t i : hittableAtInfinity_) {
+      float pdf = 0.0f;
+      const Vec3 L = radianceAtInfinity(i, direction, pdf);
+      if (!isBlack(L)) fn(size_t{i}, L, pdf);
+    }
+  }
+
+  PhotonStart emit(size_t light, Rng& rng) const;
+
+  // Throws InputError, naming the scene, when no light has power.
+  void requirePower() const;
+
+ private:
+  struct Light {
+    LightSpec spec;     // of scene.toml
+    bool area = false;  // else a light of emissive triangles:
+    uint32_t material = kNone;
+    std::vector<uint32_t> triangles;
+    std::vector<float> cdf;  // over area, or over the texels of each row of an environment image
+    std::vector<double> rowCdf;  // over those rows
+    std::span<const float> cdfOfRow(size_t row, size_t width) const {
+      return std::span(cdf).subspan(row * width, width);
+    }
+    float areaTotal = 0.0f;
+    bool twoSided = false;
+    Vec3 power;
+    float pickProbability = 0.0f;
+  };
+  void addAreaLights();
+  void addSpecLights();
+  Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
+  float texelPdf(const Light& light, size_t x, uint32_t y) const;
+  Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;
+  bool sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const;
+  PhotonStart emitFromInfinity(const Light& light, Rng& rng) const;
+  Vec3 samplePointOn(const Light& light, float u, float v, Vec3& normal) const;
+
+  const RayScene& rays_;
+  const Scene& scene_;
+  std::vector<Light> lights_;
+  std::vector<uint32_t> lightOfMaterial_;
+  std::vector<uint32_t> hittableAtInfinity_;
+  std::vector<float> pickCdf_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,266 @@
+#include "transport/rays.h"
+
+#include "core/prefetch.h"
+
+#if __has_include(<embree4/rtcore.h>) && defined(BNVPL_EMBREE4)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#if defined(__SANITIZE_THREAD__)
+#include <tbb/task_arena.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace bnvpl {
+
+namespace {
+
+// Alpha test: what covers less than half of a texel is not there.
+float opacityAt(const Scene& scene, uint32_t triangle, float b1, float b2) {
+  const Triangle& t = scene.triangles[triangle];
+  const Material& m = scene.materials[t.material];
+  if (m.opacityMap == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
+    return m.opacity;
+  const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
+  const float b0 = 1.0f - b1 - b2;
+  return m.opacity * scene.textures[m.opacityMap].lookupAlpha(b0 * a[0] + b1 * b[0] + b2 * c[0],
+                                                              b0 * a[1] + b1 * b[1] + b2 * c[1]);
+}
+
+void rejectCutAway(const RTCFilterFunctionNArguments* args) {
+  const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const uint32_t triangle = scene.maskedBegin + RTCHitN_primID(args->hit, args->N, i);
+    const float opacity = opacityAt(scene, triangle, RTCHitN_u(args->hit, args->N, i),
+                                    RTCHitN_v(args->hit, args->N, i));
+    if (opacity < 0.5f) args->valid[i] = 0;
+  }
+}
+
+RTCRay makeRay(Vec3 origin, Vec3 direction, float tfar) {
+  RTCRay ray{};
+  ray.org_x = origin.x;
+  ray.org_y = origin.y;
+  ray.org_z = origin.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tfar = tfar;
+  ray.mask = ~0u;
+  return ray;
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  // What the device reported first. From any thread, and perhaps for want of memory: no allocation.
+  std::atomic<RTCError> error{RTC_ERROR_NONE};
+  std::array<char, 256> errorText{};
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  static void report(void* user, RTCError error, const char* text) {
+    Impl& impl = *static_cast<Impl*>(user);
+    RTCError none = RTC_ERROR_NONE;
+    if (!impl.error.compare_exchange_strong(none, error) || !text) return;
+    std::strncpy(impl.errorText.data(), text, impl.errorText.size() - 1);
+  }
+  void throwIfFailed() const {
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(std::string("Embree: ") + errorText.data());
+  }
+
+  void attach(const Scene& s, uint32_t begin, uint32_t end, unsigned id) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               s.positions.data(), 0, sizeof(Vec3), s.positions.size() - 1);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               s.triangles.data() + begin, 0, sizeof(Triangle), end - begin);
+    if (id == 1) {
+      rtcSetGeometryUserData(geometry,
+                             const_cast<Scene*>(&s));  // Embree's API is not const-correct
+      rtcSetGeometryIntersectFilterFunction(geometry, rejectCutAway);
+      rtcSetGeometryOccludedFilterFunction(geometry, rejectCutAway);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+  }
+
+  bool closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const;
+  bool occluded(const RTCRay& from) const {
+    RTCRay ray = from;
+#if RTC_VERSION_MAJOR >= 4
+    rtcOccluded1(scene, &ray);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, &ray);
+#endif
+    return ray.tfar < 0.0f;
+  }
+};
+
+RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<Impl>()) {
+  impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device) {
+    if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error("Embree cannot start on this machine");
+  }
+  rtcSetDeviceErrorFunction(impl_->device, Impl::report, impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  impl_->throwIfFailed();
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
+  const auto count = static_cast<uint32_t>(scene.triangles.size());
+  if (scene.maskedBegin > 0) impl_->attach(scene, 0, scene.maskedBegin, 0);
+  if (scene.maskedBegin < count) impl_->attach(scene, scene.maskedBegin, count, 1);
+#if defined(__SANITIZE_THREAD__)
+  // By this thread alone: Embree is not compiled for the sanitizer, which does not see it wait for
+  // other threads.
+  tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene); });
+#else
+  rtcCommitScene(impl_->scene);
+#endif
+  impl_->throwIfFailed();
+  offsetBase_ = scene.bounds.diagonal() * 0x1p-20f;
+}
+
+RayScene::~RayScene() = default;
+
+// Sets triangle, distance, and u and v to the barycentric coordinates.
+bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const {
+  RTCRayHit rh{};
+  rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
+  rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &rh);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &rh);
+#endif
+  if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    hit.triangle = kNone;
+    return false;
+  }
+  hit.triangle = rh.hit.primID + (rh.hit.geomID == 1 ? s.maskedBegin : 0);
+  hit.distance = rh.ray.tfar;
+  hit.u = rh.hit.u, hit.v = rh.hit.v;
+  return true;
+}
+
+// The rest of a hit, from its triangle, its distance and the barycentric coordinates in u and v.
+void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
+  const Triangle& t = scene_.triangles[hit.triangle];
+  const Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
+             p2 = scene_.positions[t.position[2]];
+  const float b1 = hit.u, b2 = hit.v, b0 = 1.0f - b1 - b2;
+  // From the corners, not along the ray: exact to a few ulps of the triangle, however long the ray.
+  hit.position = b0 * p0 + b1 * p1 + b2 * p2;
+  hit.material = t.material;
+  hit.wo = -direction;
+  Vec3 ng = normalize(cross(p1 - p0, p2 - p0));
+  hit.front = dot(ng, hit.wo) >= 0.0f;
+  hit.ng = hit.front ? ng : -ng;
+  hit.ns = hit.ng;
+  if (t.normal[0] != kNone && t.normal[1] != kNone && t.normal[2] != kNone) {
+    const Vec3 n = b0 * scene_.normals[t.normal[0]] + b1 * scene_.normals[t.normal[1]] +
+                   b2 * scene_.normals[t.normal[2]];
+    const float len = length(n);
+    if (len > 1e-6f) hit.ns = n * ((dot(n, hit.ng) < 0.0f ? -1.0f : 1.0f) / len);
+  }
+  hit.u = hit.v = std::numeric_limits<float>::quiet_NaN();
+  if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
+    const auto &a = scene_.uvs[t.uv[0]], &b = scene_.uvs[t.uv[1]], &c = scene_.uvs[t.uv[2]];
+    hit.u = b0 * a[0] + b1 * b[0] + b2 * c[0];
+    hit.v = b0 * a[1] + b1 * b[1] + b2 * c[1];
+  }
+}
+
+bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const {
+  if (!impl_->closestHit(scene_, {origin, direction}, hit)) return false;
+  describe(direction, hit);
+  return true;
+}
+
+void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const {
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (impl_->closestHit(scene_, rays[i], hits[i])) prefetch(&scene_.triangles[hits[i].triangle]);
+  }
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].triangle == kNone) continue;
+    const Triangle& t = scene_.triangles[hits[i].triangle];
+    for (size_t c = 0; c < 3; ++c) {
+      prefetch(&scene_.positions[t.position[c]]);
+      if (t.normal[c] != kNone) prefetch(&scene_.normals[t.normal[c]]);
+      if (t.uv[c] != kNone) prefetch(&scene_.uvs[t.uv[c]]);
+    }
+  }
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].triangle == kNone) continue;
+    describe(rays[i].direction, hits[i]);
+    const uint32_t map = scene_.materials[hits[i].material].diffuseMap;
+    if (map != kNone) scene_.textures[map].prefetch(hits[i].u, hits[i].v);
+  }
+}
+
+bool RayScene::occluded(Vec3 from, Vec3 to) const {
+  return impl_->occluded(makeRay(from, to - from, 1.0f));
+}
+
+void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const {
+  constexpr size_t kTogether = 8;  // as wide as AVX
+  for (size_t begin = 0; begin < segments.size(); begin += kTogether) {
+    const size_t count = std::min(kTogether, segments.size() - begin);
+    alignas(32) RTCRay8 rays;
+    alignas(32) std::array<int, kTogether> valid;
+    for (size_t k = 0; k < kTogether; ++k) {
+      const Segment& s = segments[begin + std::min(k, count - 1)];
+      valid[k] = k < count ? -1 : 0;
+      rays.org_x[k] = s.from.x;
+      rays.org_y[k] = s.from.y;
+      rays.org_z[k] = s.from.z;
+      rays.dir_x[k] = s.to.x - s.from.x;
+      rays.dir_y[k] = s.to.y - s.from.y;
+      rays.dir_z[k] = s.to.z - s.from.z;
+      rays.tnear[k] = 0.0f;
+      rays.tfar[k] = 1.0f;
+      rays.time[k] = 0.0f;
+      rays.mask[k] = ~0u;
+      rays.id[k] = rays.flags[k] = 0;
+    }
+#if RTC_VERSION_MAJOR >= 4
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    rtcOccluded8(valid.data(), impl_->scene, &rays, &arguments);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid.data(), impl_->scene, &context, &rays);
+#endif
+    for (size_t k = 0; k < count; ++k) hidden[begin + k] = rays.tfar[k] < 0.0f;
+  }
+}
+
+bool RayScene::occludedToInfinity(Vec3 from, Vec3 direction) const {
+  return impl_->occluded(makeRay(from, direction, std::numeric_limits<float>::infinity()));
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,27 @@
+// From a ray to the first rough vertex, through mirrors, glass and sharp lobes: the one definition
+// of "specular chain" for every integrator.
+#pragma once
+
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+struct SpecularPath {
+  bool rough = false;  // `hit` is a vertex where the rough lobes were taken
+  SurfacePoint hit;
+  Vec3 throughput;     // from the start to the hit, one over the probability of `rough` included
+  unsigned links = 0;  // chain vertices passed
+  Vec3 metFirst;       // emission met by the first segment
+  Vec3 metLater;       // emission met behind chain vertices, and light sampled at sharp ones
+  float firstDistance = INFINITY;  // of the first hit, along the ray
+  uint32_t rays = 0;
+};
+
+SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
+                                Vec3 direction, const Arrival& arrival, Rng& rng);
+// The same where it is known what the ray hits; first.triangle is kNone where that is nothing.
+SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
+                                const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
+                                Rng& rng);
+
+}  // namespace bnvpl
