@@ -24,7 +24,8 @@ enum class Stream : uint32_t {
   LightTree,
   Plot,
   AreaEstimate,
-  LightTracer
+  LightTracer,
+  FilmPoints
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

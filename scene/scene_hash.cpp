@@ -69,4 +69,14 @@ uint64_t hashScene(const Scene& scene) {
   return h.digest();
 }
 
+uint64_t hashView(const Scene& scene) {
+  Hasher h;
+  const Camera& c = scene.camera;
+  for (const Vec3 v : {c.position, c.forward, c.right, c.up}) h.value(v);
+  h.value(c.verticalFovRad);
+  h.value(scene.film.width);
+  h.value(scene.film.height);
+  return h.digest();
+}
+
 }  // namespace bnvpl

@@ -8,4 +8,7 @@ namespace bnvpl {
 // and the film are left out: the VPLs of one view may light another.
 uint64_t hashScene(const Scene& scene);
 
+// XXH3-64 of the camera and the film.
+uint64_t hashView(const Scene& scene);
+
 }  // namespace bnvpl

@@ -13,6 +13,7 @@ struct VplLights {
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // flux / pi: along the normal, W/sr
+  std::vector<uint32_t> row;    // of the table that it was made from
   std::vector<float> clamp2;    // (clamp * radius)^2, world units squared; never 0
 
   size_t size() const { return position.size(); }

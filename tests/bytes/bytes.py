@@ -66,7 +66,7 @@ class Tools:
         text = subprocess.run([self.folder / 'vpl-render', '--help'], capture_output=True, text=True).stdout
         if '--compensate' in text:
             return []
-        return [(('--compensate', 'none'), ('--near-field', 'off'))]
+        return [(('--compensate', 'none'), ('--near-field', 'off')), (('--method', 'even'), ('--scatter', 'even'))]
 
 
 def hash_vpl(file):
@@ -112,7 +112,7 @@ def cases(name):
         yield file, 'vpl-eliminate', ['-n', count, *options], 'candidates.vpl'
     photons = ['--photons', '100k']
     yield 'lit.vpl', 'vpl-estimate', photons, 'vpls.vpl'
-    yield 'even.vpl', 'vpl-estimate', [*photons, '--scatter', 'even'], 'vpls.vpl'
+    yield 'even.vpl', 'vpl-estimate', [*photons, '--method', 'even'], 'vpls.vpl'
     if full:
         yield 'uniform-lit.vpl', 'vpl-estimate', photons, 'uniform.vpl'
         yield 'random-lit.vpl', 'vpl-estimate', [*photons, '--recentre', 'off'], 'random.vpl'
@@ -162,7 +162,7 @@ def main():
     parser.add_argument('--shared', default=ROOT.parent / 'shared/scenes', type=Path)
     parser.add_argument('--only', help='cases whose name holds this text')
     parser.add_argument('--files', action='store_true', help='compare: whole files too')
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
 
     tools, table = Tools(options.bin), {}
     for name, (scene, defines) in scenes(options.shared.resolve()).items():

@@ -5,9 +5,9 @@
 
 #include "core/random.h"
 #include "tests/eliminate/clouds.h"
-#include "tools/eliminate/conflict_graph.h"
+#include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/eliminate.h"
-#include "tools/eliminate/greedy.h"
+#include "tools/eliminate/elimination/greedy.h"
 
 namespace bnvpl {
 namespace {

@@ -12,6 +12,7 @@
 #include <new>
 #include <sstream>
 
+#include "tools/common/build_id.h"
 #include "tools/common/clock.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/standard_streams.h"
@@ -79,6 +80,11 @@ int report() {
   ::_exit(std::uncaught_exceptions() > 0 ? failForMemory() : fail(kExitInternal, "internal error"));
 }
 
+unsigned parseThreads(const std::string& text) {
+  constexpr Option option = wholeOption("threads", "0", 0, 65536, {}, {});
+  return static_cast<unsigned>(std::get<uint64_t>(parseValue(option, text)));
+}
+
 // False when the answer was --help or --version.
 bool parse(CLI::App& cli, int argc, char** argv) {
   try {
@@ -95,61 +101,20 @@ bool parse(CLI::App& cli, int argc, char** argv) {
 }  // namespace
 
 void addToolOptions(CLI::App& cli, ToolOptions& options) {
-  cli.add_option("--threads", options.threads, "worker threads; 0 takes every core")
-      ->capture_default_str();
+  cli.add_option_function<std::string>(
+         "--threads", [&options](const std::string& text) { options.threads = parseThreads(text); },
+         "worker threads; 0 takes every core")
+      ->type_name("NUMBER")
+      ->default_str("0");
   cli.add_flag("--quiet", options.quiet, "no progress and no summary; errors and warnings stay");
   cli.add_option("--stats", options.stats, "also write the summary to this file, as JSON");
-  cli.set_version_flag("--version", cli.get_name() + " " + BNVPL_VERSION);
+  cli.set_version_flag("--version", cli.get_name() + " " + buildId());
   cli.get_formatter()->column_width(34);
 }
 
 void addDepfileOption(CLI::App& cli, ToolOptions& options) {
   cli.add_option("--depfile", options.depfile,
                  "write the files that were read, in Make syntax, for make and ninja");
-}
-
-uint64_t parseCount(const std::string& text) {
-  const auto fail = [&](const char* why) -> UsageError {
-    return UsageError("'" + text + "' " + why + "; write a whole number such as 3000, 3k or 10M");
-  };
-  size_t used = 0;
-  double value = 0.0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    throw fail("is not a count");
-  }
-  const std::string suffix = text.substr(used);
-  if (suffix == "k" || suffix == "K")
-    value *= 1e3;
-  else if (suffix == "m" || suffix == "M")
-    value *= 1e6;
-  else if (suffix == "g" || suffix == "G")
-    value *= 1e9;
-  else if (!suffix.empty())
-    throw fail("has an unknown suffix");
-  if (!(value >= 1.0) || value > 0x1p53) throw fail("is out of range");
-  // 2.01 times 1e3 is 2009.9999999999998: the decimal point may cost the last digits.
-  const double whole = std::round(value);
-  if (std::fabs(value - whole) > 1e-15 * value) throw fail("is not whole");
-  return static_cast<uint64_t>(whole);
-}
-
-CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
-                      const std::string& help) {
-  return cli
-      .add_option_function<std::string>(
-          flags,
-          [&value](const std::string& text) {
-            try {
-              value = parseCount(text);
-            } catch (const UsageError& e) {
-              throw CLI::ValidationError(e.what());
-            }
-          },
-          help)
-      ->type_name("COUNT")
-      ->default_str(std::to_string(value));
 }
 
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
@@ -174,6 +139,11 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
   } catch (...) {
     return report();
   }
+}
+
+unsigned threadsInUse() {
+  return static_cast<unsigned>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
 void requireWritable(const std::vector<fs::path>& outputs) {
@@ -204,7 +174,7 @@ std::string hashText(uint64_t hash) {
 }
 
 Json stageRecord(const std::string& tool, const Json& options, const Json& inputs) {
-  return {{"tool", tool}, {"version", BNVPL_VERSION}, {"options", options}, {"inputs", inputs}};
+  return {{"tool", tool}, {"version", buildId()}, {"options", options}, {"inputs", inputs}};
 }
 
 std::string extendProvenance(const std::string& earlier, const Json& record) {
@@ -215,7 +185,7 @@ std::string extendProvenance(const std::string& earlier, const Json& record) {
 
 Summary::Summary(std::string tool) : tool_(std::move(tool)), startS_(nowS()) {
   values_["tool"] = tool_;
-  values_["version"] = BNVPL_VERSION;
+  values_["version"] = buildId();
 }
 
 void Summary::add(const std::string& key, Json value, const std::string& text) {

@@ -4,16 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/errors.h"
 #include "formats/atomic_file.h"
+#include "tools/common/stage_cli.h"
 
 namespace bnvpl {
-
-using Json = nlohmann::ordered_json;
 
 // Options that do not change what is computed, and therefore never enter a provenance record.
 struct ToolOptions {
@@ -27,17 +25,13 @@ struct ToolOptions {
 void addToolOptions(CLI::App& cli, ToolOptions& options);
 void addDepfileOption(CLI::App& cli, ToolOptions& options);
 
-// A count option that takes 3000, 3k, 10M or 1G (powers of 1000), from 1 up.
-CLI::Option* addCount(CLI::App& cli, const std::string& flags, uint64_t& value,
-                      const std::string& help);
-
-// "3k" -> 3000. Throws UsageError on anything else than a positive whole number within 2^53.
-uint64_t parseCount(const std::string& text);
-
 // Parses argv, limits oneTBB to --threads, calls `work`, and turns exceptions into one line on
 // stderr and the documented exit code. The only try/catch of a tool. Signals: interrupt.h.
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
+
+// Worker threads that the work of runTool() may take.
+unsigned threadsInUse();
 
 // Refuses outputs that could not be written, before the work. Empty paths are not asked for.
 void requireWritable(const std::vector<fs::path>& outputs);
@@ -46,7 +40,8 @@ void requireWritable(const std::vector<fs::path>& outputs);
 CLI::Validator inRange(double least, double most);
 
 // What a stage did, and that record behind those of its input (empty for the first stage).
-//   {"tool": "vpl-place", "version": "0.1.0", "options": {...}, "inputs": {"scene": "<hash>"}}
+//   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":
+//   "<hash>"}}
 Json stageRecord(const std::string& tool, const Json& options, const Json& inputs);
 std::string extendProvenance(const std::string& earlier, const Json& record);
 std::string hashText(uint64_t hash);  // 16 hexadecimal digits

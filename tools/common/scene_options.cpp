@@ -1,16 +1,33 @@
 #include "tools/common/scene_options.h"
 
+#include "scene/scene_hash.h"
+#include "tools/common/film_size.h"
+
 namespace bnvpl {
 
-void addSceneOptions(CLI::App& cli, SceneOptions& options) {
-  cli.add_option("scene", options.file, "the scene (.toml)")->required();
+namespace {
+
+void addDefine(CLI::App& cli, SceneOptions& options) {
   cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
       ->take_all()
       ->allow_extra_args(false);  // or it would swallow what follows
 }
 
-Scene loadSceneFor(const std::string& tool, const SceneOptions& options) {
+}  // namespace
+
+void addSceneOptions(CLI::App& cli, SceneOptions& options) {
+  cli.add_option("scene", options.file, "the scene (.toml)")->required();
+  addDefine(cli, options);
+}
+
+CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {
+  CLI::Option* option = cli.add_option("--scene", options.file, help);
+  addDefine(cli, options);
+  return option;
+}
+
+Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings) {
   Defines defines;
   for (const std::string& d : options.defines) {
     const size_t equals = d.find('=');
@@ -20,8 +37,12 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options) {
     defines[d.substr(0, equals)] = d.substr(equals + 1);
   }
   Scene scene = loadScene(options.file, defines);
-  printWarnings(tool, scene.warnings);
+  if (warnings == Warnings::Print) printWarnings(tool, scene.warnings);
   return scene;
+}
+
+Json viewRecord(const Scene& scene) {
+  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene))}};
 }
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

@@ -14,9 +14,17 @@ struct SceneOptions {
 
 // The positional argument SCENE and --define.
 void addSceneOptions(CLI::App& cli, SceneOptions& options);
+// The same for tools that need a scene at times: --scene SCENE and --define.
+CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);
 
-// Loads the scene and prints its warnings in the tool's name.
-Scene loadSceneFor(const std::string& tool, const SceneOptions& options);
+// Loads the scene and prints its warnings in the tool's name. They are silent where an earlier
+// stage has read the same scene, by its content, and so has said them.
+enum class Warnings { Print, Silent };
+Scene loadSceneFor(const std::string& tool, const SceneOptions& options,
+                   Warnings warnings = Warnings::Print);
+
+// What a view is, for records: its size in pixels, and a hash of camera and film.
+Json viewRecord(const Scene& scene);
 
 // Refuses rows that lie on another scene. `cure` says what to rerun.
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

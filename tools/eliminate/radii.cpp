@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
+#include "core/errors.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "spatial/local_density.h"
@@ -51,34 +53,47 @@ double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal
   return areaOf(position, normal, k);
 }
 
+// Radii beyond floats, and their squares, come from candidates that lie absurdly far apart or from
+// an absurd --area.
+void requireUsable(const std::vector<float>& radii) {
+  for (const float r : radii) {
+    if (std::isnormal(r * r)) continue;
+    std::ostringstream text;
+    text << "the radius of a VPL would be " << r
+         << ", beyond what floats can square; see --area, and the positions of the candidates";
+    throw InputError(text.str());
+  }
+}
+
 }  // namespace
 
 double packedDiskRadius(double area, double count) { return std::sqrt(area / (kTwoSqrt3 * count)); }
 
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
-                              const EliminateOptions& options) {
+                              double count, const Values& options) {
   const auto candidates = static_cast<double>(position.size());
-  const auto kept = static_cast<double>(options.count);
-  const auto k = static_cast<unsigned>(options.neighbours);
+  const auto k = static_cast<unsigned>(options.whole("neighbours"));
+  const double given = options.real("area");
   CandidateRadii result;
-  if (options.density == Density::Uniform) {
-    result.area =
-        options.area > 0.0 ? options.area : estimateArea(position, normal, k, options.seed);
-    result.rMax = packedDiskRadius(result.area, kept);
+  if (options.text("density") == "uniform") {
+    result.area = given > 0.0 ? given : estimateArea(position, normal, k, 1);
+    result.rMax = packedDiskRadius(result.area, count);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));
+    requireUsable(result.radius);
     return result;
   }
   result.radius = surfaceShares(position, normal, k);
   const double estimate = sumOf(result.radius);
-  result.area = options.area > 0.0 ? options.area : estimate;
-  result.rMax = packedDiskRadius(result.area, kept);
+  result.area = given > 0.0 ? given : estimate;
+  result.rMax = packedDiskRadius(result.area, count);
   // Density in 1/m2 of what is kept: N ((1 - w) / (M share) + w / A), which integrates to N.
-  const double shareScale = result.area / estimate, w = options.uniformShare;
+  const double shareScale = result.area / estimate, w = options.real("uniform-share");
   parallelFor(position.size(), 4096, [&](size_t i) {
     const double share = static_cast<double>(result.radius[i]) * shareScale;
     const double density = (1.0 - w) / (candidates * share) + w / result.area;
-    result.radius[i] = static_cast<float>(packedDiskRadius(1.0 / density, kept));
+    result.radius[i] = static_cast<float>(packedDiskRadius(1.0 / density, count));
   });
+  requireUsable(result.radius);
   return result;
 }
 

@@ -1,9 +1,27 @@
 // The radius that each candidate would stand for if it was kept.
 #pragma once
 
-#include "tools/eliminate/eliminate.h"
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/vec3.h"
+#include "tools/common/option.h"
 
 namespace bnvpl {
+
+// Of every method that gives its rows such radii.
+inline constexpr std::array kRadiusOptions{
+    choiceOption("density", "local", "uniform|local",
+                 "uniform: one radius; local: the radius follows the candidates' density"),
+    // It bounds the radius by r_max / sqrt(share): an isolated candidate must not stand for half a
+    // room.
+    neededBy("density=local",
+             realOption("uniform-share", "0.2", 0, 1, "share of the VPLs",
+                        "how many are spent evenly; the rest follows the candidates")),
+    realOption("area", "0", 0, 1e300, "scene units squared",
+               "indirectly visible area; 0: estimated from the candidates"),
+    wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate")};
 
 struct CandidateRadii {
   std::vector<float> radius;  // one per candidate, world units, positive
@@ -14,12 +32,14 @@ struct CandidateRadii {
 // Largest radius of `count` equal disks packed on `area`: sqrt(A / (2 sqrt(3) N)).
 double packedDiskRadius(double area, double count);
 
-// Uniform: r_max for every candidate. Local: from a density that mixes the candidates' own, known
-// by the surface share of each, with an even one (options.uniformShare). The area is the sum of the
-// shares, which for uniform density is taken from an evenly spaced 16,384 of them, and of
-// 2^18 candidates drawn at random where there are more. With options.area the shares are scaled to
-// add up to it. Candidates should be in an order that keeps neighbours together (mortonOrder).
+// Radii for keeping `count` of the candidates, by kRadiusOptions. Uniform: r_max for every
+// candidate. Local: from a density that mixes the candidates' own, known by the surface share of
+// each, with an even one. The area is the sum of the shares, which for uniform density is taken
+// from an evenly spaced 16,384 of them, and of 2^18 candidates drawn at random where there are
+// more. With --area the shares are scaled to add up to it. Candidates should be in an order that
+// keeps neighbours together (mortonOrder). Throws InputError for radii beyond what floats can
+// square.
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
-                              const EliminateOptions& options);
+                              double count, const Values& options);
 
 }  // namespace bnvpl

@@ -19,20 +19,13 @@ CLI::App* addInfo(CLI::App& cli, InfoCommand& c) {
   return sub;
 }
 
-CLI::Option* addScene(CLI::App& sub, SceneOptions& scene, const std::string& help) {
-  sub.add_option("--define", scene.defines, "value of ${NAME} in the scene's file names")
-      ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  return sub.add_option("--scene", scene.file, help);
-}
-
 CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
   CLI::App* sub = cli.add_subcommand("check", "Verify files; several also against each other.");
   sub->add_option("files", c.files, ".vpl and .exr")->required();
   sub->add_flag("--deep", c.deep,
                 "the files must be one whole chain, row by row; what is broken comes with the "
                 "commands that mend it");
-  addScene(*sub, c.scene, "deep: the scene (.toml) that all must come from");
+  addSceneFlag(*sub, c.scene, "deep: the scene (.toml) that all must come from");
   return sub;
 }
 
@@ -47,7 +40,7 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   CLI::App* sub =
       cli.add_subcommand("plot", "Draw the rows as dots over the camera's view of the scene.");
   sub->add_option("file", c.file, ".vpl")->required();
-  addScene(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
+  addSceneFlag(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
   sub->add_option("-o,--output", c.output, "picture (.png)")->required();
   sub->add_option("--dot", c.plot.dotPixels, "diameter of a dot, pixels")
       ->check(inRange(1.0f, 100.0f))

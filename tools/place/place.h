@@ -3,25 +3,14 @@
 
 #include "core/progress.h"
 #include "formats/vpl_table.h"
+#include "tools/common/method.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 
 namespace bnvpl {
 
-enum class PlaceMethod { Camera, Light };
-
-struct PlaceOptions {
-  uint64_t count = 120000;  // rows, exactly
-  PlaceMethod method = PlaceMethod::Camera;
-  // camera: diffuse vertices of a path, the first of which is never a candidate; 2 keeps the
-  // vertices that light the view directly. light: hits of a photon.
-  unsigned depth = 2;
-  unsigned lightDepth = 32;
-  uint64_t seed = 1;
-};
-
 struct PlaceResult {
-  VplTable table;
+  VplTable table;      // of stage Candidates or Lit, as the method says; exactly `count` rows
   uint64_t paths = 0;  // traced until the count was reached
   uint64_t rays = 0;
   uint64_t nonFinite = 0;  // vertices or photons left out because a value was NaN or infinite
@@ -29,16 +18,22 @@ struct PlaceResult {
   uint64_t escaped = 0, absorbed = 0, complete = 0;
 };
 
-// Camera paths over the whole film, stratified so that every prefix covers it evenly. Specular
-// vertices are passed through; each diffuse vertex after the first becomes a candidate that faces
-// the side it was seen from, up to options.depth. Rows are in path order: the first N of 2N are
-// those of N. Throws InputError when the view yields too few within a bounded effort.
-PlaceResult placeFromCamera(const RayScene& rays, const PlaceOptions& options,
-                            const ProgressFn& progress = {});
+struct PlaceInputs {
+  const RayScene& rays;
+  const LightSet& lights;
+  const ProgressFn& progress;  // counts VPLs
+};
 
-// Instant radiosity (Keller 1997): a VPL at every diffuse hit of photons from the lights, with the
-// flux that leaves there. The table is of stage Lit and needs no further stage.
-PlaceResult placeFromLights(const RayScene& rays, const LightSet& lights,
-                            const PlaceOptions& options, const ProgressFn& progress = {});
+// Rows are in path order: the first N of 2N are those of N. Throws InputError when the scene yields
+// too few within a bounded effort.
+using PlaceMethod = Method<PlaceResult (*)(const PlaceInputs&, const Values&)>;
+std::span<const PlaceMethod* const> placeMethods();  // one for each folder beside this file
+
+// count, seed, method, and the methods' own.
+const StageSpec& placeSpec();
+
+// A pure function of the scene and the options: any number of threads gives the same bytes.
+PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
+                  const ProgressFn& progress = {});
 
 }  // namespace bnvpl

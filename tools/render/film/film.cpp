@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "tools/render/film/splats.h"
 #include "transport/camera.h"
 
 namespace bnvpl {
@@ -14,49 +15,30 @@ constexpr uint32_t kTile = 8;           // pixels; a tile's samples meet the sam
 constexpr uint32_t kSlotsAtOnce = 16;   // samples of each pixel that are held in memory together
 constexpr uint32_t kSlotsPerPass = 64;  // over the whole image; work stops between tiles of a pass
 
-// Means over a pixel's samples, in the order of the channels below.
-struct Pixel {
-  std::array<double, 20> sum{};
-};
-enum Slot {
-  kDirect = 0,
-  kIndirect = 3,
-  kClamped = 6,
-  kAlbedo = 9,
-  kNormal = 12,
-  kDepth = 15,
-  kHits = 16,
-  kExtended = 17
-};
-
-void addTo(Pixel& p, size_t slot, Vec3 v) {
+void addTo(PixelSums& p, size_t slot, Vec3 v) {
   p.sum[slot] += double{v.x};
   p.sum[slot + 1] += double{v.y};
   p.sum[slot + 2] += double{v.z};
 }
-
-struct PixelCounts {
-  uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
-};
 
 bool isFinite(const RadianceSample& r) {
   return isFinite(r.direct + r.indirect) && isFinite(r.clamped) && isFinite(r.extended) &&
          isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
 }
 
-void addSample(const RadianceSample& r, Pixel& pixel, PixelCounts& counts) {
+void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   if (!isFinite(r)) {
     ++counts.nonFinite;
     return;
   }
-  addTo(pixel, kDirect, r.direct);
-  addTo(pixel, kIndirect, r.indirect);
-  addTo(pixel, kClamped, r.clamped);
-  addTo(pixel, kExtended, r.extended);
-  addTo(pixel, kAlbedo, r.albedo);
-  addTo(pixel, kNormal, r.normal);
-  pixel.sum[kDepth] += double{r.depth};
-  if (r.depth > 0.0f) pixel.sum[kHits] += 1.0;
+  addTo(pixel, PixelSums::kDirect, r.direct);
+  addTo(pixel, PixelSums::kIndirect, r.indirect);
+  addTo(pixel, PixelSums::kClamped, r.clamped);
+  addTo(pixel, PixelSums::kExtended, r.extended);
+  addTo(pixel, PixelSums::kAlbedo, r.albedo);
+  addTo(pixel, PixelSums::kNormal, r.normal);
+  pixel.sum[PixelSums::kDepth] += double{r.depth};
+  if (r.depth > 0.0f) pixel.sum[PixelSums::kHits] += 1.0;
   counts.cut += r.cut;
   counts.shadowRays += r.shadowRays;
 }
@@ -68,7 +50,7 @@ struct Progress {
   SplatProgress splats;
 };
 std::string encode(const Progress& progress, const std::vector<uint8_t>& done,
-                   const std::vector<Pixel>& pixels, const std::vector<PixelCounts>& counts) {
+                   const std::vector<PixelSums>& pixels, const std::vector<PixelCounts>& counts) {
   std::string bytes;
   appendArray(bytes, std::array{progress});
   appendArray(bytes, done);
@@ -77,7 +59,7 @@ std::string encode(const Progress& progress, const std::vector<uint8_t>& done,
   return bytes;
 }
 
-Progress decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<Pixel>& pixels,
+Progress decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<PixelSums>& pixels,
                 std::vector<PixelCounts>& counts) {
   std::array<Progress, 1> progress{};
   takeArray(bytes, progress);
@@ -112,18 +94,20 @@ CameraSample makeSample(const Scene& scene, uint64_t key, uint32_t spp, uint32_t
 
 void renderTile(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                 uint64_t key, const Tile& tile, uint32_t firstSlot, uint32_t endSlot,
-                std::vector<Pixel>& pixels, std::vector<PixelCounts>& counts) {
+                std::vector<PixelSums>& pixels, std::vector<PixelCounts>& counts) {
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
   for (uint32_t slot = firstSlot, slotEnd; slot < endSlot; slot = slotEnd) {
-    slotEnd = slot + std::min(endSlot - slot, kSlotsAtOnce);  // no sum beyond 2^32
+    slotEnd =
+        slot + std::min(endSlot - slot,
+                        integrator.wholePixels ? UINT32_MAX : kSlotsAtOnce);  // no sum beyond 2^32
     samples.clear();
     for (uint32_t s = slot; s < slotEnd; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
         samples.push_back(makeSample(scene, key, options.spp, tile.x(p), tile.y(p), s));
       }
     }
-    integrator({{tile.pixels(), tile.x1 - tile.x0, slot, options.spp, tileKey}, samples});
+    integrator.samples({{tile.pixels(), tile.x1 - tile.x0, slot, options.spp, tileKey}, samples});
     for (size_t k = 0; k < samples.size(); ++k) {
       const auto p = static_cast<uint32_t>(k % tile.pixels());
       const size_t i = size_t{tile.y(p)} * scene.film.width + tile.x(p);
@@ -132,48 +116,40 @@ void renderTile(const Scene& scene, const Integrator& integrator, const FilmOpti
   }
 }
 
-// Channels of the image and where their values lie in a Pixel.
-void addChannels(const std::vector<Pixel>& pixels, double perSample, const FilmOptions& options,
-                 Image& image) {
-  const auto rgb = [&](const std::string& prefix, const char* names, auto&& value) {
-    for (size_t c = 0; c < 3; ++c) {
-      std::vector<float>& data = image.add(prefix + names[c]);
-      for (size_t i = 0; i < data.size(); ++i)
-        data[i] = static_cast<float>(value(pixels[i], c) * perSample);
+void addChannels(const Layer& layer, const std::vector<PixelSums>& pixels,
+                 const std::vector<PixelCounts>& counts, double perSample, Image& image) {
+  for (size_t c = 0; c < std::max<size_t>(1, layer.channels.size()); ++c) {
+    std::vector<float>& data = image.add(channelName(layer, c));
+    for (size_t i = 0; i < data.size(); ++i) {
+      data[i] = static_cast<float>(layer.value({pixels[i], counts[i], perSample}, c));
     }
-  };
-  const auto slot = [](size_t first) {
-    return [first](const Pixel& p, size_t c) { return p.sum[first + c]; };
-  };
-  const bool direct = options.only != Only::Indirect, indirect = options.only != Only::Direct;
-  rgb("", "RGB", [&](const Pixel& p, size_t c) {
-    return (direct ? p.sum[kDirect + c] : 0.0) + (indirect ? p.sum[kIndirect + c] : 0.0);
-  });
-  if (options.layers & kLayerDirect) rgb("direct.", "RGB", slot(kDirect));
-  if (options.layers & kLayerIndirect) rgb("indirect.", "RGB", slot(kIndirect));
-  if (options.layers & kLayerClamped) rgb("clamped.", "RGB", slot(kClamped));
-  if (options.layers & kLayerAlbedo) rgb("albedo.", "RGB", slot(kAlbedo));
-  if (options.layers & kLayerNormal) rgb("N.", "XYZ", slot(kNormal));
-  if (options.layers & kLayerDepth) {
-    std::vector<float>& z = image.add("Z");
-    for (size_t i = 0; i < z.size();
-         ++i) {  // over the samples that hit; the void is infinitely far
-      const Pixel& p = pixels[i];
-      z[i] = p.sum[kHits] > 0.0 ? static_cast<float>(p.sum[kDepth] / p.sum[kHits]) : INFINITY;
+  }
+}
+
+// What the image shows.
+void addImage(const std::vector<PixelSums>& pixels, double perSample, Only only, Image& image) {
+  const bool direct = only != Only::Indirect, indirect = only != Only::Direct;
+  for (size_t c = 0; c < 3; ++c) {
+    std::vector<float>& data = image.add(std::string(1, "RGB"[c]));
+    for (size_t i = 0; i < data.size(); ++i) {
+      const auto& sum = pixels[i].sum;
+      data[i] = static_cast<float>(((direct ? sum[PixelSums::kDirect + c] : 0.0) +
+                                    (indirect ? sum[PixelSums::kIndirect + c] : 0.0)) *
+                                   perSample);
     }
   }
 }
 
 }  // namespace
 
-Image renderFilm(const Scene& scene, const FilmSources& sources, const FilmOptions& options,
+Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint32_t width = scene.film.width, height = scene.film.height;
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
   Image image;
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
-  std::vector<Pixel> pixels(image.pixelCount());
+  std::vector<PixelSums> pixels(image.pixelCount());
   std::vector<PixelCounts> counts(image.pixelCount());
 
   const size_t tilesX = (width + kTile - 1) / kTile, tilesY = (height + kTile - 1) / kTile;
@@ -185,9 +161,10 @@ Image renderFilm(const Scene& scene, const FilmSources& sources, const FilmOptio
   std::vector<uint8_t> done(tilesX * tilesY);
   Progress at;
   if (!resume.state.empty()) at = decode(resume.state, done, pixels, counts);
-  const uint64_t passes = (uint64_t{options.spp} + kSlotsPerPass - 1) / kSlotsPerPass;
+  const uint64_t perPass = integrator.wholePixels ? options.spp : kSlotsPerPass;
+  const uint64_t passes = (options.spp + perPass - 1) / perPass;
   const auto slotsBefore = [&](uint64_t p) {
-    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * kSlotsPerPass));
+    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * perPass));
   };
   const auto state = [&] { return encode(at, done, pixels, counts); };
   if (progress) progress(image.pixelCount() * slotsBefore(at.pass) + at.splats.photons);
@@ -203,33 +180,27 @@ Image renderFilm(const Scene& scene, const FilmSources& sources, const FilmOptio
         done, resume,
         [&](size_t index) {
           const Tile tile = tileOf(index);
-          renderTile(scene, sources.samples, options, key, tile, begin, end, pixels, counts);
+          renderTile(scene, integrator, options, key, tile, begin, end, pixels, counts);
           report(tile);
         },
         state);
   }
-  if (sources.photons) {
+  if (integrator.photons) {
     addSplats(
-        sources.photons, uint64_t{options.spp} * image.pixelCount(), at.splats,
+        integrator.photons, uint64_t{options.spp} * image.pixelCount(), at.splats,
         [&](const Splat& splat) {
           if (!isFinite(splat.radiance)) {
             ++counts[splat.pixel].nonFinite;
             return;
           }
-          addTo(pixels[splat.pixel], kIndirect, splat.radiance);
+          addTo(pixels[splat.pixel], PixelSums::kIndirect, splat.radiance);
         },
         progress, resume, state);
   }
 
   const double perSample = 1.0 / options.spp;
-  addChannels(pixels, perSample, options, image);
-  const auto perPixel = [&](const std::string& name, uint64_t PixelCounts::*member) {
-    std::vector<float>& data = image.add(name);
-    for (size_t i = 0; i < data.size(); ++i)
-      data[i] = static_cast<float>(double(counts[i].*member) * perSample);
-  };
-  if (options.layers & kLayerCutSize) perPixel("cutsize", &PixelCounts::cut);
-  if (options.layers & kLayerShadowRays) perPixel("shadowrays", &PixelCounts::shadowRays);
+  addImage(pixels, perSample, options.only, image);
+  for (const Layer* layer : options.layers) addChannels(*layer, pixels, counts, perSample, image);
 
   const auto meanOf = [&](size_t slot) {
     return parallelSum(
@@ -240,10 +211,10 @@ Image renderFilm(const Scene& scene, const FilmSources& sources, const FilmOptio
                }) *
            perSample / static_cast<double>(pixels.size());
   };
-  stats.direct = meanOf(kDirect);
-  stats.indirect = meanOf(kIndirect);
-  stats.clamped = meanOf(kClamped);
-  stats.extended = meanOf(kExtended);
+  stats.direct = meanOf(PixelSums::kDirect);
+  stats.indirect = meanOf(PixelSums::kIndirect);
+  stats.clamped = meanOf(PixelSums::kClamped);
+  stats.extended = meanOf(PixelSums::kExtended);
   stats.samples = uint64_t{options.spp} * pixels.size();
   stats.nonFinite = at.splats.nonFinite;
   for (const PixelCounts& c : counts) {

@@ -1,31 +1,15 @@
-// Light that finds its pixels by itself: photons that are followed from the lights and connected
-// with the camera.
+// Photons that are followed from the lights, for the whole film.
 #pragma once
 
 #include <algorithm>
-#include <functional>
 #include <vector>
 
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/resume.h"
-#include "core/vec3.h"
+#include "tools/render/integrator/splats.h"
 
 namespace bnvpl {
-
-struct Splat {
-  uint32_t pixel;
-  Vec3 radiance;  // over the film's pixels: the sum over all photons by the samples of a pixel is
-                  // the pixel's value
-};
-
-struct Splats {
-  std::vector<Splat> list;
-  uint64_t nonFinite = 0;  // photons or their branches, dropped as their flux was NaN or infinite
-};
-
-// Follows the photons [begin, end) and appends what they bring.
-using Splatter = std::function<void(uint64_t begin, uint64_t end, Splats& out)>;
 
 // How far a splatter is.
 struct SplatProgress {

@@ -41,8 +41,7 @@ float maxEmitterCosine(const LightNode& n, Vec3 at) {
 
 }  // namespace
 
-float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
-  if (n.leaf()) return 0.0f;
+float sentBound(const LightNode& n, const ClusterReceiver& receiver) {
   const Vec3 at = receiver.bsdf.point().position;
   const float emitter = maxEmitterCosine(n, at);
   if (emitter <= 0.0f) return 0.0f;
@@ -50,8 +49,14 @@ float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
       maxCosine(n.bounds, at, receiver.normal),
       [&](Vec3 axis) { return maxCosine(n.bounds, at, AxisFrame(axis)); });
   const Vec3 light = value * n.intensity;
-  const float sum = (light.x + light.y + light.z) * emitter;
-  return sum > 0.0f ? sum * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
+  return (light.x + light.y + light.z) * emitter;
+}
+
+float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
+  if (n.leaf()) return 0.0f;
+  const float sent = sentBound(n, receiver);
+  const Vec3 at = receiver.bsdf.point().position;
+  return sent > 0.0f ? sent * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
 }
 
 }  // namespace bnvpl

@@ -13,6 +13,15 @@ struct ClusterReceiver {
   AxisFrame normal;
 };
 
+// Upper bound of what a cluster can send, but for 1/d^2 and visibility: BSDF, cosines and intensity,
+// summed over the channels, W/sr.
+float sentBound(const LightNode& n, const ClusterReceiver& receiver);
+
+// Squared distance to the farthest point of a box.
+inline float farthestSquared(const Bounds& box, Vec3 at) {
+  return lengthSquared(max(at - box.lower, box.upper - at));
+}
+
 // Upper bound on the error of taking one VPL for the whole cluster, summed over the channels;
 // visibility counts as full (Walter et al. 2005, section 4.1). 0 for a leaf.
 float errorBound(const LightNode& n, const ClusterReceiver& receiver);

@@ -1,5 +1,7 @@
 #include "tools/render/compensate/near_field/near_field.h"
 
+#include <memory>
+
 #include "core/random.h"
 #include "core/sampling.h"
 
@@ -89,8 +91,8 @@ std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
   return (lit_.flux[vpl] - lit_.firstBounceFlux[vpl]) * (1.0f / (kPi * area));
 }
 
-NearField::Missing NearField::missing(const SurfacePoint& seen, float distance,
-                                      const ReachGrid::Lookup& near, Rng& rng) const {
+Missing NearField::missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
+                           Rng& rng) const {
   const Coverage::Found found = coverage_.pick(seen.position, seen.ng, near, rng);
   if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
   const float relative = distance / clampRadius_[*found.vpl];
@@ -98,5 +100,28 @@ NearField::Missing NearField::missing(const SurfacePoint& seen, float distance,
   if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
   return {share, scatteredBy(*found.vpl)};
 }
+
+namespace methods::compensate::near_field {
+
+namespace {
+
+Compensation make(const CompensateInputs& in, const Values&) {
+  const auto field = std::make_shared<const NearField>(in.lit, in.rays, in.clamp);
+  return {
+      [field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) {
+        field->coverage().lookUp(hits, near);
+      },
+      [field](const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near, Rng& rng) {
+        return field->missing(seen, distance,
+                              near ? *near : field->coverage().lookUp(seen.position), rng);
+      }};
+}
+
+}  // namespace
+
+extern const CompensateMethod method{
+    "near-field", "sampled rays bring what the clamp and gaps between VPLs take", {}, make};
+
+}  // namespace methods::compensate::near_field
 
 }  // namespace bnvpl

@@ -7,29 +7,17 @@
 #include <optional>
 #include <vector>
 
-#include "formats/vpl_table.h"
+#include "tools/render/compensate/compensate.h"
 #include "transport/coverage.h"
 
 namespace bnvpl {
 
 class NearField {
  public:
-  // What VPLs do not bring from a point that a ray from a receiver has found.
-  struct Missing {
-    float share = 0.0f;  // of the light from there, 0..1
-    // Radiance that leaves there of light that came by way of other surfaces, W/(m2 sr); empty: has
-    // to be found out, as straight light always has, whose edges a VPL does not know.
-    std::optional<Vec3> scattered;
-  };
-
   // Borrows the table and the scene. `clamp` as for makeVplLights().
   NearField(const VplTable& lit, const RayScene& rays, float clamp);
 
-  // For a point that a ray has found from `distance`, world units.
-  Missing missing(const SurfacePoint& seen, float distance, Rng& rng) const {
-    return missing(seen, distance, coverage_.lookUp(seen.position), rng);
-  }
-  // The same, looked up in coverage() before.
+  // `near`: what coverage() finds at the point.
   Missing missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
                   Rng& rng) const;
   const Coverage& coverage() const { return coverage_; }

@@ -104,7 +104,7 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
 // Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
 // small as the samples of a pixel need it.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
-                      const GatherOptions& options, const TileReceivers& tile) {
+                      const TileCutOptions& options, const TileReceivers& tile) {
   const Probes probes = chooseProbes(tile);
   if (!probes[0]) return {};
   struct Open {
@@ -117,7 +117,7 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
   const std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
   const ProbeLanes all(probes, light);
   TileCut cut;
-  cut.allowed = options.allowedError() * std::sqrt(static_cast<float>(tile.allSlots));
+  cut.allowed = options.error * std::sqrt(static_cast<float>(tile.allSlots));
   const double most = double{cut.allowed} * double{cut.allowed} * double{kProbes};
   const float darkest = *std::min_element(light.begin(), light.end());
   cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;

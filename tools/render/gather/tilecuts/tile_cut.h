@@ -6,7 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "tools/render/gather.h"
+#include "tools/render/gather/gather.h"
+#include "tools/render/light_tree/cut_options.h"
 
 namespace bnvpl {
 
@@ -82,6 +83,11 @@ inline bool surelyFar(const LightNode& n, float allowed, const Bounds& receivers
   return light * falloff(lengthSquared(gap), n.clamp2) <= allowed;
 }
 
+struct TileCutOptions {
+  float error = 0.05f;     // standard deviation to allow a pixel, as a share of its tile's light
+  uint32_t maxCut = 1000;  // clusters
+};
+
 // Clusters, and the deviation that is allowed to one sample, W/(m2 sr), summed over channels.
 struct TileCut {
   std::vector<uint32_t> nodes;
@@ -90,6 +96,6 @@ struct TileCut {
 };
 // Empty where nothing is to be lit. Borrows nothing.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
-                      const GatherOptions& options, const TileReceivers& tile);
+                      const TileCutOptions& options, const TileReceivers& tile);
 
 }  // namespace bnvpl

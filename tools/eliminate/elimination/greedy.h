@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/eliminate/conflict_graph.h"
+#include "tools/eliminate/elimination/conflict_graph.h"
 
 namespace bnvpl {
 

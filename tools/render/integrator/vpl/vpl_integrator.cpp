@@ -1,7 +1,9 @@
-#include "tools/render/integrators.h"
+#include "tools/render/integrator/vpl/vpl_integrator.h"
 
 #include <algorithm>
 #include <array>
+
+#include "tools/render/integrator/camera_vertex.h"
 
 namespace bnvpl {
 
@@ -14,22 +16,6 @@ constexpr unsigned kMaxExtensions = 16;
 // down the path (measured: docs/theory.md, "Near field").
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 constexpr uint32_t kDrawDirection = 16;  // dimension of a tile's random numbers, after its gather's
-
-// The camera's part of a path, the same for both integrators.
-SpecularPath seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin, Vec3 direction,
-                     Rng& rng, RadianceSample& out) {
-  const SpecularPath end = followSpecularPath(rays, lights, origin, direction, Arrival{}, rng);
-  out.direct = end.metFirst + end.metLater;
-  if (end.firstDistance < INFINITY) {
-    out.depth = end.firstDistance * dot(direction, rays.scene().camera.forward);
-  }
-  return end;
-}
-
-void describeVertex(const Bsdf& bsdf, RadianceSample& out) {
-  out.albedo = bsdf.roughAlbedo();
-  out.normal = bsdf.point().ns;
-}
 
 }  // namespace
 
@@ -48,7 +34,7 @@ void VplIntegrator::render(const TileSamples& tile) const {
     bsdf[i] = &made.emplace_back(rays_.scene(), seen[i].hit);
     describeVertex(*bsdf[i], s.radiance);
   }
-  if (only_ != Only::Direct) gather(tile, seen, bsdf);
+  if (only_ != Only::Direct) gatherTile(tile, seen, bsdf);
   for (size_t i = 0; i < count; ++i) {
     if (!bsdf[i]) continue;
     CameraSample& s = tile.samples[i];
@@ -65,10 +51,10 @@ void VplIntegrator::render(const TileSamples& tile) const {
   }
 }
 
-void VplIntegrator::gather(const TileSamples& tile, std::span<const SpecularPath> seen,
-                           std::span<const Bsdf* const> bsdf) const {
+void VplIntegrator::gatherTile(const TileSamples& tile, std::span<const SpecularPath> seen,
+                               std::span<const Bsdf* const> bsdf) const {
   std::vector<Gathered> gathered(bsdf.size());
-  gatherer_.gather({tile, bsdf}, gathered);
+  gather_.tile({tile, bsdf}, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) {
     RadianceSample& out = tile.samples[i].radiance;
     out.indirect += seen[i].throughput * gathered[i].radiance;
@@ -116,16 +102,17 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
       ++count;
     }
     rays_.closestHits({rays.data(), count}, hits);
-    if (nearField_ && only_ != Only::Direct)
-      nearField_->coverage().lookUp({hits.data(), count}, near);
+    if (compensation_ && only_ != Only::Direct) {
+      compensation_.lookUp({hits.data(), count}, near);
+    }
     for (size_t k = 0; k < count; ++k) extend(made[k], rng, out);
   }
 }
 
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
-// what NearField says is missing: from the scattered light that a VPL knows where it speaks for the
-// point that the ray found, else by lighting that point as the first one, and so on. A light that
-// it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
+// what Compensation says is missing: from the scattered light that a VPL knows where it speaks for
+// the point that the ray found, else by lighting that point as the first one, and so on. A light
+// that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
 void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out) const {
   Vec3 throughput = start.throughput;
   SpecularPath end =
@@ -135,7 +122,7 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
     if (only_ == Only::Direct) return;
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
-    const NearField::Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
+    const Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
     throughput *= end.throughput;
     // Where a VPL knows the scattered light the path ends, so nothing shares the straight light
     // with the shadow ray. Else it goes on, by roulette at full weight.
@@ -152,7 +139,7 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     if (known) {
       light += throughput * (leaving + *missing.scattered) * missing.share;
     } else {
-      const Gathered g = gatherer_.sample(found, first ? kFirstDraws : kLaterDraws, rng);
+      const Gathered g = gather_.point(found, first ? kFirstDraws : kLaterDraws, rng);
       light += throughput * (leaving + g.radiance);
       out.clamped += throughput * g.clamped;
       out.shadowRays += g.shadowRays;
@@ -172,50 +159,12 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
 }
 
 // `near`: of the hit, where that is the first; null: to be looked up.
-NearField::Missing VplIntegrator::missingFrom(const SpecularPath& end,
-                                              const ReachGrid::Lookup* near, Rng& rng) const {
+Missing VplIntegrator::missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
+                                   Rng& rng) const {
   if (!end.rough) return {};
   if (end.links > 0) return {1.0f, {}};
-  if (!nearField_) return {};
-  return near ? nearField_->missing(end.hit, end.hit.distance, *near, rng)
-              : nearField_->missing(end.hit, end.hit.distance, rng);
-}
-
-void PathTracer::render(const TileSamples& tile) const {
-  for (CameraSample& s : tile.samples) s.radiance = trace(s, s.rng);
-}
-
-RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
-  RadianceSample out;
-  SpecularPath vertex = seeFrom(rays_, lights_, sample.origin, sample.direction, rng, out);
-  Vec3 throughput = vertex.throughput;
-  const bool directOnly = only_ == Only::Direct || (!indirect_ && vertex.links == 0);
-  if (directOnly && only_ == Only::Indirect && vertex.rough) {
-    describeVertex(Bsdf(rays_.scene(), vertex.hit), out);
-    return out;
-  }
-  for (unsigned bounce = 0; vertex.rough; ++bounce) {
-    const Bsdf bsdf(rays_.scene(), vertex.hit);
-    if (bounce == 0) describeVertex(bsdf, out);
-    Vec3& sum = bounce == 0 ? out.direct : out.indirect;
-    sum +=
-        throughput * directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::One, 1, rng);
-
-    const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
-    if (rng.next() >= survive) return out;
-    BsdfSample next;
-    if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return out;
-    throughput *= next.weight * (1.0f / survive);
-    const Vec3 from = rays_.offsetOrigin(vertex.hit.position, next.side);
-    const Arrival arrival{next.pdf, vertex.hit.position};
-    vertex = followSpecularPath(rays_, lights_, from, next.wi, arrival, rng);
-    sum += throughput * vertex.metFirst;
-    if (directOnly) return out;
-    out.indirect += throughput * vertex.metLater;
-    if (bounce == maxBounces_) return out;
-    throughput *= vertex.throughput;
-  }
-  return out;
+  if (!compensation_) return {};
+  return compensation_.missing(end.hit, end.hit.distance, near, rng);
 }
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-#include "tools/eliminate/greedy.h"
+#include "tools/eliminate/elimination/greedy.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tools/eliminate/conflict_graph.h"
+#include "tools/eliminate/elimination/conflict_graph.h"
 
 #include <emmintrin.h>
 #include <tbb/parallel_invoke.h>

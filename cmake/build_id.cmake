@@ -1,0 +1,24 @@
+# Writes HEADER with a hash of the sources that decide what the tools compute, so that equal sources have equal
+# build identities and others have others. Run at each build: cmake -DSOURCE=... -DHEADER=... -P build_id.cmake
+file(GLOB_RECURSE files RELATIVE ${SOURCE}
+     ${SOURCE}/core/* ${SOURCE}/formats/* ${SOURCE}/spatial/* ${SOURCE}/scene/* ${SOURCE}/transport/* ${SOURCE}/images/*
+     ${SOURCE}/tools/* ${SOURCE}/cmake/*)
+list(FILTER files INCLUDE REGEX "(\\.(h|cpp|cmake)|CMakeLists\\.txt)$")
+list(FILTER files EXCLUDE REGEX "_test\\.cpp$")
+list(APPEND files CMakeLists.txt)
+list(SORT files)
+set(all "${FLAVOUR}")
+foreach(file ${files})
+  file(SHA256 ${SOURCE}/${file} hash)
+  string(APPEND all "${file} ${hash}\n")
+endforeach()
+string(SHA256 hash "${all}")
+string(SUBSTRING ${hash} 0 12 id)
+set(text "#pragma once\n#define BNVPL_BUILD_ID \"${id}\"\n")
+set(old "")
+if(EXISTS ${HEADER})
+  file(READ ${HEADER} old)
+endif()
+if(NOT old STREQUAL text)
+  file(WRITE ${HEADER} "${text}")
+endif()

@@ -1,0 +1,26 @@
+// A stage's options on its command line, in its record and in its machine-readable help.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/common/option.h"
+
+namespace bnvpl {
+
+using Json = nlohmann::ordered_json;
+
+// Adds every option and slot of the stage; what is typed goes to `given`, for resolve(). Also
+// --help-json. Both must outlive the parsing.
+void addStageOptions(CLI::App& cli, const StageSpec& spec, Given& given);
+
+// The values that decide what is computed, for the record and for a checkpoint's identity.
+Json recordOf(const StageSpec& spec, const Values& values);
+
+// The spec as JSON: {"tool": "vpl-render", "options": [...], "slots": [{"name": "gather",
+// "methods": [{"name": "all", "summary": ..., "options": [...]}]}]}. The docs and the evaluation
+// read it.
+Json describeSpec(const StageSpec& spec);
+
+}  // namespace bnvpl

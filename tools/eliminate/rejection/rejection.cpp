@@ -1,0 +1,131 @@
+// Rejection (Georgiev & Slusallek 2010): VPLs from the lights are accepted with a probability in
+// proportion to what they bring to the image, and weighted by one over it.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/errors.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "spatial/local_density.h"
+#include "tools/eliminate/eliminate.h"
+#include "transport/camera.h"
+#include "transport/specular_path.h"
+#include "transport/virtual_light.h"
+
+namespace bnvpl::methods::eliminate::rejection {
+
+namespace {
+
+constexpr std::array kOptions{
+    seedOption(),
+    countOption("camera-points", "400", 0x1p24, "", "points of the image that VPLs are judged by"),
+    // Keeps every VPL possible: what the points do not see may still be seen, so that the image is
+    // right on average.
+    realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL")};
+constexpr float kClamp = 1.0f;  // of 1/d^2, in units of r_max: else a VPL beside a point takes all
+constexpr unsigned kNeighbours = 20;  // of the radii, as vpl-place --method light
+
+// Spread over the film; those that see nothing are left out.
+std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, uint64_t count) {
+  const Scene& scene = in.rays->scene();
+  std::vector<SurfacePoint> points;
+  for (uint64_t i = 0; i < count; ++i) {
+    const Point2 film = r2Sequence(i, 0.5, 0.5);
+    Rng rng(key, i);
+    const SpecularPath path = followSpecularPath(
+        *in.rays, *in.lights, scene.camera.position,
+        cameraDirection(scene.camera, scene.film, film.x, film.y), Arrival{}, rng);
+    if (path.rough) points.push_back(path.hit);
+  }
+  if (points.empty()) {
+    throw InputError(scene.name(), "the camera sees no surface that VPLs could light; turn it");
+  }
+  return points;
+}
+
+// What row i brings to all points together, summed over the channels.
+double contribution(const VplLights& vpls, size_t i, const RayScene& rays,
+                    const std::vector<SurfacePoint>& points) {
+  double sum = 0.0;
+  for (const SurfacePoint& p : points) {
+    Coupling c;
+    const Bsdf bsdf(rays.scene(), p);
+    if (!couple(vpls, i, bsdf, c)) continue;
+    if (rays.occluded(rays.offsetOrigin(p.position, p.ng), vpls.position[i])) continue;
+    const Vec3 light = c.transfer * vpls.intensity[i];
+    sum += double{light.x} + double{light.y} + double{light.z};
+  }
+  return sum;
+}
+
+// p_i = min(Phi_i / Phi_v + epsilon, 1), with the average Phi_v for which `count` are to be
+// expected. The paper finds it round by round; all contributions are known here, so that it can be
+// solved for: the sum falls with Phi_v.
+std::vector<double> probabilities(const std::vector<double>& brings, double count, double epsilon) {
+  const auto expected = [&](double average) {
+    double sum = 0.0;
+    for (const double b : brings) sum += std::min(1.0, b / average + epsilon);
+    return sum;
+  };
+  double low = 0.0, high = 0.0;
+  for (const double b : brings) high += b;
+  if (expected(high) > count) {
+    throw InputError(
+        "even the VPLs that bring nothing add up to more than -n by their least "
+        "probability; lower --least-probability or keep more");
+  }
+  for (int step = 0; step < 200; ++step) {
+    const double middle = 0.5 * (low + high);
+    (expected(middle) > count ? low : high) = middle;
+  }
+  std::vector<double> p(brings.size());
+  for (size_t i = 0; i < p.size(); ++i) p[i] = std::min(1.0, brings[i] / high + epsilon);
+  return p;
+}
+
+Kept make(const EliminateInputs& in, const Values& options) {
+  const VplTable& all = in.candidates;
+  const uint64_t key = streamKey(options.whole("seed"), Stream::Eliminate) + 1;
+  const std::vector<SurfacePoint> points = cameraPoints(in, key, options.whole("camera-points"));
+  const VplLights vpls = makeVplLights(all, *in.rays, kClamp);
+  std::vector<double> brings(all.size(), 0.0);
+  parallelFor(vpls.size(), 16, [&](size_t k) {
+    brings[vpls.row[k]] = contribution(vpls, k, *in.rays, points);
+    if (in.progress) in.progress(1);
+  });
+  if (std::ranges::all_of(brings, [](double b) { return b == 0.0; })) {
+    throw InputError(in.rays->scene().name(),
+                     "no VPL brings any light to what the camera sees; place more with vpl-place");
+  }
+  const std::vector<double> p = probabilities(brings, static_cast<double>(options.whole("count")),
+                                              options.real("least-probability"));
+  Kept kept;
+  std::vector<Vec3> position, normal;
+  for (uint32_t i = 0; i < p.size(); ++i) {
+    if (double{toUnitFloat(random64(key, all.id[i], 1))} >= p[i]) continue;
+    kept.rows.push_back(i);
+    kept.weight.push_back(static_cast<float>(1.0 / p[i]));
+    position.push_back(all.position[i]);
+    normal.push_back(all.normal[i]);
+  }
+  for (const float share : surfaceShares(position, normal, kNeighbours)) {
+    kept.area += double{share};
+    kept.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
+  }
+  kept.rMax =
+      std::sqrt(kept.area / (2.0 * std::sqrt(3.0) * double(std::max<size_t>(1, kept.rows.size()))));
+  return kept;
+}
+
+}  // namespace
+
+extern const EliminateMethod method{
+    "rejection",
+    "VPLs of vpl-place --method light, accepted by what they bring to the image; about -n of them",
+    kOptions,
+    make,
+    VplStage::Lit,
+    /*needsScene=*/true};
+
+}  // namespace bnvpl::methods::eliminate::rejection

@@ -1,0 +1,29 @@
+// The thesis to the letter (section 3.4): a photon's flux is divided evenly among all VPLs within
+// the radius, whatever lies between.
+#include "tools/estimate/photon_scatter.h"
+
+namespace bnvpl::methods::estimate::even {
+
+namespace {
+
+void scatterHit(const PhotonScatter& scatter, const PhotonHit& hit, Rng&, PhotonSums& sums) {
+  uint32_t found = 0;
+  ReachGrid::forEachReaching(hit.near, [&](const ReachGrid::Disk&) { ++found; });
+  if (found == 0) return scatter.tally(sums, kOutside, hit.flux);
+  const Vec3 share = hit.flux * (1.0f / static_cast<float>(found));
+  ReachGrid::forEachReaching(
+      hit.near, [&](const ReachGrid::Disk& d) { scatter.deposit(d.index, hit, share, sums); });
+  scatter.tally(sums, kDeposited, hit.flux);
+}
+
+EstimateResult make(const EstimateInputs& in, const Values& options) {
+  return estimateByPhotons(in, options, scatterHit);
+}
+
+}  // namespace
+
+extern const EstimateMethod method{
+    "even", "photons, evenly to all VPLs within reach: the thesis; leaks through thin walls",
+    kPhotonOptions, make};
+
+}  // namespace bnvpl::methods::estimate::even

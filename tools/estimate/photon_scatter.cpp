@@ -1,0 +1,257 @@
+#include "tools/estimate/photon_scatter.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "tools/estimate/photon_shares.h"
+#include "transport/photon_walk.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr uint64_t kPhotonsPerRange = 4096;
+// How far of the way a VPL moves (measured: guarded/theory.md), and how far above the surface it
+// travels, as a share of its reach.
+constexpr float kRecentreShare = 0.35f;
+constexpr float kRecentreLift = 0.1f;
+
+std::vector<float> reachOf(const VplTable& vpls, float radius) {
+  std::vector<float> reach(vpls.radius);
+  for (float& r : reach) r *= radius;
+  return reach;
+}
+
+// Photons on their way together: each step of one waits for memory, which the others bridge.
+class PhotonBatch {
+ public:
+  PhotonBatch(const RayScene& rays, const PhotonScatter& scatter, const ScatterRule& rule)
+      : rays_(rays),
+        scatter_(scatter),
+        rule_(rule),
+        photons_(kSize),
+        next_(kSize),
+        hits_(kSize),
+        near_(kSize) {}
+
+  // Follows photons to their ends. start(walk) makes the next one, or tells that there is none
+  // left.
+  template <typename Start>
+  void follow(const Start& start, PhotonSums& sums) {
+    size_t size = 0;
+    while (size < kSize && start(photons_[size])) ++size;
+    while (size > 0) {
+      // Those that have ended give their places to new ones.
+      for (size_t i = 0; i < size;) {
+        PhotonWalk& photon = photons_[i];
+        if (photon.goesOn()) {
+          next_[i++] = photon.next();
+          continue;
+        }
+        finish(photon, sums);
+        if (!start(photon)) photon = photons_[--size];
+      }
+      meet(size);
+      for (size_t i = 0; i < size; ++i) {
+        photons_[i].advance(rays_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+          const Vec3 leaving = flux * bsdf.roughAlbedo();
+          ++sums.hits;
+          scatter_.tally(sums, kReflected, leaving);
+          rule_(scatter_, {bsdf.point(), near_[i], leaving, straight}, photons_[i].rng(), sums);
+        });
+      }
+    }
+  }
+
+ private:
+  static constexpr size_t kSize = RayScene::kBatch;
+
+  // What the first `size` photons hit, and the VPLs near it.
+  void meet(size_t size) {
+    rays_.closestHits({next_.data(), size}, hits_);
+    scatter_.coverage().lookUp(std::span(std::as_const(hits_)).first(size), near_);
+  }
+  void finish(const PhotonWalk& photon, PhotonSums& sums) const {
+    const PhotonFate& fate = photon.fate();
+    scatter_.tally(sums, kEscaped, fate.escaped);
+    scatter_.tally(sums, kAbsorbed, fate.absorbed);
+    sums.rays += fate.rays;
+    sums.nonFinite += fate.finite ? 0 : 1;
+  }
+
+  const RayScene& rays_;
+  const PhotonScatter& scatter_;
+  const ScatterRule& rule_;
+  // Of each photon: its walk, its next ray, what that hit, and the VPLs there.
+  std::vector<PhotonWalk> photons_;
+  std::vector<Ray> next_;
+  std::vector<SurfacePoint> hits_;
+  std::vector<ReachGrid::Lookup> near_;
+};
+
+PhotonSums tracePhotons(const EstimateInputs& in, const Values& options, const PhotonShares& shares,
+                        const PhotonScatter& scatter, const ScatterRule& rule) {
+  const uint64_t key = streamKey(options.whole("seed"), Stream::Photons);
+  const auto maxBounces = static_cast<unsigned>(options.whole("max-bounces"));
+  const ProgressFn& progress = in.progress;
+  const Resume& resume = in.resume;
+  const auto fresh = [&] {
+    PhotonSums s;
+    s.vpl.resize(in.vpls.size());
+    return s;
+  };
+  tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
+  const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
+    PhotonBatch batch(in.rays, scatter, rule);
+    uint64_t photon = begin;
+    batch.follow(
+        [&](PhotonWalk& walk) {
+          if (photon == end) return false;
+          Rng rng(key, photon);
+          const size_t light = shares.lightOf(photon++);
+          PhotonStart start = in.lights.emit(light, rng);
+          start.flux *= shares.weight(light);
+          walk = PhotonWalk(start, maxBounces, rng);
+          if (walk.goesOn()) scatter.tally(sums, kEmitted, start.flux);
+          return true;
+        },
+        sums);
+  };
+  std::vector<uint8_t> done((shares.total() + kPhotonsPerRange - 1) / kPhotonsPerRange);
+  PhotonSums before = fresh();
+  if (!resume.state.empty()) decode(resume.state, done, before);
+  const auto photonsOf = [&](size_t range) {
+    return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
+  };
+  for (size_t range = 0; progress && range < done.size(); ++range) {
+    if (done[range]) progress(photonsOf(range));
+  }
+  const auto soFar = [&] {
+    PhotonSums total = before;
+    for (const PhotonSums& s : perThread) total.add(s);
+    return total;
+  };
+  forUnitsLeft(
+      done, resume,
+      [&](size_t range) {
+        const uint64_t begin = range * kPhotonsPerRange, count = photonsOf(range);
+        trace(begin, begin + count, perThread.local());
+        if (progress) progress(count);
+      },
+      [&] { return encode(done, soFar()); });
+  return soFar();
+}
+
+void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter) {
+  vpls.stage = VplStage::Lit;
+  vpls.reach = double{scatter.radius()};
+  vpls.flux.resize(vpls.size());
+  vpls.photons.resize(vpls.size());
+  vpls.relativeError.resize(vpls.size());
+  vpls.firstBounceFlux.resize(vpls.size());
+  vpls.emitPosition = vpls.position;
+  vpls.emitNormal = vpls.normal;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const VplSum& s = sums.vpl[i];
+    double sum = 0.0;
+    for (size_t c = 0; c < 3; ++c) {
+      const double value = scatter.fixed().decode(s.flux[c]);
+      vpls.flux[i][c] = static_cast<float>(value);
+      sum += value / 3.0;
+      vpls.firstBounceFlux[i][c] = static_cast<float>(scatter.fixed().decode(s.straight[c]));
+    }
+    vpls.photons[i] = s.photons;
+    // Deposits taken as independent: sqrt(sum of squares) over the sum.
+    const double rootSquares =
+        std::sqrt(static_cast<double>(s.squares) * 0x1p-20) * scatter.photonPower();
+    vpls.relativeError[i] = sum > 0.0 ? static_cast<float>(rootSquares / sum) : 0.0f;
+  }
+}
+
+// Towards the centre of what was received, along the tangent plane and then down to the surface. A
+// VPL from which the new place is not in plain sight stays.
+void recentre(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter,
+              const RayScene& rays) {
+  parallelFor(vpls.size(), 256, [&](size_t i) {
+    const double weight = double{mean(vpls.flux[i])} / scatter.photonPower();
+    if (!(weight > 0.0)) return;
+    const Vec3 position = vpls.position[i], n = vpls.normal[i];
+    const float reach = scatter.radius() * vpls.radius[i], lift = kRecentreLift * reach;
+    Vec3 offset;
+    for (size_t c = 0; c < 3; ++c) {
+      offset[c] = static_cast<float>(double(sums.vpl[i].moment[c]) * 0x1p-24 / weight) * reach;
+    }
+    offset = (offset + n * -dot(n, offset)) * kRecentreShare;
+    const Vec3 above = position + offset + n * lift;
+    SurfacePoint hit;
+    if (rays.occluded(position + n * lift, above) || !rays.closestHit(above, -n, hit)) return;
+    if (hit.distance > 2.0f * lift || dot(hit.ng, n) < kMinNormalDot) return;
+    vpls.emitPosition[i] = hit.position;
+    vpls.emitNormal[i] = hit.ng;
+  });
+}
+
+EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons) {
+  const auto watts = [&](Tally t) { return scatter.fixed().decode(sums.tally[t]); };
+  EnergyAccount a;
+  a.emitted = watts(kEmitted);
+  a.escaped = watts(kEscaped);
+  a.absorbed = watts(kAbsorbed);
+  a.reflected = watts(kReflected);
+  a.deposited = watts(kDeposited);
+  a.outside = watts(kOutside);
+  a.gap = watts(kGap);
+  a.hidden = watts(kHidden);
+  a.photons = photons;
+  a.hits = sums.hits;
+  a.rays = sums.rays;
+  a.guardRays = sums.guardRays;
+  a.nonFinite = sums.nonFinite;
+  return a;
+}
+
+}  // namespace
+
+PhotonScatter::PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius,
+                             double photonPower, uint64_t photons)
+    : vpls_(vpls),
+      radius_(radius),
+      fixed_(photonPower, photons),
+      photonPower_(photonPower),
+      perPhotonPower_(1.0 / photonPower),
+      coverage_(vpls.position, vpls.normal, reachOf(vpls, radius), rays) {}
+
+void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const {
+  VplSum& s = sums.vpl[vpl];
+  for (size_t c = 0; c < 3; ++c) {
+    const int64_t units = fixed_.encode(double{flux[c]});
+    addChecked(s.flux[c], units);
+    if (hit.firstBounce) addChecked(s.straight[c], units);
+  }
+  const double relative = double{mean(flux)} * perPhotonPower_;
+  addChecked(s.squares, std::llrint(relative * relative * 0x1p20));
+  const Vec3 offset = (hit.point.position - vpls_.position[vpl]) / (radius_ * vpls_.radius[vpl]);
+  for (size_t c = 0; c < 3; ++c)
+    addChecked(s.moment[c], std::llrint(relative * double{offset[c]} * 0x1p24));
+  ++s.photons;
+}
+
+EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
+                                 const ScatterRule& rule) {
+  in.lights.requirePower();
+  const double power = double{mean(in.lights.totalPower())};
+  const PhotonShares shares(in.lights, options.whole("photons"));
+  const PhotonScatter scatter(in.vpls, in.rays, options.real32("radius"),
+                              power / static_cast<double>(shares.total()), shares.total());
+  const PhotonSums sums = tracePhotons(in, options, shares, scatter, rule);
+  EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
+  fillTable(result.table, sums, scatter);
+  if (options.on("recentre")) recentre(result.table, sums, scatter, in.rays);
+  return result;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,65 @@
+// What the photon methods of vpl-estimate share: photons from all lights, and the exact sums of
+// what they bring. A method is the rule by which a hit is handed to the VPLs around it.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+
+#include "tools/estimate/estimate.h"
+#include "tools/estimate/photon_sums.h"
+#include "transport/coverage.h"
+
+namespace bnvpl {
+
+// Of every method that traces photons. Sums of more than 2^36 would leave their fixed-point range.
+inline constexpr std::array kPhotonOptions{
+    countOption("photons", "10M", 0x1p36, "", "photons from all lights together"),
+    realOption("radius", "1.7", 0.01, 100, "r_max", "how far a VPL reaches for photons"),
+    wholeOption("max-bounces", "32", 1, 1000, "hits", "diffuse hits of a photon"),
+    // Elimination favours the rims of surfaces, where a VPL lies in the plane of the neighbouring
+    // wall and cannot light it.
+    switchOption("recentre", "on",
+                 "let each VPL shine from the centre of the energy that it received")};
+
+// A photon's diffuse hit.
+struct PhotonHit {
+  const SurfacePoint& point;
+  const ReachGrid::Lookup& near;  // the VPLs that reach it
+  Vec3 flux;                      // that leaves it, W
+  bool firstBounce;               // straight from a light
+};
+
+// Where hits are handed to VPLs: exact sums, one set for each thread.
+class PhotonScatter {
+ public:
+  PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius, double photonPower,
+                uint64_t photons);
+
+  // To one VPL, in part or whole; and where the flux of a whole hit went.
+  void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
+  void tally(PhotonSums& sums, Tally t, Vec3 flux) const {
+    addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
+  }
+  const Coverage& coverage() const { return coverage_; }
+  const FixedPoint& fixed() const { return fixed_; }
+  double photonPower() const { return photonPower_; }  // W, of a mean photon
+  float radius() const { return radius_; }             // reach, in units of each VPL's r_max
+
+ private:
+  const VplTable& vpls_;
+  float radius_;
+  FixedPoint fixed_;
+  double photonPower_, perPhotonPower_;
+  Coverage coverage_;
+};
+
+// Hands a hit over; thread-safe. `rng` goes on with the photon's numbers.
+using ScatterRule =
+    std::function<void(const PhotonScatter&, const PhotonHit&, Rng& rng, PhotonSums& sums)>;
+
+// The whole estimate by that rule and kPhotonOptions: fills the columns since Lit.
+EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
+                                 const ScatterRule& rule);
+
+}  // namespace bnvpl

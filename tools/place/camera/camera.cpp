@@ -1,0 +1,105 @@
+// Candidates where camera paths hit after their first diffuse bounce (the thesis, section 3.2).
+#include "transport/camera.h"
+
+#include <array>
+
+#include "tools/place/path_rows.h"
+#include "transport/photon_walk.h"
+
+namespace bnvpl::methods::place::camera {
+
+namespace {
+
+constexpr std::array kOptions{
+    wholeOption("depth", "2", 2, 1000, "vertices",
+                "diffuse vertices of a path; the first is never a candidate, the second lights the "
+                "view directly")};
+
+// A path from the camera, on its way.
+class CameraPath {
+ public:
+  CameraPath() = default;
+  CameraPath(const Scene& scene, uint64_t key, uint64_t path) : path_(path), rng_(key, path + 1) {
+    const Point2 film = r2Sequence(path, double{toUnitFloat(random64(key, 0, 0))},
+                                   double{toUnitFloat(random64(key, 0, 1))});
+    next_ = {scene.camera.position, cameraDirection(scene.camera, scene.film, film.x, film.y)};
+  }
+  const Ray& next() const { return next_; }
+  // Takes what next() has hit. False: the path has ended.
+  bool advance(const RayScene& rays, const SurfacePoint& hit, unsigned depth, PathRows& chunk) {
+    ++chunk.rays;
+    if (hit.triangle == kNone) {
+      ++chunk.escaped;
+      return false;
+    }
+    const Bsdf bsdf(rays.scene(), hit);
+    const bool takeSpecular = rng_.next() < bsdf.specularProbability();
+    if (!takeSpecular && bsdf.hasRough()) {
+      if (++rough_ >= 2) chunk.add(bsdf, path_);
+      if (rough_ >= depth) {
+        ++chunk.complete;
+        return false;
+      }
+    }
+    BsdfSample sample;
+    if ((takeSpecular && ++chain_ > kMaxSpecular) ||
+        !bsdf.sample(takeSpecular ? LobeGroup::Specular : LobeGroup::Rough, Transport::Radiance,
+                     rng_, sample)) {
+      ++chunk.absorbed;
+      return false;
+    }
+    next_ = {rays.offsetOrigin(hit.position, sample.side), sample.wi};
+    return true;
+  }
+
+ private:
+  uint64_t path_ = 0;
+  Rng rng_{0, 0};
+  Ray next_;
+  unsigned rough_ = 0, chain_ = 0;
+};
+
+// The paths of a chunk, a batch of them together, round by round.
+void traceCameraPaths(const RayScene& rays, unsigned depth, uint64_t begin, uint64_t key,
+                      PathRows& chunk) {
+  std::array<CameraPath, RayScene::kBatch> paths;
+  std::array<Ray, RayScene::kBatch> next;
+  std::array<SurfacePoint, RayScene::kBatch> hits;
+  const uint64_t end = begin + kPathsPerChunk;
+  for (uint64_t path = begin; path < end;) {
+    const size_t firstRow = chunk.path.size();
+    size_t size = 0;
+    while (size < paths.size() && path < end) paths[size++] = {rays.scene(), key, path++};
+    while (size > 0) {
+      for (size_t i = 0; i < size; ++i) next[i] = paths[i].next();
+      rays.closestHits({next.data(), size}, hits);
+      size_t left = 0;
+      for (size_t i = 0; i < size; ++i) {
+        if (paths[i].advance(rays, hits[i], depth, chunk)) paths[left++] = paths[i];
+      }
+      size = left;
+    }
+    chunk.sortByPath(firstRow);
+  }
+}
+
+// Camera paths over the whole film, stratified so that every prefix covers it evenly. Specular
+// vertices are passed through; each diffuse vertex after the first becomes a candidate that faces
+// the side it was seen from, up to `depth`.
+PlaceResult make(const PlaceInputs& in, const Values& options) {
+  const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceCamera);
+  const auto depth = static_cast<unsigned>(options.whole("depth"));
+  PlaceResult result = collectRows(in.rays.scene().name(), options.whole("count"), in.progress,
+                                   [&](uint64_t begin, PathRows& chunk) {
+                                     traceCameraPaths(in.rays, depth, begin, key, chunk);
+                                   });
+  result.table.stage = VplStage::Candidates;
+  return result;
+}
+
+}  // namespace
+
+extern const PlaceMethod method{
+    "camera", "candidates for vpl-eliminate, where camera paths bounce to", kOptions, make};
+
+}  // namespace bnvpl::methods::place::camera

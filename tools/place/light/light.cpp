@@ -1,0 +1,69 @@
+// Instant radiosity (Keller 1997): a VPL at every diffuse hit of photons from the lights.
+#include <array>
+#include <cmath>
+
+#include "spatial/local_density.h"
+#include "tools/place/path_rows.h"
+#include "transport/photon_walk.h"
+
+namespace bnvpl::methods::place::light {
+
+namespace {
+
+constexpr std::array kOptions{
+    wholeOption("light-depth", "32", 1, 1000, "hits", "diffuse hits of a photon")};
+constexpr unsigned kNeighbours = 20;  // as vpl-eliminate, so that clamps compare
+
+void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned depth, uint64_t path,
+                     uint64_t key, PathRows& chunk) {
+  Rng rng(key, path);
+  float probability = 0.0f;
+  const size_t light = lights.pick(rng.next(), probability);
+  PhotonStart start = lights.emit(light, rng);
+  start.flux *= 1.0f / probability;
+  const PhotonFate fate = followPhoton(
+      rays, PhotonWalk(start, depth, rng), [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+        if (!chunk.add(bsdf, path)) return;
+        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+        chunk.rows.firstBounceFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
+      });
+  chunk.nonFinite += fate.finite ? 0 : 1;
+  chunk.rays += fate.rays;
+  isBlack(fate.escaped) ? ++chunk.absorbed : ++chunk.escaped;
+}
+
+// Of stage Lit, with the flux that leaves each hit: it needs no further stage.
+PlaceResult make(const PlaceInputs& in, const Values& options) {
+  in.lights.requirePower();
+  const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceLight);
+  const auto depth = static_cast<unsigned>(options.whole("light-depth"));
+  PlaceResult result =
+      collectRows(in.rays.scene().name(), options.whole("count"), in.progress,
+                  [&](uint64_t begin, PathRows& chunk) {
+                    for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
+                      tracePhotonPath(in.rays, in.lights, depth, path, key, chunk);
+                  });
+  VplTable& t = result.table;
+  t.stage = VplStage::Lit;
+  // Each VPL carries the flux of its photon; the estimate divides by the photons that were started.
+  for (Vec3& f : t.flux) f *= 1.0f / static_cast<float>(result.paths);
+  t.emitPosition = t.position;
+  t.emitNormal = t.normal;
+  for (Vec3& f : t.firstBounceFlux) f *= 1.0f / static_cast<float>(result.paths);
+  t.photons.assign(t.size(), 1);
+  t.relativeError.assign(t.size(), 1.0f);
+  for (const float share : surfaceShares(t.position, t.normal, kNeighbours)) {
+    t.areaEstimate += double{share};
+    t.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
+  }
+  t.rMax = std::sqrt(t.areaEstimate / (2.0 * std::sqrt(3.0) * static_cast<double>(t.size())));
+  return result;
+}
+
+}  // namespace
+
+extern const PlaceMethod method{
+    "light", "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
+    kOptions, make};
+
+}  // namespace bnvpl::methods::place::light

@@ -1,0 +1,46 @@
+// What makes good the light that VPLs do not bring (bias compensation): the slot of --compensate.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "core/random.h"
+#include "formats/vpl_table.h"
+#include "spatial/reach_grid.h"
+#include "tools/common/method.h"
+#include "transport/rays.h"
+
+namespace bnvpl {
+
+// What VPLs do not bring from a point that a ray from a receiver has found.
+struct Missing {
+  float share = 0.0f;  // of the light from there, 0..1
+  // Radiance that leaves there of light that came by way of other surfaces, W/(m2 sr); empty: has
+  // to be found out, as first-bounce light always has, whose edges a VPL does not know.
+  std::optional<Vec3> scattered;
+};
+
+// Thread-safe. Both empty: nothing is made good, and no rays are sent for it.
+struct Compensation {
+  // The VPLs at many hits, which wait for memory together; of those that hit nothing none.
+  std::function<void(std::span<const SurfacePoint>, std::span<ReachGrid::Lookup>)> lookUp;
+  // For a point that a ray has found from `distance`, world units. `near`: of that point, or null
+  // where it was not looked up.
+  std::function<Missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near,
+                        Rng& rng)>
+      missing;
+  explicit operator bool() const { return missing != nullptr; }
+};
+
+// Borrowed until the image is done.
+struct CompensateInputs {
+  const VplTable& lit;
+  const RayScene& rays;
+  float clamp;  // bound on 1/d^2, in units of each VPL's r_max
+};
+
+using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;
+std::span<const CompensateMethod* const> compensateMethods();
+
+}  // namespace bnvpl

@@ -1,0 +1,37 @@
+// Every VPL at every point: the truth for a VPL set, and what every other gather is judged by.
+#include "tools/render/gather/gather.h"
+#include "tools/render/gather/rgb_sum.h"
+
+namespace bnvpl::methods::gather::all {
+
+namespace {
+
+Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf) {
+  Gathered out;
+  out.cut = static_cast<uint32_t>(vpls.size());
+  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  RgbSum total, clamped;
+  Coupling c;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    if (!couple(vpls, i, bsdf, c)) continue;
+    ++out.shadowRays;
+    if (rays.occluded(from, vpls.position[i])) continue;
+    const Vec3 light = c.transfer * vpls.intensity[i];
+    total.add(light);
+    clamped.add(light * c.clamped);
+  }
+  out.radiance = total.toVec3();
+  out.clamped = clamped.toVec3();
+  return out;
+}
+
+Gather make(const GatherInputs& in, const Values&) {
+  return gatherEach(
+      [&rays = in.rays, &vpls = in.vpls](const Bsdf& bsdf) { return gatherAll(rays, vpls, bsdf); });
+}
+
+}  // namespace
+
+extern const GatherMethod method{"all", "every VPL: the truth for a VPL set", {}, make};
+
+}  // namespace bnvpl::methods::gather::all

@@ -1,0 +1,100 @@
+// A cut of the light tree for each point, one representative for each cluster (Walter et al. 2005).
+#include <algorithm>
+#include <array>
+
+#include "tools/render/gather/gather.h"
+#include "tools/render/gather/rgb_sum.h"
+#include "tools/render/light_tree/cluster_bounds.h"
+#include "tools/render/light_tree/cut_options.h"
+
+namespace bnvpl::methods::gather::lightcuts {
+
+namespace {
+
+constexpr std::array kOptions{realOption("error", "0.02", 0, 1, "share of the total",
+                                         "largest error of a cluster that is not opened"),
+                              kMaxCutOption};
+
+struct Cluster {
+  float bound;  // on the error, summed over the channels
+  uint32_t node;
+  Vec3 transfer;  // of the representative, times its visibility
+  float clamped;
+};
+bool lessBound(const Cluster& a, const Cluster& b) {
+  return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
+}
+
+Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree, double error,
+                   size_t maxCut, const Bsdf& bsdf) {
+  Gathered out;
+  if (tree.nodes.empty()) return out;
+  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const ClusterReceiver receiver(bsdf);
+  thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
+  heap.clear();
+  RgbSum total, clamped;
+
+  const auto account = [&](const Cluster& c, double sign) {
+    const Vec3 light = c.transfer * tree.nodes[c.node].intensity;
+    total.add(light, sign);
+    clamped.add(light * c.clamped, sign);
+  };
+  const auto evaluate = [&](uint32_t node) {
+    Cluster c{errorBound(tree.nodes[node], receiver), node, {}, 0.0f};
+    const uint32_t r = tree.nodes[node].representative;
+    Coupling coupling;
+    if (couple(vpls, r, bsdf, coupling)) {
+      ++out.shadowRays;
+      if (!rays.occluded(from, vpls.position[r])) {
+        c.transfer = coupling.transfer;
+        c.clamped = coupling.clamped;
+      }
+    }
+    return c;
+  };
+  const auto insert = [&](const Cluster& c) {
+    account(c, 1.0);
+    heap.push_back(c);
+    std::push_heap(heap.begin(), heap.end(), lessBound);
+  };
+
+  for (const uint32_t node : tree.startCut) insert(evaluate(node));
+  while (heap.size() < maxCut) {
+    const Cluster worst = heap.front();
+    if (worst.bound <= 0.0f || double{worst.bound} <= error * total.sum()) break;
+    std::pop_heap(heap.begin(), heap.end(), lessBound);
+    heap.pop_back();
+    account(worst, -1.0);
+    const LightNode& n = tree.nodes[worst.node];
+    for (const uint32_t child : {n.left, n.right}) {
+      if (tree.nodes[child].representative == n.representative) {
+        // The representative is the parent's: nothing to trace again.
+        insert({errorBound(tree.nodes[child], receiver), child, worst.transfer, worst.clamped});
+      } else {
+        insert(evaluate(child));
+      }
+    }
+  }
+  out.cut = static_cast<uint32_t>(heap.size());
+  out.radiance = total.toVec3();
+  out.clamped = clamped.toVec3();
+  return out;
+}
+
+Gather make(const GatherInputs& in, const Values& options) {
+  const auto error = double{options.real32("error")};
+  const auto maxCut = static_cast<size_t>(options.whole("max-cut"));
+  return gatherEach(
+      [&rays = in.rays, &vpls = in.vpls, &tree = in.tree, error, maxCut](const Bsdf& bsdf) {
+        return gatherCut(rays, vpls, tree, error, maxCut, bsdf);
+      });
+}
+
+}  // namespace
+
+extern const GatherMethod method{
+    "lightcuts", "a cut of the light tree for each sample, one VPL for each cluster", kOptions,
+    make};
+
+}  // namespace bnvpl::methods::gather::lightcuts

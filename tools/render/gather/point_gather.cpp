@@ -1,0 +1,24 @@
+#include "tools/render/gather/point_gather.h"
+
+namespace bnvpl {
+
+Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng) const {
+  Gathered out;
+  const VplSampler::Point point(sampler_, bsdf);
+  if (point.dark()) return out;
+  const Vec3 from = rays_.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const float shift = rng.next(), perDraw = 1.0f / static_cast<float>(draws);
+  for (unsigned k = 0; k < draws; ++k) {
+    const auto draw = point.draw((static_cast<float>(k) + shift) * perDraw, rng);
+    Coupling c;
+    if (!draw || !couple(vpls_, draw->vpl, bsdf, c)) continue;
+    ++out.shadowRays;
+    if (rays_.occluded(from, vpls_.position[draw->vpl])) continue;
+    const Vec3 light = c.transfer * vpls_.intensity[draw->vpl] * (perDraw / draw->probability);
+    out.radiance += light;
+    out.clamped += light * c.clamped;
+  }
+  return out;
+}
+
+}  // namespace bnvpl

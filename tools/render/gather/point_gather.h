@@ -1,0 +1,22 @@
+// All VPLs on average at a single point.
+#pragma once
+
+#include "tools/render/gather/gather.h"
+#include "tools/render/light_tree/vpl_sampler.h"
+
+namespace bnvpl {
+
+// By draws of a VplSampler. Thread-safe.
+class PointGather {
+ public:
+  PointGather(const RayScene& rays, const VplLights& vpls, const LightTree& tree)
+      : rays_(rays), vpls_(vpls), sampler_(tree) {}
+  Gathered operator()(const Bsdf& bsdf, unsigned draws, Rng& rng) const;
+
+ private:
+  const RayScene& rays_;
+  const VplLights& vpls_;
+  VplSampler sampler_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,125 @@
+// Stochastic Lightcuts (Yuksel 2019): a small cut for each point, chosen by bounds, and one random
+// VPL of each of its clusters by a descent of the tree in proportion to what either child may send.
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "tools/render/gather/gather.h"
+#include "tools/render/light_tree/cluster_bounds.h"
+
+namespace bnvpl::methods::gather::stochastic {
+
+namespace {
+
+constexpr std::array kOptions{
+    countOption("cut", "10", 0x1p20, "clusters", "clusters of a point's cut, one shadow ray each")};
+
+struct Cluster {
+  float bound;
+  uint32_t node;
+};
+bool lessBound(const Cluster& a, const Cluster& b) {
+  return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
+}
+
+// Bounds alone decide: a cut that knew of the VPLs drawn would be biased by them.
+std::vector<Cluster>& chooseCut(const LightTree& tree, const ClusterReceiver& receiver,
+                                size_t size) {
+  thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
+  heap.assign(1, {errorBound(tree.nodes[0], receiver), 0});
+  while (heap.size() < size && heap.front().bound > 0.0f) {
+    std::ranges::pop_heap(heap, lessBound);
+    const LightNode& n = tree.nodes[heap.back().node];
+    heap.pop_back();
+    for (const uint32_t child : {n.left, n.right}) {
+      heap.push_back({errorBound(tree.nodes[child], receiver), child});
+      std::ranges::push_heap(heap, lessBound);
+    }
+  }
+  return heap;
+}
+
+// Probability of the left child: the mean of two, by the nearest and by the farthest that a VPL of
+// either child can be. Empty: neither can send anything.
+std::optional<float> leftShare(const LightNode& left, const LightNode& right,
+                               const ClusterReceiver& receiver) {
+  const Vec3 at = receiver.bsdf.point().position;
+  const float l = sentBound(left, receiver), r = sentBound(right, receiver);
+  if (!(l + r > 0.0f)) return {};
+  const auto share = [&](float leftDistance2, float rightDistance2) {
+    const float a = l / leftDistance2, b = r / rightDistance2;
+    return a / (a + b);
+  };
+  const float far = share(std::max(farthestSquared(left.bounds, at), left.clamp2),
+                          std::max(farthestSquared(right.bounds, at), right.clamp2));
+  const float nearLeft = left.bounds.distanceSquared(at),
+              nearRight = right.bounds.distanceSquared(at);
+  // Inside either box distances tell nothing (Yuksel 2019, section 4.1).
+  const float near = nearLeft > 0.0f && nearRight > 0.0f
+                         ? share(std::max(nearLeft, left.clamp2), std::max(nearRight, right.clamp2))
+                         : l / (l + r);
+  return 0.5f * (near + far);
+}
+
+struct Draw {
+  uint32_t vpl;
+  float probability;
+};
+
+std::optional<Draw> descend(const LightTree& tree, uint32_t node, const ClusterReceiver& receiver,
+                            float u) {
+  float probability = 1.0f;
+  while (!tree.nodes[node].leaf()) {
+    const LightNode& n = tree.nodes[node];
+    const auto left = leftShare(tree.nodes[n.left], tree.nodes[n.right], receiver);
+    if (!left) return {};
+    const bool goLeft = u < *left;
+    const float share = goLeft ? *left : 1.0f - *left;
+    u = std::min((goLeft ? u : u - *left) / share, 0x1.fffffep-1f);  // the same number, used again
+    probability *= share;
+    node = goLeft ? n.left : n.right;
+  }
+  return Draw{tree.nodes[node].representative, probability};
+}
+
+Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+                     size_t cutSize, const Bsdf& bsdf, uint64_t key) {
+  Gathered out;
+  if (tree.nodes.empty()) return out;
+  const ClusterReceiver receiver(bsdf);
+  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const std::vector<Cluster>& cut = chooseCut(tree, receiver, cutSize);
+  for (const Cluster& cluster : cut) {
+    const auto draw =
+        descend(tree, cluster.node, receiver, toUnitFloat(random64(key, cluster.node, 0)));
+    Coupling c;
+    if (!draw || !(draw->probability > 0.0f) || !couple(vpls, draw->vpl, bsdf, c)) continue;
+    ++out.shadowRays;
+    if (rays.occluded(from, vpls.position[draw->vpl])) continue;
+    const Vec3 light = c.transfer * vpls.intensity[draw->vpl] * (1.0f / draw->probability);
+    out.radiance += light;
+    out.clamped += light * c.clamped;
+  }
+  out.cut = static_cast<uint32_t>(cut.size());
+  return out;
+}
+
+Gather make(const GatherInputs& in, const Values& options) {
+  const auto cut = static_cast<size_t>(options.whole("cut"));
+  return {[&rays = in.rays, &vpls = in.vpls, &tree = in.tree, cut](const TileReceivers& tile,
+                                                                   std::span<Gathered> out) {
+    for (size_t i = 0; i < out.size(); ++i) {
+      const uint64_t sample = i + uint64_t{tile.firstSlot} * tile.pixels;
+      out[i] = tile.bsdf[i] ? gatherPoint(rays, vpls, tree, cut, *tile.bsdf[i],
+                                          random64(tile.key, sample, 0))
+                            : Gathered{};
+    }
+  }};
+}
+
+}  // namespace
+
+extern const GatherMethod method{
+    "stochastic", "a small cut for each sample, a random VPL of each cluster", kOptions, make};
+
+}  // namespace bnvpl::methods::gather::stochastic

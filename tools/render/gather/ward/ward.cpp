@@ -1,0 +1,120 @@
+// Adaptive shadow testing (Ward 1994): at each point the VPLs are sorted by what they would bring
+// unoccluded and shadow-tested in that order until the rest cannot matter; the rest counts with the
+// visibility that is to be expected of it.
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "core/parallel.h"
+#include "tools/render/gather/gather.h"
+#include "tools/render/gather/rgb_sum.h"
+
+namespace bnvpl::methods::gather::ward {
+
+namespace {
+
+constexpr std::array kOptions{
+    realOption("tolerance", "0.1", 0, 1, "share of the light so far",
+               "shadow tests end when all that is untested could bring no more"),
+    countOption("visibility-tests", "32", 65536, "rays",
+                "to each VPL from points that the camera sees, for its usual visibility")};
+
+// How often a VPL is seen from what the camera sees: where it faces the point. Ward keeps these
+// counts while the image is made, which would depend on the order of pixels and threads; here they
+// are taken beforehand, from the same points for all VPLs. One more hit and miss keep a rate away
+// from 0 and 1, as few tests cannot know those.
+std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
+  std::vector<SurfacePoint> seen;
+  for (const SurfacePoint& p : in.film().points) {
+    if (p.triangle != kNone) seen.push_back(p);
+  }
+  std::vector<float> rates(in.vpls.size(), 0.5f);
+  if (seen.empty()) return rates;
+  parallelFor(rates.size(), 16, [&](size_t i) {
+    uint32_t faced = 0, hits = 0;
+    for (uint64_t k = 0; k < tests; ++k) {
+      const SurfacePoint& p = seen[k * seen.size() / tests];
+      Coupling c;
+      if (!couple(in.vpls, i, Bsdf(in.rays.scene(), p), c)) continue;
+      ++faced;
+      hits += in.rays.occluded(in.rays.offsetOrigin(p.position, p.ng), in.vpls.position[i]) ? 0 : 1;
+    }
+    rates[i] = (static_cast<float>(hits) + 1.0f) / (static_cast<float>(faced) + 2.0f);
+  });
+  return rates;
+}
+
+struct Potential {
+  float sum;  // over the channels, unoccluded
+  uint32_t vpl;
+  Vec3 light;
+  float clamped;
+};
+bool brighter(const Potential& a, const Potential& b) {
+  return a.sum != b.sum ? a.sum > b.sum : a.vpl < b.vpl;
+}
+
+std::vector<Potential>& sortedPotentials(const VplLights& vpls, const Bsdf& bsdf) {
+  thread_local std::vector<Potential> list;  // kept between calls: no allocation per point
+  list.clear();
+  Coupling c;
+  for (uint32_t i = 0; i < vpls.size(); ++i) {
+    if (!couple(vpls, i, bsdf, c)) continue;
+    const Vec3 light = c.transfer * vpls.intensity[i];
+    list.push_back({light.x + light.y + light.z, i, light, c.clamped});
+  }
+  std::ranges::sort(list, brighter);
+  return list;
+}
+
+Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vector<float>& rates,
+                     double tolerance, const Bsdf& bsdf) {
+  const std::vector<Potential>& list = sortedPotentials(vpls, bsdf);
+  double untested = 0.0;
+  for (const Potential& p : list) untested += double{p.sum};
+  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  Gathered out;
+  RgbSum total, clamped;
+  const auto add = [&](const Potential& p, double share) {
+    total.add(p.light, share);
+    clamped.add(p.light * p.clamped, share);
+  };
+  // Tests that hit, and how many would have by the VPLs' usual visibility: their ratio tells how
+  // open this point is.
+  double hits = 0.0, expected = 0.0;
+  size_t tested = 0;
+  for (; tested < list.size() && untested > tolerance * total.sum(); ++tested) {
+    const Potential& p = list[tested];
+    ++out.shadowRays;
+    expected += double{rates[p.vpl]};
+    untested -= double{p.sum};
+    if (rays.occluded(from, vpls.position[p.vpl])) continue;
+    hits += 1.0;
+    add(p, 1.0);
+  }
+  const double openness = expected > 0.0 ? hits / expected : 1.0;
+  for (size_t k = tested; k < list.size(); ++k) {
+    add(list[k], std::min(1.0, openness * double{rates[list[k].vpl]}));
+  }
+  out.cut = static_cast<uint32_t>(tested);
+  out.radiance = total.toVec3();
+  out.clamped = clamped.toVec3();
+  return out;
+}
+
+Gather make(const GatherInputs& in, const Values& options) {
+  const auto rates =
+      std::make_shared<const std::vector<float>>(hitRates(in, options.whole("visibility-tests")));
+  return gatherEach([&rays = in.rays, &vpls = in.vpls, rates,
+                     tolerance = options.real("tolerance")](const Bsdf& bsdf) {
+    return gatherPoint(rays, vpls, *rates, tolerance, bsdf);
+  });
+}
+
+}  // namespace
+
+extern const GatherMethod method{
+    "ward", "VPLs sorted by brightness, shadow-tested until the rest cannot matter", kOptions,
+    make};
+
+}  // namespace bnvpl::methods::gather::ward

@@ -1,0 +1,69 @@
+// What finds the radiance along camera rays: the slot of --integrator. A method is a folder beside
+// this file.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "core/random.h"
+#include "formats/vpl_table.h"
+#include "tools/common/method.h"
+#include "tools/render/integrator/splats.h"
+#include "tools/render/tile.h"
+#include "transport/lights.h"
+#include "transport/rays.h"
+
+namespace bnvpl {
+
+struct RadianceSample {
+  Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough
+                  // vertex, and nothing between that and a light
+  Vec3 indirect;  // everything else
+  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
+  Vec3 extended;  // indirect light that sampled rays brought instead; part of `indirect`
+  Vec3 albedo, normal;  // of the first rough vertex
+  float depth = 0.0f;   // of the first hit along the viewing axis; 0: none
+  uint32_t cut = 0, shadowRays = 0;
+};
+
+// One sample of a pixel.
+struct CameraSample {
+  Vec3 origin, direction;
+  Rng rng{0, 0};
+  RadianceSample radiance;  // what an integrator finds
+};
+
+struct TileSamples : TileSlots {
+  std::span<CameraSample> samples;
+};
+
+enum class Only { Everything, Direct, Indirect };
+
+// Thread-safe and immutable once made.
+struct Integrator {
+  // Finds the radiance of all samples of a tile.
+  std::function<void(const TileSamples& tile)> samples;
+  // Photons that bring indirect light besides, as many as samples; none where it is empty.
+  Splatter photons = {};
+  bool wholePixels = false;  // a tile is to hold every sample of its pixels, not some at a time
+  size_t vpls = 0;           // with flux
+};
+
+// Borrowed until the image is done.
+struct IntegratorInputs {
+  const RayScene& rays;
+  const LightSet& lights;
+  const VplTable& lit;  // of stage Lit; without rows unless the method needs VPLs
+  uint64_t seed;
+  Only only;
+};
+
+struct IntegratorMethod {
+  std::string_view name, summary;
+  std::span<const Option> options;
+  Integrator (*make)(const IntegratorInputs&, const Values&);
+  bool needsVpls = false;
+};
+std::span<const IntegratorMethod* const> integratorMethods();
+
+}  // namespace bnvpl

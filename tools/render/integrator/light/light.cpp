@@ -1,0 +1,38 @@
+// Light tracing for what the camera sees directly, path tracing for the rest.
+#include <array>
+#include <memory>
+
+#include "tools/render/integrator/light/light_tracer.h"
+#include "tools/render/integrator/path_tracer.h"
+
+namespace bnvpl::methods::integrator::light {
+
+namespace {
+
+constexpr std::array kOptions{kMaxBouncesOption};
+
+Integrator make(const IntegratorInputs& in, const Values& options) {
+  const auto maxBounces = static_cast<unsigned>(options.whole("max-bounces"));
+  const bool photons = in.only != Only::Direct;
+  const auto paths =
+      std::make_shared<const PathTracer>(in.rays, in.lights, maxBounces, in.only, !photons);
+  Integrator result{[paths](const TileSamples& tile) { paths->render(tile); }};
+  if (photons) {
+    const auto tracer =
+        std::make_shared<const LightTracer>(in.rays, in.lights, maxBounces, in.seed);
+    result.photons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
+      tracer->follow(begin, end, out);
+    };
+  }
+  return result;
+}
+
+}  // namespace
+
+extern const IntegratorMethod method{
+    "light",
+    "path tracing with indirect light by photons that are connected with the camera, for where "
+    "paths hardly find the lights; takes no VPLs",
+    kOptions, make};
+
+}  // namespace bnvpl::methods::integrator::light

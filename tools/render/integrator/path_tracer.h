@@ -1,0 +1,34 @@
+#pragma once
+
+#include "tools/render/integrator/integrator.h"
+
+namespace bnvpl {
+
+// Of every integrator that traces paths.
+inline constexpr Option kMaxBouncesOption =
+    wholeOption("max-bounces", "32", 0, 1000, "bounces",
+                "diffuse bounces after the first surface, as vpl-estimate's");
+
+// The reference: unbiased path tracing with next-event estimation and multiple importance sampling,
+// no clamping. Rough scatterings after the first rough vertex are limited to maxBounces, as a
+// photon's hits.
+class PathTracer {
+ public:
+  // `indirect`: whether also the indirect light of the points that the camera sees directly; false
+  // leaves that to the LightTracer.
+  PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only,
+             bool indirect = true)
+      : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}
+  void render(const TileSamples& tile) const;
+
+ private:
+  RadianceSample trace(const CameraSample& sample, Rng& rng) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  unsigned maxBounces_;
+  Only only_;
+  bool indirect_;
+};
+
+}  // namespace bnvpl

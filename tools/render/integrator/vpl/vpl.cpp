@@ -1,0 +1,84 @@
+// The thesis: direct light by shadow rays, indirect light from the VPLs.
+#include <array>
+#include <memory>
+
+#include "core/parallel.h"
+#include "tools/render/gather/point_gather.h"
+#include "tools/render/integrator/camera_vertex.h"
+#include "tools/render/integrator/vpl/vpl_integrator.h"
+#include "transport/camera.h"
+
+namespace bnvpl::methods::integrator::vpl {
+
+namespace {
+
+constexpr std::array kOptions{
+    realOption("clamp", "2", 0, 1000, "r_max",
+               "1/d^2 grows no further inside this distance of a VPL"),
+    wholeOption("near-field-rays", "16", 1, 4096, "rays",
+                "by the BSDF from each shaded point: for --compensate, for light over specular "
+                "surfaces, and for half of the direct light")};
+
+FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t seed) {
+  const Scene& scene = rays.scene();
+  FilmPoints film{scene.film.width, scene.film.height, {}};
+  film.points.resize(size_t{film.width} * film.height);
+  const uint64_t key = streamKey(seed, Stream::FilmPoints);
+  parallelFor(film.points.size(), 64, [&](size_t i) {
+    Rng rng(key, i);
+    const float x =
+        (static_cast<float>(i % film.width) + rng.next()) / static_cast<float>(film.width);
+    const float y =
+        (static_cast<float>(i / film.width) + rng.next()) / static_cast<float>(film.height);
+    RadianceSample unused;
+    const SpecularPath path = seeFrom(rays, lights, scene.camera.position,
+                                      cameraDirection(scene.camera, scene.film, x, y), rng, unused);
+    film.points[i] = path.hit;
+    if (!path.rough) film.points[i].triangle = kNone;
+  });
+  return film;
+}
+
+// What lives as long as the integrator, in an order in which each may borrow from those before.
+struct Parts {
+  VplLights vpls;
+  LightTree tree;
+  std::unique_ptr<const PointGather> point;
+  std::unique_ptr<const VplIntegrator> integrator;
+};
+
+Integrator make(const IntegratorInputs& in, const Values& options) {
+  const float clamp = options.real32("clamp");
+  const auto parts = std::make_shared<Parts>();
+  parts->vpls = makeVplLights(in.lit, in.rays, clamp);
+  parts->tree = buildLightTree(parts->vpls, in.seed);
+  Gather gather = methodNamed(gatherMethods(), options.text("gather"))
+                      .make({in.rays, parts->vpls, parts->tree, in.seed,
+                             [&rays = in.rays, &lights = in.lights, seed = in.seed] {
+                               return tracePoints(rays, lights, seed);
+                             }},
+                            options);
+  if (!gather.point) {
+    parts->point = std::make_unique<PointGather>(in.rays, parts->vpls, parts->tree);
+    gather.point = [&point = *parts->point](const Bsdf& bsdf, unsigned draws, Rng& rng) {
+      return point(bsdf, draws, rng);
+    };
+  }
+  Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
+                                  .make({in.lit, in.rays, clamp}, options);
+  const bool wholePixels = gather.wholePixels;
+  parts->integrator = std::make_unique<VplIntegrator>(
+      in.rays, in.lights, std::move(gather), std::move(compensation),
+      static_cast<unsigned>(options.whole("near-field-rays")), in.only);
+  return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
+          {},
+          wholePixels,
+          parts->vpls.size()};
+}
+
+}  // namespace
+
+extern const IntegratorMethod method{"vpl", "direct light by shadow rays, indirect light from VPLs",
+                                     kOptions, make, /*needsVpls=*/true};
+
+}  // namespace bnvpl::methods::integrator::vpl

@@ -1,0 +1,17 @@
+// Samples of a tile of the image, and how they lie behind each other.
+#pragma once
+
+#include <cstdint>
+
+namespace bnvpl {
+
+// Slot by slot, a slot being one sample of each pixel, row by row.
+struct TileSlots {
+  uint32_t pixels = 0;     // in each slot
+  uint32_t width = 1;      // of a row
+  uint32_t firstSlot = 0;  // of all slots
+  uint32_t allSlots = 1;   // samples a pixel
+  uint64_t key = 0;        // of the tile's own random numbers
+};
+
+}  // namespace bnvpl
