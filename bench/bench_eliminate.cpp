@@ -11,8 +11,8 @@
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/eliminate.h"
+#include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/elimination/greedy.h"
 #include "tools/eliminate/radii.h"
 

@@ -17,33 +17,34 @@ const World& world() {
   return w;
 }
 
+const VplTable& eliminated() {
+  static const VplTable table =
+      keepVpls(placeVpls(world(), {{"count", "60k"}}).table, {{"count", "3000"}});
+  return table;
+}
+
 const VplTable& lit() {
   static const VplTable table = [] {
-    VplTable t = placeAndEliminate(world(), 60000, {.count = 3000});
-    estimateFlux(t, world().rays, world().lights, {.photons = 1000000});
-    return t;
+    return lightVpls(world(), eliminated(), {{"photons", "1M"}}).table;
   }();
   return table;
 }
 
 void placeCandidates(benchmark::State& state) {
-  PlaceOptions options;
-  options.count = 1000000;  // the last wave's surplus weighs little
-  world();                  // loaded before the clock runs
+  world();  // loaded before the clock runs
   double rays = 0;
-  for (auto _ : state) rays += double(placeFromCamera(world().rays, options).rays);
+  // The last wave's surplus weighs little.
+  for (auto _ : state) rays += double(placeVpls(world(), {{"count", "1M"}}).rays);
   state.counters["candidates/s"] =
-      benchmark::Counter(double(options.count), benchmark::Counter::kIsIterationInvariantRate);
+      benchmark::Counter(1e6, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
 }
 
 void tracePhotons(benchmark::State& state) {
-  VplTable vpls = placeAndEliminate(world(), 60000, {.count = 3000});
-  EnergyAccount account;
+  const VplTable& vpls = eliminated();  // made before the clock runs
   double photons = 0, hits = 0, rays = 0;
   for (auto _ : state) {
-    VplTable copy = vpls;
-    account = estimateFlux(copy, world().rays, world().lights, {.photons = 2000000});
+    const EnergyAccount account = lightVpls(world(), vpls, {{"photons", "2M"}}).energy;
     photons += double(account.photons);
     hits += double(account.hits);
     rays += double(account.rays + account.guardRays);
@@ -109,18 +110,14 @@ void bareRays(benchmark::State& state) {
 }
 
 void renderSamples(benchmark::State& state) {
-  VplSettings s;
-  s.gather.method = static_cast<GatherMethod>(state.range(0));
-  s.nearField = true;
-  s.clamp = 2.0f;
-  s.film.spp = 1;
+  const std::string gather(gatherMethods()[static_cast<size_t>(state.range(0))]->name);
+  state.SetLabel(gather);
   World small(std::getenv("SPONZA_DIR") ? "sponza/scene.toml" : "u-shape/scene.toml");
   small.scene.film = {64, 48};
   const VplTable& vpls = lit();  // made before the clock runs
-  FilmStats stats;
   double samples = 0, rays = 0;
   for (auto _ : state) {
-    renderVpls(small, vpls, s, stats);
+    const FilmStats stats = renderVpls(small, vpls, {{"gather", gather}, {"spp", "1"}}).stats;
     samples += double(stats.samples);
     rays += stats.shadowRays * double(stats.samples);
   }
@@ -136,8 +133,8 @@ BENCHMARK(bareRays)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK(renderSamples)
-    ->ArgName("gather")  // as GatherMethod: tile cuts, lightcuts, all
-    ->DenseRange(0, 2)
+    ->ArgName("gather")  // each of gatherMethods()
+    ->DenseRange(0, static_cast<int64_t>(gatherMethods().size()) - 1)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

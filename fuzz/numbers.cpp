@@ -1,14 +1,15 @@
 // Numbers of the command line: counts, sizes, exposures, and what CLI11 reads into options.
 //
 // Each line of the input is an argument.
+#include <array>
 #include <cmath>
 #include <sstream>
 
 #include "fuzz/fuzz.h"
-#include "tools/common/choice.h"
 #include "tools/common/exposure.h"
 #include "tools/common/film_size.h"
 #include "tools/common/run_tool.h"
+#include "tools/common/stage_cli.h"
 
 namespace bnvpl {
 namespace {
@@ -34,25 +35,23 @@ void parseAlone(const std::string& text) {
   }
 }
 
-// Options of every kind that the tools have.
-void parseTogether(const std::vector<std::string>& arguments) {
-  ToolOptions tool;
-  uint64_t count = 1, seed = 1;
-  unsigned bounces = 1;
-  float radius = 1.0f;
-  double share = 0.5;
-  bool recentre = true;
-  std::vector<std::string> layers;
+// Options of every kind that the stages have.
+constexpr std::array kStageOptions{letterFor("-n", countOption("count", "1", 0x1p53, "", "help")),
+                                   seedOption(), switchOption("recentre", "on", "help"),
+                                   textOption("layers", "", "", "help")};
+constexpr std::array kMethodOptions{
+    wholeOption("bounces", "1", 0, 1000, "", "help"),
+    neededBy("recentre=on", realOption("radius", "1", 0.01, 100, "", "help")),
+    choiceOption("density", "local", "local|uniform", "help")};
 
+void parseTogether(const std::vector<std::string>& arguments) {
+  static const StageSpec spec{
+      "fuzz", kStageOptions, {{"method", "a", "help", {{"a", "", kMethodOptions}, {"b", "", {}}}}}};
+  ToolOptions tool;
+  Given given;
   CLI::App cli{"fuzz", "fuzz"};
   addToolOptions(cli, tool);
-  addCount(cli, "-n,--count", count, "");
-  cli.add_option("--seed", seed, "");
-  cli.add_option("--bounces", bounces, "")->check(inRange(0, 1000));
-  cli.add_option("--radius", radius, "")->check(inRange(0.01f, 100.0f));
-  cli.add_option("--share", share, "")->check(inRange(0.0, 1.0));
-  addChoice(cli, "--recentre", recentre, kOnOff, "");
-  cli.add_option("--layers", layers, "")->delimiter(',');
+  addStageOptions(cli, spec, given);
 
   std::vector<const char*> argv{"fuzz"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
@@ -61,10 +60,18 @@ void parseTogether(const std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError&) {  // --help is one too
     return;
   }
-  require(count >= 1 && count <= uint64_t{1} << 53, "counts are from 1 to 2^53");
-  require(bounces <= 1000, "whole numbers are in range");
-  require(radius >= 0.01f && radius <= 100.0f, "floats are in range");
-  require(share >= 0.0 && share <= 1.0, "doubles are in range");
+  Values values;
+  if (!accepted<UsageError>([&] { values = resolve(spec, given); })) return;
+  require(values.whole("count") >= 1 && values.whole("count") <= uint64_t{1} << 53,
+          "counts are from 1 to 2^53");
+  if (values.text("method") == "b") {
+    require(!values.has("bounces"), "options of another method are refused");
+    return;
+  }
+  require(values.whole("bounces") <= 1000, "whole numbers are in range");
+  require(values.has("radius") == values.on("recentre"), "an option needs what it needs");
+  if (!values.has("radius")) return;
+  require(values.real("radius") >= 0.01 && values.real("radius") <= 100.0, "numbers are in range");
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 #include "core/random.h"
 #include "tests/eliminate/clouds.h"
-#include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/eliminate.h"
+#include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/elimination/greedy.h"
 
 namespace bnvpl {

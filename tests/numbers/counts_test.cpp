@@ -5,9 +5,12 @@
 
 #include "tests/support/pipeline.h"
 #include "tools/estimate/photon_shares.h"
+#include "tools/render/film/film.h"
 
 namespace bnvpl::test {
 namespace {
+
+constexpr uint64_t kMaxPhotons = uint64_t{1} << 36;  // of vpl-estimate --photons
 
 TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
   const uint64_t key = streamKey(1, Stream::Photons);
@@ -37,14 +40,15 @@ TEST(Counts, SharesOfManyPhotonsAreExact) {
 // Far too many to trace: the first range shows that sums and ranges hold them.
 TEST(Counts, BillionsOfPhotonsCanBegin) {
   const World world("cornell/scene.toml");
-  const VplTable start = placeAndEliminate(world, 2000, {.count = 50});
+  const VplTable vpls = keepVpls(placeVpls(world, {{"count", "2000"}}).table, {{"count", "50"}});
   struct Enough {};
   for (const uint64_t photons : {uint64_t{5000000000}, kMaxPhotons}) {
-    VplTable vpls = start;
-    EXPECT_THROW(estimateFlux(vpls, world.rays, world.lights, {.photons = photons},
-                              [](uint64_t) { throw Enough{}; }),
-                 Enough);
+    const Values options = resolve(estimateSpec(), {{"photons", std::to_string(photons)}});
+    EXPECT_THROW(
+        estimate(vpls, world.rays, world.lights, options, [](uint64_t) { throw Enough{}; }),
+        Enough);
   }
+  EXPECT_THROW(resolve(estimateSpec(), {{"photons", std::to_string(kMaxPhotons + 1)}}), UsageError);
 }
 
 // Slots of samples are counted in 32 bits: their last step must not wrap around.
@@ -58,7 +62,7 @@ TEST(Counts, SamplesOfAPixelEndAtTheLargestCount) {
     samples += tile.samples.size();
     if (samples > 100) throw Enough{};
   };
-  EXPECT_THROW(renderFilm(world.scene, {count}, {.spp = UINT32_MAX}, stats), Enough);
+  EXPECT_THROW(renderFilm(world.scene, {count}, {.spp = UINT32_MAX, .layers = {}}, stats), Enough);
 }
 
 }  // namespace

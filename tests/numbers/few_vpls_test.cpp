@@ -4,27 +4,32 @@
 
 #include <numeric>
 
-#include "tests/support/pipeline.h"
+#include "tests/support/gather_of.h"
 
 namespace bnvpl::test {
 namespace {
 
-constexpr GatherMethod kMethods[] = {GatherMethod::TileCuts, GatherMethod::Lightcuts,
-                                     GatherMethod::All};
+const char* const kDensities[] = {"local", "uniform"};
+
+std::vector<std::string> gathers() {
+  std::vector<std::string> names;
+  for (const GatherMethod* m : gatherMethods()) names.emplace_back(m->name);
+  return names;
+}
+
+VplTable keepOf(const World& world, uint64_t candidates, uint64_t count,
+                const std::string& density = "local") {
+  const VplTable all = placeVpls(world, {{"count", std::to_string(candidates)}}).table;
+  return keepVpls(all, {{"count", std::to_string(count)}, {"density", density}});
+}
 
 // Lights the VPLs and renders them by every method.
-void expectWholeImages(const World& world, VplTable vpls) {
-  EstimateOptions estimate{.photons = 5000};
-  estimateFlux(vpls, world.rays, world.lights, estimate);
-  for (const GatherMethod method : kMethods) {
-    for (const float clamp : {0.0f, 2.0f}) {
-      VplSettings s;
-      s.clamp = clamp;
-      s.nearField = true;
-      s.gather.method = method;
-      s.film.spp = 1;
-      FilmStats stats;
-      renderVpls(world, vpls, s, stats);
+void expectWholeImages(const World& world, const VplTable& vpls) {
+  const VplTable lit = lightVpls(world, vpls, {{"photons", "5000"}}).table;
+  for (const std::string& gather : gathers()) {
+    for (const char* clamp : {"0", "2"}) {
+      const FilmStats stats =
+          renderVpls(world, lit, {{"gather", gather}, {"clamp", clamp}, {"spp", "1"}}).stats;
       EXPECT_EQ(stats.nonFinite, 0u);
       EXPECT_GT(stats.indirect, 0.0);
     }
@@ -39,8 +44,8 @@ World smallCornell() {
 
 TEST(FewVpls, OneOfManyCandidates) {
   const World world = smallCornell();
-  for (const Density density : {Density::Local, Density::Uniform}) {
-    const VplTable vpls = placeAndEliminate(world, 2000, {.count = 1, .density = density});
+  for (const char* density : kDensities) {
+    const VplTable vpls = keepOf(world, 2000, 1, density);
     ASSERT_EQ(vpls.size(), 1u);
     expectWholeImages(world, vpls);
   }
@@ -48,8 +53,8 @@ TEST(FewVpls, OneOfManyCandidates) {
 
 TEST(FewVpls, OneCandidate) {
   const World world = smallCornell();
-  for (const Density density : {Density::Local, Density::Uniform}) {
-    const VplTable vpls = placeAndEliminate(world, 1, {.count = 1, .density = density});
+  for (const char* density : kDensities) {
+    const VplTable vpls = keepOf(world, 1, 1, density);
     ASSERT_EQ(vpls.size(), 1u);
     EXPECT_GT(vpls.radius[0], 0.0f);
     expectWholeImages(world, vpls);
@@ -59,41 +64,53 @@ TEST(FewVpls, OneCandidate) {
 TEST(FewVpls, AsManyAsCandidates) {
   const World world = smallCornell();
   for (const uint64_t count : {2u, 3u, 300u}) {
-    for (const Density density : {Density::Local, Density::Uniform}) {
-      const VplTable vpls = placeAndEliminate(world, count, {.count = count, .density = density});
+    for (const char* density : kDensities) {
+      const VplTable vpls = keepOf(world, count, count, density);
       ASSERT_EQ(vpls.size(), count);
       std::vector<uint32_t> all(count);
       std::iota(all.begin(), all.end(), 0u);
       EXPECT_EQ(vpls.id, all);
     }
   }
-  expectWholeImages(world, placeAndEliminate(world, 300, {.count = 300}));
+  expectWholeImages(world, keepOf(world, 300, 300));
+}
+
+VplTable tableOf(const std::vector<Vec3>& position, const std::vector<Vec3>& normal) {
+  VplTable table;
+  table.position = position;
+  table.normal = normal;
+  table.albedo.resize(position.size());
+  table.id.resize(position.size());
+  std::iota(table.id.begin(), table.id.end(), 0u);
+  return table;
 }
 
 // Nothing tells them apart but their rows: the lowest stay. The radius follows the unit.
 TEST(FewVpls, AllCandidatesAtOnePlace) {
   for (const float unit : {1.0f, 1e-3f, 1e4f}) {
     const std::vector<Vec3> position(800, Vec3(0.3f, 0.2f, 0.6f) * unit), normal(800, {0, 1, 0});
-    for (const Density density : {Density::Local, Density::Uniform}) {
-      const EliminateResult kept = eliminate(position, normal, {.count = 40, .density = density});
+    for (const char* density : kDensities) {
+      const VplTable kept =
+          keepVpls(tableOf(position, normal), {{"count", "40"}, {"density", density}});
       std::vector<uint32_t> lowest(40);
       std::iota(lowest.begin(), lowest.end(), 0u);
-      EXPECT_EQ(kept.rows, lowest);
+      EXPECT_EQ(kept.id, lowest);
       for (const float r : kept.radius) EXPECT_NEAR(r / unit, 1.682f, 0.005f);
     }
   }
   const std::vector<Vec3> origin(10), up(10, {0, 1, 0});
-  for (const float r : eliminate(origin, up, {.count = 2}).radius) EXPECT_GT(r, 0.0f);
+  for (const float r : keepVpls(tableOf(origin, up), {{"count", "2"}}).radius) EXPECT_GT(r, 0.0f);
 }
 
 TEST(FewVpls, RadiiBeyondFloatsAreRefused) {
   const std::vector<Vec3> normal(4, {0, 1, 0});
   const std::vector<Vec3> apart{{0, 0, 0}, {3e30f, 0, 0}, {0, 0, 3e30f}, {1, 0, 1}};
-  EXPECT_THROW(eliminate(apart, normal, {.count = 2}), InputError);
+  EXPECT_THROW(keepVpls(tableOf(apart, normal), {{"count", "2"}}), InputError);
   const std::vector<Vec3> near{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
-  for (const double area : {1e300, 1e-80}) {
-    EXPECT_THROW(eliminate(near, normal, {.count = 2, .density = Density::Uniform, .area = area}),
-                 InputError);
+  for (const char* area : {"1e300", "1e-80"}) {
+    EXPECT_THROW(
+        keepVpls(tableOf(near, normal), {{"count", "2"}, {"density", "uniform"}, {"area", area}}),
+        InputError);
   }
 }
 
@@ -103,7 +120,8 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
   SurfacePoint at;
   ASSERT_TRUE(world.rays.closestHit({0.278f, 0.3f, 0.28f}, {0, -1, 0}, at));  // the floor, or a box
   const Bsdf bsdf(world.scene, at);
-  const auto gathered = [&](const std::vector<Vec3>& offsets, GatherMethod method, float clamp2) {
+  const auto gathered = [&](const std::vector<Vec3>& offsets, const std::string& method,
+                            float clamp2) {
     VplLights vpls;
     for (const Vec3 offset : offsets) {
       vpls.position.push_back(at.position + offset);
@@ -111,29 +129,24 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
       vpls.intensity.push_back(Vec3(1.0f));
       vpls.clamp2.push_back(clamp2);
     }
-    const Gatherer gatherer(world.rays, vpls, {.method = method}, 1);
-    const Bsdf* const one[] = {&bsdf};
-    TileReceivers tile;
-    tile.pixels = 1;
-    tile.bsdf = one;
-    std::vector<Gathered> out(1);
-    gatherer.gather(tile, out);
-    EXPECT_TRUE(isFinite(out[0].radiance) && isFinite(out[0].clamped));
+    const GatherOf gather(world, vpls, {{"gather", method}});
+    const Gathered out = gather.at(bsdf);
+    EXPECT_TRUE(isFinite(out.radiance) && isFinite(out.clamped));
     for (uint64_t i = 0; i < 100; ++i) {
       Rng rng(7, i);
-      const Gathered sampled = gatherer.sample(bsdf, 8, rng);
+      const Gathered sampled = gather.point(bsdf, 8, rng);
       EXPECT_TRUE(isFinite(sampled.radiance) && isFinite(sampled.clamped));
     }
-    return out[0].radiance;
+    return out.radiance;
   };
-  for (const GatherMethod method : kMethods) {
+  for (const char* method : {"tilecuts", "lightcuts", "stochastic", "ward", "all"}) {
     for (const float clamp2 : {1e-12f, 1e-4f}) {
       EXPECT_EQ(gathered({Vec3()}, method, clamp2), Vec3());
       EXPECT_EQ(gathered({Vec3(), Vec3(), Vec3()}, method, clamp2), Vec3());
       gathered({Vec3(), at.ng * 1e-7f, at.ng * 1e-30f}, method, clamp2);
       const Vec3 lit = gathered({at.ng * 0.1f}, method, clamp2);
       EXPECT_GT(lit.x, 0.0f);
-      const Vec3 both = gathered({Vec3(), at.ng * 0.1f}, GatherMethod::All, clamp2);
+      const Vec3 both = gathered({Vec3(), at.ng * 0.1f}, "all", clamp2);
       EXPECT_NEAR(both.x, lit.x, 1e-5f * lit.x);
     }
   }
@@ -142,19 +155,12 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
 // Flux so faint that its mean is no float, beside one that is 1e30 times as strong.
 TEST(FewVpls, FluxesOfAnyStrength) {
   const World world = smallCornell();
-  VplTable vpls = placeAndEliminate(world, 300, {.count = 30});
-  estimateFlux(vpls, world.rays, world.lights, {.photons = 20000});
+  VplTable vpls = lightVpls(world, keepOf(world, 300, 30), {{"photons", "20k"}}).table;
   for (size_t i = 0; i < vpls.size(); ++i) {
     vpls.flux[i] = i % 3 == 0 ? Vec3(1e-45f, 0, 0) : i % 3 == 1 ? Vec3(1e-20f) : Vec3(1e12f);
   }
-  for (const GatherMethod method : kMethods) {
-    VplSettings s;
-    s.gather.method = method;
-    s.nearField = true;
-    s.film.spp = 1;
-    FilmStats stats;
-    renderVpls(world, vpls, s, stats);
-    EXPECT_EQ(stats.nonFinite, 0u);
+  for (const std::string& gather : gathers()) {
+    EXPECT_EQ(renderVpls(world, vpls, {{"gather", gather}, {"spp", "1"}}).stats.nonFinite, 0u);
   }
 }
 

@@ -124,10 +124,9 @@ TEST_F(NonFinite, MaterialsOfAbsurdSize) {
                  std::string("newmtl paint\n") + fields, "",
                  "[[light]]\ntype = \"environment\"\nradiance = [1, 1, 1]\n");
     const World world(std::move(scene));
-    FilmStats stats;
-    const Image image = renderPaths(world, {.spp = 64}, stats);
-    EXPECT_EQ(stats.nonFinite, 0u) << fields;
-    EXPECT_LT(meanOf(image), 1.01) << fields;  // a white sky, never more
+    const RenderResult result = renderWithout(world, "path", {{"spp", "64"}});
+    EXPECT_EQ(result.stats.nonFinite, 0u) << fields;
+    EXPECT_LT(meanOf(result.image), 1.01) << fields;  // a white sky, never more
   }
 }
 
@@ -144,7 +143,7 @@ TEST_F(NonFinite, SamplesAreCountedAsZero) {
             r.direct = r.indirect = Vec3(i % 2 == 0 ? 1.0f : value);  // 3e38 twice is infinite
           }
         }},
-        {.spp = 4, .layers = ~0u}, stats);
+        {.spp = 4, .layers = parseLayers("all")}, stats);
     EXPECT_EQ(stats.nonFinite, stats.samples / 2);
     EXPECT_NEAR(meanOf(image), 1.0, 1e-6);
     for (const ImageChannel& channel : image.channels) {
@@ -169,7 +168,7 @@ TEST_F(NonFinite, SplatsAreCountedAsZero) {
                     }
                     out.nonFinite += end - begin;
                   }},
-                 {.spp = 2}, stats);
+                 {.spp = 2, .layers = {}}, stats);
   EXPECT_EQ(stats.nonFinite, 16u + 32u);
   EXPECT_FLOAT_EQ(image.find("R")->front(), 0.5f);  // of two samples
 }

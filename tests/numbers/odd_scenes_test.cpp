@@ -7,12 +7,14 @@ namespace {
 
 class OddScenes : public RoomTest {
  protected:
+  static VplTable fewVpls(const World& world, const char* candidates, const char* count) {
+    return keepVpls(placeVpls(world, {{"count", candidates}}).table, {{"count", count}});
+  }
   Image paths(Scene scene) const {
     const World world(std::move(scene));
-    FilmStats stats;
-    Image image = renderPaths(world, {.spp = 4, .layers = ~0u}, stats);
-    EXPECT_EQ(stats.nonFinite, 0u);
-    return image;
+    const RenderResult result = renderWithout(world, "path", {{"spp", "4"}, {"layers", "all"}});
+    EXPECT_EQ(result.stats.nonFinite, 0u);
+    return result.image;
   }
   static bool sameLight(const Image& a, const Image& b) {
     return *a.find("R") == *b.find("R") && *a.find("G") == *b.find("G") &&
@@ -20,9 +22,9 @@ class OddScenes : public RoomTest {
   }
   // What vpl-place says of the scene; empty when it finds enough.
   std::string placeError(const Scene& scene) const {
-    const RayScene rays(scene);
+    const World world(scene);
     try {
-      placeFromCamera(rays, {.count = 20});
+      placeVpls(world, {{"count", "20"}});
     } catch (const InputError& e) {
       return e.what();
     }
@@ -30,9 +32,9 @@ class OddScenes : public RoomTest {
   }
   std::string lightError(const Scene& scene) const {
     const World world(scene);
-    VplTable vpls = placeAndEliminate(world, 50, {.count = 5});
+    const VplTable vpls = fewVpls(world, "50", "5");
     try {
-      estimateFlux(vpls, world.rays, world.lights, {.photons = 100});
+      lightVpls(world, vpls, {{"photons", "100"}});
     } catch (const InputError& e) {
       return e.what();
     }
@@ -106,15 +108,8 @@ TEST_F(OddScenes, CoincidentSurfacesOfDifferentMaterials) {
   EXPECT_TRUE(sameLight(first, second));
   EXPECT_GT(meanOf(first), 0.0);
   const World world(room(metres_, carpet));
-  VplSettings s;
-  s.candidates = 1000;
-  s.vpls = 50;
-  s.estimate.photons = 10000;
-  s.nearField = true;
-  s.film.spp = 1;
-  FilmStats stats;
-  renderVpls(world, lightUp(world, s), s, stats);
-  EXPECT_EQ(stats.nonFinite, 0u);
+  const VplTable lit = lightVpls(world, fewVpls(world, "1000", "50"), {{"photons", "10k"}}).table;
+  EXPECT_EQ(renderVpls(world, lit, {{"spp", "1"}}).stats.nonFinite, 0u);
 }
 
 TEST_F(OddScenes, ALightOfNoPowerBesideOthersIsNotThere) {
@@ -128,8 +123,7 @@ TEST_F(OddScenes, ALightOfNoPowerBesideOthersIsNotThere) {
     World world(
         loadMesh(kSquareObj + "v -1 -1 2\nv -1 1 2\nv -1 1 0\nv -1 -1 0\nf -4/1 -3/2 -2/3 -1/4\n",
                  "newmtl paint\nKd 0.5 0.5 0.5\n", "", lights));
-    VplTable vpls = placeAndEliminate(world, 200, {.count = 20});
-    return estimateFlux(vpls, world.rays, world.lights, {.photons = 5000}).reflected;
+    return lightVpls(world, fewVpls(world, "200", "20"), {{"photons", "5000"}}).energy.reflected;
   };
   EXPECT_NEAR(flux(lit + dark) / flux(lit), 1.0, 0.05);
   EXPECT_GT(flux(lit), 0.0);
@@ -164,10 +158,9 @@ TEST_F(OddScenes, FaintLight) {
   for (LightSpec& l : scene.lights) l.emission *= 1e-34f;
   for (Material& m : scene.materials) m.emission *= 1e-34f;
   const World bright(room(metres_)), faint(scene);
-  const VplTable start = placeAndEliminate(bright, 200, {.count = 20});
-  VplTable a = start, b = start;
-  const EnergyAccount strong = estimateFlux(a, bright.rays, bright.lights, {.photons = 2000});
-  const EnergyAccount weak = estimateFlux(b, faint.rays, faint.lights, {.photons = 2000});
+  const VplTable vpls = fewVpls(bright, "200", "20");
+  const EnergyAccount strong = lightVpls(bright, vpls, {{"photons", "2000"}}).energy;
+  const EnergyAccount weak = lightVpls(faint, vpls, {{"photons", "2000"}}).energy;
   EXPECT_NEAR(weak.reflected * 1e34 / strong.reflected, 1.0, 0.01);
   EXPECT_EQ(weak.nonFinite, 0u);
 }

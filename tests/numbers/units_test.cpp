@@ -12,21 +12,13 @@ struct Images {
 
 Images renderBoth(Scene scene) {
   const World world(std::move(scene));
-  VplSettings s;
-  s.candidates = 4000;
-  s.vpls = 200;
-  s.estimate.photons = 40000;
-  s.clamp = 2.0f;
-  s.nearField = true;
-  s.nearFieldRays = 4;
-  s.gather.method = GatherMethod::TileCuts;
-  FilmStats stats;
-  Images images;
-  images.vpl = renderVpls(world, lightUp(world, s), s, stats);
-  EXPECT_EQ(stats.nonFinite, 0u);
-  images.path = renderPaths(world, {.spp = 16}, stats);
-  EXPECT_EQ(stats.nonFinite, 0u);
-  return images;
+  const VplTable lit =
+      litVpls(world, {{"count", "200"}}, {{"photons", "40k"}}, {{"count", "4000"}});
+  const RenderResult vpl = renderVpls(world, lit, {{"near-field-rays", "4"}, {"spp", "4"}});
+  EXPECT_EQ(vpl.stats.nonFinite, 0u);
+  const RenderResult path = renderWithout(world, "path", {{"spp", "16"}});
+  EXPECT_EQ(path.stats.nonFinite, 0u);
+  return {vpl.image, path.image};
 }
 
 // Root mean square difference over the mean of the first.

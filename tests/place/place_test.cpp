@@ -7,17 +7,13 @@
 namespace bnvpl::test {
 namespace {
 
-PlaceOptions options(uint64_t count) {
-  PlaceOptions o;
-  o.count = count;
-  return o;
-}
+Given count(uint64_t vpls) { return {{"count", std::to_string(vpls)}}; }
 
 TEST(Place, GivesExactlyTheCountInPathOrder) {
   const World world("u-shape/scene.toml");
   // Two waves of paths and three: one is joined while the next is traced.
-  const VplTable few = placeFromCamera(world.rays, options(70000)).table;
-  const VplTable more = placeFromCamera(world.rays, options(140000)).table;
+  const VplTable few = placeVpls(world, count(70000)).table;
+  const VplTable more = placeVpls(world, count(140000)).table;
   ASSERT_EQ(few.size(), 70000u);
   ASSERT_EQ(more.size(), 140000u);
   for (size_t i = 0; i < few.size(); ++i) {
@@ -30,7 +26,7 @@ TEST(Place, GivesExactlyTheCountInPathOrder) {
 // it.
 TEST(Place, CandidatesLieOnSurfacesAndFaceTheSideTheyWereSeenFrom) {
   const World world("u-shape/scene.toml");
-  const VplTable t = placeFromCamera(world.rays, options(2000)).table;
+  const VplTable t = placeVpls(world, count(2000)).table;
   for (size_t i = 0; i < t.size(); ++i) {
     ASSERT_NEAR(length(t.normal[i]), 1.0f, 1e-5f);
     SurfacePoint hit;
@@ -46,7 +42,7 @@ TEST(Place, NothingIsPlacedAtTheFirstDiffuseVertex) {
   const World world(
       "test/two-patches.toml");  // receiver seen alone; the emitter above reflects nothing
   try {
-    placeFromCamera(world.rays, options(100));
+    placeVpls(world, count(100));
     FAIL() << "the view cannot yield candidates";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("only 0 of 100 VPLs"), std::string::npos) << e.what();
@@ -56,9 +52,8 @@ TEST(Place, NothingIsPlacedAtTheFirstDiffuseVertex) {
 
 TEST(Place, LightMethodCarriesThePowerOfTheFirstHits) {
   const World world("cornell/scene.toml");
-  PlaceOptions o = options(40000);
-  o.lightDepth = 1;
-  const VplTable t = placeFromLights(world.rays, world.lights, o).table;
+  const VplTable t =
+      placeVpls(world, with(count(40000), {{"method", "light"}, {"light-depth", "1"}})).table;
   ASSERT_EQ(t.stage, VplStage::Lit);
   // With one bounce, flux out = albedo * power, less what escapes through the open front.
   double flux = 0.0, bound = 0.0;
@@ -74,10 +69,8 @@ TEST(Place, LightMethodCarriesThePowerOfTheFirstHits) {
 
 TEST(Place, DeeperPathsAddCandidatesAtLaterVertices) {
   const World world("u-shape/scene.toml");
-  PlaceOptions deep = options(3000);
-  deep.depth = 4;
-  const PlaceResult two = placeFromCamera(world.rays, options(3000));
-  const PlaceResult four = placeFromCamera(world.rays, deep);
+  const PlaceResult two = placeVpls(world, count(3000));
+  const PlaceResult four = placeVpls(world, with(count(3000), {{"depth", "4"}}));
   EXPECT_LT(four.paths * 2, two.paths);  // up to three a path instead of one
 }
 
@@ -85,10 +78,8 @@ TEST(Place, DeeperPathsAddCandidatesAtLaterVertices) {
 // comes before the next path's second.
 TEST(Place, VerticesOfOnePathStayTogether) {
   const World world("u-shape/scene.toml");
-  PlaceOptions deep = options(4000);
-  deep.depth = 3;
-  const VplTable two = placeFromCamera(world.rays, options(2000)).table;
-  const VplTable three = placeFromCamera(world.rays, deep).table;
+  const VplTable two = placeVpls(world, count(2000)).table;
+  const VplTable three = placeVpls(world, with(count(4000), {{"depth", "3"}})).table;
   size_t found = 0, apart = 0, before = 0;
   for (size_t i = 0; i < three.size() && found < two.size(); ++i) {
     if (three.position[i] != two.position[found]) continue;

@@ -1,13 +1,11 @@
 // The stages in one process, for tests of what they compute together.
 #pragma once
 
-#include <memory>
-
+#include "scene/scene.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/estimate/estimate.h"
 #include "tools/place/place.h"
-#include "tools/render/film/film.h"
-#include "tools/render/integrator/light/light_tracer.h"
+#include "tools/render/render.h"
 #include "transport/lights.h"
 
 namespace bnvpl::test {
@@ -21,70 +19,45 @@ struct World {
   LightSet lights;
 };
 
-inline VplTable placeAndEliminate(const World& world, uint64_t candidates,
-                                  const EliminateOptions& options) {
-  PlaceOptions place;
-  place.count = candidates;
-  const VplTable all = placeFromCamera(world.rays, place).table;
-  const EliminateResult kept = eliminate(all.position, all.normal, options);
-  VplTable vpls;
-  vpls.stage = VplStage::Eliminated;
-  for (const uint32_t row : kept.rows) {
-    vpls.position.push_back(all.position[row]);
-    vpls.normal.push_back(all.normal[row]);
-    vpls.albedo.push_back(all.albedo[row]);
-    vpls.id.push_back(all.id[row]);
-  }
-  vpls.radius = kept.radius;
-  vpls.rMax = kept.rMax;
-  return vpls;
+// The first options and then more: of two that are equal in name, the later counts.
+inline Given with(Given options, const Given& more) {
+  options.insert(options.end(), more.begin(), more.end());
+  return options;
 }
 
-struct VplSettings {
-  uint64_t candidates = 20000, vpls = 1000;
-  Density density = Density::Local;
-  EstimateOptions estimate{.photons = 300000};
-  float clamp = 1.0f;
-  bool nearField = false;
-  unsigned nearFieldRays = 16;
-  GatherOptions gather{.method = GatherMethod::All};
-  FilmOptions film{.spp = 4};
-};
-
-inline VplTable lightUp(const World& world, const VplSettings& s) {
-  VplTable vpls = placeAndEliminate(world, s.candidates, {.count = s.vpls, .density = s.density});
-  estimateFlux(vpls, world.rays, world.lights, s.estimate);
-  return vpls;
+inline PlaceResult placeVpls(const World& world, const Given& options) {
+  return place(world.rays, world.lights, resolve(placeSpec(), options));
+}
+inline VplTable keepVpls(const VplTable& candidates, const Given& options) {
+  return eliminate(candidates, resolve(eliminateSpec(), options)).table;
+}
+inline EstimateResult lightVpls(const World& world, const VplTable& vpls, const Given& options,
+                                const Resume& resume = {}) {
+  return estimate(vpls, world.rays, world.lights, resolve(estimateSpec(), options), {}, resume);
+}
+inline RenderResult renderVpls(const World& world, const VplTable& lit, const Given& options,
+                               const Resume& resume = {}) {
+  return render(world.rays, world.lights, lit, resolve(renderSpec(), options), {}, resume);
+}
+// By paths, or photons that are connected with the camera.
+inline RenderResult renderWithout(const World& world, const std::string& integrator,
+                                  const Given& options, const Resume& resume = {}) {
+  return renderVpls(world, {}, with({{"integrator", integrator}}, options), resume);
 }
 
-inline Image renderVpls(const World& world, const VplTable& lit, const VplSettings& s,
-                        FilmStats& stats) {
-  const VplLights vpls = makeVplLights(lit, world.rays, s.clamp);
-  const Gatherer gatherer(world.rays, vpls, s.gather, s.film.seed);
-  const NearField nearField(lit, world.rays, s.clamp);
-  const VplIntegrator integrator(world.rays, world.lights, gatherer,
-                                 s.nearField ? &nearField : nullptr, s.nearFieldRays, s.film.only);
-  return renderFilm(world.scene, {[&](const TileSamples& tile) { integrator.render(tile); }},
-                    s.film, stats);
-}
+// Few of everything; every VPL is gathered, and only what VPLs bring.
+inline const Given kFewCandidates{{"count", "20k"}};
+inline const Given kFewVpls{{"count", "1000"}};
+inline const Given kFewPhotons{{"photons", "300k"}};
+inline const Given kPlainRender{
+    {"gather", "all"}, {"compensate", "none"}, {"clamp", "1"}, {"spp", "4"}};
 
-inline Image renderPaths(const World& world, const FilmOptions& film, FilmStats& stats,
-                         unsigned maxBounces = 32) {
-  const PathTracer integrator(world.rays, world.lights, maxBounces, film.only);
-  return renderFilm(world.scene, {[&](const TileSamples& tile) { integrator.render(tile); }}, film,
-                    stats);
-}
-
-// Indirect light by photons that are connected with the camera.
-inline Image renderPhotons(const World& world, const FilmOptions& film, FilmStats& stats,
-                           unsigned maxBounces = 32, const Resume& resume = {}) {
-  const PathTracer samples(world.rays, world.lights, maxBounces, film.only, false);
-  const LightTracer photons(world.rays, world.lights, maxBounces, film.seed);
-  return renderFilm(
-      world.scene,
-      {[&](const TileSamples& tile) { samples.render(tile); },
-       [&](uint64_t begin, uint64_t end, Splats& out) { photons.follow(begin, end, out); }},
-      film, stats, {}, resume);
+// From the scene to lit VPLs; the options go behind those above.
+inline VplTable litVpls(const World& world, const Given& eliminated = {},
+                        const Given& estimated = {}, const Given& placed = {}) {
+  const VplTable candidates = placeVpls(world, with(kFewCandidates, placed)).table;
+  const VplTable vpls = keepVpls(candidates, with(kFewVpls, eliminated));
+  return lightVpls(world, vpls, with(kFewPhotons, estimated)).table;
 }
 
 // Mean over pixels and channels of a layer ("" for R, G, B).

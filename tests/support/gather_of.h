@@ -1,0 +1,32 @@
+// One gather by itself, for tests at single points.
+#pragma once
+
+#include "tests/support/pipeline.h"
+#include "tools/render/gather/point_gather.h"
+
+namespace bnvpl::test {
+
+struct GatherOf {
+  // `options` as of vpl-render; borrows the world and the VPLs. A gather that looks at the film
+  // sees nothing.
+  GatherOf(const World& world, const VplLights& vpls, const Given& options)
+      : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
+    const Values values = resolve(renderSpec(), options);
+    gather = methodNamed(gatherMethods(), values.text("gather"))
+                 .make({world.rays, vpls, tree, 1, [] { return FilmPoints{}; }}, values);
+  }
+  Gathered at(const Bsdf& bsdf) const {
+    const Bsdf* const one[] = {&bsdf};
+    TileReceivers tile;
+    tile.pixels = 1;
+    tile.bsdf = one;
+    std::vector<Gathered> out(1);
+    gather.tile(tile, out);
+    return out[0];
+  }
+  LightTree tree;
+  PointGather point;
+  Gather gather;
+};
+
+}  // namespace bnvpl::test
