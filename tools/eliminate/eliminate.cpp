@@ -22,6 +22,13 @@ VplTable keepRows(const VplTable& from, std::span<const uint32_t> rows) {
     to.normal.push_back(from.normal[row]);
     to.albedo.push_back(from.albedo[row]);
     to.id.push_back(from.id[row]);
+    if (from.stage < VplStage::Lit) continue;
+    to.flux.push_back(from.flux[row]);
+    to.photons.push_back(from.photons[row]);
+    to.relativeError.push_back(from.relativeError[row]);
+    to.emitPosition.push_back(from.emitPosition[row]);
+    to.emitNormal.push_back(from.emitNormal[row]);
+    to.firstBounceFlux.push_back(from.firstBounceFlux[row]);
   }
   return to;
 }

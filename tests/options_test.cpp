@@ -1,0 +1,108 @@
+// Options and methods: one table each, from which everything follows.
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "tests/support/pipeline.h"
+#include "tools/common/option.h"
+#include "tools/common/stage_cli.h"
+
+namespace bnvpl::test {
+namespace {
+
+constexpr std::array kStage{letterFor("-n", countOption("count", "", 100, "VPLs", "how many")),
+                            seedOption()};
+constexpr std::array kA{choiceOption("density", "local", "uniform|local", "help"),
+                        neededBy("density=local", realOption("share", "0.2", 0, 1, "", "help"))};
+constexpr std::array kB{realOption("error", "0.1", 0, 1, "", "of b")};
+constexpr std::array kC{realOption("error", "0.5", 0, 1, "", "of c")};
+
+StageSpec spec() {
+  return {"vpl-x",
+          kStage,
+          {{"method", "a", "help", {{"a", "first", kA}, {"b", "second", kB}, {"c", "third", kC}}},
+           {"inner", "d", "help", {{"d", "only", {}}}, "method=b|c"}}};
+}
+
+std::string refusal(const Given& given) {
+  try {
+    resolve(spec(), given);
+  } catch (const UsageError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Options, DefaultsAreThoseOfTheMethodInUse) {
+  const Values a = resolve(spec(), {{"count", "7"}});
+  EXPECT_EQ(a.whole("count"), 7u);
+  EXPECT_EQ(a.text("method"), "a");
+  EXPECT_EQ(a.real("share"), 0.2);
+  EXPECT_FALSE(a.has("error"));
+  EXPECT_FALSE(a.has("inner"));
+  EXPECT_EQ(resolve(spec(), {{"count", "7"}, {"method", "b"}}).real("error"), 0.1);
+  EXPECT_EQ(resolve(spec(), {{"count", "7"}, {"method", "c"}}).real("error"), 0.5);
+}
+
+TEST(Options, WithoutEffectAreRefusedWithWhatTheyNeed) {
+  EXPECT_EQ(refusal({{"count", "1"}, {"error", "0.2"}}),
+            "--error has no effect with --method a; it needs --method b or c");
+  EXPECT_EQ(refusal({{"count", "1"}, {"density", "uniform"}, {"share", "0.5"}}),
+            "--share has no effect with --density uniform; it needs --density local");
+  EXPECT_EQ(refusal({{"count", "1"}, {"inner", "d"}}),
+            "--inner has no effect with --method a; it needs --method b or c");
+  EXPECT_EQ(refusal({{"count", "1"}, {"colour", "red"}}), "--colour is not an option of vpl-x");
+  EXPECT_EQ(refusal({{"count", "1"}, {"method", "e"}}),
+            "--method: 'e' is not a method; use a, b or c");
+  EXPECT_EQ(refusal({}), "--count is required");
+}
+
+// "-1", 2^64, nothing, octal and hexadecimal digits: refused or read as what they say.
+TEST(Options, WholeNumbersAreWhatIsTyped) {
+  const auto seed = [](const std::string& text) {
+    return resolve(spec(), {{"count", "1"}, {"seed", text}}).whole("seed");
+  };
+  EXPECT_EQ(seed("010"), 10u);
+  EXPECT_EQ(seed("18446744073709551615"), UINT64_MAX);
+  for (const char* text :
+       {"-1", "18446744073709551616", "", " 1", "1 ", "0x10", "1e3", "+1", "1.0"}) {
+    EXPECT_EQ(refusal({{"count", "1"}, {"seed", text}}),
+              "--seed: '" + std::string(text) + "' is not a whole number from 0 to 2^64 - 1");
+  }
+}
+
+TEST(Options, CountsNameTheirOption) {
+  EXPECT_EQ(resolve(spec(), {{"count", "0.1k"}}).whole("count"), 100u);
+  EXPECT_EQ(refusal({{"count", "101"}}), "--count: '101' is out of range: from 1 to 100");
+  EXPECT_EQ(refusal({{"count", "3x"}}),
+            "--count: '3x' has an unknown suffix; write a whole number such as 3000, 3k or 10M");
+  EXPECT_EQ(refusal({{"count", "-3"}}),
+            "--count: '-3' is out of range; write a whole number such as 3000, 3k or 10M");
+}
+
+TEST(Options, RealsAreFiniteAndInRange) {
+  for (const char* text : {"nan", "inf", "1,5", "", "0.5 ", "1e999"})
+    EXPECT_NE(refusal({{"count", "1"}, {"share", text}}), "") << text;
+  EXPECT_EQ(refusal({{"count", "1"}, {"share", "1.01"}}),
+            "--share: '1.01' is out of range: from 0 to 1");
+  EXPECT_EQ(refusal({{"count", "1"}, {"share", "1"}}), "");
+}
+
+TEST(Options, TheRecordHoldsAllThatHasAnEffect) {
+  const Json record = recordOf(spec(), resolve(spec(), {{"count", "5"}, {"density", "uniform"}}));
+  EXPECT_EQ(record.dump(), R"({"method":"a","count":5,"seed":1,"density":"uniform"})");
+}
+
+TEST(Options, EveryStageIsSound) {
+  for (const StageSpec* stage : {&placeSpec(), &eliminateSpec(), &estimateSpec(), &renderSpec()}) {
+    EXPECT_NO_THROW(requireSound(*stage)) << stage->tool;
+    for (const MethodSlot& slot : stage->slots) {
+      for (const MethodEntry& m : slot.methods) EXPECT_FALSE(m.summary.empty()) << m.name;
+    }
+  }
+  StageSpec twice = spec();
+  twice.slots[0].methods[0].options = kStage;
+  EXPECT_THROW(requireSound(twice), std::logic_error);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,60 @@
+// What every gather has to show: the energy of all VPLs, and the same bytes for any number of
+// threads.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+
+// A box whose blocks hide many VPLs, and a room lit through a door, with their VPLs.
+struct GatherCase {
+  explicit GatherCase(const std::string& name) : world(name) {
+    world.scene.film = {32, 24};
+    lit = litVpls(world, {{"count", "600"}}, {{"photons", "100k"}}, {{"count", "12k"}});
+  }
+  Image indirect(const std::string& gather, const Given& options, uint64_t seed) const {
+    return renderVpls(world, lit,
+                      with(with(kPlainRender, {{"gather", gather},
+                                               {"only", "indirect"},
+                                               {"seed", std::to_string(seed)}}),
+                           options))
+        .image;
+  }
+  World world;
+  VplTable lit;
+};
+inline const std::vector<const GatherCase*>& gatherCases() {
+  static const GatherCase box("cornell/scene.toml"), door("veach-door/scene.toml");
+  static const std::vector<const GatherCase*> cases{&box, &door};
+  return cases;
+}
+
+// The mean over `seeds` images is that over all VPLs within `tolerance`, as a share; seen at the
+// same points, so that only the gather differs.
+inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint64_t seeds = 4,
+                              const Given& options = {}) {
+  for (const GatherCase* c : gatherCases()) {
+    double sum = 0.0, all = 0.0;
+    for (uint64_t seed = 1; seed <= seeds; ++seed) {
+      sum += meanOf(c->indirect(gather, options, seed));
+      all += meanOf(c->indirect("all", {}, seed));
+    }
+    EXPECT_NEAR(sum / all, 1.0, tolerance) << c->world.scene.name();
+  }
+}
+
+inline void expectSameBytesForAnyThreads(const std::string& gather) {
+  const GatherCase& c = *gatherCases().front();
+  std::vector<std::vector<float>> red;
+  for (const size_t threads : {1u, 2u, 7u}) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    red.push_back(*c.indirect(gather, {}, 1).find("R"));
+  }
+  EXPECT_EQ(red[0], red[1]);
+  EXPECT_EQ(red[0], red[2]);
+}
+
+}  // namespace bnvpl::test

@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+struct FromLights {
+  FromLights() : world("cornell/scene.toml") {
+    world.scene.film = {32, 24};
+    all = placeVpls(world, {{"count", "4000"}, {"method", "light"}}).table;
+  }
+  VplTable keep(const Given& options) const {
+    const Given given = with({{"count", "400"}, {"method", "rejection"}}, options);
+    return eliminate(all, resolve(eliminateSpec(), given), &world.rays, &world.lights).table;
+  }
+  double light(const VplTable& vpls) const {
+    const Given plain = with(kPlainRender, {{"only", "indirect"}, {"clamp", "0.01"}});
+    return meanOf(renderVpls(world, vpls, plain).image);
+  }
+  World world;
+  VplTable all;
+};
+const FromLights& cornell() {
+  static const FromLights one;
+  return one;
+}
+
+// Each VPL stands for one over its probability: the expected image is that of all.
+TEST(Rejection, KeepsTheEnergyOnAverage) {
+  const auto& c = cornell();
+  // Nothing is clamped, for clamping goes by r_max, which grows as fewer are kept.
+  double sum = 0.0;
+  constexpr int kSeeds = 12;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const VplTable kept = c.keep({{"seed", std::to_string(seed)}});
+    sum += c.light(kept) / kSeeds;
+  }
+  EXPECT_NEAR(sum / c.light(c.all), 1.0, 0.04);
+}
+
+TEST(Rejection, KeepsAboutTheCount) {
+  double sum = 0.0;
+  for (int seed = 1; seed <= 8; ++seed) {
+    const VplTable kept = cornell().keep({{"seed", std::to_string(seed)}});
+    EXPECT_EQ(kept.stage, VplStage::Lit);
+    EXPECT_EQ(kept.radius.size(), kept.size());
+    sum += double(kept.size()) / 8;
+  }
+  EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // a count of independent choices
+}
+
+// What brings nothing to the view is kept a hundredth of the time, at a hundred times its flux.
+TEST(Rejection, WeighsByOneOverTheProbability) {
+  const VplTable& all = cornell().all;
+  const VplTable kept = cornell().keep({});
+  double largest = 0.0;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    const double weight = double{mean(kept.flux[i]) / mean(all.flux[kept.id[i]])};
+    EXPECT_GE(weight, 0.999);
+    largest = std::max(largest, weight);
+    EXPECT_EQ(kept.position[i], all.position[kept.id[i]]);
+  }
+  EXPECT_LE(largest, 100.1);
+}
+
+TEST(Rejection, IsTheSameForAnyThreads) {
+  std::vector<VplTable> tables;
+  for (const size_t threads : {1u, 5u}) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    tables.push_back(cornell().keep({}));
+  }
+  EXPECT_EQ(tables[0].id, tables[1].id);
+  EXPECT_EQ(tables[0].flux, tables[1].flux);
+}
+
+TEST(Rejection, AsksForTheScene) {
+  const Values options = resolve(eliminateSpec(), {{"count", "10"}, {"method", "rejection"}});
+  EXPECT_THROW(eliminate(cornell().all, options), UsageError);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

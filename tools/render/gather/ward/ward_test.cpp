@@ -1,0 +1,31 @@
+#include "tests/support/gather_checks.h"
+
+namespace bnvpl::test {
+namespace {
+
+// What is not tested counts with an expected visibility: right on average, up to its own error.
+TEST(Ward, HasTheEnergyOfAllVpls) { expectEnergyOfAll("ward", 0.02, 1); }
+
+TEST(Ward, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("ward"); }
+
+TEST(Ward, WithoutToleranceEveryVplIsTested) {
+  const GatherCase& c = *gatherCases().front();
+  const Image all = c.indirect("all", {}, 1), ward = c.indirect("ward", {{"tolerance", "0"}}, 1);
+  const auto &x = *all.find("G"), &y = *ward.find("G");
+  for (size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(y[i], x[i], 1e-5f * (x[i] + 1e-3f)) << i;
+}
+
+// Ward 1994: most of the shadow rays are saved at a small error.
+TEST(Ward, SavesShadowRays) {
+  const GatherCase& c = *gatherCases().front();
+  const auto rays = [&](const std::string& gather) {
+    const Image image = c.indirect(gather, {{"layers", "shadowrays"}}, 1);
+    double sum = 0.0;
+    for (const float r : *image.find("shadowrays")) sum += double{r};
+    return sum;
+  };
+  EXPECT_LT(rays("ward"), 0.6 * rays("all"));
+}
+
+}  // namespace
+}  // namespace bnvpl::test
