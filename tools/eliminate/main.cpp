@@ -3,6 +3,7 @@
 #include "formats/vpl_io.h"
 #include "tools/common/choice.h"
 #include "tools/common/memory.h"
+#include "tools/common/run_files.h"
 #include "tools/common/run_tool.h"
 #include "tools/eliminate/eliminate.h"
 
@@ -73,7 +74,7 @@ Json describe(const EliminateOptions& options) {
 int runEliminate(const fs::path& input, const fs::path& output, const EliminateOptions& options,
                  const ToolOptions& tool) {
   Summary summary("vpl-eliminate");
-  requireWritable({output, tool.stats, tool.depfile});
+  RunFiles().reads("candidates", input).writes("-o", output, {".vpl"}).writes(tool).ready();
   requireMemoryFor(input, kBytesPerCandidate, "place fewer with vpl-place -n");
   const VplTable candidates = readVpl(input, VplStage::Candidates);
 

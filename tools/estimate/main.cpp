@@ -8,6 +8,7 @@
 #include "tools/common/choice.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/estimate/estimate.h"
 
@@ -81,10 +82,13 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
   if (options.photons > kMaxPhotons) {
     throw UsageError("--photons is above 2^36, the most that can be summed up exactly");
   }
-  requireWritable({output, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("scene", sceneOptions.file).reads("vpls", input).writes("-o", output, {".vpl"});
+  used.writes("--checkpoint", checkpoints.file).writes(tool).check();
   requireMemoryFor(input, kBytesPerVpl, "keep fewer with vpl-eliminate -n");
   VplTable vpls = readVpl(input, VplStage::Eliminated);
   const Scene scene = loadSceneFor("vpl-estimate", sceneOptions);
+  used.ready(scene.files);
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);

@@ -20,10 +20,12 @@ CLI::App* addInfo(CLI::App& cli, InfoCommand& c) {
 }
 
 CLI::Option* addScene(CLI::App& sub, SceneOptions& scene, const std::string& help) {
+  CLI::Option* option = sub.add_option("--scene", scene.file, help);
   sub.add_option("--define", scene.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
-      ->allow_extra_args(false);
-  return sub.add_option("--scene", scene.file, help);
+      ->allow_extra_args(false)
+      ->needs(option);
+  return option;
 }
 
 CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
@@ -32,7 +34,7 @@ CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
   sub->add_flag("--deep", c.deep,
                 "the files must be one whole chain, row by row; what is broken comes with the "
                 "commands that mend it");
-  addScene(*sub, c.scene, "deep: the scene (.toml) that all must come from");
+  addScene(*sub, c.scene, "the scene (.toml) that all must come from");
   return sub;
 }
 
@@ -86,10 +88,10 @@ int main(int argc, char** argv) {
   addCompare(cli, compare);
   return runTool(cli, tool, argc, argv, [&] {
     plot.colourGiven = plotCli->count("--color") > 0;
-    if (infoCli->parsed()) return runInfo(info);
+    if (infoCli->parsed()) return runInfo(info, tool);
     if (checkCli->parsed()) return runCheck(check, tool);
     if (exportCli->parsed()) return runExport(exported, tool);
     if (plotCli->parsed()) return runPlot(plot, tool);
-    return runCompare(compare);
+    return runCompare(compare, tool);
   });
 }

@@ -4,6 +4,7 @@
 #include "tools/common/choice.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/place/place.h"
 
@@ -26,13 +27,15 @@ Json describe(const PlaceOptions& o) {
 int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const PlaceOptions& options,
              const ToolOptions& tool) {
   Summary summary("vpl-place");
-  requireWritable({output, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("scene", sceneOptions.file).writes("-o", output, {".vpl"}).writes(tool).check();
   if (options.count > INT32_MAX) {
     throw UsageError("-n is above 2^31 - 1, the most that vpl-eliminate can search");
   }
   requireMemory(kBytesPerRow * double(options.count), std::to_string(options.count) + " VPLs",
                 "ask for fewer with -n");
   const Scene scene = loadSceneFor("vpl-place", sceneOptions);
+  used.ready(scene.files);
   const RayScene rays(scene);
 
   ProgressMeter meter("VPLs", options.count, tool.quiet);

@@ -14,6 +14,7 @@
 #include "tools/common/film_size.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/render/film/film.h"
 #include "tools/render/integrator/light/light_tracer.h"
@@ -130,7 +131,10 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   const bool vpl = o.integrator == IntegratorKind::Vpl;
   o.film.layers = layerBits(o.layers);
   parseExposure(o.exposure);
-  requireWritable({paths.output, paths.png, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("scene", sceneOptions.file).reads("lit", paths.lit);
+  used.writes("-o", paths.output, {".exr"}).writes("--png", paths.png, {".png"});
+  used.writes("--checkpoint", checkpoints.file).writes(tool).check();
   if (vpl && paths.lit.empty())
     throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path or light");
   if (!vpl && !paths.lit.empty()) {
@@ -142,6 +146,7 @@ int runRender(const SceneOptions& sceneOptions, const Paths& paths, RenderOption
   VplTable lit;
   if (vpl) lit = readVpl(paths.lit, VplStage::Lit);
   Scene scene = loadSceneFor("vpl-render", sceneOptions);
+  used.ready(scene.files);
   if (!o.size.empty()) scene.film = parseSize(o.size);
   if (vpl)
     requireSameScene(paths.lit, lit.sceneHash, scene,
