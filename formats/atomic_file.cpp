@@ -13,6 +13,8 @@
 #include <set>
 #include <utility>
 
+#include "formats/output_target.h"
+
 namespace bnvpl {
 namespace {
 
@@ -36,10 +38,6 @@ void forget(const char* path) {
     if (place.compare_exchange_strong(same, nullptr)) return;
   }
   while (removing) ::pause();  // another thread reads `path`, and is about to end the process
-}
-
-fs::path folderOf(const fs::path& target) {
-  return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
 // Whether `name` is `prefix`, digits, a dash, digits.
@@ -88,23 +86,9 @@ void syncFolder(const fs::path& target) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
-  std::error_code ignored;
-  if (fs::is_directory(target_, ignored)) {
-    throw OutputError(target_, "is a folder; name a file");
-  }
-  if (fs::exists(target_, ignored)) {
-    // Renaming over /dev/null or a pipe would replace the device itself.
-    if (!fs::is_regular_file(target_, ignored)) {
-      throw OutputError(target_, "is a device or pipe, which cannot be replaced; name a file");
-    }
-    // It would also replace a read-only file, which somebody made so in order to keep it.
-    if (::faccessat(AT_FDCWD, target_.c_str(), W_OK, AT_EACCESS) != 0) {
-      throw OutputError(target_, std::string("cannot replace: ") + std::strerror(errno) +
-                                     "; make it writable or name another file");
-    }
-  }
-  removeAbandoned(target_);
+AtomicFile::AtomicFile(fs::path target)
+    : target_(std::move(target)), place_(replaceableTarget(target_)) {
+  removeAbandoned(place_);
   open();
 }
 
@@ -118,7 +102,7 @@ void AtomicFile::open() {
   static std::atomic<unsigned> number{0};  // a name is never used twice
   struct stat info {};
   while (true) {
-    partial_ = target_.string() + kPartial + std::to_string(::getpid()) + "-" +
+    partial_ = place_.string() + kPartial + std::to_string(::getpid()) + "-" +
                std::to_string(number.fetch_add(1));
     remember(partial_.c_str());
     descriptor_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -132,9 +116,18 @@ void AtomicFile::open() {
     while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
     }
     // Another run may have taken it for abandoned before it was locked.
-    if (::fstat(descriptor_, &info) == 0 && info.st_nlink > 0) return;
+    if (::fstat(descriptor_, &info) == 0 && info.st_nlink > 0) return keepMode();
     ::close(descriptor_);
     forget(partial_.c_str());
+  }
+}
+
+// Before the first byte: what is private stays so. A file system without modes refuses, and
+// rightly.
+void AtomicFile::keepMode() const {
+  struct stat old {};
+  if (::stat(place_.c_str(), &old) == 0) {
+    [[maybe_unused]] const int ignored = ::fchmod(descriptor_, old.st_mode & 07777);
   }
 }
 
@@ -154,7 +147,7 @@ void AtomicFile::sync() {
 
 void AtomicFile::replace() {
   outputReplaced = true;  // before it is: a signal in between must not deny it
-  if (::rename(partial_.c_str(), target_.c_str()) != 0) {
+  if (::rename(partial_.c_str(), place_.c_str()) != 0) {
     throw OutputError(target_, std::string("cannot replace: ") + std::strerror(errno));
   }
   replaced_ = true;
@@ -163,7 +156,7 @@ void AtomicFile::replace() {
 void AtomicFile::commit() {
   sync();
   replace();
-  syncFolder(target_);
+  syncFolder(place_);
 }
 
 void AtomicFile::fail(int error) const {
@@ -176,8 +169,15 @@ void OutputSet::commit() {
   for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->replace();
   std::set<fs::path> folders;
   for (const AtomicFile& file : files_) {
-    if (folders.insert(folderOf(file.target_)).second) syncFolder(file.target_);
+    if (folders.insert(folderOf(file.place_)).second) syncFolder(file.place_);
   }
+}
+
+bool isPartialOf(const fs::path& file, const fs::path& target) {
+  std::error_code failed;
+  const fs::path place = followLinks(target);
+  return isPartialName(file.filename().string(), place.filename().string() + kPartial) &&
+         fs::equivalent(folderOf(file), folderOf(place), failed);
 }
 
 void writeFileAtomically(const fs::path& target, const std::string& bytes) {

@@ -10,15 +10,18 @@
 
 namespace bnvpl {
 
-// Reserves TARGET.partial-PID-N. The caller calls write() as often as it likes and then commit();
-// without that, the destructor removes the partial file and the old target stays as it was.
+// Reserves TARGET.partial-PID-N, beside the end of all links where TARGET is one: the links stay.
+// The new file has the mode of the one that it replaces; where there is none, the umask decides.
+// Other hard links keep the old content. The caller calls write() as often as it likes and then
+// commit(); without that, the destructor removes the partial file and the old target stays as it
+// was.
 //
 // A process that is killed leaves its partial file behind. Each one is locked (flock) while its
 // writer lives, so the next run that writes the same target knows it as abandoned and removes it.
 // Where a file system knows no locks, it stays for the user to remove.
 //
-// All members throw OutputError; the constructor when the folder is missing or not writable, so
-// that a probe before the work is an AtomicFile that is never committed.
+// All members throw OutputError; the constructor when the target cannot be replaced (see
+// output_target.h), so that a probe before the work is an AtomicFile that is never committed.
 class AtomicFile {
  public:
   explicit AtomicFile(fs::path target);
@@ -34,11 +37,12 @@ class AtomicFile {
  private:
   friend class OutputSet;
   void open();
+  void keepMode() const;
   void sync();     // what was written is on the disk when it returns
   void replace();  // the rename; only the folder is still to be synchronised
   [[noreturn]] void fail(int error) const;
 
-  fs::path target_, partial_;
+  fs::path target_, place_, partial_;  // as named; without links; what is written
   int descriptor_ = -1;
   bool replaced_ = false;
 };
@@ -54,6 +58,9 @@ class OutputSet {
  private:
   std::deque<AtomicFile> files_;  // does not move its elements
 };
+
+// Whether `file` has the name of a partial file of `target`: it would be taken for abandoned.
+bool isPartialOf(const fs::path& file, const fs::path& target);
 
 // Writes `bytes` as the whole content of `target`, atomically.
 void writeFileAtomically(const fs::path& target, const std::string& bytes);

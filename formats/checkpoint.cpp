@@ -3,6 +3,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/files.h"
 #include "formats/atomic_file.h"
 #include "formats/vpl_layout.h"
 
@@ -15,7 +16,18 @@ uint64_t checksumOf(CheckpointHeader header, const std::string& run, const std::
       {bytesOf(header), std::as_bytes(std::span(run)), std::as_bytes(std::span(state))});
 }
 
+constexpr const char* kNone = "is no checkpoint; name another file, or, if it was one, delete it";
+
 }  // namespace
+
+std::optional<bool> beginsAsCheckpoint(const fs::path& file) {
+  std::array<char, 8> start{};
+  std::ifstream in;
+  if (isRegularFile(file)) in.open(file, std::ios::binary);
+  if (!in.is_open()) return std::nullopt;
+  in.read(start.data(), start.size());
+  return start == CheckpointHeader{}.magic;
+}
 
 CheckpointFile readCheckpoint(const fs::path& file) {
   const auto damaged = [&](const std::string& what) {
@@ -26,9 +38,9 @@ CheckpointFile readCheckpoint(const fs::path& file) {
   if (!in) throw InputError(file, "cannot be read as a checkpoint; is it readable?");
   std::error_code failed;
   const uint64_t size = fs::file_size(file, failed);
-  if (failed || size < sizeof header) throw damaged("is no checkpoint");
+  if (failed || size < sizeof header) throw InputError(file, kNone);
   in.read(reinterpret_cast<char*>(&header), sizeof header);
-  if (header.magic != CheckpointHeader{}.magic) throw damaged("is no checkpoint");
+  if (header.magic != CheckpointHeader{}.magic) throw InputError(file, kNone);
   if (header.version != CheckpointHeader{}.version)
     throw damaged("is a checkpoint of another version");
   const uint64_t rest = size - sizeof header;

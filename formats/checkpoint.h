@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/errors.h"
@@ -27,6 +28,9 @@ static_assert(sizeof(CheckpointHeader) == 64);
 struct CheckpointFile {
   std::string run, state;
 };
+
+// Whether `file` begins as a checkpoint does; none when it cannot be read. Does not throw.
+std::optional<bool> beginsAsCheckpoint(const fs::path& file);
 
 // Throws InputError when the file cannot be read or is damaged, cut short or of another version.
 CheckpointFile readCheckpoint(const fs::path& file);

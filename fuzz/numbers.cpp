@@ -21,8 +21,9 @@ void parseAlone(const std::string& text) {
   }
   Film film;
   if (accepted<UsageError>([&] { film = parseSize(text); })) {
-    require(film.width >= 1 && film.height >= 1 && film.width <= 16384 && film.height <= 16384,
-            "sides are from 1 to 16384");
+    require(film.width >= 1 && film.height >= 1 && film.width <= kMaxFilmSide &&
+                film.height <= kMaxFilmSide,
+            "sides are from 1 to kMaxFilmSide");
   }
   std::optional<double> ev;
   if (accepted<UsageError>([&] { ev = parseExposure(text); }) && ev) {

@@ -16,6 +16,7 @@ namespace bnvpl {
 
 inline constexpr uint32_t kNone = 0xffffffffu;
 
+inline constexpr uint32_t kMaxFilmSide = 16384;  // pixels, of [film] and --size
 struct Film {
   uint32_t width = 640, height = 480;  // pixels
 };

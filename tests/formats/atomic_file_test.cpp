@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include "tests/formats/test_files.h"
 
@@ -78,6 +79,73 @@ TEST_F(AtomicOutput, ReadOnlyFilesAreKept) {
   fs::permissions(at("a"), fs::perms::owner_read);
   EXPECT_THROW(AtomicFile{at("a")}, OutputError);
   EXPECT_EQ(fileCount(), 1u);
+}
+
+// The end of the links is replaced, and the links stay.
+TEST_F(AtomicOutput, LinksAreFollowed) {
+  fs::create_directories(at("far"));
+  writeAll(at("far/a"), "old");
+  fs::create_symlink("far/a", at("near"));
+  fs::create_symlink(at("near"), at("link"));
+  fs::create_symlink("far/new", at("dangling"));
+  writeAll(at("far/a.partial-1-2"), "abandoned");
+  writeFileAtomically(at("link"), "new");
+  EXPECT_EQ(readAll(at("far/a")), "new");
+  EXPECT_EQ(fs::read_symlink(at("near")), "far/a");
+  EXPECT_EQ(fs::read_symlink(at("link")), at("near"));
+  EXPECT_FALSE(fs::exists(at("far/a.partial-1-2")));
+  writeFileAtomically(at("dangling"), "new");
+  EXPECT_EQ(readAll(at("far/new")), "new");
+  EXPECT_TRUE(fs::is_symlink(at("dangling")));
+  EXPECT_EQ(fileCount(), 4u);
+}
+
+TEST_F(AtomicOutput, HardLinksKeepTheOldContent) {
+  writeAll(at("a"), "old");
+  fs::create_hard_link(at("a"), at("b"));
+  writeFileAtomically(at("a"), "new");
+  EXPECT_EQ(readAll(at("a")) + readAll(at("b")), "newold");
+}
+
+TEST_F(AtomicOutput, TheModeStaysAndTheUmaskDecidesOfNewFiles) {
+  const auto modeOf = [&](const fs::path& file) {
+    struct stat info {};
+    EXPECT_EQ(::stat(file.c_str(), &info), 0) << file;
+    return info.st_mode & 07777;
+  };
+  for (const mode_t mode : {0600, 0640, 0666, 0755}) {
+    writeAll(at("a"), "old");
+    ASSERT_EQ(::chmod(at("a").c_str(), mode), 0);
+    AtomicFile file(at("a"));
+    for (const auto& entry : fs::directory_iterator(at(""))) {
+      EXPECT_EQ(modeOf(entry.path()), mode) << entry.path();  // the partial one too
+    }
+    file.commit();
+    EXPECT_EQ(modeOf(at("a")), mode);
+  }
+  const mode_t before = ::umask(027);
+  writeFileAtomically(at("b"), "new");
+  ::umask(before);
+  EXPECT_EQ(modeOf(at("b")), 0640u);
+}
+
+// Among them a stream that leads to a regular file: a rename would take it from who holds it open.
+TEST_F(AtomicOutput, WhatIsNoFileIsRefusedAndStays) {
+  writeAll(at("open"), "old");
+  const int fd = ::open(at("open").c_str(), O_RDWR);
+  fs::create_symlink("/dev/null", at("null"));
+  fs::create_symlink("/proc/self/fd/" + std::to_string(fd), at("stream"));
+  fs::create_symlink("loop", at("loop"));
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  for (const fs::path& output :
+       {fs::path("/dev/null"), fs::path("/dev/stdout"), fs::path("/dev/fd/1"), at("null"),
+        at("stream"), at("loop"), at("pipe"), at(""), at("absent/a")}) {
+    EXPECT_THROW(AtomicFile{output}, OutputError) << output;
+  }
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_EQ(readAll(at("open")), "old");
+  EXPECT_EQ(fileCount(), 5u);
+  ::close(fd);
 }
 
 }  // namespace

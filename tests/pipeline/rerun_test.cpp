@@ -97,6 +97,51 @@ TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
   EXPECT_EQ(made("VPLS=100"), "eliminate estimate render");
 }
 
+// Also those of the very stage that fails, or is interrupted, the preview among them; and it runs
+// again, with other options or the same.
+TEST_F(Rerun, AFailedRenderLeavesTheGoodImageAndPreview) {
+  EXPECT_EQ(made(), all_);
+  const std::string image = readAll(at("out/image.exr")), preview = readAll(at("out/image.png"));
+  const auto kept = [&] {
+    return fs::exists(at("out/image.exr")) && fs::exists(at("out/image.png")) &&
+           readAll(at("out/image.exr")) == image && readAll(at("out/image.png")) == preview;
+  };
+  const std::string make = "make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
+                           " OUT=" + path("out") +
+                           " BIN=" BNVPL_BIN_FROM_SOURCE " CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=";
+  for (const std::string bad : {"1 RENDER_FLAGS='--size 0x0'", "1 RENDER_FLAGS='--clamp -1'"}) {
+    for (int twice = 0; twice < 2; ++twice) {
+      const Outcome r = shell(make + bad);
+      EXPECT_NE(r.code, 0);
+      EXPECT_TRUE(contains(r.err, "vpl-render: ")) << r.err;
+      EXPECT_TRUE(kept()) << bad << r.err;
+    }
+  }
+  EXPECT_NE(shell("timeout -s INT 3 " + make + "10M").code, 0);  // far from its end
+  EXPECT_TRUE(kept());
+  EXPECT_EQ(made(), "render");
+  EXPECT_EQ(made(), "");
+  EXPECT_TRUE(kept());  // the same bytes again
+}
+
+TEST_F(Rerun, NinjaLeavesTheGoodImageAndPreviewOfAFailedRender) {
+  if (!haveNinja()) GTEST_SKIP() << "ninja is not installed";
+  generate("20k");
+  EXPECT_EQ(built(), all_);
+  const std::string image = readAll(at("n/veach-door/image.exr")),
+                    preview = readAll(at("n/veach-door/image.png"));
+  generate("20k --render-flags='--size 0x0'");
+  for (int twice = 0; twice < 2; ++twice) {
+    const Outcome r = shell("ninja -f " + path("n/build.ninja"));
+    EXPECT_NE(r.code, 0);
+    EXPECT_TRUE(contains(r.out + r.err, "vpl-render: ")) << r.out << r.err;
+    EXPECT_TRUE(readAll(at("n/veach-door/image.exr")) == image);
+    EXPECT_TRUE(readAll(at("n/veach-door/image.png")) == preview);
+  }
+  generate("20k --render-flags='--seed 2'");
+  EXPECT_EQ(built(), "render");
+}
+
 TEST_F(Rerun, NinjaRunsWhatChanged) {
   if (!haveNinja()) GTEST_SKIP() << "ninja is not installed";
   generate("20k");

@@ -1,6 +1,7 @@
 #include "tools/common/checkpoint.h"
 
 #include "formats/checkpoint.h"
+#include "formats/output_target.h"
 #include "tools/common/clock.h"
 
 namespace bnvpl {
@@ -64,6 +65,10 @@ bool Checkpoint::due() const { return interrupted() || nowS() >= nextS_; }
 
 void Checkpoint::save(const std::string& state) {
   const bool last = interrupted();
+  if (!beginsAsCheckpoint(options_.file).value_or(true)) {
+    throw OutputError(options_.file,
+                      "is no checkpoint any more: somebody else wrote to it; name another file");
+  }
   writeCheckpoint(options_.file, {run_.dump(), state});
   if (last) throw Interrupted("the same command goes on from " + options_.file.string());
   nextS_ = nowS() + options_.everyS;
@@ -71,7 +76,8 @@ void Checkpoint::save(const std::string& state) {
 
 void Checkpoint::remove() {
   std::error_code ignored;
-  if (!options_.file.empty()) fs::remove(options_.file, ignored);
+  if (beginsAsCheckpoint(options_.file).value_or(false))
+    fs::remove(followLinks(options_.file), ignored);
   defer_.reset();
 }
 

@@ -29,7 +29,8 @@ class Checkpoint {
   // this.
   Resume resume();
 
-  void remove();  // once the output stands; interruptions are no longer deferred
+  // Once the output stands; interruptions are no longer deferred. What is no checkpoint stays.
+  void remove();
 
  private:
   bool due() const;

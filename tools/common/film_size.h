@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// "640x480", each side 1 to 16384. Throws UsageError on anything else.
+// "640x480", each side 1 to kMaxFilmSide. Throws UsageError on anything else.
 Film parseSize(const std::string& text);
 std::string sizeText(const Film& film);  // and back
 

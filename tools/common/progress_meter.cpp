@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "tools/common/clock.h"
@@ -13,6 +14,30 @@ namespace {
 constexpr double kTerminalIntervalS = 0.2;
 constexpr double kLogIntervalS = 10.0;  // a build log wants a sign of life, not a film
 }  // namespace
+
+std::string durationText(double seconds) {
+  constexpr double kLongestS = 3.6e9;  // a million hours
+  const auto s = static_cast<uint64_t>(std::clamp(seconds, 0.0, kLongestS) + 0.5);
+  char text[48];
+  if (s < 60) return std::to_string(s) + " s";
+  if (s < 3600) {
+    std::snprintf(text, sizeof text, "%u min %02u s", unsigned(s / 60), unsigned(s % 60));
+  } else {
+    const uint64_t min = (s + 30) / 60;
+    std::snprintf(text, sizeof text, "%u h %02u min", unsigned(min / 60), unsigned(min % 60));
+  }
+  return text;
+}
+
+std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS) {
+  const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+  char percent[32];
+  std::snprintf(percent, sizeof percent, " (%.0f %%)", 100.0 * share);
+  std::string text = what + " " + formatSi(static_cast<double>(done)) + " of " +
+                     formatSi(static_cast<double>(total)) + percent;
+  if (share > 0.0) text += ", " + durationText(elapsedS * (1.0 - share) / share) + " left";
+  return text;
+}
 
 ProgressMeter::ProgressMeter(std::string what, uint64_t total, bool quiet)
     : what_(std::move(what)),
@@ -38,12 +63,11 @@ void ProgressMeter::add(uint64_t done) {
 }
 
 void ProgressMeter::print(double elapsedS, uint64_t done) const {
-  const double share = total_ > 0 ? static_cast<double>(done) / static_cast<double>(total_) : 0.0;
-  const double leftS = share > 0.0 ? elapsedS * (1.0 - share) / share : 0.0;
-  std::fprintf(stderr, "%s%s %s of %s (%.0f %%), %.0f s left%s", terminal_ ? "\r\x1b[K" : "",
-               what_.c_str(), formatSi(static_cast<double>(done)).c_str(),
-               formatSi(static_cast<double>(total_)).c_str(), 100.0 * share, leftS,
-               terminal_ ? "" : "\n");
+  const std::string text = progressText(what_, done, total_, elapsedS);
+  if (terminal_)
+    std::fprintf(stderr, "\r\x1b[K%s", text.c_str());
+  else
+    std::fprintf(stderr, "%s: %s\n", runningTool().c_str(), text.c_str());
   std::fflush(stderr);
 }
 

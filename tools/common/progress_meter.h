@@ -1,5 +1,5 @@
-// Progress with an estimate of the time that is left: one rewritten line on a terminal, an
-// occasional plain line elsewhere.
+// Progress with an estimate of the time that is left: one rewritten line on a terminal, elsewhere
+// an occasional plain line in the tool's name.
 #pragma once
 
 #include <atomic>
@@ -10,6 +10,12 @@
 #include "core/progress.h"
 
 namespace bnvpl {
+
+// "47 s", "2 min 05 s", "1 h 46 min". Negative counts as 0.
+std::string durationText(double seconds);
+
+// "samples 12M of 40M (30 %), 2 min 05 s left", without the time while nothing is done.
+std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS);
 
 class ProgressMeter {
  public:

@@ -145,6 +145,7 @@ unsigned threadsInUse() {
   return static_cast<unsigned>(
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
+const std::string& runningTool() { return toolName; }
 
 void requireWritable(const std::vector<fs::path>& outputs) {
   for (const fs::path& output : outputs) {
@@ -201,18 +202,23 @@ void Summary::addNonFinite(uint64_t count, const std::string& what) {
                         "the scene"});
 }
 
-void Summary::finish(const ToolOptions& options, OutputSet& files) const {
+Summary::Cost Summary::close(const ToolOptions& options, OutputSet& files) const {
   Json values = values_;
-  const double timeS = nowS() - startS_, memoryMiB = peakMemoryMiB();
-  values["time_s"] = timeS;
-  values["peak_memory_MiB"] = memoryMiB;
+  const Cost cost{nowS() - startS_, peakMemoryMiB()};
+  values["time_s"] = cost.timeS;
+  values["peak_memory_MiB"] = cost.memoryMiB;
   if (!options.stats.empty()) files.add(options.stats).write(values.dump(2) + "\n");
   files.commit();
+  return cost;
+}
+
+void Summary::finish(const ToolOptions& options, OutputSet& files) const {
+  const Cost cost = close(options, files);
   if (options.quiet) return;
   std::string text;
   for (const std::string& line : lines_) text += tool_ + ": " + line + "\n";
   char last[64];
-  std::snprintf(last, sizeof last, ": %.2f s, peak memory %.0f MiB\n", timeS, memoryMiB);
+  std::snprintf(last, sizeof last, ": %.2f s, peak memory %.0f MiB\n", cost.timeS, cost.memoryMiB);
   // The files are whole: a log that is full is no reason for Make to remove them.
   if (!tryPrint(text + tool_ + last)) {
     printWarnings(tool_, {std::string("the summary cannot be printed: ") + std::strerror(errno)});

@@ -33,7 +33,10 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
 // Worker threads that the work of runTool() may take.
 unsigned threadsInUse();
 
-// Refuses outputs that could not be written, before the work. Empty paths are not asked for.
+// The name of the tool that runTool() runs, which begins each line on stderr.
+const std::string& runningTool();
+
+// Tries to write beside each output; see also run_files.h. Empty paths are not asked for.
 void requireWritable(const std::vector<fs::path>& outputs);
 
 // Numbers from least to most. CLI::Range lets NaN through.
@@ -57,8 +60,15 @@ class Summary {
   // where there are any. `what` names them in the plural.
   void addNonFinite(uint64_t count, const std::string& what);
   void finish(const ToolOptions& options, OutputSet& files) const;
+  // The same without lines for people, where stdout is for what was asked.
+  void save(const ToolOptions& options, OutputSet& files) const { close(options, files); }
 
  private:
+  struct Cost {
+    double timeS, memoryMiB;
+  };
+  Cost close(const ToolOptions& options, OutputSet& files) const;
+
   std::string tool_;
   double startS_;
   Json values_ = Json::object();

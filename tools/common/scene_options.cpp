@@ -7,8 +7,8 @@ namespace bnvpl {
 
 namespace {
 
-void addDefine(CLI::App& cli, SceneOptions& options) {
-  cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
+CLI::Option* addDefine(CLI::App& cli, SceneOptions& options) {
+  return cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
       ->take_all()
       ->allow_extra_args(false);  // or it would swallow what follows
@@ -23,7 +23,7 @@ void addSceneOptions(CLI::App& cli, SceneOptions& options) {
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {
   CLI::Option* option = cli.add_option("--scene", options.file, help);
-  addDefine(cli, options);
+  addDefine(cli, options)->needs(option);
   return option;
 }
 

@@ -5,6 +5,7 @@
 #include "formats/vpl_io.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/eliminate/eliminate.h"
 
@@ -49,11 +50,14 @@ int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool
                      (sceneGiven ? " takes no scene; leave --scene out"
                                  : " needs the scene; add --scene SCENE"));
   }
-  requireWritable({paths.output, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("candidates", paths.input).reads("--scene", paths.scene.file);
+  used.writes("-o", paths.output, {".vpl"}).writes(tool).check();
   requireMemoryFor(paths.input, kBytesPerCandidate, "place fewer with vpl-place -n");
   const VplTable candidates = readVpl(paths.input, method.takes);
   std::optional<World> world;
   if (sceneGiven) world.emplace(paths.scene, paths.input, candidates.sceneHash);
+  used.ready(world ? world->scene.files : std::vector<fs::path>{});
 
   ProgressMeter meter("candidates", candidates.size(), tool.quiet);
   EliminateResult kept = eliminate(candidates, options, world ? &world->rays : nullptr,

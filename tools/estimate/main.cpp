@@ -5,6 +5,7 @@
 #include "tools/common/checkpoint.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/estimate/report.h"
 
@@ -23,11 +24,15 @@ struct Paths {
 int runEstimate(const Paths& paths, const Given& given, const ToolOptions& tool) {
   Summary summary("vpl-estimate");
   const Values options = resolve(estimateSpec(), given);
-  requireWritable({paths.output, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("scene", paths.scene.file).reads("vpls", paths.input);
+  used.writes("-o", paths.output, {".vpl"}).writes("--checkpoint", paths.checkpoint.file);
+  used.writes(tool).check();
   requireMemoryFor(paths.input, kBytesPerVpl + kBytesPerVplAndThread * threadsInUse(),
                    "keep fewer with vpl-eliminate -n, or lower --threads");
   const VplTable vpls = readVpl(paths.input, VplStage::Eliminated);
   const Scene scene = loadSceneFor("vpl-estimate", paths.scene, Warnings::Silent);
+  used.ready(scene.files);
   requireSameScene(paths.input, vpls.sceneHash, scene,
                    "rerun vpl-place and vpl-eliminate on this scene");
   const RayScene rays(scene);

@@ -151,4 +151,17 @@ void checkTogether(std::span<const CheckedFile> files) {
   }
 }
 
+void checkScene(std::span<const CheckedFile> files, const std::string& scene,
+                const std::string& sceneHash) {
+  for (const CheckedFile& f : files) {
+    if (f.scene.empty())
+      throw InputError(
+          f.file, "names no scene in its history, so nobody can tell whether it is of " + scene +
+                      "; leave it or --scene out");
+    if (f.scene != sceneHash)
+      throw InputError(f.file, "made from scene " + f.scene + ", but " + scene + " is " +
+                                   sceneHash + "; rerun vpl-place and every later stage on it");
+  }
+}
+
 }  // namespace bnvpl

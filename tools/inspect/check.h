@@ -28,4 +28,9 @@ CheckedFile checkFile(const fs::path& file);
 // stage to rerun.
 void checkTogether(std::span<const CheckedFile> files);
 
+// Refuses files that were made from another scene than `sceneHash` (16 hex digits), or that name
+// none; `scene` is its name in the message of the InputError.
+void checkScene(std::span<const CheckedFile> files, const std::string& scene,
+                const std::string& sceneHash);
+
 }  // namespace bnvpl

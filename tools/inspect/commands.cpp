@@ -5,6 +5,7 @@
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
 #include "tools/common/film_size.h"
+#include "tools/common/run_files.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/chain.h"
 #include "tools/inspect/check.h"
@@ -13,37 +14,78 @@
 
 namespace bnvpl {
 
-int runInfo(const InfoCommand& command) {
+namespace {
+
+// For programs: the figures of a command whose text goes to stdout, under its name.
+void saveStats(const char* command, Json figures, const Summary& start, const ToolOptions& tool) {
+  Summary summary = start;
+  summary.add(command, std::move(figures));
+  OutputSet files;
+  summary.save(tool, files);
+}
+
+Json describeChecked(const std::vector<CheckedFile>& files, const std::string& scene, bool deep) {
+  Json json{{"files", Json::array()}, {"deep", deep}};
+  for (const CheckedFile& f : files) {
+    Json entry{{"file", f.file.string()}, {"what", f.what}};
+    if (!f.checksum.empty()) entry["checksum"] = f.checksum;
+    if (!f.scene.empty()) entry["scene"] = f.scene;
+    json["files"].push_back(std::move(entry));
+  }
+  if (!scene.empty()) json["scene"] = scene;
+  return json;
+}
+
+}  // namespace
+
+int runInfo(const InfoCommand& command, const ToolOptions& tool) {
+  const Summary summary("vpl-inspect");
+  RunFiles().reads("file", command.file).writes(tool).ready();
   const Json description = describeFile(command.file);
   const std::string text = command.json ? description.dump(2) + "\n" : infoText(description);
+  saveStats("info", description, summary, tool);
   print(text);
   return kExitOk;
 }
 
 int runCheck(const CheckCommand& command, const ToolOptions& tool) {
+  const Summary summary("vpl-inspect");
+  const bool withScene = !command.scene.file.empty();
+  RunFiles used;
+  for (const fs::path& file : command.files) used.reads("file", file);
+  used.reads("--scene", command.scene.file).writes(tool).check();
+  Scene scene;
+  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene);
+  used.ready(scene.files);
+
+  const auto say = [&](const std::string& line) {
+    if (!tool.quiet) print(line + "\n");
+  };
   std::vector<CheckedFile> checked;
   for (const fs::path& file : command.files) {
     checked.push_back(checkFile(file));
-    if (!tool.quiet) print(file.string() + ": OK (" + checked.back().what + ")\n");
+    say(file.string() + ": OK (" + checked.back().what + ")");
   }
+  const std::string hash = withScene ? hashText(scene.contentHash) : "";
   if (command.deep) {
-    std::string sceneHash;
-    if (!command.scene.file.empty())
-      sceneHash = hashText(loadSceneFor("vpl-inspect", command.scene).contentHash);
-    checkChain(checked, command.scene.file.empty() ? "SCENE" : command.scene.file.string(),
-               sceneHash);
-    if (!tool.quiet) print("one whole chain\n");
-    return kExitOk;
+    checkChain(checked, withScene ? scene.name() : "SCENE", hash);
+  } else {
+    checkTogether(checked);
+    if (withScene) checkScene(checked, scene.name(), hash);
   }
-  checkTogether(checked);
-  if (!tool.quiet && checked.size() > 1) print("no contradiction between the files\n");
+  saveStats("check", describeChecked(checked, hash, command.deep), summary, tool);
+  if (command.deep)
+    say("one whole chain");
+  else if (checked.size() > 1)
+    say("no contradiction between the files");
+  if (withScene) say("made from " + scene.name() + " as it is now");
   return kExitOk;
 }
 
 int runExport(const ExportCommand& command, const ToolOptions& tool) {
   requireExportable(command.output);
   Summary summary("vpl-inspect");
-  requireWritable({command.output, tool.stats});
+  RunFiles().reads("file", command.file).writes("-o", command.output).writes(tool).ready();
   const VplTable table = readVpl(command.file);
   OutputSet files;
   exportTable(table, files.add(command.output));
@@ -54,9 +96,12 @@ int runExport(const ExportCommand& command, const ToolOptions& tool) {
 
 int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
-  requireWritable({command.output, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("file", command.file).reads("--scene", command.scene.file);
+  used.writes("-o", command.output, {".png"}).writes(tool).check();
   const VplTable table = readVpl(command.file);
   Scene scene = loadSceneFor("vpl-inspect", command.scene);
+  used.ready(scene.files);
   requireSameScene(command.file, table.sceneHash, scene,
                    "name the scene it was made from, or rerun vpl-place");
   if (!command.size.empty()) scene.film = parseSize(command.size);

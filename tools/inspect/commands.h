@@ -15,7 +15,7 @@ struct InfoCommand {
 struct CheckCommand {
   std::vector<fs::path> files;
   bool deep = false;
-  SceneOptions scene;  // for deep; no file: its content is not asked for
+  SceneOptions scene;  // no file: its content is not asked for
 };
 struct ExportCommand {
   fs::path file, output;
@@ -39,11 +39,11 @@ struct CompareCommand {
   bool json = false;
 };
 
-int runInfo(const InfoCommand& command);
+int runInfo(const InfoCommand& command, const ToolOptions& tool);
 int runCheck(const CheckCommand& command, const ToolOptions& tool);
 int runExport(const ExportCommand& command, const ToolOptions& tool);
 int runPlot(const PlotCommand& command, const ToolOptions& tool);
-int runCompare(const CompareCommand& command);
+int runCompare(const CompareCommand& command, const ToolOptions& tool);
 
 // The options of `compare`.
 CLI::App* addCompare(CLI::App& cli, CompareCommand& command);

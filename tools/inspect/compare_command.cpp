@@ -6,6 +6,7 @@
 #include "formats/png_io.h"
 #include "tools/common/choice.h"
 #include "tools/common/exposure.h"
+#include "tools/common/run_files.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
 #include "tools/inspect/difference_image.h"
@@ -143,12 +144,16 @@ CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
   return sub;
 }
 
-int runCompare(const CompareCommand& command) {
+int runCompare(const CompareCommand& command, const ToolOptions& tool) {
+  Summary summary("vpl-inspect");
   FlipOptions flipOptions = command.flip;
   if (!command.exposure.empty()) flipOptions.exposureEv = parseExposure(command.exposure);
   if (!command.flipExposures.empty())
     flipOptions.rangeEv = parseExposureRange(command.flipExposures);
-  if (!command.diff.empty()) requireWritable({command.diff});
+  RunFiles used;
+  used.reads("A", command.imageA).reads("B", command.imageB);
+  used.reads("--second-half", command.secondB).reads("--mask", command.mask);
+  used.writes("--diff", command.diff, {".png"}).writes(tool).ready();
 
   Sides s;
   readSides(command, s);
@@ -162,13 +167,15 @@ int runCompare(const CompareCommand& command) {
     throw UsageError("--map " + nameOf(command.map, kMaps) + " needs R, G, B, but layer '" +
                      (s.b.isColour() ? s.a : s.b).name + "' is none; choose another map");
   }
+  OutputSet files;
   if (!command.diff.empty()) {
     const Picture picture = pictureOf(command, s, c.epsilon, flip);
-    writePng(command.diff, picture.width, picture.height, picture.rgb8);
+    writePng(files.add(command.diff), picture.width, picture.height, picture.rgb8);
   }
-  const std::string text = command.json ? comparisonJson(c, command.limits).dump(2) + "\n"
-                                        : comparisonText(c, command.limits);
-  print(text);
+  const Json figures = comparisonJson(c, command.limits);
+  summary.add("compare", figures);
+  summary.save(tool, files);
+  print(command.json ? figures.dump(2) + "\n" : comparisonText(c, command.limits));
   return comparisonExitCode(c, command.limits);
 }
 

@@ -25,7 +25,7 @@ CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
   sub->add_flag("--deep", c.deep,
                 "the files must be one whole chain, row by row; what is broken comes with the "
                 "commands that mend it");
-  addSceneFlag(*sub, c.scene, "deep: the scene (.toml) that all must come from");
+  addSceneFlag(*sub, c.scene, "the scene (.toml) that all must come from");
   return sub;
 }
 
@@ -79,10 +79,10 @@ int main(int argc, char** argv) {
   addCompare(cli, compare);
   return runTool(cli, tool, argc, argv, [&] {
     plot.colourGiven = plotCli->count("--color") > 0;
-    if (infoCli->parsed()) return runInfo(info);
+    if (infoCli->parsed()) return runInfo(info, tool);
     if (checkCli->parsed()) return runCheck(check, tool);
     if (exportCli->parsed()) return runExport(exported, tool);
     if (plotCli->parsed()) return runPlot(plot, tool);
-    return runCompare(compare);
+    return runCompare(compare, tool);
   });
 }

@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/place/place.h"
 
@@ -25,10 +26,12 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Giv
   Summary summary("vpl-place");
   const Values options = resolve(placeSpec(), given);
   const uint64_t count = options.whole("count");
-  requireWritable({output, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("scene", sceneOptions.file).writes("-o", output, {".vpl"}).writes(tool).check();
   requireMemory(kBytesPerRow * double(count), std::to_string(count) + " VPLs",
                 "ask for fewer with -n");
   const Scene scene = loadSceneFor("vpl-place", sceneOptions);
+  used.ready(scene.files);
   const RayScene rays(scene);
   const LightSet lights(rays);
 

@@ -7,6 +7,7 @@
 #include "tools/common/film_size.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
+#include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/render/outputs.h"
 #include "tools/render/render.h"
@@ -46,12 +47,16 @@ int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
   const Values options = resolve(renderSpec(), given);
   requireConsistent(paths, given, options);
   const bool vpl = !paths.lit.empty();
-  requireWritable({paths.images.exr, paths.images.png, tool.stats, tool.depfile});
+  RunFiles used;
+  used.reads("scene", paths.scene.file).reads("lit", paths.lit);
+  used.writes("-o", paths.images.exr, {".exr"}).writes("--png", paths.images.png, {".png"});
+  used.writes("--checkpoint", paths.checkpoint.file).writes(tool).check();
 
   if (vpl) requireMemoryFor(paths.lit, kBytesPerVpl, "keep fewer VPLs with vpl-eliminate -n");
   VplTable lit;
   if (vpl) lit = readVpl(paths.lit, VplStage::Lit);
   Scene scene = loadSceneFor("vpl-render", paths.scene, vpl ? Warnings::Silent : Warnings::Print);
+  used.ready(scene.files);
   if (!options.text("size").empty()) scene.film = parseSize(options.text("size"));
   if (vpl) {
     requireSameScene(paths.lit, lit.sceneHash, scene,

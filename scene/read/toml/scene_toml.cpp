@@ -23,8 +23,6 @@ constexpr float kRadPerDeg = kPi / 180.0f;
 constexpr float kMinSunDeg = 1e-4f;
 // Sizes of scenes that floats hold: products of four lengths must stay in range.
 constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
-constexpr uint32_t kMaxFilmSide = 65536;
-constexpr uint64_t kMaxFilmPixels = uint64_t{1} << 31;
 
 size_t editDistance(const std::string& a, const std::string& b) {
   std::vector<size_t> row(b.size() + 1);
@@ -335,8 +333,6 @@ Scene loadScene(const fs::path& path, const Defines& defines) {
   scene.files.push_back(path);
   const Section film(path, "[film]", tableOf(path, root, "film"), {"width", "height"});
   scene.film = {film.integer("width", 1, kMaxFilmSide), film.integer("height", 1, kMaxFilmSide)};
-  if (uint64_t{scene.film.width} * scene.film.height > kMaxFilmPixels)
-    film.fail("has more than 2^31 pixels");
   const Section camera(path, "[camera]", tableOf(path, root, "camera"),
                        {"position", "look_at", "forward", "up", "vertical_fov_deg"});
   readCamera(camera, {});  // refuses a bad one before the meshes are read

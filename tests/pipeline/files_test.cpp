@@ -1,0 +1,187 @@
+// No run overwrites or removes a file that it reads, or writes two outputs to one name.
+#include <map>
+
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+class Files : public PipelineTest {
+ protected:
+  void SetUp() override {
+    fs::copy(BNVPL_SOURCE "/scenes/test", at("scene"), fs::copy_options::recursive);
+    fs::create_directories(at("sub"));
+    makeStages(toml_);
+    succeed("vpl-render",
+            toml_ + lit_ + " --spp 1 -o " + path("image.exr") + " --png " + path("image.png"));
+  }
+  // The content of every file, and what every link leads to.
+  std::map<std::string, std::string> everything() const {
+    std::map<std::string, std::string> contents;
+    for (const std::string& name : listing()) {
+      if (fs::is_symlink(at(name)))
+        contents[name] = "-> " + fs::read_symlink(at(name)).string();
+      else if (fs::is_regular_file(at(name)))
+        contents[name] = readAll(at(name));
+    }
+    return contents;
+  }
+  // Refused before anything was touched, in one line that holds every part.
+  void refused(const std::string& name, const std::string& arguments,
+               const std::vector<std::string>& parts, int code = kExitUsage) const {
+    const auto before = everything();
+    fail(name, arguments, code, parts);
+    EXPECT_TRUE(everything() == before) << name << " " << arguments;
+  }
+
+  const std::string toml_ = path("scene/one-bounce.toml") + " ";
+  const std::string candidates_ = path("candidates.vpl") + " ", vpls_ = path("vpls.vpl") + " ";
+  const std::string lit_ = path("lit.vpl") + " ";
+};
+
+TEST_F(Files, OutputsThatAreInputs) {
+  refused("vpl-place", toml_ + "-n 9 -o " + toml_, {"-o '", "scene '", "one-bounce.toml'"});
+  refused("vpl-place", toml_ + "-n 9 -o " + path("x.vpl") + " --stats " + toml_,
+          {"--stats", "scene '"});
+  refused("vpl-eliminate", candidates_ + "-n 9 -o " + candidates_, {"-o", "candidates '"});
+  refused("vpl-eliminate", candidates_ + "-n 9 -o " + path("x.vpl") + " --depfile " + candidates_,
+          {"--depfile", "candidates '", "another file for --depfile"});
+  refused("vpl-estimate", toml_ + vpls_ + "-o " + vpls_, {"-o", "vpls '"});
+  const std::string render = toml_ + lit_ + "--spp 1 ";
+  refused("vpl-render", render + "-o " + lit_, {"-o", "lit '"});
+  refused("vpl-render", render + "-o " + path("x.exr") + " --png " + lit_, {"--png", "lit '"});
+  refused("vpl-render", render + "-o " + path("x.exr") + " --png " + toml_, {"--png", "scene '"});
+}
+
+TEST_F(Files, OutputsOfInspectThatAreInputs) {
+  const std::string image = path("image.exr"), both = "compare " + image + " " + image + " ";
+  refused("vpl-inspect", "plot " + lit_ + "--scene " + toml_ + "-o " + lit_, {"-o", "file '"});
+  refused("vpl-inspect", "plot " + lit_ + "--scene " + toml_ + "-o " + toml_, {"-o", "--scene '"});
+  refused("vpl-inspect", "export " + lit_ + "-o " + path("x.ply") + " --stats " + lit_,
+          {"--stats", "file '"});
+  refused("vpl-inspect", both + "--diff " + image, {"--diff", "A '"});
+  refused("vpl-inspect", "compare " + path("x.exr") + " " + image + " --diff " + image,
+          {"--diff", "B '"});
+  refused("vpl-inspect", both + "--mask " + path("image.png") + " --diff " + path("image.png"),
+          {"--diff", "--mask '"});
+  refused("vpl-inspect", both + "--second-half " + lit_ + " --diff " + lit_,
+          {"--diff", "--second-half '"});
+  refused("vpl-inspect", both + "--stats " + image, {"--stats", "A '"});
+  refused("vpl-inspect", "info " + lit_ + "--stats " + lit_, {"--stats", "file '"});
+  refused("vpl-inspect", "check " + vpls_ + lit_ + "--stats " + lit_, {"--stats", "file '"});
+  refused("vpl-inspect", "check --quiet " + lit_ + "--scene " + toml_ + "--stats " + toml_,
+          {"--stats", "--scene '"});
+  succeed("vpl-inspect", both);  // inputs may be equal
+}
+
+// Meshes, libraries and textures are known only when the scene has been read.
+TEST_F(Files, OutputsThatAreFilesOfTheScene) {
+  const std::string obj = path("scene/one-bounce.obj"), mtl = path("scene/one-bounce.mtl");
+  refused("vpl-place", toml_ + "-n 9 -o " + obj, {"-o", "one-bounce.obj"});
+  fs::create_hard_link(at("scene/one-bounce.obj"), at("mesh.vpl"));
+  fs::create_symlink("scene/one-bounce.mtl", at("library.exr"));
+  refused("vpl-place", toml_ + "-n 9 -o " + path("mesh.vpl"), {"-o", "a mesh of the scene '"});
+  refused("vpl-estimate", toml_ + vpls_ + "-o " + path("x.vpl") + " --depfile " + mtl,
+          {"--depfile", "a material library of the scene '"});
+  refused("vpl-estimate", toml_ + vpls_ + "-o " + path("x.vpl") + " --checkpoint " + obj,
+          {"--checkpoint", "a mesh of the scene '"});
+  refused("vpl-render", toml_ + lit_ + "--spp 1 -o " + path("library.exr"),
+          {"-o", "a material library of the scene '"});
+  refused("vpl-inspect",
+          "plot " + lit_ + "--scene " + toml_ + "-o " + path("x.png") + " --depfile " + obj,
+          {"--depfile", "a mesh of the scene '"});
+  refused("vpl-inspect", "check " + lit_ + "--scene " + toml_ + "--stats " + obj,
+          {"--stats", "a mesh of the scene '"});
+  refused("vpl-place",
+          copyVeachDoor() + " -n 9 -o " + path("x.vpl") + " --stats " +
+              path("veach-door/landscape.png"),
+          {"--stats", "an image of the scene '"});
+}
+
+TEST_F(Files, OtherSpellingsOfAnInput) {
+  fs::create_symlink("lit.vpl", at("link.vpl"));
+  fs::create_symlink("link.vpl", at("far.vpl"));
+  fs::create_hard_link(at("lit.vpl"), at("hard.vpl"));
+  fs::create_directory_symlink("sub", at("other"));
+  for (const std::string same : {"link.vpl", "far.vpl", "hard.vpl", "./lit.vpl", "sub/../lit.vpl",
+                                 "other/../lit.vpl", "sub//..//./lit.vpl"}) {
+    refused("vpl-render", toml_ + lit_ + "--spp 1 -o " + path("x.exr") + " --stats " + path(same),
+            {"--stats", "lit '", same});
+    refused("vpl-render", toml_ + path(same) + " --spp 1 -o " + path("x.exr") + " --stats " + lit_,
+            {"--stats", "lit '", same});
+  }
+}
+
+TEST_F(Files, TwoOutputsOfOneName) {
+  fs::create_symlink("new", at("dangling"));
+  fs::create_hard_link(at("image.exr"), at("hard"));
+  const std::string render = toml_ + lit_ + "--spp 1 -o ";
+  for (const auto& [a, b] : std::map<std::string, std::string>{
+           {"new", "new"}, {"./new", "sub/../new"}, {"dangling", "new"}, {"image.exr", "hard"}}) {
+    for (const std::string option : {"--png", "--stats", "--depfile", "--checkpoint"}) {
+      refused("vpl-render", render + path(a) + " " + option + " " + path(b),
+              {"-o '", option, "a name of its own"});
+    }
+  }
+  refused("vpl-place",
+          toml_ + "-n 9 -o " + path("x.vpl") + " --stats " + path("y") + " --depfile " + path("y"),
+          {"--stats", "--depfile"});
+  refused("vpl-eliminate", candidates_ + "-n 9 -o " + path("x.vpl") + " --stats " + path("x.vpl"),
+          {"-o", "--stats"});
+  refused("vpl-inspect", "export " + lit_ + "-o " + path("x.ply") + " --stats " + path("x.ply"),
+          {"-o", "--stats"});
+  refused("vpl-inspect",
+          "compare " + path("image.exr") + " " + path("image.exr") + " --diff " + path("x.png") +
+              " --stats " + path("x.png"),
+          {"--diff", "--stats"});
+}
+
+TEST_F(Files, ACheckpointIsNoOtherFile) {
+  const std::string estimate = toml_ + vpls_ + "--photons 1k -o " + path("new.vpl");
+  refused("vpl-estimate", estimate + " --checkpoint " + path("new.vpl"), {"-o", "--checkpoint"});
+  refused("vpl-estimate", estimate + " --checkpoint " + vpls_, {"vpls '", "--checkpoint"});
+  refused("vpl-estimate", estimate + " --checkpoint " + toml_, {"scene '", "--checkpoint"});
+  refused("vpl-render",
+          toml_ + lit_ + "--spp 1 -o " + path("image.exr") + " --checkpoint " + path("image.exr"),
+          {"-o", "--checkpoint"});
+}
+
+// Neither at the start nor, when the work is done, at the end.
+TEST_F(Files, WhatIsNoCheckpointIsNeverRemoved) {
+  write("notes", "of somebody");
+  write("empty", "");
+  for (const char* name : {"notes", "empty", "candidates.vpl", "image.png"}) {
+    refused("vpl-estimate",
+            toml_ + vpls_ + "--photons 1k -o " + path("x.vpl") + " --checkpoint " + path(name),
+            {name, "is no checkpoint", "name another file"}, kExitInput);
+    refused("vpl-render",
+            toml_ + lit_ + "--spp 1 -o " + path("x.exr") + " --checkpoint " + path(name),
+            {name, "is no checkpoint"}, kExitInput);
+  }
+}
+
+// A checkpoint through a link: its end is written and removed, the link stays.
+TEST_F(Files, ACheckpointMayBeALink) {
+  fs::create_symlink("sub/real", at("work"));
+  const std::string estimate =
+      toml_ + vpls_ + "--quiet -o " + path("x.vpl") + " --checkpoint " + path("work");
+  shell("timeout --foreground -s INT 1 '" BNVPL_BIN "/vpl-estimate' " + estimate +
+        " --photons 1G");
+  EXPECT_TRUE(fs::is_symlink(at("work")));
+  ASSERT_TRUE(fs::exists(at("sub/real")));
+  fs::remove(at("sub/real"));
+  succeed("vpl-estimate", estimate + " --photons 100k --checkpoint-every 0");
+  EXPECT_TRUE(fs::is_symlink(at("work")));
+  EXPECT_FALSE(fs::exists(at("sub/real")));
+}
+
+// Beside an output, what has the name of an unfinished one is removed.
+TEST_F(Files, InputsNamedAsUnfinishedOutputs) {
+  fs::copy(at("candidates.vpl"), at("v.vpl.partial-12-3"));
+  refused("vpl-eliminate", path("v.vpl.partial-12-3") + " -n 9 -o " + path("v.vpl"),
+          {"candidates '", "-o '", "rename it"});
+  succeed("vpl-eliminate", path("v.vpl.partial-12-3") + " -n 9 -o " + path("w.vpl"));
+}
+
+}  // namespace
+}  // namespace bnvpl

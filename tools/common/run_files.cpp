@@ -1,0 +1,145 @@
+#include "tools/common/run_files.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <tuple>
+
+#include "core/files.h"
+#include "formats/output_target.h"
+#include "tools/common/run_tool.h"
+
+namespace bnvpl {
+namespace {
+
+// Of one file, however it is spelled. A file that does not exist yet is a name in a folder.
+struct Identity {
+  uint64_t device = 0, inode = 0;
+  std::string name;
+  bool operator<(const Identity& o) const {
+    return std::tie(device, inode, name) < std::tie(o.device, o.inode, o.name);
+  }
+};
+
+Identity identityOf(const fs::path& file) {
+  struct stat info {};
+  if (::stat(file.c_str(), &info) == 0) return {info.st_dev, info.st_ino, ""};
+  const fs::path target = followLinks(file);
+  if (::stat(folderOf(target).c_str(), &info) == 0)
+    return {info.st_dev, info.st_ino, target.filename().string()};
+  std::error_code ignored;
+  return {0, 0, fs::weakly_canonical(fs::absolute(target, ignored), ignored).string()};
+}
+
+std::string lowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string contentOf(const std::string& extension) {
+  static const std::map<std::string, std::string> contents{{".vpl", "VPLs"},
+                                                           {".exr", "an OpenEXR image"},
+                                                           {".png", "a PNG picture"},
+                                                           {".ply", "a PLY point cloud"},
+                                                           {".csv", "a CSV table"}};
+  return contents.at(extension);
+}
+
+std::string sceneFileName(const fs::path& file) {
+  const std::string extension = lowerCase(file.extension().string());
+  if (extension == ".toml") return "scene";
+  if (extension == ".obj") return "a mesh of the scene";
+  if (extension == ".mtl") return "a material library of the scene";
+  return "an image of the scene";
+}
+
+std::string quoted(const fs::path& file) { return "'" + file.string() + "'"; }
+
+}  // namespace
+
+RunFiles& RunFiles::reads(const std::string& option, const fs::path& file) {
+  if (!file.empty()) inputs_.push_back({option, file, {}});
+  return *this;
+}
+
+RunFiles& RunFiles::writes(const std::string& option, const fs::path& file,
+                           const std::vector<std::string>& extensions) {
+  if (!file.empty()) outputs_.push_back({option, file, extensions});
+  return *this;
+}
+
+RunFiles& RunFiles::writes(const ToolOptions& tool) {
+  return writes("--stats", tool.stats).writes("--depfile", tool.depfile);
+}
+
+void RunFiles::checkExtensions() const {
+  for (const Named& out : outputs_) {
+    const std::string extension = lowerCase(out.file.extension().string());
+    const auto& known = out.extensions;
+    if (known.empty() || extension.empty() ||
+        std::find(known.begin(), known.end(), extension) != known.end())
+      continue;
+    std::string contents, names;
+    for (const std::string& k : known) {
+      const std::string separator = contents.empty() ? "" : " or ";
+      contents += separator + contentOf(k);
+      names += separator + out.file.filename().replace_extension(k).string();
+    }
+    throw UsageError(out.option + " " + quoted(out.file) + " would hold " + contents +
+                     ", not what its extension says; name it " + names);
+  }
+}
+
+void RunFiles::checkIdentities() const {
+  std::map<Identity, const Named*> inputs, outputs;
+  for (const Named& in : inputs_) inputs.emplace(identityOf(in.file), &in);
+  for (const Named& out : outputs_) {
+    std::error_code ignored;
+    // Folders and devices are refused as such.
+    if (fs::exists(out.file, ignored) && !isRegularFile(out.file)) continue;
+    const Identity identity = identityOf(out.file);
+    if (const auto in = inputs.find(identity); in != inputs.end()) {
+      throw UsageError(out.option + " " + quoted(out.file) + " and " + in->second->option + " " +
+                       quoted(in->second->file) +
+                       " are the same file, which the run reads; name another file for " +
+                       out.option);
+    }
+    if (const auto [other, isNew] = outputs.emplace(identity, &out); !isNew) {
+      throw UsageError(other->second->option + " " + quoted(other->second->file) + " and " +
+                       out.option + " " + quoted(out.file) +
+                       " are the same file; give each output a name of its own");
+    }
+  }
+}
+
+// Outputs remove what unfinished runs left beside them, which is told by its name.
+void RunFiles::checkPartialNames() const {
+  for (const Named& in : inputs_) {
+    std::error_code failed;
+    const fs::path real = fs::canonical(in.file, failed);
+    for (const Named& out : outputs_) {
+      if (failed || !isPartialOf(real, out.file)) continue;
+      throw UsageError(in.option + " " + quoted(in.file) + " is named as what an unfinished run " +
+                       "leaves of " + out.option + " " + quoted(out.file) +
+                       ", which the next one removes; rename it");
+    }
+  }
+}
+
+void RunFiles::check() const {
+  checkIdentities();
+  checkPartialNames();
+  checkExtensions();
+  for (const Named& out : outputs_) replaceableTarget(out.file);
+}
+
+void RunFiles::ready(const std::vector<fs::path>& sceneFiles) {
+  for (const fs::path& file : sceneFiles) reads(sceneFileName(file), file);
+  check();
+  for (const Named& out : outputs_) requireWritable({out.file});
+}
+
+}  // namespace bnvpl
