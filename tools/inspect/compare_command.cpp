@@ -4,11 +4,11 @@
 
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
+#include "images/difference_image.h"
 #include "tools/common/choice.h"
 #include "tools/common/exposure.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
-#include "tools/inspect/difference_image.h"
 
 namespace bnvpl {
 namespace {
@@ -152,7 +152,7 @@ int runCompare(const CompareCommand& command) {
 
   Sides s;
   readSides(command, s);
-  Comparison c = compareLayers(command.imageA, s.a, command.imageB, s.b, command.limits,
+  Comparison c = compareLayers(command.imageA, s.a, command.imageB, s.b, command.limits.epsilon,
                                s.halves ? &s.second : nullptr, s.mask);
   std::optional<FlipMaps> flip;
   if (s.b.isColour() && s.a.isColour()) {
