@@ -7,7 +7,6 @@
 #include <array>
 
 #include "tests/support/pipeline.h"
-#include "tools/estimate/photon_shares.h"
 
 namespace bnvpl::test {
 namespace {
@@ -127,14 +126,6 @@ TEST(Estimate, RecentredVplsStayOnTheirSurface) {
   }
   EXPECT_GT(after, before * 1.015);
   EXPECT_EQ(totalFlux(moved), totalFlux(still));
-}
-
-TEST(PhotonShares, FollowPowerExactlyAndLeaveNobodyOut) {
-  const World world("cornell/scene.toml");
-  const PhotonShares shares(world.lights, 12345);
-  EXPECT_EQ(shares.total(), 12345u);
-  EXPECT_EQ(shares.lightOf(0), 0u);
-  EXPECT_FLOAT_EQ(shares.weight(0), 1.0f / 12345.0f);
 }
 
 }  // namespace
