@@ -1,7 +1,7 @@
 // EXR: as images of `vpl-inspect compare`, and as environments.
 #include "formats/exr_io.h"
 #include "fuzz/sane_scene.h"
-#include "tools/inspect/compare.h"
+#include "images/comparison.h"
 
 namespace bnvpl {
 namespace {
@@ -11,7 +11,7 @@ void compareWithItself(const fs::path& file, const Image& image, const std::stri
   Comparison c;
   const auto compare = [&] {
     layer = findLayer(file, image, name);
-    c = compareLayers(file, layer, file, layer, {}, &layer);
+    c = compareLayers(file, layer, file, layer, kRelMseEpsilon, &layer);
   };
   if (!accepted(compare)) return;
   require(layer.pixelCount() == image.pixelCount(), "a layer has all pixels");

@@ -1,6 +1,6 @@
 // Textures, environments and masks, in whatever of PNG, JPEG, TGA, BMP and HDR the bytes are.
 #include "fuzz/sane_scene.h"
-#include "tools/inspect/mask.h"
+#include "images/mask.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace bnvpl;

@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 echo "cppcheck"
 cppcheck --quiet --std=c++20 --language=c++ --library=googletest \
   --enable=warning,style,performance,portability --suppressions-list=scripts/cppcheck.supp \
-  --error-exitcode=1 -I . core formats scene spatial tools tests bench
+  --error-exitcode=1 -I . core formats images scene spatial transport tools tests bench
 
 cmake --preset release -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON >/dev/null  # for compile_commands.json
 files=("$@")

@@ -231,7 +231,7 @@ class ViewerTest(PageCase):
 @functools.cache
 def flip_oracle() -> Any:
     """The one that checks vpl-inspect's FLIP."""
-    path = Path(__file__).resolve().parents[2] / "tests/inspect/flip_oracle.py"
+    path = Path(__file__).resolve().parents[2] / "tests/images/flip_oracle.py"
     spec = importlib.util.spec_from_file_location("flip_oracle", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

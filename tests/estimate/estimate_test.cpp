@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
-#include "tools/estimate/photon_shares.h"
 
 namespace bnvpl::test {
 namespace {
@@ -129,12 +129,43 @@ TEST(Estimate, RecentredVplsStayOnTheirSurface) {
   EXPECT_EQ(totalFlux(moved), totalFlux(still));
 }
 
-TEST(PhotonShares, FollowPowerExactlyAndLeaveNobodyOut) {
-  const World world("cornell/scene.toml");
-  const PhotonShares shares(world.lights, 12345);
-  EXPECT_EQ(shares.total(), 12345u);
-  EXPECT_EQ(shares.lightOf(0), 0u);
-  EXPECT_FLOAT_EQ(shares.weight(0), 1.0f / 12345.0f);
+// A VPL at the middle of a floor's rim, under a sun in the zenith: it stands for the half disk of
+// its reach R, whose centroid lies 4 R / (3 pi) from the rim, and goes 0.35 of the way there.
+TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
+  Scene scene;
+  addSquare(scene, {0, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
+  addSquare(scene, {3.9f, 1, -2}, {0.01f, 0, 0}, {0, 0, 0.01f}, lambert(Vec3(0.0f)));  // a height
+  finishScene(scene);
+  LightSpec sun;
+  sun.type = LightType::Directional;
+  sun.direction = {0, -1, 0};
+  sun.emission = {6, 4, 2};  // W/m2
+  scene.lights.push_back(sun);
+  const World world(std::move(scene));
+  VplTable vpls;
+  vpls.stage = VplStage::Eliminated;
+  vpls.position = {{1e-4f, 0, 0}};
+  vpls.normal = {{0, 1, 0}};
+  vpls.albedo = {Vec3(0.5f)};
+  vpls.id = {1};
+  vpls.radius = {0.25f};
+  estimateFlux(vpls, world.rays, world.lights, {.photons = 400000, .radius = 2.0f});
+
+  const double reach = 0.5, area = 0.5 * double{kPi} * reach * reach;
+  const auto photons = double(vpls.photons[0]);
+  EXPECT_NEAR(photons, 400000 * area / 16.0, 5.0 * std::sqrt(400000 * area / 16.0));
+  EXPECT_NEAR(vpls.relativeError[0] * std::sqrt(photons), 1.0, 1e-3);  // all bring the same
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(double{vpls.flux[0][c]}, 0.5 * double{world.scene.lights[0].emission[c]} * area,
+                5.0 / std::sqrt(photons) * double{vpls.flux[0][c]});
+  }
+  EXPECT_EQ(vpls.firstBounceFlux[0], vpls.flux[0]);
+  const double centroid = 4.0 * reach / (3.0 * double{kPi}),
+               spread = std::sqrt(reach * reach / 4.0 - centroid * centroid);
+  const Vec3 moved = vpls.emitPosition[0] - vpls.position[0];
+  EXPECT_NEAR(double{moved.x} / 0.35, centroid, 5.0 * spread / std::sqrt(photons) + 1e-4);
+  EXPECT_NEAR(double{moved.y}, 0.0, 1e-6);
+  EXPECT_NEAR(double{moved.z} / 0.35, 0.0, 5.0 * 0.5 * reach / std::sqrt(photons));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 
 #include "formats/exr_io.h"
 #include "formats/vpl_io.h"
+#include "tests/support/flat_image.h"
+#include "tests/support/messages.h"
 #include "tools/common/run_tool.h"
 
 namespace bnvpl {
@@ -64,32 +66,6 @@ inline VplTable threeRows(VplStage stage) {
     table.firstBounceFlux = {{0.25f, 2, 0}, {0, 0, 0}, {0, 0, 0}};
   }
   return table;
-}
-
-// R, G, B of one value each.
-inline Image flatImage(int width, int height, float r, float g, float b) {
-  Image image;
-  image.width = width;
-  image.height = height;
-  image.add("R").assign(image.pixelCount(), r);
-  image.add("G").assign(image.pixelCount(), g);
-  image.add("B").assign(image.pixelCount(), b);
-  return image;
-}
-
-// The message of the exception that `work` throws; empty when it throws none.
-template <typename Exception, typename Work>
-std::string messageOf(const Work& work) {
-  try {
-    work();
-  } catch (const Exception& e) {
-    return e.what();
-  }
-  return "";
-}
-
-inline bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 }  // namespace bnvpl

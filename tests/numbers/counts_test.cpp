@@ -27,13 +27,25 @@ TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
   EXPECT_EQ(seen.size(), drawn);
 }
 
+// Two lamps, a millionth of the power apart.
 TEST(Counts, SharesOfManyPhotonsAreExact) {
-  const World world("cornell/scene.toml");
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  for (Material& m : scene.materials) m.emission = {};
+  scene.lights.resize(2);
+  scene.lights[0].emission = Vec3(1e-6f);
+  scene.lights[1].emission = Vec3(1.0f);
+  const World world(std::move(scene));
   for (const uint64_t photons : {uint64_t{1} << 31, uint64_t{5000000000}, kMaxPhotons}) {
     const PhotonShares shares(world.lights, photons);
     EXPECT_EQ(shares.total(), photons);
-    EXPECT_EQ(shares.lightOf(photons - 1), world.lights.size() - 1);
-    EXPECT_FLOAT_EQ(shares.weight(0) * float(photons), 1.0f);
+    const double first = 1.0 / double{shares.weight(0)};
+    EXPECT_NEAR(first, double(photons) / 1000001.0, 1.0 + 1e-6 * first);
+    const auto border = static_cast<uint64_t>(std::llround(first));
+    EXPECT_EQ(shares.lightOf(0), 0u);
+    EXPECT_EQ(shares.lightOf(border - 1), 0u);
+    EXPECT_EQ(shares.lightOf(border), 1u);
+    EXPECT_EQ(shares.lightOf(photons - 1), 1u);
+    EXPECT_FLOAT_EQ(shares.weight(1) * float(photons - border), 1.0f);
   }
 }
 

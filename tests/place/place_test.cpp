@@ -8,6 +8,7 @@ namespace bnvpl::test {
 namespace {
 
 Given count(uint64_t vpls) { return {{"count", std::to_string(vpls)}}; }
+Given fromLights(uint64_t vpls) { return with(count(vpls), {{"method", "light"}}); }
 
 TEST(Place, GivesExactlyTheCountInPathOrder) {
   const World world("u-shape/scene.toml");
@@ -50,21 +51,68 @@ TEST(Place, NothingIsPlacedAtTheFirstDiffuseVertex) {
   }
 }
 
-TEST(Place, LightMethodCarriesThePowerOfTheFirstHits) {
-  const World world("cornell/scene.toml");
-  const VplTable t =
-      placeVpls(world, with(count(40000), {{"method", "light"}, {"light-depth", "1"}})).table;
-  ASSERT_EQ(t.stage, VplStage::Lit);
-  // With one bounce, flux out = albedo * power, less what escapes through the open front.
-  double flux = 0.0, bound = 0.0;
-  float maxAlbedo = 0.0f;
-  for (size_t i = 0; i < t.size(); ++i) {
-    flux += double{mean(t.flux[i])};
-    maxAlbedo = std::max(maxAlbedo, maxComponent(t.albedo[i]));
+// A closed cube of edge 1 about (1/2, 1/2, 1/2) that reflects half.
+World greyCube(const std::vector<Vec3>& intensities) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
+  for (Material& m : scene.materials) m.emission = {};
+  for (const Vec3 intensity : intensities) {
+    LightSpec l;
+    l.position = {0.4f, 0.5f, 0.6f};
+    l.emission = intensity;
+    scene.lights.push_back(l);
   }
-  bound = double{mean(world.lights.totalPower())} * double{maxAlbedo};
-  EXPECT_LT(flux, bound);
-  EXPECT_GT(flux, 0.5 * bound);
+  return World(std::move(scene));
+}
+
+TEST(Place, CandidatesFaceIntoAClosedRoomAndHaveItsAlbedo) {
+  const World world = greyCube({});
+  const VplTable t = placeVpls(world, count(3000)).table;
+  for (size_t i = 0; i < t.size(); ++i) {
+    // 1/2 along the wall's axis, from the wall to the middle.
+    ASSERT_NEAR(dot(t.normal[i], Vec3(0.5f) - t.position[i]), 0.5f, 1e-5f);
+    ASSERT_EQ(t.albedo[i], Vec3(0.5f));
+  }
+}
+
+double totalOf(const std::vector<Vec3>& column, size_t channel) {
+  double sum = 0.0;
+  for (const Vec3 v : column) sum += double{v[channel]};
+  return sum;
+}
+
+// In a closed room every photon hits, and its first hit reflects half of its flux, exactly.
+TEST(Place, LightMethodCarriesThePowerOfTheFirstHits) {
+  const World world = greyCube({{3, 2, 1}});
+  const PlaceResult placed = placeVpls(world, with(fromLights(5000), {{"light-depth", "1"}}));
+  ASSERT_EQ(placed.table.stage, VplStage::Lit);
+  EXPECT_EQ(placed.paths, 5000u);
+  for (size_t c = 0; c < 3; ++c) {
+    const double expected = 0.5 * double{world.lights.totalPower()[c]};
+    EXPECT_NEAR(totalOf(placed.table.flux, c), expected, 1e-4 * expected);
+    EXPECT_NEAR(totalOf(placed.table.firstBounceFlux, c), expected, 1e-4 * expected);
+  }
+}
+
+// All hits together reflect rho / (1 - rho) = 1 of the power, to within sqrt(1/2 / paths), and the
+// first ones rho = 1/2; of lamps whose powers are far apart, each its own.
+TEST(Place, LightMethodCarriesThePowerOfEachLight) {
+  const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
+  const PlaceResult placed = placeVpls(world, fromLights(200000));
+  const auto paths = double(placed.paths);
+  for (const size_t c : {0u, 2u}) {
+    const double power = double{world.lights.power(c / 2)[c]},
+                 share = double{world.lights.pickProbability(c / 2)};
+    // The number of photons of a lamp is random too.
+    const double error = 5.0 * std::sqrt(1.5 / (share * paths));
+    EXPECT_NEAR(totalOf(placed.table.flux, c) / power, 1.0, error);
+    EXPECT_NEAR(totalOf(placed.table.firstBounceFlux, c) / power, 0.5, 0.5 * error);
+  }
+  EXPECT_EQ(totalOf(placed.table.flux, 1), 0.0);
+  // Every VPL stands for a share of the surface: six squares. Hexagons of radius r have this area.
+  double area = 0.0;
+  for (const float r : placed.table.radius) area += 2.0 * std::sqrt(3.0) * double{r} * double{r};
+  EXPECT_NEAR(area, 6.0, 0.3);
+  EXPECT_NEAR(placed.table.areaEstimate, area, 1e-3);
 }
 
 TEST(Place, DeeperPathsAddCandidatesAtLaterVertices) {

@@ -10,8 +10,8 @@ namespace bnvpl {
 // Photons [begin(l), begin(l + 1)) belong to light l.
 class PhotonShares {
  public:
-  // In proportion to power by the largest remainder; a light with power gets at least one photon,
-  // so `photons` may be exceeded where there are more lights than photons.
+  // In proportion to power by the largest remainder; a light with power whose share is less than
+  // one photon gets one, so the total may exceed `photons` by one for each such light.
   PhotonShares(const LightSet& lights, uint64_t photons);
 
   uint64_t total() const { return first_.back(); }

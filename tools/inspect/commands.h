@@ -1,9 +1,9 @@
 // The subcommands of vpl-inspect: read, call, write. Each returns the exit code.
 #pragma once
 
+#include "images/error_map.h"
 #include "tools/common/scene_options.h"
-#include "tools/inspect/compare.h"
-#include "tools/inspect/error_map.h"
+#include "tools/inspect/compare_report.h"
 #include "tools/inspect/plot.h"
 
 namespace bnvpl {

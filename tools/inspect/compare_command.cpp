@@ -4,12 +4,12 @@
 
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
+#include "images/difference_image.h"
 #include "tools/common/choice.h"
 #include "tools/common/exposure.h"
 #include "tools/common/run_files.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
-#include "tools/inspect/difference_image.h"
 
 namespace bnvpl {
 namespace {
@@ -157,7 +157,7 @@ int runCompare(const CompareCommand& command, const ToolOptions& tool) {
 
   Sides s;
   readSides(command, s);
-  Comparison c = compareLayers(command.imageA, s.a, command.imageB, s.b, command.limits,
+  Comparison c = compareLayers(command.imageA, s.a, command.imageB, s.b, command.limits.epsilon,
                                s.halves ? &s.second : nullptr, s.mask);
   std::optional<FlipMaps> flip;
   if (s.b.isColour() && s.a.isColour()) {

@@ -1,9 +1,9 @@
-// What `vpl-inspect compare` prints, and how it exits.
+#include "tools/inspect/compare_report.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-
-#include "tools/inspect/compare.h"
 
 namespace bnvpl {
 namespace {

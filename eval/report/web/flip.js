@@ -1,5 +1,5 @@
 // LDR-FLIP (Andersson et al. 2020) between two images at an exposure. Constants, their sources and
-// the reasons are in tools/inspect/flip*; this is the same map for the exposure that is shown.
+// the reasons are in images/flip*; this is the same map for the exposure that is shown.
 
 const flipPpd = 3840 * Math.PI / 180;  // pixels in a degree of the viewer's field
 

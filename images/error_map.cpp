@@ -1,4 +1,4 @@
-#include "tools/inspect/error_map.h"
+#include "images/error_map.h"
 
 #include <algorithm>
 #include <cmath>

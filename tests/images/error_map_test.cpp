@@ -1,11 +1,13 @@
 // The false-colour pictures of a measure.
-#include "tools/inspect/error_map.h"
+#include "images/error_map.h"
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/inspect/inspect_files.h"
-#include "tools/inspect/compare.h"
-#include "tools/inspect/difference_image.h"
+#include "images/comparison.h"
+#include "images/difference_image.h"
+#include "tests/support/flat_image.h"
 
 namespace bnvpl {
 namespace {
@@ -36,7 +38,7 @@ TEST(ErrorMap, TheMeanOfAMapIsItsMeasure) {
   a.channels[1].data = {0, 1, 2, 3, 4, 5};
   b.channels[2].data = {0, 0, 2, 3, 4, 9};
   const Layer la = findLayer("a", a, ""), lb = findLayer("b", b, "");
-  const Comparison c = compareLayers("a", la, "b", lb, {});
+  const Comparison c = compareLayers("a", la, "b", lb);
   EXPECT_NEAR(weightedMean(relMseMap(la, lb, c.epsilon).values, {}) / c.relMse, 1.0, 1e-6);
   EXPECT_NEAR(weightedMean(smapeMap(la, lb).values, {}) / c.smape, 1.0, 1e-6);
 }

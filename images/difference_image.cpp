@@ -1,4 +1,4 @@
-#include "tools/inspect/difference_image.h"
+#include "images/difference_image.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Where an image is too bright or too dark: a false-colour picture of the relative difference.
 #pragma once
 
-#include "tools/inspect/layer.h"
-#include "tools/inspect/mask.h"
-#include "tools/inspect/picture.h"
+#include "images/layer.h"
+#include "images/mask.h"
+#include "images/picture.h"
 
 namespace bnvpl {
 

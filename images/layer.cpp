@@ -1,4 +1,4 @@
-#include "tools/inspect/layer.h"
+#include "images/layer.h"
 
 #include <cmath>
 #include <set>

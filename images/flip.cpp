@@ -1,11 +1,12 @@
-#include "tools/inspect/flip.h"
+#include "images/flip.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/parallel.h"
-#include "tools/inspect/flip_colour.h"
-#include "tools/inspect/flip_filter.h"
+#include "images/flip_colour.h"
+#include "images/flip_filter.h"
 
 namespace bnvpl {
 namespace {
@@ -110,6 +111,10 @@ std::vector<float> differences(const Appearance& a, const Appearance& b) {
 }
 
 }  // namespace
+
+RgbImage rgbOf(const Layer& layer) {
+  return {layer.width, layer.height, {*layer.data[0], *layer.data[1], *layer.data[2]}};
+}
 
 std::vector<float> ldrFlip(const RgbImage& reference, const RgbImage& test, double ppd) {
   const Filters filters = flip::makeFilters(ppd);

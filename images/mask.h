@@ -1,9 +1,9 @@
-// Which pixels of an image count: `vpl-inspect compare --mask`.
+// Which pixels of an image count, and how much.
 #pragma once
 
 #include <vector>
 
-#include "tools/inspect/layer.h"
+#include "images/layer.h"
 
 namespace bnvpl {
 

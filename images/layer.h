@@ -1,4 +1,4 @@
-// One to three channels of an image, as `vpl-inspect compare` measures them.
+// One to three channels of an image, as the metrics take them.
 #pragma once
 
 #include <string>

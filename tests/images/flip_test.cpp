@@ -1,14 +1,14 @@
 // FLIP: what the papers promise, values worked out by hand, and those of flip_oracle.py.
-#include "tools/inspect/flip.h"
-
+#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "tests/inspect/inspect_files.h"
-#include "tools/inspect/flip_colour.h"
-#include "tools/inspect/flip_filter.h"
+#include "images/flip_colour.h"
+#include "images/flip_filter.h"
+#include "images/hdr_flip.h"
+#include "tests/support/flat_image.h"
 
 namespace bnvpl {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/inspect/flip_filter.h"
+#include "images/flip_filter.h"
 
 #include <algorithm>
 #include <cmath>

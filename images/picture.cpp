@@ -1,8 +1,8 @@
-#include "tools/inspect/picture.h"
+#include "images/picture.h"
 
 #include <algorithm>
 
-#include "tools/inspect/small_font.h"
+#include "images/small_font.h"
 
 namespace bnvpl {
 namespace {

@@ -1,9 +1,10 @@
-// The exposures around LDR-FLIP: one for a picture, many for HDR-FLIP.
+#include "images/hdr_flip.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
-#include "tools/inspect/flip.h"
+#include "images/quantity.h"
 
 namespace bnvpl {
 namespace {
@@ -30,8 +31,8 @@ RgbImage mapped(const RgbImage& image, double ev, const Curve& curve) {
 float screen(double light) { return static_cast<float>(std::clamp(light, 0.0, 1.0)); }
 
 double luminanceAt(const RgbImage& image, size_t i) {
-  return 0.2126 * double{image.rgb[0][i]} + 0.7152 * double{image.rgb[1][i]} +
-         0.0722 * double{image.rgb[2][i]};
+  return kLuminance[0] * double{image.rgb[0][i]} + kLuminance[1] * double{image.rgb[1][i]} +
+         kLuminance[2] * double{image.rgb[2][i]};
 }
 
 // The light that the ACES curve takes to kBright: the positive root of a quadratic.
@@ -48,10 +49,6 @@ double medianOf(std::vector<double>& values) {
 }
 
 }  // namespace
-
-RgbImage rgbOf(const Layer& layer) {
-  return {layer.width, layer.height, {*layer.data[0], *layer.data[1], *layer.data[2]}};
-}
 
 float acesCurve(double light) {
   const double x = std::max(light, 0.0);

@@ -1,6 +1,8 @@
-// FLIP: how much two pictures seem to differ when a person flips between them in place.
-//   [A20] Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images" (LDR-FLIP)
+// HDR-FLIP: each pixel's largest LDR-FLIP over many exposures, each after the ACES curve.
+//   HDR-FLIP = max over k of FLIP(aces(2^ev_k b), aces(2^ev_k a)),  ev_k even from start to stop
 //   [A21] Andersson et al. 2021, "Visualizing Errors in Rendered High Dynamic Range Images"
+// Range: 0 to 1. Symmetric at given exposures. It refuses nothing; light below 0 counts as 0. Both
+// pictures have one size.
 #pragma once
 
 #include <array>
@@ -8,20 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "tools/inspect/layer.h"
+#include "images/flip.h"
 
 namespace bnvpl {
-
-// Linear sRGB primaries, row by row from the top.
-struct RgbImage {
-  int width = 0, height = 0;
-  std::array<std::vector<float>, 3> rgb;
-};
-RgbImage rgbOf(const Layer& layer);  // three channels
-
-// Differences in 0..1, a value for each pixel: 0 where the pictures look alike. Both are clamped
-// to 0..1, what a screen shows. Symmetric in its pictures. `ppd` is pixels per degree.
-std::vector<float> ldrFlip(const RgbImage& reference, const RgbImage& test, double ppd);
 
 struct FlipOptions {
   // [A20]: 0.7 m away from a 0.7 m wide screen of 3840 pixels.
@@ -38,8 +29,7 @@ struct FlipMaps {
   std::vector<float> ldr, hdr;  // a value for each pixel
 };
 
-// LDR-FLIP of light * 2^exposureEv, without a tone curve; and HDR-FLIP [A21], the largest LDR-FLIP
-// over exposures from startEv to stopEv, each after the ACES curve.
+// LDR-FLIP of light * 2^exposureEv, without a tone curve, and HDR-FLIP.
 FlipMaps flipMaps(const RgbImage& reference, const RgbImage& test, const FlipOptions& options);
 
 // The exposure that takes the logarithmic mean luminance to 0.18, as `vpl-render --exposure auto`:

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """FLIP once more, without separable filters: the figures of flip_test.cpp.
 
-    tests/inspect/flip_oracle.py                  # the figures of the test's pattern
-    tests/inspect/flip_oracle.py A.exr REF.exr    # of two images, as vpl-inspect compare
+    tests/images/flip_oracle.py                  # the figures of the test's pattern
+    tests/images/flip_oracle.py A.exr REF.exr    # of two images, as vpl-inspect compare
 
 Every filter is a full two-dimensional sum in double precision; the sRGB encoding, which
 FLIP decodes again, is done and undone.

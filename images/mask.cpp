@@ -1,4 +1,4 @@
-#include "tools/inspect/mask.h"
+#include "images/mask.h"
 
 #include "core/files.h"
 #include "formats/pixels_io.h"

@@ -1,9 +1,9 @@
 // How large an error each pixel has: false-colour pictures of one measure.
 #pragma once
 
-#include "tools/inspect/flip.h"
-#include "tools/inspect/mask.h"
-#include "tools/inspect/picture.h"
+#include "images/hdr_flip.h"
+#include "images/mask.h"
+#include "images/picture.h"
 
 namespace bnvpl {
 

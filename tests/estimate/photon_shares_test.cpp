@@ -1,0 +1,120 @@
+// How photons are shared among lights of any power, and that their weights keep the energy.
+#include "tools/estimate/photon_shares.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/scene/plain_scene.h"
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+using Counts = std::vector<uint64_t>;
+
+// A point light of each intensity, W/sr in all channels.
+World lampsOf(const std::vector<float>& intensities) {
+  Scene scene = floorScene();
+  for (const float intensity : intensities) {
+    LightSpec l;
+    l.position = {0, 1, 0};
+    l.emission = Vec3(intensity);
+    scene.lights.push_back(l);
+  }
+  return World(std::move(scene));
+}
+
+// The photons of each light, one by one; they must come light by light, and weigh one together.
+Counts countsOf(const World& world, const PhotonShares& shares) {
+  Counts counts(world.lights.size(), 0);
+  size_t before = 0;
+  for (uint64_t photon = 0; photon < shares.total(); ++photon) {
+    const size_t light = shares.lightOf(photon);
+    EXPECT_LT(light, counts.size());
+    EXPECT_GE(light, before) << photon;
+    before = light;
+    ++counts.at(light);
+  }
+  for (size_t l = 0; l < counts.size(); ++l) {
+    if (counts[l] == 0) continue;
+    EXPECT_FLOAT_EQ(shares.weight(l) * static_cast<float>(counts[l]), 1.0f) << l;
+  }
+  return counts;
+}
+Counts countsOf(const std::vector<float>& intensities, uint64_t photons) {
+  const World world = lampsOf(intensities);
+  return countsOf(world, PhotonShares(world.lights, photons));
+}
+
+TEST(PhotonShares, AreInProportionToPower) {
+  EXPECT_EQ(countsOf({1, 2, 5, 1000}, 10080), (Counts{10, 20, 50, 10000}));
+  EXPECT_EQ(countsOf({1000, 5, 2, 1}, 10080), (Counts{10000, 50, 20, 10}));
+}
+
+TEST(PhotonShares, WhatIsLeftGoesToTheLargestRemainders) {
+  EXPECT_EQ(countsOf({1, 1, 1}, 100), (Counts{34, 33, 33}));  // of equals the first
+  EXPECT_EQ(countsOf({26, 37, 37}, 10), (Counts{2, 4, 4}));   // of 2.6, 3.7, 3.7
+  EXPECT_EQ(countsOf({51, 53, 56}, 16), (Counts{5, 5, 6}));   // of 5.1, 5.3, 5.6
+}
+
+// Its one photon is more than its share already, whatever its remainder.
+TEST(PhotonShares, ALightWithAShareBelowOneGetsExactlyOne) {
+  EXPECT_EQ(countsOf({555, 555, 90}, 12), (Counts{6, 5, 1}));  // of 5.55, 5.55, 0.9
+  EXPECT_EQ(countsOf({1e-6f, 1, 1e-9f}, 1000), (Counts{1, 999, 1}));
+  EXPECT_EQ(countsOf({1, 1, 1, 1, 1}, 2), (Counts{1, 1, 1, 1, 1}));
+}
+
+TEST(PhotonShares, ALightWithoutPowerGetsNone) {
+  EXPECT_EQ(countsOf({0, 3, 0, 1, 0}, 8), (Counts{0, 6, 0, 2, 0}));
+  EXPECT_EQ(countsOf({0, 3, 0, 1, 0}, 1), (Counts{0, 1, 0, 1, 0}));
+}
+
+// No share is off by a photon or more, and all photons are given out.
+TEST(PhotonShares, ManyLightsOfAnyPower) {
+  std::vector<float> intensities;
+  Rng rng(3, 0);
+  double sum = 0.0;
+  for (int l = 0; l < 300; ++l) {
+    intensities.push_back(std::pow(10.0f, 2.0f * rng.next()));
+    sum += double{intensities.back()};
+  }
+  constexpr uint64_t kPhotons = 200000;
+  const Counts counts = countsOf(intensities, kPhotons);
+  uint64_t total = 0;
+  for (size_t l = 0; l < counts.size(); ++l) {
+    const double share = double{intensities[l]} / sum * double{kPhotons};
+    EXPECT_LT(std::fabs(double(counts[l]) - share), 1.001) << l;
+    total += counts[l];
+  }
+  EXPECT_EQ(total, kPhotons);
+}
+
+// A closed box that reflects half: each photon reflects half of its flux a hit, at a number of hits
+// with mean 2 and variance 2, so that n photons reflect the flux they bring to within 0.71/sqrt(n).
+TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
+  for (Material& m : scene.materials) m.emission = {};
+  scene.lights.resize(2);
+  scene.lights[0].position = scene.lights[1].position = {0.4f, 0.5f, 0.6f};
+  scene.lights[0].emission = {1, 0, 0};
+  scene.lights[1].emission = {0, 0, 0.04f};
+  const World world(std::move(scene));
+  constexpr uint64_t kPhotons = 104000;  // 100000 and 4000
+  VplTable vpls = placeAndEliminate(world, 4000, {.count = 200});
+  const EnergyAccount account =
+      estimateFlux(vpls, world.rays, world.lights, {.photons = kPhotons, .radius = 3.0f});
+  EXPECT_NEAR(account.emitted, double{mean(world.lights.totalPower())}, 1e-6 * account.emitted);
+  ASSERT_GT(account.deposited, 0.999 * account.reflected);
+  std::array<double, 3> flux{};
+  for (const Vec3 f : vpls.flux) {
+    for (size_t c = 0; c < 3; ++c) flux[c] += double{f[c]};
+  }
+  const auto expectPower = [&](double got, double intensity, double photons) {
+    EXPECT_NEAR(got / (4.0 * double{kPi} * intensity), 1.0, 4.0 * 0.71 / std::sqrt(photons) + 1e-3);
+  };
+  expectPower(flux[0], 1.0, 100000);
+  expectPower(flux[2], 0.04, 4000);
+  EXPECT_EQ(flux[1], 0.0);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,230 @@
+// Renderers that must have the same expected image, pixel by pixel, and images that are known.
+#include "tests/support/z_test.h"
+
+#include "tests/support/flat_image.h"
+#include "tests/support/pipeline.h"
+#include "tests/support/student_t.h"
+#include "transport/camera.h"
+
+namespace bnvpl::test {
+namespace {
+
+TEST(StudentT, AsInTables) {
+  EXPECT_NEAR(studentTwoSided(12.7062047, 1), 0.05, 1e-8);
+  EXPECT_NEAR(studentTwoSided(2.2281389, 10), 0.05, 1e-8);
+  EXPECT_NEAR(studentTwoSided(-3.7676, 23), 0.001, 1e-6);
+  EXPECT_EQ(studentTwoSided(0.0, 5), 1.0);
+  EXPECT_NEAR(studentTwoSided(1e4, 3) / 2.2053e-12, 1.0, 1e-3);  // 2 Gamma(2) 3^1.5 / ...: a power
+  EXPECT_NEAR(sidak(0.05, 2), 0.0975, 1e-12);
+}
+
+// Independent normal noise about `mean`, with `deviation`.
+Image noise(uint64_t seed, double mean, double deviation) {
+  Image image = flatImage(20, 12, 0, 0, 0);
+  for (size_t c = 0; c < 3; ++c) {
+    for (size_t i = 0; i < image.pixelCount(); ++i) {
+      Rng rng(mix64(seed), 3 * i + c);
+      const double radius = std::sqrt(-2.0 * std::log1p(-double{rng.next()}));  // Box and Muller
+      const double normal = radius * std::cos(2.0 * double{kPi} * double{rng.next()});
+      image.channels[c].data[i] = static_cast<float>(mean + deviation * normal);
+    }
+  }
+  return image;
+}
+
+// Where both agree, p is even in 0..1 but for the correlation of blocks with their pixels.
+TEST(ZTest, EqualExpectationsAreSeldomTakenForDifferent) {
+  int below = 0;
+  for (uint64_t round = 0; round < 60; ++round) {
+    const auto a = [&](uint64_t seed) { return noise(1000 * round + seed, 1.0, 0.1); };
+    const auto b = [&](uint64_t seed) { return noise(1000 * round + seed + 500, 1.0, 0.3); };
+    below += zTest(a, b, {.seeds = 8}).p < 0.1;
+  }
+  EXPECT_LE(below, 14);  // of 6; 3.4 deviations
+}
+
+TEST(ZTest, FindsOnePixelThatIsWrong) {
+  const auto a = [&](uint64_t seed) { return noise(seed, 1.0, 0.1); };
+  const auto b = [&](uint64_t seed) {
+    Image image = noise(seed + 500, 1.0, 0.1);
+    image.channels[1].data[5 * 20 + 7] += 0.4f;
+    return image;
+  };
+  const ZResult r = zTest(a, b);
+  EXPECT_EQ(std::tuple(r.block, r.x, r.y, r.channel), std::tuple(1, 7, 5, 'G'));
+  EXPECT_LT(r.p, 1e-4);
+  EXPECT_NEAR(r.meanB - r.meanA, 0.4, 0.15);
+}
+
+TEST(ZTest, FindsAnErrorThatIsSmallButEverywhere) {
+  const auto a = [&](uint64_t seed) { return noise(seed, 1.0, 0.1); };
+  const auto b = [&](uint64_t seed) { return noise(seed + 500, 1.02, 0.1); };
+  const ZResult r = zTest(a, b);
+  EXPECT_GE(r.block, 8);
+  EXPECT_LT(r.p, 1e-8);
+}
+
+TEST(ZTest, WithoutNoiseOnlyRoundingIsForgiven) {
+  const auto flat = [](float v) { return [=](uint64_t) { return flatImage(4, 4, v, v, v); }; };
+  EXPECT_TRUE(sameExpectation(flat(1.0f), flat(std::nextafter(1.0f, 2.0f))));
+  EXPECT_TRUE(sameExpectation(flat(0.0f), flat(0.0f)));
+  EXPECT_FALSE(sameExpectation(flat(1.0f), flat(1.0001f)));
+  EXPECT_FALSE(sameExpectation(flat(1.0f), flat(NAN)));
+}
+
+// A film of the given size over a scene of the project.
+World worldOf(const std::string& name, uint32_t width, uint32_t height) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / name);
+  scene.film = {width, height};
+  return World(std::move(scene));
+}
+
+Render paths(const World& world, FilmOptions film, unsigned maxBounces = 32) {
+  return [&world, film, maxBounces](uint64_t seed) mutable {
+    film.seed = seed;
+    FilmStats stats;
+    return renderPaths(world, film, stats, maxBounces);
+  };
+}
+Render photons(const World& world, FilmOptions film, unsigned maxBounces = 32) {
+  return [&world, film, maxBounces](uint64_t seed) mutable {
+    film.seed = seed + 1000;
+    FilmStats stats;
+    return renderPhotons(world, film, stats, maxBounces);
+  };
+}
+Render vpls(const World& world, const VplTable& lit, VplSettings settings) {
+  return [&world, &lit, settings](uint64_t seed) mutable {
+    settings.film.seed = seed;
+    FilmStats stats;
+    return renderVpls(world, lit, settings, stats);
+  };
+}
+Render flat(const World& world, float value) {
+  const int width = int(world.scene.film.width), height = int(world.scene.film.height);
+  return [=](uint64_t) { return flatImage(width, height, value, value, value); };
+}
+
+// Every wall shines with radiance 1 and reflects half: 1 + 1/2 is direct, 1/4 + 1/8 + ... indirect.
+TEST(SameExpectation, FurnaceIsKnownAtEveryPixel) {
+  const World world = worldOf("furnace/scene.toml", 24, 16);
+  const FilmOptions all{.spp = 16}, indirect{.spp = 16, .only = Only::Indirect};
+  EXPECT_TRUE(sameExpectation(paths(world, all, 64), flat(world, 2.0f)));
+  EXPECT_TRUE(sameExpectation(paths(world, indirect, 1), flat(world, 0.25f)));
+  EXPECT_TRUE(sameExpectation(photons(world, indirect, 64), flat(world, 0.5f)));
+  EXPECT_TRUE(sameExpectation(photons(world, indirect, 1), flat(world, 0.25f)));
+  // With rays beside the light samples, which alone have no variance near an edge of two lamps.
+  VplSettings direct;
+  direct.film = {.spp = 16, .only = Only::Direct};
+  direct.nearField = true;
+  direct.nearFieldRays = 4;
+  EXPECT_TRUE(sameExpectation(vpls(world, {}, direct), flat(world, 1.5f)));
+}
+
+// Irradiance over radiance of the horizontal square at height 1 and of side 0.2 about the origin,
+// at a point below it, from its outline (Lambert 1760).
+double irradianceBelowSquare(Vec3 at) {
+  const std::array<Vec3, 4> corners{
+      {{-0.1f, 1, -0.1f}, {0.1f, 1, -0.1f}, {0.1f, 1, 0.1f}, {-0.1f, 1, 0.1f}}};
+  double sum = 0.0;
+  for (size_t k = 0; k < 4; ++k) {
+    const Vec3 a = normalize(corners[k] - at), b = normalize(corners[(k + 1) % 4] - at);
+    const Vec3 axis = normalize(cross(a, b));
+    sum += std::acos(std::clamp(double{dot(a, b)}, -1.0, 1.0)) * double{axis.y};
+  }
+  return 0.5 * std::fabs(sum);
+}
+
+// The pixels that see the patch at height 0 alone, and what they see of it.
+Image twoPatchesByFormFactors(const Scene& scene) {
+  Image image = flatImage(int(scene.film.width), int(scene.film.height), 0, 0, 0);
+  constexpr int kAcross = 8;  // points of a pixel, each way
+  for (size_t i = 0; i < image.pixelCount(); ++i) {
+    double sum = 0.0;
+    bool inside = true;
+    for (int k = 0; k < kAcross * kAcross && inside; ++k) {
+      // From border to border, so that a pixel is inside where all of it is.
+      const float u = float(k % kAcross) / (kAcross - 1), v = float(k / kAcross) / (kAcross - 1);
+      const Vec3 d = cameraDirection(scene.camera, scene.film,
+                                     (float(i % scene.film.width) + u) / float(scene.film.width),
+                                     (float(i / scene.film.width) + v) / float(scene.film.height));
+      const Vec3 at = scene.camera.position + d * (-scene.camera.position.y / d.y);
+      inside = std::max(std::fabs(at.x), std::fabs(at.z)) < 0.1f;
+      sum += irradianceBelowSquare(at) / (kAcross * kAcross);
+    }
+    const double radiance = 10.0 * 0.5 / double{kPi} * sum;  // Le, rho
+    for (ImageChannel& c : image.channels) c.data[i] = inside ? float(radiance) : 0.0f;
+  }
+  return image;
+}
+
+TEST(SameExpectation, TwoPatchesAreKnownAtEveryPixel) {
+  const World world = worldOf("test/two-patches.toml", 24, 24);
+  const Image expected = twoPatchesByFormFactors(world.scene);
+  const auto known = [&](uint64_t) { return expected; };
+  const auto inside = [&](const Render& render) {
+    return [&expected, render](uint64_t seed) {
+      Image image = render(seed);
+      for (ImageChannel& c : image.channels) {
+        for (size_t i = 0; i < c.data.size(); ++i) {
+          if (expected.channels[0].data[i] == 0.0f) c.data[i] = 0.0f;
+        }
+      }
+      return image;
+    };
+  };
+  const std::vector<float>& red = expected.channels[0].data;
+  EXPECT_GT(std::count_if(red.begin(), red.end(), [](float v) { return v > 0.0f; }), 100);
+  const ZTest few{.seeds = 16};
+  EXPECT_TRUE(sameExpectation(inside(paths(world, {.spp = 64})), known, few));
+  VplSettings direct;
+  direct.film = {.spp = 64, .only = Only::Direct};
+  EXPECT_TRUE(sameExpectation(inside(vpls(world, {}, direct)), known, few));
+  direct.nearField = true;
+  EXPECT_TRUE(sameExpectation(inside(vpls(world, {}, direct)), known, few));
+}
+
+TEST(SameExpectation, PathsAndPhotonsInTheCornellBox) {
+  const World world = worldOf("cornell/scene.toml", 20, 20);
+  for (const unsigned bounces : {1u, 32u}) {
+    const FilmOptions byPaths{.spp = 64, .only = Only::Indirect},
+        byPhotons{.spp = 16, .only = Only::Indirect};
+    EXPECT_TRUE(sameExpectation(paths(world, byPaths, bounces), photons(world, byPhotons, bounces)))
+        << bounces;
+  }
+}
+
+// The two estimators of direct light: one lamp picked and one ray, and each lamp with rays besides.
+TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {28, 16};
+  scene.lights.assign(2, LightSpec{});
+  scene.lights[0].type = LightType::Environment;
+  scene.lights[0].emission = Vec3{2.0f, 1.0f, 0.5f};
+  scene.lights[1].position = {0.3f, 0.45f, 0.1f};
+  scene.lights[1].emission = Vec3{0.1f};
+  const World world(std::move(scene));
+  VplSettings s;
+  s.film = {.spp = 16, .only = Only::Direct};
+  s.nearField = true;
+  s.nearFieldRays = 2;
+  EXPECT_TRUE(sameExpectation(paths(world, {.spp = 48, .only = Only::Direct}), vpls(world, {}, s)));
+}
+
+TEST(SameExpectation, TileCutsAndAllVpls) {
+  for (const char* name : {"cornell/scene.toml", "veach-door/scene.toml"}) {
+    const World world = worldOf(name, 25, 19);
+    VplSettings s;
+    s.candidates = 6000;
+    s.vpls = 300;
+    s.estimate.photons = 50000;
+    s.film = {.spp = 4, .only = Only::Indirect};
+    const VplTable lit = lightUp(world, s);
+    VplSettings cuts = s;
+    cuts.gather = {.error = 0.1f, .maxCut = 32};
+    EXPECT_TRUE(sameExpectation(vpls(world, lit, cuts), vpls(world, lit, s))) << name;
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,23 @@
+// What an exception says.
+#pragma once
+
+#include <string>
+
+namespace bnvpl {
+
+// The message of the exception that `work` throws; empty when it throws none.
+template <typename Exception, typename Work>
+std::string messageOf(const Work& work) {
+  try {
+    work();
+  } catch (const Exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace bnvpl

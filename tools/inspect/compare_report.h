@@ -1,0 +1,25 @@
+// What `vpl-inspect compare` says of a comparison, and how it exits.
+#pragma once
+
+#include <string>
+
+#include "images/comparison.h"
+#include "tools/common/run_tool.h"
+
+namespace bnvpl {
+
+struct CompareOptions {
+  double epsilon = kRelMseEpsilon;
+  double maxRelMse = -1;  // negative: no limit
+  double maxRmse = -1;
+  double maxRmseOverMean = -1;
+};
+
+Json comparisonJson(const Comparison& c, const CompareOptions& options);
+std::string comparisonText(const Comparison& c, const CompareOptions& options);
+
+// kExitOk, or kExitDifferent when a limit is exceeded; infinite and undefined measures exceed any
+// limit.
+int comparisonExitCode(const Comparison& c, const CompareOptions& options);
+
+}  // namespace bnvpl
