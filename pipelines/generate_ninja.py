@@ -45,7 +45,7 @@ def arguments():
     p.add_argument("--vpls", default="3k", help="default %(default)s")
     p.add_argument("--photons", default="10M", help="default %(default)s")
     p.add_argument("--spp", default="8", help="samples per pixel (default %(default)s)")
-    p.add_argument("--seed", help="for all stages")
+    p.add_argument("--seed", help="for place, estimate and render")
     p.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
     for stage in ("place", "eliminate", "estimate", "render"):
         p.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
@@ -101,7 +101,7 @@ def scene_rules(scene, options):
         *build("place", [candidates], [tool("place"), scene],
                [scene, "-o", candidates, "-n", options.candidates, *seed, *defines, *flags("place")], True),
         *build("eliminate", [vpls], [tool("eliminate"), candidates],
-               [candidates, "-o", vpls, "-n", options.vpls, *seed, *flags("eliminate")], False),
+               [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")], False),
         *build("estimate", [lit], [tool("estimate"), scene, vpls],
                [scene, vpls, "-o", lit, "--photons", options.photons, *seed, *defines, *flags("estimate")], True),
         *build("render", [image, preview], [tool("render"), scene, lit],

@@ -1,5 +1,7 @@
 """A configuration of the four stages, and its runs."""
 
+import json
+import subprocess
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,6 +11,7 @@ from .settings import ROOT, View
 # How the VPLs of a set come about; options that are not here are the tools' defaults.
 METHODS = {
     "light": "from the light (instant radiosity)",
+    "rejection": "from the light, by rejection",
     "random": "random, from the camera",
     "uniform": "blue noise, uniform (thesis)",
     "local": "blue noise, local density (ours)",
@@ -17,17 +20,19 @@ METHODS = {
 }
 ELIMINATE = {
     "random": ("--method", "random"),
+    "rejection": ("--method", "rejection"),
     "uniform": ("--density", "uniform"),
     "local": (),
     "even": (),
     "literal": ("--density", "uniform"),
 }
 ESTIMATE = {
-    "even": ("--scatter", "even"),
-    "literal": ("--scatter", "even", "--recentre", "off"),
+    "even": ("--method", "even"),
+    "literal": ("--method", "even", "--recentre", "off"),
 }
+REJECTION_CANDIDATES = 10  # photons' VPLs for each that is to be kept
 RENDER = {
-    "literal": ("--near-field", "off"),
+    "literal": ("--compensate", "none"),
 }
 
 
@@ -65,6 +70,17 @@ def options_of(c: Configuration) -> dict[str, str]:
             for stage, method in (("place", {}), ("eliminate", ELIMINATE), ("estimate", ESTIMATE), ("render", RENDER))}
 
 
+def methods_of(runner: Runner, tool: str, slot: str) -> list[str]:
+    """The methods that a tool lists for one of its options."""
+    spec = json.loads(subprocess.run([runner.bin / tool, "--help-json"], capture_output=True, check=True).stdout)
+    return [m["name"] for s in spec["slots"] if s["name"] == slot for m in s["methods"]]
+
+
+def shadow_rays(runner: Runner, view: View, c: Configuration, seed: int) -> float:
+    """Rays towards VPLs, a sample."""
+    return json.loads(image(runner, view, c, seed)[1][-1]["stats.json"].read_text())["mean_shadow_rays"]
+
+
 def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:
     return runner.run("vpl-place", ["{scene}", "-n", c.candidates, "--seed", seed, *c.place,
                                     "-o", "@candidates.vpl", "--quiet"],
@@ -78,6 +94,13 @@ def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, 
         run = runner.run("vpl-place", ["{scene}", "--method", "light", "-n", c.vpls, "--seed", seed, *c.place,
                                        "-o", "@lit.vpl", "--quiet"], scene, ["lit.vpl"])
         return run["lit.vpl"], [run]
+    if c.method == "rejection":
+        placed = runner.run("vpl-place", ["{scene}", "--method", "light", "-n", c.vpls * REJECTION_CANDIDATES,
+                                          "--seed", seed, *c.place, "-o", "@all.vpl", "--quiet"], scene, ["all.vpl"])
+        run = runner.run("vpl-eliminate", ["{all}", "--scene", "{scene}", "--method", "rejection", "-n", c.vpls,
+                                           "--seed", seed, *c.eliminate, "-o", "@lit.vpl", "--quiet"],
+                         {**scene, "all": placed["all.vpl"]}, ["lit.vpl"])
+        return run["lit.vpl"], [placed, run]
     placed = candidates(runner, view, c, seed)
     kept = runner.run("vpl-eliminate", ["{candidates}", "-n", c.vpls, *ELIMINATE[c.method], *c.eliminate,
                                         *(("--seed", seed) if c.method == "random" else ()),

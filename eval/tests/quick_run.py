@@ -13,10 +13,10 @@ sys.path.insert(0, str(EVAL / "report"))
 from page_case import PageCase  # noqa: E402 (after its folder is known)
 from test_support import WIDTH, browser  # noqa: E402
 
-PARTS = {"methods", "scatter", "gather", "equal-time", "convergence", "sensitivity"}
+PARTS = {"methods", "scatter", "gather", "gather-equal-time", "equal-time", "convergence", "sensitivity"}
 TABLES = {"methods", "scatter", "gather", "equal-time", "energy", "references", "sensitivity"}
 PLOTS = {"convergence-vpls-u-shape", "convergence-time-u-shape"}
-IMAGES = {"reference", "light", "random", "uniform", "local", "even", "literal", "balanced", "path"}
+IMAGES = {"reference", "light", "rejection", "random", "uniform", "local", "even", "literal", "balanced", "path"}
 OVERLAYS = {"dots-random", "dots-uniform", "dots-local", "cut", "cut-lightcuts"}  # laid over the images
 BIN, FOLDER = (Path(word) for word in sys.argv[1:3])
 
@@ -67,6 +67,23 @@ class QuickRun(unittest.TestCase):
                 self.assertLess(row["cut_rmse"], 0.1, gather)
                 self.assertGreater(row["cut_rmse"], 0.0, gather)
 
+    def test_every_gather_has_a_row(self):
+        spec = json.loads(subprocess.run([BIN / "vpl-render", "--help-json"], capture_output=True, check=True).stdout)
+        gathers = {m["name"] for slot in spec["slots"] if slot["name"] == "gather" for m in slot["methods"]}
+        self.assertGreater(len(gathers), 5)
+        for part in ("gather", "gather-equal-time"):
+            self.assertEqual({row["label"] for row in self.rows(part)}, gathers)
+        for row in self.rows("gather"):
+            self.assertGreaterEqual(row["equal_spp"], 1)
+            self.assertGreater(row["equal_relmse"], 0.0)
+            self.assertAlmostEqual(row["mean_ratio"], self.row("gather", view=row["view"], label="all")["mean_ratio"],
+                                   delta=0.1)
+
+    def test_rejection_is_better_than_all_that_the_lights_send(self):
+        for view in ("u-shape-main", "veach-door-main"):
+            light, chosen = (self.row("methods", view=view, method=m) for m in ("light", "rejection"))
+            self.assertLess(chosen["rmse_over_mean"], light["rmse_over_mean"])
+
     def test_rows_tell_their_options(self):
         for row in self.rows("sensitivity"):
             self.assertIn("--near-field-rays 4", row["render_options"])
@@ -83,8 +100,8 @@ class QuickRun(unittest.TestCase):
     def test_dark_room(self):
         tables = {t["id"]: t for t in json.loads((FOLDER / "report.json").read_text())["tables"]}
         dark = {row["label"]: row["dark_room"] for row in tables["scatter"]["rows"] if row["dark_room"] is not None}
-        self.assertEqual(dark["--scatter guarded"], 0.0)
-        self.assertGreater(dark["--scatter even"], 0.0)
+        self.assertEqual(dark["--method guarded"], 0.0)
+        self.assertGreater(dark["--method even"], 0.0)
 
     def test_every_run_is_told(self):
         with (FOLDER / "runs.csv").open() as file:

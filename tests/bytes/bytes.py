@@ -66,7 +66,7 @@ class Tools:
         text = subprocess.run([self.folder / 'vpl-render', '--help'], capture_output=True, text=True).stdout
         if '--compensate' in text:
             return []
-        return [(('--compensate', 'none'), ('--near-field', 'off')), (('--method', 'even'), ('--scatter', 'even'))]
+        return [(('--compensate', 'none'), ('--near-field', 'off')), (('--method', 'even'), ('--method', 'even'))]
 
 
 def hash_vpl(file):

@@ -90,7 +90,7 @@ TEST_F(DeepCheck, CommandsAreQuotedAndExact) {
   record.options = {{"radius", 0.1f}, {"recentre", true}, {"scatter", "guarded"}, {"photons", 5}};
   EXPECT_EQ(commandOf(record, {"my scene.toml", "v.vpl"}, "it's.vpl"),
             "vpl-estimate 'my scene.toml' v.vpl -o 'it'\\''s.vpl' --radius 0.1 --recentre on "
-            "--scatter guarded --photons 5");
+            "--method guarded --photons 5");
 }
 
 TEST_F(DeepCheck, AnImageThatWasEditedIsRefused) {

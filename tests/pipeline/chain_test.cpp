@@ -9,7 +9,7 @@ class Chain : public PipelineTest {
   void SetUp() override {
     makeStages(scene_);
     succeed("vpl-render", scene_ + " " + path("lit.vpl") + " -o " + path("image.exr") +
-                              " --size 24x16 --spp 2 --layers N,direct --near-field off");
+                              " --size 24x16 --spp 2 --layers N,direct --compensate none");
   }
   std::string all() const {
     return "check --deep " + path("candidates.vpl") + " " + path("vpls.vpl") + " " +

@@ -54,7 +54,7 @@ TEST_F(Determinism, OtherMethodsForAnyThreads) {
                {"v.vpl"});
   }
   expectSame("vpl-estimate",
-             door_ + " " + path("v.vpl") + " -o " + path("l.vpl") + " --photons 20k --scatter even",
+             door_ + " " + path("v.vpl") + " -o " + path("l.vpl") + " --photons 20k --method even",
              {"l.vpl"});
   expectSame(
       "vpl-render",

@@ -165,8 +165,7 @@ TEST_F(Files, ACheckpointMayBeALink) {
   fs::create_symlink("sub/real", at("work"));
   const std::string estimate =
       toml_ + vpls_ + "--quiet -o " + path("x.vpl") + " --checkpoint " + path("work");
-  shell("timeout --foreground -s INT 1 '" BNVPL_BIN "/vpl-estimate' " + estimate +
-        " --photons 1G");
+  shell("timeout --foreground -s INT 1 '" BNVPL_BIN "/vpl-estimate' " + estimate + " --photons 1G");
   EXPECT_TRUE(fs::is_symlink(at("work")));
   ASSERT_TRUE(fs::exists(at("sub/real")));
   fs::remove(at("sub/real"));

@@ -36,7 +36,7 @@ class Memory : public PipelineTest {
 TEST_F(Memory, PhotonsLeaveNothingBehind) {
   for (const std::string scatter : {"guarded", "even"}) {
     const std::string command = scene_ + " " + path("vpls.vpl") + " -o " + path("l.vpl") +
-                                " --scatter " + scatter + " --photons ";
+                                " --method " + scatter + " --photons ";
     expectSamePeak("vpl-estimate", command + "20k", command + "320k");
   }
 }

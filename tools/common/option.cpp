@@ -34,15 +34,22 @@ std::string orList(const std::vector<std::string_view>& names) {
   return text;
 }
 
-std::string rangeText(const Option& o) {
+// Large limits are powers of two, or one less: "2^32 - 1".
+std::string limitText(double limit) {
+  for (const double less : {0.0, 1.0}) {
+    int power = 0;
+    if (limit >= 0x1p20 && std::frexp(limit + less, &power) == 0.5)
+      return "2^" + std::to_string(power - 1) + (less > 0.0 ? " - 1" : "");
+  }
   std::ostringstream text;
   text.precision(15);
-  if (o.most >= 0x1p64) {
-    text << "from " << o.least << " up";
-  } else {
-    text << "from " << o.least << " to " << o.most;
-  }
+  text << limit;
   return text.str();
+}
+
+std::string rangeText(const Option& o) {
+  if (o.most >= 0x1p64) return "from " + limitText(o.least) + " up";
+  return "from " + limitText(o.least) + " to " + limitText(o.most);
 }
 
 [[noreturn]] void refuse(const Option& o, const std::string& why) {

@@ -18,6 +18,20 @@ float medianError(const VplTable& vpls) {
   return *middle;
 }
 
+// Some VPLs in dark corners are to be expected; more than this share says that photons go
+// elsewhere.
+constexpr double kManyDark = 0.5;
+
+void warnOfDark(uint64_t dark, size_t vpls) {
+  if (static_cast<double>(dark) <= kManyDark * static_cast<double>(vpls)) return;
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "%.0f %% of the VPLs got no photon and light nothing: most photons go where the "
+                "view does not look; raise --photons, or keep fewer VPLs with vpl-eliminate -n",
+                100.0 * static_cast<double>(dark) / static_cast<double>(vpls));
+  printWarnings("vpl-estimate", {line});
+}
+
 }  // namespace
 
 void reportEstimate(const EstimateResult& result, Summary& summary) {
@@ -45,6 +59,7 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
                 double{medianError(vpls)}, static_cast<unsigned long long>(dark));
   summary.add("median_relative_error", medianError(vpls), line);
   summary.add("vpls_without_photon", dark);
+  warnOfDark(dark, vpls.size());
   summary.add("rays", a.rays);
   summary.add("guard_rays", a.guardRays);
   summary.addNonFinite(a.nonFinite, "photons");

@@ -32,8 +32,8 @@ std::string optionText(const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
   if (value.is_string()) return quoted(value.get<std::string>());
   if (!value.is_number_float()) return value.dump();
-  char text[32];  // options are floats: the shortest text that gives this one back
-  const auto end = std::to_chars(text, text + sizeof text, value.get<float>());
+  char text[32];  // the shortest that gives this number back
+  const auto end = std::to_chars(text, text + sizeof text, value.get<double>());
   return {text, end.ptr};
 }
 
@@ -46,8 +46,11 @@ std::string mending(const Links& links, size_t first, const std::string& scene) 
     if (links[i]->chain.empty()) continue;
     const StageRecord& record = links[i]->chain.back();
     std::vector<std::string> inputs;
-    if (readsScene(record)) inputs.push_back(scene);
+    // The stages that always read the scene take it first; vpl-eliminate takes --scene.
+    const bool leads = record.tool != "vpl-eliminate";
+    if (readsScene(record) && leads) inputs.push_back(scene);
     if (i > 0) inputs.push_back(links[i - 1]->file.string());
+    if (readsScene(record) && !leads) inputs.insert(inputs.end(), {"--scene", scene});
     commands += (commands.empty() ? "" : " && ") + commandOf(record, inputs, links[i]->file) +
                 links[i]->moreOptions;
   }
@@ -98,7 +101,7 @@ std::string brokenHistory(const CheckedFile& earlier, const CheckedFile& later) 
 std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
   if (!earlier.stage || !later.stage) return {};
   const VplTable from = readVpl(earlier.file), to = readVpl(later.file);
-  const bool kept = to.stage == VplStage::Eliminated;
+  const bool kept = to.stage == VplStage::Eliminated || to.stage == from.stage;
   if (!kept && to.size() != from.size())
     return "has " + std::to_string(to.size()) + " rows, " + earlier.file.string() + " " +
            std::to_string(from.size());

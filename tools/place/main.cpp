@@ -38,9 +38,10 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Giv
   ProgressMeter meter("VPLs", count, tool.quiet);
   PlaceResult placed = place(rays, lights, options, meter.callback());
 
-  placed.table.provenance = extendProvenance(
-      "", stageRecord("vpl-place", recordOf(placeSpec(), options),
-                      {{"scene", hashText(scene.contentHash)}, {"view", viewRecord(scene)}}));
+  Json record = stageRecord("vpl-place", recordOf(placeSpec(), options),
+                            {{"scene", hashText(scene.contentHash)}});
+  record["view"] = viewRecord(scene);
+  placed.table.provenance = extendProvenance("", record);
   OutputSet files;
   writeVpl(files.add(output), placed.table);
   addDepfile(files, tool.depfile, output, scene.files);

@@ -52,6 +52,18 @@ void append(const VplTable& from, size_t count, VplTable& to) {
   }
 }
 
+// Takes the last path's rows away again where `take` rows of the chunk hold only some of them.
+void dropCutPath(const PathRows& chunk, size_t take, PlaceResult& result) {
+  if (take == 0 || take == chunk.path.size() || chunk.path[take] != chunk.path[take - 1]) return;
+  size_t rows = 0;
+  while (rows < take && chunk.path[take - 1 - rows] == chunk.path[take - 1]) ++rows;
+  const size_t left = result.table.size() - rows;
+  for (std::vector<Vec3>* column : columns(result.table)) {
+    if (!column->empty()) column->resize(left);
+  }
+  --result.paths;
+}
+
 }  // namespace
 
 void PathRows::restart() {
@@ -93,8 +105,8 @@ void PathRows::sortByPath(size_t first) {
 
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
 // A wave is joined while the next one is traced, for there is but one thread's work in it.
-PlaceResult collectRows(const std::string& scene, uint64_t count, const ProgressFn& progress,
-                        const TracePaths& tracePaths) {
+PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
+                        const ProgressFn& progress, const TracePaths& tracePaths) {
   PlaceResult result;
   VplTable& rows = result.table;
   for (auto* column : {&rows.position, &rows.normal, &rows.albedo}) column->reserve(count);
@@ -123,6 +135,7 @@ PlaceResult collectRows(const std::string& scene, uint64_t count, const Progress
       result.paths += kPathsPerChunk;
       if (rows.size() == count) {
         if (take > 0) result.paths = c.path[take - 1] + 1;
+        if (last == LastPath::Whole) dropCutPath(c, take, result);
         break;
       }
     }
@@ -137,6 +150,10 @@ PlaceResult collectRows(const std::string& scene, uint64_t count, const Progress
     tbb::parallel_invoke([&] { trace(next); }, [&] { join(traced); });
   }
   join(traced);
+  if (rows.size() == 0) {
+    throw InputError(scene + ": one photon has more hits than -n " + std::to_string(count) +
+                     "; ask for more VPLs");
+  }
   rows.id.resize(rows.size());
   std::iota(rows.id.begin(), rows.id.end(), 0u);
   return result;

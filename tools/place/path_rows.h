@@ -25,10 +25,12 @@ struct PathRows {
 inline constexpr uint64_t kPathsPerChunk = 1024;
 
 // Calls tracePaths(begin, chunk) for the paths [begin, begin + kPathsPerChunk) of chunk after chunk
-// until there are `count` rows, and joins them; the last path may be cut off in the middle.
-// Throws InputError when the effort has no end.
+// until there are `count` rows, and joins them. Cut: the last path may end in the middle, and there
+// are `count` rows exactly. Whole: the path that would exceed the count is left out, for its other
+// rows would weigh as much as all of it. Throws InputError when the effort has no end.
 using TracePaths = std::function<void(uint64_t begin, PathRows& chunk)>;
-PlaceResult collectRows(const std::string& scene, uint64_t count, const ProgressFn& progress,
-                        const TracePaths& tracePaths);
+enum class LastPath { Cut, Whole };
+PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
+                        const ProgressFn& progress, const TracePaths& tracePaths);
 
 }  // namespace bnvpl

@@ -10,7 +10,11 @@ namespace {
 constexpr double kMaxCount = 0x1p31 - 1;
 
 constexpr std::array kOptions{
-    letterFor("-n", countOption("count", "120k", kMaxCount, "", "VPLs to place, exactly")),
+    letterFor(
+        "-n",
+        countOption(
+            "count", "120k", kMaxCount, "",
+            "VPLs to place: exactly, or with --method light at most, for photons stay whole")),
     seedOption()};
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace bnvpl {
 
 struct PlaceResult {
-  VplTable table;      // of stage Candidates or Lit, as the method says; exactly `count` rows
+  VplTable table;      // of stage Candidates or Lit, as the method says
   uint64_t paths = 0;  // traced until the count was reached
   uint64_t rays = 0;
   uint64_t nonFinite = 0;  // vertices or photons left out because a value was NaN or infinite

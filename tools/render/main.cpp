@@ -67,25 +67,24 @@ int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
   const RayScene rays(scene);
   const LightSet lights(rays);
 
-  Json inputs{{"scene", hashText(scene.contentHash)}, {"view", viewRecord(scene)}};
+  Json inputs{{"scene", hashText(scene.contentHash)}};
   if (vpl) inputs["lit"] = hashText(lit.checksum);
-  const Json record = stageRecord("vpl-render", recordOf(renderSpec(), options), inputs);
+  Json record = stageRecord("vpl-render", recordOf(renderSpec(), options), inputs);
+  record["view"] = viewRecord(scene);
   Checkpoint checkpoint(paths.checkpoint, record);
   ProgressMeter meter("samples", renderWork(scene, options), tool.quiet);
   RenderResult result = render(rays, lights, lit, options, meter.callback(), checkpoint.resume());
 
   Image& image = result.image;
-  const ExrPixelType pixels =
-      options.text("pixels") == "half" ? ExrPixelType::Half : ExrPixelType::Float;
   image.attributes["bnvpl.provenance"] = extendProvenance(lit.provenance, record);
   image.attributes["bnvpl.samplesPerPixel"] = std::to_string(options.whole("spp"));
-  image.attributes[kImageHashAttribute] = hashText(hashImage(image, pixels));
+  image.attributes[kImageHashAttribute] = hashText(hashImage(image, pixelTypeOf(options)));
   OutputSet files;
-  addImages(files, paths.images, image, pixels, options.text("exposure"));
+  reportRender(result, options, summary);
+  addImages(files, paths.images, image, options, summary);
   std::vector<fs::path> read = scene.files;
   if (vpl) read.push_back(paths.lit);
   addDepfile(files, tool.depfile, paths.images.exr, read);
-  reportRender(result, options, summary);
   summary.finish(tool, files);
   checkpoint.remove();
   return kExitOk;

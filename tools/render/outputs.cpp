@@ -32,18 +32,26 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 
 }  // namespace
 
-void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, ExrPixelType pixels,
-               const std::string& exposure) {
+ExrPixelType pixelTypeOf(const Values& options) {
+  return options.text("pixels") == "half" ? ExrPixelType::Half : ExrPixelType::Float;
+}
+
+void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
+               Summary& summary) {
+  const ExrPixelType pixels = pixelTypeOf(options);
   const uint64_t overflow = writeExr(files.add(paths.exr), image, pixels);
-  if (!paths.png.empty()) {
-    writePng(
-        files.add(paths.png), image.width, image.height,
-        toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), exposureOf(image, exposure)));
-  }
+  if (pixels == ExrPixelType::Half) summary.add("beyond_half", overflow);
   if (overflow > 0) {
     printWarnings("vpl-render",
                   {std::to_string(overflow) + " values exceed half precision; use --pixels float"});
   }
+  if (paths.png.empty()) return;
+  const float ev = exposureOf(image, options.text("exposure"));
+  writePng(files.add(paths.png), image.width, image.height,
+           toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
+  char line[64];
+  std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: ", double{ev});
+  summary.add("exposure_ev", ev, line + paths.png.string());
 }
 
 void reportRender(const RenderResult& result, const Values& options, Summary& summary) {
@@ -73,7 +81,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
                   result.vpls, stats.cut, stats.shadowRays);
     summary.add("vpls", result.vpls, only == "direct" ? "" : line);
     summary.add("mean_cut", stats.cut);
-    summary.add("shadow_rays_per_sample", stats.shadowRays);
+    summary.add("mean_shadow_rays", stats.shadowRays);
   }
   summary.addNonFinite(stats.nonFinite, "samples");
 }

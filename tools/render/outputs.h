@@ -11,9 +11,10 @@ struct ImagePaths {
   fs::path exr, png;  // png empty: none
 };
 
-// The image, and its preview at `exposure` ("auto" or stops).
-void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, ExrPixelType pixels,
-               const std::string& exposure);
+// The image, and its preview at --exposure; with what the summary says of them.
+void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
+               Summary& summary);
+ExrPixelType pixelTypeOf(const Values& options);
 
 void reportRender(const RenderResult& result, const Values& options, Summary& summary);
 

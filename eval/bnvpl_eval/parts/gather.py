@@ -1,33 +1,53 @@
-"""Tile cuts and Lightcuts against all VPLs: the same lit files, error and time."""
+"""Every gather that vpl-render lists, on the same lit files: at equal VPLs and samples, and at equal time.
 
-from .. import images, statistics
+At equal time each gather takes as many samples a pixel as the time of the slowest allows it, so that its noise
+and the pixels' own are weighed against its error. Near-field rays are off: they cost the same for all.
+"""
+
+from .. import images, pipeline, statistics
 from ..context import Context
 from ..tables import column, table
 
 COLUMNS = [column("label", "gather"), column("mean_ratio"), column("rmse_over_mean"), column("relmse"),
            column("cut_rmse", "difference to all / mean", better="low"),
-           column("render_cpu_s", "render", "CPU s", "low")]
+           column("shadow_rays", "shadow rays a sample", better="low"),
+           column("render_cpu_s", "render", "CPU s", "low"),
+           column("equal_spp", "at equal time", "spp"), column("equal_relmse", "its relMSE", better="low")]
+MOST_SPP = 256  # of the fastest, in the time of the slowest
 
 
 def run(context: Context) -> None:
     rows = []
+    gathers = pipeline.methods_of(context.runner, "vpl-render", "gather")
     for view in context.views("main"):
         context.say(f"gather: {view.name}")
         seeds = context.seeds(view)
         made = {}
-        for gather in ("tilecuts", "lightcuts", "all"):
-            c = context.configuration(view, "local").but(render=("--gather", gather))
-            made[gather] = context.judge("gather", view, c, seeds, label=gather)
-        # The same samples and VPLs, so that only the cut differs.
+        for gather in gathers:
+            made[gather] = context.judge("gather", view, configuration(context, view, gather), seeds, label=gather)
+            made[gather]["shadow_rays"] = pipeline.shadow_rays(context.runner, view,
+                                                               configuration(context, view, gather), seeds[0])
+        # The same samples and VPLs, so that only the gather differs.
         every = [images.read(file, "indirect") for file in made["all"]["images"]]
         mean = sum(b.mean() for b in every) / len(every)
         for gather, row in made.items():
             cut = [images.read(file, "indirect") for file in row["images"]]
             difference = sum(((a - b)**2).mean() for a, b in zip(cut, every)) / len(cut)
             row["cut_rmse"] = statistics.root(difference) / float(mean)
+        slowest = max(row["render_cpu_s"] for row in made.values())
+        for gather, row in made.items():
+            spp = max(1, min(MOST_SPP, round(row["spp"] * slowest / row["render_cpu_s"])))
+            c = configuration(context, view, gather).but(spp=spp)
+            equal = context.judge("gather-equal-time", view, c, seeds, label=gather)
+            row |= {"equal_spp": spp, "equal_relmse": equal["relmse"]}
         title = f"{view.scene.title}, {made['all']['vpls']} VPLs"
         rows += [{"group": title, **row} for row in made.values()]
     context.tables.append(table(
-        "gather", "Cuts against all VPLs",
-        f"The same VPLs and rays, {context.size['seeds']} seeds; the cut's own error is its difference to all VPLs.",
+        "gather", "Gathers against all VPLs, at equal VPLs and at equal time",
+        f"The same VPLs and rays, {context.size['seeds']} seeds, --compensate none; a gather's own error is its "
+        f"difference to all VPLs. At equal time: samples a pixel in the CPU time of the slowest, at most {MOST_SPP}.",
         COLUMNS, rows))
+
+
+def configuration(context: Context, view, gather: str):
+    return context.configuration(view, "local").but(render=("--gather", gather, "--compensate", "none"))

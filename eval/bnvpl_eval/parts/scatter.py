@@ -23,10 +23,10 @@ def run(context: Context) -> None:
             rows.append({"group": view.scene.title, **row})
     for scatter in ("guarded", "even"):
         rows.append({"group": "Two closed rooms, seen in the dark one: the right answer is 0",
-                     "label": f"--scatter {scatter}", "mean_ratio": None, **dark_room(context, scatter)})
+                     "label": f"--method {scatter}", "mean_ratio": None, **dark_room(context, scatter)})
     context.tables.append(table(
         "scatter", "The thesis' scatter against the guarded one",
-        "'ours, but the thesis' scatter' changes --scatter alone; the thesis to the letter also spreads VPLs "
+        "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter also spreads VPLs "
         f"uniformly, does not recentre and has no near-field rays. {context.size['seeds']} seeds.",
         COLUMNS, rows))
 
@@ -35,7 +35,7 @@ def dark_room(context: Context, scatter: str) -> dict:
     run, scene = context.runner.run, {"scene": ROOMS}
     placed = run("vpl-place", ["{scene}", "-n", 20000, "-o", "@c.vpl", "--quiet"], scene, ["c.vpl"])
     kept = run("vpl-eliminate", ["{c}", "-n", 500, "-o", "@v.vpl", "--quiet"], {"c": placed["c.vpl"]}, ["v.vpl"])
-    lit = run("vpl-estimate", ["{scene}", "{v}", "--photons", "1M", "--scatter", scatter, "-o", "@lit.vpl",
+    lit = run("vpl-estimate", ["{scene}", "{v}", "--photons", "1M", "--method", scatter, "-o", "@lit.vpl",
                                "--quiet"], {**scene, "v": kept["v.vpl"]}, ["lit.vpl"])
     image = run("vpl-render", ["{scene}", "{lit}", "--size", "80x60", "--spp", 8, "-o", "@image.exr",
                                "--stats", "@stats.json", "--quiet"],

@@ -89,8 +89,8 @@ void traceCameraPaths(const RayScene& rays, unsigned depth, uint64_t begin, uint
 PlaceResult make(const PlaceInputs& in, const Values& options) {
   const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceCamera);
   const auto depth = static_cast<unsigned>(options.whole("depth"));
-  PlaceResult result = collectRows(in.rays.scene().name(), options.whole("count"), in.progress,
-                                   [&](uint64_t begin, PathRows& chunk) {
+  PlaceResult result = collectRows(in.rays.scene().name(), options.whole("count"), LastPath::Cut,
+                                   in.progress, [&](uint64_t begin, PathRows& chunk) {
                                      traceCameraPaths(in.rays, depth, begin, key, chunk);
                                    });
   result.table.stage = VplStage::Candidates;

@@ -38,7 +38,7 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
   const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceLight);
   const auto depth = static_cast<unsigned>(options.whole("light-depth"));
   PlaceResult result =
-      collectRows(in.rays.scene().name(), options.whole("count"), in.progress,
+      collectRows(in.rays.scene().name(), options.whole("count"), LastPath::Whole, in.progress,
                   [&](uint64_t begin, PathRows& chunk) {
                     for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
                       tracePhotonPath(in.rays, in.lights, depth, path, key, chunk);

@@ -1,0 +1,127 @@
+// Options that would have no effect, numbers that are none, and what records say.
+#include <nlohmann/json.hpp>
+
+#include "formats/checkpoint.h"
+#include "formats/exr_io.h"
+#include "formats/vpl_io.h"
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+using Effect = PipelineTest;
+using Json = nlohmann::json;
+
+Json lastRecord(const std::string& provenance) { return Json::parse(provenance).back(); }
+
+TEST_F(Effect, OptionsWithoutEffectAreRefused) {
+  makeStages(scene_);
+  const std::string lit = scene_ + " " + path("lit.vpl") + " --spp 1 -o " + path("i.exr");
+  const std::string paths = scene_ + " --spp 1 --integrator path -o " + path("i.exr");
+  fail("vpl-render", paths + " --clamp 5", kExitUsage, {"--clamp", "--integrator path", "vpl"});
+  fail("vpl-render", paths + " --gather all", kExitUsage, {"--gather", "--integrator vpl"});
+  fail("vpl-render", lit + " --max-bounces 3", kExitUsage,
+       {"--max-bounces", "--integrator light or path"});
+  fail("vpl-render", lit + " --exposure 2", kExitUsage, {"--exposure", "--png"});
+  fail("vpl-render", lit + " --gather all --error 0.1", kExitUsage,
+       {"--error", "--gather all", "tilecuts"});
+  const std::string keep = path("candidates.vpl") + " -n 5 -o " + path("v.vpl");
+  fail("vpl-eliminate", keep + " --density uniform --uniform-share 0.5", kExitUsage,
+       {"--uniform-share", "--density uniform", "--density local"});
+  fail("vpl-eliminate", keep + " --seed 3", kExitUsage, {"--seed", "--method", "random"});
+  fail("vpl-eliminate", keep + " --scene " + scene_, kExitUsage, {"--scene", "elimination"});
+  fail("vpl-eliminate", keep + " --method rejection", kExitUsage, {"rejection", "--scene SCENE"});
+  fail("vpl-place", scene_ + " -n 5 -o " + path("c.vpl") + " --light-depth 3", kExitUsage,
+       {"--light-depth", "--method light"});
+  EXPECT_FALSE(fs::exists(at("i.exr")) || fs::exists(at("v.vpl")) || fs::exists(at("c.vpl")));
+}
+
+TEST_F(Effect, NumbersAreWhatTheySay) {
+  for (const char* seed : {"-1", "18446744073709551616", "''", "0x10", "1e3", "1.5"}) {
+    fail("vpl-place", scene_ + " -n 5 -o " + path("c.vpl") + " --seed " + seed, kExitUsage,
+         {"--seed"});
+  }
+  succeed("vpl-place", scene_ + " -n 5 --seed 010 -o " + path("a.vpl"));
+  succeed("vpl-place", scene_ + " -n 5 --seed 10 -o " + path("b.vpl"));
+  EXPECT_EQ(readAll(at("a.vpl")), readAll(at("b.vpl")));
+  fail("vpl-estimate", scene_ + " v.vpl -o l.vpl --photons 3x", kExitUsage, {"--photons", "3x"});
+}
+
+// Rays of the near field serve specular paths as well: two images, two histories.
+TEST_F(Effect, TheRecordHoldsEverythingThatCounts) {
+  makeStages(scene_);
+  const std::string render = scene_ + " " + path("lit.vpl") + " --spp 1 --compensate none -o ";
+  succeed("vpl-render", render + path("few.exr") + " --near-field-rays 2");
+  const Image few = readExr(at("few.exr"));
+  const Json record = lastRecord(few.attributes.at("bnvpl.provenance"));
+  EXPECT_EQ(record["options"]["near-field-rays"], 2);
+  EXPECT_EQ(record["options"]["compensate"], "none");
+  EXPECT_TRUE(record["view"].contains("hash"));
+
+  const Json placed = lastRecord(readVpl(at("candidates.vpl")).provenance);
+  EXPECT_EQ(placed["view"]["size"], "64x48");
+  // Version and a hash of the sources.
+  const std::string version = placed["version"];
+  EXPECT_TRUE(version.starts_with(BNVPL_VERSION "+")) << version;
+  EXPECT_EQ(version.size(), std::string(BNVPL_VERSION "+").size() + 12);
+}
+
+// What another build of the tools has begun is not gone on with, nor that of another view.
+TEST_F(Effect, ACheckpointOfAnotherBuildIsRefused) {
+  makeStages(scene_);
+  const std::string command = scene_ + " " + path("vpls.vpl") + " -o " + path("again.vpl") +
+                              " --photons 2M --threads 1 --checkpoint " + path("c.checkpoint");
+  shell("timeout -s INT 0.5 " BNVPL_BIN_FROM_SOURCE "/vpl-estimate " + command +
+        " --checkpoint-every 0");
+  if (!fs::exists(at("c.checkpoint"))) GTEST_SKIP() << "done before it was stopped";
+  CheckpointFile file = readCheckpoint(at("c.checkpoint"));
+  Json run = Json::parse(file.run);
+  run["version"] = BNVPL_VERSION "+0123456789ab";
+  file.run = run.dump();
+  writeCheckpoint(at("c.checkpoint"), file);
+  fail("vpl-estimate", command, kExitInput, {"c.checkpoint", "another run", "0123456789ab"});
+  EXPECT_TRUE(fs::exists(at("c.checkpoint")));
+}
+
+TEST_F(Effect, MeansOfWhatIsNotShownAreNotPrinted) {
+  makeStages(scene_);
+  const std::string render = scene_ + " " + path("lit.vpl") + " --spp 1 -o " + path("i.exr");
+  const std::string indirect = tool("vpl-render", render + " --only indirect").out;
+  EXPECT_TRUE(contains(indirect, "mean indirect")) << indirect;
+  EXPECT_FALSE(contains(indirect, "mean direct")) << indirect;
+  const std::string direct = tool("vpl-render", render + " --only direct").out;
+  EXPECT_TRUE(contains(direct, "mean direct")) << direct;
+  EXPECT_FALSE(contains(direct, "indirect")) << direct;
+}
+
+// A scene's warnings are said once: by the stage that meets it first.
+TEST_F(Effect, WarningsOfTheSceneAreSaidOnce) {
+  const std::string odd = "scenes/test/quirks.toml";
+  const auto warned = [&](const std::string& name, const std::string& arguments) {
+    const Outcome r = tool(name, arguments);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    return contains(r.err, "warning: scenes/test");
+  };
+  EXPECT_TRUE(warned("vpl-place", odd + " -n 300 -o " + path("c.vpl")));
+  EXPECT_FALSE(warned("vpl-eliminate", path("c.vpl") + " -n 20 -o " + path("v.vpl")));
+  EXPECT_FALSE(
+      warned("vpl-estimate", odd + " " + path("v.vpl") + " --photons 20k -o " + path("l.vpl")));
+  EXPECT_FALSE(warned("vpl-render",
+                      odd + " " + path("l.vpl") + " --spp 1 --size 16x12 -o " + path("i.exr")));
+  EXPECT_TRUE(
+      warned("vpl-render", odd + " --integrator path --spp 1 --size 16x12 -o " + path("p.exr")));
+}
+
+TEST_F(Effect, VplsWithoutPhotonsAreAWarningWithItsCure) {
+  const std::string scene = "scenes/u-shape/scene.toml";
+  succeed("vpl-place", scene + " -n 4k -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 1k -o " + path("v.vpl"));
+  const Outcome few = tool("vpl-estimate", scene + " " + path("v.vpl") + " --photons 200 -o " +
+                                               path("l.vpl") + " --quiet");
+  EXPECT_EQ(few.code, kExitOk);
+  EXPECT_TRUE(contains(few.err, "% of the VPLs got no photon")) << few.err;
+  EXPECT_TRUE(contains(few.err, "raise --photons")) << few.err;
+}
+
+}  // namespace
+}  // namespace bnvpl
