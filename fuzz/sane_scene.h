@@ -71,7 +71,8 @@ inline void requireSaneMeshes(const Scene& s) {
 inline void requireSane(const Scene& s) {
   requireSaneMeshes(s);
   require(!s.triangles.empty(), "a scene has a triangle");
-  require(s.film.width > 0 && s.film.height > 0 && s.film.width <= 65536 && s.film.height <= 65536,
+  require(s.film.width > 0 && s.film.height > 0 && s.film.width <= kMaxFilmSide &&
+              s.film.height <= kMaxFilmSide,
           "the film has a size");
   const Camera& c = s.camera;
   require(isFinite(c.position) && isUnit(c.forward) && isUnit(c.right) && isUnit(c.up) &&

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "scene/load_scene.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/estimate/estimate.h"
 #include "tools/place/place.h"

@@ -10,7 +10,7 @@ void addSceneOptions(CLI::App& cli, SceneOptions& options) {
       ->allow_extra_args(false);  // or it would swallow what follows
 }
 
-Scene loadSceneFor(const std::string& tool, const SceneOptions& options) {
+Scene loadSceneFor(const std::string& tool, const SceneOptions& options, bool needsLight) {
   Defines defines;
   for (const std::string& d : options.defines) {
     const size_t equals = d.find('=');
@@ -20,6 +20,7 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options) {
     defines[d.substr(0, equals)] = d.substr(equals + 1);
   }
   Scene scene = loadScene(options.file, defines);
+  if (needsLight) scene.requireLight();
   printWarnings(tool, scene.warnings);
   return scene;
 }

@@ -84,7 +84,7 @@ int runEstimate(const SceneOptions& sceneOptions, const fs::path& input, const f
   requireWritable({output, tool.stats, tool.depfile});
   requireMemoryFor(input, kBytesPerVpl, "keep fewer with vpl-eliminate -n");
   VplTable vpls = readVpl(input, VplStage::Eliminated);
-  const Scene scene = loadSceneFor("vpl-estimate", sceneOptions);
+  const Scene scene = loadSceneFor("vpl-estimate", sceneOptions, /*needsLight=*/true);
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);

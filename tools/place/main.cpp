@@ -32,7 +32,7 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Pla
   }
   requireMemory(kBytesPerRow * double(options.count), std::to_string(options.count) + " VPLs",
                 "ask for fewer with -n");
-  const Scene scene = loadSceneFor("vpl-place", sceneOptions);
+  const Scene scene = loadSceneFor("vpl-place", sceneOptions, options.method == PlaceMethod::Light);
   const RayScene rays(scene);
 
   ProgressMeter meter("VPLs", options.count, tool.quiet);
