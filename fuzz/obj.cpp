@@ -1,8 +1,8 @@
-// OBJ and MTL: what ObjLoader accepts are triangles, materials and textures that can be used.
+// OBJ and MTL: what loadObj accepts are triangles, materials and textures that can be used.
 //
-// The input is an OBJ; from a line "# MTL" on it is m.mtl, which the OBJ can name. t.tga lies
-// beside them. It is loaded as a scene names it: plain, and mirrored with m.mtl in place of its
-// libraries. Reading it in small pieces must bring the same.
+// The input is an OBJ; from a line "# MTL" on it is m.mtl and "my m.mtl", which the OBJ can name.
+// t.tga lies beside them. It is loaded as a scene names it: plain, and mirrored with m.mtl in place
+// of its libraries. Reading it in small pieces must bring the same.
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
 #include "scene/read/obj/load_obj.h"
@@ -22,9 +22,9 @@ InputFolder makeFolder() {
 void load(const fs::path& obj, const fs::path& materials, const Affine& transform) {
   Scene scene;
   const auto read = [&] {
-    ObjLoader loader(scene);
-    loader.load(obj, materials, transform);
-    loader.finish();
+    SceneBuilder builder("fuzz");
+    loadObj(obj, materials, transform, builder);
+    scene = builder.finish();
   };
   if (accepted(read)) requireSaneMeshes(scene);
 }
@@ -56,6 +56,7 @@ void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
           "pieces have the vertices of the whole");
   require(cornersAndMaterials(whole) == cornersAndMaterials(pieces),
           "pieces have the faces of the whole");
+  require(whole.unknown == pieces.unknown, "pieces ask for the materials of the whole");
 }
 
 }  // namespace
@@ -68,6 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const size_t split = std::min(input.find(kMtl), input.size());
   const fs::path obj = folder.write("m.obj", input.substr(0, split));
   const fs::path mtl = folder.write("m.mtl", input.substr(split));
+  folder.write("my m.mtl", input.substr(split));
   requireSameInPieces(obj, {});
   requireSameInPieces(obj, mtl);
   load(obj, {}, {});

@@ -4,6 +4,7 @@
 
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
+#include "scene/load_scene.h"
 
 namespace bnvpl {
 namespace {

@@ -1,10 +1,10 @@
-// The scene as plain arrays: what scene.toml, OBJ, MTL and textures say, ready for ray tracing.
+// What a scene is: plain arrays, ready for ray tracing. load_scene.h reads one from files,
+// scene_builder.h makes one in memory.
 // Lengths are the scene's own unit (called m below), angles radians in memory, colours linear sRGB.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -35,7 +35,7 @@ struct Triangle {
 };
 static_assert(sizeof(Triangle) == 40);
 
-// As read from the MTL; docs/scene-format.md says how each field is read.
+// docs/scene-format.md says how the fields of an MTL are read.
 struct Material {
   std::string name;
   Vec3 diffuse;                // Kd
@@ -54,7 +54,7 @@ struct Material {
 
 enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 
-// A light of scene.toml. Emissive triangles are lights too; LightSet gathers both.
+// A light that is no surface. Emissive triangles are lights too; LightSet gathers both.
 struct LightSpec {
   LightType type = LightType::Point;
   Vec3 position;             // point, spot
@@ -67,6 +67,10 @@ struct LightSpec {
   float rotateRad = 0.0f;         // environment: about +y
   float scale = 1.0f;             // environment
 };
+
+// Of a scene, problem and cure.
+inline constexpr const char* kNoLight =
+    "has no light with power: its images are black; add a [[light]] or an emissive material (Ke)";
 
 struct Scene {
   Film film;
@@ -91,6 +95,11 @@ struct Scene {
   std::vector<fs::path> files;  // everything that was read, for depfiles
   std::vector<std::string> warnings;  // each names what was ignored or repaired
 
+  // Whether anything shines: a light that is not black, or a triangle whose material emits.
+  bool hasLight() const;
+  // Throws InputError, naming the scene, when nothing does.
+  void requireLight() const;
+
   std::string name() const {  // for messages
     return files.empty() ? "the scene" : files.front().string();
   }
@@ -98,12 +107,5 @@ struct Scene {
     return positions[triangles[triangle].position[i]];
   }
 };
-
-// Values for ${NAME} in file names of a scene.toml; environment variables are asked second.
-using Defines = std::map<std::string, std::string>;
-
-// Reads scene.toml and everything that it names. Throws InputError with file, line, problem and
-// cure.
-Scene loadScene(const fs::path& path, const Defines& defines = {});
 
 }  // namespace bnvpl

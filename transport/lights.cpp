@@ -122,9 +122,8 @@ Vec3 LightSet::totalPower() const {
 }
 
 void LightSet::requirePower() const {
-  if (mean(totalPower()) > 0.0f) return;
-  throw InputError(scene_.name() +
-                   ": has no light with power; add a [[light]] or an emissive material (Ke)");
+  if (hasPower()) return;
+  throw InputError(scene_.name() + ": " + kNoLight);
 }
 
 std::string LightSet::name(size_t light) const {

@@ -59,7 +59,10 @@ class LightSet {
 
   PhotonStart emit(size_t light, Rng& rng) const;
 
-  // Throws InputError, naming the scene, when no light has power.
+  // Whether any light has power. Scene::hasLight() asks the files alone: a sun along a flat scene,
+  // or a lamp too weak for floats, shines there and has no power here.
+  bool hasPower() const { return mean(totalPower()) > 0.0f; }
+  // Throws InputError, naming the scene, when none has.
   void requirePower() const;
 
  private:

@@ -1,5 +1,5 @@
 // The executable itself: exit codes, files, what it prints.
-#include "scene/scene.h"
+#include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
 

@@ -1,5 +1,6 @@
 #include "tools/inspect/plot.h"
 
+#include "scene/load_scene.h"
 #include "tests/inspect/tiny_scene.h"
 #include "transport/camera.h"
 

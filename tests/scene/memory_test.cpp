@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "scene/load_scene.h"
 #include "transport/lights.h"
 
 namespace bnvpl {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/load_scene.h"
 
 namespace bnvpl {
 

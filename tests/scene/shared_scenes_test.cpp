@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "scene/load_scene.h"
 #include "transport/lights.h"
 
 namespace bnvpl {

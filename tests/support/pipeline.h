@@ -1,7 +1,7 @@
 // The stages in one process, for tests of what they compute together.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/load_scene.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/estimate/estimate.h"
 #include "tools/place/place.h"

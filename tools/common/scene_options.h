@@ -2,7 +2,7 @@
 // hashes.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/load_scene.h"
 #include "tools/common/run_tool.h"
 
 namespace bnvpl {

@@ -32,6 +32,7 @@ int runEstimate(const Paths& paths, const Given& given, const ToolOptions& tool)
                    "keep fewer with vpl-eliminate -n, or lower --threads");
   const VplTable vpls = readVpl(paths.input, VplStage::Eliminated);
   const Scene scene = loadSceneFor("vpl-estimate", paths.scene, Warnings::Silent);
+  scene.requireLight();
   used.ready(scene.files);
   requireSameScene(paths.input, vpls.sceneHash, scene,
                    "rerun vpl-place and vpl-eliminate on this scene");

@@ -1,12 +1,11 @@
 #include "scene/read/obj/obj_lines.h"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
-#include <span>
 #include <string_view>
 
 #include "core/parallel.h"
+#include "scene/read/obj/obj_text.h"
 
 namespace bnvpl {
 namespace {
@@ -23,8 +22,6 @@ size_t lineEnd(std::string_view text, size_t at) {
       std::find_if(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), ends) -
       text.begin());
 }
-
-bool isBlank(char c) { return c == ' ' || c == '\t'; }
 
 // At most: the words after "f".
 size_t cornersOf(std::string_view face) {
@@ -59,17 +56,11 @@ struct Stretch {
   bool facesBeforeNames = false;
   std::optional<std::string_view> material;  // named last
   bool materialUsed = false;
-  std::string libraries;
+  std::vector<std::string_view> libraries;
   bool alone = true;          // its faces need nothing from other stretches
   size_t endlessFace = kNot;  // line, from its first on
   static constexpr size_t kNot = ~size_t{0};
 };
-
-// The word after the line's first.
-std::string_view secondWord(std::string_view rest) {
-  const size_t begin = std::min(rest.find_first_not_of(" \t"), rest.size());
-  return rest.substr(begin, rest.find_first_of(" \t", begin) - begin);
-}
 
 void noteFace(std::string_view rest, Stretch& s) {
   const size_t corners = cornersOf(rest);
@@ -95,11 +86,11 @@ void noteVertex(std::string_view rest, Stretch& s) {
   ++s.vertices;
 }
 
-// Takes note of a line; false: a mesh does not need it. A keyword alone is nothing to tinyobj
+// Takes note of a line; false: tinyobj does not need it. A keyword alone is nothing to tinyobj
 // either, but for usemtl.
 bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
   if (keyword == "usemtl") {
-    s.material = secondWord(rest);
+    s.material = trimmed(rest);
     s.materialUsed = false;
     return true;
   }
@@ -113,8 +104,8 @@ bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
   } else if (keyword == "vt") {
     ++s.coordinates;
   } else if (keyword == "mtllib") {
-    s.alone = s.alone && s.triangles == 0 && !s.material;
-    s.libraries.append(keyword).append(rest) += '\n';
+    if (!trimmed(rest).empty()) s.libraries.push_back(trimmed(rest));
+    return false;
   } else {
     return keyword == "g" || keyword == "o";
   }
@@ -130,8 +121,13 @@ void scan(std::string& text, Stretch& s) {
     const std::string_view line = all.substr(at, end - at);
     const size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
     const size_t length = std::min(line.find_first_of(" \t", begin), line.size()) - begin;
-    if (length > 0 && !note(line.substr(begin, length), line.substr(begin + length), s))
-      text[at + begin] = '#';
+    const std::string_view keyword = line.substr(begin, length), rest = line.substr(begin + length);
+    if (keyword == "usemtl") {
+      const std::string_view name = trimmed(rest);
+      char* first = text.data() + (name.data() - text.data());
+      makeOneWord(first, first + name.size());
+    }
+    if (length > 0 && !note(keyword, rest, s)) text[at + begin] = '#';
     s.newlines += end < s.end && all[end] == '\n';
     at = end + 1;
   }
@@ -150,25 +146,16 @@ std::vector<Stretch> stretchesOf(std::string_view text, size_t bytes) {
   return out;
 }
 
-// Whether the stretches can be read one without the other.
-bool independent(std::span<const Stretch> stretches) {
-  bool begun = false;  // whether a face or a material came before
-  for (const Stretch& s : stretches) {
-    if (!s.alone || (begun && !s.libraries.empty())) return false;
-    begun = begun || s.triangles > 0 || s.material.has_value();
-  }
-  return true;
-}
-
 }  // namespace
 
 MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
   MeshLines out;
-  out.text = std::move(text);
+  out.text = logicalLines(std::move(text));
   std::vector<Stretch> stretches = stretchesOf(out.text, pieceBytes);
   parallelFor(stretches.size(), 1, [&](size_t i) { scan(out.text, stretches[i]); });
 
-  const bool many = independent(stretches);
+  const bool many =
+      std::all_of(stretches.begin(), stretches.end(), [](const Stretch& s) { return s.alone; });
   if (!many) out.pieces.push_back({0, out.text.size(), {}});
   std::set<std::string_view> materials;
   std::optional<std::string_view> material;
@@ -185,23 +172,18 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
     out.normals += s.normals;
     out.coordinates += s.coordinates;
     out.triangles += s.triangles;
-    out.libraries += s.libraries;
+    out.libraries.insert(out.libraries.end(), s.libraries.begin(), s.libraries.end());
     materials.insert(s.materials.begin(), s.materials.end());
-    if (material && s.facesBeforeNames) materials.insert(*material);
+    if (s.facesBeforeNames) materials.insert(material.value_or(""));
     if (many) {
       out.pieces.push_back({s.begin, s.end, {}});
       if (material) out.pieces.back().material = std::string(*material);
     }
     if (s.material) material = s.material;
   }
-  out.materials.assign(materials.begin(), materials.end());
+  for (const std::string_view word : materials) out.materials.push_back(fromOneWord(word));
+  std::sort(out.materials.begin(), out.materials.end());
   return out;
-}
-
-std::string firstLine(std::string text) {
-  text.resize(std::min(text.size(), text.find('\n')));
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  return text;
 }
 
 }  // namespace bnvpl

@@ -11,20 +11,21 @@ namespace bnvpl {
 
 // The lines of an OBJ that a triangle mesh needs, and how much they will come to.
 struct MeshLines {
-  std::string text;  // line by line as in the file, the others commented out
+  // Logical lines with the numbers of the file. Those that a mesh does not need are commented out,
+  // mtllib too; the name behind a usemtl is one word.
+  std::string text;
   size_t vertices = 0, normals = 0, coordinates = 0;
   size_t triangles = 0;
   // The vertices, by number, that are not given by numbers: tinyobj reads a word such as nan as 0.
   std::vector<size_t> verticesOfWords;
-  std::vector<std::string> materials;  // that faces ask for: sorted, each once
-  std::string libraries;               // lines that name libraries
+  std::vector<std::string> materials;  // that faces ask for, "" for none: sorted, each once
+  std::vector<std::string> libraries;  // what follows each mtllib
 
-  // Lines that can be read on their own, after those that name libraries. All in one where that
-  // cannot be: negative numbers count back from where they stand, polygons are cut by the corners'
-  // positions, and a library holds from its line on.
+  // Lines that can be read on their own. All in one where that cannot be: negative numbers count
+  // back from where they stand, and polygons are cut by the corners' positions.
   struct Piece {
     size_t begin, end;                    // in `text`
-    std::optional<std::string> material;  // in use at its begin, if any was named before
+    std::optional<std::string> material;  // in use at its begin, as one word; none before any
   };
   std::vector<Piece> pieces;
 };
@@ -35,8 +36,5 @@ struct MeshLines {
 // tests.
 inline constexpr size_t kObjPiece = size_t{1} << 20;
 MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes = kObjPiece);
-
-// Without white space at its end.
-std::string firstLine(std::string text);
 
 }  // namespace bnvpl

@@ -1,126 +1,106 @@
-#define TINYOBJLOADER_IMPLEMENTATION  // of scene/tinyobj.h, here alone
+#define TINYOBJLOADER_IMPLEMENTATION  // of tinyobj.h, here alone
 #include "scene/read/obj/read_obj.h"
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <istream>
 #include <iterator>
-#include <map>
-#include <sstream>
+#include <streambuf>
+#include <utility>
 
-#include "core/files.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/read_file.h"
 #include "scene/affine.h"
-#include "scene/read/obj/obj_lines.h"
-#include "scene/read/read_file.h"
+#include "scene/read/obj/obj_text.h"
 #include "scene/scene.h"
 
 namespace bnvpl {
 
 namespace {
 
-// Reads the libraries that an OBJ names, or one override instead, and notes which files were read.
-class LibraryReader : public tinyobj::MaterialReader {
+// Two texts one after the other, read where they are. Borrows both.
+class JoinedTexts : public std::streambuf {
  public:
-  using OnMaterial = std::function<void(const fs::path& library, const tinyobj::material_t&)>;
-  LibraryReader(fs::path folder, fs::path override, OnMaterial onMaterial)
-      : folder_(std::move(folder)),
-        override_(std::move(override)),
-        onMaterial_(std::move(onMaterial)) {}
+  JoinedTexts(std::string_view first, std::string_view second) : second_(second) { point(first); }
 
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* byName, std::string* warn,
-                  std::string* err) override {
-    std::string path = name;
-    std::replace(path.begin(), path.end(), '\\', '/');
-    const fs::path file = override_.empty() ? (folder_ / path).lexically_normal() : override_;
-    // Once: an OBJ can name one library in many ways, as often as it has lines.
-    if (std::find(files.begin(), files.end(), file) != files.end()) return true;
-    if (!isRegularFile(file) || !std::ifstream(file)) {
-      missing.insert(file);
-      return false;
-    }
-    files.push_back(file);
-    std::istringstream in(readText(file));
-    tinyobj::LoadMtl(byName, materials, &in, warn, err);
-    for (size_t i = libraryOf.size(); i < materials->size(); ++i) {
-      const tinyobj::material_t& m = (*materials)[i];
-      const auto named = byName->find(m.name);  // the first of a name
-      if (named != byName->end() && static_cast<size_t>(named->second) == i) onMaterial_(file, m);
-    }
-    libraryOf.resize(materials->size(), file);
-    numbers = *byName;
-    return true;
+ protected:
+  int_type underflow() override {
+    if (gptr() == egptr()) point(std::exchange(second_, {}));
+    return gptr() == egptr() ? traits_type::eof() : traits_type::to_int_type(*gptr());
   }
-  std::vector<fs::path> files, libraryOf;  // libraryOf: of each material
-  std::set<fs::path> missing;
-  std::map<std::string, int> numbers;  // of the materials, by name
 
  private:
-  fs::path folder_, override_;
-  OnMaterial onMaterial_;
+  void point(std::string_view text) {
+    char* begin = const_cast<char*>(text.data());  // nobody puts a character back
+    setg(begin, begin, begin + text.size());
+  }
+  std::string_view second_;
 };
 
-// For what follows after all libraries have been read.
+// Tells tinyobj the materials of all libraries at once.
 class KnownMaterials : public tinyobj::MaterialReader {
  public:
   explicit KnownMaterials(const std::map<std::string, int>& numbers) : numbers_(numbers) {}
   bool operator()(const std::string&, std::vector<tinyobj::material_t>*,
                   std::map<std::string, int>* byName, std::string*, std::string*) override {
-    if (byName->empty()) *byName = numbers_;  // once, however many lines name a library
+    *byName = numbers_;
     return true;
   }
 
  private:
   const std::map<std::string, int>& numbers_;
 };
+constexpr const char* kAskForMaterials = "mtllib all\n";
 
-struct Reading {
-  ObjReading obj;
+struct Parsed {
+  tinyobj::attrib_t attrib;
+  std::vector<tinyobj::shape_t> shapes;
   std::string problem;  // empty: none
 };
 
-Reading read(std::string text, tinyobj::MaterialReader& reader) {
-  Reading out;
-  std::istringstream in(std::move(text));
+Parsed parse(const std::string& before, std::string_view text,
+             const std::map<std::string, int>& materials) {
+  Parsed out;
+  JoinedTexts texts(before, text);
+  std::istream in(&texts);
+  KnownMaterials known(materials);
+  std::vector<tinyobj::material_t> none;
   std::string warnings, errors;
-  const bool ok = tinyobj::LoadObj(&out.obj.attrib, &out.obj.shapes, &out.obj.materials, &warnings,
-                                   &errors, &in, &reader, /*triangulate=*/true,
-                                   /*default_vcols_fallback=*/false);
+  const bool ok = tinyobj::LoadObj(&out.attrib, &out.shapes, &none, &warnings, &errors, &in, &known,
+                                   /*triangulate=*/true, /*default_vcols_fallback=*/false);
   if (!ok || !errors.empty()) out.problem = firstLine(errors.empty() ? warnings : errors);
   return out;
 }
 
-// tinyobj asks for libraries only where the OBJ names one; with an override there is always one.
-constexpr const char* kAskForLibrary = "mtllib override\n";
+Parsed parsePiece(const MeshLines& lines, const MeshLines::Piece& piece,
+                  const std::map<std::string, int>& materials) {
+  std::string before = kAskForMaterials;
+  if (piece.material) before.append("usemtl ").append(*piece.material) += '\n';
+  return parse(before, std::string_view(lines.text).substr(piece.begin, piece.end - piece.begin),
+               materials);
+}
 
 // The pieces side by side, joined in their order.
-Reading readPieces(const MeshLines& lines, bool overridden, LibraryReader& libraries) {
-  Reading out = read(overridden ? kAskForLibrary : lines.libraries, libraries);
-  std::vector<Reading> pieces(lines.pieces.size());
-  parallelFor(pieces.size(), 1, [&](size_t i) {
-    const MeshLines::Piece& piece = lines.pieces[i];
-    std::string text = kAskForLibrary;
-    if (piece.material) text.append("usemtl ").append(*piece.material) += '\n';
-    text.append(lines.text, piece.begin, piece.end - piece.begin);
-    KnownMaterials known(libraries.numbers);
-    pieces[i] = read(std::move(text), known);
-  });
-  tinyobj::attrib_t& attrib = out.obj.attrib;
-  attrib.vertices.reserve(3 * lines.vertices);
-  attrib.normals.reserve(3 * lines.normals);
-  attrib.texcoords.reserve(2 * lines.coordinates);
+Parsed parsePieces(const MeshLines& lines, const std::map<std::string, int>& materials) {
+  if (lines.pieces.size() == 1) return parsePiece(lines, lines.pieces.front(), materials);
+  std::vector<Parsed> pieces(lines.pieces.size());
+  parallelFor(pieces.size(), 1,
+              [&](size_t i) { pieces[i] = parsePiece(lines, lines.pieces[i], materials); });
+  Parsed out;
+  out.attrib.vertices.reserve(3 * lines.vertices);
+  out.attrib.normals.reserve(3 * lines.normals);
+  out.attrib.texcoords.reserve(2 * lines.coordinates);
   const auto move = [](auto& from, auto& to) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
     from = {};
   };
-  for (Reading& piece : pieces) {
+  for (Parsed& piece : pieces) {
     if (out.problem.empty()) out.problem = piece.problem;
-    move(piece.obj.attrib.vertices, attrib.vertices);
-    move(piece.obj.attrib.normals, attrib.normals);
-    move(piece.obj.attrib.texcoords, attrib.texcoords);
-    move(piece.obj.shapes, out.obj.shapes);
+    move(piece.attrib.vertices, out.attrib.vertices);
+    move(piece.attrib.normals, out.attrib.normals);
+    move(piece.attrib.texcoords, out.attrib.texcoords);
+    move(piece.shapes, out.shapes);
   }
   return out;
 }
@@ -141,42 +121,36 @@ double bytesOf(const MeshLines& lines) {
 }  // namespace
 
 ObjReading readObj(const fs::path& obj, const fs::path& materials,
-                   const std::function<void(const fs::path&, const tinyobj::material_t&)>& expect,
-                   size_t pieceBytes) {
+                   const MaterialLibraries::OnMaterial& expect, size_t pieceBytes) {
   std::error_code vanished;  // is readText's to report
   const auto size = static_cast<double>(fs::file_size(obj, vanished));
   if (!vanished) requireMemory(size, obj.string() + ": reading it", kTooLarge);
-  MeshLines lines = meshLines(obj, readText(obj), pieceBytes);
+  const MeshLines lines = meshLines(obj, readText(obj), pieceBytes);
   requireMemory(bytesOf(lines),
                 obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
                 kTooLarge);
-  const bool overridden = !materials.empty();
-  LibraryReader libraries(obj.parent_path(), materials,
-                          [&](const fs::path& library, const tinyobj::material_t& material) {
-                            if (std::ranges::binary_search(lines.materials, material.name))
-                              expect(library, material);
-                          });
-  const bool whole = lines.pieces.size() == 1;
-  Reading reading;
-  if (!whole) {
-    reading = readPieces(lines, overridden, libraries);
-  } else if (overridden) {
-    reading = read(kAskForLibrary + lines.text, libraries);
+
+  ObjReading out;
+  const auto ifAsked = [&](const fs::path& library, const tinyobj::material_t& material) {
+    if (std::ranges::binary_search(lines.materials, material.name)) expect(library, material);
+  };
+  if (!materials.empty()) {
+    out.libraries.readFile(materials, ifAsked);
   } else {
-    reading = read(std::move(lines.text), libraries);
+    for (const std::string& names : lines.libraries)
+      out.libraries.readLine(obj.parent_path(), names, ifAsked);
   }
-  if (!reading.problem.empty()) {
+  out.unknown = out.libraries.resolve(lines.materials);
+
+  Parsed parsed = parsePieces(lines, out.libraries.numbers);
+  if (!parsed.problem.empty()) {
     // The text alone, in one go, tells the line.
-    std::string problem;
-    if (!whole || overridden) problem = read(std::move(lines.text), libraries).problem;
-    throw InputError(obj, "cannot read the mesh: " + (problem.empty() ? reading.problem : problem));
+    const std::string problem = parse("", lines.text, {}).problem;
+    throw InputError(obj, "cannot read the mesh: " + (problem.empty() ? parsed.problem : problem));
   }
-  ObjReading out = std::move(reading.obj);
+  out.attrib = std::move(parsed.attrib);
+  out.shapes = std::move(parsed.shapes);
   for (const size_t vertex : lines.verticesOfWords) out.attrib.vertices.at(3 * vertex) = NAN;
-  out.libraries = std::move(libraries.files);
-  out.libraryOf = std::move(libraries.libraryOf);
-  out.libraryOf.resize(out.materials.size(), obj);
-  out.missing = std::move(libraries.missing);
   return out;
 }
 

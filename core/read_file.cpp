@@ -1,4 +1,4 @@
-#include "scene/read/read_file.h"
+#include "core/read_file.h"
 
 #include <sys/stat.h>
 

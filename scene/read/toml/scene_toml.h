@@ -1,0 +1,12 @@
+// scene.toml, with the meshes and images that it names. docs/scene-format.md describes it.
+#pragma once
+
+#include "scene/load_scene.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl {
+
+// Throws InputError: file, line, section, problem and cure.
+void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& builder);
+
+}  // namespace bnvpl

@@ -1,0 +1,163 @@
+#include "scene/read/toml/toml_section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/files.h"
+#include "core/number_text.h"
+#include "core/read_file.h"
+
+namespace bnvpl {
+
+namespace {
+
+size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0]++;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row.back();
+}
+
+std::string lineOf(const fs::path& file, const toml::source_region& source) {
+  return file.string() + ":" + std::to_string(source.begin.line) + ": ";
+}
+
+// toml++ makes a table of each dot of a.b.c.d, and takes them apart by a call for each: enough of
+// them overflow the stack. It limits nested brackets itself.
+void refuseDeepKeys(const fs::path& file, const std::string& text) {
+  constexpr size_t kMaxDots = 100;
+  size_t line = 1, dots = 0;
+  for (const char c : text) {
+    if (c == '\n') {
+      ++line;
+      dots = 0;
+    } else if (c == '.' && ++dots > kMaxDots) {
+      throw InputError(file.string() + ":" + std::to_string(line) + ": more than " +
+                       std::to_string(kMaxDots) + " dots in a line; break the line");
+    }
+  }
+}
+
+}  // namespace
+
+toml::table parseToml(const fs::path& file) {
+  if (!isRegularFile(file)) throw InputError(file, "no such file; name a scene.toml");
+  const std::string text = readText(file);
+  refuseDeepKeys(file, text);
+  try {
+    return toml::parse(text, file.string());
+  } catch (const toml::parse_error& e) {
+    throw InputError(lineOf(file, e.source()) + std::string(e.description()));
+  }
+}
+
+const toml::table& tableOf(const fs::path& file, const toml::table& root, const char* key) {
+  const toml::node* node = root.get(key);
+  const toml::table* table = node ? node->as_table() : nullptr;
+  if (!table) throw InputError(file, std::string("needs a [") + key + "] section; add it");
+  return *table;
+}
+
+std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
+                                         const char* key) {
+  std::vector<const toml::table*> tables;
+  const toml::node* node = root.get(key);
+  if (!node) return tables;
+  const toml::array* array = node->as_array();
+  for (size_t i = 0; array && i < array->size(); ++i) {
+    if (const toml::table* t = array->get(i)->as_table()) tables.push_back(t);
+  }
+  if (!array || tables.size() != array->size()) {
+    throw InputError(lineOf(file, node->source()) + "'" + key + "' must be written as [[" + key +
+                     "]]");
+  }
+  return tables;
+}
+
+bool toUnit(const FilePoint& to, const FilePoint& from, Vec3& unit) {
+  const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+  if (!(length > 0.0)) return false;
+  unit = fromOrigin(
+      {(to[0] - from[0]) / length, (to[1] - from[1]) / length, (to[2] - from[2]) / length}, {});
+  return true;
+}
+
+TomlSection::TomlSection(const fs::path& file, std::string name, const toml::table& table,
+                         const std::vector<std::string>& known)
+    : file_(file), name_(std::move(name)), table_(table) {
+  for (const auto& [key, node] : table_) checkKnown(std::string(key.str()), node, known);
+}
+
+void TomlSection::checkKnown(const std::string& key, const toml::node& node,
+                             const std::vector<std::string>& known) const {
+  if (std::find(known.begin(), known.end(), key) != known.end()) return;
+  const auto nearest = std::min_element(
+      known.begin(), known.end(),
+      [&](const auto& a, const auto& b) { return editDistance(key, a) < editDistance(key, b); });
+  fail(node, "unknown key '" + key + "'; did you mean '" + *nearest + "'?");
+}
+
+void TomlSection::fail(const toml::node& node, const std::string& problem) const {
+  throw InputError(lineOf(file_, node.source()) + name_ + ": " + problem);
+}
+
+const toml::node& TomlSection::node(const char* key) const {
+  const toml::node* n = table_.get(key);
+  if (!n) fail(std::string("needs '") + key + "'; add it");
+  return *n;
+}
+
+double TomlSection::numberOf(const toml::node& n, const char* key, double least,
+                             double most) const {
+  const std::string quoted = std::string("'") + key + "'";
+  const auto v = n.value<double>();
+  if (!v || !std::isfinite(*v)) fail(n, quoted + " must be a number");
+  if (*v < 0.0 && least == 0.0)
+    fail(n, quoted + " must not be negative, but is " + shortestText(*v));
+  if (*v < least || *v > most) {
+    fail(n, quoted + " is " + shortestText(*v) + ", outside " + shortestText(least) + " to " +
+                shortestText(most));
+  }
+  return *v;
+}
+
+uint32_t TomlSection::integer(const char* key, uint32_t least, uint32_t most) const {
+  const auto v = node(key).value_exact<int64_t>();
+  if (!v || *v < int64_t{least} || *v > int64_t{most}) {
+    fail(node(key), std::string("'") + key + "' must be a whole number from " +
+                        std::to_string(least) + " to " + std::to_string(most));
+  }
+  return static_cast<uint32_t>(*v);
+}
+
+std::string TomlSection::text(const char* key) const {
+  const auto v = node(key).value_exact<std::string>();
+  if (!v) fail(node(key), std::string("'") + key + "' must be a text in quotes");
+  return *v;
+}
+
+FilePoint TomlSection::triple(const char* key, double least, double most) const {
+  const toml::array* a = node(key).as_array();
+  if (!a || a->size() != 3) fail(node(key), std::string("'") + key + "' must be [x, y, z]");
+  FilePoint v;
+  for (size_t i = 0; i < 3; ++i) v[i] = numberOf(*a->get(i), key, least, most);
+  return v;
+}
+
+Vec3 TomlSection::color(const char* key) const { return fromOrigin(triple(key, 0.0, kMost), {}); }
+
+Vec3 TomlSection::direction(const char* key) const {
+  Vec3 unit;
+  if (!toUnit(point(key), {}, unit)) fail(node(key), std::string("'") + key + "' must not be zero");
+  return unit;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,64 @@
+// A table of a TOML file, read key by key. Every mistake is one line with file, line, section,
+// problem and cure.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <string>
+#include <vector>
+
+#include "core/errors.h"
+#include "scene/affine.h"
+
+namespace bnvpl {
+
+// Throws InputError, with the line where the file is no TOML.
+toml::table parseToml(const fs::path& file);
+
+// The section [key], which must be there, and the tables of [[key]], of which there may be none.
+const toml::table& tableOf(const fs::path& file, const toml::table& root, const char* key);
+std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
+                                         const char* key);
+
+// The unit vector from one place to another. False: there is none.
+bool toUnit(const FilePoint& to, const FilePoint& from, Vec3& unit);
+
+// Borrows the table and the file's name. All of it throws InputError: the constructor for a key
+// that is none of the known, the readers for a key that is missing, of another type or out of
+// range. Limits belong to the range.
+class TomlSection {
+ public:
+  TomlSection(const fs::path& file, std::string name, const toml::table& table,
+              const std::vector<std::string>& known);
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& problem) const;
+  [[noreturn]] void fail(const std::string& problem) const { fail(table_, problem); }
+  bool has(const char* key) const { return table_.contains(key); }
+  const toml::node& node(const char* key) const;
+
+  double number(const char* key, double least, double most) const {
+    return numberOf(node(key), key, least, most);
+  }
+  double number(const char* key, double least, double most, double otherwise) const {
+    return has(key) ? number(key, least, most) : otherwise;
+  }
+  double numberOf(const toml::node& n, const char* key, double least, double most) const;
+  uint32_t integer(const char* key, uint32_t least, uint32_t most) const;
+  std::string text(const char* key) const;
+  FilePoint point(const char* key) const { return triple(key, -kMost, kMost); }
+  Vec3 color(const char* key) const;      // not negative
+  Vec3 direction(const char* key) const;  // unit length
+
+  static constexpr double kMost = 1e30;  // of a coordinate, a factor or a power
+
+ private:
+  FilePoint triple(const char* key, double least, double most) const;
+  void checkKnown(const std::string& key, const toml::node& node,
+                  const std::vector<std::string>& known) const;
+
+  const fs::path& file_;
+  std::string name_;
+  const toml::table& table_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,29 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+
+namespace bnvpl {
+
+namespace {
+
+bool shines(const Scene& scene, const LightSpec& light) {
+  if (light.type == LightType::Environment && light.scale == 0.0f) return false;
+  if (light.image == kNone) return !isBlack(light.emission);
+  const std::vector<Vec3>& radiance = scene.environments[light.image].radiance;
+  return !std::all_of(radiance.begin(), radiance.end(), isBlack);
+}
+
+}  // namespace
+
+bool Scene::hasLight() const {
+  return std::any_of(lights.begin(), lights.end(),
+                     [&](const LightSpec& light) { return shines(*this, light); }) ||
+         std::any_of(triangles.begin(), triangles.end(),
+                     [&](const Triangle& t) { return !isBlack(materials[t.material].emission); });
+}
+
+void Scene::requireLight() const {
+  if (!hasLight()) throw InputError(name() + ": " + kNoLight);
+}
+
+}  // namespace bnvpl

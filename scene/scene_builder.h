@@ -1,0 +1,108 @@
+// Where the loaders of all formats meet: they add what they read, and finish() makes a Scene of it.
+//
+//   SceneBuilder builder("room.toml");
+//   Material paint;
+//   paint.diffuse = {0.5f, 0.5f, 0.5f};
+//   Mesh mesh{positions, {}, {}, {Triangle{{0, 1, 2}, kNoCorners, kNoCorners,
+//                                          builder.addMaterial(paint)}}};
+//   builder.addMesh("room.obj", std::move(mesh));
+//   builder.setCamera({0, 1, 3}, camera);
+//   const Scene scene = builder.finish();
+//
+// Lengths are the scene's own unit, angles radians, colours linear sRGB; y is up where a format has
+// no up of its own. Colours and powers must be finite and not negative, directions of unit length:
+// the loader refuses or repairs what is not, and warns. Numbers that add...() returns count from 0.
+#pragma once
+
+#include <set>
+#include <span>
+
+#include "scene/affine.h"
+#include "scene/scene.h"
+#include "scene/textures/texture_pool.h"
+
+namespace bnvpl {
+
+inline constexpr std::array<uint32_t, 3> kNoCorners{kNone, kNone, kNone};
+
+// A mesh as its file gives it. The arrays are borrowed until addMesh() returns.
+struct Mesh {
+  std::span<const double> positions;  // x, y, z of each vertex
+  std::span<const double> normals;    // x, y, z of each, of any length; 0: none
+  std::span<const double> uvs;        // u, v of each, v = 0 at the bottom row of a texture
+  // Corners count in the arrays above; kNone, or beyond them: the corner has no such thing.
+  // `material` is a number of addMaterial(); kNone: grey. A face is seen, and shines, from the side
+  // where its corners run anti-clockwise.
+  std::vector<Triangle> triangles;
+};
+
+class SceneBuilder {
+ public:
+  // `sceneFile` names the scene in messages and is the first of the files.
+  explicit SceneBuilder(fs::path sceneFile);
+
+  void setFilm(const Film& film) { scene_.film = film; }
+  // camera.position is what `position` becomes.
+  void setCamera(const FilePoint& position, const Camera& camera);
+
+  // A texture that will be wanted: it is decoded while the loader goes on. Nothing comes of it but
+  // time.
+  void expectTexture(const TextureUse& use) { textures_.expect(use); }
+  // The number for a Material's map; the same for the same use. kNone, with a warning, where there
+  // is no such file. One that turns out to be damaged is taken from its materials by finish().
+  uint32_t addTexture(const TextureUse& use);
+  uint32_t addMaterial(Material material);
+  // Reads it at once. Throws InputError when the file is no image.
+  uint32_t addEnvironment(const fs::path& image);
+  // light.position is what `position` becomes; it has no meaning for lights at infinity.
+  void addLight(const LightSpec& light, const FilePoint& position = {});
+
+  // Leaves out triangles that have a corner without a finite position, with a warning that names
+  // `file`. A transform that mirrors turns the windings, so that outside stays outside. Returns how
+  // many triangles have no material and became grey: why is the loader's to say. Throws InputError
+  // when the scene has more vertices than 32 bits count.
+  size_t addMesh(const fs::path& file, Mesh mesh, const Affine& transform = {});
+
+  // A file that was read, or whose absence showed, for depfiles. Once each.
+  void addFile(const fs::path& file);
+  // Tells the user, once, what was ignored or repaired: file, problem, what became of it.
+  void warn(const std::string& text);
+  std::string name() const { return scene_.name(); }
+
+  // The scene: coordinates count from where floats resolve them, opaque triangles come first,
+  // triangles that floats cannot hold and doubled lamps are left out, with warnings. Throws
+  // InputError when no triangle is left, when the scene is smaller or larger than floats can
+  // compute with, and when a texture changed while it was read. The builder is empty afterwards.
+  Scene finish();
+
+ private:
+  struct Part {  // the triangles of one addMesh()
+    fs::path file;
+    size_t endTriangle;
+  };
+  struct Base {  // where the arrays of a mesh begin in the scene's
+    size_t position, normal, uv;
+  };
+  Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
+  uint32_t greyMaterial();
+
+  // Of finish(), in this order:
+  void resolveTextures();
+  void warnOfMissingUvs();
+  void roundPositions();
+  void dropUnusable();
+  void dropDoubledLamps();
+  void sortByMask();
+  void requireSize() const;
+
+  Scene scene_;
+  TexturePool textures_;
+  std::vector<FilePoint> points_;  // what scene_.positions will be
+  std::vector<Part> parts_;
+  FilePoint cameraPosition_{};
+  std::vector<FilePoint> lightPositions_;  // of scene_.lights
+  uint32_t grey_ = kNone;
+  std::set<std::string> warned_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,125 @@
+// Scene files as other programs write them, and what the tools say of those that lack something.
+#include <algorithm>
+
+#include "formats/vpl_io.h"
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+class SceneFilesOfOthers : public PipelineTest {
+ protected:
+  // Blender's room in a folder of the test's, and a scene.toml for it.
+  void SetUp() override {
+    fs::copy(BNVPL_SOURCE "/tests/scene/blender", at("von Blender"), fs::copy_options::recursive);
+    write("von Blender/my room.toml",
+          "[film]\nwidth = 32\nheight = 24\n[camera]\nposition = [0, 1, 4]\nlook_at = [0, 1, 0]\n"
+          "vertical_fov_deg = 50\n[[mesh]]\nfile = \"my room.obj\"\n");
+  }
+  const std::string room_ = path("von Blender/my room.toml");
+
+  void replaceAll(const std::string& name, const std::string& from, const std::string& to) const {
+    std::string text = readAll(at(name));
+    size_t count = 0;
+    for (size_t i = 0; (i = text.find(from, i)) != std::string::npos; i += to.size(), ++count)
+      text.replace(i, from.size(), to);
+    EXPECT_GT(count, 0u) << from;
+    write(name, text);
+  }
+  // What vpl-place says, and the colours that it finds.
+  std::string place(std::vector<Vec3>& colours) const {
+    const Outcome r = tool("vpl-place", room_ + " --quiet -n 300 -o " + path("c.vpl"));
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    colours = readVpl(at("c.vpl")).albedo;
+    return r.err;
+  }
+  static size_t count(const std::vector<Vec3>& colours, Vec3 colour) {
+    return size_t(std::count(colours.begin(), colours.end(), colour));
+  }
+  // Red and green walls, and a floor whose texture is blue.
+  static void expectRoom(const std::vector<Vec3>& colours) {
+    EXPECT_GT(count(colours, {.8f, .1f, .1f}), 0u);
+    EXPECT_GT(count(colours, {.1f, .8f, .1f}), 0u);
+    EXPECT_GT(std::count_if(colours.begin(), colours.end(),
+                            [](Vec3 c) { return c.x == 0 && c.y == 0 && c.z > .5f; }),
+              0);
+  }
+};
+
+TEST_F(SceneFilesOfOthers, BlendersNamesAreFound) {
+  std::vector<Vec3> colours;
+  EXPECT_EQ(place(colours), "");
+  expectRoom(colours);
+}
+
+// Blender writes underscores for blanks; other programs do not. Windows adds a byte order mark.
+TEST_F(SceneFilesOfOthers, BlanksMarksAndContinuedLinesAreRead) {
+  for (const std::string name : {"von Blender/my room.obj", "von Blender/my room.mtl"}) {
+    replaceAll(name, "my_left", "my left");
+    replaceAll(name, "my.right_2", "my.right  2");
+    replaceAll(name, "Lampe__weiß.001", "Lampe  weiß.001");
+    replaceAll(name, "\n", "\r\n");
+    write(name, "\xef\xbb\xbf" + readAll(at(name)));
+  }
+  std::string mtl = readAll(at("von Blender/my room.mtl"));
+  write("von Blender/my room.mtl", "\xef\xbb\xbf" + mtl.substr(mtl.find("newmtl")));
+  replaceAll("von Blender/my room.obj", "f 5/5/2 6/6/2", "f 5/5/2 \\\r\n 6/6/2");
+  std::vector<Vec3> colours;
+  EXPECT_EQ(place(colours), "");
+  expectRoom(colours);
+}
+
+TEST_F(SceneFilesOfOthers, MissingMaterialsAreNamed) {
+  replaceAll("von Blender/my room.mtl", "my_left", "my_right");
+  std::vector<Vec3> colours;
+  const std::string said = place(colours);
+  EXPECT_TRUE(contains(said, "my room.obj: has faces without a known material")) << said;
+  EXPECT_TRUE(contains(said, "'my_left' is not in ")) << said;
+  EXPECT_TRUE(contains(said, "my room.mtl\n")) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_GT(count(colours, Vec3(.5f)), 0u);
+}
+
+// The stages that need light refuse; the others say why all will be black.
+TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
+  replaceAll("von Blender/my room.mtl", "Ke 10.000000 10.000000 10.000000", "Ke 0 0 0");
+  const std::string problem = "my room.toml: has no light with power", cure = "add a [[light]]";
+  for (const auto& [name, arguments] :
+       {std::pair{"vpl-place", " -n 30 -o " + path("c.vpl")},
+        std::pair{"vpl-render", " --integrator path --spp 1 -o " + path("i.exr")}}) {
+    const Outcome r = tool(name, room_ + arguments);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    EXPECT_TRUE(contains(r.err, problem) && contains(r.err, cure) && contains(r.err, "Ke"))
+        << name << ": " << r.err;
+  }
+  succeed("vpl-eliminate", path("c.vpl") + " -n 5 -o " + path("v.vpl"));
+  fail("vpl-place", room_ + " --method light -n 30 -o " + path("l.vpl"), kExitInput,
+       {problem, cure});
+  fail("vpl-estimate", room_ + " " + path("v.vpl") + " --photons 100 -o " + path("l.vpl"),
+       kExitInput, {problem, cure});
+  EXPECT_FALSE(fs::exists(at("l.vpl")));
+}
+
+TEST_F(SceneFilesOfOthers, OtherFormatsAreRefusedByName) {
+  for (const char* name : {"my room.obj", "my room.mtl"}) {
+    fail("vpl-place", path(std::string("von Blender/") + name) + " -n 3 -o " + path("x"),
+         kExitInput, {name, "is no scene file; scenes are read from .toml"});
+  }
+}
+
+TEST_F(SceneFilesOfOthers, TheFieldOfViewTakesItsLimits) {
+  const std::string whole = readAll(at("von Blender/my room.toml"));
+  for (const std::string degrees : {"0.001", "179.9"}) {
+    write("von Blender/my room.toml", whole);
+    replaceAll("von Blender/my room.toml", "vertical_fov_deg = 50",
+               "vertical_fov_deg = " + degrees);
+    succeed("vpl-render", room_ + " --integrator path --spp 1 -o " + path("i.exr"));
+  }
+  write("von Blender/my room.toml", whole);
+  replaceAll("von Blender/my room.toml", "vertical_fov_deg = 50", "vertical_fov_deg = 179.91");
+  fail("vpl-render", room_ + " --integrator path --spp 1 -o " + path("x.exr"), kExitInput,
+       {"my room.toml:7: [camera]: 'vertical_fov_deg' is 179.91, outside 0.001 to 179.9"});
+}
+
+}  // namespace
+}  // namespace bnvpl
