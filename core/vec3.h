@@ -48,6 +48,7 @@ inline Vec3 max(Vec3 a, Vec3 b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 inline float maxComponent(Vec3 a) { return std::max(a.x, std::max(a.y, a.z)); }
+inline float minComponent(Vec3 a) { return std::min(a.x, std::min(a.y, a.z)); }
 constexpr float mean(Vec3 rgb) { return (rgb.x + rgb.y + rgb.z) * (1.0f / 3.0f); }
 // Relative luminance of linear sRGB (Rec. 709 primaries).
 constexpr float luminance(Vec3 rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }

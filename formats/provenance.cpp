@@ -4,19 +4,47 @@
 #include <nlohmann/json.hpp>
 
 namespace bnvpl {
+namespace {
+
+using Json = nlohmann::json;
+
+// The text under `key` of an object, when it is one word that can stand in a message; else empty.
+std::string wordAt(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) return "";
+  const std::string word = found->get<std::string>();
+  const bool plain =
+      word.size() <= 64 && std::all_of(word.begin(), word.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+      });
+  return plain ? word : "";
+}
+
+}  // namespace
 
 bool isProvenance(const std::string& text) {
   // The parser takes a zero byte for the end of the text; here it would hide what follows.
   if (text.find('\0') != std::string::npos) return false;
   bool deep = false;
-  const auto keep = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+  const auto keep = [&](int depth, Json::parse_event_t, const Json&) {
     deep = deep || depth > kMaxProvenanceDepth;
     return !deep;
   };
-  const auto json = nlohmann::json::parse(text, keep, /*allow_exceptions=*/false);
+  const auto json = Json::parse(text, keep, /*allow_exceptions=*/false);
   return !deep && json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& record) {
     return record.is_object();
   });
+}
+
+std::string makerOf(const std::string& text) {
+  if (!isProvenance(text)) return "";
+  const Json history = Json::parse(text);
+  if (history.empty()) return "";
+  const std::string tool = wordAt(history.back(), "tool");
+  const auto options = history.back().find("options");
+  if (tool.empty() || options == history.back().end() || !options->is_object()) return tool;
+  const std::string method = wordAt(*options, "method");
+  return method.empty() ? tool : tool + " --method " + method;
 }
 
 }  // namespace bnvpl

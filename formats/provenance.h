@@ -12,4 +12,8 @@ inline constexpr int kMaxProvenanceDepth = 64;
 // Whether `text` is a JSON array of objects, in UTF-8, at most kMaxProvenanceDepth deep.
 bool isProvenance(const std::string& text);
 
+// The tool of the newest record and its method, for messages: "vpl-place --method light". Empty
+// when `text` is no provenance or the record does not tell, in plain words.
+std::string makerOf(const std::string& text);
+
 }  // namespace bnvpl

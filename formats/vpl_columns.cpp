@@ -1,61 +1,117 @@
-#include "formats/vpl_io.h"
-#include "formats/vpl_layout.h"
+#include "formats/vpl_columns.h"
+
+#include <cmath>
+#include <cstring>
 
 namespace bnvpl {
+namespace {
 
-std::string_view stageName(VplStage stage) {
-  switch (stage) {
-    case VplStage::Candidates:
-      return "candidates";
-    case VplStage::Eliminated:
-      return "eliminated";
-    case VplStage::Lit:
-      return "lit";
+constexpr float kUnitLengthTolerance = 1e-3f;  // float32 normals of far smaller error still pass
+constexpr float kFractionTolerance = 1e-4f;    // rounding of 8-bit textures and of products
+constexpr const char* kNotFinite = "not a finite number";
+
+template <typename T>
+double valueAt(std::span<const std::byte> bytes, size_t index) {
+  T value;
+  std::memcpy(&value, bytes.data() + index * sizeof value, sizeof value);
+  return static_cast<double>(value);
+}
+
+// The rows of `from`, perRow elements each.
+template <typename T>
+std::vector<T> pickRows(const std::vector<T>& from, size_t perRow, std::span<const uint32_t> rows) {
+  std::vector<T> picked;
+  picked.reserve(rows.size() * perRow);
+  for (const uint32_t row : rows) {
+    const auto first = from.begin() + static_cast<std::ptrdiff_t>(row * perRow);
+    picked.insert(picked.end(), first, first + static_cast<std::ptrdiff_t>(perRow));
   }
-  return "unknown";
+  return picked;
 }
 
-std::string_view stageTool(VplStage stage) {
-  switch (stage) {
-    case VplStage::Candidates:
-      return "vpl-place";
-    case VplStage::Eliminated:
-      return "vpl-eliminate";
-    case VplStage::Lit:
-      return "vpl-estimate";
-  }
-  return "unknown";
+}  // namespace
+
+std::string_view nameOf(VplType type) {
+  return type == VplType::F32 ? "f32" : type == VplType::U32 ? "u32" : "u64";
 }
 
-std::span<const VplColumnInfo> columnInfo(VplStage stage) {
-  return std::span(kVplColumns).first(columnCount(stage));
+namespace vpl_check {
+const char* finite(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
+  return isFinite(value) ? nullptr : kNotFinite;
 }
+const char* unitLength(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
+  if (!isFinite(value)) return kNotFinite;
+  return std::fabs(length(value) - 1.0f) <= kUnitLengthTolerance ? nullptr : "not of unit length";
+}
+const char* fraction(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
+  if (!isFinite(value)) return kNotFinite;
+  const bool within = minComponent(value) >= -kFractionTolerance &&
+                      maxComponent(value) <= 1.0f + kFractionTolerance;
+  return within ? nullptr : "not between 0 and 1";
+}
+const char* aboveZero(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
+  if (!isFinite(value)) return kNotFinite;
+  return minComponent(value) > 0.0f ? nullptr : "not above 0";
+}
+const char* zeroOrMore(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
+  if (!isFinite(value)) return kNotFinite;
+  return minComponent(value) >= 0.0f ? nullptr : "negative";
+}
+const char* partOfFlux(Vec3 value, const VplTable& table, size_t row) {
+  if (const char* problem = zeroOrMore(value, table, row)) return problem;
+  return minComponent(table.flux[row] - value) >= 0.0f ? nullptr : "above the flux";
+}
+}  // namespace vpl_check
 
-double columnValue(const VplTable& table, size_t column, size_t row, size_t component) {
-  switch (column) {
-    case 0:
-      return table.position[row][component];
-    case 1:
-      return table.normal[row][component];
-    case 2:
-      return table.albedo[row][component];
-    case 3:
-      return table.id[row];
-    case 4:
-      return table.radius[row];
-    case 5:
-      return table.flux[row][component];
-    case 6:
-      return static_cast<double>(table.photons[row]);
-    case 7:
-      return table.relativeError[row];
-    case 8:
-      return table.emitPosition[row][component];
-    case 9:
-      return table.emitNormal[row][component];
+double VplColumnView::value(size_t row, size_t component) const {
+  const size_t index = row * components + component;
+  switch (type) {
+    case VplType::F32:
+      return valueAt<float>(bytes, index);
+    case VplType::U32:
+      return valueAt<uint32_t>(bytes, index);
     default:
-      return table.firstBounceFlux[row][component];
+      return valueAt<uint64_t>(bytes, index);
   }
+}
+
+std::vector<VplColumnView> columnsOf(const VplTable& table) {
+  std::vector<VplColumnView> views;
+  for (const VplColumn& c : standardColumns(table.stage)) {
+    const auto bytes =
+        std::visit([&](auto member) { return std::as_bytes(std::span(table.*member)); }, c.member);
+    views.push_back({c.name, c.unit, c.meaning, c.parts, c.type(), c.components(), bytes});
+  }
+  for (const VplExtraColumn& extra : table.extras) {
+    const auto bytes = std::visit(
+        [](const auto& values) { return std::as_bytes(std::span(values)); }, extra.values);
+    views.push_back({extra.name, extra.unit, "a strategy's own", "",
+                     static_cast<VplType>(1 + extra.values.index()), extra.components, bytes});
+  }
+  return views;
+}
+
+VplTable keepRows(const VplTable& table, std::span<const uint32_t> rows) {
+  VplTable kept;
+  kept.stage = table.stage;
+  kept.rMax = table.rMax;
+  kept.areaEstimate = table.areaEstimate;
+  kept.reach = table.reach;
+  kept.sceneHash = table.sceneHash;
+  kept.provenance = table.provenance;
+  for (const VplColumn& column : standardColumns(table.stage)) {
+    std::visit([&](auto member) { kept.*member = pickRows(table.*member, 1, rows); },
+               column.member);
+  }
+  for (const VplExtraColumn& extra : table.extras) {
+    VplExtraColumn& to = kept.extras.emplace_back();
+    to.name = extra.name;
+    to.unit = extra.unit;
+    to.components = extra.components;
+    std::visit([&](const auto& values) { to.values = pickRows(values, extra.components, rows); },
+               extra.values);
+  }
+  return kept;
 }
 
 }  // namespace bnvpl

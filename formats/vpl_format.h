@@ -1,57 +1,31 @@
-// .vpl: the bytes on disk, little-endian. Any change bumps kVplVersion. README.md is the prose.
+// .vpl: the bytes on disk, little-endian. Any change but a strategy's own column bumps kVplVersion.
+// README.md is the prose, vpl_columns.h the columns.
 //
 //     0  VplHeader, 128 bytes
-//   128  directory: columnCount entries of 64 bytes, in the order of kVplColumns
+//   128  directory: columnCount entries of 64 bytes
 //     .  provenance: UTF-8 JSON array, oldest stage first, zero-padded to 64
-//     .  columns in the order of kVplColumns, `count` rows each, zero-padded to 64
+//     .  columns in the order of the directory, `count` rows each, zero-padded to 64
 //   end  kVplEndMark: without it the file was cut short
 //
-// A file has exactly the columns of its stage and of all stages before it.
+// A file has the columns of its stage and of all stages before it, in the order of kVplColumns, and
+// behind them those that strategies added.
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <type_traits>
 
+#include "formats/vpl_columns.h"
 #include "formats/vpl_table.h"
 
 namespace bnvpl {
 
-enum class VplType : uint32_t { F32 = 1, U32 = 2, U64 = 3 };
-
-struct VplColumnInfo {
-  std::string_view name;
-  VplType type;
-  uint32_t components;
-  std::string_view unit;
-  VplStage since;
-  std::string_view meaning;
-
-  constexpr uint64_t rowBytes() const {
-    return (type == VplType::U64 ? uint64_t{8} : uint64_t{4}) * components;
-  }
-};
-
-inline constexpr std::array<VplColumnInfo, 11> kVplColumns{{
-    {"position", VplType::F32, 3, "scene unit", VplStage::Candidates, "world space"},
-    {"normal", VplType::F32, 3, "1", VplStage::Candidates, "geometric, unit length, lit side"},
-    {"albedo", VplType::F32, 3, "1", VplStage::Candidates, "diffuse, linear sRGB, 0 to 1"},
-    {"id", VplType::U32, 1, "-", VplStage::Candidates, "path order at placement"},
-    {"radius", VplType::F32, 1, "scene unit", VplStage::Eliminated, "r_max of this VPL"},
-    {"flux", VplType::F32, 3, "W", VplStage::Lit, "leaving this VPL's surface, linear sRGB"},
-    {"photons", VplType::U64, 1, "1", VplStage::Lit, "deposits received"},
-    {"relative_error", VplType::F32, 1, "1", VplStage::Lit, "standard error of flux over flux"},
-    {"emit_position", VplType::F32, 3, "scene unit", VplStage::Lit, "where the light leaves from"},
-    {"emit_normal", VplType::F32, 3, "1", VplStage::Lit, "geometric, unit length, there"},
-    {"straight_flux", VplType::F32, 3, "W", VplStage::Lit, "part of flux, straight from a light"},
-}};
-
-inline constexpr uint32_t kVplVersion = 2;
-inline constexpr uint32_t kLitSince = 2;  // the other stages are the same in version 1
+inline constexpr uint32_t kVplVersion = 3;
 inline constexpr uint64_t kVplAlign = 64;
+inline constexpr size_t kMaxExtraColumns = 256;        // of all strategies together
+inline constexpr uint32_t kMaxExtraComponents = 1024;  // of one column
 // The high bit, both line endings and the DOS end-of-file: any text-mode copy breaks one of them.
 inline constexpr std::array<char, 8> kVplMagic{'\x89', 'V', 'P', 'L', '\r', '\n', '\x1a', '\n'};
 inline constexpr std::array<char, 8> kVplEndMark{'V', 'P', 'L', '-', 'E', 'N', 'D', '\n'};
@@ -66,7 +40,7 @@ struct VplHeader {
   uint64_t fileBytes = 0;        // the whole file, end mark included
   uint64_t checksum = 0;         // XXH3-64 of the whole file with this field taken as zero
   uint32_t columnCount = 0;
-  uint32_t reserved0 = 0;           // zero; readers refuse anything else
+  uint32_t rowKind = 0;             // 0: points; readers refuse anything else
   double rMax = 0.0;                // scene units; 0 until it is known
   double areaEstimate = 0.0;        // scene units squared; 0 until it is known
   double reach = 0.0;               // how far each VPL received photons, in units of its radius
@@ -78,21 +52,25 @@ static_assert(offsetof(VplHeader, count) == 16 && offsetof(VplHeader, sceneHash)
 static_assert(offsetof(VplHeader, provenanceBytes) == 32 && offsetof(VplHeader, fileBytes) == 40);
 static_assert(offsetof(VplHeader, checksum) == 48 && offsetof(VplHeader, columnCount) == 56);
 static_assert(offsetof(VplHeader, reserved) == 88);
-static_assert(offsetof(VplHeader, reserved0) == 60 && offsetof(VplHeader, rMax) == 64);
+static_assert(offsetof(VplHeader, rowKind) == 60 && offsetof(VplHeader, rMax) == 64);
 static_assert(offsetof(VplHeader, areaEstimate) == 72 && offsetof(VplHeader, reach) == 80);
 
 struct VplColumnEntry {
-  std::array<char, 24> name;  // zero-padded
+  std::array<char, 24> name;  // zero-padded, with at least one zero
   VplType type;
-  uint32_t components;        // 1 or 3
+  uint32_t components;
   uint64_t offset;            // from the start of the file, a multiple of kVplAlign
   uint64_t bytes;             // count * components * size of type, without the padding
-  std::array<char, 16> unit;  // zero-padded
+  std::array<char, 16> unit;  // zero-padded, with at least one zero
 };
 static_assert(sizeof(VplColumnEntry) == 64 && std::is_trivially_copyable_v<VplColumnEntry>);
 static_assert(offsetof(VplColumnEntry, type) == 24 && offsetof(VplColumnEntry, components) == 28);
 static_assert(offsetof(VplColumnEntry, offset) == 32 && offsetof(VplColumnEntry, bytes) == 40);
 static_assert(offsetof(VplColumnEntry, unit) == 48);
+static_assert(std::all_of(kVplColumns.begin(), kVplColumns.end(), [](const VplColumn& column) {
+  return column.name.size() < sizeof(VplColumnEntry::name) &&
+         column.unit.size() < sizeof(VplColumnEntry::unit);
+}));
 
 static_assert(std::endian::native == std::endian::little, "add byte swapping");
 

@@ -16,7 +16,8 @@ namespace bnvpl {
 VplTable readVpl(const fs::path& file);
 
 // The same, and throws InputError when the file is not of the stage `expected`, before reading the
-// columns. The message names the tool that makes the file that is needed.
+// columns. The message names the tool that made this file, as far as its provenance tells, and
+// those that make the one that is needed.
 VplTable readVpl(const fs::path& file, VplStage expected);
 
 // Header and directory, verified against the real file size; the content is not looked at.
@@ -29,12 +30,8 @@ VplHeader readVplHeader(const fs::path& file);
 void writeVpl(const fs::path& file, const VplTable& table);
 void writeVpl(AtomicFile& file, const VplTable& table);
 
-// "candidates", "eliminated" or "lit"; and the tool that makes such a file.
+// "candidates", "eliminated" or "lit"; and, for messages, the tools that make such a file.
 std::string_view stageName(VplStage stage);
-std::string_view stageTool(VplStage stage);
-
-// The columns of a stage, in file order, and one number out of them.
-std::span<const VplColumnInfo> columnInfo(VplStage stage);
-double columnValue(const VplTable& table, size_t column, size_t row, size_t component);
+std::string_view stageTools(VplStage stage);
 
 }  // namespace bnvpl

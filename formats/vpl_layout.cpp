@@ -11,9 +11,6 @@
 namespace bnvpl {
 namespace {
 
-constexpr float kUnitLengthTolerance = 1e-3f;  // float32 normals of far smaller error still pass
-constexpr float kAlbedoTolerance = 1e-4f;      // rounding of 8-bit textures and of products
-
 template <size_t Size>
 std::array<char, Size> padded(std::string_view text) {
   std::array<char, Size> result{};
@@ -21,63 +18,65 @@ std::array<char, Size> padded(std::string_view text) {
   return result;
 }
 
-// The first row for which problemOf(value) is not null.
-template <typename T, typename ProblemOf>
-std::optional<BadValue> findIn(const std::vector<T>& values, size_t column,
-                               const ProblemOf& problemOf) {
-  for (size_t row = 0; row < values.size(); ++row) {
-    if (const char* problem = problemOf(values[row])) return BadValue{column, row, problem};
+Vec3 asVec3(Vec3 value) { return value; }
+template <typename T>
+Vec3 asVec3(T value) {
+  return Vec3(static_cast<float>(value));
+}
+
+// The first row whose value the check refuses.
+template <typename T>
+std::optional<BadValue> findIn(const VplTable& table, const std::vector<T>& values, size_t column,
+                               const VplCheck& check) {
+  for (size_t row = 0; check.problem != nullptr && row < values.size(); ++row) {
+    if (const char* problem = check.problem(asVec3(values[row]), table, row))
+      return BadValue{column, row, problem};
   }
   return std::nullopt;
 }
 
-constexpr const char* kNotFinite = "not a finite number";
+std::optional<BadValue> findNotFinite(const VplExtraColumn& extra, size_t column) {
+  const auto* values = std::get_if<std::vector<float>>(&extra.values);
+  if (values == nullptr) return std::nullopt;
+  const auto bad =
+      std::find_if(values->begin(), values->end(), [](float v) { return !std::isfinite(v); });
+  if (bad == values->end()) return std::nullopt;
+  return BadValue{column, static_cast<size_t>(bad - values->begin()) / extra.components,
+                  "not a finite number"};
+}
 
-const char* positionProblem(Vec3 p) { return isFinite(p) ? nullptr : kNotFinite; }
-const char* normalProblem(Vec3 n) {
-  if (!isFinite(n)) return kNotFinite;
-  return std::fabs(length(n) - 1.0f) <= kUnitLengthTolerance ? nullptr : "not of unit length";
+bool isWord(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
 }
-const char* albedoProblem(Vec3 a) {
-  if (!isFinite(a)) return kNotFinite;
-  const float low = std::min({a.x, a.y, a.z}), high = std::max({a.x, a.y, a.z});
-  return low >= -kAlbedoTolerance && high <= 1.0f + kAlbedoTolerance ? nullptr
-                                                                     : "not between 0 and 1";
+
+// "rich.lobes": two words with one dot between them.
+bool isExtraName(std::string_view name) {
+  const size_t dot = name.find('.');
+  return name.size() < sizeof(VplColumnEntry::name) && dot != std::string_view::npos &&
+         isWord(name.substr(0, dot)) && isWord(name.substr(dot + 1));
 }
-const char* radiusProblem(float r) {
-  if (!std::isfinite(r)) return kNotFinite;
-  return r > 0.0f ? nullptr : "not above 0";
-}
-const char* fluxProblem(Vec3 f) {
-  if (!isFinite(f)) return kNotFinite;
-  return std::min({f.x, f.y, f.z}) >= 0.0f ? nullptr : "negative";
-}
-const char* relativeErrorProblem(float e) {
-  if (!std::isfinite(e)) return kNotFinite;
-  return e >= 0.0f ? nullptr : "negative";
+
+bool isUnit(std::string_view unit) {
+  return !unit.empty() && unit.size() < sizeof(VplColumnEntry::unit) &&
+         std::all_of(unit.begin(), unit.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
 }  // namespace
 
-size_t columnCount(VplStage stage) {
-  return static_cast<size_t>(
-      std::count_if(kVplColumns.begin(), kVplColumns.end(),
-                    [&](const VplColumnInfo& column) { return column.since <= stage; }));
-}
-
-uint64_t rowBytes(VplStage stage) {
+uint64_t rowBytes(const std::vector<VplColumnView>& columns) {
   uint64_t bytes = 0;
-  for (size_t i = 0; i < columnCount(stage); ++i) bytes += kVplColumns[i].rowBytes();
+  for (const VplColumnView& column : columns) bytes += column.rowBytes();
   return bytes;
 }
 
-VplLayout makeLayout(VplStage stage, uint64_t count, uint64_t provenanceBytes) {
+VplLayout makeLayout(const std::vector<VplColumnView>& columns, uint64_t count,
+                     uint64_t provenanceBytes) {
   VplLayout layout;
-  const size_t columns = columnCount(stage);
-  layout.provenanceOffset = sizeof(VplHeader) + columns * sizeof(VplColumnEntry);
+  layout.provenanceOffset = sizeof(VplHeader) + columns.size() * sizeof(VplColumnEntry);
   uint64_t offset = alignUp(layout.provenanceOffset + provenanceBytes);
-  for (size_t i = 0; i < columns; ++i) {
-    const VplColumnInfo& column = kVplColumns[i];
+  for (const VplColumnView& column : columns) {
     const uint64_t bytes = count * column.rowBytes();
     layout.directory.push_back({padded<24>(column.name), column.type, column.components, offset,
                                 bytes, padded<16>(column.unit)});
@@ -88,21 +87,49 @@ VplLayout makeLayout(VplStage stage, uint64_t count, uint64_t provenanceBytes) {
   return layout;
 }
 
-std::optional<BadValue> findBadValue(const VplTable& table) {
-  auto bad = findIn(table.position, 0, positionProblem);
-  if (!bad) bad = findIn(table.normal, 1, normalProblem);
-  if (!bad) bad = findIn(table.albedo, 2, albedoProblem);
-  if (!bad) bad = findIn(table.radius, 4, radiusProblem);
-  if (!bad) bad = findIn(table.flux, 5, fluxProblem);
-  if (!bad) bad = findIn(table.relativeError, 7, relativeErrorProblem);
-  if (!bad) bad = findIn(table.emitPosition, 8, positionProblem);
-  if (!bad) bad = findIn(table.emitNormal, 9, normalProblem);
-  if (!bad) bad = findIn(table.firstBounceFlux, 10, fluxProblem);
-  for (size_t row = 0; !bad && row < table.firstBounceFlux.size(); ++row) {
-    const Vec3 rest = table.flux[row] - table.firstBounceFlux[row];
-    if (std::min({rest.x, rest.y, rest.z}) < 0.0f) bad = BadValue{10, row, "above the flux"};
+VplLayout makeLayout(VplStage stage, uint64_t count, uint64_t provenanceBytes) {
+  VplTable table;
+  table.stage = stage;
+  return makeLayout(columnsOf(table), count, provenanceBytes);
+}
+
+std::optional<BadField> findBadField(const VplExtraColumn& column,
+                                     std::span<const VplExtraColumn> earlier) {
+  if (!isExtraName(column.name)) {
+    return BadField{offsetof(VplColumnEntry, name),
+                    "a strategy's column needs a name such as rich.lobes: small letters, digits, _ "
+                    "and -, one dot, at most 23 bytes"};
   }
-  return bad;
+  if (std::any_of(earlier.begin(), earlier.end(),
+                  [&](const VplExtraColumn& other) { return other.name == column.name; })) {
+    return BadField{offsetof(VplColumnEntry, name), "a second column " + column.name};
+  }
+  if (column.components < 1 || column.components > kMaxExtraComponents) {
+    return BadField{offsetof(VplColumnEntry, components),
+                    "column " + column.name + " has " + std::to_string(column.components) +
+                        " components, not 1 to " + std::to_string(kMaxExtraComponents)};
+  }
+  if (!isUnit(column.unit)) {
+    return BadField{offsetof(VplColumnEntry, unit),
+                    "the unit of column " + column.name + " is not 1 to 15 bytes of plain ASCII"};
+  }
+  return std::nullopt;
+}
+
+std::optional<BadValue> findBadValue(const VplTable& table) {
+  size_t index = 0;
+  for (const VplColumn& column : standardColumns(table.stage)) {
+    const auto bad =
+        std::visit([&](auto member) { return findIn(table, table.*member, index, column.check); },
+                   column.member);
+    if (bad) return bad;
+    ++index;
+  }
+  for (const VplExtraColumn& extra : table.extras) {
+    if (const auto bad = findNotFinite(extra, index)) return bad;
+    ++index;
+  }
+  return std::nullopt;
 }
 
 uint64_t hashPieces(const std::vector<Bytes>& pieces) {

@@ -1,5 +1,5 @@
-// What reader and writer share: where everything stands, and which values are right. Internal to
-// vpl_read.cpp and vpl_write.cpp.
+// What reader and writer share: where everything stands, and what may be in a file. Internal to
+// vpl_opening.cpp, vpl_read.cpp and vpl_write.cpp.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,8 @@
 
 namespace bnvpl {
 
-// Columns that a file of the stage has: the first ones of kVplColumns.
-size_t columnCount(VplStage stage);
-
-// Bytes of one row over all columns of the stage.
-uint64_t rowBytes(VplStage stage);
+// Bytes of one row over all columns.
+uint64_t rowBytes(const std::vector<VplColumnView>& columns);
 
 struct VplLayout {
   std::vector<VplColumnEntry> directory;
@@ -25,36 +22,30 @@ struct VplLayout {
   uint64_t fileBytes = 0;
 };
 
-// Where a file of this shape has its parts. count * rowBytes(stage) and provenanceBytes must each
-// be at most 2^62, which the size of any real file is: then no sum overflows.
+// Where a file with these columns has its parts; their values are not looked at. count * rowBytes()
+// and provenanceBytes must each be at most 2^62, which the size of any real file is: then no sum
+// overflows.
+VplLayout makeLayout(const std::vector<VplColumnView>& columns, uint64_t count,
+                     uint64_t provenanceBytes);
+// The same of a file of the stage without columns of strategies.
 VplLayout makeLayout(VplStage stage, uint64_t count, uint64_t provenanceBytes);
 
 constexpr uint64_t alignUp(uint64_t offset) {
   return (offset + kVplAlign - 1) / kVplAlign * kVplAlign;
 }
 
-// Calls visit(column) with each column of the table that belongs to its stage, in file order.
-// Table is VplTable or const VplTable.
-template <typename Table, typename Visit>
-void forEachColumn(Table& table, const Visit& visit) {
-  visit(table.position);
-  visit(table.normal);
-  visit(table.albedo);
-  visit(table.id);
-  if (table.stage < VplStage::Eliminated) return;
-  visit(table.radius);
-  if (table.stage < VplStage::Lit) return;
-  visit(table.flux);
-  visit(table.photons);
-  visit(table.relativeError);
-  visit(table.emitPosition);
-  visit(table.emitNormal);
-  visit(table.firstBounceFlux);
-}
+// Why a strategy's column must not stand behind `earlier` in a file: which field of its directory
+// entry is wrong, and how. Its values are not looked at.
+struct BadField {
+  size_t offset;  // in VplColumnEntry
+  std::string problem;
+};
+std::optional<BadField> findBadField(const VplExtraColumn& column,
+                                     std::span<const VplExtraColumn> earlier);
 
 // The first value, in file order, that has no business in a .vpl file.
 struct BadValue {
-  size_t column;  // in kVplColumns
+  size_t column;  // in columnsOf(table)
   size_t row;
   std::string problem;
 };

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/vec3.h"
@@ -11,32 +13,40 @@ namespace bnvpl {
 
 enum class VplStage : uint32_t { Candidates = 1, Eliminated = 2, Lit = 3 };
 
+// A column that a strategy adds under its own name. Tools that do not know it keep it.
+struct VplExtraColumn {
+  std::string name;         // "rich.lobes": README.md, "Columns of a strategy"
+  std::string unit = "1";   // as in README.md, "Column directory"
+  uint32_t components = 1;  // values of a row
+  std::variant<std::vector<float>, std::vector<uint32_t>, std::vector<uint64_t>> values;
+
+  friend bool operator==(const VplExtraColumn&, const VplExtraColumn&) = default;
+};
+
 // Owns the columns. Every column of the stage has size() rows; the later stages' columns are empty.
+// What the columns mean, their units and valid values: vpl_columns.h.
 struct VplTable {
   VplStage stage = VplStage::Candidates;
 
   // since Candidates
-  std::vector<Vec3> position;  // world units
-  std::vector<Vec3> normal;    // geometric, unit length, on the lit side
-  std::vector<Vec3> albedo;    // fraction of incident flux that leaves again, linear sRGB, 0..1
-  std::vector<uint32_t> id;    // row in path order at placement; survives every stage
+  std::vector<Vec3> position, normal, albedo;
+  std::vector<uint32_t> id;
 
   // since Eliminated
-  std::vector<float>
-      radius;         // r_max of this VPL, world units: it stands for 2 sqrt(3) radius^2 of surface
-  double rMax = 0.0;  // r_max that belongs to areaEstimate (uniform density), world units
+  std::vector<float> radius;
+  double rMax = 0.0;          // r_max that belongs to areaEstimate (uniform density), world units
   double areaEstimate = 0.0;  // indirectly visible area, world units squared
 
   // since Lit
-  double reach =
-      0.0;  // how far each VPL received photons, in units of its radius; 0: placed from lights
-  std::vector<Vec3> flux;         // W leaving this VPL's share of the surface, linear sRGB
-  std::vector<uint64_t> photons;  // deposits received
-  std::vector<float>
-      relativeError;               // standard error of the flux over the flux, 0 where photons = 0
-  std::vector<Vec3> emitPosition;  // where its light leaves from, near its position; world units
-  std::vector<Vec3> emitNormal;    // geometric, unit length, there
-  std::vector<Vec3> firstBounceFlux;  // W, the part of flux that came straight from a light
+  // How far each VPL received photons, in units of its radius; 0: placed from the lights.
+  double reach = 0.0;
+  std::vector<Vec3> flux;
+  std::vector<uint64_t> photons;
+  std::vector<float> relativeError;
+  std::vector<Vec3> emitPosition, emitNormal;
+  std::vector<Vec3> firstBounceFlux;
+
+  std::vector<VplExtraColumn> extras;  // in the order in which they were added
 
   uint64_t sceneHash = 0;  // content hash of the scene that the rows lie on
   std::string provenance;  // JSON array, oldest stage first; see formats/README.md
@@ -44,5 +54,9 @@ struct VplTable {
 
   size_t size() const { return position.size(); }
 };
+
+// The given rows in the given order, with all their columns, a strategy's too, and with what the
+// table says of them as a whole; the checksum is 0. Each of `rows` must be below table.size().
+VplTable keepRows(const VplTable& table, std::span<const uint32_t> rows);
 
 }  // namespace bnvpl

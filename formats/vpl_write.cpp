@@ -18,39 +18,46 @@ std::vector<Bytes> filePieces(const VplHeader& header, const VplLayout& layout,
     pieces.push_back(Bytes(kZeros).first(alignUp(bytes.size()) - bytes.size()));
   };
   addPadded(std::as_bytes(std::span(provenance)));
-  forEachColumn(table, [&](const auto& column) { addPadded(std::as_bytes(std::span(column))); });
+  for (const VplColumnView& column : columnsOf(table)) addPadded(column.bytes);
   pieces.push_back(bytesOf(kVplEndMark));
   return pieces;
 }
 
-void refuseUnwritable(const fs::path& file, const VplTable& table, const std::string& provenance) {
-  size_t index = 0;
-  forEachColumn(table, [&](const auto& column) {
-    if (column.size() != table.size()) {
-      throw std::logic_error(file.string() + ": column " + std::string(kVplColumns[index].name) +
-                             " has " + std::to_string(column.size()) + " rows, position has " +
-                             std::to_string(table.size()));
+// Which column is not as long as the table says, or is none that its stage or a strategy can have.
+std::string columnProblem(const VplTable& table) {
+  if (table.extras.size() > kMaxExtraColumns) return "too many columns of strategies";
+  for (size_t i = 0; i < table.extras.size(); ++i) {
+    const auto bad = findBadField(table.extras[i], std::span(table.extras).first(i));
+    if (bad) return bad->problem;
+  }
+  for (const VplColumnView& column : columnsOf(table)) {
+    if (column.bytes.size() != table.size() * column.rowBytes()) {
+      return "column " + std::string(column.name) + " has " + std::to_string(column.bytes.size()) +
+             " bytes, expected " + std::to_string(table.size()) + " rows of " +
+             std::to_string(column.rowBytes());
     }
-    ++index;
-  });
-  const size_t ofLit = table.flux.size() + table.photons.size() + table.relativeError.size() +
-                       table.emitPosition.size() + table.emitNormal.size() +
-                       table.firstBounceFlux.size();
-  const size_t surplus = (table.stage < VplStage::Eliminated ? table.radius.size() : 0) +
-                         (table.stage < VplStage::Lit ? ofLit : 0);
-  if (surplus > 0) {
-    throw std::logic_error(file.string() + ": columns beyond stage " +
-                           std::string(stageName(table.stage)) + " are filled");
   }
-  if (const auto bad = findBadValue(table)) {
-    throw std::logic_error(file.string() + ": column " +
-                           std::string(kVplColumns[bad->column].name) + ", row " +
-                           std::to_string(bad->row) + ": " + bad->problem +
-                           "; not written, the old file, if any, is unchanged");
+  for (const VplColumn& column :
+       std::span(kVplColumns).subspan(standardColumns(table.stage).size())) {
+    if (std::visit([&](auto member) { return !(table.*member).empty(); }, column.member)) {
+      return "column " + std::string(column.name) + " is beyond stage " +
+             std::string(stageName(table.stage));
+    }
   }
-  const auto require = [&](bool valid, const char* problem) {
+  return "";
+}
+
+void refuseUnwritable(const fs::path& file, const VplTable& table, const std::string& provenance) {
+  const auto require = [&](bool valid, const std::string& problem) {
     if (!valid) throw std::logic_error(file.string() + ": " + problem);
   };
+  const std::string problem = columnProblem(table);
+  require(problem.empty(), problem);
+  if (const auto bad = findBadValue(table)) {
+    require(false, "column " + std::string(columnsOf(table)[bad->column].name) + ", row " +
+                       std::to_string(bad->row) + ": " + bad->problem +
+                       "; not written, the old file, if any, is unchanged");
+  }
   require(isMeasure(table.rMax), "r_max is negative or not finite");
   require(isMeasure(table.reach), "reach is negative or not finite");
   require(isMeasure(table.areaEstimate), "area is negative or not finite");
@@ -62,7 +69,7 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
 void writeVpl(AtomicFile& file, const VplTable& table) {
   const std::string provenance = table.provenance.empty() ? "[]" : table.provenance;
   refuseUnwritable(file.target(), table, provenance);
-  const VplLayout layout = makeLayout(table.stage, table.size(), provenance.size());
+  const VplLayout layout = makeLayout(columnsOf(table), table.size(), provenance.size());
   VplHeader header;
   header.stage = table.stage;
   header.count = table.size();

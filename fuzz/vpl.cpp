@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "formats/provenance.h"
 #include "formats/vpl_io.h"
 #include "formats/vpl_layout.h"
 #include "fuzz/fuzz.h"
@@ -20,6 +21,19 @@ void put(std::string& bytes, uint64_t at, const T& value) {
   std::memcpy(bytes.data() + at, &value, sizeof(value));
 }
 
+// Bytes of the input that become the strategies' columns of the repaired file.
+std::vector<VplExtraColumn> extrasOf(std::string_view input) {
+  std::vector<VplExtraColumn> extras(static_cast<unsigned char>(input[60]) % 4);
+  for (size_t i = 0; i < extras.size(); ++i) {
+    extras[i].name = "fuzz.column" + std::to_string(i);
+    const auto choice = static_cast<unsigned char>(input[61 + i]);
+    extras[i].components = 1 + choice / 3 % 8;
+    if (choice % 3 == 1) extras[i].values = std::vector<uint32_t>();
+    if (choice % 3 == 2) extras[i].values = std::vector<uint64_t>();
+  }
+  return extras;
+}
+
 std::string repaired(std::string_view input) {
   if (input.size() < sizeof(VplHeader)) return {};
   VplHeader header;
@@ -27,10 +41,15 @@ std::string repaired(std::string_view input) {
   header.magic = kVplMagic;
   header.version = kVplVersion;
   header.stage = static_cast<VplStage>(1 + static_cast<uint32_t>(header.stage) % 3);
-  header.columnCount = static_cast<uint32_t>(columnCount(header.stage));
-  header.count %= input.size() / rowBytes(header.stage) + 2;
+  header.rowKind = 0;
+  VplTable shape;
+  shape.stage = header.stage;
+  shape.extras = extrasOf(input);
+  const std::vector<VplColumnView> columns = columnsOf(shape);
+  header.columnCount = static_cast<uint32_t>(columns.size());
+  header.count %= input.size() / rowBytes(columns) + 2;
   header.provenanceBytes %= input.size();
-  const VplLayout layout = makeLayout(header.stage, header.count, header.provenanceBytes);
+  const VplLayout layout = makeLayout(columns, header.count, header.provenanceBytes);
   header.fileBytes = layout.fileBytes;
   header.checksum = 0;
 
@@ -53,24 +72,27 @@ std::string repaired(std::string_view input) {
 }
 
 void requireSane(const VplTable& t) {
-  const auto finite = [](const auto& column) {
-    return std::all_of(column.begin(), column.end(), isFinite);
-  };
-  require(finite(t.position) && finite(t.normal) && finite(t.albedo) && finite(t.flux) &&
-              finite(t.emitPosition) && finite(t.emitNormal) && finite(t.firstBounceFlux),
-          "vectors are finite");
+  const std::vector<VplColumnView> columns = columnsOf(t);
+  for (const VplColumnView& column : columns) {
+    require(column.bytes.size() == t.size() * column.rowBytes(), "every column has all rows");
+    for (size_t i = 0; i < t.size() * column.components; ++i)
+      require(std::isfinite(column.value(0, i)), "values are finite");
+  }
+  require(columns.size() == standardColumns(t.stage).size() + t.extras.size(),
+          "the columns of the stage and those of strategies");
   for (const Vec3 n : t.normal) require(std::fabs(length(n) - 1.0f) < 0.01f, "normals are unit");
-  for (const float r : t.radius) require(std::isfinite(r) && r > 0.0f, "radii are above 0");
-  for (const float e : t.relativeError) require(std::isfinite(e) && e >= 0.0f, "errors are >= 0");
-  for (const Vec3 f : t.flux) require(std::min({f.x, f.y, f.z}) >= 0.0f, "flux is >= 0");
+  for (const float r : t.radius) require(r > 0.0f, "radii are above 0");
+  for (const float e : t.relativeError) require(e >= 0.0f, "errors are >= 0");
+  for (const Vec3 f : t.flux) require(minComponent(f) >= 0.0f, "flux is >= 0");
   require(t.rMax >= 0.0 && t.areaEstimate >= 0.0 && t.reach >= 0.0, "measures are >= 0");
-  const size_t n = t.size(), e = t.stage >= VplStage::Eliminated ? n : 0,
-               l = t.stage >= VplStage::Lit ? n : 0;
-  require(t.normal.size() == n && t.albedo.size() == n && t.id.size() == n &&
-              t.radius.size() == e && t.flux.size() == l && t.photons.size() == l &&
-              t.relativeError.size() == l && t.emitPosition.size() == l &&
-              t.emitNormal.size() == l && t.firstBounceFlux.size() == l,
-          "every column of the stage has all rows");
+}
+
+// What is kept of a table is again one that can be written; two rows, the last one first.
+void requireKeepable(const InputFolder& folder, const VplTable& table) {
+  if (table.size() == 0) return;
+  const std::vector<uint32_t> rows{static_cast<uint32_t>(table.size() - 1), 0};
+  writeVpl(folder.at("kept.vpl"), keepRows(table, rows));
+  require(readVpl(folder.at("kept.vpl")).position[1] == table.position[0], "rows are kept");
 }
 
 void read(const InputFolder& folder, const std::string& bytes) {
@@ -82,13 +104,10 @@ void read(const InputFolder& folder, const std::string& bytes) {
   require(header.count == table.size(), "the header counts the rows");
 
   writeVpl(folder.at("out.vpl"), table);
-  if (header.version == kVplVersion) {
-    require(folder.read("out.vpl") == bytes, "reading and writing back gives the same bytes");
-  } else {
-    require(readVpl(folder.at("out.vpl")).position == table.position,
-            "an older version has the same rows in the newest");
-  }
+  require(folder.read("out.vpl") == bytes, "reading and writing back gives the same bytes");
+  requireKeepable(folder, table);
 
+  makerOf(table.provenance);
   for (const StageRecord& record : parseProvenance(file, table.provenance)) describeRecord(record);
   extendProvenance(table.provenance, stageRecord("fuzz", Json::object(), Json::object()));
 }

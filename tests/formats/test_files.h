@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/errors.h"
 #include "formats/vpl_format.h"
@@ -48,6 +51,70 @@ inline void writeAll(const fs::path& file, const std::string& bytes) {
 template <typename T>
 void poke(std::string& bytes, size_t offset, const T& value) {
   std::memcpy(bytes.data() + offset, &value, sizeof(value));
+}
+
+// A value that the column may hold, another one for each column and row as far as its check allows.
+inline Vec3 validValue(const VplColumn& column, size_t index, const VplTable& table, size_t row) {
+  const auto x = static_cast<float>(row), c = static_cast<float>(index);
+  const Vec3 choices[] = {Vec3(x, c - x, 0.1f * x + c), Vec3(x + c, 2.0f * x + 0.5f, c * x + 0.5f),
+                          Vec3(1.0f / (x + c + 1.0f), 0.5f, 0.0f),
+                          Vec3(std::sin(x + c), 0.0f, std::cos(x + c)), Vec3(0.0f)};
+  for (const Vec3 v : choices) {
+    if (column.check.problem == nullptr || column.check.problem(v, table, row) == nullptr) return v;
+  }
+  throw std::logic_error("no value suits column " + std::string(column.name));
+}
+
+// `count` rows with valid values in all columns of the stage.
+inline VplTable validRows(VplStage stage, size_t count) {
+  VplTable table;
+  table.stage = stage;
+  size_t index = 0;
+  for (const VplColumn& column : standardColumns(stage)) {
+    for (size_t row = 0; row < count; ++row) {
+      const Vec3 value = validValue(column, index, table, row);
+      if (column.components() == 3) {
+        (table.*std::get<0>(column.member)).push_back(value);
+      } else if (column.type() == VplType::F32) {
+        (table.*std::get<1>(column.member)).push_back(validValue(column, index, table, row).y);
+      } else if (column.type() == VplType::U32) {
+        (table.*std::get<2>(column.member)).push_back(static_cast<uint32_t>(row * 3 + index));
+      } else {
+        (table.*std::get<3>(column.member)).push_back((row << 33) + index);
+      }
+    }
+    ++index;
+  }
+  return table;
+}
+
+// Columns of two strategies, of every type.
+inline std::vector<VplExtraColumn> someExtras(size_t rows) {
+  VplExtraColumn lobes{"rich.lobes", "W", 4, std::vector<float>()};
+  VplExtraColumn cluster{"light-slice.cluster", "-", 1, std::vector<uint32_t>()};
+  VplExtraColumn seeds{"rich.seeds", "1", 2, std::vector<uint64_t>()};
+  for (size_t row = 0; row < rows; ++row) {
+    for (size_t k = 0; k < 4; ++k)
+      std::get<0>(lobes.values).push_back(0.25f * static_cast<float>(k) - static_cast<float>(row));
+    std::get<1>(cluster.values).push_back(static_cast<uint32_t>(row) + 7);
+    for (size_t k = 0; k < 2; ++k) std::get<2>(seeds.values).push_back((row << 33) + k);
+  }
+  return {lobes, cluster, seeds};
+}
+
+// All columns hold the same values, and the tables say the same of themselves; not the checksum.
+inline void expectSame(const VplTable& a, const VplTable& b) {
+  EXPECT_EQ(a.stage, b.stage);
+  EXPECT_EQ(a.rMax, b.rMax);
+  EXPECT_EQ(a.areaEstimate, b.areaEstimate);
+  EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(a.sceneHash, b.sceneHash);
+  EXPECT_EQ(a.provenance, b.provenance);
+  EXPECT_EQ(a.extras, b.extras);
+  for (const VplColumn& column : kVplColumns) {
+    EXPECT_TRUE(std::visit([&](auto member) { return a.*member == b.*member; }, column.member))
+        << column.name;
+  }
 }
 
 // Two rows, every value exact in binary, so that the bytes can be checked by hand.

@@ -81,19 +81,23 @@ TEST_F(VplDamage, EverySingleBitFlipIsRefused) {
 
 TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(0, 'x'), "byte 0: not a .vpl file");
-  EXPECT_SAYS(complaintAbout(8, 1u), "byte 8: version 1 of lit VPLs does not");
-  EXPECT_SAYS(complaintAbout(8, 3u), "byte 8: version 3, this build reads up to 2");
+  EXPECT_SAYS(complaintAbout(8, 2u), "byte 8: version 2, expected 3; rerun vpl-place and every");
+  EXPECT_SAYS(complaintAbout(8, 4u), "byte 8: version 4, expected 3; use the bnvpl that wrote it");
   EXPECT_SAYS(complaintAbout(8, 0u), "byte 8: version 0");
   EXPECT_SAYS(complaintAbout(12, 0u), "byte 12: unknown stage 0");
   EXPECT_SAYS(complaintAbout(12, 4u), "byte 12: unknown stage 4");
-  EXPECT_SAYS(complaintAbout(12, 2u), "byte 56: 11 columns");
+  EXPECT_SAYS(complaintAbout(12, 2u), "byte 448: a strategy's column needs a name");
   EXPECT_SAYS(complaintAbout(32, uint64_t{200}), "byte 16: 2 rows make a file of");
   EXPECT_SAYS(complaintAbout(32, ~uint64_t{0}), "byte 32: provenance does not fit");
   EXPECT_SAYS(complaintAbout(40, uint64_t{1607}), "byte 1607: bytes after the end");
   EXPECT_SAYS(complaintAbout(40, uint64_t{1609}), "byte 1608: cut short");
   EXPECT_SAYS(complaintAbout(40, ~uint64_t{0}), "byte 1608: cut short");
   EXPECT_SAYS(complaintAbout(56, 7u), "byte 56: 7 columns");
-  EXPECT_SAYS(complaintAbout(60, 1u), "byte 60: reserved");
+  EXPECT_SAYS(complaintAbout(56, 12u), "byte 856: unknown type");
+  EXPECT_SAYS(complaintAbout(56, 24u), "byte 56: 24 columns do not fit into the file");
+  EXPECT_SAYS(complaintAbout(56, 11u + 257), "byte 56: 268 columns, a file of stage lit has 11");
+  EXPECT_SAYS(complaintAbout(56, ~0u), "byte 56: 4294967295 columns");
+  EXPECT_SAYS(complaintAbout(60, 1u), "byte 60: row kind 1, this build knows 0, points");
   EXPECT_SAYS(complaintAbout(64, -1.0), "byte 64: r_max");
   EXPECT_SAYS(complaintAbout(64, std::numeric_limits<double>::quiet_NaN()), "byte 64: r_max");
   EXPECT_SAYS(complaintAbout(72, std::numeric_limits<double>::infinity()), "byte 72: area");
@@ -165,8 +169,9 @@ TEST_F(VplDamage, WrongValuesAreRefusedAtTheirByte) {
   EXPECT_SAYS(complaintAbout(columnOffset(4) + 4, 0.0f), "column radius, row 1: not above 0");
   EXPECT_SAYS(complaintAbout(at(5, 0, 0), -1.0f), "column flux, row 0: negative");
   EXPECT_SAYS(complaintAbout(columnOffset(7), nan), "column relative_error, row 0: not a finite");
-  EXPECT_SAYS(complaintAbout(at(10, 1, 2), -1.0f), "column straight_flux, row 1: negative");
-  EXPECT_SAYS(complaintAbout(at(10, 0, 0), 1.5f), "column straight_flux, row 0: above the flux");
+  EXPECT_SAYS(complaintAbout(at(10, 1, 2), -1.0f), "column first_bounce_flux, row 1: negative");
+  EXPECT_SAYS(complaintAbout(at(10, 0, 0), 1.5f),
+              "column first_bounce_flux, row 0: above the flux");
   EXPECT_EQ(complaintAbout(at(2, 0, 0), 1.00005f), "");  // within the tolerance
 }
 

@@ -37,6 +37,25 @@ TEST_F(Info, DescribesALitFile) {
   EXPECT_TRUE(contains(text, "relative_error")) << text;
 }
 
+TEST_F(Info, ListsTheColumnsOfStrategies) {
+  VplTable table = threeRows(VplStage::Eliminated);
+  table.extras = {{"rich.lobes", "W", 2, std::vector<float>{0, 1, 2, 3, 4, 5}},
+                  {"rich.basis", "1", 6, std::vector<uint32_t>(18, 7)},
+                  {"ward.order", "-", 1, std::vector<uint64_t>{3, 4, 5}}};
+  writeVpl(at("v.vpl"), table);
+  const Json info = describeFile(at("v.vpl"));
+  EXPECT_EQ(columnOf(info, "rich.lobes.1")["mean"], 3.0);
+  EXPECT_EQ(columnOf(info, "rich.lobes.1")["unit"], "W");
+  EXPECT_EQ(columnOf(info, "rich.basis[6]")["max"], 7.0);
+  EXPECT_EQ(info["strategy_columns"][1]["components"], 6);
+  EXPECT_TRUE(contains(infoText(info),
+                       "\ncolumns of strategies, which all stages keep: rich.lobes (f32 x 2), "
+                       "rich.basis (u32 x 6), ward.order (u64)\n"));
+  table.extras.clear();
+  writeVpl(at("v.vpl"), table);
+  EXPECT_FALSE(contains(infoText(describeFile(at("v.vpl"))), "strategies"));
+}
+
 TEST_F(Info, EmptyFile) {
   VplTable table;
   writeVpl(at("empty.vpl"), table);

@@ -93,7 +93,7 @@ TEST_F(Plot, ColoursNeedTheirColumn) {
   options.colour = DotColour::Flux;
   VplTable table = tinyRows(scene_.contentHash);
   EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
-                       "vpl-estimate"));
+                       "vpl-estimate or vpl-place --method light"));
   options.colour = DotColour::Radius;
   EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
                        "vpl-eliminate"));

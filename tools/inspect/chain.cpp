@@ -105,18 +105,20 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
   if (!kept && to.size() != from.size())
     return "has " + std::to_string(to.size()) + " rows, " + earlier.file.string() + " " +
            std::to_string(from.size());
+  const auto before = columnsOf(from), after = columnsOf(to);
+  const size_t shared = standardColumns(std::min(from.stage, to.stage)).size();
   std::unordered_map<uint32_t, size_t> rowOf;
   for (size_t row = 0; kept && row < from.size(); ++row) rowOf[from.id[row]] = row;
   for (size_t row = 0; row < to.size(); ++row) {
     const auto found = rowOf.find(to.id[row]);
     const size_t source = kept ? (found == rowOf.end() ? from.size() : found->second) : row;
-    const bool same = source < from.size() && to.id[row] == from.id[source] &&
-                      to.albedo[row] == from.albedo[source] &&
-                      to.position[row] == from.position[source] &&
-                      to.normal[row] == from.normal[source] &&
-                      (kept || (to.radius[row] == from.radius[source] &&
-                                double{length(to.emitPosition[row] - to.position[row])} <=
-                                    to.reach * double{to.radius[row]}));
+    bool same = source < from.size();
+    for (size_t c = 0; same && c < shared; ++c)
+      same = std::ranges::equal(before[c].row(source), after[c].row(row));
+    if (same && !kept) {
+      same = double{length(to.emitPosition[row] - to.position[row])} <=
+             to.reach * double{to.radius[row]};
+    }
     if (!same)
       return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +
              ") is not that of " + earlier.file.string();

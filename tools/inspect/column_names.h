@@ -3,19 +3,18 @@
 
 #include <string>
 
-#include "formats/vpl_format.h"
+#include "formats/vpl_columns.h"
 
 namespace bnvpl {
 
-// "position.x", "flux.g", "radius".
-inline std::string componentName(const VplColumnInfo& info, size_t component,
+// "position.x", "flux.g", "radius"; a strategy's columns are numbered: "rich.lobes.0".
+inline std::string componentName(const VplColumnView& column, size_t component,
                                  char separator = '.') {
-  std::string name(info.name);
-  if (info.components == 1) return name;
-  const bool colour = info.name == "albedo" || info.unit == "W";
-  name += separator;
-  name += (colour ? "rgb" : "xyz")[component];
-  return name;
+  const std::string name(column.name);
+  if (column.components == 1) return name;
+  return name + separator +
+         (column.parts.empty() ? std::to_string(component)
+                               : std::string(1, column.parts[component]));
 }
 
 }  // namespace bnvpl

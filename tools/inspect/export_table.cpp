@@ -1,15 +1,18 @@
 #include "tools/inspect/export_table.h"
 
-#include <cmath>
 #include <cstdio>
+#include <cstring>
 
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
 #include "tools/inspect/column_names.h"
 #include "tools/inspect/display_colour.h"
+#include "tools/inspect/facets.h"
 
 namespace bnvpl {
 namespace {
+
+constexpr size_t kBytesAtOnce = size_t{1} << 20;
 
 template <typename T>
 void appendValue(std::string& bytes, T value) {  // little-endian, as vpl_format.h asserts
@@ -22,74 +25,138 @@ void appendVec(std::string& bytes, Vec3 v) {
   appendValue(bytes, v.z);
 }
 
-std::string plyHeader(const VplTable& table) {
+// What vertices are made of: PLY's own names first, then the columns that have none.
+struct Vertices {
+  explicit Vertices(const VplTable& table)
+      : lit(table.stage == VplStage::Lit),
+        places(lit ? table.emitPosition : table.position),
+        normals(lit ? table.emitNormal : table.normal),
+        colours(displayColours(table)) {
+    const char* place = lit ? "emit_position" : "position";
+    const char* normal = lit ? "emit_normal" : "normal";
+    for (const VplColumnView& column : columnsOf(table)) {
+      if (column.name != place && column.name != normal) others.push_back(column);
+    }
+  }
+  bool lit;
+  const std::vector<Vec3>&places, &normals;
+  std::vector<Vec3> colours;
+  std::vector<VplColumnView> others;
+};
+
+const char* plyType(VplType type) {
+  return type == VplType::F32 ? "float" : type == VplType::U32 ? "uint" : "double";
+}
+
+std::string plyHeader(const VplTable& table, const Vertices& vertices) {
+  const std::string rows = std::to_string(table.size());
   std::string header = "ply\nformat binary_little_endian 1.0\ncomment vpl-inspect, " +
-                       std::string(stageName(table.stage)) +
-                       " rows, lengths in scene units\nelement vertex " +
-                       std::to_string(table.size()) + "\n";
+                       std::string(stageName(table.stage)) + " rows, lengths in scene units\n";
+  if (vertices.lit) {
+    char full[32];
+    std::snprintf(full, sizeof full, "%.6g", double{displayFlux(table)});
+    header +=
+        "comment x y z is emit_position, nx ny nz emit_normal, red green blue the flux over its "
+        "99th percentile, " +
+        std::string(full) + " W, in sRGB\n";
+  } else {
+    header += "comment x y z is position, nx ny nz normal, red green blue the albedo, in sRGB\n";
+  }
+  header += "comment the first " + rows + " vertices are the rows, the others close their facets\n";
+  header += "element vertex " + std::to_string(3 * table.size()) + "\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) {
     header += std::string("property float ") + name + "\n";
   }
   for (const char* name : {"red", "green", "blue"}) {
     header += std::string("property uchar ") + name + "\n";
   }
-  header += "property uint id\n";
-  if (table.stage >= VplStage::Eliminated) header += "property float radius\n";
-  if (table.stage >= VplStage::Lit) {
-    for (const char* name : {"flux_r", "flux_g", "flux_b", "photons", "relative_error",
-                             "straight_flux_r", "straight_flux_g", "straight_flux_b"}) {
-      header += std::string("property float ") + name + "\n";
+  for (const VplColumnView& column : vertices.others) {
+    for (size_t k = 0; k < column.components; ++k) {
+      header += std::string("property ") + plyType(column.type) + " " +
+                componentName(column, k, '_') + "\n";
     }
   }
-  return header + "end_header\n";
+  return header + "element face " + rows + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-}  // namespace
-
-std::string plyBytes(const VplTable& table) {
-  std::string bytes = plyHeader(table);
-  const std::vector<Vec3> colours = displayColours(table);
-  for (size_t i = 0; i < table.size(); ++i) {
-    appendVec(bytes, table.position[i]);
-    appendVec(bytes, table.normal[i]);
-    for (size_t k = 0; k < 3; ++k) appendValue(bytes, toSrgb8(colours[i][k]));
-    appendValue(bytes, table.id[i]);
-    if (table.stage >= VplStage::Eliminated) appendValue(bytes, table.radius[i]);
-    if (table.stage >= VplStage::Lit) {
-      appendVec(bytes, table.flux[i]);
-      appendValue(bytes, static_cast<float>(table.photons[i]));
-      appendValue(bytes, table.relativeError[i]);
-      appendVec(bytes, table.firstBounceFlux[i]);
+void appendVertex(std::string& bytes, const Vertices& vertices, size_t row, Vec3 place) {
+  appendVec(bytes, place);
+  appendVec(bytes, vertices.normals[row]);
+  for (size_t k = 0; k < 3; ++k) appendValue(bytes, toSrgb8(vertices.colours[row][k]));
+  for (const VplColumnView& column : vertices.others) {
+    if (column.type == VplType::U64) {  // which PLY does not have
+      for (size_t k = 0; k < column.components; ++k) appendValue(bytes, column.value(row, k));
+    } else {
+      const auto values = column.row(row);
+      bytes.append(reinterpret_cast<const char*>(values.data()), values.size());
     }
   }
-  return bytes;
 }
 
-std::string csvText(const VplTable& table) {
-  const auto infos = columnInfo(table.stage);
+void writePly(const VplTable& table, AtomicFile& output) {
+  const Vertices vertices(table);
+  const std::vector<float> legs = facetLegs(table, vertices.places);
+  std::string bytes = plyHeader(table, vertices);
+  const auto each = [&](const auto& append) {
+    for (size_t row = 0; row < table.size(); ++row) {
+      append(row);
+      if (bytes.size() < kBytesAtOnce) continue;
+      output.write(bytes);
+      bytes.clear();
+    }
+  };
+  each([&](size_t row) { appendVertex(bytes, vertices, row, vertices.places[row]); });
+  each([&](size_t row) {
+    for (const Vec3 corner : facetCorners(vertices.places[row], vertices.normals[row], legs[row]))
+      appendVertex(bytes, vertices, row, corner);
+  });
+  each([&](size_t row) {
+    const size_t corner = table.size() + 2 * row;
+    appendValue(bytes, uint8_t{3});
+    for (const size_t vertex : {row, corner, corner + 1})
+      appendValue(bytes, static_cast<int32_t>(vertex));
+  });
+  output.write(bytes);
+}
+
+void appendCell(std::string& text, const VplColumnView& column, size_t row, size_t component) {
+  char value[32];
+  if (column.type == VplType::F32) {
+    std::snprintf(value, sizeof value, "%.9g", column.value(row, component));
+  } else {
+    uint64_t whole = 0;  // little-endian: a u32 fills the lower half
+    const size_t size = sizeOf(column.type);
+    std::memcpy(&whole, column.row(row).data() + component * size, size);
+    std::snprintf(value, sizeof value, "%llu", static_cast<unsigned long long>(whole));
+  }
+  text += value;
+}
+
+void writeCsv(const VplTable& table, AtomicFile& output) {
+  const std::vector<VplColumnView> columns = columnsOf(table);
   std::string text;
-  for (const VplColumnInfo& info : infos) {
-    for (size_t k = 0; k < info.components; ++k) {
-      text += (text.empty() ? "" : ",") + componentName(info, k, '_');
-    }
-  }
-  text += '\n';
-  for (size_t row = 0; row < table.size(); ++row) {
+  const auto eachCell = [&](const auto& append) {
     bool first = true;
-    for (size_t c = 0; c < infos.size(); ++c) {
-      for (size_t k = 0; k < infos[c].components; ++k) {
-        char value[32];
-        std::snprintf(value, sizeof value, infos[c].type == VplType::F32 ? "%.9g" : "%.0f",
-                      columnValue(table, c, row, k));
+    for (const VplColumnView& column : columns) {
+      for (size_t k = 0; k < column.components; ++k) {
         if (!first) text += ',';
-        text += value;
+        append(column, k);
         first = false;
       }
     }
     text += '\n';
+  };
+  eachCell([&](const VplColumnView& column, size_t k) { text += componentName(column, k, '_'); });
+  for (size_t row = 0; row < table.size(); ++row) {
+    eachCell([&](const VplColumnView& column, size_t k) { appendCell(text, column, row, k); });
+    if (text.size() < kBytesAtOnce) continue;
+    output.write(text);
+    text.clear();
   }
-  return text;
+  output.write(text);
 }
+
+}  // namespace
 
 void requireExportable(const fs::path& output) {
   const fs::path extension = output.extension();
@@ -99,7 +166,10 @@ void requireExportable(const fs::path& output) {
 
 void exportTable(const VplTable& table, AtomicFile& output) {
   requireExportable(output.target());
-  output.write(output.target().extension() == ".ply" ? plyBytes(table) : csvText(table));
+  if (output.target().extension() == ".ply")
+    writePly(table, output);
+  else
+    writeCsv(table, output);
 }
 
 }  // namespace bnvpl

@@ -38,18 +38,35 @@ Json rangeJson(const std::string& name, const Range& range) {
   return json;
 }
 
+// Of columns with more components than people read, one range over all of them.
 Json columnsJson(const VplTable& table) {
+  constexpr uint32_t kMaxListed = 4;
   Json columns = Json::array();
-  const auto infos = columnInfo(table.stage);
-  for (size_t c = 0; c < infos.size(); ++c) {
-    for (size_t k = 0; k < infos[c].components; ++k) {
-      Range range;
-      for (size_t row = 0; row < table.size(); ++row) range.add(columnValue(table, c, row, k));
-      Json json = rangeJson(componentName(infos[c], k), range);
-      json["unit"] = infos[c].unit;
-      json["meaning"] = infos[c].meaning;
+  for (const VplColumnView& column : columnsOf(table)) {
+    const bool each = column.components <= kMaxListed;
+    std::vector<Range> ranges(each ? column.components : 1);
+    for (size_t row = 0; row < table.size(); ++row) {
+      for (size_t k = 0; k < column.components; ++k) ranges[each ? k : 0].add(column.value(row, k));
+    }
+    for (size_t k = 0; k < ranges.size(); ++k) {
+      Json json =
+          rangeJson(each ? componentName(column, k)
+                         : std::string(column.name) + "[" + std::to_string(column.components) + "]",
+                    ranges[k]);
+      json["unit"] = column.unit;
+      json["meaning"] = column.meaning;
       columns.push_back(std::move(json));
     }
+  }
+  return columns;
+}
+
+Json strategyColumnsJson(const VplTable& table) {
+  Json columns = Json::array();
+  const std::vector<VplColumnView> all = columnsOf(table);
+  for (const VplColumnView& column : std::span(all).last(table.extras.size())) {
+    columns.push_back(
+        {{"name", column.name}, {"type", nameOf(column.type)}, {"components", column.components}});
   }
   return columns;
 }
@@ -90,6 +107,7 @@ Json describeTable(const VplTable& table) {
   if (table.areaEstimate > 0.0) json["area_estimate"] = table.areaEstimate;
   json["provenance"] = provenanceJson(table.provenance);
   json["columns"] = columnsJson(table);
+  if (!table.extras.empty()) json["strategy_columns"] = strategyColumnsJson(table);
   if (table.stage == VplStage::Lit) json["energy_W"] = energyJson(table);
   json["spacing"] = spacingJson(table);
   return json;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -59,10 +60,13 @@ void appendProvenance(std::string& text, const Json& d) {
 }
 
 void appendColumns(std::string& text, const Json& d) {
-  append(text, "%-18s %13s %13s %13s\n", d["format"] == "exr" ? "channel" : "column", "min", "max",
-         "mean");
+  size_t longest = 16;
+  for (const Json& c : d["columns"]) longest = std::max(longest, word(c, "name").size());
+  const int width = static_cast<int>(longest);
+  append(text, "%-*s %13s %13s %13s\n", width + 2, d["format"] == "exr" ? "channel" : "column",
+         "min", "max", "mean");
   for (const Json& c : d["columns"]) {
-    append(text, "  %-16s %13s %13s %13s", word(c, "name").c_str(), number(c["min"]).c_str(),
+    append(text, "  %-*s %13s %13s %13s", width, word(c, "name").c_str(), number(c["min"]).c_str(),
            number(c["max"]).c_str(), number(c["mean"]).c_str());
     const std::string unit = word(c, "unit");
     if (!unit.empty() && unit != "1" && unit != "-") text += "  " + unit;
@@ -71,6 +75,18 @@ void appendColumns(std::string& text, const Json& d) {
     }
     text += "\n";
   }
+}
+
+void appendStrategyColumns(std::string& text, const Json& columns) {
+  text += "columns of strategies, which all stages keep:";
+  std::string separator = " ";
+  for (const Json& c : columns) {
+    text += separator + word(c, "name") + " (" + word(c, "type");
+    if (c["components"] != 1) text += " x " + word(c, "components");
+    text += ")";
+    separator = ", ";
+  }
+  text += "\n";
 }
 
 void appendSpacing(std::string& text, const Json& s) {
@@ -94,6 +110,8 @@ std::string infoText(const Json& description) {
   appendHead(text, description);
   appendProvenance(text, description);
   appendColumns(text, description);
+  if (description.contains("strategy_columns"))
+    appendStrategyColumns(text, description["strategy_columns"]);
   if (description.contains("energy_W")) {
     const Json& e = description["energy_W"];
     append(text, "energy: R %s, G %s, B %s W, mean %s W\n", number(e["R"]).c_str(),

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "formats/tonemap.h"
+#include "formats/vpl_io.h"
 #include "tools/inspect/display_colour.h"
 #include "transport/bsdf.h"
 #include "transport/camera.h"
@@ -79,7 +80,8 @@ std::vector<Vec3> radiusColours(const VplTable& table) {
 std::vector<Vec3> dotColours(const VplTable& table, DotColour colour) {
   if (colour == DotColour::Flux) {
     if (table.stage < VplStage::Lit) {
-      throw InputError("the rows have no flux to colour by; run vpl-estimate first");
+      throw InputError("the rows have no flux to colour by; name a file from " +
+                       std::string(stageTools(VplStage::Lit)));
     }
     return fluxColours(table);
   }
