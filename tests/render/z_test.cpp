@@ -24,8 +24,8 @@ Image noise(uint64_t seed, double mean, double deviation) {
   for (size_t c = 0; c < 3; ++c) {
     for (size_t i = 0; i < image.pixelCount(); ++i) {
       Rng rng(mix64(seed), 3 * i + c);
-      const double radius = std::sqrt(-2.0 * std::log1p(-double{rng.next()}));  // Box and Muller
-      const double normal = radius * std::cos(2.0 * double{kPi} * double{rng.next()});
+      const float u = rng.next(), v = rng.next();  // Box and Muller
+      const double normal = std::sqrt(-2.0 * std::log1p(-double{u})) * std::cos(6.2831853 * v);
       image.channels[c].data[i] = static_cast<float>(mean + deviation * normal);
     }
   }

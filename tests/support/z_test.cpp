@@ -11,7 +11,7 @@
 namespace bnvpl::test {
 namespace {
 
-constexpr std::array<const char*, 3> kChannels{"R", "G", "B"};
+constexpr std::array kChannels{'R', 'G', 'B'};
 
 // Means over the blocks of an image, row by row.
 struct Blocks {
@@ -62,12 +62,12 @@ std::vector<double> valuesOf(const Image& image, const std::string& channel, siz
   return {data.begin(), data.end()};
 }
 
-void keepPixels(const Sums& sums, const std::string& channel, double seeds, ZResult& result) {
-  std::vector<float>& a = result.image.add("a." + channel);
+void keepPixels(const Sums& sums, char channel, double seeds, ZResult& result) {
+  std::vector<float>& a = result.image.add(std::string("a.") + channel);
   for (size_t i = 0; i < a.size(); ++i) a[i] = static_cast<float>(sums.a[i] / seeds);
-  std::vector<float>& b = result.image.add("b." + channel);
+  std::vector<float>& b = result.image.add(std::string("b.") + channel);
   for (size_t i = 0; i < b.size(); ++i) b[i] = static_cast<float>(sums.b[i] / seeds);
-  std::vector<float>& t = result.image.add("t." + channel);
+  std::vector<float>& t = result.image.add(std::string("t.") + channel);
   for (size_t i = 0; i < t.size(); ++i) t[i] = static_cast<float>(sums.t(i, seeds));
 }
 
@@ -119,7 +119,7 @@ ZResult zTest(const Render& a, const Render& b, const ZTest& options) {
         result.block = side;
         result.x = static_cast<int>(i) % across * side,
         result.y = static_cast<int>(i) / across * side;
-        result.channel = kChannels[c][0];
+        result.channel = kChannels[c];
         result.meanA = sums.a[i] / seeds, result.meanB = sums.b[i] / seeds;
       }
     }
