@@ -2,12 +2,10 @@
 #pragma once
 
 #include "core/random.h"
-#include "transport/bsdf.h"
 #include "transport/lights.h"
+#include "transport/walk.h"
 
 namespace bnvpl {
-
-inline constexpr unsigned kMaxSpecular = 64;  // specular scatterings between two rough ones
 
 // Where a photon's flux went, W.
 struct PhotonFate {
@@ -68,27 +66,23 @@ class PhotonWalk {
         return;
       }
       ++fate_.hits;
-      visit(bsdf, arriving, rough_ + chain_ == 0);
+      visit(bsdf, arriving, rough_ + specular_ == 0);
     }
     const float survive = bsdf.reflectance();
     if (rng_.next() >= survive) return;
-    const float specularProbability = bsdf.specularProbability();
-    const bool takeSpecular = rng_.next() < specularProbability;
-    const float probability = takeSpecular ? specularProbability : 1.0f - specularProbability;
+    const LobeChoice lobes = chooseLobes(bsdf, rng_);
+    const bool last = lobes.specular() ? ++specular_ > kMaxSpecular : ++rough_ >= maxBounces_;
     BsdfSample sample;
-    const bool last = takeSpecular ? ++chain_ > kMaxSpecular : ++rough_ >= maxBounces_;
-    if (last || !bsdf.sample(takeSpecular ? LobeGroup::Specular : LobeGroup::Rough,
-                             Transport::Photons, rng_, sample)) {
-      return;
-    }
-    const Vec3 onward = flux_ * sample.weight * (1.0f / (probability * survive));
+    Ray next;
+    if (last || !scatter(rays, bsdf, lobes.group, Transport::Photons, rng_, sample, next)) return;
+    const Vec3 onward = flux_ * sample.weight * (1.0f / (lobes.probability * survive));
     if (!isFinite(onward)) {
       fate_.finite = false;
       return;
     }
     flux_ = onward;
     fate_.absorbed += -flux_;
-    next_ = {rays.offsetOrigin(hit.position, sample.side), sample.wi};
+    next_ = next;
     goesOn_ = true;
   }
 
@@ -96,7 +90,7 @@ class PhotonWalk {
   Rng rng_{0, 0};
   Ray next_;
   Vec3 flux_;
-  unsigned maxBounces_ = 0, rough_ = 0, chain_ = 0;
+  unsigned maxBounces_ = 0, rough_ = 0, specular_ = 0;
   bool goesOn_ = false;
   PhotonFate fate_;
 };

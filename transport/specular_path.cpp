@@ -1,6 +1,6 @@
 #include "transport/specular_path.h"
 
-#include "transport/photon_walk.h"
+#include "transport/walk.h"
 
 namespace bnvpl {
 
@@ -20,7 +20,6 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
   Arrival arrival = start;
   while (true) {
     Vec3& met = end.links == 0 ? end.metFirst : end.metLater;
-    ++end.rays;
     if (end.hit.triangle == kNone) {
       met += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
@@ -29,25 +28,25 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     met += end.throughput * emissionMet(lights, end.hit, arrival);
 
     const Bsdf bsdf(rays.scene(), end.hit);
-    const float specularProbability = bsdf.specularProbability();
-    if (rng.next() >= specularProbability) {
-      end.throughput *= 1.0f / (1.0f - specularProbability);
+    const LobeChoice lobes = chooseLobes(bsdf, rng);
+    end.throughput *= 1.0f / lobes.probability;
+    if (!lobes.specular()) {
       end.rough = bsdf.hasRough();
       return end;
     }
     if (++end.links > kMaxSpecular) return end;
-    end.throughput *= 1.0f / specularProbability;
     if (!bsdf.specularIsDelta()) {
       end.metLater += end.throughput * directLight(rays, lights, bsdf, LobeGroup::Specular,
                                                    LightChoice::One, 1, rng);
     }
-    BsdfSample next;
-    if (!bsdf.sample(LobeGroup::Specular, Transport::Radiance, rng, next)) return end;
-    end.throughput *= next.weight;
-    arrival = {next.pdf, end.hit.position};
-    const Vec3 from = rays.offsetOrigin(end.hit.position, next.side);
-    direction = next.wi;
-    rays.closestHit(from, direction, end.hit);
+    BsdfSample sample;
+    Ray next;
+    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+      return end;
+    end.throughput *= sample.weight;
+    arrival = {sample.pdf, end.hit.position};
+    direction = next.direction;
+    rays.closestHit(next.origin, direction, end.hit);
   }
 }
 

@@ -14,7 +14,6 @@ struct SpecularPath {
   Vec3 metFirst;       // emission met by the first segment
   Vec3 metLater;       // emission met behind chain vertices, and light sampled at sharp ones
   float firstDistance = INFINITY;  // of the first hit, along the ray
-  uint32_t rays = 0;
 };
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/errors.h"
+#include "formats/vpl_io.h"
 
 namespace bnvpl {
 
@@ -11,27 +12,6 @@ namespace {
 
 constexpr std::array kOptions{
     letterFor("-n", countOption("count", "", 0x1p31 - 1, "", "VPLs to keep"))};
-
-VplTable keepRows(const VplTable& from, std::span<const uint32_t> rows) {
-  VplTable to;
-  to.stage = from.stage;
-  to.sceneHash = from.sceneHash;
-  to.provenance = from.provenance;
-  for (const uint32_t row : rows) {
-    to.position.push_back(from.position[row]);
-    to.normal.push_back(from.normal[row]);
-    to.albedo.push_back(from.albedo[row]);
-    to.id.push_back(from.id[row]);
-    if (from.stage < VplStage::Lit) continue;
-    to.flux.push_back(from.flux[row]);
-    to.photons.push_back(from.photons[row]);
-    to.relativeError.push_back(from.relativeError[row]);
-    to.emitPosition.push_back(from.emitPosition[row]);
-    to.emitNormal.push_back(from.emitNormal[row]);
-    to.firstBounceFlux.push_back(from.firstBounceFlux[row]);
-  }
-  return to;
-}
 
 void requireEnough(size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");

@@ -8,13 +8,13 @@
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
 #include "tools/inspect/display_colour.h"
-#include "transport/bsdf.h"
 #include "transport/camera.h"
+#include "transport/walk.h"
 
 namespace bnvpl {
 namespace {
 
-constexpr unsigned kMaxSpecular = 8;          // mirrors and glass behind each other
+constexpr unsigned kMaxMirrors = 8;          // mirrors and glass behind each other
 constexpr float kDim = 0.4f;                  // of the view, so that dots stand out
 constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; where a ray leaves the scene
 constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
@@ -22,7 +22,7 @@ constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
 Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
   Vec3 weight(1.0f);
   SurfacePoint hit;
-  for (unsigned depth = 0; depth <= kMaxSpecular; ++depth) {
+  for (unsigned depth = 0; depth <= kMaxMirrors; ++depth) {
     if (!rays.closestHit(origin, direction, hit)) return weight * kSky;
     const Bsdf bsdf(rays.scene(), hit);
     const Material& material = rays.scene().materials[hit.material];
@@ -32,10 +32,12 @@ Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
       return weight * bsdf.roughAlbedo() * ((0.2f + 0.8f * headlight) * kDim);
     }
     BsdfSample sample;
-    if (!bsdf.sample(LobeGroup::Specular, Transport::Radiance, rng, sample)) return {};
+    Ray next;
+    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+      return {};
     weight = weight * sample.weight;
-    origin = rays.offsetOrigin(hit.position, sample.side);
-    direction = sample.wi;
+    origin = next.origin;
+    direction = next.direction;
   }
   return {};
 }

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "tools/place/path_rows.h"
-#include "transport/photon_walk.h"
+#include "transport/walk.h"
 
 namespace bnvpl::methods::place::camera {
 
@@ -33,8 +33,8 @@ class CameraPath {
       return false;
     }
     const Bsdf bsdf(rays.scene(), hit);
-    const bool takeSpecular = rng_.next() < bsdf.specularProbability();
-    if (!takeSpecular && bsdf.hasRough()) {
+    const LobeChoice lobes = chooseLobes(bsdf, rng_);
+    if (!lobes.specular() && bsdf.hasRough()) {
       if (++rough_ >= 2) chunk.add(bsdf, path_);
       if (rough_ >= depth) {
         ++chunk.complete;
@@ -42,13 +42,11 @@ class CameraPath {
       }
     }
     BsdfSample sample;
-    if ((takeSpecular && ++chain_ > kMaxSpecular) ||
-        !bsdf.sample(takeSpecular ? LobeGroup::Specular : LobeGroup::Rough, Transport::Radiance,
-                     rng_, sample)) {
+    if ((lobes.specular() && ++specular_ > kMaxSpecular) ||
+        !scatter(rays, bsdf, lobes.group, Transport::Radiance, rng_, sample, next_)) {
       ++chunk.absorbed;
       return false;
     }
-    next_ = {rays.offsetOrigin(hit.position, sample.side), sample.wi};
     return true;
   }
 
@@ -56,7 +54,7 @@ class CameraPath {
   uint64_t path_ = 0;
   Rng rng_{0, 0};
   Ray next_;
-  unsigned rough_ = 0, chain_ = 0;
+  unsigned rough_ = 0, specular_ = 0;
 };
 
 // The paths of a chunk, a batch of them together, round by round.

@@ -1,7 +1,7 @@
 #include "tools/render/integrator/path_tracer.h"
 
 #include "tools/render/integrator/camera_vertex.h"
-#include "transport/bsdf.h"
+#include "transport/walk.h"
 
 namespace bnvpl {
 
@@ -27,12 +27,13 @@ RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
     if (rng.next() >= survive) return out;
-    BsdfSample next;
-    if (!bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) return out;
-    throughput *= next.weight * (1.0f / survive);
-    const Vec3 from = rays_.offsetOrigin(vertex.hit.position, next.side);
-    const Arrival arrival{next.pdf, vertex.hit.position};
-    vertex = followSpecularPath(rays_, lights_, from, next.wi, arrival, rng);
+    BsdfSample scattered;
+    Ray next;
+    if (!scatter(rays_, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next))
+      return out;
+    throughput *= scattered.weight * (1.0f / survive);
+    const Arrival arrival{scattered.pdf, vertex.hit.position};
+    vertex = followSpecularPath(rays_, lights_, next.origin, next.direction, arrival, rng);
     sum += throughput * vertex.metFirst;
     if (directOnly) return out;
     out.indirect += throughput * vertex.metLater;

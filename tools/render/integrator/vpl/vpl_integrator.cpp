@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tools/render/integrator/camera_vertex.h"
+#include "transport/walk.h"
 
 namespace bnvpl {
 
@@ -93,7 +94,7 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
       }
       const Vec3 position = from.point().position;
       const auto all = static_cast<float>(extensions_);
-      rays[count] = {rays_.offsetOrigin(position, next.side), next.wi};
+      rays[count] = rayOn(rays_, from.point(), next);
       made[count] = {next.wi,
                      throughput * next.weight * (1.0f / all),
                      {next.pdf * all, position, LightChoice::Each},
@@ -146,15 +147,15 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     }
     out.extended += light;
     out.indirect += light;
-    BsdfSample next;
+    BsdfSample sample;
+    Ray next;
     if (known || links == kMaxExtensions ||
-        !found.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
+        !scatter(rays_, found, LobeGroup::Rough, Transport::Radiance, rng, sample, next)) {
       return;
     }
-    throughput *= next.weight;
-    const Vec3 position = end.hit.position;
-    end = followSpecularPath(rays_, lights_, rays_.offsetOrigin(position, next.side), next.wi,
-                             {next.pdf, position}, rng);
+    throughput *= sample.weight;
+    end = followSpecularPath(rays_, lights_, next.origin, next.direction,
+                             {sample.pdf, end.hit.position}, rng);
   }
 }
 
