@@ -67,27 +67,34 @@ const Cloud& sortedRoom(int64_t count, bool uneven) {
   return it->second;
 }
 
-EliminateOptions optionsFor(const benchmark::State& state, Density density) {
-  EliminateOptions options;
-  options.count = static_cast<uint64_t>(state.range(1));
-  options.density = density;
-  return options;
+Values optionsFor(const benchmark::State& state, const char* density) {
+  return resolve(eliminateSpec(),
+                 {{"count", std::to_string(state.range(1))}, {"density", density}});
 }
 
-void endToEnd(benchmark::State& state, Density density, bool uneven) {
-  const Cloud& cloud = room(state.range(0), uneven);
-  const EliminateOptions options = optionsFor(state, density);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(eliminate(cloud.position, cloud.normal, options));
-  }
+VplTable tableOf(const Cloud& cloud) {
+  VplTable table;
+  table.position = cloud.position;
+  table.normal = cloud.normal;
+  table.albedo.resize(cloud.position.size());
+  table.id.resize(cloud.position.size());
+  std::iota(table.id.begin(), table.id.end(), 0u);
+  return table;
+}
+
+void endToEnd(benchmark::State& state, const char* density, bool uneven) {
+  const VplTable table = tableOf(room(state.range(0), uneven));
+  const Values options = optionsFor(state, density);
+  for (auto _ : state) benchmark::DoNotOptimize(eliminate(table, options));
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-void radii(benchmark::State& state, Density density, bool uneven) {
+void radii(benchmark::State& state, const char* density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const EliminateOptions options = optionsFor(state, density);
+  const Values options = optionsFor(state, density);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(candidateRadii(cloud.position, cloud.normal, options));
+    benchmark::DoNotOptimize(
+        candidateRadii(cloud.position, cloud.normal, double(state.range(1)), options));
   }
 }
 
@@ -102,15 +109,17 @@ ConflictGraph graphOf(const Cloud& cloud, const std::vector<float>& radius) {
   return ConflictGraph(cloud.position, cloud.normal, radius, std::move(row), PairWeight{});
 }
 
-void conflicts(benchmark::State& state, Density density, bool uneven) {
+void conflicts(benchmark::State& state, const char* density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, double(state.range(1)),
+                                          optionsFor(state, density));
   for (auto _ : state) benchmark::DoNotOptimize(graphOf(cloud, r.radius));
 }
 
-void greedy(benchmark::State& state, Density density, bool uneven) {
+void greedy(benchmark::State& state, const char* density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, double(state.range(1)),
+                                          optionsFor(state, density));
   const ConflictGraph graph = graphOf(cloud, r.radius);
   const auto keep = static_cast<size_t>(state.range(1));
   for (auto _ : state) {
@@ -121,9 +130,10 @@ void greedy(benchmark::State& state, Density density, bool uneven) {
   }
 }
 
-void cellLists(benchmark::State& state, Density density, bool uneven) {
+void cellLists(benchmark::State& state, const char* density, bool uneven) {
   const Cloud& cloud = sortedRoom(state.range(0), uneven);
-  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, optionsFor(state, density));
+  const CandidateRadii r = candidateRadii(cloud.position, cloud.normal, double(state.range(1)),
+                                          optionsFor(state, density));
   for (auto _ : state) benchmark::DoNotOptimize(makeCellLists(cloud.position, r.radius));
 }
 
@@ -148,25 +158,25 @@ void nearest(benchmark::State& state) {
       ->UseRealTime()             \
       ->Unit(benchmark::kMillisecond)
 // Growth: 5 candidates a VPL, as the yardstick.
-BENCHMARK_CAPTURE(endToEnd, uniform_many, Density::Uniform, false)
+BENCHMARK_CAPTURE(endToEnd, uniform_many, "uniform", false)
     ->Args({5000000, 1000000})
     ->MeasureProcessCPUTime()
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(endToEnd, uniform, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(endToEnd, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(endToEnd, local_uneven, Density::Local, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radii, uniform, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(radii, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(endToEnd, uniform, "uniform", false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(endToEnd, uniform_uneven, "uniform", true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(endToEnd, local_uneven, "local", true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radii, uniform, "uniform", false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(radii, local_uneven, "local", true)->BNVPL_SIZES;
 BENCHMARK(sorting)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(conflicts, uniform, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(conflicts, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(conflicts, local_uneven, Density::Local, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(greedy, uniform, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(greedy, uniform_uneven, Density::Uniform, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(greedy, local_uneven, Density::Local, true)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(cellLists, uniform, Density::Uniform, false)->BNVPL_SIZES;
-BENCHMARK_CAPTURE(cellLists, local_uneven, Density::Local, true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(conflicts, uniform, "uniform", false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(conflicts, uniform_uneven, "uniform", true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(conflicts, local_uneven, "local", true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(greedy, uniform, "uniform", false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(greedy, uniform_uneven, "uniform", true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(greedy, local_uneven, "local", true)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(cellLists, uniform, "uniform", false)->BNVPL_SIZES;
+BENCHMARK_CAPTURE(cellLists, local_uneven, "local", true)->BNVPL_SIZES;
 BENCHMARK(buildTree)->BNVPL_SIZES;
 BENCHMARK(nearest)->BNVPL_SIZES;
 

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "tests/eliminate/clouds.h"
-#include "tools/eliminate/eliminate.h"
+#include "tests/eliminate/keep.h"
 #include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/elimination/greedy.h"
 
@@ -59,21 +58,12 @@ std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>&
 }
 
 // Every candidate's radius: what the stage says when it keeps them at random, for each of them.
-std::vector<float> radiusOfAll(const Cloud& cloud, EliminateOptions options) {
-  options.method = EliminationMethod::Random;
-  const size_t keep = options.count;
-  options.count = cloud.size();
-  std::vector<float> radius = eliminate(cloud.position, cloud.normal, options).radius;
-  const double wider = std::sqrt(static_cast<double>(cloud.size()) / static_cast<double>(keep));
+std::vector<float> radiusOfAll(const Cloud& cloud, size_t count) {
+  std::vector<float> radius =
+      keepRowsOf(cloud, with(keep(cloud.size(), "local"), {{"method", "random"}})).radius;
+  const double wider = std::sqrt(static_cast<double>(cloud.size()) / static_cast<double>(count));
   for (float& r : radius) r = static_cast<float>(r * wider);
   return radius;
-}
-
-EliminateOptions keep(uint64_t count, Density density) {
-  EliminateOptions options;
-  options.count = count;
-  options.density = density;
-  return options;
 }
 
 Cloud withDuplicates(Cloud cloud) {
@@ -85,8 +75,7 @@ Cloud withDuplicates(Cloud cloud) {
 TEST(Oracle, UniformOnPlaneAndCube) {
   for (const uint64_t seed : {1u, 2u, 3u}) {
     for (const Cloud& cloud : {plane(500, 2.0f, 1.0f, seed), cube(600, 3.0f, seed)}) {
-      const EliminateOptions options = keep(100, Density::Uniform);
-      const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+      const KeptRows result = keepRowsOf(cloud, keep(100));
       const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
       EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100));
     }
@@ -96,9 +85,8 @@ TEST(Oracle, UniformOnPlaneAndCube) {
 TEST(Oracle, LocalDensity) {
   for (const uint64_t seed : {4u, 5u, 6u}) {
     for (const Cloud& cloud : {unevenPlane(500, seed), cube(600, 1.0f, seed)}) {
-      const EliminateOptions options = keep(90, Density::Local);
-      const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
-      const std::vector<float> radius = radiusOfAll(cloud, options);
+      const KeptRows result = keepRowsOf(cloud, keep(90, "local"));
+      const std::vector<float> radius = radiusOfAll(cloud, 90);
       for (size_t i = 0; i < result.rows.size(); ++i) {
         ASSERT_NEAR(result.radius[i] / radius[result.rows[i]], 1.0f, 1e-5f);
       }
@@ -110,8 +98,7 @@ TEST(Oracle, LocalDensity) {
 TEST(Oracle, TiesGoToTheLowerRow) {
   const Cloud cloud = withDuplicates(cube(400, 2.0f, 7));
   for (const uint64_t count : {380u, 100u, 20u, 3u}) {
-    const EliminateResult result =
-        eliminate(cloud.position, cloud.normal, keep(count, Density::Uniform));
+    const KeptRows result = keepRowsOf(cloud, keep(count));
     const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
     EXPECT_EQ(result.rows, greedyOracle(cloud, radius, count)) << count;
   }
@@ -125,24 +112,20 @@ TEST(Oracle, RegularLattice) {
       cloud.add({static_cast<float>(x), static_cast<float>(y), 0.0f}, {0, 0, 1});
     }
   }
-  EliminateOptions options = keep(80, Density::Uniform);
-  options.area = 400.0;
-  options.weightLimiting = WeightLimiting::Off;
-  const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+  const KeptRows result =
+      keepRowsOf(cloud, with(keep(80), {{"area", "400"}, {"weight-limiting", "off"}}));
   const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
   EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 80));
 }
 
 TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
   const Cloud cloud = plane(500, 1.0f, 1.0f, 8);
-  EliminateOptions options = keep(100, Density::Uniform);
-  options.area = 1.0;
-  const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+  const Given options = with(keep(100), {{"area", "1"}});
+  const KeptRows result = keepRowsOf(cloud, options);
   const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
   const auto limit = static_cast<float>(0.65 * (1.0 - std::pow(0.2, 1.5)));
   EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100, limit));
-  options.weightLimiting = WeightLimiting::Off;
-  EXPECT_EQ(eliminate(cloud.position, cloud.normal, options).rows,
+  EXPECT_EQ(keepRowsOf(cloud, with(options, {{"weight-limiting", "off"}})).rows,
             greedyOracle(cloud, radius, 100, 0.0f));
 }
 
@@ -152,13 +135,11 @@ TEST(Oracle, ManyCandidatesOfDensitiesFarApart) {
   for (size_t i = 0; i < 500; ++i) {  // and a knot of them
     cloud.add(cloud.position[7] + (cloud.position[i] - cloud.position[7]) * 1e-3f, cloud.normal[i]);
   }
-  for (const Density density : {Density::Uniform, Density::Local}) {
-    const EliminateOptions options = keep(100, density);
-    const EliminateResult result = eliminate(cloud.position, cloud.normal, options);
+  for (const std::string density : kDensities) {
+    const KeptRows result = keepRowsOf(cloud, keep(100, density));
     const std::vector<float> radius =
-        density == Density::Local
-            ? radiusOfAll(cloud, options)
-            : std::vector<float>(cloud.size(), static_cast<float>(result.rMax));
+        density == "local" ? radiusOfAll(cloud, 100)
+                           : std::vector<float>(cloud.size(), static_cast<float>(result.rMax));
     EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100));
   }
 }
