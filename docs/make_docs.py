@@ -4,21 +4,23 @@
     docs/make_docs.py            # rewrite the blocks that differ, and docs/options.md
     docs/make_docs.py --check    # write nothing; exit 1 and name the blocks that differ
 
-A block begins with a comment that holds a shell command and ends with one that says so:
+A block is a session in a shell: what follows each line with a $ is what that command prints.
 
-    <!-- output: vpl-inspect info lit.vpl -->
+    <!-- session -->
     ```
-    what the command prints
+    $ vpl-inspect info lit.vpl
+    lit.vpl: lit, 1000 rows, ...
     ```
-    <!-- end of output -->
+    <!-- end of session -->
 
-Commands run in a folder where SETUP has made small files, with the tools on the PATH. Times, memory,
-versions and hashes differ from run to run or build to build; NORMAL says what is written instead.
+Each session begins in a folder where SETUP has made small files, with the tools on the PATH. Times,
+memory, builds and hashes differ from run to run; NORMAL says what is written instead.
 """
 import argparse
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -42,7 +44,7 @@ NORMAL = ((re.compile(r'\b\d+\.\d\d s, peak memory \d+ MiB'), '0.00 s, peak memo
           (re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
           (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'))
 
-BLOCK = re.compile(r'(<!-- output: (?P<command>.*?) -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of output -->)', re.S)
+SESSION = re.compile(r'(<!-- session -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)', re.S)
 
 
 def normal(text):
@@ -72,9 +74,17 @@ class Bench:
         return subprocess.run(['bash', '-euc', command], cwd=self.folder, env=self.environment, text=True,
                               capture_output=True)
 
-    def output(self, command):
-        done = self.run(command)
-        return normal(done.stdout + done.stderr)
+    def session(self, text):
+        """The commands of a session, each with what it prints; in a copy of the folder."""
+        commands = [line[2:] for line in text.splitlines() if line.startswith('$ ')]
+        with tempfile.TemporaryDirectory(prefix='bnvpl-session.') as folder:
+            shutil.copytree(self.folder, folder, symlinks=True, dirs_exist_ok=True)
+            marker = '\x1e'
+            script = ''.join(f"printf '{marker}'; {{ {command}\n}} 2>&1\n" for command in commands)
+            done = subprocess.run(['bash', '-c', script], cwd=folder, env=self.environment, text=True,
+                                  capture_output=True)
+        printed = done.stdout.split(marker)[1:]
+        return ''.join(f'$ {command}\n{normal(output) if output else ""}' for command, output in zip(commands, printed))
 
 
 def option_rows(options):
@@ -110,7 +120,7 @@ def options_page(bench):
 def pages():
     found = subprocess.run(['git', 'ls-files', '*.md'], cwd=ROOT, capture_output=True, text=True).stdout.split('\n')
     files = [ROOT / f for f in found if f] or sorted(ROOT.glob('**/*.md'))
-    return [f for f in files if f.exists() and '<!-- output:' in f.read_text() and 'docs/lab' not in str(f)]
+    return [f for f in files if f.exists() and '<!-- session -->' in f.read_text() and 'docs/lab' not in str(f)]
 
 
 def main():
@@ -133,13 +143,13 @@ def main():
             text = file.read_text()
 
             def block(match):
-                now = bench.output(match['command'])
+                now = bench.session(match['text'])
                 if same(now, match['text']):
                     return match[0]
-                print(f'  {match["command"]}')
-                return f'{match[1]}{now}{match[4]}'
+                print(f'  {match["text"].splitlines()[0]}')
+                return f'{match[1]}{now}{match[3]}'
 
-            new = BLOCK.sub(block, text)
+            new = SESSION.sub(block, text)
             if new != text:
                 renew(file, text, new, 'output')
         table = ROOT / 'docs/options.md'
