@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "tools/common/clock.h"
@@ -17,7 +18,7 @@ constexpr double kLogIntervalS = 10.0;  // a build log wants a sign of life, not
 
 std::string durationText(double seconds) {
   constexpr double kLongestS = 3.6e9;  // a million hours
-  const auto s = static_cast<uint64_t>(std::clamp(seconds, 0.0, kLongestS) + 0.5);
+  const auto s = static_cast<uint64_t>(std::llround(std::clamp(seconds, 0.0, kLongestS)));
   char text[48];
   if (s < 60) return std::to_string(s) + " s";
   if (s < 3600) {
