@@ -1,4 +1,5 @@
-// What a tool reports and how it exits. Exceptions are for input and I/O; our own bugs assert.
+// Exceptions are for input and I/O; our own bugs assert. A tool turns each into one line and an
+// exit code (tools/common/exit_codes.h).
 #pragma once
 
 #include <cstdint>
@@ -9,15 +10,6 @@
 namespace bnvpl {
 
 namespace fs = std::filesystem;
-
-// Exit codes of every tool, documented in docs/tools.md.
-inline constexpr int kExitOk = 0;
-inline constexpr int kExitInternal = 1;   // a bug of ours
-inline constexpr int kExitUsage = 2;      // options that make no sense
-inline constexpr int kExitInput = 3;      // input missing, damaged, stale or of the wrong kind
-inline constexpr int kExitOutput = 4;     // output could not be written
-inline constexpr int kExitDifferent = 5;  // vpl-inspect compare: the limit was exceeded
-inline constexpr int kExitMemory = 6;     // not enough memory for what was asked
 
 // Each carries one line: file, position, problem; cure.
 class InputError : public std::runtime_error {

@@ -13,23 +13,9 @@ constexpr uint64_t mix64(uint64_t x) {  // SplitMix64 finaliser (Steele et al. 2
   return x ^ (x >> 31);
 }
 
-// Streams of different purposes never share numbers, even under one seed.
-enum class Stream : uint32_t {
-  PlaceCamera = 1,
-  PlaceLight,
-  Eliminate,
-  Photons,
-  PixelSamples,
-  PathTracer,
-  LightTree,
-  Plot,
-  AreaEstimate,
-  LightTracer,
-  FilmPoints
-};
-
-constexpr uint64_t streamKey(uint64_t seed, Stream stream) {
-  return mix64(mix64(seed + 0x9e3779b97f4a7c15u) + static_cast<uint64_t>(stream));
+// A key for numbers of one purpose: streams never share numbers, even under one seed.
+constexpr uint64_t streamKey(uint64_t seed, uint32_t stream) {
+  return mix64(mix64(seed + 0x9e3779b97f4a7c15u) + stream);
 }
 
 constexpr uint64_t random64(uint64_t key, uint64_t index, uint32_t dimension) {

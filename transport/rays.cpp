@@ -1,12 +1,8 @@
 #include "transport/rays.h"
 
-#include "core/prefetch.h"
-
-#if __has_include(<embree4/rtcore.h>) && defined(BNVPL_EMBREE4)
-#include <embree4/rtcore.h>
-#else
 #include <embree3/rtcore.h>
-#endif
+
+#include "core/prefetch.h"
 
 #if defined(__SANITIZE_THREAD__)
 #include <tbb/task_arena.h>
@@ -107,13 +103,9 @@ struct RayScene::Impl {
   bool closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const;
   bool occluded(const RTCRay& from) const {
     RTCRay ray = from;
-#if RTC_VERSION_MAJOR >= 4
-    rtcOccluded1(scene, &ray);
-#else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene, &context, &ray);
-#endif
     return ray.tfar < 0.0f;
   }
 };
@@ -149,13 +141,9 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
   RTCRayHit rh{};
   rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  rtcIntersect1(scene, &rh);
-#else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, &rh);
-#endif
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
     hit.triangle = kNone;
     return false;
@@ -246,15 +234,9 @@ void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hi
       rays.mask[k] = ~0u;
       rays.id[k] = rays.flags[k] = 0;
     }
-#if RTC_VERSION_MAJOR >= 4
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    rtcOccluded8(valid.data(), impl_->scene, &rays, &arguments);
-#else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded8(valid.data(), impl_->scene, &context, &rays);
-#endif
     for (size_t k = 0; k < count; ++k) hidden[begin + k] = rays.tfar[k] < 0.0f;
   }
 }

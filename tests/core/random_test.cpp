@@ -6,6 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "tools/common/streams.h"
+
 namespace bnvpl {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "tools/common/streams.h"
 
 namespace bnvpl {
 namespace {

@@ -2,6 +2,7 @@
 #include "formats/png_io.h"
 #include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/run_inspect.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

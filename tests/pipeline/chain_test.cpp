@@ -1,5 +1,6 @@
 // vpl-inspect check --deep on what the stages really write.
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -1,5 +1,6 @@
 // Options of every tool, and what they refuse.
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

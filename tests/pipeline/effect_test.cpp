@@ -5,6 +5,7 @@
 #include "formats/exr_io.h"
 #include "formats/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

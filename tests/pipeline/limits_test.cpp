@@ -1,5 +1,6 @@
 // One limit of a film's sides, whoever asks.
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

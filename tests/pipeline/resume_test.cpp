@@ -1,5 +1,6 @@
 // --checkpoint: stages that are stopped and continued.
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

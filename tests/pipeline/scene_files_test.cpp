@@ -3,6 +3,7 @@
 
 #include "formats/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "formats/vpl_layout.h"
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

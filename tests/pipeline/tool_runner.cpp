@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tools/common/exit_codes.h"
+
 namespace bnvpl {
 
 const std::vector<std::string> PipelineTest::kStages{"vpl-place", "vpl-eliminate", "vpl-estimate",

@@ -3,6 +3,7 @@
 
 #include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
+#include "tools/common/streams.h"
 
 namespace bnvpl::test {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
+#include "tools/common/streams.h"
 #include "tools/render/gather/tilecuts/tile_cut.h"
 
 namespace bnvpl::test {

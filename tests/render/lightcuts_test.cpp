@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/pipeline.h"
+#include "tools/common/streams.h"
 
 namespace bnvpl::test {
 namespace {

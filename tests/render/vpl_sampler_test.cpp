@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/sampling.h"
+#include "tools/common/streams.h"
 
 namespace bnvpl::test {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
+#include "tools/common/streams.h"
 #include "transport/bsdf.h"
 #include "transport/lights.h"
 

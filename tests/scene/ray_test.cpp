@@ -1,6 +1,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "tests/scene/scene_files.h"
+#include "tools/common/streams.h"
 #include "transport/rays.h"
 
 namespace bnvpl {

@@ -10,6 +10,7 @@
 #include "spatial/morton_order.h"
 #include "spatial/reach_grid.h"
 #include "tests/eliminate/clouds.h"
+#include "tools/common/streams.h"
 
 namespace bnvpl {
 namespace {

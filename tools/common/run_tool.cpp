@@ -14,6 +14,7 @@
 
 #include "tools/common/build_id.h"
 #include "tools/common/clock.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/standard_streams.h"
 

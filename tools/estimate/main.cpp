@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/run_files.h"

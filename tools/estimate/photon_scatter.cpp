@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "tools/common/streams.h"
 #include "tools/estimate/photon_shares.h"
 #include "transport/photon_walk.h"
 

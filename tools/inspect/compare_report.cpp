@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/common/exit_codes.h"
+
 namespace bnvpl {
 namespace {
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "images/comparison.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/run_tool.h"
 
 namespace bnvpl {

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
+#include "tools/common/streams.h"
 #include "tools/inspect/display_colour.h"
 #include "transport/camera.h"
 #include "transport/walk.h"
@@ -14,7 +15,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr unsigned kMaxMirrors = 8;          // mirrors and glass behind each other
+constexpr unsigned kMaxMirrors = 8;           // mirrors and glass behind each other
 constexpr float kDim = 0.4f;                  // of the view, so that dots stand out
 constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; where a ray leaves the scene
 constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB

@@ -13,6 +13,7 @@ std::string plain(const Json& value) {
     std::snprintf(text, sizeof text, "%.6g", value.get<double>());
     return text;
   }
+  if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 

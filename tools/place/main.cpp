@@ -2,6 +2,7 @@
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include "core/memory.h"
 #include "formats/vpl_io.h"
+#include "tools/common/exit_codes.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"

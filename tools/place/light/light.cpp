@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "spatial/local_density.h"
+#include "tools/common/streams.h"
 #include "tools/place/path_rows.h"
 #include "transport/photon_walk.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "tools/common/streams.h"
 #include "tools/render/film/splats.h"
 #include "transport/camera.h"
 

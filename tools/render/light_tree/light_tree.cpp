@@ -5,6 +5,8 @@
 #include <numeric>
 #include <queue>
 
+#include "tools/common/streams.h"
+
 namespace bnvpl {
 
 namespace {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "tools/common/streams.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/gather/lightslice/column_clusters.h"
 #include "tools/render/gather/lightslice/slices.h"

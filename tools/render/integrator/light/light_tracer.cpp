@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "tools/common/streams.h"
 #include "transport/camera.h"
 
 namespace bnvpl {

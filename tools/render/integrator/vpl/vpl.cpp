@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/parallel.h"
+#include "tools/common/streams.h"
 #include "tools/render/gather/point_gather.h"
 #include "tools/render/integrator/camera_vertex.h"
 #include "tools/render/integrator/vpl/vpl_integrator.h"

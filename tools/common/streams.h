@@ -1,0 +1,27 @@
+// What random numbers are drawn for. Each purpose has a number of its own, which never changes: it
+// decides the bytes.
+#pragma once
+
+#include "core/random.h"
+
+namespace bnvpl {
+
+enum class Stream : uint32_t {
+  PlaceCamera = 1,
+  PlaceLight,
+  Eliminate,
+  Photons,
+  PixelSamples,
+  PathTracer,
+  LightTree,
+  Plot,
+  AreaEstimate,
+  LightTracer,
+  FilmPoints
+};
+
+constexpr uint64_t streamKey(uint64_t seed, Stream stream) {
+  return streamKey(seed, static_cast<uint32_t>(stream));
+}
+
+}  // namespace bnvpl
