@@ -12,20 +12,17 @@
 namespace bnvpl::test {
 namespace {
 
-double totalFlux(const VplTable& t) {
-  double sum = 0.0;
-  for (const Vec3 f : t.flux) sum += double{mean(f)};
-  return sum;
+VplTable keptOf(const World& world, const char* candidates, const char* count) {
+  return keepVpls(placeVpls(world, {{"count", candidates}}).table, {{"count", count}});
 }
 
 TEST(Estimate, EnergyAccountCloses) {
   const World world("u-shape/scene.toml");
-  VplTable vpls = placeAndEliminate(world, 10000, {.count = 1000});
-  const EnergyAccount a = estimateFlux(vpls, world.rays, world.lights, {.photons = 100000});
+  const auto [lit, a] = lightVpls(world, keptOf(world, "10k", "1000"), {{"photons", "100k"}});
   EXPECT_NEAR(a.emitted, double{mean(world.lights.totalPower())}, 1e-4 * a.emitted);
   EXPECT_NEAR(a.escaped + a.absorbed, a.emitted, 1e-4 * a.emitted);
   EXPECT_NEAR(a.deposited + a.outside + a.gap + a.hidden, a.reflected, 1e-6 * a.reflected);
-  EXPECT_NEAR(totalFlux(vpls), a.deposited, 1e-5 * a.deposited);
+  EXPECT_NEAR(totalFlux(lit), a.deposited, 1e-5 * a.deposited);
   EXPECT_GT(a.deposited, 0.0);
 }
 
@@ -33,10 +30,10 @@ TEST(Estimate, EnergyAccountCloses) {
 // area light on every wall the reflected flux is the emitted times 0.5 / (1 - 0.5).
 TEST(Estimate, ClosedBoxLosesNothing) {
   const World world("furnace/scene.toml");
-  for (const Density density : {Density::Uniform, Density::Local}) {
-    VplTable vpls = placeAndEliminate(world, 20000, {.count = 1000, .density = density});
-    const EnergyAccount a =
-        estimateFlux(vpls, world.rays, world.lights, {.photons = 200000, .radius = 2.0f});
+  const VplTable candidates = placeVpls(world, {{"count", "20k"}}).table;
+  for (const char* density : {"uniform", "local"}) {
+    const VplTable vpls = keepVpls(candidates, {{"count", "1000"}, {"density", density}});
+    const EnergyAccount a = lightVpls(world, vpls, {{"photons", "200k"}, {"radius", "2"}}).energy;
     EXPECT_NEAR(a.reflected / a.emitted, 1.0, 0.01);
     EXPECT_GT(a.deposited / a.reflected, 0.995);
     EXPECT_EQ(a.escaped, 0.0);
@@ -46,50 +43,46 @@ TEST(Estimate, ClosedBoxLosesNothing) {
 TEST(Estimate, NoLightLeaksIntoAClosedRoom) {
   for (const char* name : {"test/two-rooms.toml", "test/divider.toml"}) {
     const World world(name);
-    VplTable vpls = placeAndEliminate(world, 10000, {.count = 500});
-    const EnergyAccount a = estimateFlux(vpls, world.rays, world.lights, {.photons = 300000});
+    const auto [lit, a] = lightVpls(world, keptOf(world, "10k", "500"), {{"photons", "300k"}});
     EXPECT_GT(a.reflected, 0.0);
-    EXPECT_EQ(totalFlux(vpls), 0.0) << name;
+    EXPECT_EQ(totalFlux(lit), 0.0) << name;
   }
 }
 
 // The thesis to the letter does leak there: the test above would be empty if nothing could.
 TEST(Estimate, EvenScatterLeaksUnderTheDivider) {
   const World world("test/divider.toml");
-  VplTable vpls = placeAndEliminate(world, 10000, {.count = 500});
-  estimateFlux(vpls, world.rays, world.lights, {.photons = 100000, .scatter = Scatter::Even});
-  EXPECT_GT(totalFlux(vpls), 0.0);
+  const Given options{{"photons", "100k"}, {"method", "even"}};
+  EXPECT_GT(totalFlux(lightVpls(world, keptOf(world, "10k", "500"), options).table), 0.0);
 }
 
 TEST(Estimate, AnyThreadCountGivesTheSameBits) {
   const World world("cornell/scene.toml");
-  const VplTable start = placeAndEliminate(world, 10000, {.count = 1000});
+  const VplTable start = keptOf(world, "10k", "1000");
   VplTable first;
   for (const size_t threads : {1, 2, 7}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    VplTable vpls = start;
-    estimateFlux(vpls, world.rays, world.lights, {.photons = 50000});
-    if (threads == 1) first = vpls;
-    EXPECT_EQ(vpls.flux, first.flux);
-    EXPECT_EQ(vpls.photons, first.photons);
-    EXPECT_EQ(vpls.relativeError, first.relativeError);
+    const VplTable lit = lightVpls(world, start, {{"photons", "50k"}}).table;
+    if (threads == 1) first = lit;
+    EXPECT_EQ(lit.flux, first.flux);
+    EXPECT_EQ(lit.photons, first.photons);
+    EXPECT_EQ(lit.relativeError, first.relativeError);
   }
 }
 
 // Over independent seeds, a VPL's flux must scatter about as much as it says.
 TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
   const World world("cornell/scene.toml");
-  const VplTable start = placeAndEliminate(world, 4000, {.count = 50});
+  const VplTable start = keptOf(world, "4000", "50");
   constexpr int kSeeds = 24;
   std::vector<double> sum(50), sum2(50), stated(50);
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    VplTable vpls = start;
-    estimateFlux(vpls, world.rays, world.lights, {.photons = 20000, .seed = seed});
+    const VplTable lit = lightVpls(world, start, {{"photons", "20k"}, {"seed", typed(seed)}}).table;
     for (size_t i = 0; i < 50; ++i) {
-      const double f = double{mean(vpls.flux[i])};
+      const double f = double{mean(lit.flux[i])};
       sum[i] += f;
       sum2[i] += f * f;
-      stated[i] += double{vpls.relativeError[i]} / kSeeds;
+      stated[i] += double{lit.relativeError[i]} / kSeeds;
     }
   }
   double ratio = 0.0;
@@ -104,7 +97,7 @@ TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
 // walls.
 TEST(Estimate, RecentredVplsStayOnTheirSurface) {
   const World world("furnace/scene.toml");
-  const VplTable start = placeAndEliminate(world, 6000, {.count = 300});
+  const VplTable start = keptOf(world, "6000", "300");
   const auto nearestRim = [](Vec3 p) {  // distance to the second nearest of the cube's six planes
     std::array<float, 3> d{};
     for (size_t a = 0; a < 3; ++a) d[a] = std::min(p[a], 1.0f - p[a]);
@@ -112,9 +105,9 @@ TEST(Estimate, RecentredVplsStayOnTheirSurface) {
     return double{d[1]};
   };
   double before = 0.0, after = 0.0;
-  VplTable still = start, moved = start;
-  estimateFlux(still, world.rays, world.lights, {.photons = 100000, .recentre = false});
-  estimateFlux(moved, world.rays, world.lights, {.photons = 100000});
+  const Given photons{{"photons", "100k"}};
+  const VplTable still = lightVpls(world, start, with(photons, {{"recentre", "off"}})).table;
+  const VplTable moved = lightVpls(world, start, photons).table;
   EXPECT_EQ(still.emitPosition, start.position);
   EXPECT_EQ(moved.position, start.position);
   EXPECT_EQ(moved.normal, start.normal);
@@ -149,20 +142,20 @@ TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   vpls.albedo = {Vec3(0.5f)};
   vpls.id = {1};
   vpls.radius = {0.25f};
-  estimateFlux(vpls, world.rays, world.lights, {.photons = 400000, .radius = 2.0f});
+  const VplTable lit = lightVpls(world, vpls, {{"photons", "400k"}, {"radius", "2"}}).table;
 
   const double reach = 0.5, area = 0.5 * double{kPi} * reach * reach;
-  const auto photons = double(vpls.photons[0]);
+  const auto photons = double(lit.photons[0]);
   EXPECT_NEAR(photons, 400000 * area / 16.0, 5.0 * std::sqrt(400000 * area / 16.0));
-  EXPECT_NEAR(vpls.relativeError[0] * std::sqrt(photons), 1.0, 1e-3);  // all bring the same
+  EXPECT_NEAR(lit.relativeError[0] * std::sqrt(photons), 1.0, 1e-3);  // all bring the same
   for (size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(double{vpls.flux[0][c]}, 0.5 * double{world.scene.lights[0].emission[c]} * area,
-                5.0 / std::sqrt(photons) * double{vpls.flux[0][c]});
+    EXPECT_NEAR(double{lit.flux[0][c]}, 0.5 * double{world.scene.lights[0].emission[c]} * area,
+                5.0 / std::sqrt(photons) * double{lit.flux[0][c]});
   }
-  EXPECT_EQ(vpls.firstBounceFlux[0], vpls.flux[0]);
+  EXPECT_EQ(lit.firstBounceFlux[0], lit.flux[0]);
   const double centroid = 4.0 * reach / (3.0 * double{kPi}),
                spread = std::sqrt(reach * reach / 4.0 - centroid * centroid);
-  const Vec3 moved = vpls.emitPosition[0] - vpls.position[0];
+  const Vec3 moved = lit.emitPosition[0] - lit.position[0];
   EXPECT_NEAR(double{moved.x} / 0.35, centroid, 5.0 * spread / std::sqrt(photons) + 1e-4);
   EXPECT_NEAR(double{moved.y}, 0.0, 1e-6);
   EXPECT_NEAR(double{moved.z} / 0.35, 0.0, 5.0 * 0.5 * reach / std::sqrt(photons));

@@ -98,14 +98,13 @@ TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
   scene.lights[0].emission = {1, 0, 0};
   scene.lights[1].emission = {0, 0, 0.04f};
   const World world(std::move(scene));
-  constexpr uint64_t kPhotons = 104000;  // 100000 and 4000
-  VplTable vpls = placeAndEliminate(world, 4000, {.count = 200});
-  const EnergyAccount account =
-      estimateFlux(vpls, world.rays, world.lights, {.photons = kPhotons, .radius = 3.0f});
+  const VplTable vpls = keepVpls(placeVpls(world, {{"count", "4000"}}).table, {{"count", "200"}});
+  const auto [lit, account] =
+      lightVpls(world, vpls, {{"photons", "104k"}, {"radius", "3"}});  // 100000 and 4000
   EXPECT_NEAR(account.emitted, double{mean(world.lights.totalPower())}, 1e-6 * account.emitted);
   ASSERT_GT(account.deposited, 0.999 * account.reflected);
   std::array<double, 3> flux{};
-  for (const Vec3 f : vpls.flux) {
+  for (const Vec3 f : lit.flux) {
     for (size_t c = 0; c < 3; ++c) flux[c] += double{f[c]};
   }
   const auto expectPower = [&](double got, double intensity, double photons) {

@@ -87,7 +87,7 @@ TEST_F(DeepCheck, ToolsOfTwoVersionsAreRefused) {
 TEST_F(DeepCheck, CommandsAreQuotedAndExact) {
   StageRecord record;
   record.tool = "vpl-estimate";
-  record.options = {{"radius", 0.1f}, {"recentre", true}, {"scatter", "guarded"}, {"photons", 5}};
+  record.options = {{"radius", 0.1}, {"recentre", true}, {"method", "guarded"}, {"photons", 5}};
   EXPECT_EQ(commandOf(record, {"my scene.toml", "v.vpl"}, "it's.vpl"),
             "vpl-estimate 'my scene.toml' v.vpl -o 'it'\\''s.vpl' --radius 0.1 --recentre on "
             "--method guarded --photons 5");

@@ -1,6 +1,7 @@
 #include "tools/inspect/info.h"
 
 #include "tests/inspect/inspect_files.h"
+#include "tools/common/build_id.h"
 #include "tools/inspect/spacing.h"
 
 namespace bnvpl {
@@ -30,7 +31,7 @@ TEST_F(Info, DescribesALitFile) {
 
   const std::string text = infoText(info);
   EXPECT_TRUE(
-      contains(text, "vpl-place " BNVPL_VERSION ": count 3, seed 1; from scene 0000000000001234"))
+      contains(text, "vpl-place " + buildId() + ": count 3, seed 1; from scene 0000000000001234"))
       << text;
   EXPECT_TRUE(contains(text, "flux.b")) << text;
   EXPECT_TRUE(contains(text, "mean 2.5 W")) << text;
@@ -79,7 +80,7 @@ TEST_F(Info, DescribesAnImage) {
   EXPECT_EQ(columnOf(info, "Z")["not_finite"], 1);
   const std::string text = infoText(info);
   EXPECT_TRUE(contains(text, "bnvpl.samplesPerPixel = 4")) << text;
-  EXPECT_TRUE(contains(text, "vpl-render " BNVPL_VERSION ": spp 4")) << text;
+  EXPECT_TRUE(contains(text, "vpl-render " + buildId() + ": spp 4")) << text;
   EXPECT_TRUE(contains(text, "1 not finite")) << text;
 }
 

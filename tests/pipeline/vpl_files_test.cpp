@@ -1,6 +1,7 @@
 // .vpl files between the executables: columns of strategies, other versions, who made a file.
 #include "formats/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {

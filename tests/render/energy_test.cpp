@@ -4,6 +4,7 @@
 #include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
 #include "tools/common/streams.h"
+#include "tools/render/compensate/near_field/near_field.h"
 
 namespace bnvpl::test {
 namespace {
@@ -15,131 +16,116 @@ struct FurnaceCase {
   double rho;
   uint64_t vpls;
   float radius;
-  Density density;
+  const char* density;
 };
 class Furnace : public testing::TestWithParam<FurnaceCase> {};
 
 TEST_P(Furnace, IndirectLightIsTheGeometricSeries) {
   const FurnaceCase c = GetParam();
   const World world(c.scene);
-  VplSettings s;
-  s.vpls = c.vpls;
-  s.candidates = 20 * c.vpls;
-  s.density = c.density;
-  s.estimate.radius = c.radius;
-  s.estimate.maxBounces = 64;
-  s.film.layers = kLayerDirect | kLayerIndirect;
-  const VplTable lit = lightUp(world, s);
+  const VplTable lit = litVpls(world, {{"count", typed(c.vpls)}, {"density", c.density}},
+                               {{"radius", typed(c.radius)}, {"max-bounces", "64"}},
+                               {{"count", typed(20 * c.vpls)}});
   const double expected = c.rho * c.rho / (1.0 - c.rho);
-  FilmStats stats;
-  s.nearField = true;
-  s.clamp = 2.0f;
-  const Image whole = renderVpls(world, lit, s, stats);
+  const Given plain = with(kPlainRender, {{"layers", "direct,indirect"}});
+  const Given nearField = with(plain, {{"compensate", "near-field"}, {"clamp", "2"}});
+  const Image whole = renderVpls(world, lit, nearField).image;
   EXPECT_NEAR(meanOf(whole, "direct."), 1.0 + c.rho, 0.01 * (1.0 + c.rho));
   EXPECT_NEAR(meanOf(whole, "indirect."), expected, 0.01 * expected);
-  s.nearField = false;
-  s.clamp = 0.05f;  // the clamp's own loss is another test's
-  EXPECT_NEAR(meanOf(renderVpls(world, lit, s, stats), "indirect."), expected, 0.03 * expected);
+  // The clamp's own loss is another test's.
+  const Image byVpls = renderVpls(world, lit, with(plain, {{"clamp", "0.05"}})).image;
+  EXPECT_NEAR(meanOf(byVpls, "indirect."), expected, 0.03 * expected);
 }
 INSTANTIATE_TEST_SUITE_P(
     Cases, Furnace,
-    testing::Values(FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.0f, Density::Uniform},
-                    FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.5f, Density::Local},
-                    FurnaceCase{"furnace/scene.toml", 0.5, 1200, 2.0f, Density::Local},
-                    FurnaceCase{"furnace/white.toml", 0.8, 1200, 3.0f, Density::Uniform}),
+    testing::Values(FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.0f, "uniform"},
+                    FurnaceCase{"furnace/scene.toml", 0.5, 300, 2.5f, "local"},
+                    FurnaceCase{"furnace/scene.toml", 0.5, 1200, 2.0f, "local"},
+                    FurnaceCase{"furnace/white.toml", 0.8, 1200, 3.0f, "uniform"}),
     [](const auto& parameter) {
       const FurnaceCase& c = parameter.param;
       return std::string(c.rho > 0.6 ? "White" : "Grey") + std::to_string(c.vpls) +
-             (c.density == Density::Local ? "Local" : "Uniform") +
+             (c.density == std::string("local") ? "Local" : "Uniform") +
              std::to_string(int(10 * c.radius));
     });
 
 TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
   const World world("furnace/scene.toml");
-  VplSettings s;
-  s.vpls = 300;
-  const VplTable lit = lightUp(world, s);
-  FilmStats loose, tight;
-  s.clamp = 0.02f;
-  renderVpls(world, lit, s, loose);
-  s.clamp = 4.0f;
-  renderVpls(world, lit, s, tight);
+  const VplTable lit = litVpls(world, {{"count", "300"}});
+  const auto clampedAt = [&](const char* clamp) {
+    return renderVpls(world, lit, with(kPlainRender, {{"clamp", clamp}})).stats;
+  };
+  const FilmStats loose = clampedAt("0.02"), tight = clampedAt("4");
   EXPECT_LT(tight.indirect, 0.95 * loose.indirect);
   EXPECT_NEAR(tight.indirect + tight.clamped, loose.indirect + loose.clamped,
               0.001 * loose.indirect);
+}
+
+// Mean indirect light of an image.
+double indirectOf(const World& world, const VplTable& lit, const Given& options) {
+  return renderVpls(world, lit, with(with(kPlainRender, {{"only", "indirect"}}), options))
+      .stats.indirect;
+}
+double indirectByPaths(const World& world, const Given& options) {
+  return renderWithout(world, "path", with({{"only", "indirect"}}, options)).stats.indirect;
 }
 
 // A wall that alone sees the lamp and a floor that sees the wall: one bounce, known from the path
 // tracer.
 TEST(OneBounce, VplsAgreeWithThePathTracer) {
   const World world("test/one-bounce.toml");
-  VplSettings s;
-  s.estimate.maxBounces = 1;
-  s.clamp = 0.3f;
-  s.film.spp = 16;
-  s.film.only = Only::Indirect;
-  FilmStats vpl, path;
-  renderVpls(world, lightUp(world, s), s, vpl);
-  renderPaths(world, {.spp = 512, .only = Only::Indirect}, path, 1);
-  EXPECT_GT(path.indirect, 0.0);
-  EXPECT_NEAR(vpl.indirect / path.indirect, 1.0, 0.03);
+  const double vpl = indirectOf(world, litVpls(world, {}, {{"max-bounces", "1"}}),
+                                {{"clamp", "0.3"}, {"spp", "16"}});
+  const double path = indirectByPaths(world, {{"spp", "512"}, {"max-bounces", "1"}});
+  EXPECT_GT(path, 0.0);
+  EXPECT_NEAR(vpl / path, 1.0, 0.03);
 }
 
 // With more bounces between the same surfaces, the two must count alike.
 TEST(ManyBounces, VplsAgreeWithThePathTracer) {
   const World world("cornell/scene.toml");
-  for (const unsigned bounces : {1u, 2u, 8u}) {
-    VplSettings s;
-    s.estimate.maxBounces = bounces;
-    s.vpls = 800;
-    s.clamp = 0.3f;
-    s.film.spp = 1;
-    s.film.only = Only::Indirect;
-    World small("cornell/scene.toml");
-    small.scene.film = {48, 48};
-    FilmStats vpl, path;
-    renderVpls(small, lightUp(world, s), s, vpl);
-    renderPaths(small, {.spp = 256, .only = Only::Indirect}, path, bounces);
-    EXPECT_NEAR(vpl.indirect / path.indirect, 1.0, 0.03) << bounces << " bounces";
+  World small("cornell/scene.toml");
+  small.scene.film = {48, 48};
+  for (const char* bounces : {"1", "2", "8"}) {
+    const VplTable lit = litVpls(world, {{"count", "800"}}, {{"max-bounces", bounces}});
+    const double vpl = indirectOf(small, lit, {{"clamp", "0.3"}, {"spp", "1"}});
+    const double path = indirectByPaths(small, {{"spp", "256"}, {"max-bounces", bounces}});
+    EXPECT_NEAR(vpl / path, 1.0, 0.03) << bounces << " bounces";
   }
+}
+
+VplTable withoutThoseThatLookLeft(const VplTable& vpls) {
+  VplTable rest = vpls;
+  rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(),
+      rest.radius.clear();
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    if (vpls.normal[i].x < -0.5f) continue;
+    rest.position.push_back(vpls.position[i]);
+    rest.normal.push_back(vpls.normal[i]);
+    rest.albedo.push_back(vpls.albedo[i]);
+    rest.id.push_back(vpls.id[i]);
+    rest.radius.push_back(vpls.radius[i]);
+  }
+  return rest;
 }
 
 // A generous clamp takes much of the light; rays give back what it takes. And where VPLs are
 // missing altogether, here on every surface that looks to the left, rays carry all.
 TEST(NearField, GivesBackWhatClampAndGapsTake) {
   World world("cornell/scene.toml");
-  FilmStats path;
   world.scene.film = {48, 48};
-  renderPaths(world, {.spp = 256, .only = Only::Indirect}, path);
-  VplSettings s;
-  s.clamp = 4.0f;
-  s.film = {.spp = 2, .only = Only::Indirect};
-  for (const bool gap : {false, true}) {
-    // Enough VPLs for the blur of their energy, which falls with their spacing, to be small.
-    VplTable vpls = placeAndEliminate(world, 40000, {.count = 2000});
-    if (gap) {
-      VplTable rest = vpls;
-      rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(),
-          rest.radius.clear();
-      for (size_t i = 0; i < vpls.size(); ++i) {
-        if (vpls.normal[i].x < -0.5f) continue;
-        rest.position.push_back(vpls.position[i]);
-        rest.normal.push_back(vpls.normal[i]);
-        rest.albedo.push_back(vpls.albedo[i]);
-        rest.id.push_back(vpls.id[i]);
-        rest.radius.push_back(vpls.radius[i]);
-      }
-      ASSERT_LT(rest.size(), vpls.size());
-      vpls = rest;
-    }
-    estimateFlux(vpls, world.rays, world.lights, s.estimate);
-    FilmStats off, on;
-    s.nearField = false;
-    renderVpls(world, vpls, s, off);
-    s.nearField = true;
-    renderVpls(world, vpls, s, on);
-    EXPECT_LT(off.indirect, 0.98 * path.indirect);
-    EXPECT_NEAR(on.indirect / path.indirect, 1.0, 0.03) << (gap ? "with a gap" : "");
+  const double path = indirectByPaths(world, {{"spp", "256"}});
+  // Enough VPLs for the blur of their energy, which falls with their spacing, to be small.
+  const VplTable all = keepVpls(placeVpls(world, {{"count", "40k"}}).table, {{"count", "2000"}});
+  const VplTable rest = withoutThoseThatLookLeft(all);
+  ASSERT_LT(rest.size(), all.size());
+  for (const VplTable* vpls : {&all, &rest}) {
+    const VplTable lit = lightVpls(world, *vpls, kFewPhotons).table;
+    const auto indirect = [&](const char* compensate) {
+      return indirectOf(world, lit, {{"compensate", compensate}, {"clamp", "4"}, {"spp", "2"}});
+    };
+    EXPECT_LT(indirect("none"), 0.98 * path);
+    EXPECT_NEAR(indirect("near-field") / path, 1.0, 0.03) << (vpls == &rest ? "with a gap" : "");
   }
 }
 
@@ -160,14 +146,18 @@ double distanceToAShareOfAVplThatReaches(const VplTable& lit, const SurfacePoint
   return nearest;
 }
 
+Missing missingAt(const NearField& nearField, const SurfacePoint& hit, float distance, Rng& rng) {
+  return nearField.missing(hit, distance, nearField.coverage().lookUp(hit.position), rng);
+}
+
 // In the furnace every surface sends out rho^2 / (1 - rho) of light that came by way of another. So
 // say the VPLs, from their flux and the area that each is found to speak for, on the average over
 // surfaces.
 TEST(NearField, VplsKnowTheRadianceAroundThem) {
   const World world("furnace/scene.toml");  // rho = 0.5
-  VplSettings s;
-  const VplTable lit = lightUp(world, s);
-  const NearField nearField(lit, world.rays, s.clamp);
+  const VplTable lit = litVpls(world);
+  const float clamp = 1.0f;
+  const NearField nearField(lit, world.rays, clamp);
   double sum = 0.0;
   int known = 0;
   Rng rng(streamKey(1, Stream::PixelSamples), 0);
@@ -180,12 +170,12 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
                       : k % 3 == 1 ? Vec3{u, side, v}
                                    : Vec3{u, v, side};
     if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
-    const float distance = 0.8f * s.clamp * lit.radius[0];
-    const auto missing = nearField.missing(hit, distance, rng);
+    const float distance = 0.8f * clamp * lit.radius[0];
+    const Missing missing = missingAt(nearField, hit, distance, rng);
     if (!missing.scattered) continue;
     ++known;
     sum += double{missing.scattered->x};
-    EXPECT_LT(distanceToAShareOfAVplThatReaches(lit, hit, distance / s.clamp, missing.share), 1e-5)
+    EXPECT_LT(distanceToAShareOfAVplThatReaches(lit, hit, distance / clamp, missing.share), 1e-5)
         << missing.share;
   }
   ASSERT_GT(known, 3000);
@@ -216,7 +206,7 @@ TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
     SurfacePoint hit;
     EXPECT_TRUE(rays.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
     Rng rng(streamKey(1, Stream::PixelSamples), 0);
-    const NearField::Missing missing = NearField(lit, rays, 2.0f).missing(hit, 1.0f, rng);
+    const Missing missing = missingAt(NearField(lit, rays, 2.0f), hit, 1.0f, rng);
     EXPECT_NEAR(missing.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
     return missing.scattered;
   };
@@ -235,22 +225,22 @@ TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
 TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
-  VplSettings s;
-  s.nearField = true;
-  s.clamp = 2.0f;
-  const VplTable lit = lightUp(world, s);
-  const auto render = [&](unsigned rays, uint64_t seed, FilmStats& stats) {
-    s.nearFieldRays = rays;
-    s.film = {.spp = 4, .seed = seed, .only = Only::Indirect};
-    return renderVpls(world, lit, s, stats);
+  const VplTable lit = litVpls(world);
+  const auto render = [&](const char* rays, const char* seed) {
+    return renderVpls(world, lit,
+                      with(kPlainRender, {{"compensate", "near-field"},
+                                          {"clamp", "2"},
+                                          {"near-field-rays", rays},
+                                          {"seed", seed},
+                                          {"only", "indirect"}}));
   };
   std::array<double, 2> spread{}, mean{};
   for (const unsigned few : {0u, 1u}) {
-    FilmStats a, b;
-    const Image first = render(few ? 1 : 16, 1, a), second = render(few ? 1 : 16, 2, b);
-    const std::vector<float>&x = *first.find("G"), &y = *second.find("G");
+    const char* rays = few ? "1" : "16";
+    const RenderResult first = render(rays, "1"), second = render(rays, "2");
+    const std::vector<float>&x = *first.image.find("G"), &y = *second.image.find("G");
     for (size_t i = 0; i < x.size(); ++i) spread[few] += std::pow(double{x[i]} - double{y[i]}, 2);
-    mean[few] = a.indirect + b.indirect;
+    mean[few] = first.stats.indirect + second.stats.indirect;
   }
   EXPECT_NEAR(mean[1] / mean[0], 1.0, 0.02);
   EXPECT_LT(spread[0], 0.7 * spread[1]);
@@ -259,11 +249,8 @@ TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
 TEST(Leak, ADarkRoomStaysExactlyBlack) {
   for (const char* name : {"test/two-rooms.toml", "test/divider.toml"}) {
     const World world(name);
-    VplSettings s;
-    s.vpls = 400;
-    s.film.spp = 2;
-    FilmStats stats;
-    const Image image = renderVpls(world, lightUp(world, s), s, stats);
+    const VplTable lit = litVpls(world, {{"count", "400"}});
+    const Image image = renderVpls(world, lit, with(kPlainRender, {{"spp", "2"}})).image;
     for (const char* c : {"R", "G", "B"}) {
       for (const float v : *image.find(c)) ASSERT_EQ(v, 0.0f) << name;
     }
@@ -273,23 +260,15 @@ TEST(Leak, ADarkRoomStaysExactlyBlack) {
 TEST(LightPlaced, InstantRadiosityHasTheSameMean) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
-  FilmStats path;
-  renderPaths(world, {.spp = 512, .only = Only::Indirect}, path);
+  const double path = indirectByPaths(world, {{"spp", "512"}});
   double sum = 0.0;
   constexpr int kSets = 8;
   for (uint64_t seed = 1; seed <= kSets; ++seed) {
-    PlaceOptions place;
-    place.count = 2000;
-    place.seed = seed;
-    const VplTable lit = placeFromLights(world.rays, world.lights, place).table;
-    VplSettings s;
-    s.clamp = 0.1f;
-    s.film = {.spp = 1, .only = Only::Indirect};
-    FilmStats stats;
-    renderVpls(world, lit, s, stats);
-    sum += stats.indirect / kSets;
+    const VplTable lit =
+        placeVpls(world, {{"method", "light"}, {"count", "2000"}, {"seed", typed(seed)}}).table;
+    sum += indirectOf(world, lit, {{"clamp", "0.1"}, {"spp", "1"}}) / kSets;
   }
-  EXPECT_NEAR(sum / path.indirect, 1.0, 0.04);
+  EXPECT_NEAR(sum / path, 1.0, 0.04);
 }
 
 }  // namespace

@@ -28,26 +28,24 @@ std::vector<double> blockMeans(const Image& image) {
 }
 
 void expectTheSameImage(const World& world, unsigned maxBounces, double perBlock, double perImage) {
-  FilmStats path, light;
-  FilmOptions film{.spp = 512, .layers = kLayerIndirect};
-  const Image byPaths = renderPaths(world, film, path, maxBounces);
-  film.spp = 64;
-  const Image byPhotons = renderPhotons(world, film, light, maxBounces);
-  EXPECT_NEAR(light.indirect / path.indirect, 1.0, perImage);
-  EXPECT_EQ(light.nonFinite, 0u);
-  const std::vector<double> a = blockMeans(byPaths), b = blockMeans(byPhotons);
+  const Given options{{"layers", "indirect"}, {"max-bounces", typed(maxBounces)}};
+  const RenderResult path = renderWithout(world, "path", with(options, {{"spp", "512"}}));
+  const RenderResult light = renderWithout(world, "light", with(options, {{"spp", "64"}}));
+  EXPECT_NEAR(light.stats.indirect / path.stats.indirect, 1.0, perImage);
+  EXPECT_EQ(light.stats.nonFinite, 0u);
+  const std::vector<double> a = blockMeans(path.image), b = blockMeans(light.image);
   for (size_t i = 0; i < a.size(); ++i) {
-    EXPECT_NEAR(b[i], a[i], perBlock * a[i] + 0.01 * path.indirect) << "block " << i;
+    EXPECT_NEAR(b[i], a[i], perBlock * a[i] + 0.01 * path.stats.indirect) << "block " << i;
   }
 }
 
 TEST(LightTracer, FurnaceIsTheGeometricSeries) {
   const World world("furnace/scene.toml");  // Le = 1, rho = 0.5
-  FilmStats stats;
-  renderPhotons(world, {.spp = 32}, stats, 64);
-  EXPECT_NEAR(stats.indirect, 0.5, 0.005);  // rho^2 / (1 - rho)
-  renderPhotons(world, {.spp = 32}, stats, 1);
-  EXPECT_NEAR(stats.indirect, 0.25, 0.0025);  // of one bounce alone
+  const auto indirect = [&](const char* bounces) {
+    return renderWithout(world, "light", {{"spp", "32"}, {"max-bounces", bounces}}).stats.indirect;
+  };
+  EXPECT_NEAR(indirect("64"), 0.5, 0.005);   // rho^2 / (1 - rho)
+  EXPECT_NEAR(indirect("1"), 0.25, 0.0025);  // of one bounce alone
 }
 
 TEST(LightTracer, AgreesWithThePathTracerBlockByBlock) {
@@ -70,9 +68,9 @@ TEST(LightTracer, AgreesInAFilmThatIsNotSquareByLampSkyAndPointLight) {
 TEST(LightTracer, DirectLightIsThePathTracers) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
-  FilmStats stats;
-  const FilmOptions film{.spp = 4, .layers = kLayerDirect | kLayerIndirect};
-  const Image paths = renderPaths(world, film, stats), photons = renderPhotons(world, film, stats);
+  const Given options{{"spp", "4"}, {"layers", "direct,indirect"}};
+  const Image paths = renderWithout(world, "path", options).image,
+              photons = renderWithout(world, "light", options).image;
   EXPECT_EQ(*paths.find("direct.G"), *photons.find("direct.G"));
   EXPECT_NE(*paths.find("indirect.G"), *photons.find("indirect.G"));
 }
@@ -81,9 +79,8 @@ TEST(LightTracer, DirectLightIsThePathTracers) {
 TEST(LightTracer, GoesOnFromEveryRound) {
   World world("cornell/scene.toml");
   world.scene.film = {40, 40};
-  FilmStats whole, pieces;
-  const FilmOptions film{.spp = 8};  // 12800 photons
-  const Image expected = renderPhotons(world, film, whole);
+  const Given options{{"spp", "8"}};  // 12800 photons
+  const RenderResult whole = renderWithout(world, "light", options);
   struct Stopped {};
   Resume resume;
   resume.pause = [] { return true; };
@@ -95,9 +92,9 @@ TEST(LightTracer, GoesOnFromEveryRound) {
   for (bool ended = false; !ended;) {
     try {
       const Resume begin = resume;
-      const Image image = renderPhotons(world, film, pieces, 32, begin);
-      EXPECT_EQ(*image.find("R"), *expected.find("R"));
-      EXPECT_EQ(pieces.indirect, whole.indirect);
+      const RenderResult pieces = renderWithout(world, "light", options, begin);
+      EXPECT_EQ(*pieces.image.find("R"), *whole.image.find("R"));
+      EXPECT_EQ(pieces.stats.indirect, whole.stats.indirect);
       ended = true;
     } catch (const Stopped&) {
       ++stops;
@@ -135,13 +132,16 @@ double noiseOf(const std::function<Image(uint64_t seed)>& render) {
 TEST(LightTracer, HasLessNoiseWhereLightComesRoundACorner) {
   World world("u-shape/scene.toml");
   world.scene.film = {32, 24};
-  FilmStats path, light;
-  const double byPaths = noiseOf([&](uint64_t seed) {
-    return renderPaths(world, {.spp = 1024, .seed = seed, .only = Only::Indirect}, path);
-  });
-  const double byPhotons = noiseOf([&](uint64_t seed) {
-    return renderPhotons(world, {.spp = 512, .seed = seed, .only = Only::Indirect}, light);
-  });
+  FilmStats path, light;  // of the last image
+  const auto noise = [&](const char* integrator, const char* spp, FilmStats& stats) {
+    return noiseOf([&](uint64_t seed) {
+      const RenderResult result = renderWithout(
+          world, integrator, {{"spp", spp}, {"seed", typed(seed)}, {"only", "indirect"}});
+      stats = result.stats;
+      return result.image;
+    });
+  };
+  const double byPaths = noise("path", "1024", path), byPhotons = noise("light", "512", light);
   EXPECT_LT(byPhotons, 0.5 * byPaths);
   EXPECT_NEAR(light.indirect / path.indirect, 1.0, 0.05);
 }
@@ -162,9 +162,7 @@ TEST(LightTracer, AgreesWithMirrorsAndGloss) {
 
 TEST(LightTracer, ClosedRoomsStayDark) {
   const World world("test/two-rooms.toml");
-  FilmStats stats;
-  renderPhotons(world, {.spp = 64}, stats);
-  EXPECT_EQ(stats.indirect, 0.0);
+  EXPECT_EQ(renderWithout(world, "light", {{"spp", "64"}}).stats.indirect, 0.0);
 }
 
 }  // namespace

@@ -1,33 +1,20 @@
 #include <gtest/gtest.h>
 
+#include "tests/support/gather_checks.h"
+#include "tests/support/gather_of.h"
 #include "tests/support/pipeline.h"
 #include "tools/common/streams.h"
 
 namespace bnvpl::test {
 namespace {
 
-struct Lit {
-  Lit() : world("cornell/scene.toml") {
-    world.scene.film = {40, 40};
-    settings.vpls = 2000;
-    settings.film = {.spp = 1, .only = Only::Indirect, .layers = kLayerCutSize};
-    vpls = lightUp(world, settings);
-  }
-  World world;
-  VplSettings settings;
-  VplTable vpls;
-};
-
-const Lit& lit() {
-  static const Lit l;
-  return l;
+const GatherCase& lit() {
+  static const GatherCase c("cornell/scene.toml", {40, 40}, {{"count", "2000"}});
+  return c;
 }
 
-Image render(const GatherOptions& gather) {
-  VplSettings s = lit().settings;
-  s.gather = gather;
-  FilmStats stats;
-  return renderVpls(lit().world, lit().vpls, s, stats);
+Image render(const std::string& gather, const Given& options = {}) {
+  return lit().indirect(gather, with({{"spp", "1"}, {"layers", "cutsize"}}, options));
 }
 
 double relativeDifference(const Image& a, const Image& b) {
@@ -43,30 +30,30 @@ double relativeDifference(const Image& a, const Image& b) {
 }
 
 TEST(Lightcuts, WithoutToleratedErrorIsTheSumOverAll) {
-  const Image all = render({.method = GatherMethod::All});
-  const Image cuts = render({.method = GatherMethod::Lightcuts, .error = 0.0f, .maxCut = 1000000});
+  const Image all = render("all");
+  const Image cuts = render("lightcuts", {{"error", "0"}, {"max-cut", "1M"}});
   const auto &x = *all.find("R"), &y = *cuts.find("R");
   for (size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(y[i], x[i], 1e-5f * (x[i] + 1e-3f)) << i;
 }
 
 TEST(Lightcuts, AtTwoPercentStaysNearTwoPercent) {
-  const Image all = render({.method = GatherMethod::All});
-  const Image cuts = render({.method = GatherMethod::Lightcuts});
+  const Image all = render("all");
+  const Image cuts = render("lightcuts");
   EXPECT_LT(relativeDifference(cuts, all), 0.02);
   EXPECT_GT(relativeDifference(cuts, all), 0.0);  // it did save work
 }
 
 TEST(Lightcuts, TheCutIsBounded) {
-  const Image cuts = render({.method = GatherMethod::Lightcuts, .error = 0.0f, .maxCut = 100});
+  const Image cuts = render("lightcuts", {{"error", "0"}, {"max-cut", "100"}});
   for (const float c : *cuts.find("cutsize")) EXPECT_LE(c, 100.0f);
-  const Image loose = render({.method = GatherMethod::Lightcuts, .error = 0.2f});
+  const Image loose = render("lightcuts", {{"error", "0.2"}});
   double mean = 0.0;
   for (const float c : *loose.find("cutsize")) mean += double{c} / double(loose.pixelCount());
   EXPECT_LT(mean, 500.0);
 }
 
 TEST(LightTree, EveryNodeHoldsItsLights) {
-  const VplLights vpls = makeVplLights(lit().vpls, lit().world.rays, 1.0f);
+  const VplLights vpls = makeVplLights(lit().lit, lit().world.rays, 1.0f);
   const LightTree tree = buildLightTree(vpls, 1);
   ASSERT_EQ(tree.nodes.size(), 2 * vpls.size() - 1);
   // From the leaves up (children come after their parent): collect each node's lights.
@@ -97,22 +84,19 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
 // The sampled gather and the sum over all VPLs agree on the mean, point by point and channel by
 // channel.
 TEST(SampledGather, IsTheSumOverAllOnAverage) {
-  const Lit& l = lit();
-  const VplLights vpls = makeVplLights(l.vpls, l.world.rays, 1.0f);
-  const Gatherer gatherer(l.world.rays, vpls, {.method = GatherMethod::All}, 1);
-  const Vec3 middle = l.world.scene.camera.position;
+  const World& world = lit().world;
+  const VplLights vpls = makeVplLights(lit().lit, world.rays, 1.0f);
+  const GatherOf gather(world, vpls, {{"gather", "all"}});
+  const Vec3 middle = world.scene.camera.position;
   Rng rng(streamKey(5, Stream::PixelSamples), 0);
   int points = 0;
   while (points < 6) {
     SurfacePoint hit;
-    const Vec3 direction = normalize(l.world.scene.camera.forward +
+    const Vec3 direction = normalize(world.scene.camera.forward +
                                      0.3f * Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.0f});
-    if (!l.world.rays.closestHit(middle, direction, hit)) continue;
-    const Bsdf bsdf(l.world.scene, hit);
-    const std::array<const Bsdf*, 1> receiver{&bsdf};
-    std::array<Gathered, 1> gathered;
-    gatherer.gather({{.pixels = 1}, receiver}, gathered);
-    const Vec3 all = gathered[0].radiance;
+    if (!world.rays.closestHit(middle, direction, hit)) continue;
+    const Bsdf bsdf(world.scene, hit);
+    const Vec3 all = gather.at(bsdf).radiance;
     if (mean(all) <= 0.0f) continue;
     ++points;
     for (const unsigned draws : {8u, 2u, 1u}) {
@@ -120,7 +104,7 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
       Vec3 sum;
       double squares = 0.0;
       for (int k = 0; k < kTimes; ++k) {
-        const Vec3 radiance = gatherer.sample(bsdf, draws, rng).radiance;
+        const Vec3 radiance = gather.point(bsdf, draws, rng).radiance;
         sum += radiance * (1.0f / kTimes);
         squares += std::pow(double{mean(radiance)} / double{mean(all)}, 2) / kTimes;
       }

@@ -7,15 +7,13 @@ namespace {
 
 TEST(PathTracer, FurnaceIsExact) {
   const World world("furnace/scene.toml");
-  FilmStats stats;
-  const Image image = renderPaths(world, {.spp = 64}, stats, 64);
+  const Image image = renderWithout(world, "path", {{"spp", "64"}, {"max-bounces", "64"}}).image;
   EXPECT_NEAR(meanOf(image), 2.0, 0.01);  // Le / (1 - rho)
 }
 
 TEST(PathTracer, TruncatedFurnaceIsThePartialSeries) {
   const World world("furnace/scene.toml");
-  FilmStats stats;
-  const Image image = renderPaths(world, {.spp = 64}, stats, 1);
+  const Image image = renderWithout(world, "path", {{"spp", "64"}, {"max-bounces", "1"}}).image;
   EXPECT_NEAR(meanOf(image), 1.0 + 0.5 + 0.25, 0.01);  // emitted, direct, one bounce
 }
 
@@ -26,9 +24,8 @@ TEST(PathTracer, TwoPatchFormFactor) {
   const Material* receiver = nullptr;
   const Material* emitter = nullptr;
   for (const Material& m : world.scene.materials) (isBlack(m.emission) ? receiver : emitter) = &m;
-  FilmStats stats;
-  FilmOptions film{.spp = 64, .layers = kLayerAlbedo};
-  const Image image = renderPaths(world, film, stats, 0);
+  const Given options{{"spp", "64"}, {"layers", "albedo"}, {"max-bounces", "0"}};
+  const Image image = renderWithout(world, "path", options).image;
   // Mean over the pixels that the receiver covers wholly; its irradiance varies by less than 2 %.
   const std::vector<float>&r = *image.find("R"), &albedo = *image.find("albedo.R");
   double sum = 0.0;
@@ -46,10 +43,10 @@ TEST(PathTracer, TwoPatchFormFactor) {
 TEST(PathTracer, SplitsDirectAndIndirectWithoutRest) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
-  FilmStats all, direct, indirect;
-  renderPaths(world, {.spp = 256}, all);
-  renderPaths(world, {.spp = 256, .only = Only::Direct}, direct);
-  renderPaths(world, {.spp = 256, .only = Only::Indirect}, indirect);
+  const auto stats = [&](const char* only) {
+    return renderWithout(world, "path", {{"spp", "256"}, {"only", only}}).stats;
+  };
+  const FilmStats all = stats("all"), direct = stats("direct"), indirect = stats("indirect");
   EXPECT_NEAR(direct.direct, all.direct, 0.02 * all.direct);
   EXPECT_NEAR(indirect.indirect, all.indirect, 0.02 * all.indirect);
 }
@@ -77,15 +74,13 @@ TEST(PathTracer, DirectLightAgreesWithTheVplRenderers) {
   for (const bool daylight : {false, true}) {
     World world = daylight ? World(boxInDaylight()) : World("cornell/scene.toml");
     world.scene.film = {32, 32};
-    FilmStats path, light, both;
-    renderPaths(world, {.spp = 512, .only = Only::Direct}, path);
-    VplSettings s;
-    s.film = {.spp = 512, .only = Only::Direct};
-    renderVpls(world, VplTable{}, s, light);
+    const Given film{{"spp", "512"}, {"only", "direct"}};
+    const FilmStats path = renderWithout(world, "path", film).stats;
+    const Given plain = with(kPlainRender, film);
+    const FilmStats light = renderVpls(world, {}, plain).stats;
     EXPECT_NEAR(light.direct / path.direct, 1.0, 0.01) << daylight;
-    s.nearField = true;
-    s.nearFieldRays = 4;
-    renderVpls(world, VplTable{}, s, both);
+    const Given nearField = with(plain, {{"compensate", "near-field"}, {"near-field-rays", "4"}});
+    const FilmStats both = renderVpls(world, {}, nearField).stats;
     EXPECT_NEAR(both.direct / light.direct, 1.0, 0.01) << daylight;
   }
 }
@@ -95,22 +90,20 @@ TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
   Scene sky = boxInDaylight();
   sky.lights.resize(1);
   const World world(std::move(sky));
-  VplSettings s;
-  std::array<double, 2> noise{};
-  for (const bool nearField : {false, true}) {
-    s.nearField = nearField;
+  const auto noise = [&](const char* compensate) {
     std::array<Image, 2> images;
     for (uint64_t seed = 0; seed < 2; ++seed) {
-      FilmStats stats;
-      s.film = {.spp = 8, .seed = seed, .only = Only::Direct};
-      images[seed] = renderVpls(world, VplTable{}, s, stats);
+      const Given options = with(
+          kPlainRender,
+          {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}, {"only", "direct"}});
+      images[seed] = renderVpls(world, {}, options).image;
     }
     const std::vector<float>&a = *images[0].find("G"), &b = *images[1].find("G");
-    for (size_t i = 0; i < a.size(); ++i) {
-      noise[nearField] += std::pow(double{a[i]} - double{b[i]}, 2);
-    }
-  }
-  EXPECT_LT(noise[1], 0.3 * noise[0]);
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - double{b[i]}, 2);
+    return sum;
+  };
+  EXPECT_LT(noise("near-field"), 0.3 * noise("none"));
 }
 
 }  // namespace

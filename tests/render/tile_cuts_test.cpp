@@ -1,42 +1,21 @@
 // The gather through tile cuts against the sum over all VPLs.
 #include <gtest/gtest.h>
 
-#include "tests/support/pipeline.h"
+#include "tests/support/gather_checks.h"
 
 namespace bnvpl::test {
 namespace {
 
-struct Case {
-  Case(const char* name, uint32_t width, uint32_t height, uint64_t vpls) : world(name) {
-    world.scene.film = {width, height};
-    settings.vpls = vpls;
-    settings.film = {.spp = 4, .only = Only::Indirect, .layers = kLayerCutSize};
-    lit = lightUp(world, settings);
-  }
-  Image render(const GatherOptions& gather, uint32_t spp = 4, uint64_t seed = 1) const {
-    VplSettings s = settings;
-    s.gather = gather;
-    s.film.spp = spp;
-    s.film.seed = seed;
-    FilmStats stats;
-    return renderVpls(world, lit, s, stats);
-  }
-  World world;
-  VplSettings settings;
-  VplTable lit;
-};
-
-const Case& cornell() {
-  static const Case c("cornell/scene.toml", 25, 19, 1000);  // tiles at the rims: 1 wide, 3 high
+const GatherCase& cornell() {
+  static const GatherCase c("cornell/scene.toml", {25, 19},
+                            {});  // tiles at the rims: 1 wide, 3 high
   return c;
 }
 // Has Phong lobes, a mirror and a door with a slit of light.
-const Case& door() {
-  static const Case c("veach-door/scene.toml", 32, 18, 1000);
+const GatherCase& door() {
+  static const GatherCase c("veach-door/scene.toml", {32, 18}, {});
   return c;
 }
-
-constexpr GatherOptions kAll{.method = GatherMethod::All};
 
 double sumOver(const Image& image, size_t x0, size_t x1, size_t y0, size_t y1) {
   double sum = 0.0;
@@ -62,9 +41,9 @@ double lightAt(const Image& a, size_t i) {
 }
 
 TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
-  for (const Case* c : {&cornell(), &door()}) {
-    const Image all = c->render(kAll);
-    const Image cuts = c->render({.error = 0.0f, .maxCut = 1000000});
+  for (const GatherCase* c : {&cornell(), &door()}) {
+    const Image all = c->indirect("all");
+    const Image cuts = c->indirect("tilecuts", {{"error", "0"}, {"max-cut", "1M"}});
     size_t different = 0;  // a ray along an edge may be decided otherwise in a packet
     for (size_t i = 0; i < all.pixelCount(); ++i) {
       const double light = lightAt(all, i);
@@ -79,12 +58,13 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
 // The coarsest cut there is: much noise, no bias, in no part of the image, for any number of
 // samples held in memory together.
 TEST(TileCuts, IsUnbiased) {
-  for (const Case* c : {&cornell(), &door()}) {
-    constexpr uint32_t kSpp = 17;
+  for (const GatherCase* c : {&cornell(), &door()}) {
+    const Given spp{{"spp", "17"}};
     std::array<Image, 6> all, cuts;  // of a seed, both see the same points
     for (uint64_t seed = 0; seed < cuts.size(); ++seed) {
-      all[seed] = c->render(kAll, kSpp, seed + 1);
-      cuts[seed] = c->render({.error = 0.1f, .maxCut = 32}, kSpp, seed + 1);
+      all[seed] = c->indirect("all", spp, seed + 1);
+      cuts[seed] =
+          c->indirect("tilecuts", with(spp, {{"error", "0.1"}, {"max-cut", "32"}}), seed + 1);
     }
     const auto width = static_cast<size_t>(all[0].width),
                height = static_cast<size_t>(all[0].height);
@@ -101,10 +81,12 @@ TEST(TileCuts, IsUnbiased) {
 }
 
 TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
-  const Image all = cornell().render(kAll, 8);
+  const Given spp{{"spp", "8"}};
+  const Image all = cornell().indirect("all", spp);
   double before = 1.0, cutBefore = 1e9;
   for (const float error : {0.02f, 0.08f}) {
-    const Image cuts = cornell().render({.error = error}, 8);
+    const Image cuts =
+        cornell().indirect("tilecuts", with(spp, {{"error", typed(error)}, {"layers", "cutsize"}}));
     double squares = 0.0, cut = 0.0;
     for (size_t i = 0; i < all.pixelCount(); ++i) {
       const double light = lightAt(all, i);
@@ -128,10 +110,10 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
 TEST(TileCuts, BordersDoNotShow) {
   double error[2] = {}, step[2] = {};
   size_t pixels[2] = {}, steps[2] = {};
-  Case c("cornell/scene.toml", 40, 32, 2000);
+  GatherCase c("cornell/scene.toml", {40, 32}, {{"count", "2000"}});
   for (uint32_t width = 37; width < 45; ++width) {
     c.world.scene.film = {width, 32};
-    const Image reference = c.render(kAll), cuts = c.render({.error = 0.05f});
+    const Image reference = c.indirect("all"), cuts = c.indirect("tilecuts", {{"error", "0.05"}});
     // Relative, and bounded, so that the pixel of an edge does not decide.
     const auto relative = [&](size_t i) {
       const double light = lightAt(reference, i);
@@ -158,8 +140,8 @@ TEST(TileCuts, BordersDoNotShow) {
 // Pixels that share their random VPLs are not neighbours: the error is grain that averages out, and
 // not blocks.
 TEST(TileCuts, NoiseIsFineGrain) {
-  Case c("cornell/scene.toml", 40, 32, 2000);
-  const Image reference = c.render(kAll), cuts = c.render({.error = 0.05f});
+  GatherCase c("cornell/scene.toml", {40, 32}, {{"count", "2000"}});
+  const Image reference = c.indirect("all"), cuts = c.indirect("tilecuts", {{"error", "0.05"}});
   const auto error = [&](size_t x, size_t y) {
     const size_t i = y * 40 + x;
     const double light = lightAt(reference, i);

@@ -1,6 +1,7 @@
 // Renderers that must have the same expected image, pixel by pixel, and images that are known.
 #include "tests/support/z_test.h"
 
+#include "core/sampling.h"
 #include "tests/support/flat_image.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/student_t.h"
@@ -79,25 +80,19 @@ World worldOf(const std::string& name, uint32_t width, uint32_t height) {
   return World(std::move(scene));
 }
 
-Render paths(const World& world, FilmOptions film, unsigned maxBounces = 32) {
-  return [&world, film, maxBounces](uint64_t seed) mutable {
-    film.seed = seed;
-    FilmStats stats;
-    return renderPaths(world, film, stats, maxBounces);
+Render paths(const World& world, const Given& options) {
+  return [&world, options](uint64_t seed) {
+    return renderWithout(world, "path", with(options, {{"seed", typed(seed)}})).image;
   };
 }
-Render photons(const World& world, FilmOptions film, unsigned maxBounces = 32) {
-  return [&world, film, maxBounces](uint64_t seed) mutable {
-    film.seed = seed + 1000;
-    FilmStats stats;
-    return renderPhotons(world, film, stats, maxBounces);
+Render photons(const World& world, const Given& options) {
+  return [&world, options](uint64_t seed) {
+    return renderWithout(world, "light", with(options, {{"seed", typed(seed + 1000)}})).image;
   };
 }
-Render vpls(const World& world, const VplTable& lit, VplSettings settings) {
-  return [&world, &lit, settings](uint64_t seed) mutable {
-    settings.film.seed = seed;
-    FilmStats stats;
-    return renderVpls(world, lit, settings, stats);
+Render vpls(const World& world, const VplTable& lit, const Given& options) {
+  return [&world, &lit, options = with(kPlainRender, options)](uint64_t seed) {
+    return renderVpls(world, lit, with(options, {{"seed", typed(seed)}})).image;
   };
 }
 Render flat(const World& world, float value) {
@@ -108,16 +103,16 @@ Render flat(const World& world, float value) {
 // Every wall shines with radiance 1 and reflects half: 1 + 1/2 is direct, 1/4 + 1/8 + ... indirect.
 TEST(SameExpectation, FurnaceIsKnownAtEveryPixel) {
   const World world = worldOf("furnace/scene.toml", 24, 16);
-  const FilmOptions all{.spp = 16}, indirect{.spp = 16, .only = Only::Indirect};
-  EXPECT_TRUE(sameExpectation(paths(world, all, 64), flat(world, 2.0f)));
-  EXPECT_TRUE(sameExpectation(paths(world, indirect, 1), flat(world, 0.25f)));
-  EXPECT_TRUE(sameExpectation(photons(world, indirect, 64), flat(world, 0.5f)));
-  EXPECT_TRUE(sameExpectation(photons(world, indirect, 1), flat(world, 0.25f)));
+  const Given all{{"spp", "16"}, {"max-bounces", "64"}},
+      indirect = with(all, {{"only", "indirect"}});
+  const Given oneBounce = with(indirect, {{"max-bounces", "1"}});
+  EXPECT_TRUE(sameExpectation(paths(world, all), flat(world, 2.0f)));
+  EXPECT_TRUE(sameExpectation(paths(world, oneBounce), flat(world, 0.25f)));
+  EXPECT_TRUE(sameExpectation(photons(world, indirect), flat(world, 0.5f)));
+  EXPECT_TRUE(sameExpectation(photons(world, oneBounce), flat(world, 0.25f)));
   // With rays beside the light samples, which alone have no variance near an edge of two lamps.
-  VplSettings direct;
-  direct.film = {.spp = 16, .only = Only::Direct};
-  direct.nearField = true;
-  direct.nearFieldRays = 4;
+  const Given direct{
+      {"spp", "16"}, {"only", "direct"}, {"compensate", "near-field"}, {"near-field-rays", "4"}};
   EXPECT_TRUE(sameExpectation(vpls(world, {}, direct), flat(world, 1.5f)));
 }
 
@@ -176,20 +171,19 @@ TEST(SameExpectation, TwoPatchesAreKnownAtEveryPixel) {
   const std::vector<float>& red = expected.channels[0].data;
   EXPECT_GT(std::count_if(red.begin(), red.end(), [](float v) { return v > 0.0f; }), 100);
   const ZTest few{.seeds = 16};
-  EXPECT_TRUE(sameExpectation(inside(paths(world, {.spp = 64})), known, few));
-  VplSettings direct;
-  direct.film = {.spp = 64, .only = Only::Direct};
+  EXPECT_TRUE(sameExpectation(inside(paths(world, {{"spp", "64"}})), known, few));
+  const Given direct{{"spp", "64"}, {"only", "direct"}};
   EXPECT_TRUE(sameExpectation(inside(vpls(world, {}, direct)), known, few));
-  direct.nearField = true;
-  EXPECT_TRUE(sameExpectation(inside(vpls(world, {}, direct)), known, few));
+  const Given nearField = with(direct, {{"compensate", "near-field"}});
+  EXPECT_TRUE(sameExpectation(inside(vpls(world, {}, nearField)), known, few));
 }
 
 TEST(SameExpectation, PathsAndPhotonsInTheCornellBox) {
   const World world = worldOf("cornell/scene.toml", 20, 20);
   for (const unsigned bounces : {1u, 32u}) {
-    const FilmOptions byPaths{.spp = 64, .only = Only::Indirect},
-        byPhotons{.spp = 16, .only = Only::Indirect};
-    EXPECT_TRUE(sameExpectation(paths(world, byPaths, bounces), photons(world, byPhotons, bounces)))
+    const Given indirect{{"only", "indirect"}, {"max-bounces", typed(bounces)}};
+    EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
+                                photons(world, with(indirect, {{"spp", "16"}}))))
         << bounces;
   }
 }
@@ -204,25 +198,21 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
   scene.lights[1].position = {0.3f, 0.45f, 0.1f};
   scene.lights[1].emission = Vec3{0.1f};
   const World world(std::move(scene));
-  VplSettings s;
-  s.film = {.spp = 16, .only = Only::Direct};
-  s.nearField = true;
-  s.nearFieldRays = 2;
-  EXPECT_TRUE(sameExpectation(paths(world, {.spp = 48, .only = Only::Direct}), vpls(world, {}, s)));
+  const Given byPaths{{"spp", "48"}, {"only", "direct"}}, byVpls{{"spp", "16"},
+                                                                 {"only", "direct"},
+                                                                 {"compensate", "near-field"},
+                                                                 {"near-field-rays", "2"}};
+  EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, byVpls)));
 }
 
 TEST(SameExpectation, TileCutsAndAllVpls) {
   for (const char* name : {"cornell/scene.toml", "veach-door/scene.toml"}) {
     const World world = worldOf(name, 25, 19);
-    VplSettings s;
-    s.candidates = 6000;
-    s.vpls = 300;
-    s.estimate.photons = 50000;
-    s.film = {.spp = 4, .only = Only::Indirect};
-    const VplTable lit = lightUp(world, s);
-    VplSettings cuts = s;
-    cuts.gather = {.error = 0.1f, .maxCut = 32};
-    EXPECT_TRUE(sameExpectation(vpls(world, lit, cuts), vpls(world, lit, s))) << name;
+    const VplTable lit =
+        litVpls(world, {{"count", "300"}}, {{"photons", "50k"}}, {{"count", "6000"}});
+    const Given all{{"only", "indirect"}};
+    const Given cuts = with(all, {{"gather", "tilecuts"}, {"error", "0.1"}, {"max-cut", "32"}});
+    EXPECT_TRUE(sameExpectation(vpls(world, lit, cuts), vpls(world, lit, all))) << name;
   }
 }
 

@@ -9,25 +9,34 @@
 
 namespace bnvpl::test {
 
-// A box whose blocks hide many VPLs, and a room lit through a door, with their VPLs.
+// A world, its film and its VPLs.
 struct GatherCase {
-  explicit GatherCase(const std::string& name) : world(name) {
-    world.scene.film = {32, 24};
-    lit = litVpls(world, {{"count", "600"}}, {{"photons", "100k"}}, {{"count", "12k"}});
+  GatherCase(const std::string& name, Film film, const Given& eliminated,
+             const Given& estimated = {}, const Given& placed = {})
+      : world(name) {
+    world.scene.film = film;
+    lit = litVpls(world, eliminated, estimated, placed);
   }
-  Image indirect(const std::string& gather, const Given& options, uint64_t seed) const {
+  // Nothing but what the VPLs bring.
+  Image indirect(const std::string& gather, const Given& options = {}, uint64_t seed = 1) const {
     return renderVpls(world, lit,
-                      with(with(kPlainRender, {{"gather", gather},
-                                               {"only", "indirect"},
-                                               {"seed", std::to_string(seed)}}),
+                      with(with(kPlainRender,
+                                {{"gather", gather}, {"only", "indirect"}, {"seed", typed(seed)}}),
                            options))
         .image;
   }
   World world;
   VplTable lit;
 };
+
+// A box whose blocks hide many VPLs, and a room lit through a door.
 inline const std::vector<const GatherCase*>& gatherCases() {
-  static const GatherCase box("cornell/scene.toml"), door("veach-door/scene.toml");
+  const auto caseOf = [](const char* name) {
+    return GatherCase(name, {32, 24}, {{"count", "600"}}, {{"photons", "100k"}},
+                      {{"count", "12k"}});
+  };
+  static const GatherCase box = caseOf("cornell/scene.toml"),
+                          door = caseOf("veach-door/scene.toml");
   static const std::vector<const GatherCase*> cases{&box, &door};
   return cases;
 }

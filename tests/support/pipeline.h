@@ -1,6 +1,9 @@
 // The stages in one process, for tests of what they compute together.
 #pragma once
 
+#include <array>
+#include <charconv>
+
 #include "scene/load_scene.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/estimate/estimate.h"
@@ -23,6 +26,13 @@ struct World {
 inline Given with(Given options, const Given& more) {
   options.insert(options.end(), more.begin(), more.end());
   return options;
+}
+
+// A number as one would type it: the fewest digits that give it back.
+template <typename Number>
+std::string typed(Number number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
 inline PlaceResult placeVpls(const World& world, const Given& options) {
@@ -58,6 +68,13 @@ inline VplTable litVpls(const World& world, const Given& eliminated = {},
   const VplTable candidates = placeVpls(world, with(kFewCandidates, placed)).table;
   const VplTable vpls = keepVpls(candidates, with(kFewVpls, eliminated));
   return lightVpls(world, vpls, with(kFewPhotons, estimated)).table;
+}
+
+// Flux of all VPLs together, W, mean of the channels.
+inline double totalFlux(const VplTable& lit) {
+  double sum = 0.0;
+  for (const Vec3 f : lit.flux) sum += double{mean(f)};
+  return sum;
 }
 
 // Mean over pixels and channels of a layer ("" for R, G, B).

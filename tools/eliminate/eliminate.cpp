@@ -11,7 +11,7 @@ namespace bnvpl {
 namespace {
 
 constexpr std::array kOptions{
-    letterFor("-n", countOption("count", "", 0x1p31 - 1, "", "VPLs to keep"))};
+    letterFor("-n", countOption("count", "", 0x1p53, "", "VPLs to keep"))};
 
 void requireEnough(size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");

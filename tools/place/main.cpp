@@ -31,7 +31,9 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Giv
   used.reads("scene", sceneOptions.file).writes("-o", output, {".vpl"}).writes(tool).check();
   requireMemory(kBytesPerRow * double(count), std::to_string(count) + " VPLs",
                 "ask for fewer with -n");
-  const Scene scene = loadSceneFor("vpl-place", sceneOptions);
+  const Scene scene = loadSceneFor("vpl-place", sceneOptions, Warnings::Silent);
+  if (placeMethod(options).needsLight) scene.requireLight();
+  printWarnings("vpl-place", scene.warnings);
   used.ready(scene.files);
   const RayScene rays(scene);
   const LightSet lights(rays);

@@ -27,6 +27,10 @@ const StageSpec& placeSpec() {
   return spec;
 }
 
+const PlaceMethod& placeMethod(const Values& options) {
+  return methodNamed(placeMethods(), options.text("method"));
+}
+
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
                   const ProgressFn& progress) {
   PlaceResult result =

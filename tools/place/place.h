@@ -26,11 +26,17 @@ struct PlaceInputs {
 
 // Rows are in path order: the first N of 2N are those of N. Throws InputError when the scene yields
 // too few within a bounded effort.
-using PlaceMethod = Method<PlaceResult (*)(const PlaceInputs&, const Values&)>;
+struct PlaceMethod {
+  std::string_view name, summary;
+  std::span<const Option> options;
+  PlaceResult (*make)(const PlaceInputs&, const Values&);
+  bool needsLight = false;  // a scene in which nothing shines is refused
+};
 std::span<const PlaceMethod* const> placeMethods();  // one for each folder beside this file
 
 // count, seed, method, and the methods' own.
 const StageSpec& placeSpec();
+const PlaceMethod& placeMethod(const Values& options);
 
 // A pure function of the scene and the options: any number of threads gives the same bytes.
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,

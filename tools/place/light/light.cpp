@@ -65,6 +65,6 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
 
 extern const PlaceMethod method{
     "light", "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
-    kOptions, make};
+    kOptions, make, /*needsLight=*/true};
 
 }  // namespace bnvpl::methods::place::light
