@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "tests/support/pipeline.h"
+#include "tools/render/gather/gather.h"
 #include "tools/common/streams.h"
 #include "transport/camera.h"
 #include "transport/photon_walk.h"

@@ -33,8 +33,7 @@ const PlaceMethod& placeMethod(const Values& options) {
 
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
                   const ProgressFn& progress) {
-  PlaceResult result =
-      methodNamed(placeMethods(), options.text("method")).make({rays, lights, progress}, options);
+  PlaceResult result = placeMethod(options).make({rays, lights, progress}, options);
   result.table.sceneHash = rays.scene().contentHash;
   return result;
 }
