@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/scene/plain_scene.h"
-#include "tests/support/pipeline.h"
+#include "tests/support/grey_cube.h"
 
 namespace bnvpl::test {
 namespace {
@@ -91,14 +91,8 @@ TEST(PhotonShares, ManyLightsOfAnyPower) {
 // A closed box that reflects half: each photon reflects half of its flux a hit, at a number of hits
 // with mean 2 and variance 2, so that n photons reflect the flux they bring to within 0.71/sqrt(n).
 TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
-  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
-  for (Material& m : scene.materials) m.emission = {};
-  scene.lights.resize(2);
-  scene.lights[0].position = scene.lights[1].position = {0.4f, 0.5f, 0.6f};
-  scene.lights[0].emission = {1, 0, 0};
-  scene.lights[1].emission = {0, 0, 0.04f};
-  const World world(std::move(scene));
-  const VplTable vpls = keepVpls(placeVpls(world, {{"count", "4000"}}).table, {{"count", "200"}});
+  const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
+  const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4000"}});
   const auto [lit, account] =
       lightVpls(world, vpls, {{"photons", "104k"}, {"radius", "3"}});  // 100000 and 4000
   EXPECT_NEAR(account.emitted, double{mean(world.lights.totalPower())}, 1e-6 * account.emitted);

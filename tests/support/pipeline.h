@@ -62,12 +62,24 @@ inline const Given kFewPhotons{{"photons", "300k"}};
 inline const Given kPlainRender{
     {"gather", "all"}, {"compensate", "none"}, {"clamp", "1"}, {"spp", "4"}};
 
-// From the scene to lit VPLs; the options go behind those above.
+// From the scene to VPLs without flux, and with it; the options go behind those above.
+inline VplTable keptVpls(const World& world, const Given& eliminated, const Given& placed = {}) {
+  const VplTable candidates = placeVpls(world, with(kFewCandidates, placed)).table;
+  return keepVpls(candidates, with(kFewVpls, eliminated));
+}
 inline VplTable litVpls(const World& world, const Given& eliminated = {},
                         const Given& estimated = {}, const Given& placed = {}) {
-  const VplTable candidates = placeVpls(world, with(kFewCandidates, placed)).table;
-  const VplTable vpls = keepVpls(candidates, with(kFewVpls, eliminated));
+  const VplTable vpls = keptVpls(world, eliminated, placed);
   return lightVpls(world, vpls, with(kFewPhotons, estimated)).table;
+}
+
+// Mean indirect light of an image.
+inline double indirectByVpls(const World& world, const VplTable& lit, const Given& options) {
+  const Given indirect = with(kPlainRender, {{"only", "indirect"}});
+  return renderVpls(world, lit, with(indirect, options)).stats.indirect;
+}
+inline double indirectByPaths(const World& world, const Given& options) {
+  return renderWithout(world, "path", with({{"only", "indirect"}}, options)).stats.indirect;
 }
 
 // Flux of all VPLs together, W, mean of the channels.

@@ -85,26 +85,5 @@ TEST(PathTracer, DirectLightAgreesWithTheVplRenderers) {
   }
 }
 
-// A sky through a window is found by few shadow rays; the rays that complete the VPLs find it too.
-TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
-  Scene sky = boxInDaylight();
-  sky.lights.resize(1);
-  const World world(std::move(sky));
-  const auto noise = [&](const char* compensate) {
-    std::array<Image, 2> images;
-    for (uint64_t seed = 0; seed < 2; ++seed) {
-      const Given options = with(
-          kPlainRender,
-          {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}, {"only", "direct"}});
-      images[seed] = renderVpls(world, {}, options).image;
-    }
-    const std::vector<float>&a = *images[0].find("G"), &b = *images[1].find("G");
-    double sum = 0.0;
-    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - double{b[i]}, 2);
-    return sum;
-  };
-  EXPECT_LT(noise("near-field"), 0.3 * noise("none"));
-}
-
 }  // namespace
 }  // namespace bnvpl::test

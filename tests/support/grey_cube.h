@@ -1,0 +1,22 @@
+// A closed room whose energy is known.
+#pragma once
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+
+// A closed cube of edge 1 about (1/2, 1/2, 1/2) that reflects half, with point lights at one place,
+// W/sr.
+inline World greyCube(const std::vector<Vec3>& intensities) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
+  for (Material& m : scene.materials) m.emission = {};
+  for (const Vec3 intensity : intensities) {
+    LightSpec l;
+    l.position = {0.4f, 0.5f, 0.6f};
+    l.emission = intensity;
+    scene.lights.push_back(l);
+  }
+  return World(std::move(scene));
+}
+
+}  // namespace bnvpl::test

@@ -1,0 +1,191 @@
+// What rays give back of the light that VPLs do not bring.
+#include "tools/render/compensate/near_field/near_field.h"
+
+#include <gtest/gtest.h>
+
+#include "core/sampling.h"
+#include "tests/scene/plain_scene.h"
+#include "tests/support/pipeline.h"
+#include "tools/common/streams.h"
+
+namespace bnvpl::test {
+namespace {
+
+VplTable withoutThoseThatLookLeft(const VplTable& vpls) {
+  VplTable rest = vpls;
+  rest.position.clear(), rest.normal.clear(), rest.albedo.clear(), rest.id.clear(),
+      rest.radius.clear();
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    if (vpls.normal[i].x < -0.5f) continue;
+    rest.position.push_back(vpls.position[i]);
+    rest.normal.push_back(vpls.normal[i]);
+    rest.albedo.push_back(vpls.albedo[i]);
+    rest.id.push_back(vpls.id[i]);
+    rest.radius.push_back(vpls.radius[i]);
+  }
+  return rest;
+}
+
+// A generous clamp takes much of the light; rays give back what it takes. And where VPLs are
+// missing altogether, here on every surface that looks to the left, rays carry all.
+TEST(NearField, GivesBackWhatClampAndGapsTake) {
+  World world("cornell/scene.toml");
+  world.scene.film = {48, 48};
+  const double path = indirectByPaths(world, {{"spp", "256"}});
+  // Enough VPLs for the blur of their energy, which falls with their spacing, to be small.
+  const VplTable all = keptVpls(world, {{"count", "2000"}}, {{"count", "40k"}});
+  const VplTable rest = withoutThoseThatLookLeft(all);
+  ASSERT_LT(rest.size(), all.size());
+  for (const VplTable* vpls : {&all, &rest}) {
+    const VplTable lit = lightVpls(world, *vpls, kFewPhotons).table;
+    const auto indirect = [&](const char* compensate) {
+      return indirectByVpls(world, lit, {{"compensate", compensate}, {"clamp", "4"}, {"spp", "2"}});
+    };
+    EXPECT_LT(indirect("none"), 0.98 * path);
+    EXPECT_NEAR(indirect("near-field") / path, 1.0, 0.03) << (vpls == &rest ? "with a gap" : "");
+  }
+}
+
+// The clamp takes 1 - (distance / (clamp r))^2 of the light of a VPL of radius r, but not less than
+// nothing. How far `share` is from that of the VPL nearest to it, of those whose disk holds the
+// hit.
+double distanceToAShareOfAVplThatReaches(const VplTable& lit, const SurfacePoint& hit,
+                                         float distanceOverClamp, float share) {
+  double nearest = INFINITY;
+  for (size_t i = 0; i < lit.size(); ++i) {
+    const float reach = static_cast<float>(lit.reach) * lit.radius[i];
+    if (length(hit.position - lit.position[i]) > 1.0001f * reach) continue;
+    if (dot(hit.ng, lit.normal[i]) < 0.5f) continue;
+    const double relative = double{distanceOverClamp} / double{lit.radius[i]};
+    nearest =
+        std::min(nearest, std::fabs(double{share} - std::max(0.0, 1.0 - relative * relative)));
+  }
+  return nearest;
+}
+
+Missing missingAt(const NearField& nearField, const SurfacePoint& hit, float distance, Rng& rng) {
+  return nearField.missing(hit, distance, nearField.coverage().lookUp(hit.position), rng);
+}
+
+// In the furnace every surface sends out rho^2 / (1 - rho) of light that came by way of another. So
+// say the VPLs, from their flux and the area that each is found to speak for, on the average over
+// surfaces.
+TEST(NearField, VplsKnowTheRadianceAroundThem) {
+  const World world("furnace/scene.toml");  // rho = 0.5
+  const VplTable lit = litVpls(world);
+  const float clamp = 1.0f;
+  const NearField nearField(lit, world.rays, clamp);
+  double sum = 0.0;
+  int known = 0;
+  Rng rng(streamKey(1, Stream::PixelSamples), 0);
+  for (int k = 0; k < 4000; ++k) {
+    SurfacePoint hit;
+    // Evenly over the six faces of the unit cube.
+    const float side = rng.next() < 0.5f ? -0.5f : 0.5f;
+    const float u = rng.next() - 0.5f, v = rng.next() - 0.5f;
+    const Vec3 face = k % 3 == 0   ? Vec3{side, u, v}
+                      : k % 3 == 1 ? Vec3{u, side, v}
+                                   : Vec3{u, v, side};
+    if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
+    const float distance = 0.8f * clamp * lit.radius[0];
+    const Missing missing = missingAt(nearField, hit, distance, rng);
+    if (!missing.scattered) continue;
+    ++known;
+    sum += double{missing.scattered->x};
+    EXPECT_LT(distanceToAShareOfAVplThatReaches(lit, hit, distance / clamp, missing.share), 1e-5)
+        << missing.share;
+  }
+  ASSERT_GT(known, 3000);
+  EXPECT_NEAR(sum / known, 0.5, 0.015);
+}
+
+// A VPL in the middle of a board that is narrower than its disk: the area is that of the board
+// under the disk, and where points of the disk hardly ever meet the board, nothing is claimed.
+TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
+  const auto radianceOfBoard = [](float width) {
+    Scene scene;
+    addSquare(scene, {-2, 0, width / 2}, {4, 0, 0}, {0, 0, -width}, lambert(Vec3(0.5f)));
+    addSquare(scene, {-2, -3, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));  // far below
+    finishScene(scene);
+    const RayScene rays(scene);
+    VplTable lit;
+    lit.stage = VplStage::Lit;
+    lit.reach = 1.0;
+    lit.position = lit.emitPosition = {Vec3()};
+    lit.normal = lit.emitNormal = {Vec3(0, 1, 0)};
+    lit.albedo = {Vec3(0.5f)};
+    lit.id = {1};
+    lit.radius = {1.0f};
+    lit.flux = {Vec3(3.0f)};
+    lit.firstBounceFlux = {Vec3(1.0f)};
+    lit.photons = {10};
+    lit.relativeError = {0.1f};
+    SurfacePoint hit;
+    EXPECT_TRUE(rays.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
+    Rng rng(streamKey(1, Stream::PixelSamples), 0);
+    const Missing missing = missingAt(NearField(lit, rays, 2.0f), hit, 1.0f, rng);
+    EXPECT_NEAR(missing.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
+    return missing.scattered;
+  };
+  const auto known = [](float area) { return (3.0f - 1.0f) / (kPi * area); };
+  for (const float width : {3.0f, 1.0f, 0.25f}) {
+    const std::optional<Vec3> radiance = radianceOfBoard(width);
+    ASSERT_TRUE(radiance.has_value()) << width;
+    const float half = std::min(1.0f, width / 2);  // area of a disk between two parallel chords
+    const float area = 2.0f * (half * std::sqrt(1.0f - half * half) + std::asin(half));
+    EXPECT_NEAR(radiance->x / known(area), 1.0f, 0.25f) << width;
+  }
+  EXPECT_FALSE(radianceOfBoard(0.01f).has_value());
+}
+
+// More rays bring the same light with less noise.
+TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
+  World world("cornell/scene.toml");
+  world.scene.film = {32, 32};
+  const VplTable lit = litVpls(world);
+  const auto render = [&](const char* rays, const char* seed) {
+    return renderVpls(world, lit,
+                      with(kPlainRender, {{"compensate", "near-field"},
+                                          {"clamp", "2"},
+                                          {"near-field-rays", rays},
+                                          {"seed", seed},
+                                          {"only", "indirect"}}));
+  };
+  std::array<double, 2> spread{}, mean{};
+  for (const unsigned few : {0u, 1u}) {
+    const char* rays = few ? "1" : "16";
+    const RenderResult first = render(rays, "1"), second = render(rays, "2");
+    const std::vector<float>&x = *first.image.find("G"), &y = *second.image.find("G");
+    for (size_t i = 0; i < x.size(); ++i) spread[few] += std::pow(double{x[i]} - double{y[i]}, 2);
+    mean[few] = first.stats.indirect + second.stats.indirect;
+  }
+  EXPECT_NEAR(mean[1] / mean[0], 1.0, 0.02);
+  EXPECT_LT(spread[0], 0.7 * spread[1]);
+}
+
+// A sky through a window is found by few shadow rays; the rays that complete the VPLs find it too.
+TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
+  Scene sky = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  sky.film = {32, 32};
+  sky.lights.assign(1, LightSpec{});
+  sky.lights[0].type = LightType::Environment;
+  sky.lights[0].emission = Vec3{2.0f};
+  const World world(std::move(sky));
+  const auto noise = [&](const char* compensate) {
+    std::array<Image, 2> images;
+    for (uint64_t seed = 0; seed < 2; ++seed) {
+      const Given options = with(
+          kPlainRender,
+          {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}, {"only", "direct"}});
+      images[seed] = renderVpls(world, {}, options).image;
+    }
+    const std::vector<float>&a = *images[0].find("G"), &b = *images[1].find("G");
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - double{b[i]}, 2);
+    return sum;
+  };
+  EXPECT_LT(noise("near-field"), 0.3 * noise("none"));
+}
+
+}  // namespace
+}  // namespace bnvpl::test
