@@ -19,8 +19,8 @@ def run(context: Context) -> None:
             row = next(r for r in context.results if r["part"] == "methods" and r["view"] == view.name and
                        r["method"] == method)
             shown = {"group": f"{view.scene.title}, {view.title}", **row}
-            if method != "light":
-                _, runs = pipeline.lit(context.runner, view, context.configuration(view, method), 1)
+            _, runs = pipeline.lit(context.runner, view, context.configuration(view, method), 1)
+            if runs[-1].record["tool"] == "vpl-estimate":  # which accounts for its photons
                 account = json.loads(runs[-1]["stats.json"].read_text())["energy_W"]
                 whole = account["reflected"]
                 shown |= {"deposited": 100 * account["deposited"] / whole}
@@ -29,6 +29,6 @@ def run(context: Context) -> None:
     context.tables.append(table(
         "energy", "Energy",
         "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because no VPL reaches the "
-        "hit (outside: it lights nothing in view), none on its sheet of surface (gap), none in sight (hidden). "
+        "hit (outside: it lights nothing in view), none on a compatible surface (gap), none in sight (hidden). "
         "Near-field rays bring what gap and hidden lose.",
         COLUMNS, rows))
