@@ -40,7 +40,7 @@ std::string makerOf(const std::string& text) {
   if (!isProvenance(text)) return "";
   const Json history = Json::parse(text);
   if (history.empty()) return "";
-  const std::string tool = wordAt(history.back(), "tool");
+  std::string tool = wordAt(history.back(), "tool");
   const auto options = history.back().find("options");
   if (tool.empty() || options == history.back().end() || !options->is_object()) return tool;
   const std::string method = wordAt(*options, "method");

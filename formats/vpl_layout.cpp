@@ -119,14 +119,14 @@ std::optional<BadField> findBadField(const VplExtraColumn& column,
 std::optional<BadValue> findBadValue(const VplTable& table) {
   size_t index = 0;
   for (const VplColumn& column : standardColumns(table.stage)) {
-    const auto bad =
+    auto bad =
         std::visit([&](auto member) { return findIn(table, table.*member, index, column.check); },
                    column.member);
     if (bad) return bad;
     ++index;
   }
   for (const VplExtraColumn& extra : table.extras) {
-    if (const auto bad = findNotFinite(extra, index)) return bad;
+    if (auto bad = findNotFinite(extra, index)) return bad;
     ++index;
   }
   return std::nullopt;

@@ -10,7 +10,7 @@ namespace bnvpl {
 // "position.x", "flux.g", "radius"; a strategy's columns are numbered: "rich.lobes.0".
 inline std::string componentName(const VplColumnView& column, size_t component,
                                  char separator = '.') {
-  const std::string name(column.name);
+  std::string name(column.name);
   if (column.components == 1) return name;
   return name + separator +
          (column.parts.empty() ? std::to_string(component)

@@ -1,0 +1,93 @@
+// .vpl files between the executables: columns of strategies, other versions, who made a file.
+#include "formats/vpl_io.h"
+#include "tests/pipeline/tool_runner.h"
+
+namespace bnvpl {
+namespace {
+
+class VplFiles : public PipelineTest {
+ protected:
+  void SetUp() override { makeStages(scene_); }
+  // The file with a column of a strategy that no tool knows.
+  void addLobes(const std::string& from, const std::string& to) const {
+    VplTable table = readVpl(at(from));
+    std::vector<float> lobes;
+    for (const uint32_t id : table.id) {
+      for (const float offset : {0.0f, 0.25f}) lobes.push_back(static_cast<float>(id) + offset);
+    }
+    table.extras.push_back({"rich.lobes", "1", 2, lobes});
+    writeVpl(at(to), table);
+  }
+  // Each row still has the values that belong to its id.
+  void expectLobes(const std::string& name) const {
+    const VplTable table = readVpl(at(name));
+    ASSERT_EQ(table.extras.size(), 1u) << name;
+    EXPECT_EQ(table.extras[0].name, "rich.lobes");
+    const auto& lobes = std::get<std::vector<float>>(table.extras[0].values);
+    ASSERT_EQ(lobes.size(), 2 * table.size());
+    for (size_t row = 0; row < table.size(); ++row) {
+      EXPECT_EQ(lobes[2 * row], static_cast<float>(table.id[row]));
+      EXPECT_EQ(lobes[2 * row + 1], static_cast<float>(table.id[row]) + 0.25f);
+    }
+  }
+};
+
+TEST_F(VplFiles, ColumnsOfStrategiesSurviveTheStages) {
+  addLobes("vpls.vpl", "v.vpl");
+  succeed("vpl-estimate", scene_ + " " + path("v.vpl") + " -o " + path("l.vpl") + " --photons 5k");
+  expectLobes("l.vpl");
+  const Outcome info = tool("vpl-inspect", "info " + path("l.vpl"));
+  EXPECT_TRUE(
+      contains(info.out, "\ncolumns of strategies, which all stages keep: rich.lobes (f32 x 2)\n"))
+      << info.out;
+  succeed("vpl-render", scene_ + " " + path("l.vpl") + " -o " + path("i.exr") + " --spp 1");
+  EXPECT_EQ(tool("vpl-inspect", "check " + path("v.vpl") + " " + path("l.vpl")).code, kExitOk);
+  EXPECT_EQ(tool("vpl-inspect", "export " + path("l.vpl") + " -o " + path("l.csv")).code, kExitOk);
+  EXPECT_TRUE(contains(readAll(at("l.csv")), ",rich.lobes_0,rich.lobes_1\n"));
+}
+
+// They change nothing of what the stages compute.
+TEST_F(VplFiles, ColumnsOfStrategiesLeaveTheOthersAlone) {
+  addLobes("vpls.vpl", "v.vpl");
+  for (const char* name : {"v", "vpls"}) {
+    succeed("vpl-estimate", scene_ + " " + path(name + std::string(".vpl")) + " -o " +
+                                path(name + std::string("-lit.vpl")) + " --photons 5k");
+  }
+  const VplTable with = readVpl(at("v-lit.vpl")), without = readVpl(at("vpls-lit.vpl"));
+  const auto a = columnsOf(with), b = columnsOf(without);
+  ASSERT_EQ(a.size(), b.size() + 1);
+  for (size_t c = 0; c < b.size(); ++c)
+    EXPECT_TRUE(std::ranges::equal(a[c].bytes, b[c].bytes)) << b[c].name;
+}
+
+TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
+  for (const uint32_t version : {1u, 2u, 4u}) {
+    std::string bytes = readAll(at("lit.vpl"));
+    bytes[offsetof(VplHeader, version)] = static_cast<char>(version);
+    write("old.vpl", bytes);
+    const std::string says = "byte 8: version " + std::to_string(version) + ", expected 3; ";
+    const std::string cure =
+        version < 3 ? "rerun vpl-place and every later stage" : "use the bnvpl that wrote it";
+    fail("vpl-render", scene_ + " " + path("old.vpl") + " -o " + path("x.exr"), kExitInput,
+         {"old.vpl", says + cure});
+    fail("vpl-inspect", "info " + path("old.vpl"), kExitInput, {"old.vpl", says + cure});
+  }
+}
+
+TEST_F(VplFiles, TheWrongStageIsToldWithItsMakerAndTheRightTools) {
+  succeed("vpl-place", scene_ + " -o " + path("light.vpl") + " -n 20 --method light");
+  fail("vpl-estimate", scene_ + " " + path("light.vpl") + " -o " + path("x.vpl"), kExitInput,
+       {"is of stage lit (by vpl-place --method light), stage eliminated is needed; make it with "
+        "vpl-eliminate"});
+  fail("vpl-estimate", scene_ + " " + path("lit.vpl") + " -o " + path("x.vpl"), kExitInput,
+       {"is of stage lit (by vpl-estimate"});
+  fail("vpl-render", scene_ + " " + path("vpls.vpl") + " -o " + path("x.exr"), kExitInput,
+       {"is of stage eliminated (by vpl-eliminate",
+        "make it with vpl-estimate or vpl-place --method light"});
+  fail("vpl-inspect",
+       "plot " + path("vpls.vpl") + " --scene " + scene_ + " --color flux -o " + path("x.png"),
+       kExitInput, {"vpl-estimate or vpl-place --method light"});
+}
+
+}  // namespace
+}  // namespace bnvpl
