@@ -60,6 +60,8 @@ void parseTogether(const std::vector<std::string>& arguments) {
     cli.parse(static_cast<int>(argv.size()), argv.data());
   } catch (const CLI::ParseError&) {  // --help is one too
     return;
+  } catch (const UsageError&) {  // a number of threads that is none
+    return;
   }
   Values values;
   if (!accepted<UsageError>([&] { values = resolve(spec, given); })) return;

@@ -139,7 +139,8 @@ Json recordOf(const StageSpec& spec, const Values& values) {
   Json json = Json::object();
   for (const auto& [name, value] : values.list()) {
     if (!isRecorded(spec, name)) continue;
-    std::visit([&](const auto& v) { json[name] = v; }, value);
+    Json& entry = json[name];
+    std::visit([&](const auto& v) { entry = v; }, value);
   }
   return json;
 }

@@ -58,7 +58,8 @@ Kept make(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method{
+extern const EliminateMethod method;
+const EliminateMethod method{
     "elimination",
     "blue noise: the candidates that are spread best, by weighted sample elimination", kOptions,
     make};

@@ -46,6 +46,7 @@ Kept make(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method{"random", "a random subset, for comparison", kOptions, make};
+extern const EliminateMethod method;
+const EliminateMethod method{"random", "a random subset, for comparison", kOptions, make};
 
 }  // namespace bnvpl::methods::eliminate::random

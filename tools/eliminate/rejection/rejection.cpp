@@ -121,7 +121,8 @@ Kept make(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method{
+extern const EliminateMethod method;
+const EliminateMethod method{
     "rejection",
     "VPLs of vpl-place --method light, accepted by what they bring to the image; about -n of them",
     kOptions,

@@ -22,7 +22,8 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EstimateMethod method{
+extern const EstimateMethod method;
+const EstimateMethod method{
     "even", "photons, evenly to all VPLs within reach: the thesis; leaks through thin walls",
     kPhotonOptions, make};
 

@@ -27,8 +27,9 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EstimateMethod method{"guarded",
-                                   "photons, to VPLs on compatible surfaces that the hit can see",
-                                   kPhotonOptions, make};
+extern const EstimateMethod method;
+const EstimateMethod method{"guarded",
+                            "photons, to VPLs on compatible surfaces that the hit can see",
+                            kPhotonOptions, make};
 
 }  // namespace bnvpl::methods::estimate::guarded

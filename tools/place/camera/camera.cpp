@@ -98,7 +98,8 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const PlaceMethod method{
-    "camera", "candidates for vpl-eliminate, where camera paths bounce to", kOptions, make};
+extern const PlaceMethod method;
+const PlaceMethod method{"camera", "candidates for vpl-eliminate, where camera paths bounce to",
+                         kOptions, make};
 
 }  // namespace bnvpl::methods::place::camera

@@ -63,7 +63,8 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const PlaceMethod method{
+extern const PlaceMethod method;
+const PlaceMethod method{
     "light", "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
     kOptions, make, /*needsLight=*/true};
 

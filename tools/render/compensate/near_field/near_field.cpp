@@ -119,7 +119,8 @@ Compensation make(const CompensateInputs& in, const Values&) {
 
 }  // namespace
 
-extern const CompensateMethod method{
+extern const CompensateMethod method;
+const CompensateMethod method{
     "near-field", "sampled rays bring what the clamp and gaps between VPLs take", {}, make};
 
 }  // namespace methods::compensate::near_field

@@ -9,7 +9,8 @@ Compensation make(const CompensateInputs&, const Values&) { return {}; }
 
 }  // namespace
 
-extern const CompensateMethod method{
+extern const CompensateMethod method;
+const CompensateMethod method{
     "none", "what the clamp and gaps between VPLs take stays away", {}, make};
 
 }  // namespace bnvpl::methods::compensate::none

@@ -32,6 +32,7 @@ Gather make(const GatherInputs& in, const Values&) {
 
 }  // namespace
 
-extern const GatherMethod method{"all", "every VPL: the truth for a VPL set", {}, make};
+extern const GatherMethod method;
+const GatherMethod method{"all", "every VPL: the truth for a VPL set", {}, make};
 
 }  // namespace bnvpl::methods::gather::all

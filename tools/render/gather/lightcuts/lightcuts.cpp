@@ -93,8 +93,9 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method{
-    "lightcuts", "a cut of the light tree for each sample, one VPL for each cluster", kOptions,
-    make};
+extern const GatherMethod method;
+const GatherMethod method{"lightcuts",
+                          "a cut of the light tree for each sample, one VPL for each cluster",
+                          kOptions, make};
 
 }  // namespace bnvpl::methods::gather::lightcuts

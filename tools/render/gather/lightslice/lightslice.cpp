@@ -119,7 +119,8 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method{
+extern const GatherMethod method;
+const GatherMethod method{
     "lightslice", "VPLs clustered for each slice of what the camera sees, by rows of their matrix",
     kOptions, make};
 

@@ -119,7 +119,8 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method{
-    "stochastic", "a small cut for each sample, a random VPL of each cluster", kOptions, make};
+extern const GatherMethod method;
+const GatherMethod method{"stochastic", "a small cut for each sample, a random VPL of each cluster",
+                          kOptions, make};
 
 }  // namespace bnvpl::methods::gather::stochastic

@@ -151,8 +151,9 @@ Gather make(const GatherInputs& in, const Values& values) {
 
 }  // namespace
 
-extern const GatherMethod method{
-    "tilecuts", "a cut for each tile, a random VPL of each cluster for each sample", kOptions,
-    make};
+extern const GatherMethod method;
+const GatherMethod method{"tilecuts",
+                          "a cut for each tile, a random VPL of each cluster for each sample",
+                          kOptions, make};
 
 }  // namespace bnvpl::methods::gather::tilecuts

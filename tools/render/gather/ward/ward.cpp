@@ -113,8 +113,9 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method{
-    "ward", "VPLs sorted by brightness, shadow-tested until the rest cannot matter", kOptions,
-    make};
+extern const GatherMethod method;
+const GatherMethod method{"ward",
+                          "VPLs sorted by brightness, shadow-tested until the rest cannot matter",
+                          kOptions, make};
 
 }  // namespace bnvpl::methods::gather::ward

@@ -29,7 +29,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const IntegratorMethod method{
+extern const IntegratorMethod method;
+const IntegratorMethod method{
     "light",
     "path tracing with indirect light by photons that are connected with the camera, for where "
     "paths hardly find the lights; takes no VPLs",

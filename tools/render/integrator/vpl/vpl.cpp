@@ -79,7 +79,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const IntegratorMethod method{"vpl", "direct light by shadow rays, indirect light from VPLs",
-                                     kOptions, make, /*needsVpls=*/true};
+extern const IntegratorMethod method;
+const IntegratorMethod method{"vpl", "direct light by shadow rays, indirect light from VPLs",
+                              kOptions, make, /*needsVpls=*/true};
 
 }  // namespace bnvpl::methods::integrator::vpl
