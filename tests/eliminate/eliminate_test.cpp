@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cmath>
+#include <ctime>
 
 #include "core/errors.h"
 #include "core/random.h"
@@ -219,6 +221,42 @@ TEST(Eliminate, TooManyWantedSaysWhatToRerun) {
     EXPECT_NE(text.find("rerun vpl-place -n at least 1000"), std::string::npos) << text;
   }
   EXPECT_THROW(keepRowsOf(cloud, keep(0)), UsageError);
+}
+
+// The work of one step grows as candidates^2 / kept: without steps, 75 times as much for the
+// second.
+TEST(Eliminate, TimeDoesNotRiseAsFewerAreKept) {
+  const Cloud cloud = cube(60000, 1.0f, 12);
+  const auto cpuTicks = [&](uint64_t count) {
+    const std::clock_t begin = std::clock();
+    expectSubset(keepRowsOf(cloud, keep(count)), count, cloud.size());
+    return static_cast<double>(std::clock() - begin);
+  };
+  const double many = cpuTicks(1500);
+  for (const uint64_t count : {200u, 20u, 1u}) EXPECT_LT(cpuTicks(count), 4.0 * many) << count;
+}
+
+// Steps cost little of the spacing.
+TEST(Eliminate, SpacingOfFewOfMany) {
+  const Cloud cloud = plane(60000, 1.0f, 1.0f, 13);
+  const KeptRows result = keepRowsOf(cloud, with(keep(200), {{"area", "1"}}));
+  EXPECT_GE(smallestDistance(cloud, result.rows) / (2.0 * result.rMax), 0.6);
+}
+
+TEST(Eliminate, ProgressAddsUpToTheCandidates) {
+  const VplTable table = tableOf(cube(20000, 1.0f, 14));
+  for (const char* count : {"1", "500", "19999", "20000"}) {
+    std::atomic<uint64_t> done{0};
+    int calls = 0;
+    const ProgressFn progress = [&](uint64_t more) {
+      done += more;
+      ++calls;
+      EXPECT_LE(done, table.size());
+    };
+    eliminate(table, resolve(eliminateSpec(), {{"count", count}}), nullptr, nullptr, progress);
+    EXPECT_EQ(done, table.size()) << count;
+    EXPECT_GT(calls, count == std::string("1") ? 10 : 0);
+  }
 }
 
 }  // namespace

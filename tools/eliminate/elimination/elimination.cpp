@@ -35,25 +35,79 @@ PairWeight pairWeightRule(size_t candidates, double count, const Values& options
   return {options.real32("alpha"), static_cast<float>(limit)};
 }
 
-// The result is that of the sequential greedy algorithm that removes the candidate of greatest
-// weight until `count` are left; of equal weights the higher row goes first.
+// Candidates in the order in which they are searched, which keeps neighbours together.
+struct Sorted {
+  std::vector<uint32_t> row;  // of the table
+  std::vector<Vec3> position, normal;
+  std::vector<float> radius;  // when all are kept that are asked for in the end
+};
+
+// Every pair that is nearer than two radii competes, so that the work grows as candidates^2 / kept.
+// Where that is much, and there are more candidates for each VPL than kMostCandidates, kFewer of
+// them are kept first, with the radii of as many: the time then no longer grows as fewer are kept
+// (theory.md, "Cost").
+constexpr double kMostCandidates = 60, kFewer = 30, kMuchWork = 0x1p22;
+
+// The last step keeps `count`; each begins with what the one before has left.
+std::vector<size_t> stepsFor(size_t candidates, size_t count) {
+  std::vector<size_t> steps{count};
+  const auto many = [&](size_t kept) {
+    const double each = static_cast<double>(candidates) / static_cast<double>(kept);
+    return each > kMostCandidates && each * static_cast<double>(candidates) > kMuchWork;
+  };
+  while (many(steps.back())) steps.push_back(steps.back() * static_cast<size_t>(kFewer));
+  std::reverse(steps.begin(), steps.end());
+  return steps;
+}
+
+// Places in `of` of the rows that the step keeps, ascending.
+std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const Values& options,
+                             const ProgressFn& progress) {
+  // Radii grow as fewer are kept.
+  const auto scale = static_cast<float>(std::sqrt(double(count) / double(keep)));
+  std::vector<float> radius = of.radius;
+  if (keep != count) {
+    for (float& r : radius) r *= scale;
+  }
+  ConflictGraph graph(of.position, of.normal, std::move(radius), of.row,
+                      pairWeightRule(of.row.size(), static_cast<double>(keep), options));
+  std::vector<uint32_t> rows = eliminateHeaviest(graph, keep, progress);
+  std::sort(rows.begin(), rows.end());
+  std::vector<uint32_t> places;
+  for (uint32_t i = 0; i < of.row.size(); ++i) {
+    if (std::binary_search(rows.begin(), rows.end(), of.row[i])) places.push_back(i);
+  }
+  return places;
+}
+
+// Each step is the sequential greedy algorithm that removes the candidate of greatest weight until
+// no more than it keeps are left; of equal weights the higher row goes first.
 Kept make(const EliminateInputs& in, const Values& options) {
-  const size_t candidates = in.candidates.size();
   const size_t count = options.whole("count");
-  // All searching is done in an order that keeps neighbours together.
-  std::vector<uint32_t> order = mortonOrder(in.candidates.position);
-  std::vector<Vec3> position = inOrder<Vec3>(in.candidates.position, order);
-  std::vector<Vec3> normal = inOrder<Vec3>(in.candidates.normal, order);
-  CandidateRadii radii = candidateRadii(position, normal, static_cast<double>(count), options);
-  std::vector<float> radiusOfRow(candidates);
-  parallelFor(candidates, 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
-  ConflictGraph graph(std::move(position), std::move(normal), std::move(radii.radius),
-                      std::move(order),
-                      pairWeightRule(candidates, static_cast<double>(count), options));
-  Kept kept{eliminateHeaviest(graph, count), {}, radii.rMax, radii.area, {}};
-  std::sort(kept.rows.begin(), kept.rows.end());
-  kept.radius = inOrder<float>(radiusOfRow, kept.rows);
-  return kept;
+  Sorted left;
+  left.row = mortonOrder(in.candidates.position);
+  left.position = inOrder<Vec3>(in.candidates.position, left.row);
+  left.normal = inOrder<Vec3>(in.candidates.normal, left.row);
+  CandidateRadii radii =
+      candidateRadii(left.position, left.normal, static_cast<double>(count), options);
+  left.radius = std::move(radii.radius);
+  for (const size_t keep : stepsFor(in.candidates.size(), count)) {
+    const std::vector<uint32_t> places = keepOf(left, keep, count, options, in.progress);
+    left = {inOrder<uint32_t>(left.row, places), inOrder<Vec3>(left.position, places),
+            inOrder<Vec3>(left.normal, places), inOrder<float>(left.radius, places)};
+  }
+  if (in.progress) in.progress(count);
+  std::vector<std::pair<uint32_t, float>> kept;
+  for (size_t i = 0; i < count; ++i) kept.emplace_back(left.row[i], left.radius[i]);
+  std::sort(kept.begin(), kept.end());
+  Kept result;
+  result.rMax = radii.rMax;
+  result.area = radii.area;
+  for (const auto& [row, radius] : kept) {
+    result.rows.push_back(row);
+    result.radius.push_back(radius);
+  }
+  return result;
 }
 
 }  // namespace

@@ -140,10 +140,16 @@ class Elimination {
 
 }  // namespace
 
-std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep) {
+std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep,
+                                        const ProgressFn& progress) {
   Elimination elimination(graph);
+  size_t told = graph.size();  // left when progress was last told; what is taken back, never
   while (elimination.left() > keep && elimination.advance()) {
+    const size_t left = std::max(keep, elimination.left());
+    if (progress) progress(told - left);
+    told = left;
   }
+  if (progress) progress(told - keep);
   std::vector<Removal> last = elimination.takeRemovals();
   std::vector<uint32_t> rows;
   std::vector<Removal> left;

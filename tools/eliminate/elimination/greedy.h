@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/progress.h"
 #include "tools/eliminate/elimination/conflict_graph.h"
 
 namespace bnvpl {
@@ -18,6 +19,8 @@ namespace bnvpl {
 // it are made before any below, so that only those of the last threshold can be too many, and of
 // them the ones that the sequential algorithm would have made last are taken back: those of the
 // smallest (weight, row), as its sequence of weights never rises.
-std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep);
+// `progress` counts the nodes removed.
+std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep,
+                                        const ProgressFn& progress = {});
 
 }  // namespace bnvpl
