@@ -31,7 +31,7 @@ STAGES = ('vpl-place', 'vpl-eliminate', 'vpl-estimate', 'vpl-render')
 
 # What the blocks' commands find. Small, so that a test can run it.
 SETUP = '''
-ln -s {root}/scenes scenes
+ln -s '{root}/scenes' scenes
 vpl-place scenes/u-shape/scene.toml -o candidates.vpl -n 20k --quiet
 vpl-eliminate candidates.vpl -o vpls.vpl -n 1k --quiet
 vpl-estimate scenes/u-shape/scene.toml vpls.vpl -o lit.vpl --photons 200k --quiet
