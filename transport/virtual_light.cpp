@@ -4,8 +4,9 @@
 
 namespace bnvpl {
 
-VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp) {
+VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind) {
   VplLights vpls;
+  vpls.kind = kind;
   // Nothing nearer than rays can tell apart: 1/d^2 stays finite without a clamp too.
   const float nearest = rays.scene().bounds.diagonal() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {

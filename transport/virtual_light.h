@@ -5,33 +5,30 @@
 
 #include "formats/vpl_table.h"
 #include "transport/bsdf.h"
+#include "transport/virtual_light_kinds.h"
 
 namespace bnvpl {
 
 // Columns of the VPLs that carry flux; the others would only be visited in vain.
 struct VplLights {
+  LightKind kind = LightKind::Point;
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // flux / pi: along the normal, W/sr
   std::vector<uint32_t> row;    // of the table that it was made from
-  std::vector<float> clamp2;    // (clamp * radius)^2, world units squared; never 0
+  std::vector<float> clamp2;  // (clamp * radius)^2, size of the kind, world units squared; never 0
 
   size_t size() const { return position.size(); }
 };
 
 // `clamp` in units of each VPL's own radius (r_max).
-VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp);
-
-// 1/d^2 bounded by the VPL's footprint: the same function shades and bounds (docs/theory.md,
-// "Clamping").
-inline float falloff(float distanceSquared, float clamp2) {
-  return 1.0f / std::max(distanceSquared, clamp2);
-}
+VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp,
+                        LightKind kind = LightKind::Point);
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct Coupling {
   Vec3 transfer;         // BSDF * cosines * falloff, 1/m2
-  float clamped = 0.0f;  // what the bound on 1/d^2 removed, as a multiple of transfer
+  float clamped = 0.0f;  // what a point light without a bound would bring more, over transfer
 };
 
 // False: exactly 0 whatever is between (behind either side).
@@ -39,12 +36,12 @@ inline bool couple(const VplLights& vpls, size_t i, const Bsdf& bsdf, Coupling& 
   const Vec3 d = vpls.position[i] - bsdf.point().position;
   const float d2 = lengthSquared(d);
   if (!(d2 > 0.0f)) return false;
-  const float facing = -dot(vpls.normal[i], d);
+  const float facing = withKind(vpls.kind, [&](auto k) { return k.emitted(vpls.normal[i], d); });
   if (facing <= 0.0f) return false;
   const float invDistance = 1.0f / std::sqrt(d2);
   const Vec3 value = bsdf.eval(LobeGroup::Rough, d * invDistance);
   if (isBlack(value)) return false;
-  const float bounded = falloff(d2, vpls.clamp2[i]);
+  const float bounded = falloff(vpls.kind, d2, vpls.clamp2[i]);
   out.transfer = value * (facing * invDistance * bounded);
   out.clamped = 1.0f / (d2 * bounded) - 1.0f;
   return true;

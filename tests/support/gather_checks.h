@@ -41,17 +41,19 @@ inline const std::vector<const GatherCase*>& gatherCases() {
   return cases;
 }
 
-// The mean over `seeds` images is that over all VPLs within `tolerance`, as a share; seen at the
-// same points, so that only the gather differs.
+// For every kind of light, the mean over `seeds` images is that over all VPLs within `tolerance`,
+// as a share; seen at the same points, so that only the gather differs.
 inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint64_t seeds = 4,
                               const Given& options = {}) {
   for (const GatherCase* c : gatherCases()) {
-    double sum = 0.0, all = 0.0;
-    for (uint64_t seed = 1; seed <= seeds; ++seed) {
-      sum += meanOf(c->indirect(gather, options, seed));
-      all += meanOf(c->indirect("all", {}, seed));
+    for (const char* light : {"point", "disk"}) {
+      double sum = 0.0, all = 0.0;
+      for (uint64_t seed = 1; seed <= seeds; ++seed) {
+        sum += meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));
+        all += meanOf(c->indirect("all", {{"light", light}}, seed));
+      }
+      EXPECT_NEAR(sum / all, 1.0, tolerance) << c->world.scene.name() << ", " << light;
     }
-    EXPECT_NEAR(sum / all, 1.0, tolerance) << c->world.scene.name();
   }
 }
 

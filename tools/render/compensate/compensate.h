@@ -10,6 +10,7 @@
 #include "spatial/reach_grid.h"
 #include "tools/common/method.h"
 #include "transport/rays.h"
+#include "transport/virtual_light_kinds.h"
 
 namespace bnvpl {
 
@@ -38,6 +39,7 @@ struct CompensateInputs {
   const VplTable& lit;
   const RayScene& rays;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
+  LightKind light;
 };
 
 using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;

@@ -29,21 +29,20 @@ float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
          std::sqrt(nearest[0] * nearest[0] + nearest[1] * nearest[1] + highest[2] * highest[2]);
 }
 
-// Largest cosine at the emitters: of the normals' cone against the directions from the box to `at`.
-float maxEmitterCosine(const LightNode& n, Vec3 at) {
+// The most that its VPLs send from anywhere in the box to `at`, over their intensity.
+float mostEmitted(const LightNode& n, Vec3 at) {
   // From the box towards `at` is the mirror image of from `at` towards the mirrored box.
   const Bounds mirrored{2.0f * at - n.bounds.upper, 2.0f * at - n.bounds.lower};
   const float cosine = maxCosine(mirrored, at, n.frame);
-  if (cosine >= n.cosHalfAngle || n.cosHalfAngle <= 0.0f) return 1.0f;
-  const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
-  return std::max(0.0f, cosine * n.cosHalfAngle + sine * n.sinHalfAngle);
+  return withKind(n.kind,
+                  [&](auto k) { return k.mostEmitted(cosine, n.cosHalfAngle, n.sinHalfAngle); });
 }
 
 }  // namespace
 
 float sentBound(const LightNode& n, const ClusterReceiver& receiver) {
   const Vec3 at = receiver.bsdf.point().position;
-  const float emitter = maxEmitterCosine(n, at);
+  const float emitter = mostEmitted(n, at);
   if (emitter <= 0.0f) return 0.0f;
   const Vec3 value = receiver.bsdf.roughUpperBound(
       maxCosine(n.bounds, at, receiver.normal),
@@ -56,7 +55,7 @@ float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
   if (n.leaf()) return 0.0f;
   const float sent = sentBound(n, receiver);
   const Vec3 at = receiver.bsdf.point().position;
-  return sent > 0.0f ? sent * falloff(n.bounds.distanceSquared(at), n.clamp2) : 0.0f;
+  return sent > 0.0f ? sent * n.falloff(n.bounds.distanceSquared(at)) : 0.0f;
 }
 
 }  // namespace bnvpl

@@ -80,6 +80,7 @@ class Builder {
     n.axis = vpls_.normal[i];
     n.frame = AxisFrame(n.axis);
     n.intensity = vpls_.intensity[i];
+    n.kind = vpls_.kind;
     n.clamp2 = vpls_.clamp2[i];
     n.representative = i;
     return n;
@@ -96,6 +97,7 @@ class Builder {
                          ? 1.0f
                          : std::sqrt(std::max(0.0f, 1.0f - n.cosHalfAngle * n.cosHalfAngle));
     n.intensity = a.intensity + b.intensity;
+    n.kind = a.kind;
     n.clamp2 = std::min(a.clamp2, b.clamp2);
     const float share = mean(a.intensity) / mean(n.intensity);
     n.representative =

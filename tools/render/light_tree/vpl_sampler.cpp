@@ -1,7 +1,5 @@
 #include "tools/render/light_tree/vpl_sampler.h"
 
-#include <emmintrin.h>
-
 #include <algorithm>
 
 namespace bnvpl {
@@ -19,26 +17,16 @@ std::array<float, 4> store(__m128 v) {
   _mm_storeu_ps(out.data(), v);
   return out;
 }
-__m128 select(__m128 mask, __m128 yes, __m128 no) {
-  return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
-}
-__m128 sineOf(__m128 cosine) {
-  return _mm_sqrt_ps(_mm_max_ps(_mm_setzero_ps(), all(1.0f) - cosine * cosine));
-}
-// Cosine of an angle that is smaller by another, but not below 0.
-__m128 cosineOfLess(__m128 cosine, __m128 cosLess, __m128 sinLess) {
-  const __m128 turned = cosine * cosLess + sineOf(cosine) * sinLess;
-  return select(_mm_cmpge_ps(cosine, cosLess), all(1.0f), turned);
-}
 
 // From a point to four spheres.
 struct Directions {
   __m128 x, y, z;               // unit, to the centres
   __m128 cosSphere, sinSphere;  // of half the angle that each takes
-  __m128 inside;                // mask
+  __m128 radius2, d2;           // of the spheres, to the centres
   // Largest cosine between an axis and any direction into the sphere.
   __m128 most(__m128 ax, __m128 ay, __m128 az) const {
-    return select(inside, all(1.0f), cosineOfLess(ax * x + ay * y + az * z, cosSphere, sinSphere));
+    return selectAtLeast(radius2, d2, all(1.0f),
+                         cosineOfLess(ax * x + ay * y + az * z, cosSphere, sinSphere));
   }
 };
 
@@ -46,6 +34,7 @@ struct Directions {
 
 VplSampler::VplSampler(const LightTree& tree) {
   if (tree.nodes.empty()) return;
+  kind_ = tree.nodes.front().kind;
   const std::span<const uint32_t> cut = tree.startCut;
   startFours_ = (cut.size() + 3) / 4;
   fours_.reserve(startFours_ + tree.nodes.size() / 3);
@@ -72,7 +61,7 @@ void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, si
     f.ax[lane] = n.axis.x, f.ay[lane] = n.axis.y, f.az[lane] = n.axis.z;
     f.cosHalf[lane] = n.cosHalfAngle, f.sinHalf[lane] = n.sinHalfAngle;
     f.red[lane] = n.intensity.x, f.green[lane] = n.intensity.y, f.blue[lane] = n.intensity.z;
-    f.closest2[lane] = std::max(n.clamp2, kClosest * f.radius2[lane]);
+    f.clamp2[lane] = n.clamp2;
     if (n.leaf()) {
       f.child[lane] = kLeaf | n.representative;
       continue;
@@ -106,21 +95,25 @@ VplSampler::Point::Point(const VplSampler& sampler, const Bsdf& bsdf)
 }
 
 VplSampler::Lanes VplSampler::Point::likely(uint32_t four) const {
+  return withKind(sampler_.kind_, [&](auto kind) { return likelyOf<decltype(kind)>(four); });
+}
+
+template <typename Kind>
+VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   const Four& f = sampler_.fours_[four];
   const __m128 x = load(f.x) - all(at_.x), y = load(f.y) - all(at_.y), z = load(f.z) - all(at_.z);
   const __m128 d2 = x * x + y * y + z * z, radius2 = load(f.radius2);
   const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only inside
   Directions to;
-  to.inside = _mm_cmple_ps(d2, radius2);
+  to.radius2 = radius2, to.d2 = d2;
   to.x = x * inverse, to.y = y * inverse, to.z = z * inverse;
   to.sinSphere = _mm_sqrt_ps(radius2) * inverse;
   to.cosSphere = sineOf(to.sinSphere);
 
-  const __m128 zero = _mm_setzero_ps(), cosHalf = load(f.cosHalf);
+  const __m128 zero = _mm_setzero_ps();
   // The way back is the mirror image of the way there.
   const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
-  const __m128 emitter =
-      select(_mm_cmple_ps(cosHalf, zero), all(1.0f), cosineOfLess(back, cosHalf, load(f.sinHalf)));
+  const __m128 emitter = Kind::mostEmitted(back, load(f.cosHalf), load(f.sinHalf));
   const __m128 cosine = to.most(all(normal_.x), all(normal_.y), all(normal_.z));
   __m128 value;
   if (diffuse_) {
@@ -137,8 +130,8 @@ VplSampler::Lanes VplSampler::Point::likely(uint32_t four) const {
     }
     value = load(sums);
   }
-  return store(value * _mm_max_ps(cosine, zero) * _mm_max_ps(emitter, zero) /
-               _mm_max_ps(d2, load(f.closest2)));
+  const __m128 away2 = larger(d2, all(kClosest) * radius2);
+  return store(value * larger(cosine, zero) * emitter / Kind::spread(away2, load(f.clamp2)));
 }
 
 std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {

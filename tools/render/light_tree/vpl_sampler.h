@@ -39,6 +39,8 @@ class VplSampler {
     // What each of four clusters will likely send, W/(m2 sr) up to visibility; 0 only where nothing
     // can arrive.
     Lanes likely(uint32_t four) const;
+    template <typename Kind>
+    Lanes likelyOf(uint32_t four) const;
 
     const VplSampler& sampler_;
     const Bsdf& bsdf_;
@@ -56,7 +58,7 @@ class VplSampler {
     Lanes ax{}, ay{}, az{};           // of the cones of normals
     Lanes cosHalf{}, sinHalf{};       // of their half angles
     Lanes red{}, green{}, blue{};     // intensities, W/sr; 0: an empty lane
-    Lanes closest2{1, 1, 1, 1};       // squared distance that counts at least
+    Lanes clamp2{1, 1, 1, 1};         // as of LightNode
     std::array<uint32_t, 4> child{};  // another four, or kLeaf and a VPL
   };
   static constexpr uint32_t kLeaf = 1u << 31;
@@ -66,6 +68,7 @@ class VplSampler {
 
   std::vector<Four> fours_;  // the start cut's first
   size_t startFours_ = 0;
+  LightKind kind_ = LightKind::Point;
 };
 
 }  // namespace bnvpl

@@ -65,13 +65,14 @@ float areaOf(uint32_t i, const VplTable& lit, float reach, const Coverage& cover
 
 }  // namespace
 
-NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp)
+NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind)
     : lit_(lit),
       rays_(rays),
       coverage_(lit.position, lit.normal,
                 scaled(lit.radius,
                        lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),
                 rays),
+      kind_(kind),
       clampRadius_(scaled(lit.radius, clamp)),
       area_(lit.size()),
       gaps_(lit.reach > 0.0) {
@@ -96,7 +97,7 @@ Missing NearField::missing(const SurfacePoint& seen, float distance, const Reach
   const Coverage::Found found = coverage_.pick(seen.position, seen.ng, near, rng);
   if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
   const float relative = distance / clampRadius_[*found.vpl];
-  const float share = std::max(0.0f, 1.0f - relative * relative);  // 1 - d^2 falloff(d^2)
+  const float share = withKind(kind_, [&](auto k) { return k.removed(relative); });
   if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
   return {share, scatteredBy(*found.vpl)};
 }
@@ -106,7 +107,7 @@ namespace methods::compensate::near_field {
 namespace {
 
 Compensation make(const CompensateInputs& in, const Values&) {
-  const auto field = std::make_shared<const NearField>(in.lit, in.rays, in.clamp);
+  const auto field = std::make_shared<const NearField>(in.lit, in.rays, in.clamp, in.light);
   return {
       [field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) {
         field->coverage().lookUp(hits, near);

@@ -9,13 +9,15 @@
 
 #include "tools/render/compensate/compensate.h"
 #include "transport/coverage.h"
+#include "transport/virtual_light_kinds.h"
 
 namespace bnvpl {
 
 class NearField {
  public:
-  // Borrows the table and the scene. `clamp` as for makeVplLights().
-  NearField(const VplTable& lit, const RayScene& rays, float clamp);
+  // Borrows the table and the scene. `clamp` and `kind` as for makeVplLights().
+  NearField(const VplTable& lit, const RayScene& rays, float clamp,
+            LightKind kind = LightKind::Point);
 
   // `near`: what coverage() finds at the point.
   Missing missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
@@ -29,6 +31,7 @@ class NearField {
   const VplTable& lit_;
   const RayScene& rays_;
   Coverage coverage_;
+  LightKind kind_;
   std::vector<float> clampRadius_;  // of each VPL, world units
   // Of that surface, world units squared; measured when it is first asked for, as an image of few
   // pixels meets few of many VPLs.

@@ -47,17 +47,14 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
   const float l = sentBound(left, receiver), r = sentBound(right, receiver);
   if (!(l + r > 0.0f)) return {};
   const auto share = [&](float leftDistance2, float rightDistance2) {
-    const float a = l / leftDistance2, b = r / rightDistance2;
+    const float a = l * left.falloff(leftDistance2), b = r * right.falloff(rightDistance2);
     return a / (a + b);
   };
-  const float far = share(std::max(farthestSquared(left.bounds, at), left.clamp2),
-                          std::max(farthestSquared(right.bounds, at), right.clamp2));
+  const float far = share(farthestSquared(left.bounds, at), farthestSquared(right.bounds, at));
   const float nearLeft = left.bounds.distanceSquared(at),
               nearRight = right.bounds.distanceSquared(at);
   // Inside either box distances tell nothing (Yuksel 2019, section 4.1).
-  const float near = nearLeft > 0.0f && nearRight > 0.0f
-                         ? share(std::max(nearLeft, left.clamp2), std::max(nearRight, right.clamp2))
-                         : l / (l + r);
+  const float near = nearLeft > 0.0f && nearRight > 0.0f ? share(nearLeft, nearRight) : l / (l + r);
   return 0.5f * (near + far);
 }
 

@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "tools/render/gather/tilecuts/tile_cut.h"
+#include "tools/render/gather/gather.h"
+#include "tools/render/light_tree/expected_light.h"
 
 namespace bnvpl {
 

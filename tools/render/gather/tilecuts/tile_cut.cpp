@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/render/light_tree/expected_light.h"
+
 namespace bnvpl {
 
 namespace {
@@ -39,7 +41,13 @@ struct ProbeLanes {
   // Summed over the probes, each over its light.
   float variance(const LightNode& n) const {
     if (n.leaf()) return 0.0f;
-    const Expectation expected(n);
+    return withKind(n.kind, [&](auto kind) { return varianceOf<decltype(kind)>(n); });
+  }
+
+ private:
+  template <typename Kind>
+  float varianceOf(const LightNode& n) const {
+    const Expectation<Kind> expected(n);
     alignas(32) std::array<float, kProbes> squares;
     for (size_t k = 0; k < kProbes; ++k) {
       const float d =

@@ -11,6 +11,7 @@
 #include "tools/render/gather/tilecuts/receiver_packet.h"
 #include "tools/render/gather/tilecuts/shadow_queue.h"
 #include "tools/render/gather/tilecuts/tile_cut.h"
+#include "tools/render/light_tree/expected_light.h"
 
 namespace bnvpl::methods::gather::tilecuts {
 
@@ -80,11 +81,9 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
   return packets;
 }
 
-// Whether a cluster of the tile's cut must be opened for a packet, because it is much nearer to one
-// of its receivers than the probes knew: it alone would deviate by all that is allowed.
-bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
-  if (n.leaf() || surelyFar(n, allowed, p.bounds, p.brightest)) return false;
-  const Expectation expected(n);
+template <typename Kind>
+bool exceedsAnywhere(const LightNode& n, float allowed, const ReceiverPacket& p) {
+  const Expectation<Kind> expected(n);
   int near = 0;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
     near |= expected
@@ -93,6 +92,13 @@ bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
                 .exceeds(allowed);
   }
   return near != 0;
+}
+// Whether a cluster of the tile's cut must be opened for a packet, because it is much nearer to one
+// of its receivers than the probes knew: it alone would deviate by all that is allowed.
+bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
+  if (n.leaf() || surelyFar(n, allowed, p.bounds, p.brightest)) return false;
+  return withKind(n.kind,
+                  [&](auto kind) { return exceedsAnywhere<decltype(kind)>(n, allowed, p); });
 }
 
 void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tree,

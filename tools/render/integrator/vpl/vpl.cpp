@@ -14,8 +14,10 @@ namespace bnvpl::methods::integrator::vpl {
 namespace {
 
 constexpr std::array kOptions{
+    choiceOption("light", "point", kLightKinds,
+                 "what a VPL is to what it lights: a point with a bound on 1/d^2, or a disk"),
     realOption("clamp", "2", 0, 1000, "r_max",
-               "1/d^2 grows no further inside this distance of a VPL"),
+               "radius of a VPL: 1/d^2 of a point grows no further inside, a disk is so large"),
     wholeOption("near-field-rays", "16", 1, 4096, "rays",
                 "by the BSDF from each shaded point: for --compensate, for light over specular "
                 "surfaces, and for half of the direct light")};
@@ -50,8 +52,9 @@ struct Parts {
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
   const float clamp = options.real32("clamp");
+  const LightKind light = lightKindNamed(options.text("light"));
   const auto parts = std::make_shared<Parts>();
-  parts->vpls = makeVplLights(in.lit, in.rays, clamp);
+  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
   parts->tree = buildLightTree(parts->vpls, in.seed);
   Gather gather = methodNamed(gatherMethods(), options.text("gather"))
                       .make({in.rays, parts->vpls, parts->tree, in.seed,
@@ -66,7 +69,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     };
   }
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
-                                  .make({in.lit, in.rays, clamp}, options);
+                                  .make({in.lit, in.rays, clamp, light}, options);
   const bool wholePixels = gather.wholePixels;
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(compensation),

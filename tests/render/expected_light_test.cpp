@@ -1,10 +1,11 @@
 // What tile cuts expect of a cluster, and the quick test that spares asking.
+#include "tools/render/light_tree/expected_light.h"
+
 #include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "core/sampling.h"
 #include "tools/common/streams.h"
-#include "tools/render/gather/tilecuts/tile_cut.h"
 
 namespace bnvpl::test {
 namespace {
@@ -46,7 +47,7 @@ TEST(Expectation, WhatIsSurelyFarExceedsNowhere) {
     allowed *= rng.next();
     const bool says = surelyFar(n, allowed, receivers, brightest);
     far += says;
-    const Expectation expected(n);
+    const Expectation<PointLight> expected(n);
     for (int k = 0; k < 16; ++k) {
       const Vec3 at = receivers.lower + receivers.extent() * somewhere(rng);
       const Vec3 normal = someDirection(rng);
@@ -67,7 +68,7 @@ TEST(Expectation, KnowsSidesAndDistance) {
   n.left = 1, n.right = 2;
   n.axis = {0, 0, 1};
   n.intensity = Vec3(1.0f);
-  const Expectation expected(n);
+  const Expectation<PointLight> expected(n);
   const Vec3 white(1.0f / kPi);
   const float near = expected.at({0, 0, 1}, {0, 0, -1}, white).most,
               twice = expected.at({0, 0, 2}, {0, 0, -1}, white).most;

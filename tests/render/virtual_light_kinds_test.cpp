@@ -1,0 +1,95 @@
+// What each kind of virtual light promises to gathers, bounds and compensation.
+#include "transport/virtual_light_kinds.h"
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "core/sampling.h"
+#include "tests/support/pipeline.h"
+#include "tools/common/streams.h"
+
+namespace bnvpl::test {
+namespace {
+
+template <typename Kind>
+class LightKinds : public testing::Test {};
+using Kinds = testing::Types<PointLight, DiskLight>;
+TYPED_TEST_SUITE(LightKinds, Kinds);
+
+TYPED_TEST(LightKinds, FallOffWithDistanceAndNeverExceedAPoint) {
+  constexpr float kSize2 = 0.04f;
+  float before = 0.0f;
+  for (float d = 0.0f; d < 3.0f; d += 0.01f) {
+    const float spread = TypeParam::spread(d * d, kSize2);
+    EXPECT_GE(spread, before);
+    EXPECT_GE(spread, d * d);
+    EXPECT_GT(spread, 0.0f);
+    before = spread;
+  }
+  EXPECT_NEAR(TypeParam::spread(1e6f, kSize2), 1e6f, 1.0f);
+}
+
+TYPED_TEST(LightKinds, RemoveWhatTheyDoNotBring) {
+  for (float d = 0.01f; d < 3.0f; d += 0.01f) {
+    EXPECT_NEAR(TypeParam::removed(d / 0.2f), 1.0f - d * d / TypeParam::spread(d * d, 0.04f),
+                1e-5f);
+  }
+}
+
+TYPED_TEST(LightKinds, FourAtOnceAreFourSingleOnes) {
+  alignas(16) float d2[4] = {0.01f, 0.04f, 0.3f, 7.0f}, cosine[4] = {-0.9f, 0.1f, 0.5f, 0.99f};
+  alignas(16) float spread[4], most[4];
+  const float cosHalf = std::cos(0.4f), sinHalf = std::sin(0.4f);
+  _mm_store_ps(spread, TypeParam::spread(_mm_load_ps(d2), _mm_set1_ps(0.04f)));
+  _mm_store_ps(most, TypeParam::mostEmitted(_mm_load_ps(cosine), _mm_set1_ps(cosHalf),
+                                            _mm_set1_ps(sinHalf)));
+  for (int lane = 0; lane < 4; ++lane) {
+    EXPECT_EQ(spread[lane], TypeParam::spread(d2[lane], 0.04f));
+    EXPECT_EQ(most[lane], TypeParam::mostEmitted(cosine[lane], cosHalf, sinHalf));
+  }
+}
+
+// Over a cone of axes: never below what any of them emits, and not above what one could.
+TYPED_TEST(LightKinds, BoundWhatAConeEmits) {
+  Rng rng(streamKey(3, Stream::PixelSamples), 0);
+  for (int i = 0; i < 300; ++i) {
+    const float half = kPi * rng.next(), cosHalf = std::cos(half),
+                sinHalf = half < 0.5f * kPi ? std::sin(half) : 1.0f;
+    const float u = rng.next(), v = rng.next();
+    const Vec3 axis = sampleSphere(u, v), direction{0, 0, -1};  // towards the light
+    const float bound = TypeParam::mostEmitted(-dot(axis, direction), cosHalf, sinHalf);
+    EXPECT_LE(bound, 1.0f);
+    for (int k = 0; k < 100; ++k) {
+      const float s = rng.next(), t = rng.next();
+      const Vec3 own = sampleSphere(s, t);
+      if (dot(own, axis) < cosHalf) continue;
+      EXPECT_LE(TypeParam::emitted(own, direction), bound + 1e-4f);
+    }
+  }
+}
+
+// What one kind removes is reported: with it every kind shows the same image.
+TEST(LightKindsOfImages, DifferInWhatTheyRemoveAlone) {
+  const World world("furnace/scene.toml");
+  const VplTable lit = litVpls(world, {{"count", "300"}});
+  const auto statsOf = [&](const char* light) {
+    return renderVpls(world, lit, with(kPlainRender, {{"gather", "all"}, {"light", light}})).stats;
+  };
+  const FilmStats point = statsOf("point"), disk = statsOf("disk");
+  EXPECT_LT(disk.indirect, 0.98 * point.indirect);  // it is never the brighter one
+  EXPECT_NEAR(disk.indirect + disk.clamped, point.indirect + point.clamped, 1e-3 * point.indirect);
+}
+
+// In a furnace every pixel is known: what disks remove the near field brings.
+TEST(LightKindsOfImages, HaveTheirEnergyBroughtBack) {
+  World world("furnace/scene.toml");
+  world.scene.film = {24, 24};
+  const VplTable lit = litVpls(world, {{"count", "300"}});
+  for (const char* light : {"point", "disk"}) {
+    const FilmStats stats = renderVpls(world, lit, {{"spp", "32"}, {"light", light}}).stats;
+    EXPECT_NEAR(stats.indirect, 0.5, 0.02) << light;
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl::test
