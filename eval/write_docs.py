@@ -20,9 +20,12 @@ from bnvpl_eval import images, output, settings
 
 DOCS = settings.ROOT / "docs"
 GAP = 4  # pixels of white between two pictures
+ENLARGED = 2  # crops
+FRAME = (255, 0, 200)  # of what is enlarged
+FULL = ["local", "reference"]  # of each strip, in full
 STRIPS = {"methods": ["light", "random", "uniform", "local", "reference"],
           "scatter": ["reference", "local", "even", "literal"],
-          "equal-time": ["path", "balanced", "reference"]}
+          "equal-time": ["path", "local", "reference"]}
 OVERLAYS = {"dots-u-shape": ["dots-random", "dots-local"], "cuts-sponza": ["cut", "cut-lightcuts"]}
 LEAST_WIDTH = 480  # of an overlay; smaller ones are enlarged by whole numbers
 METHODS = ["light", "random", "uniform", "local"]
@@ -87,22 +90,50 @@ def srgb(pixels: np.ndarray, scale: float) -> np.ndarray:
 
 
 def beside(parts: list[np.ndarray]) -> np.ndarray:
-    height, width = parts[0].shape[:2]
-    canvas = np.full((height, len(parts) * (width + GAP) - GAP, 3), 255, np.uint8)
-    for i, part in enumerate(parts):
-        canvas[:, i * (width + GAP):i * (width + GAP) + width] = part
-    return canvas
+    """In a row, with white between them."""
+    gap = np.full((parts[0].shape[0], GAP, 3), 255, np.uint8)
+    return np.concatenate([piece for part in parts for piece in (gap, part)][1:], axis=1)
+
+
+def below(rows: list[np.ndarray]) -> np.ndarray:
+    width = max(row.shape[1] for row in rows)
+    padded = [np.pad(row, ((0, GAP), (0, width - row.shape[1]), (0, 0)), constant_values=255) for row in rows]
+    return np.concatenate(padded)[:-GAP]
+
+
+def telling_window(shown: list[np.ndarray], height: int, width: int) -> tuple[int, int]:
+    """Top and left of where the pictures differ most from each other."""
+    spread = np.stack([picture.astype(np.float32) for picture in shown]).std(axis=0).mean(axis=2)
+    sums = np.pad(spread, ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
+    inside = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width] + sums[:-height, :-width]
+    return np.unravel_index(inside.argmax(), inside.shape)
+
+
+def framed(picture: np.ndarray, top: int, left: int, height: int, width: int) -> np.ndarray:
+    out = picture.copy()
+    for rows in (slice(top - 1, top + 1), slice(top + height - 1, top + height + 1)):
+        out[rows, left:left + width] = FRAME
+    for columns in (slice(left - 1, left + 1), slice(left + width - 1, left + width + 1)):
+        out[top:top + height, columns] = FRAME
+    return out
 
 
 def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> None:
-    """Images side by side at one exposure, twice as large."""
+    """Ours and the reference in full, at one exposure; below them, enlarged, where the named ones differ most."""
     found = {image["id"]: folder / image["files"]["full"] for image in view["images"]}
     reference = images.read(found["reference"])
     # Middle grey for the logarithmic mean, as vpl-render --exposure auto.
     luminance = reference @ np.array([0.2126, 0.7152, 0.0722])
     scale = 0.18 / np.exp(np.log(luminance[luminance > 0]).mean())
-    canvas = beside([srgb(images.read(found[name]), scale) for name in names])
-    Image.fromarray(canvas).resize((canvas.shape[1] * 2, canvas.shape[0] * 2), Image.NEAREST).save(target)
+    shown = {name: srgb(images.read(found[name]), scale) for name in names}
+    full = [shown[name] for name in FULL]
+    width = (2 * full[0].shape[1] + GAP - (len(names) - 1) * GAP) // len(names) // ENLARGED
+    height = width * 3 // 4
+    top, left = telling_window([shown[name] for name in names], height, width)
+    crops = [shown[name][top:top + height, left:left + width].repeat(ENLARGED, axis=0).repeat(ENLARGED, axis=1)
+             for name in names]
+    full[0] = framed(full[0], top, left, height, width)
+    Image.fromarray(below([beside(full), beside(crops)])).save(target, optimize=True)
 
 
 def write_overlays(folder: Path, view: dict, names: list[str], target: Path) -> None:

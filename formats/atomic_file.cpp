@@ -180,12 +180,6 @@ bool isPartialOf(const fs::path& file, const fs::path& target) {
          fs::equivalent(folderOf(file), folderOf(place), failed);
 }
 
-void writeFileAtomically(const fs::path& target, const std::string& bytes) {
-  AtomicFile file(target);
-  file.write(bytes);
-  file.commit();
-}
-
 void removePartialFiles() noexcept {
   removing = true;
   for (auto& place : partialFiles) {

@@ -62,9 +62,6 @@ class OutputSet {
 // Whether `file` has the name of a partial file of `target`: it would be taken for abandoned.
 bool isPartialOf(const fs::path& file, const fs::path& target);
 
-// Writes `bytes` as the whole content of `target`, atomically.
-void writeFileAtomically(const fs::path& target, const std::string& bytes);
-
 // For a process that is about to end in the middle of something: both may be called from a signal
 // handler.
 void removePartialFiles() noexcept;

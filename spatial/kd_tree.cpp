@@ -55,25 +55,6 @@ class NearestSet final : public flann::ResultSet<float> {
   float worst_ = std::numeric_limits<float>::max();
 };
 
-class RadiusSet final : public flann::ResultSet<float> {
- public:
-  RadiusSet(std::vector<Neighbour>& found, float radius)
-      : found_(found), radiusSquared_(radius * radius), prune_(pruneBeyond(radiusSquared_)) {
-    found_.clear();
-  }
-  bool full() const override { return true; }
-  float worstDist() const override { return prune_; }
-  void addPoint(float distanceSquared, size_t index) override {
-    if (distanceSquared <= radiusSquared_) {
-      found_.push_back({distanceSquared, static_cast<uint32_t>(index)});
-    }
-  }
-
- private:
-  std::vector<Neighbour>& found_;
-  float radiusSquared_, prune_;
-};
-
 flann::SearchParams exactSearch() {
   return flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0f);
 }
@@ -102,12 +83,6 @@ void KdTree::nearest(Vec3 centre, size_t count, std::vector<Neighbour>& found) c
   if (count == 0 || impl_->size == 0) return;
   impl_->index->findNeighbors(result, &centre.x, impl_->search);
   std::sort_heap(found.begin(), found.end());
-}
-
-void KdTree::withinRadius(Vec3 centre, float radius, std::vector<Neighbour>& found) const {
-  RadiusSet result(found, radius);
-  if (impl_->size == 0) return;
-  impl_->index->findNeighbors(result, &centre.x, impl_->search);
 }
 
 }  // namespace bnvpl

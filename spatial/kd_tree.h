@@ -23,9 +23,6 @@ class KdTree {
   // ordered by (distance, index); equal distances at the end go to the lower indices.
   void nearest(Vec3 centre, size_t count, std::vector<Neighbour>& found) const;
 
-  // Replaces `found` by every point at most `radius` away, in no particular but a repeatable order.
-  void withinRadius(Vec3 centre, float radius, std::vector<Neighbour>& found) const;
-
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -1,7 +1,4 @@
-// What neighbour queries answer. KdTree answers
-//   void withinRadius(Vec3 centre, float radius, std::vector<Neighbour>& found) const;
-// so that templates can take either. Both borrow the points, which must outlive them unchanged, and
-// both may be queried from any number of threads at once.
+// What neighbour queries answer.
 #pragma once
 
 #include <cstdint>

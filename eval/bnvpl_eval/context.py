@@ -25,9 +25,10 @@ class Context:
         return [view for scene in self.scenes for view in scene.views
                 if view.id in self.size["views"] and (not only or view.id == only)]
 
-    def configuration(self, view: View, method: str, picture: bool = False) -> Configuration:
+    def configuration(self, view: View, method: str, width: int = 0) -> Configuration:
+        """On the small film, or on one of another width, in pixels."""
         vpls = max(1, round(view.scene.vpls * self.size["scale"]))
-        width = self.size["picture_width" if picture else "film_width"]
+        width = width or self.size["film_width"]
         return Configuration(method, vpls, self.size["photons"], vpls * self.size["candidates_per_vpl"],
                              self.size["spp"], view.scene.film(width))
 
@@ -52,7 +53,7 @@ class Context:
         return self.add_row(row, view, made)
 
     def judge_path(self, part: str, view: View, film: str, spp: int, seeds: range) -> dict:
-        made = [pipeline.path_traced(self.runner, view, film, spp, seed) for seed in seeds]
+        made = [pipeline.traced(self.runner, view, film, spp, seed) for seed in seeds]
         return self.add_row({"part": part, "view": view.name, "method": "path", "spp": spp, "film": film},
                             view, made)
 

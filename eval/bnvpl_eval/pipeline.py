@@ -123,8 +123,9 @@ def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path
     return run["image.exr"], runs + [run]
 
 
-def path_traced(runner: Runner, view: View, film: str, spp: int, seed: int) -> tuple[Path, list[Run]]:
-    run = runner.run("vpl-render", ["{scene}", "--size", film, "--integrator", "path", "--spp", spp,
+def traced(runner: Runner, view: View, film: str, spp: int, seed: int,
+                integrator: str = "path") -> tuple[Path, list[Run]]:
+    run = runner.run("vpl-render", ["{scene}", "--size", film, "--integrator", integrator, "--spp", spp,
                                     "--seed", seed, "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
                      {"scene": ROOT / view.file}, ["image.exr"])
     return run["image.exr"], [run]

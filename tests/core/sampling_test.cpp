@@ -28,7 +28,7 @@ using Density = std::function<double(double)>;
 void expectFollows(const Warp& warp, const Density& pdf, double zLow, double zHigh) {
   constexpr int kBands = 20, kDraws = 160000;
   std::vector<int> bands(kBands), sectors(8);
-  Rng rng(streamKey(1, Stream::PathTracer), 0);
+  Rng rng(streamKey(1, Stream::PixelSamples), 0);
   for (int i = 0; i < kDraws; ++i) {
     const float u = rng.next(), v = rng.next();
     const Vec3 d = warp(u, v);

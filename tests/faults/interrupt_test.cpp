@@ -31,7 +31,9 @@ TEST(Interrupt, RemovesPartialFilesAndTellsWhatWasReplaced) {
   fs::create_directories(folder);
   const auto run = [&] {
     catchInterrupts("tool");
-    writeFileAtomically(folder / "whole", "whole");
+    AtomicFile whole(folder / "whole");
+    whole.write("whole");
+    whole.commit();
     AtomicFile partial(folder / "partial");
     partial.write("half");
     std::raise(SIGTERM);

@@ -12,6 +12,12 @@ namespace {
 
 using AtomicOutput = TestFolder;
 
+void replaceBy(const fs::path& target, const std::string& bytes) {
+  AtomicFile file(target);
+  file.write(bytes);
+  file.commit();
+}
+
 TEST_F(AtomicOutput, NothingIsReplacedBeforeCommit) {
   writeAll(at("a"), "old");
   {
@@ -22,7 +28,7 @@ TEST_F(AtomicOutput, NothingIsReplacedBeforeCommit) {
   }
   EXPECT_EQ(readAll(at("a")), "old");
   EXPECT_EQ(fileCount(), 1u);
-  writeFileAtomically(at("a"), "new");
+  replaceBy(at("a"), "new");
   EXPECT_EQ(readAll(at("a")), "new");
   EXPECT_EQ(fileCount(), 1u);
 }
@@ -54,7 +60,7 @@ TEST_F(AtomicOutput, WhatKilledRunsLeftIsRemovedAndNothingElse) {
   writeAll(at("a.partial-3-4"), "of a run that lives");
   const int lock = ::open(at("a.partial-3-4").c_str(), O_RDWR);
   ASSERT_EQ(::flock(lock, LOCK_EX), 0);
-  writeFileAtomically(at("a"), "new");
+  replaceBy(at("a"), "new");
   EXPECT_FALSE(fs::exists(at("a.partial-1-2")));
   EXPECT_FALSE(fs::exists(at("a.partial-99999999-0")));
   EXPECT_TRUE(fs::exists(at("a.partial-3-4")));
@@ -89,12 +95,12 @@ TEST_F(AtomicOutput, LinksAreFollowed) {
   fs::create_symlink(at("near"), at("link"));
   fs::create_symlink("far/new", at("dangling"));
   writeAll(at("far/a.partial-1-2"), "abandoned");
-  writeFileAtomically(at("link"), "new");
+  replaceBy(at("link"), "new");
   EXPECT_EQ(readAll(at("far/a")), "new");
   EXPECT_EQ(fs::read_symlink(at("near")), "far/a");
   EXPECT_EQ(fs::read_symlink(at("link")), at("near"));
   EXPECT_FALSE(fs::exists(at("far/a.partial-1-2")));
-  writeFileAtomically(at("dangling"), "new");
+  replaceBy(at("dangling"), "new");
   EXPECT_EQ(readAll(at("far/new")), "new");
   EXPECT_TRUE(fs::is_symlink(at("dangling")));
   EXPECT_EQ(fileCount(), 4u);
@@ -103,7 +109,7 @@ TEST_F(AtomicOutput, LinksAreFollowed) {
 TEST_F(AtomicOutput, HardLinksKeepTheOldContent) {
   writeAll(at("a"), "old");
   fs::create_hard_link(at("a"), at("b"));
-  writeFileAtomically(at("a"), "new");
+  replaceBy(at("a"), "new");
   EXPECT_EQ(readAll(at("a")) + readAll(at("b")), "newold");
 }
 
@@ -124,7 +130,7 @@ TEST_F(AtomicOutput, TheModeStaysAndTheUmaskDecidesOfNewFiles) {
     EXPECT_EQ(modeOf(at("a")), mode);
   }
   const mode_t before = ::umask(027);
-  writeFileAtomically(at("b"), "new");
+  replaceBy(at("b"), "new");
   ::umask(before);
   EXPECT_EQ(modeOf(at("b")), 0640u);
 }

@@ -24,22 +24,6 @@ std::vector<Neighbour> allByDistance(const std::vector<Vec3>& points, Vec3 centr
   return all;
 }
 
-std::vector<Neighbour> within(const std::vector<Neighbour>& all, float radius) {
-  std::vector<Neighbour> near;
-  for (const Neighbour& n : all) {
-    if (n.distanceSquared <= radius * radius) near.push_back(n);
-  }
-  return near;
-}
-
-template <typename Search>
-std::vector<Neighbour> sortedWithin(const Search& search, Vec3 centre, float radius) {
-  std::vector<Neighbour> found{{1.0f, 2}};  // is replaced
-  search.withinRadius(centre, radius, found);
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
 // A lattice has many points at exactly the radius and many equal distances; an offset makes
 // coordinates negative or large.
 std::vector<std::vector<Vec3>> clouds() {
@@ -57,19 +41,6 @@ std::vector<std::vector<Vec3>> clouds() {
   all.push_back(lattice);
   all.push_back(far);
   return all;
-}
-
-TEST(Spatial, RadiusQueriesFindExactlyThePointsWithin) {
-  for (const std::vector<Vec3>& points : clouds()) {
-    const KdTree tree(points);
-    for (const float radius : {0.01f, 0.1f, 1.0f, 2.0f}) {
-      for (size_t q = 0; q < points.size(); q += 97) {
-        const Vec3 centre = points[q] + Vec3(0.0f, 0.0f, q % 2 ? 0.5f * radius : 0.0f);
-        const std::vector<Neighbour> expected = within(allByDistance(points, centre), radius);
-        EXPECT_EQ(sortedWithin(tree, centre, radius), expected);
-      }
-    }
-  }
 }
 
 TEST(Spatial, NearestAreOrderedAndTiesGoToTheLowerIndex) {
@@ -92,7 +63,6 @@ TEST(Spatial, NoPoints) {
   std::vector<Neighbour> found{{1.0f, 2}};
   KdTree(none).nearest({}, 3, found);
   EXPECT_TRUE(found.empty());
-  EXPECT_TRUE(sortedWithin(KdTree(none), {}, 1.0f).empty());
   EXPECT_TRUE(makeCellLists(none, {}).order.empty());
 }
 

@@ -12,8 +12,7 @@ enum class Stream : uint32_t {
   Eliminate,
   Photons,
   PixelSamples,
-  PathTracer,
-  LightTree,
+  LightTree = 7,  // numbers are parts of images: they stay
   Plot,
   AreaEstimate,
   LightTracer,

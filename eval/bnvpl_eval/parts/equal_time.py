@@ -1,7 +1,7 @@
-"""Equal time: the whole pipeline against the path tracer, at picture size.
+"""Equal time: the whole pipeline against the path tracer, on a film whose pixels outweigh loading.
 
 Both errors are measured on the small film, over all seeds. The path tracer's relMSE falls as 1 / spp, so its error at
-any spp follows from one measurement; the time comes from a picture that is rendered for about as long as the
+any spp follows from one measurement; the time comes from an image that is rendered for about as long as the
 pipeline takes.
 
 The pipeline runs twice: as in the comparison of methods, and balanced for its time, as settings.toml says: at 8
@@ -19,12 +19,12 @@ COLUMNS = [column("vpls", "VPLs"), column("spp", "samples a pixel"), column("fil
            column("gain", "path tracer / pipeline", better="high"),
            column("wall_gain", "the same by wall time", better="high")]
 MEASURED_SPP = 64
-TRIAL_SPP = 4, 32  # of the pictures that tell how long a sample takes, and how long loading
+TRIAL_SPP = 2, 16  # of the images that tell how long a sample takes, and how long loading
 
 
 def picture_spp(context: Context, view, c, target_s: float) -> int:
     few, many = TRIAL_SPP
-    few_s, many_s = (pipeline.path_traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s for spp in TRIAL_SPP)
+    few_s, many_s = (pipeline.traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s for spp in TRIAL_SPP)
     sample_s = max((many_s - few_s) / (many - few), 1e-6)
     loading_s = max(0.0, few_s - few * sample_s)
     return max(1, round((target_s - loading_s) / sample_s))
@@ -42,14 +42,14 @@ def run(context: Context) -> None:
     for view in context.views():
         small = view.scene.film(context.size["film_width"])
         path = context.judge_path("equal-time", view, small, MEASURED_SPP, context.seeds(view))
-        as_compared = context.configuration(view, "local", picture=True)
+        as_compared = context.configuration(view, "local", plan["film_width"])
         for c in (as_compared, balanced(as_compared, context.size)):
             context.say(f"equal time: {view.name}, {c.vpls} VPLs, {c.spp} spp")
             _, runs = pipeline.image(context.runner, view, c, 1)
             pipeline_s = sum(run.cpu_s for run in runs)
             pipeline_wall_s = sum(run.record["wall_s"] for run in runs)
             spp = picture_spp(context, view, c, pipeline_s)
-            _, picture = pipeline.path_traced(context.runner, view, c.film, spp, 1)
+            _, picture = pipeline.traced(context.runner, view, c.film, spp, 1)
             equal_spp = spp * pipeline_s / picture[0].cpu_s
             judged = context.judge("equal-time", view, c.but(film=small), context.seeds(view))
             relmse = path["relmse"] * MEASURED_SPP / equal_spp

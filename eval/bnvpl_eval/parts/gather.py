@@ -19,9 +19,10 @@ MOST_SPP = 256  # of the fastest, in the time of the slowest
 def run(context: Context) -> None:
     rows = []
     gathers = pipeline.methods_of(context.runner, "vpl-render", "gather")
-    for view in context.views("main"):
+    plan = context.size["gather"]
+    seeds = range(1, 1 + plan["seeds"])
+    for view in (view for view in context.views("main") if view.scene.id in plan["scenes"]):
         context.say(f"gather: {view.name}")
-        seeds = context.seeds(view)
         made = {}
         for gather in gathers:
             made[gather] = context.judge("gather", view, configuration(context, view, gather), seeds, label=gather)
@@ -44,7 +45,7 @@ def run(context: Context) -> None:
         rows += [{"group": title, **row} for row in made.values()]
     context.tables.append(table(
         "gather", "Gathers against all VPLs, at equal VPLs and at equal time",
-        f"The same VPLs and rays, {context.size['seeds']} seeds, --compensate none; a gather's own error is its "
+        f"The same VPLs and rays, {plan['seeds']} seeds, --compensate none; a gather's own error is its "
         f"difference to all VPLs. At equal time: samples a pixel in the CPU time of the slowest, at most {MOST_SPP}.",
         COLUMNS, rows))
 

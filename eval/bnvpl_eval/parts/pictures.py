@@ -4,23 +4,23 @@ from .. import pipeline
 from ..context import Context
 from ..pipeline import METHODS
 from ..settings import ROOT, View
-from .equal_time import balanced, picture_spp
+from .equal_time import picture_spp
 
 LEAKING = ["even", "literal"]
 REFERENCE_SEED = 1000  # away from the seeds that are judged
 
 
 def run(context: Context) -> None:
-    for view in context.views():
+    plan = context.size["pictures"]
+    for view in (view for view in context.views() if view.id in plan["views"]):
         context.say(f"pictures: {view.name}")
-        film = view.scene.film(context.size["picture_width"])
-        spp = context.size["picture_reference_spp"]
-        reference, _ = pipeline.path_traced(context.runner, view, film, spp, REFERENCE_SEED)
-        shown = [{"id": "reference", "label": f"path tracer, {spp} spp", "file": reference}]
+        film, spp, integrator = view.scene.film(plan["width"]), plan["reference_spp"], view.reference_integrator
+        reference, _ = pipeline.traced(context.runner, view, film, spp, REFERENCE_SEED, integrator)
+        shown = [{"id": "reference", "label": f"{integrator} tracer, {spp} a pixel", "file": reference}]
         cuts = []
         leaking = LEAKING if view.id == "main" else []  # as many as the comparison of scatters
         for method in [*reversed(context.size["methods"]), *leaking]:  # ours first, beside the reference
-            c = context.configuration(view, method, picture=True)
+            c = pipeline.sampled(context.configuration(view, method, plan["width"]), plan)
             file, _ = pipeline.image(context.runner, view, c, 1)
             shown.append({"id": method, "label": METHODS[method], "file": file,
                           "numbers": numbers(context, view, method)})
@@ -28,7 +28,7 @@ def run(context: Context) -> None:
                 cuts.append({"id": "cut", "label": "Cut size, clusters a sample (tile cuts)", "file": file,
                              "channel": "cutsize"})
                 cuts.append(lightcuts(context, view, c))
-        shown += equal_time(context, view)
+                shown.append(equal_time(context, view, c))
         context.pictures[view.name] = {"images": shown, "overlays": dots(context, view) + cuts}
 
 
@@ -36,7 +36,7 @@ def numbers(context: Context, view: View, method: str) -> str:
     """By the small film's reference, which is far better than the one that the viewer can show."""
     for row in context.results:
         if row["view"] == view.name and row["method"] == method and row["part"] in ("methods", "scatter"):
-            return f"mean ratio {row['mean_ratio']:.3f}, relMSE {row['relmse']:.3g} ({row['seeds']} seeds)"
+            return f"in the tables: mean ratio {row['mean_ratio']:.3f}, relMSE {row['relmse']:.3g} ({row['seeds']} seeds)"
     return ""
 
 
@@ -45,17 +45,12 @@ def lightcuts(context: Context, view: View, c: pipeline.Configuration) -> dict:
     return {"id": "cut-lightcuts", "label": "Cut size, clusters a sample (Lightcuts)", "file": file, "channel": "cutsize"}
 
 
-def equal_time(context: Context, view: View) -> list[dict]:
-    """Ours balanced for its time, and the path tracer in the time of that."""
-    c = balanced(context.configuration(view, "local", picture=True), context.size)
-    ours, runs = pipeline.image(context.runner, view, c, 1)
+def equal_time(context: Context, view: View, c: pipeline.Configuration) -> dict:
+    """The path tracer in the time of ours, all stages with loading."""
+    _, runs = pipeline.image(context.runner, view, c, 1)
     spp = picture_spp(context, view, c, sum(run.cpu_s for run in runs))
-    path, _ = pipeline.path_traced(context.runner, view, c.film, spp, 1)
-    row = next((r for r in context.results if r["part"] == "equal-time" and r["view"] == view.name and
-                "gain" in r and (r["vpls"], r["spp"]) == (c.vpls, c.spp)), None)
-    told = [f"relMSE {row[key]:.3g}" if row else "" for key in ("pipeline_relmse", "path_relmse")]
-    return [{"id": "balanced", "label": f"ours, balanced ({c.spp} spp)", "file": ours, "numbers": told[0]},
-            {"id": "path", "label": f"path tracer, time of that ({spp} spp)", "file": path, "numbers": told[1]}]
+    path, _ = pipeline.traced(context.runner, view, c.film, spp, 1)
+    return {"id": "path", "label": f"path tracer, time of ours ({spp} spp)", "file": path}
 
 
 def dots(context: Context, view: View) -> list[dict]:

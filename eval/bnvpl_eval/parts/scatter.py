@@ -19,7 +19,7 @@ def run(context: Context) -> None:
         for method in ("local", "even", "literal"):
             context.say(f"scatter: {view.name}, {method}")
             row = context.judge("scatter", view, context.configuration(view, method),
-                                context.seeds(view), label=METHODS[method])
+                                range(1, 1 + context.size["scatter"]["seeds"]), label=METHODS[method])
             rows.append({"group": view.scene.title, **row})
     for scatter in ("guarded", "even"):
         rows.append({"group": "Two closed rooms, seen in the dark one: the right answer is 0",
@@ -27,7 +27,7 @@ def run(context: Context) -> None:
     context.tables.append(table(
         "scatter", "The thesis' scatter against the guarded one",
         "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter also spreads VPLs "
-        f"uniformly, does not recentre and has no near-field rays. {context.size['seeds']} seeds.",
+        f"uniformly, does not recentre and has no near-field rays. {context.size['scatter']['seeds']} seeds.",
         COLUMNS, rows))
 
 

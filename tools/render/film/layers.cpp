@@ -40,8 +40,6 @@ constexpr std::array kLayers{
 
 }  // namespace
 
-std::span<const Layer> allLayers() { return kLayers; }
-
 std::string channelName(const Layer& layer, size_t channel) {
   std::string name(layer.name);
   if (!layer.channels.empty()) name += std::string(".") + layer.channels[channel];

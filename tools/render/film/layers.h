@@ -43,7 +43,6 @@ struct Layer {
   double (*value)(const LayerPixel&, size_t channel);
 };
 
-std::span<const Layer> allLayers();
 std::string channelName(const Layer& layer, size_t channel);
 std::string layerNames();  // "direct,indirect,..."
 
