@@ -33,6 +33,8 @@ struct BsdfSample {
 class Bsdf {
  public:
   Bsdf(const Scene& scene, const SurfacePoint& point);
+  // A matt surface of that albedo.
+  Bsdf(const SurfacePoint& point, Vec3 albedo) : point_(point), diffuse_(albedo) {}
 
   // Fraction of the incident flux that leaves through the rough lobes, 0..1 (at normal incidence).
   Vec3 roughAlbedo() const { return diffuse_ + roughGlossy(); }

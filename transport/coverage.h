@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/random.h"
+#include "core/sampling.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/reach_grid.h"
 #include "transport/rays.h"
@@ -76,6 +77,28 @@ class Coverage {
     return 1.0f / static_cast<float>(speakers);
   }
 
+  // The surface that VPL i speaks for, over and under the point `square` of a unit square that is
+  // laid on its disk: fn(point, area), world units squared, for each layer. Over the square the
+  // mean of the sums of area * f is the integral of f over the points of the scene, each with the
+  // probability that pick() names i there.
+  template <typename Fn>
+  void forEachLayer(uint32_t i, Point2 square, const Fn& fn) const {
+    const float reach = reach_[i], height = kPlaneFactor * reach;
+    const Vec3 normal = normal_[i];
+    const Vec3 at = position_[i] + Basis(normal).toWorld(sampleDisk(square.x, square.y) * reach);
+    Vec3 from = at + normal * height;
+    SurfacePoint hit;
+    for (int layer = 0; layer < kMaxLayers && rays_.closestHit(from, -normal, hit); ++layer) {
+      const Vec3 offset = hit.position - position_[i];
+      if (dot(offset, normal) < -height) return;
+      if (lengthSquared(offset) < reach * reach) {
+        if (const float share = shareOf(i, hit.position, hit.ng); share > 0.0f)
+          fn(hit, kPi * reach * reach * share / dot(hit.ng, normal));
+      }
+      from = rays_.offsetOrigin(hit.position, -hit.ng);
+    }
+  }
+
   // Every VPL within reach, whatever lies between: the thesis' rule, and what pick() looks up.
   ReachGrid::Lookup lookUp(Vec3 at) const { return grid_.lookUp(at); }
   // Of many hits, which wait for memory together; those that hit nothing are passed over.
@@ -92,6 +115,7 @@ class Coverage {
   // Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of
   // a curved surface do not hide it from itself (measured: docs/theory.md, "Guards").
   static constexpr float kLift = 0.1f;
+  static constexpr int kMaxLayers = 16;  // surfaces through the height of a VPL's disk
 
   bool inSight(Vec3 at, Vec3 normal, uint32_t i) const {
     const float lift = kLift * reach_[i];

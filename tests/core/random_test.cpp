@@ -35,13 +35,14 @@ TEST(Random, DependsOnKeyIndexAndDimensionOnly) {
 TEST(Random, StreamsAndSeedsShareNoKey) {
   std::set<uint64_t> keys;
   for (uint64_t seed = 0; seed < 1000; ++seed) {
-    for (const Stream s : {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate,
-                           Stream::Photons, Stream::PixelSamples, Stream::LightTree, Stream::Plot,
-                           Stream::AreaEstimate, Stream::LightTracer, Stream::FilmPoints}) {
+    for (const Stream s :
+         {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
+          Stream::PixelSamples, Stream::LightTree, Stream::Plot, Stream::AreaEstimate,
+          Stream::LightTracer, Stream::FilmPoints, Stream::VplPaths}) {
       keys.insert(streamKey(seed, s));
     }
   }
-  EXPECT_EQ(keys.size(), 10000u);
+  EXPECT_EQ(keys.size(), 11000u);
 }
 
 // One point in each box of area 1/256, whatever its shape, for any 256 points in a row from a

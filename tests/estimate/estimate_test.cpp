@@ -14,8 +14,8 @@ namespace {
 
 TEST(Estimate, EnergyAccountCloses) {
   const World world("u-shape/scene.toml");
-  const auto [lit, a] = lightVpls(world, keptVpls(world, {{"count", "1000"}}, {{"count", "10k"}}),
-                                  {{"photons", "100k"}});
+  const auto [lit, a, paths] = lightVpls(
+      world, keptVpls(world, {{"count", "1000"}}, {{"count", "10k"}}), {{"photons", "100k"}});
   EXPECT_NEAR(a.emitted, double{mean(world.lights.totalPower())}, 1e-4 * a.emitted);
   EXPECT_NEAR(a.escaped + a.absorbed, a.emitted, 1e-4 * a.emitted);
   EXPECT_NEAR(a.deposited + a.outside + a.gap + a.hidden, a.reflected, 1e-6 * a.reflected);

@@ -16,7 +16,8 @@ enum class Stream : uint32_t {
   Plot,
   AreaEstimate,
   LightTracer,
-  FilmPoints
+  FilmPoints,
+  VplPaths
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

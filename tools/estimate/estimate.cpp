@@ -18,6 +18,10 @@ const StageSpec& estimateSpec() {
   return spec;
 }
 
+Work estimateWork(const VplTable& vpls, const Values& options) {
+  return methodNamed(estimateMethods(), options.text("method")).work(vpls, options);
+}
+
 EstimateResult estimate(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
                         const Values& options, const ProgressFn& progress, const Resume& resume) {
   return methodNamed(estimateMethods(), options.text("method"))

@@ -1,6 +1,8 @@
 // The stage vpl-estimate without files: the flux that leaves each VPL's share of the surface.
 #pragma once
 
+#include <string_view>
+
 #include "core/progress.h"
 #include "core/resume.h"
 #include "formats/vpl_table.h"
@@ -24,23 +26,36 @@ struct EnergyAccount {
 };
 
 struct EstimateResult {
-  VplTable table;  // of stage Lit
-  EnergyAccount energy;
+  VplTable table;             // of stage Lit
+  EnergyAccount energy = {};  // of photons; without them, nonFinite of paths alone
+  uint64_t paths = 0;
 };
 
 struct EstimateInputs {
   const VplTable& vpls;  // of stage Eliminated
   const RayScene& rays;
   const LightSet& lights;
-  const ProgressFn& progress;  // counts photons
+  const ProgressFn& progress;  // counts what the method's Work does
   const Resume& resume;
 };
 
-using EstimateMethod = Method<EstimateResult (*)(const EstimateInputs&, const Values&)>;
+// What there is to do, for progress.
+struct Work {
+  std::string_view unit;  // "photons"
+  uint64_t count;
+};
+
+struct EstimateMethod {
+  std::string_view name, summary;
+  std::span<const Option> options;
+  EstimateResult (*make)(const EstimateInputs&, const Values&);
+  Work (*work)(const VplTable& vpls, const Values&);
+};
 std::span<const EstimateMethod* const> estimateMethods();  // one for each folder beside this file
 
 // seed, method, and the methods' own.
 const StageSpec& estimateSpec();
+Work estimateWork(const VplTable& vpls, const Values& options);
 
 // A pure function: any number of threads, and any interruption that `resume` mends, gives the same
 // bits. Throws InputError when no light has power.

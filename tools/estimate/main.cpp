@@ -44,7 +44,8 @@ int runEstimate(const Paths& paths, const Given& given, const ToolOptions& tool)
       stageRecord("vpl-estimate", recordOf(estimateSpec(), options),
                   {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
   Checkpoint checkpoint(paths.checkpoint, record);
-  ProgressMeter meter("photons", options.whole("photons"), tool.quiet);
+  const Work work = estimateWork(vpls, options);
+  ProgressMeter meter(std::string(work.unit), work.count, tool.quiet);
   EstimateResult result =
       estimate(vpls, rays, lights, options, meter.callback(), checkpoint.resume());
 

@@ -16,16 +16,6 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
-// How far of the way a VPL moves (measured: guarded/theory.md), and how far above the surface it
-// travels, as a share of its reach.
-constexpr float kRecentreShare = 0.35f;
-constexpr float kRecentreLift = 0.1f;
-
-std::vector<float> reachOf(const VplTable& vpls, float radius) {
-  std::vector<float> reach(vpls.radius);
-  for (float& r : reach) r *= radius;
-  return reach;
-}
 
 // Photons on their way together: each step of one waits for memory, which the others bridge.
 class PhotonBatch {
@@ -148,14 +138,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const Values& options, const P
 }
 
 void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter) {
-  vpls.stage = VplStage::Lit;
-  vpls.reach = double{scatter.radius()};
-  vpls.flux.resize(vpls.size());
-  vpls.photons.resize(vpls.size());
-  vpls.relativeError.resize(vpls.size());
-  vpls.firstBounceFlux.resize(vpls.size());
-  vpls.emitPosition = vpls.position;
-  vpls.emitNormal = vpls.normal;
+  beginLit(vpls, scatter.radius());
   for (size_t i = 0; i < vpls.size(); ++i) {
     const VplSum& s = sums.vpl[i];
     double sum = 0.0;
@@ -173,27 +156,15 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scat
   }
 }
 
-// Towards the centre of what was received, along the tangent plane and then down to the surface. A
-// VPL from which the new place is not in plain sight stays.
-void recentre(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter,
-              const RayScene& rays) {
-  parallelFor(vpls.size(), 256, [&](size_t i) {
-    const double weight = double{mean(vpls.flux[i])} / scatter.photonPower();
-    if (!(weight > 0.0)) return;
-    const Vec3 position = vpls.position[i], n = vpls.normal[i];
-    const float reach = scatter.radius() * vpls.radius[i], lift = kRecentreLift * reach;
-    Vec3 offset;
-    for (size_t c = 0; c < 3; ++c) {
-      offset[c] = static_cast<float>(double(sums.vpl[i].moment[c]) * 0x1p-24 / weight) * reach;
-    }
-    offset = (offset + n * -dot(n, offset)) * kRecentreShare;
-    const Vec3 above = position + offset + n * lift;
-    SurfacePoint hit;
-    if (rays.occluded(position + n * lift, above) || !rays.closestHit(above, -n, hit)) return;
-    if (hit.distance > 2.0f * lift || dot(hit.ng, n) < kMinNormalDot) return;
-    vpls.emitPosition[i] = hit.position;
-    vpls.emitNormal[i] = hit.ng;
-  });
+// Of what each VPL received, from its position in units of its reach; 0 where that is nothing.
+std::vector<Vec3> centres(const VplTable& vpls, const PhotonSums& sums, double photonPower) {
+  std::vector<Vec3> centre(vpls.size());
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const double weight = double{mean(vpls.flux[i])} / photonPower;
+    for (size_t c = 0; c < 3 && weight > 0.0; ++c)
+      centre[i][c] = static_cast<float>(double(sums.vpl[i].moment[c]) * 0x1p-24 / weight);
+  }
+  return centre;
 }
 
 EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons) {
@@ -251,7 +222,8 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
   const PhotonSums sums = tracePhotons(in, options, shares, scatter, rule);
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
   fillTable(result.table, sums, scatter);
-  if (options.on("recentre")) recentre(result.table, sums, scatter, in.rays);
+  if (options.on("recentre"))
+    recentre(result.table, centres(result.table, sums, scatter.photonPower()), in.rays);
   return result;
 }
 

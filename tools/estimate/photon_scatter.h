@@ -8,19 +8,18 @@
 
 #include "tools/estimate/estimate.h"
 #include "tools/estimate/photon_sums.h"
+#include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
 
 namespace bnvpl {
 
 // Of every method that traces photons. Sums of more than 2^36 would leave their fixed-point range.
 inline constexpr std::array kPhotonOptions{
-    countOption("photons", "10M", 0x1p36, "", "photons from all lights together"),
-    realOption("radius", "1.7", 0.01, 100, "r_max", "how far a VPL reaches for photons"),
-    wholeOption("max-bounces", "32", 1, 1000, "hits", "diffuse hits of a photon"),
-    // Elimination favours the rims of surfaces, where a VPL lies in the plane of the neighbouring
-    // wall and cannot light it.
-    switchOption("recentre", "on",
-                 "let each VPL shine from the centre of the energy that it received")};
+    countOption("photons", "10M", 0x1p36, "", "photons from all lights together"), kRadiusOption,
+    wholeOption("max-bounces", "32", 1, 1000, "hits", "diffuse hits of a photon"), kRecentreOption};
+inline Work photonWork(const VplTable&, const Values& options) {
+  return {"photons", options.whole("photons")};
+}
 
 // A photon's diffuse hit.
 struct PhotonHit {

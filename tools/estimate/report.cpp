@@ -10,7 +10,7 @@ namespace {
 float medianError(const VplTable& vpls) {
   std::vector<float> errors;
   for (size_t i = 0; i < vpls.size(); ++i) {
-    if (vpls.photons[i] > 0) errors.push_back(vpls.relativeError[i]);
+    if (mean(vpls.flux[i]) > 0.0f) errors.push_back(vpls.relativeError[i]);
   }
   if (errors.empty()) return 0.0f;
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
@@ -18,25 +18,26 @@ float medianError(const VplTable& vpls) {
   return *middle;
 }
 
-// Some VPLs in dark corners are to be expected; more than this share says that photons go
+// Some VPLs in dark corners are to be expected; more than this share says that light is sought
 // elsewhere.
 constexpr double kManyDark = 0.5;
 
-void warnOfDark(uint64_t dark, size_t vpls) {
-  if (static_cast<double>(dark) <= kManyDark * static_cast<double>(vpls)) return;
+void warnOfDark(uint64_t dark, const EstimateResult& result) {
+  const auto all = static_cast<double>(result.table.size());
+  if (static_cast<double>(dark) <= kManyDark * all) return;
   char line[256];
   std::snprintf(line, sizeof line,
-                "%.0f %% of the VPLs got no photon and light nothing: most photons go where the "
-                "view does not look; raise --photons, or keep fewer VPLs with vpl-eliminate -n",
-                100.0 * static_cast<double>(dark) / static_cast<double>(vpls));
+                result.paths > 0
+                    ? "%.0f %% of the VPLs light nothing: no path found a light from there; raise "
+                      "--points or --paths, or use --method guarded"
+                    : "%.0f %% of the VPLs got no photon and light nothing: most photons go where "
+                      "the view does not look; raise --photons, or keep fewer VPLs with "
+                      "vpl-eliminate -n",
+                100.0 * static_cast<double>(dark) / all);
   printWarnings("vpl-estimate", {line});
 }
 
-}  // namespace
-
-void reportEstimate(const EstimateResult& result, Summary& summary) {
-  const EnergyAccount& a = result.energy;
-  const VplTable& vpls = result.table;
+void reportPhotons(const EnergyAccount& a, Summary& summary) {
   const auto percent = [](double part, double whole) {
     return whole > 0.0 ? 100.0 * part / whole : 0.0;
   };
@@ -53,16 +54,8 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
       a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
       percent(a.gap, a.reflected), percent(a.hidden, a.reflected));
   summary.add("hits", a.hits, line);
-  const auto dark = static_cast<uint64_t>(std::count(vpls.photons.begin(), vpls.photons.end(), 0u));
-  std::snprintf(line, sizeof line,
-                "median relative error of a VPL %.2g, %llu VPLs without a photon",
-                double{medianError(vpls)}, static_cast<unsigned long long>(dark));
-  summary.add("median_relative_error", medianError(vpls), line);
-  summary.add("vpls_without_photon", dark);
-  warnOfDark(dark, vpls.size());
   summary.add("rays", a.rays);
   summary.add("guard_rays", a.guardRays);
-  summary.addNonFinite(a.nonFinite, "photons");
   summary.add("energy_W", {{"emitted", a.emitted},
                            {"escaped", a.escaped},
                            {"absorbed", a.absorbed},
@@ -71,6 +64,29 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
                            {"dropped_outside", a.outside},
                            {"dropped_gap", a.gap},
                            {"dropped_hidden", a.hidden}});
+}
+
+}  // namespace
+
+void reportEstimate(const EstimateResult& result, Summary& summary) {
+  const VplTable& vpls = result.table;
+  const bool photons = result.paths == 0;
+  if (photons) {
+    reportPhotons(result.energy, summary);
+  } else {
+    summary.add("paths", result.paths, formatSi(double(result.paths)) + " paths");
+  }
+  const auto dark = static_cast<uint64_t>(
+      photons ? std::ranges::count(vpls.photons, 0u)
+              : std::ranges::count_if(vpls.flux, [](Vec3 f) { return !(mean(f) > 0.0f); }));
+  char line[256];
+  std::snprintf(line, sizeof line, "median relative error of a VPL %.2g, %llu VPLs without %s",
+                double{medianError(vpls)}, static_cast<unsigned long long>(dark),
+                photons ? "a photon" : "light");
+  summary.add("median_relative_error", medianError(vpls), line);
+  summary.add(photons ? "vpls_without_photon" : "vpls_without_light", dark);
+  warnOfDark(dark, result);
+  summary.addNonFinite(result.energy.nonFinite, photons ? "photons" : "paths");
 }
 
 }  // namespace bnvpl

@@ -25,6 +25,6 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 extern const EstimateMethod method;
 const EstimateMethod method{
     "even", "photons, evenly to all VPLs within reach: the thesis; leaks through thin walls",
-    kPhotonOptions, make};
+    kPhotonOptions, make, photonWork};
 
 }  // namespace bnvpl::methods::estimate::even

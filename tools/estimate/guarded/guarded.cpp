@@ -30,6 +30,6 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 extern const EstimateMethod method;
 const EstimateMethod method{"guarded",
                             "photons, to VPLs on compatible surfaces that the hit can see",
-                            kPhotonOptions, make};
+                            kPhotonOptions, make, photonWork};
 
 }  // namespace bnvpl::methods::estimate::guarded

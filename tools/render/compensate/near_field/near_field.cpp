@@ -16,7 +16,6 @@ constexpr float kReachWithoutPhotons = 2.0f;
 // Where the last still fall short there are slivers, whose area, and so whose radiance, is not
 // known.
 constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
-constexpr int kMaxLayers = 4;  // surfaces on the way to the VPL's own
 // A ray shorter than this many r_max has found a crevice or a corner, where the light differs from
 // the mean of the VPL's surroundings: the point's own light is found out instead (measured:
 // docs/theory.md, "Near field").
@@ -28,39 +27,17 @@ std::vector<float> scaled(std::vector<float> values, float factor) {
   return values;
 }
 
-// The surface compatible with the VPL over or under a point of its tangent plane.
-bool surfaceBelow(const RayScene& rays, Vec3 at, Vec3 position, Vec3 normal, float height,
-                  SurfacePoint& hit) {
-  Vec3 from = at + normal * height;
-  for (int layer = 0; layer < kMaxLayers; ++layer) {
-    if (!rays.closestHit(from, -normal, hit)) return false;
-    if (dot(hit.position - position, normal) < -height) return false;
-    if (compatibleSurfaces(hit.position, hit.ng, position, normal, height)) return true;
-    from = rays.offsetOrigin(hit.position, -hit.ng);
-  }
-  return false;
-}
-
-// Area of the surface that VPL i speaks for, world units squared: each point counts with the
-// probability that Coverage::pick() names i there, as photons did in vpl-estimate. 0: not known.
-float areaOf(uint32_t i, const VplTable& lit, float reach, const Coverage& coverage,
-             const RayScene& rays) {
-  const Vec3 position = lit.position[i], normal = lit.normal[i];
-  const Basis basis(normal);
+// Area of the surface that VPL i speaks for, world units squared. 0: not known.
+float areaOf(uint32_t i, const Coverage& coverage) {
   float sum = 0.0f;
   uint32_t points = 0, found = 0;
   for (; points < kAreaPoints || (found < kMinFound && points < kMaxAreaPoints); ++points) {
-    const Point2 point = r2Sequence(points, 0.5, 0.5);
-    const Vec3 at = position + basis.toWorld(sampleDisk(point.x, point.y) * reach);
-    SurfacePoint hit;
-    if (!surfaceBelow(rays, at, position, normal, kPlaneFactor * reach, hit)) continue;
-    const float share = coverage.shareOf(i, hit.position, hit.ng);
-    if (!(share > 0.0f)) continue;
-    sum += share / dot(hit.ng, normal);
-    ++found;
+    const float before = sum;
+    coverage.forEachLayer(i, r2Sequence(points, 0.5, 0.5),
+                          [&](const SurfacePoint&, float area) { sum += area; });
+    found += sum > before;
   }
-  if (found < kMinFound) return 0.0f;
-  return sum / static_cast<float>(points) * kPi * reach * reach;
+  return found < kMinFound ? 0.0f : sum / static_cast<float>(points);
 }
 
 }  // namespace
@@ -84,8 +61,7 @@ std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
   // Two threads may measure one area; both find the same.
   float area = area_[vpl].load(std::memory_order_relaxed);
   if (area == kUnknown) {
-    const float reach = lit_.radius[vpl] * static_cast<float>(lit_.reach);
-    area = areaOf(vpl, lit_, reach, coverage_, rays_);
+    area = areaOf(vpl, coverage_);
     area_[vpl].store(area, std::memory_order_relaxed);
   }
   if (!(area > 0.0f)) return {};

@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+// Photons and paths estimate one integral by its two ends: fluxes of single VPLs agree within their
+// noise, those of all together within a per cent.
+TEST(Paths, AgreeWithPhotonsForEachVpl) {
+  for (const char* name : {"furnace/scene.toml", "cornell/scene.toml"}) {
+    const World world(name);
+    const VplTable vpls = keptVpls(world, {{"count", "400"}}, {{"count", "8k"}});
+    const VplTable photons = lightVpls(world, vpls, {{"photons", "2M"}, {"recentre", "off"}}).table;
+    const VplTable paths =
+        lightVpls(world, vpls, {{"method", "paths"}, {"points", "256"}, {"recentre", "off"}}).table;
+    EXPECT_NEAR(totalFlux(paths) / totalFlux(photons), 1.0, 0.01) << name;
+    double squares = 0.0;
+    for (size_t i = 0; i < vpls.size(); ++i) {
+      const double a = double{mean(photons.flux[i])}, b = double{mean(paths.flux[i])};
+      const double ea = a * double{photons.relativeError[i]},
+                   eb = b * double{paths.relativeError[i]};
+      squares += (a - b) * (a - b) / (ea * ea + eb * eb + 1e-30);
+    }
+    // 1 if the errors were just as stated; points are stratified, which makes theirs smaller.
+    EXPECT_LT(std::sqrt(squares / double(vpls.size())), 1.3) << name;
+  }
+}
+
+TEST(Paths, FirstBounceIsThatOfPhotons) {
+  const World world("cornell/scene.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "400"}}, {{"count", "8k"}});
+  const auto firstOf = [&](const Given& options) {
+    const VplTable lit = lightVpls(world, vpls, options).table;
+    double sum = 0.0;
+    for (const Vec3 f : lit.firstBounceFlux) sum += double{mean(f)};
+    return sum;
+  };
+  EXPECT_NEAR(firstOf({{"method", "paths"}}) / firstOf({{"photons", "1M"}}), 1.0, 0.01);
+}
+
+// As many bounces, as much light.
+TEST(Paths, CountBouncesAsPhotonsDo) {
+  const World world("furnace/scene.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "400"}}, {{"count", "8k"}});
+  for (const char* bounces : {"1", "3"}) {
+    const Given length{{"max-bounces", bounces}};
+    EXPECT_NEAR(totalFlux(lightVpls(world, vpls, with(length, {{"method", "paths"}})).table) /
+                    totalFlux(lightVpls(world, vpls, with(length, {{"photons", "1M"}})).table),
+                1.0, 0.01)
+        << bounces;
+  }
+}
+
+TEST(Paths, NoLightLeaksIntoAClosedRoom) {
+  const World world("test/two-rooms.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "500"}}, {{"count", "10k"}});
+  EXPECT_EQ(totalFlux(lightVpls(world, vpls, {{"method", "paths"}}).table), 0.0);
+}
+
+TEST(Paths, AreTheSameForAnyThreadsAndInterruptions) {
+  const World world("cornell/scene.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
+  const Values options = resolve(estimateSpec(), {{"method", "paths"}, {"points", "16"}});
+  const auto made = [&](size_t threads, const Resume& resume) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return estimate(vpls, world.rays, world.lights, options, {}, resume).table;
+  };
+  const VplTable one = made(1, {});
+  struct Stopped {};
+  std::string state;
+  Resume stops{{},
+               [] { return true; },
+               [&](const std::string& s) {
+                 state = s;
+                 throw Stopped{};
+               }};
+  EXPECT_THROW(made(2, stops), Stopped);
+  for (const VplTable& other : {made(7, {}), made(2, Resume{state, {}, {}})}) {
+    EXPECT_EQ(other.flux, one.flux);
+    EXPECT_EQ(other.emitPosition, one.emitPosition);
+    EXPECT_EQ(other.relativeError, one.relativeError);
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,34 @@
+#include "transport/leaving_light.h"
+
+#include <optional>
+
+#include "transport/walk.h"
+
+namespace bnvpl {
+
+void addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at, Vec3 throughput,
+                     PathLength length, Rng& rng, Vec3& first, Vec3& later) {
+  SpecularPath vertex;
+  std::optional<Bsdf> scattering;
+  for (unsigned bounce = 0;; ++bounce) {
+    const Bsdf& bsdf = bounce == 0 ? at : scattering.emplace(rays.scene(), vertex.hit);
+    Vec3& sum = bounce == 0 ? first : later;
+    sum += throughput * directLight(rays, lights, bsdf, LobeGroup::Rough, LightChoice::One, 1, rng);
+
+    const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
+    if (rng.next() >= survive) return;
+    BsdfSample scattered;
+    Ray next;
+    if (!scatter(rays, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next)) return;
+    throughput *= scattered.weight * (1.0f / survive);
+    const Arrival arrival{scattered.pdf, bsdf.point().position};
+    vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng);
+    sum += throughput * vertex.metFirst;
+    if (length.firstBounce) return;
+    later += throughput * vertex.metLater;
+    if (bounce == length.maxBounces || !vertex.rough) return;
+    throughput *= vertex.throughput;
+  }
+}
+
+}  // namespace bnvpl
