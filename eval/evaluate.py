@@ -19,7 +19,7 @@ from bnvpl_eval.context import Context
 from bnvpl_eval.runner import Runner
 
 # In the order in which they may use each other's rows.
-PARTS = ["methods", "scatter", "gather", "equal_time", "energy", "reference_quality", "convergence", "sensitivity", "pictures"]
+PARTS = ["methods", "scatter", "gather", "claims", "equal_time", "energy", "reference_quality", "convergence", "sensitivity", "pictures"]
 NEED_METHODS = {"energy", "reference_quality"}
 JUDGE_NOTHING = {"pictures"}
 

@@ -13,8 +13,8 @@ sys.path.insert(0, str(EVAL / "report"))
 from page_case import PageCase  # noqa: E402 (after its folder is known)
 from test_support import WIDTH, browser  # noqa: E402
 
-PARTS = {"methods", "scatter", "gather", "gather-equal-time", "equal-time", "convergence", "sensitivity"}
-TABLES = {"methods", "scatter", "gather", "equal-time", "energy", "references", "sensitivity"}
+PARTS = {"methods", "scatter", "gather", "gather-equal-time", "claims", "equal-time", "convergence", "sensitivity"}
+TABLES = {"methods", "scatter", "gather", "claims", "equal-time", "energy", "references", "sensitivity"}
 PLOTS = {"convergence-vpls-u-shape", "convergence-time-u-shape"}
 IMAGES = {"reference", "light", "rejection", "random", "uniform", "local", "even", "literal", "path"}
 OVERLAYS = {"dots-random", "dots-uniform", "dots-local", "cut", "cut-lightcuts"}  # laid over the images
@@ -83,6 +83,15 @@ class QuickRun(unittest.TestCase):
         for view in ("u-shape-main", "veach-door-main"):
             light, chosen = (self.row("methods", view=view, method=m) for m in ("light", "rejection"))
             self.assertLess(chosen["rmse_over_mean"], light["rmse_over_mean"])
+
+    def test_claims_have_a_row_each(self):
+        tables = {t["id"]: t for t in json.loads((FOLDER / "report.json").read_text())["tables"]}
+        rows = tables["claims"]["rows"]
+        self.assertEqual(len(rows), 8)
+        self.assertEqual({row["label"] for row in rows}, {"ward", "stochastic", "lightslice", "rejection"})
+        for row in rows:
+            self.assertIn(row["holds"], ("yes", "no"))
+            self.assertTrue(row["measured"])
 
     def test_rows_tell_their_options(self):
         for row in self.rows("sensitivity"):

@@ -1,120 +1,231 @@
 // LightSlice (Ou & Pellacini 2011): the points that the camera sees are divided into slices; a row
-// of the many-light matrix is taken for each; the lights are clustered once by all rows, and then,
+// of the many-light matrix is taken for each; the VPLs are clustered once by all rows, and then,
 // for each slice, further by the rows of the slices around it.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
+#include <ranges>
+#include <valarray>
 
+#include "core/cdf.h"
 #include "core/parallel.h"
 #include "tools/common/streams.h"
-#include "tools/render/gather/gather.h"
-#include "tools/render/gather/lightslice/column_clusters.h"
-#include "tools/render/gather/lightslice/slices.h"
+#include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::methods::gather::lightslice {
 
 namespace {
 
 constexpr std::array kOptions{
-    countOption("slices", "300", 0x1p20, "", "groups of neighbouring points"),
+    countOption("slices", "300", 0x1p20, "", "groups of neighbouring points, at least"),
     countOption("columns", "400", 0x1p20, "clusters", "clusters of VPLs for each slice"),
-    countOption("neighbour-slices", "16", 1024, "", "whose rows refine the clusters of a slice")};
-// Of the clusters of a slice, how many are found once for all of them.
-constexpr double kCommonShare = 1.0 / 3.0;
+    countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters")};
+constexpr double kCommonShare = 0.3;  // of the clusters of a slice: found once, for all slices
+constexpr size_t kDraws = 16;         // of each cluster's VPL; the samples of a pixel take turns
 
-// What every VPL brings to the point, visibility included, summed over the channels.
-std::vector<float> rowOf(const GatherInputs& in, const SurfacePoint& point) {
-  const Bsdf bsdf(in.rays.scene(), point);
-  const Vec3 from = in.rays.offsetOrigin(point.position, point.ng);
-  std::vector<float> row(in.vpls.size(), 0.0f);
-  Coupling c;
-  for (uint32_t i = 0; i < row.size(); ++i) {
-    if (!couple(in.vpls, i, bsdf, c) || in.rays.occluded(from, in.vpls.position[i])) continue;
-    const Vec3 light = c.transfer * in.vpls.intensity[i];
-    row[i] = light.x + light.y + light.z;
-  }
-  return row;
-}
+using Vector = std::valarray<double>;
+using Columns = std::vector<Vector>;  // of the matrix, one a VPL: what some rows say of it
+using Cluster = std::vector<uint32_t>;
 
-Columns columnsOf(const std::vector<std::vector<float>>& rows, std::span<const uint32_t> chosen) {
-  Columns columns;
-  columns.rows = chosen.size();
-  const size_t lights = rows.empty() ? 0 : rows.front().size();
-  columns.value.resize(lights * chosen.size());
-  for (size_t r = 0; r < chosen.size(); ++r) {
-    for (size_t i = 0; i < lights; ++i) columns.value[i * chosen.size() + r] = rows[chosen[r]][i];
-  }
-  columns.measure();
-  return columns;
-}
+double norm(const Vector& v) { return std::sqrt((v * v).sum()); }
 
-// The VPLs that light the points of each slice, with their weights.
-struct Plan {
-  Slices slices;
-  std::vector<std::vector<ColumnDraw>> ofSlice;
+// Position and scaled normal of a point; of a slice, the middle, and a point that represents it.
+struct Placed {
+  Vector at;
+  SurfacePoint point;
 };
 
-std::shared_ptr<const Plan> makePlan(const GatherInputs& in, const Values& options) {
-  const auto plan = std::make_shared<Plan>();
-  const FilmPoints film = in.film();
+Vector placeOf(const SurfacePoint& p, float scale) {
+  const Vec3 x = p.position, n = p.ns * scale;
+  return {double{x.x}, double{x.y}, double{x.z}, double{n.x}, double{n.y}, double{n.z}};
+}
+
+// Brings those below the middle of their range to the front, and returns how many: half of all
+// where that would be all or none.
+template <typename T, typename Value>
+size_t divideAtMiddle(std::span<T> all, const Value& value) {
+  const auto [low, high] = std::ranges::minmax(all | std::views::transform(value));
+  const auto isBelow = [&, middle = 0.5 * (low + high)](const T& t) { return value(t) < middle; };
+  const size_t above = std::ranges::partition(all, isBelow).size();
+  return above == 0 || above == all.size() ? all.size() / 2 : all.size() - above;
+}
+
+// Along the longest of six sides, until at most `most` points are left.
+void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>& slices) {
+  Vector middle(6), side(6);
+  for (size_t a = 0; a < 6; ++a) {
+    const auto on = [a](const Placed& p) { return p.at[a]; };
+    const auto [low, high] = std::ranges::minmax(points | std::views::transform(on));
+    middle[a] = 0.5 * (low + high), side[a] = high - low;
+  }
+  if (points.size() <= most) {
+    const auto pick = static_cast<size_t>(double{rng.next()} * double(points.size()));
+    slices.push_back({middle, points[pick].point});
+    return;
+  }
+  const auto axis = std::max_element(begin(side), end(side)) - begin(side);
+  const size_t below = divideAtMiddle(points, [&](const Placed& p) { return p.at[axis]; });
+  slice(points.first(below), most, rng, slices);
+  slice(points.subspan(below), most, rng, slices);
+}
+
+// Columns taken together.
+struct Bundle {
+  Vector sum;
+  double norms = 0.0;
+  void add(const Vector& c, double weight) {
+    sum = sum.size() == 0 ? Vector(weight * c) : Vector(sum + weight * c);
+    norms += weight * norm(c);
+  }
+  // 0 where all have one direction.
+  double cost() const { return norms * norms - (sum * sum).sum(); }
+  double apart(const Vector& c) const { return std::max(0.0, norms * norm(c) - (sum * c).sum()); }
+};
+
+Bundle bundleOf(const Cluster& cluster, const Columns& columns) {
+  Bundle bundle;
+  for (const uint32_t i : cluster) bundle.add(columns[i], 1.0);
+  return bundle;
+}
+
+// One of the cluster in proportion to its share, with one over its probability.
+VplDraw draw(const Cluster& cluster, std::span<const double> shares, Rng& rng) {
+  std::vector<double> own;
+  for (const uint32_t i : cluster) own.push_back(shares[i]);
+  const std::vector<double> cdf = makeCdf<double>(own);
+  float u = rng.next();
+  const size_t k = sampleCdf<double>(cdf, u);
+  return {cluster[k], static_cast<float>(1.0 / cdfShare<double>(cdf, k))};
+}
+
+// By sampling (Hasan et al. 2007): centres at random, in proportion to what a column adds to the
+// cost of all as one cluster; each VPL goes to the nearest.
+std::map<uint32_t, Cluster> sampled(const Cluster& vpls, const Columns& columns, double count,
+                                    Rng& rng) {
+  const Bundle all = bundleOf(vpls, columns);
+  std::vector<double> alpha(columns.size());
+  for (const uint32_t i : vpls) alpha[i] = all.apart(columns[i]);
+  std::map<uint32_t, Bundle> centres;
+  for (double k = 0; k < count; ++k) {
+    const VplDraw centre = draw(vpls, alpha, rng);
+    centres[centre.index].add(columns[centre.index], double{centre.weight});
+  }
+  std::vector<uint32_t> nearest(columns.size());
+  parallelFor(vpls.size(), 64, [&](size_t k) {
+    const auto apart = [&](const auto& centre) { return centre.second.apart(columns[vpls[k]]); };
+    nearest[vpls[k]] = std::ranges::min_element(centres, {}, apart)->first;
+  });
+  std::map<uint32_t, Cluster> clusters;
+  for (const uint32_t i : vpls) clusters[nearest[i]].push_back(i);
+  return clusters;
+}
+
+// Along the line between the two longest columns; returns one part and leaves the other.
+Cluster splitOff(Cluster& cluster, const Columns& columns) {
+  std::ranges::partial_sort(cluster, cluster.begin() + 2, std::greater{},
+                            [&](uint32_t i) { return norm(columns[i]); });
+  const Vector line = columns[cluster[0]] - columns[cluster[1]];
+  const auto along = [&](uint32_t i) { return (columns[i] * line).sum(); };
+  const size_t below = divideAtMiddle(std::span(cluster), along);
+  const Cluster part(cluster.begin() + below, cluster.end());
+  cluster.erase(cluster.begin() + below, cluster.end());
+  return part;
+}
+
+// By splitting the cluster of greatest cost until there are `count`, or none costs anything.
+std::multimap<double, Cluster> refined(const std::map<uint32_t, Cluster>& clusters, size_t count,
+                                       const Columns& columns) {
+  std::multimap<double, Cluster> byCost;
+  const auto add = [&](const Cluster& c) {
+    byCost.emplace(c.size() < 2 ? 0.0 : bundleOf(c, columns).cost(), c);
+  };
+  for (const auto& [centre, cluster] : clusters) add(cluster);
+  while (byCost.size() < count && byCost.rbegin()->first > 0.0) {
+    Cluster cluster = byCost.extract(std::prev(byCost.end())).mapped();
+    add(splitOff(cluster, columns));
+    add(cluster);
+  }
+  return byCost;
+}
+
+// The rows of the `count` slices nearest to one.
+Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t count,
+                  const Columns& columns) {
+  std::vector<size_t> order(slices.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {}, [&](size_t k) { return norm(slice.at - slices[k].at); });
+  const std::valarray<size_t> rows(order.data(), std::min(order.size(), count));
+  Columns local;
+  for (const Vector& c : columns) local.emplace_back(c[rows]);
+  return local;
+}
+
+// The VPLs of each slice, one of each cluster.
+struct Plan {
+  float scale = 1.0f;  // of normals
+  std::vector<Placed> slices;
+  std::vector<std::array<std::vector<VplDraw>, kDraws>> draws;
+};
+
+Plan planOf(const GatherInputs& in, const Values& options) {
+  Plan plan;
+  std::vector<SurfacePoint> film = in.film().points;
+  std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
+  if (film.empty()) return plan;
+  Bounds seen;
+  for (const SurfacePoint& p : film) seen.extend(p.position);
+  plan.scale = mean(seen.upper - seen.lower) / 8.0f;
+  std::vector<Placed> points;
+  for (const SurfacePoint& p : film) points.push_back({placeOf(p, plan.scale), p});
   const uint64_t key = streamKey(in.seed, Stream::LightTree) + 1;
-  plan->slices = Slices(film.points, options.whole("slices"), key);
-  const std::span<const SurfacePoint> representatives = plan->slices.representatives();
-  if (in.vpls.size() == 0 || representatives.empty()) return plan;
-
-  std::vector<std::vector<float>> rows(representatives.size());
-  parallelFor(rows.size(), 1, [&](size_t s) { rows[s] = rowOf(in, representatives[s]); });
-
-  std::vector<uint32_t> all(rows.size()), lights(in.vpls.size());
-  std::iota(all.begin(), all.end(), 0u);
-  std::iota(lights.begin(), lights.end(), 0u);
-  const auto columns = static_cast<size_t>(options.whole("columns"));
-  const Columns whole = columnsOf(rows, all);
-  std::vector<ColumnCluster> common{clusterOf(lights, whole)};
   Rng rng(key, 0);
-  refine(common, std::max<size_t>(1, static_cast<size_t>(double(columns) * kCommonShare)), whole,
-         rng);
+  slice(points, std::max<size_t>(1, points.size() / options.whole("slices")), rng, plan.slices);
 
-  plan->ofSlice.resize(rows.size());
-  parallelFor(rows.size(), 1, [&](size_t s) {
-    const Columns local =
-        columnsOf(rows, plan->slices.nearest(s, options.whole("neighbour-slices")));
-    std::vector<ColumnCluster> clusters;
-    for (const ColumnCluster& c : common) clusters.push_back(clusterOf(c.lights, local));
+  Columns columns(in.vpls.size(), Vector(plan.slices.size()));
+  parallelFor(plan.slices.size(), 1, [&](size_t s) {
+    const Bsdf bsdf(in.rays.scene(), plan.slices[s].point);
+    const ShadowTest test(in.rays, in.vpls, bsdf);
+    for (size_t i = 0; i < columns.size(); ++i) columns[i][s] = double{length(test.of(i).radiance)};
+  });
+  std::vector<double> norms;
+  std::ranges::transform(columns, std::back_inserter(norms), norm);
+  Cluster vpls(columns.size());
+  std::iota(vpls.begin(), vpls.end(), 0u);
+  std::erase_if(vpls, [&](uint32_t i) { return norms[i] == 0.0; });  // no slice sees them
+  if (vpls.empty()) return plan;
+  const auto count = static_cast<size_t>(options.whole("columns"));
+  const auto common = sampled(vpls, columns, kCommonShare * double(count), rng);
+  plan.draws.resize(plan.slices.size());
+  parallelFor(plan.slices.size(), 1, [&](size_t s) {
     Rng own(key, s + 1);
-    refine(clusters, columns, local, own);
-    for (const ColumnCluster& c : clusters) {
-      const ColumnDraw draw = drawFrom(c, local, own);
-      if (draw.weight > 0.0f) plan->ofSlice[s].push_back(draw);
+    const Columns local =
+        rowsAbout(plan.slices[s], plan.slices, options.whole("neighbour-slices"), columns);
+    for (const auto& [cost, cluster] : refined(common, count, local)) {
+      for (auto& draws : plan.draws[s]) draws.push_back(draw(cluster, norms, own));
     }
   });
   return plan;
 }
 
-Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const Plan& plan,
-                     const Bsdf& bsdf) {
-  Gathered out;
-  if (plan.ofSlice.empty()) return out;
-  const SurfacePoint& point = bsdf.point();
-  const Vec3 from = rays.offsetOrigin(point.position, point.ng);
-  const std::vector<ColumnDraw>& draws = plan.ofSlice[plan.slices.sliceOf(point)];
-  Coupling c;
-  for (const ColumnDraw& draw : draws) {
-    if (!couple(vpls, draw.light, bsdf, c)) continue;
-    ++out.shadowRays;
-    if (rays.occluded(from, vpls.position[draw.light])) continue;
-    const Vec3 light = c.transfer * vpls.intensity[draw.light] * draw.weight;
-    out.radiance += light;
-    out.clamped += light * c.clamped;
-  }
-  out.cut = static_cast<uint32_t>(draws.size());
-  return out;
-}
-
 Gather make(const GatherInputs& in, const Values& options) {
-  return gatherEach([&rays = in.rays, &vpls = in.vpls, plan = makePlan(in, options)](
-                        const Bsdf& bsdf) { return gatherPoint(rays, vpls, *plan, bsdf); });
+  const auto plan = std::make_shared<const Plan>(planOf(in, options));
+  return {[&rays = in.rays, &vpls = in.vpls, plan](const TileReceivers& tile,
+                                                   std::span<Gathered> out) {
+    for (size_t i = 0; i < out.size(); ++i) {
+      out[i] = {};
+      if (!tile.bsdf[i] || plan->draws.empty()) continue;
+      const Vector at = placeOf(tile.bsdf[i]->point(), plan->scale);
+      const auto apart = [&](const Placed& s) { return ((s.at - at) * (s.at - at)).sum(); };
+      const auto slice = std::ranges::min_element(plan->slices, {}, apart) - plan->slices.begin();
+      const auto& draws = plan->draws[slice][(tile.firstSlot + i / tile.pixels) % kDraws];
+      const ShadowTest test(rays, vpls, *tile.bsdf[i]);
+      for (const VplDraw& d : draws) test.add(d.index, d.weight, out[i]);
+      out[i].cut = static_cast<uint32_t>(draws.size());
+    }
+  }};
 }
 
 }  // namespace

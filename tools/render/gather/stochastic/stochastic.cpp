@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "tools/render/gather/gather.h"
+#include "tools/render/gather/shadow_test.h"
 #include "tools/render/light_tree/cluster_bounds.h"
 
 namespace bnvpl::methods::gather::stochastic {
@@ -53,7 +53,7 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
   const float far = share(farthestSquared(left.bounds, at), farthestSquared(right.bounds, at));
   const float nearLeft = left.bounds.distanceSquared(at),
               nearRight = right.bounds.distanceSquared(at);
-  // Inside either box distances tell nothing (Yuksel 2019, section 4.1).
+  // Inside either box distances tell nothing (Yuksel 2019, section 4).
   const float near = nearLeft > 0.0f && nearRight > 0.0f ? share(nearLeft, nearRight) : l / (l + r);
   return 0.5f * (near + far);
 }
@@ -84,18 +84,12 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTre
   Gathered out;
   if (tree.nodes.empty()) return out;
   const ClusterReceiver receiver(bsdf);
-  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const ShadowTest test(rays, vpls, bsdf);
   const std::vector<Cluster>& cut = chooseCut(tree, receiver, cutSize);
   for (const Cluster& cluster : cut) {
-    const auto draw =
-        descend(tree, cluster.node, receiver, toUnitFloat(random64(key, cluster.node, 0)));
-    Coupling c;
-    if (!draw || !(draw->probability > 0.0f) || !couple(vpls, draw->vpl, bsdf, c)) continue;
-    ++out.shadowRays;
-    if (rays.occluded(from, vpls.position[draw->vpl])) continue;
-    const Vec3 light = c.transfer * vpls.intensity[draw->vpl] * (1.0f / draw->probability);
-    out.radiance += light;
-    out.clamped += light * c.clamped;
+    const float u = toUnitFloat(random64(key, cluster.node, 0));
+    const auto draw = descend(tree, cluster.node, receiver, u);
+    if (draw && draw->probability > 0.0f) test.add(draw->vpl, 1.0f / draw->probability, out);
   }
   out.cut = static_cast<uint32_t>(cut.size());
   return out;

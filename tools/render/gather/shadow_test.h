@@ -1,0 +1,41 @@
+// What single VPLs bring to one point.
+#pragma once
+
+#include "tools/render/gather/gather.h"
+
+namespace bnvpl {
+
+// Borrows all three.
+class ShadowTest {
+ public:
+  ShadowTest(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf)
+      : rays_(rays),
+        vpls_(vpls),
+        bsdf_(bsdf),
+        from_(rays.offsetOrigin(bsdf.point().position, bsdf.point().ng)) {}
+
+  Gathered of(size_t i) const {
+    Gathered out;
+    add(i, 1.0f, out);
+    return out;
+  }
+  // Adds what VPL i brings, times `weight`, where nothing is in between. No ray where it could
+  // bring nothing.
+  void add(size_t i, float weight, Gathered& out) const {
+    Coupling c;
+    if (!couple(vpls_, i, bsdf_, c)) return;
+    ++out.shadowRays;
+    if (rays_.occluded(from_, vpls_.position[i])) return;
+    const Vec3 light = c.transfer * vpls_.intensity[i] * weight;
+    out.radiance += light;
+    out.clamped += light * c.clamped;
+  }
+
+ private:
+  const RayScene& rays_;
+  const VplLights& vpls_;
+  const Bsdf& bsdf_;
+  Vec3 from_;
+};
+
+}  // namespace bnvpl
