@@ -54,16 +54,28 @@ SESSION = re.compile(r'(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>
 MADE = re.compile(r'(<!-- made: (?P<name>\w+) -->\n)(?P<text>.*?)(<!-- end -->)', re.S)
 
 
-def setup_block():
+def setup_block(_):
     return '```sh\n' + ''.join(f'{line.removesuffix(" --quiet")}\n' for line in SETUP.split('\n')
                                if line.startswith('vpl-')) + '```\n'
 
 
-def recipes_block():
+def recipes_block(_):
     return ''.join(f'{row}\n' for row in make_guide_pictures.table())
 
 
-BLOCKS = {'setup': setup_block, 'recipes': recipes_block}
+def methods_block(bench):
+    """The methods of all stages, each with its page; for pages of docs/."""
+    rows = ['| option | methods |', '|---|---|']
+    for tool in STAGES:
+        for slot in bench.spec(tool)['slots']:
+            folder = f'../tools/{tool.removeprefix("vpl-")}/' + ('' if slot['name'] == 'method' else f'{slot["name"]}/')
+            names = sorted((m['name'] for m in slot['methods']), key=lambda name: (name != slot['default'], name))
+            links = [f'[{name}]({folder}{name.replace("-", "_")}/theory.md)' for name in names]
+            rows.append(f'| `{tool} --{slot["name"]}` | **{links[0]}**{"".join(f", {link}" for link in links[1:])} |')
+    return ''.join(f'{row}\n' for row in rows)
+
+
+BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block}
 
 
 def normal(text):
@@ -99,6 +111,10 @@ class Bench:
         return subprocess.run(['bash', '-euc', command], cwd=self.folder, env=self.environment, text=True,
                               capture_output=True)
 
+    def spec(self, tool):
+        """The tool's options and methods."""
+        return json.loads(self.run(f'{tool} --help-json').stdout)
+
     def copy(self, folder):
         shutil.copytree(self.folder, folder, symlinks=True)
         return folder
@@ -129,7 +145,7 @@ def options_page(bench):
              'An option of a method is refused while another method is chosen.', '']
     head = ['| option | type | default | unit, range | |', '|---|---|---|---|---|']
     for tool in STAGES:
-        spec = json.loads(bench.run(f'{tool} --help-json').stdout)
+        spec = bench.spec(tool)
         lines += [f'## {tool}', '', *head, *option_rows(spec['options']), '']
         for slot in spec['slots']:
             needs = f' Needs `--{slot["needs"].replace("=", " ")}`.' if slot['needs'] else ''
@@ -213,7 +229,7 @@ def main():
                 return f'{match[1]}{now}{match[4]}'
 
             new = SESSION.sub(block, text)
-            new = MADE.sub(lambda match: f'{match[1]}{BLOCKS[match["name"]]()}{match[4]}', new)
+            new = MADE.sub(lambda match: f'{match[1]}{BLOCKS[match["name"]](bench)}{match[4]}', new)
             if new != text:
                 renew(file, text, new, 'output')
         table = ROOT / 'docs/options.md'
