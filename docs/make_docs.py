@@ -36,6 +36,9 @@ STAGES = ('vpl-place', 'vpl-eliminate', 'vpl-estimate', 'vpl-render')
 # What the blocks' commands find. Small, so that a test can run it.
 SETUP = '''
 ln -s '{root}/scenes' scenes
+ln -s '{root}/pipelines' pipelines
+mkdir -p build/release
+ln -s '{bin}' build/release/bin
 vpl-place scenes/cornell/scene.toml -o candidates.vpl -n 20k --quiet
 vpl-eliminate candidates.vpl -o vpls.vpl -n 1k --quiet
 vpl-estimate scenes/cornell/scene.toml vpls.vpl -o lit.vpl --photons 200k --quiet
@@ -102,8 +105,10 @@ class Bench:
     def __init__(self, bin_folder, folder):
         self.folder = folder
         folder.mkdir()
-        self.environment = dict(os.environ, PATH=f'{bin_folder}:{os.environ["PATH"]}', COLUMNS='100')
-        done = self.run(SETUP.format(root=ROOT))
+        self.environment = dict(os.environ, PATH=f'{bin_folder}:{os.environ["PATH"]}', COLUMNS='100', LC_ALL='C.UTF-8')
+        for name in 'MAKEFLAGS', 'MAKELEVEL', 'NINJA_STATUS':
+            self.environment.pop(name, None)
+        done = self.run(SETUP.format(root=ROOT, bin=bin_folder))
         if done.returncode:
             raise SystemExit(f'make_docs: the set-up failed: {done.stderr}')
 
