@@ -5,7 +5,7 @@
   bench/size.py --parts lights,vpls      some
   bench/size.py --most 0.01              a hundredth of each size, to see that it works
 
-Prints Markdown; docs/reliability.md has the last figures.
+Prints Markdown; docs/lab has former figures.
 """
 
 import argparse

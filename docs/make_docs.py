@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes what the docs show of the tools' output, from the tools themselves.
+"""Writes what the docs show of the tools' output, from the tools themselves, and checks their links.
 
-    docs/make_docs.py            # rewrite the blocks that differ, and docs/options.md
-    docs/make_docs.py --check    # write nothing; exit 1 and name the blocks that differ
+    docs/make_docs.py            # rewrite the blocks that differ, docs/options.md and the table of pictures
+    docs/make_docs.py --check    # write nothing; exit 1 and name what differs
 
 A block is a session in a shell: what follows each line with a $ is what that command prints.
 
@@ -13,8 +13,10 @@ A block is a session in a shell: what follows each line with a $ is what that co
     ```
     <!-- end of session -->
 
-Each session begins in a folder where SETUP has made small files, with the tools on the PATH. Times,
-memory, builds and hashes differ from run to run; NORMAL says what is written instead.
+Each session begins in a fresh folder where SETUP has made small files, with the tools on the PATH. One that
+begins with <!-- session goes on --> runs in the folder that the session before it in the same file has left.
+Hashes and builds differ from run to run: NORMAL says what is written instead. Lines of progress, times and
+memory are left out. Both modes fail where a relative link in any page leads to no file or no heading.
 """
 import argparse
 import json
@@ -26,25 +28,57 @@ import sys
 import tempfile
 from pathlib import Path
 
+import make_guide_pictures
+
 ROOT = Path(__file__).resolve().parents[1]
 STAGES = ('vpl-place', 'vpl-eliminate', 'vpl-estimate', 'vpl-render')
 
 # What the blocks' commands find. Small, so that a test can run it.
 SETUP = '''
 ln -s '{root}/scenes' scenes
-vpl-place scenes/u-shape/scene.toml -o candidates.vpl -n 20k --quiet
+ln -s '{root}/pipelines' pipelines
+mkdir -p build/release
+ln -s '{bin}' build/release/bin
+vpl-place scenes/cornell/scene.toml -o candidates.vpl -n 20k --quiet
 vpl-eliminate candidates.vpl -o vpls.vpl -n 1k --quiet
-vpl-estimate scenes/u-shape/scene.toml vpls.vpl -o lit.vpl --photons 200k --quiet
-vpl-render scenes/u-shape/scene.toml lit.vpl -o image.exr --spp 2 --size 80x60 --layers all --quiet
-vpl-render scenes/u-shape/scene.toml -o reference.exr --integrator path --spp 4 --size 80x60 --layers all --quiet
+vpl-estimate scenes/cornell/scene.toml vpls.vpl -o lit.vpl --photons 200k --quiet
+vpl-render scenes/cornell/scene.toml lit.vpl -o image.exr --size 80x80 --layers all --quiet
+vpl-render scenes/cornell/scene.toml -o reference.exr --integrator path --spp 64 --size 80x80 --layers all --quiet
 '''
 
-# Seconds, memory, build identities and hashes; and last digits, which depend on the processor.
-NORMAL = ((re.compile(r'\b\d+\.\d\d s, peak memory \d+ MiB'), '0.00 s, peak memory 0 MiB'),
-          (re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
-          (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'))
+# Build identities and hashes; progress, seconds and memory.
+NORMAL = ((re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
+          (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'),
+          (re.compile(r'^vpl-\w+: (.* left|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
 
-SESSION = re.compile(r'(<!-- session -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)', re.S)
+SESSION = re.compile(r'(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)',
+                     re.S)
+# Blocks that other text than a session fills: <!-- made: NAME --> ... <!-- end -->
+MADE = re.compile(r'(<!-- made: (?P<name>\w+) -->\n)(?P<text>.*?)(<!-- end -->)', re.S)
+
+
+def setup_block(_):
+    return '```sh\n' + ''.join(f'{line.removesuffix(" --quiet")}\n' for line in SETUP.split('\n')
+                               if line.startswith('vpl-')) + '```\n'
+
+
+def recipes_block(_):
+    return ''.join(f'{row}\n' for row in make_guide_pictures.table())
+
+
+def methods_block(bench):
+    """The methods of all stages, each with its page; for pages of docs/."""
+    rows = ['| option | methods |', '|---|---|']
+    for tool in STAGES:
+        for slot in bench.spec(tool)['slots']:
+            folder = f'../tools/{tool.removeprefix("vpl-")}/' + ('' if slot['name'] == 'method' else f'{slot["name"]}/')
+            names = sorted((m['name'] for m in slot['methods']), key=lambda name: (name != slot['default'], name))
+            links = [f'[{name}]({folder}{name.replace("-", "_")}/theory.md)' for name in names]
+            rows.append(f'| `{tool} --{slot["name"]}` | **{links[0]}**{"".join(f", {link}" for link in links[1:])} |')
+    return ''.join(f'{row}\n' for row in rows)
+
+
+BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block}
 
 
 def normal(text):
@@ -54,19 +88,27 @@ def normal(text):
 
 
 def same(a, b):
-    """Equal but for numbers, which may differ by a unit in their last shown digits."""
+    """Equal but for the last digits of numbers, which depend on the processor: by 2 % or a unit of the last one shown."""
     number = re.compile(r'-?\d+(?:\.\d+)?(?:e[-+]?\d+)?')
     if number.sub('#', a) != number.sub('#', b):
         return False
-    return all(abs(float(x) - float(y)) <= 0.02 * max(abs(float(x)), abs(float(y)))
+
+    def unit(x):
+        digits, _, exponent = x.partition('e')
+        return 10.0 ** (int(exponent or 0) - len(digits.partition('.')[2]))
+
+    return all(abs(float(x) - float(y)) <= max(0.02 * max(abs(float(x)), abs(float(y))), 1.001 * max(unit(x), unit(y)))
                for x, y in zip(number.findall(a), number.findall(b)))
 
 
 class Bench:
     def __init__(self, bin_folder, folder):
         self.folder = folder
-        self.environment = dict(os.environ, PATH=f'{bin_folder}:{os.environ["PATH"]}', COLUMNS='100')
-        done = self.run(SETUP.format(root=ROOT))
+        folder.mkdir()
+        self.environment = dict(os.environ, PATH=f'{bin_folder}:{os.environ["PATH"]}', COLUMNS='100', LC_ALL='C.UTF-8')
+        for name in 'MAKEFLAGS', 'MAKELEVEL', 'NINJA_STATUS':
+            self.environment.pop(name, None)
+        done = self.run(SETUP.format(root=ROOT, bin=bin_folder))
         if done.returncode:
             raise SystemExit(f'make_docs: the set-up failed: {done.stderr}')
 
@@ -74,17 +116,24 @@ class Bench:
         return subprocess.run(['bash', '-euc', command], cwd=self.folder, env=self.environment, text=True,
                               capture_output=True)
 
-    def session(self, text):
-        """The commands of a session, each with what it prints; in a copy of the folder."""
+    def spec(self, tool):
+        """The tool's options and methods."""
+        return json.loads(self.run(f'{tool} --help-json').stdout)
+
+    def copy(self, folder):
+        shutil.copytree(self.folder, folder, symlinks=True)
+        return folder
+
+    def session(self, text, folder):
+        """The commands of a session, each with what it prints, as one shell runs them in the folder."""
         commands = [line[2:] for line in text.splitlines() if line.startswith('$ ')]
-        with tempfile.TemporaryDirectory(prefix='bnvpl-session.') as folder:
-            shutil.copytree(self.folder, folder, symlinks=True, dirs_exist_ok=True)
-            marker = '\x1e'
-            script = ''.join(f"printf '{marker}'; {{ {command}\n}} 2>&1\n" for command in commands)
-            done = subprocess.run(['bash', '-c', script], cwd=folder, env=self.environment, text=True,
-                                  capture_output=True)
+        marker = '\x1e'
+        script = 'status=0\n' + ''.join(
+            f"printf '{marker}'; (exit $status); {{ {command}\n}} 2>&1; status=$?\n" for command in commands)
+        done = subprocess.run(['bash', '-c', script], cwd=folder, env=self.environment, text=True, capture_output=True)
         printed = done.stdout.split(marker)[1:]
-        return ''.join(f'$ {command}\n{normal(output) if output else ""}' for command, output in zip(commands, printed))
+        return ''.join(f'$ {command}\n{normal(output) if output.strip() else ""}'
+                       for command, output in zip(commands, printed))
 
 
 def option_rows(options):
@@ -101,7 +150,7 @@ def options_page(bench):
              'An option of a method is refused while another method is chosen.', '']
     head = ['| option | type | default | unit, range | |', '|---|---|---|---|---|']
     for tool in STAGES:
-        spec = json.loads(bench.run(f'{tool} --help-json').stdout)
+        spec = bench.spec(tool)
         lines += [f'## {tool}', '', *head, *option_rows(spec['options']), '']
         for slot in spec['slots']:
             needs = f' Needs `--{slot["needs"].replace("=", " ")}`.' if slot['needs'] else ''
@@ -118,9 +167,35 @@ def options_page(bench):
 
 
 def pages():
-    found = subprocess.run(['git', 'ls-files', '*.md'], cwd=ROOT, capture_output=True, text=True).stdout.split('\n')
-    files = [ROOT / f for f in found if f] or sorted(ROOT.glob('**/*.md'))
-    return [f for f in files if f.exists() and '<!-- session -->' in f.read_text() and 'docs/lab' not in str(f)]
+    found = subprocess.run(['git', 'ls-files', '-co', '--exclude-standard', '*.md'], cwd=ROOT, capture_output=True,
+                           text=True).stdout.splitlines()
+    return [f for f in ([ROOT / f for f in found] or sorted(ROOT.glob('**/*.md'))) if f.exists()]
+
+
+def prose(text):
+    """The text without code, in which brackets are no links."""
+    return re.sub(r'`[^`\n]*`', '', re.sub(r'^```.*?^```', '', text, flags=re.S | re.M))
+
+
+def anchors(file):
+    """Of the file's headings, as GitHub makes them: lower case, blanks as hyphens, other marks dropped."""
+    seen = {}
+    for heading in re.findall(r'^#+ +(.*?) *$', re.sub(r'^```.*?^```', '', file.read_text(), flags=re.S | re.M), re.M):
+        name = re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
+        seen[name] = seen.get(name, -1) + 1
+        yield f'{name}-{seen[name]}' if seen[name] else name
+
+
+def broken_links(file):
+    for link in re.findall(r'\]\(([^)\s]+)\)', prose(file.read_text())):
+        if re.match(r'[a-z]+:', link):
+            continue
+        path, _, anchor = link.partition('#')
+        target = (file.parent / path).resolve() if path else file
+        if not target.exists():
+            yield f'{link}: no such file'
+        elif anchor and (target.suffix != '.md' or anchor not in anchors(target)):
+            yield f'{link}: no such heading'
 
 
 def main():
@@ -130,7 +205,7 @@ def main():
     arguments = parser.parse_args()
     differing = 0
     with tempfile.TemporaryDirectory(prefix='bnvpl-docs.') as folder:
-        bench = Bench(arguments.bin.resolve(), folder)
+        bench = Bench(arguments.bin.resolve(), Path(folder) / 'files')
 
         def renew(file, old, new, what):
             nonlocal differing
@@ -141,15 +216,25 @@ def main():
 
         for file in pages():
             text = file.read_text()
+            if 'docs/lab' in str(file):
+                continue
+            sessions = 0
 
             def block(match):
-                now = bench.session(match['text'])
+                nonlocal sessions
+                if not match['on']:
+                    sessions += 1
+                here = Path(folder) / f'{file.stem}-{sessions}'
+                now = bench.session(match['text'], here if here.exists() else bench.copy(here))
                 if same(now, match['text']):
                     return match[0]
                 print(f'  {match["text"].splitlines()[0]}')
-                return f'{match[1]}{now}{match[3]}'
+                if arguments.check:
+                    print(now)
+                return f'{match[1]}{now}{match[4]}'
 
             new = SESSION.sub(block, text)
+            new = MADE.sub(lambda match: f'{match[1]}{BLOCKS[match["name"]](bench)}{match[4]}', new)
             if new != text:
                 renew(file, text, new, 'output')
         table = ROOT / 'docs/options.md'
@@ -158,7 +243,10 @@ def main():
             renew(table, '', page, 'the table of options')
     if differing and arguments.check:
         print('run docs/make_docs.py')
-    return 1 if differing and arguments.check else 0
+    broken = [f'{file.relative_to(ROOT)}: {what}' for file in pages() for what in broken_links(file)]
+    if broken:
+        print('\n'.join(broken))
+    return 1 if broken or (differing and arguments.check) else 0
 
 
 if __name__ == '__main__':

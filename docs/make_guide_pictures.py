@@ -1,77 +1,172 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/guide.md: each artefact beside its cure, from the tools themselves.
 
-    docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # some minutes on two cores
+    docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # ten minutes on two cores
+    docs/make_guide_pictures.py --table                                 # the table of docs/images/README.md
+
+`windows` needs a model that is not part of the project; LIVING_ROOM_DIR names its folder.
 """
 import argparse
+import os
 import subprocess
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
-
-import numpy
-import OpenImageIO
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
+@dataclass
 class Case:
-    """A scene and a view; for each of two pictures the options of place, eliminate, estimate and render."""
+    """A scene, its film, and for each of two pictures the options of place, eliminate, estimate and render."""
+    scene: str
+    size: str
+    exposure: float
+    left: tuple
+    right: tuple
+    crop: tuple = ()  # x, y, width, height
+    zoom: int = 1     # nearest neighbour
 
-    def __init__(self, scene, size, exposure, bad, good):
-        self.scene, self.size, self.exposure, self.pictures = scene, size, exposure, (bad, good)
+
+@dataclass
+class Difference(Case):
+    """The path-traced reference, and the relative differences of both to it, as colours of the means of blocks."""
+    block: int = 5
 
 
 CASES = {
-    'blotches': Case('u-shape/scene.toml', '480x360', 5,
-                     ('-n 15k', '-n 1500', '--photons 50k', '--spp 16'),
-                     ('-n 60k', '-n 3000', '--photons 10M', '--spp 16')),
-    'arcs': Case('veach-door/scene.toml', '640x360', 1.5,
+    'blotches': Case('scenes/u-shape/scene.toml', '320x240', 6,
+                     ('-n 15k', '-n 1500', '--photons 30k', '--spp 8'),
+                     ('-n 60k', '-n 3k', '--photons 4M', '--spp 8'), (100, 120, 220, 120), 2),
+    'arcs': Case('scenes/veach-door/scene.toml', '640x360', 1.5,
                  ('-n 20k', '-n 500', '--photons 4M', '--gather lightcuts --error 0.1 --spp 8 --only indirect'),
-                 ('-n 240k', '-n 12k', '--photons 10M', '--spp 16 --only indirect')),
-    'dark-corners': Case('cornell/scene.toml', '480x480', 0,
+                 ('-n 240k', '-n 12k', '--photons 10M', '--spp 16 --only indirect'), (300, 0, 340, 360)),
+    'dark-corners': Case('scenes/cornell/scene.toml', '240x240', 1.5,
                          ('-n 12k', '-n 300', '--photons 2M', '--compensate none --spp 32 --only indirect'),
-                         ('-n 12k', '-n 300', '--photons 2M', '--spp 32 --only indirect')),
-    'leaks': Case('u-shape/scene.toml', '480x360', 3,
-                  ('-n 60k', '-n 3000', '--photons 2M --method even --recentre off', '--compensate none --spp 16'),
-                  ('-n 60k', '-n 3000', '--photons 2M', '--spp 16')),
-    'specks': Case('veach-door/table.toml', '640x360', 2,
-                   ('-n 120k', '-n 3000', '--photons 4M', '--spp 4'),
-                   ('-n 120k', '-n 3000', '--photons 4M', '--spp 48 --near-field-rays 4 --error 0.15')),
-    'direct-noise': Case('cornell/scene.toml', '480x480', 0,
+                         ('-n 12k', '-n 300', '--photons 2M', '--spp 32 --only indirect'), (40, 125, 150, 100), 3),
+    'leaks': Case('scenes/u-shape/scene.toml', '480x360', 3,
+                  ('-n 60k', '-n 3k', '--photons 2M --method even --recentre off', '--compensate none --spp 16'),
+                  ('-n 60k', '-n 3k', '--photons 2M', '--spp 16')),
+    'specks': Case('scenes/veach-door/table.toml', '320x180', 2.5,
+                   ('-n 60k', '-n 3k', '--photons 2M', '--spp 8'),
+                   ('-n 60k', '-n 3k', '--photons 2M', '--spp 256 --near-field-rays 4 --error 0.1'), (100, 70, 140, 90), 3),
+    'direct-noise': Case('scenes/cornell/scene.toml', '480x480', 0,
                          ('-n 12k', '-n 300', '--photons 200k', '--spp 1 --near-field-rays 1 --only direct'),
-                         ('-n 12k', '-n 300', '--photons 200k', '--spp 64 --near-field-rays 1 --only direct')),
+                         ('-n 12k', '-n 300', '--photons 200k', '--spp 64 --near-field-rays 1 --only direct'),
+                         (0, 190, 400, 290)),
+    'windows': Difference('${LIVING_ROOM_DIR}/scene.toml', '160x90', 1,
+                          ('', '-n 3k', '', '--spp 64 --near-field-rays 4 --only indirect'),
+                          ('', '-n 3k', '--radius 1', '--spp 64 --near-field-rays 4 --only indirect'), zoom=2),
 }
 
 
-def render(tools, case, options, folder):
-    def run(tool, *words):
-        subprocess.run([tools / tool, *map(str, words), '--quiet'], cwd=folder, check=True)
+def table():
+    yield '| picture | scene, film | crop: x, y, width, height | left | right |'
+    yield '|---|---|---|---|---|'
+    for name, case in CASES.items():
+        columns = ['; '.join(f'`{tool} {o}`' for tool, o in zip(('place', 'eliminate', 'estimate', 'render'), options) if o)
+                   for options in (case.left, case.right)]
+        crop = ', '.join(map(str, case.crop)) or 'none'
+        if isinstance(case, Difference):
+            crop = f'none; means of {case.block} x {case.block} pixels'
+        yield f'| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {" | ".join(columns)} |'
 
-    scene = ROOT / 'scenes' / case.scene
+
+def run(tools, folder, tool, *words):
+    subprocess.run([tools / tool, *map(str, words), '--quiet'], cwd=folder, check=True)
+
+
+def render(tools, case, options, folder, to):
+    scene = ROOT / os.path.expandvars(case.scene)
     place, eliminate, estimate, image = (o.split() for o in options)
-    run('vpl-place', scene, '-o', 'c.vpl', *place)
-    run('vpl-eliminate', 'c.vpl', '-o', 'v.vpl', *eliminate)
-    run('vpl-estimate', scene, 'v.vpl', '-o', 'l.vpl', *estimate)
-    run('vpl-render', scene, 'l.vpl', '-o', 'i.exr', '--png', 'i.png', '--size', case.size,
+    run(tools, folder, 'vpl-place', scene, '-o', 'c.vpl', *place)
+    run(tools, folder, 'vpl-eliminate', 'c.vpl', '-o', 'v.vpl', *eliminate)
+    run(tools, folder, 'vpl-estimate', scene, 'v.vpl', '-o', 'l.vpl', *estimate)
+    run(tools, folder, 'vpl-render', scene, 'l.vpl', '-o', f'{to}.exr', '--png', f'{to}.png', '--size', case.size,
         '--exposure', case.exposure, *image)
-    return OpenImageIO.ImageBuf(str(folder / 'i.png')).get_pixels(OpenImageIO.UINT8)[:, :, :3]
+
+
+def shown(file, kind):
+    import OpenImageIO
+    return OpenImageIO.ImageBuf(str(file)).get_pixels(kind)[:, :, :3]
+
+
+def colours(x):
+    """Of -1 to 1: blue for too dark, white for right, red for too bright, as vpl-inspect compare --diff has them."""
+    import numpy
+    stops = numpy.array([[12, 32, 120], [90, 150, 240], [255, 255, 255], [240, 110, 80], [120, 0, 20]], float)
+    return numpy.stack([numpy.interp(x, numpy.linspace(-1, 1, 5), stops[:, c]) for c in range(3)], -1).astype(numpy.uint8)
+
+
+def differences(case, reference, *images):
+    """The reference as a picture, then the block means of each image, with a scale from -50 to +50 % below."""
+    import numpy
+    import OpenImageIO
+    linear = shown(reference, OpenImageIO.FLOAT)
+    screen = numpy.clip(linear * 2.0 ** case.exposure, 0, 1) ** (1 / 2.2)
+    n = case.block
+
+    def means(x):
+        x = x.mean(axis=2)
+        return x.reshape(x.shape[0] // n, n, x.shape[1] // n, n).mean(axis=(1, 3))
+
+    def with_scale(picture, scale):
+        white = numpy.full((2, *picture.shape[1:]), 255, numpy.uint8)
+        return numpy.vstack([picture, white, numpy.repeat(scale[None], 4, 0)])
+
+    panels = [with_scale((255 * screen).astype(numpy.uint8), numpy.full((linear.shape[1], 3), 255, numpy.uint8))]
+    for image in images:
+        relative = means(shown(image, OpenImageIO.FLOAT)) / means(linear) - 1
+        blocks = numpy.repeat(numpy.repeat(colours(relative / 0.5), n, 0), n, 1)
+        panels.append(with_scale(blocks, colours(numpy.linspace(-1, 1, blocks.shape[1]))))
+    return panels
+
+
+def write(name, panels):
+    import numpy
+    import OpenImageIO
+    gap = numpy.full((panels[0].shape[0], 8, 3), 255, numpy.uint8)
+    row = [x for p in panels for x in (gap, p)][1:]
+    whole = numpy.ascontiguousarray(numpy.hstack(row))
+    out = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(whole.shape[1], whole.shape[0], 3, OpenImageIO.UINT8))
+    out.set_pixels(OpenImageIO.ROI(), whole)
+    out.write(str(ROOT / 'docs/images' / f'guide-{name}.png'))
+    print(f'docs/images/guide-{name}.png', flush=True)
+
+
+def make(name, tools, folder):
+    import numpy
+    import OpenImageIO
+    case = CASES[name]
+    for options, to in (case.left, 'left'), (case.right, 'right'):
+        render(tools, case, options, folder, to)
+    if isinstance(case, Difference):
+        run(tools, folder, 'vpl-render', ROOT / os.path.expandvars(case.scene), '-o', 'reference.exr', '--integrator',
+            'path', '--spp', 1024, '--size', case.size, '--only', 'indirect')
+        panels = differences(case, *(folder / f'{x}.exr' for x in ('reference', 'left', 'right')))
+    else:
+        panels = [shown(folder / f'{x}.png', OpenImageIO.UINT8) for x in ('left', 'right')]
+    if case.crop:
+        x, y, width, height = case.crop
+        panels = [p[y:y + height, x:x + width] for p in panels]
+    write(name, [numpy.repeat(numpy.repeat(p, case.zoom, 0), case.zoom, 1) for p in panels])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('names', nargs='*', help=f'some of {", ".join(CASES)}')
     parser.add_argument('--bin', default=ROOT / 'build/release/bin', type=Path, help='folder of the executables')
+    parser.add_argument('--table', action='store_true', help='print the recipes instead')
     options = parser.parse_args()
+    if options.table:
+        print('\n'.join(table()))
+        return
     for name in options.names or CASES:
+        if '${' in os.path.expandvars(CASES[name].scene):
+            print(f'{name} is left out: {CASES[name].scene} needs a folder in the environment')
+            continue
         with tempfile.TemporaryDirectory(prefix='bnvpl-guide.') as folder:
-            pair = [render(options.bin.resolve(), CASES[name], o, Path(folder)) for o in CASES[name].pictures]
-        gap = numpy.full((pair[0].shape[0], 8, 3), 255, numpy.uint8)
-        both = numpy.ascontiguousarray(numpy.hstack([pair[0], gap, pair[1]]))
-        spec = OpenImageIO.ImageSpec(both.shape[1], both.shape[0], 3, OpenImageIO.UINT8)
-        out = OpenImageIO.ImageBuf(spec)
-        out.set_pixels(OpenImageIO.ROI(), both)
-        out.write(str(ROOT / 'docs/images' / f'guide-{name}.png'))
-        print(f'docs/images/guide-{name}.png', flush=True)
+            make(name, options.bin.resolve(), Path(folder))
 
 
 if __name__ == '__main__':

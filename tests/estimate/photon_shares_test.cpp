@@ -93,7 +93,7 @@ TEST(PhotonShares, ManyLightsOfAnyPower) {
 TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
   const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4000"}});
-  const auto [lit, account] =
+  const auto [lit, account, paths] =
       lightVpls(world, vpls, {{"photons", "104k"}, {"radius", "3"}});  // 100000 and 4000
   EXPECT_NEAR(account.emitted, double{mean(world.lights.totalPower())}, 1e-6 * account.emitted);
   ASSERT_GT(account.deposited, 0.999 * account.reflected);
