@@ -15,6 +15,7 @@ METHODS = {
     "random": "random, from the camera",
     "uniform": "blue noise, uniform (thesis)",
     "local": "blue noise, local density (ours)",
+    "paths": "ours, light gathered by paths",
     "even": "ours, but the thesis' scatter",
     "literal": "thesis to the letter",
 }
@@ -23,10 +24,12 @@ ELIMINATE = {
     "rejection": ("--method", "rejection"),
     "uniform": ("--density", "uniform"),
     "local": (),
+    "paths": (),
     "even": (),
     "literal": ("--density", "uniform"),
 }
 ESTIMATE = {
+    "paths": ("--method", "paths"),
     "even": ("--method", "even"),
     "literal": ("--method", "even", "--recentre", "off"),
 }
@@ -106,8 +109,8 @@ def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, 
                                         *(("--seed", seed) if c.method == "random" else ()),
                                         "-o", "@vpls.vpl", "--quiet"],
                       {"candidates": placed["candidates.vpl"]}, ["vpls.vpl"])
-    run = runner.run("vpl-estimate", ["{scene}", "{vpls}", "--photons", c.photons, "--seed", seed,
-                                      *ESTIMATE.get(c.method, ()), *c.estimate,
+    run = runner.run("vpl-estimate", ["{scene}", "{vpls}", "--seed", seed,
+                                      *(() if c.method == "paths" else ("--photons", c.photons)), *ESTIMATE.get(c.method, ()), *c.estimate,
                                       "-o", "@lit.vpl", "--stats", "@stats.json", "--quiet"],
                      {**scene, "vpls": kept["vpls.vpl"]}, ["lit.vpl", "stats.json"])
     return run["lit.vpl"], [placed, kept, run]
@@ -124,7 +127,7 @@ def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path
 
 
 def traced(runner: Runner, view: View, film: str, spp: int, seed: int,
-                integrator: str = "path") -> tuple[Path, list[Run]]:
+           integrator: str = "path") -> tuple[Path, list[Run]]:
     run = runner.run("vpl-render", ["{scene}", "--size", film, "--integrator", integrator, "--spp", spp,
                                     "--seed", seed, "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
                      {"scene": ROOT / view.file}, ["image.exr"])

@@ -16,7 +16,7 @@ from test_support import WIDTH, browser  # noqa: E402
 PARTS = {"methods", "scatter", "gather", "gather-equal-time", "claims", "equal-time", "convergence", "sensitivity"}
 TABLES = {"methods", "scatter", "gather", "claims", "equal-time", "energy", "references", "sensitivity"}
 PLOTS = {"convergence-vpls-u-shape", "convergence-time-u-shape"}
-IMAGES = {"reference", "light", "rejection", "random", "uniform", "local", "even", "literal", "path"}
+IMAGES = {"reference", "light", "rejection", "random", "uniform", "local", "paths", "even", "literal", "path"}
 OVERLAYS = {"dots-random", "dots-uniform", "dots-local", "cut", "cut-lightcuts"}  # laid over the images
 BIN, FOLDER = (Path(word) for word in sys.argv[1:3])
 

@@ -20,8 +20,8 @@ def run(context: Context) -> None:
                        r["method"] == method)
             shown = {"group": f"{view.scene.title}, {view.title}", **row}
             _, runs = pipeline.lit(context.runner, view, context.configuration(view, method), 1)
-            if runs[-1].record["tool"] == "vpl-estimate":  # which accounts for its photons
-                account = json.loads(runs[-1]["stats.json"].read_text())["energy_W"]
+            stats = json.loads(runs[-1]["stats.json"].read_text()) if runs[-1].record["tool"] == "vpl-estimate" else {}
+            if account := stats.get("energy_W"):  # of its photons
                 whole = account["reflected"]
                 shown |= {"deposited": 100 * account["deposited"] / whole}
                 shown |= {key: 100 * account["dropped_" + key] / whole for key in ("outside", "gap", "hidden")}
