@@ -31,8 +31,8 @@ void warnOfDark(uint64_t dark, const EstimateResult& result) {
                     ? "%.0f %% of the VPLs light nothing: no path found a light from there; raise "
                       "--points or --paths, or use --method guarded"
                     : "%.0f %% of the VPLs got no photon and light nothing: most photons go where "
-                      "the view does not look; raise --photons, or keep fewer VPLs with "
-                      "vpl-eliminate -n",
+                      "the view does not look; raise --photons, try --method paths, or keep "
+                      "fewer VPLs with vpl-eliminate -n",
                 100.0 * static_cast<double>(dark) / all);
   printWarnings("vpl-estimate", {line});
 }
