@@ -47,4 +47,22 @@ inline bool couple(const VplLights& vpls, size_t i, const Bsdf& bsdf, Coupling& 
   return true;
 }
 
+// The same but for what the receiver reflects, in a form without branches, so that the compiler can
+// do several receivers at once.
+struct BareCoupling {
+  float transfer;  // cosines * falloff, 1/m2; means nothing unless lit
+  float clamped;   // as Coupling's
+  int lit;         // 0: exactly 0 whatever is between
+};
+template <typename Kind>
+BareCoupling coupleBare(Vec3 position, Vec3 normal, float clamp2, Vec3 receiver, Vec3 ns, Vec3 ng) {
+  const Vec3 d = position - receiver;
+  const float d2 = lengthSquared(d);
+  const float emitter = Kind::emitted(normal, d), received = dot(ns, d), above = dot(ng, d);
+  const float far2 = Kind::spread(d2, clamp2);
+  const float far4 = d2 * far2;  // 0 where the VPL is at the point
+  return {emitter * received / far4, far2 / d2 - 1.0f,
+          (emitter > 0.0f) & (received > 0.0f) & (above > 0.0f) & (far4 > 0.0f)};
+}
+
 }  // namespace bnvpl

@@ -39,7 +39,7 @@ def balanced(c: pipeline.Configuration, size: dict) -> pipeline.Configuration:
 def run(context: Context) -> None:
     rows = []
     plan = context.size["equal_time"]
-    for view in context.views():
+    for view in (view for view in context.views() if view.id in plan["views"]):
         small = view.scene.film(context.size["film_width"])
         path = context.judge_path("equal-time", view, small, MEASURED_SPP, context.seeds(view))
         as_compared = context.configuration(view, "local", plan["film_width"])

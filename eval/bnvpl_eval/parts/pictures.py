@@ -19,7 +19,7 @@ def run(context: Context) -> None:
         shown = [{"id": "reference", "label": f"{integrator} tracer, {spp} a pixel", "file": reference}]
         cuts = []
         leaking = LEAKING if view.id == "main" else []  # as many as the comparison of scatters
-        for method in [*reversed(context.size["methods"]), *leaking]:  # ours first, beside the reference
+        for method in [*reversed(plan["methods"]), *leaking]:  # ours first, beside the reference
             c = pipeline.sampled(context.configuration(view, method, plan["width"]), plan)
             file, _ = pipeline.image(context.runner, view, c, 1)
             shown.append({"id": method, "label": METHODS[method], "file": file,

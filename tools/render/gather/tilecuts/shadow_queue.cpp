@@ -11,25 +11,19 @@ namespace {
 // Rays that wait: enough to find neighbours among them, few enough to stay in the cache.
 constexpr size_t kWaiting = 256;
 
-// couple() for all receivers of a packet, but for what each reflects. Returns the mask of those
-// that are lit. The loops over lanes are written for the compiler to vectorise.
+// A VPL and all receivers of a packet. Returns the mask of those that it may light. The loops over
+// lanes are written for the compiler to vectorise.
 template <typename Kind>
-uint32_t couple(const VplLights& vpls, uint32_t i, const ReceiverPacket& p,
-                ReceiverPacket::Lanes& transfer, ReceiverPacket::Lanes& clamped) {
+uint32_t couplePacket(const VplLights& vpls, uint32_t i, const ReceiverPacket& p,
+                      ReceiverPacket::Lanes& transfer, ReceiverPacket::Lanes& clamped) {
   const Vec3 at = vpls.position[i], normal = vpls.normal[i];
   const float clamp2 = vpls.clamp2[i];
   alignas(64) std::array<int, ReceiverPacket::kSize> faces;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
-    const Vec3 d{at.x - p.x[l], at.y - p.y[l], at.z - p.z[l]};
-    const float d2 = lengthSquared(d);
-    const float emitter = Kind::emitted(normal, d);
-    const float receiver = p.sx[l] * d.x + p.sy[l] * d.y + p.sz[l] * d.z;
-    const float above = p.gx[l] * d.x + p.gy[l] * d.y + p.gz[l] * d.z;
-    const float far2 = Kind::spread(d2, clamp2);
-    const float far4 = d2 * far2;  // 0 where the VPL is at the point
-    faces[l] = (emitter > 0.0f) & (receiver > 0.0f) & (above > 0.0f) & (far4 > 0.0f);
-    transfer[l] = emitter * receiver / far4;
-    clamped[l] = far2 / d2 - 1.0f;
+    const BareCoupling c =
+        coupleBare<Kind>(at, normal, clamp2, {p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
+                         {p.gx[l], p.gy[l], p.gz[l]});
+    faces[l] = c.lit, transfer[l] = c.transfer, clamped[l] = c.clamped;
   }
   uint32_t lanes = 0;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
@@ -55,7 +49,7 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   d.packet = &p;
   d.at = vpls_.position[vpl.index];
   const uint32_t lanes = withKind(vpls_.kind, [&](auto kind) {
-    return couple<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clamped);
+    return couplePacket<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clamped);
   });
   if (lanes == 0) return waiting_.pop_back();
   d.light = vpls_.intensity[vpl.index] * vpl.weight;
