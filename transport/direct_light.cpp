@@ -28,7 +28,8 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
   if (!lights.sampleDirect(light, at.position, u, v, s)) return {};
   const Vec3 reflected = bsdf.eval(group, s.wi) * s.radianceOverPdf;
   if (isBlack(reflected)) return {};
-  const Vec3 from = rays.offsetOrigin(at.position, at.ng);
+  const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
+  const Vec3 from = rays.offsetOrigin(at.position, side);
   if (s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target)) return {};
   const bool mis = bsdfRays > 0 && s.pdf > 0.0f;
   const float bsdfPdf = mis ? static_cast<float>(bsdfRays) * bsdf.pdf(group, s.wi) : 0.0f;

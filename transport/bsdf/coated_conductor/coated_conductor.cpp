@@ -1,0 +1,58 @@
+#include "transport/bsdf/coated_conductor/coated_conductor.h"
+
+#include "transport/bsdf/conductor/conductor.h"
+#include "transport/bsdf/lobe_sum.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr float kLargestIor = 3.0f;  // of the tables
+
+// A cosine outside, refracted into the coat.
+float within(float cosine, float ior) {
+  return std::sqrt(std::max(0.0f, 1.0f - (1.0f - cosine * cosine) / (ior * ior)));
+}
+
+}  // namespace
+
+// Fresnel reflectance at the refracted angle, times what the coat lets in and out and sends back to
+// the metal.
+Vec3 CoatedMetal::through(Vec3 wo, Vec3 wi, float cosFacet) const {
+  const float o = coat(wo.z), i = coat(wi.z), back = std::min(o, i);
+  Vec3 f = metal.fresnel.at(within(std::min(1.0f, cosFacet), ior));
+  for (size_t c = 0; c < 3; ++c) {
+    f[c] = back < 1.0f ? f[c] * (1.0f - o) * (1.0f - i) / (1.0f - f[c] * back) : 0.0f;
+  }
+  return f;
+}
+
+Vec3 CoatedMetal::value(Vec3 wo, Vec3 wi, Transport) const {
+  if (smooth() || wi.z <= 0.0f) return {};
+  const Vec3 h = normalize(wo + wi);
+  return through(wo, wi, dot(wo, h)) * metal.ggx.reflected(wo, wi, h);
+}
+
+bool CoatedMetal::sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const {
+  if (!metal.sample(wo, pick, at, out)) return false;
+  if (smooth()) out.weight = through(wo, out.wi, wo.z);
+  return true;
+}
+
+// As if all light left by the mirror image's angle; of rough metal, less what facets lose.
+Vec3 CoatedMetal::albedo(Vec3 wo) const {
+  const float stays = smooth() ? 1.0f : 1.0f - ggxLoss(wo.z, metal.ggx.meanAlpha());
+  return through(wo, wo, wo.z) * stays;
+}
+
+void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out) {
+  const Ggx coat = ggxOf(model.coatRoughness, inputs);
+  const float ior = std::min(kLargestIor, inputs.ior(model.coatIor));
+  const GgxReflection metal{ggxOf(model.roughness, inputs),
+                            metalFresnel(model.fresnel, ior, inputs)};
+  out.add(weight, GgxReflection{coat, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});
+  out.add(weight, CoatedMetal{metal, ior, coat.smooth() ? 0.0f : coat.meanAlpha()});
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,30 @@
+// Lacquered metal: GGX metal below a dielectric coat.
+#pragma once
+
+#include "transport/bsdf/ggx/reflection.h"
+
+namespace bnvpl {
+
+// The metal as seen through the coat: theory.md beside this file.
+struct CoatedMetal {
+  GgxReflection metal;
+  float ior = 1.5f, alpha = 0.0f;  // of the coat
+
+  bool smooth() const { return metal.smooth(); }
+  LobeGroup group() const { return metal.group(); }
+  float coat(float cosine) const { return dielectricAlbedo(cosine, alpha, ior); }
+  Vec3 through(Vec3 wo, Vec3 wi, float cosFacet) const;
+  Vec3 value(Vec3 wo, Vec3 wi, Transport transport) const;
+  float pdf(Vec3 wo, Vec3 wi) const { return metal.pdf(wo, wi); }
+  bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
+  Vec3 albedo(Vec3 wo) const;
+  Vec3 bound(Vec3 wo, float maxCosine, float cosMirror) const {
+    return Vec3((1.0f - coat(wo.z)) * metal.ggx.reflectedBound(wo, maxCosine, cosMirror));
+  }
+};
+
+class LobeSum;
+void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out);
+
+}  // namespace bnvpl

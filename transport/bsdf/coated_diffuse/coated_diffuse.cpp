@@ -1,0 +1,28 @@
+#include "transport/bsdf/coated_diffuse/coated_diffuse.h"
+
+#include "transport/bsdf/lobe_sum.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr float kLargestIor = 3.0f;  // of the tables
+
+}  // namespace
+
+void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out) {
+  const Ggx ggx = ggxOf(model.roughness, inputs);
+  const float ior = std::min(kLargestIor, inputs.ior(model.ior));
+  const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();
+  const Vec3 base = inputs.share(model.reflectance);
+  const float in = 1.0f - dielectricMeanAlbedo(alpha, ior);  // of diffuse light from outside
+  const float trapped = 1.0f - in / (ior * ior);             // of diffuse light from below
+  Vec3 scale;
+  for (size_t c = 0; c < 3; ++c)
+    scale[c] = base[c] / (kPi * ior * ior * (1.0f - base[c] * trapped));
+  out.add(weight, GgxReflection{ggx, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});
+  out.add(weight, CoatedBase{scale, ior, alpha});
+}
+
+}  // namespace bnvpl

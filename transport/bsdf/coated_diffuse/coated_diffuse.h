@@ -1,0 +1,37 @@
+// Plastic, varnish, glazed tiles: Lambert below a dielectric coat.
+#pragma once
+
+#include "transport/bsdf/ggx/reflection.h"
+
+namespace bnvpl {
+
+// What the coat lets in, the base scatters, and the coat lets out, after any number of reflections
+// below it.
+struct CoatedBase {
+  Vec3 scale;  // that both transmittances multiply, 1/sr: theory.md, eq. 2
+  float ior = 1.5f, alpha = 0.0f;
+
+  bool smooth() const { return false; }
+  LobeGroup group() const { return LobeGroup::Rough; }
+  float through(float cosine) const { return 1.0f - dielectricAlbedo(cosine, alpha, ior); }
+  Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
+    return wi.z > 0.0f ? scale * (through(wo.z) * through(wi.z)) : Vec3{};
+  }
+  float pdf(Vec3, Vec3 wi) const { return pdfCosineHemisphere(wi.z); }
+  bool sample(Vec3, float, Point2 at, LobeSample& out) const {
+    out.wi = sampleCosineHemisphere(at.x, at.y);
+    return out.wi.z > 0.0f;
+  }
+  Vec3 albedo(Vec3 wo) const {
+    return scale * (through(wo.z) * kPi * (1.0f - dielectricMeanAlbedo(alpha, ior)));
+  }
+  Vec3 bound(Vec3 wo, float maxCosine, float) const {
+    return scale * (through(wo.z) * std::max(0.0f, maxCosine));
+  }
+};
+
+class LobeSum;
+void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out);
+
+}  // namespace bnvpl

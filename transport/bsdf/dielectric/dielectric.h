@@ -1,0 +1,48 @@
+// Glass: the interface of two dielectrics, smooth or rough, and thin sheets.
+#pragma once
+
+#include "transport/bsdf/ggx/ggx.h"
+#include "transport/bsdf/lobe.h"
+
+namespace bnvpl {
+
+// Reflection and refraction at GGX facets (Walter et al. 2007). All of it passes paths through,
+// whatever its roughness: VPLs stand for one side of a surface.
+struct DielectricLobe {
+  Ggx ggx;
+  float eta = 1.5f;  // index beyond the surface over that on wo's side
+  Vec3 reflection{1, 1, 1}, transmission{1, 1, 1};
+
+  bool smooth() const { return ggx.smooth(); }
+  LobeGroup group() const { return LobeGroup::Specular; }
+  Vec3 value(Vec3 wo, Vec3 wi, Transport transport) const;
+  float pdf(Vec3 wo, Vec3 wi) const;
+  bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
+  Vec3 albedo(Vec3) const { return max(reflection, transmission); }
+  Vec3 bound(Vec3, float, float) const { return {}; }
+  // Factor of radiance that crosses the surface, which refraction squeezes; flux it leaves (Veach
+  // 1997, section 5.2).
+  float squeezed(Transport transport) const {
+    return transport == Transport::Radiance ? 1.0f / (eta * eta) : 1.0f;
+  }
+};
+
+// A sheet thin enough for light to go straight on; all reflections within are summed.
+struct ThinSheetLobe {
+  float ior = 1.5f;
+  Vec3 reflection{1, 1, 1}, transmission{1, 1, 1};
+
+  bool smooth() const { return true; }
+  LobeGroup group() const { return LobeGroup::Specular; }
+  Vec3 value(Vec3, Vec3, Transport) const { return {}; }
+  float pdf(Vec3, Vec3) const { return 0.0f; }
+  bool sample(Vec3 wo, float pick, Point2, LobeSample& out) const;
+  Vec3 albedo(Vec3) const { return max(reflection, transmission); }
+  Vec3 bound(Vec3, float, float) const { return {}; }
+};
+
+class LobeSum;
+void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out);
+
+}  // namespace bnvpl

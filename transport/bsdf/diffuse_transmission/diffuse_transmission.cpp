@@ -1,0 +1,15 @@
+#include "transport/bsdf/diffuse_transmission/diffuse_transmission.h"
+
+#include "transport/bsdf/lobe_sum.h"
+
+namespace bnvpl {
+
+void addLobes(const DiffuseTransmissionModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out) {
+  const Vec3 r = inputs.share(model.reflectance), t = inputs.share(model.transmittance);
+  const float scale = 1.0f / std::max(1.0f, maxComponent(r + t));
+  out.add(weight, LambertLobe{r * scale});
+  out.add(weight, LambertLobe{t * scale, true});
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,11 @@
+// Paper, leaves, curtains: Lambert on both sides.
+#pragma once
+
+#include "transport/bsdf/diffuse/diffuse.h"
+
+namespace bnvpl {
+
+void addLobes(const DiffuseTransmissionModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out);
+
+}  // namespace bnvpl

@@ -1,0 +1,223 @@
+#include "transport/bsdf/ggx/albedo_table.h"
+
+#include <array>
+#include <vector>
+
+#include "transport/bsdf/fresnel.h"
+#include "transport/bsdf/ggx/ggx.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Nodes are denser where cosine and alpha are small: value = t^2 with t in [0, 1].
+constexpr size_t kCosines = 24, kAlphas = 16, kIors = 13;
+constexpr float kLeastCosine = 1e-4f, kLargestIor = 3.0f;
+float nodeSquared(size_t i, size_t count) {
+  const float t = static_cast<float>(i) / static_cast<float>(count - 1);
+  return t * t;
+}
+
+// Linear interpolation between nodes: the lower one, and the share of the upper.
+struct Between {
+  size_t node;
+  float share;
+  Between(float t, size_t count) {
+    const float x = std::clamp(t, 0.0f, 1.0f) * static_cast<float>(count - 1);
+    node = std::min(count - 2, static_cast<size_t>(x));
+    share = x - static_cast<float>(node);
+  }
+};
+Between ofCosine(float c) { return {std::sqrt(std::max(0.0f, c)), kCosines}; }
+Between ofAlpha(float a) { return {std::sqrt(std::max(0.0f, a)), kAlphas}; }
+Between ofIor(float ior) {
+  return {std::sqrt(std::max(0.0f, (ior - 1.0f) / (kLargestIor - 1.0f))), kIors};
+}
+
+// Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all.
+template <typename Fn>
+void overVisibleFacets(float cosine, float alpha, const Fn& fn) {
+  constexpr int kAround = 16, kAcross = 24;
+  const float co = std::max(kLeastCosine, cosine);
+  const Vec3 wo{std::sqrt(1.0f - co * co), 0.0f, co};
+  const Ggx ggx{std::max(kSmoothAlpha, alpha), std::max(kSmoothAlpha, alpha)};
+  for (int i = 0; i < kAround; ++i) {
+    for (int j = 0; j < kAcross; ++j) {
+      const Vec3 h =
+          ggx.sampleVisible(wo, {(float(i) + 0.5f) / kAround, (float(j) + 0.5f) / kAcross});
+      const Vec3 wi = reflect(wo, h);
+      if (!(wi.z > 0.0f)) continue;
+      fn(std::min(1.0f, dot(wo, h)), ggx.visible(wo, wi) / ggx.visible(wo) / (kAround * kAcross));
+    }
+  }
+}
+
+// Cosine-weighted mean of a function that is linear between the nodes of cosine.
+template <typename Fn>
+float hemisphereMean(const Fn& fn) {
+  constexpr int kSteps = 512;
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double c = (i + 0.5) / kSteps;
+    sum += 2.0 * c * double{fn(static_cast<float>(c))} / kSteps;
+  }
+  return static_cast<float>(sum);
+}
+
+// The parts of the albedo that f0, f90 and -a multiply.
+struct Parts {
+  float f0 = 0.0f, f90 = 0.0f, a = 0.0f;
+};
+Parts mixed(const Parts& p, const Parts& q, float share) {
+  const auto mix = [&](float x, float y) { return x + (y - x) * share; };
+  return {mix(p.f0, q.f0), mix(p.f90, q.f90), mix(p.a, q.a)};
+}
+
+struct SchlickTable {
+  std::array<std::array<Parts, kCosines>, kAlphas> parts{};
+  std::array<float, kAlphas> meanLoss{}, largestLoss{};
+  SchlickTable() {
+    for (size_t i = 0; i < kAlphas; ++i) {
+      const float alpha = nodeSquared(i, kAlphas);
+      for (size_t j = 0; j < kCosines; ++j) {
+        Parts& p = parts[i][j];
+        overVisibleFacets(nodeSquared(j, kCosines), alpha, [&](float c, float weight) {
+          const float m5 = schlickWeight(c);
+          p.f0 += weight * (1.0f - m5);
+          p.f90 += weight * m5;
+          p.a += weight * c * m5 * (1.0f - c);
+        });
+        largestLoss[i] = std::max(largestLoss[i], 1.0f - p.f0 - p.f90);
+      }
+      meanLoss[i] = hemisphereMean([&](float c) {
+        const Parts p = row(i, c);
+        return std::max(0.0f, 1.0f - p.f0 - p.f90);
+      });
+    }
+  }
+  Parts row(size_t alpha, float cosine) const {
+    const Between c = ofCosine(cosine);
+    return mixed(parts[alpha][c.node], parts[alpha][c.node + 1], c.share);
+  }
+  Parts at(float cosine, float alpha) const {
+    const Between a = ofAlpha(alpha);
+    return mixed(row(a.node, cosine), row(a.node + 1, cosine), a.share);
+  }
+  static const SchlickTable& get() {
+    static const SchlickTable table;
+    return table;
+  }
+};
+
+float between(const std::array<float, kAlphas>& values, float alpha) {
+  const Between a = ofAlpha(alpha);
+  return values[a.node] + (values[a.node + 1] - values[a.node]) * a.share;
+}
+
+struct DielectricTable {
+  using Row = std::array<float, kCosines>;
+  std::array<std::array<Row, kAlphas>, kIors> albedo{};
+  std::array<std::array<float, kAlphas>, kIors> mean{};
+  DielectricTable() {
+    for (size_t k = 0; k < kIors; ++k) {
+      const float ior = 1.0f + (kLargestIor - 1.0f) * nodeSquared(k, kIors);
+      for (size_t i = 0; i < kAlphas; ++i) {
+        const float alpha = nodeSquared(i, kAlphas);
+        for (size_t j = 0; j < kCosines; ++j) {
+          float& sum = albedo[k][i][j];
+          overVisibleFacets(nodeSquared(j, kCosines), alpha, [&](float c, float weight) {
+            sum += weight * fresnelDielectric(c, ior);
+          });
+        }
+        const Row& row = albedo[k][i];
+        mean[k][i] = alpha < kSmoothAlpha
+                         ? hemisphereMean([&](float c) { return fresnelDielectric(c, ior); })
+                         : hemisphereMean([&](float c) { return inRow(row, c); });
+      }
+    }
+  }
+  static float inRow(const Row& row, float cosine) {
+    const Between c = ofCosine(cosine);
+    return row[c.node] + (row[c.node + 1] - row[c.node]) * c.share;
+  }
+  static const DielectricTable& get() {
+    static const DielectricTable table;
+    return table;
+  }
+};
+
+// fn(ior's node, alpha's node), interpolated.
+template <typename Fn>
+float overIorAndAlpha(float ior, float alpha, const Fn& fn) {
+  const Between k = ofIor(ior), a = ofAlpha(alpha);
+  const auto row = [&](size_t node) {
+    const float low = fn(node, a.node);
+    return low + (fn(node, a.node + 1) - low) * a.share;
+  };
+  const float low = row(k.node);
+  return low + (row(k.node + 1) - low) * k.share;
+}
+
+}  // namespace
+
+Vec3 SchlickFresnel::at(float cosine) const {
+  const float m5 = schlickWeight(cosine);
+  return f0 + (f90 - f0) * m5 - a * (cosine * (1.0f - cosine) * m5);
+}
+
+Vec3 SchlickFresnel::mean() const { return f0 + (f90 - f0) * (1.0f / 21.0f) - a * (1.0f / 126.0f); }
+
+SchlickFresnel schlickOf(Vec3 eta, Vec3 k) {
+  constexpr float kCosine = 1.0f / 7.0f;
+  SchlickFresnel s;
+  s.f0 = fresnelConductor(1.0f, eta, k);
+  const float perA = kCosine * (1.0f - kCosine) * schlickWeight(kCosine);
+  s.a = (s.at(kCosine) - fresnelConductor(kCosine, eta, k)) * (1.0f / perA);
+  return s;
+}
+
+Vec3 ggxAlbedo(const SchlickFresnel& fresnel, float cosine, float alpha) {
+  const Parts p = SchlickTable::get().at(cosine, alpha);
+  return max(Vec3(), min(Vec3(1), fresnel.f0 * p.f0 + fresnel.f90 * p.f90 - fresnel.a * p.a));
+}
+
+float ggxLoss(float cosine, float alpha) {
+  const Parts p = SchlickTable::get().at(cosine, alpha);
+  return std::clamp(1.0f - p.f0 - p.f90, 0.0f, 1.0f);
+}
+float ggxMeanLoss(float alpha) { return between(SchlickTable::get().meanLoss, alpha); }
+float ggxLargestLoss(float alpha) { return between(SchlickTable::get().largestLoss, alpha); }
+
+float dielectricAlbedo(float cosine, float alpha, float ior) {
+  if (alpha < kSmoothAlpha) return fresnelDielectric(std::min(1.0f, cosine), ior);
+  const DielectricTable& table = DielectricTable::get();
+  return overIorAndAlpha(ior, alpha, [&](size_t k, size_t a) {
+    return DielectricTable::inRow(table.albedo[k][a], cosine);
+  });
+}
+float dielectricMeanAlbedo(float alpha, float ior) {
+  const DielectricTable& table = DielectricTable::get();
+  return overIorAndAlpha(ior, alpha < kSmoothAlpha ? 0.0f : alpha,
+                         [&](size_t k, size_t a) { return table.mean[k][a]; });
+}
+
+float schlickOverHemisphere(float cosine) {
+  static const std::array<float, kCosines> table = [] {
+    std::array<float, kCosines> t{};
+    constexpr int kSide = 48;
+    for (size_t j = 0; j < kCosines; ++j) {
+      const float co = std::max(kLeastCosine, nodeSquared(j, kCosines));
+      const Vec3 wo{std::sqrt(1.0f - co * co), 0.0f, co};
+      for (int i = 0; i < kSide * kSide; ++i) {
+        const Vec3 wi = sampleCosineHemisphere((float(i % kSide) + 0.5f) / kSide,
+                                               (float(i / kSide) + 0.5f) / kSide);
+        t[j] += schlickWeight(dot(wo, normalize(wo + wi))) / (kSide * kSide);
+      }
+    }
+    return t;
+  }();
+  const Between c = ofCosine(cosine);
+  return table[c.node] + (table[c.node + 1] - table[c.node]) * c.share;
+}
+
+}  // namespace bnvpl

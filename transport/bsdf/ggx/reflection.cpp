@@ -1,0 +1,50 @@
+#include "transport/bsdf/ggx/reflection.h"
+
+#include "transport/bsdf/fresnel.h"
+
+namespace bnvpl {
+
+Ggx ggxOf(const Roughness& roughness, const MaterialInputs& inputs) {
+  const auto alpha = [&](const Scalar& s) {
+    const float r = inputs.share(s);
+    return roughness.alpha == Roughness::Alpha::Square ? r * r
+           : roughness.alpha == Roughness::Alpha::Root ? std::sqrt(r)
+                                                       : r;
+  };
+  const Ggx ggx{alpha(roughness.along), alpha(roughness.across)};
+  if (ggx.smooth()) return ggx;
+  return {std::max(kSmoothAlpha, ggx.alongX), std::max(kSmoothAlpha, ggx.alongY)};
+}
+
+Vec3 FacetFresnel::at(float cosine) const {
+  const float c = std::clamp(cosine, 0.0f, 1.0f);
+  switch (kind) {
+    case Kind::Schlick:
+      return SchlickFresnel{first, second, {}}.at(c);
+    case Kind::Conductor:
+      return fresnelConductor(c, first, second);
+    case Kind::Dielectric:
+      return Vec3(fresnelDielectric(c, first.x));
+  }
+  return {};
+}
+
+Vec3 FacetFresnel::most(Vec3 wo) const {
+  const float sine = std::sqrt(std::max(0.0f, 1.0f - wo.z * wo.z));
+  const float least = std::sqrt(0.5f * std::max(0.0f, 1.0f - sine));
+  return max(at(1.0f), at(0.999f * least)) * 1.0001f;
+}
+
+Vec3 FacetFresnel::albedo(float cosine, float alpha) const {
+  switch (kind) {
+    case Kind::Schlick:
+      return ggxAlbedo({first, second, {}}, cosine, alpha);
+    case Kind::Conductor:
+      return ggxAlbedo(schlickOf(first, second), cosine, alpha);
+    case Kind::Dielectric:
+      return Vec3(dielectricAlbedo(cosine, alpha, first.x));
+  }
+  return {};
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,58 @@
+// Light that microfacets reflect once. Also what is common to all models with GGX lobes.
+#pragma once
+
+#include "transport/bsdf/ggx/albedo_table.h"
+#include "transport/bsdf/ggx/ggx.h"
+#include "transport/bsdf/lobe.h"
+
+namespace bnvpl {
+
+Ggx ggxOf(const Roughness& roughness, const MaterialInputs& inputs);
+
+// Reflectance of a facet, by the cosine to it. Monotone, or with its maximum at an end of every
+// interval.
+struct FacetFresnel {
+  enum class Kind : uint32_t { Schlick, Conductor, Dielectric };
+  Kind kind = Kind::Schlick;
+  Vec3 first;   // f0; eta; the index of refraction, three times
+  Vec3 second;  // f90; k; unused
+  Vec3 at(float cosine) const;
+  // The largest that any half vector of wo with a direction above the surface sees.
+  Vec3 most(Vec3 wo) const;
+  Vec3 albedo(float cosine, float alpha) const;  // of GGX reflection with it
+};
+
+struct GgxReflection {
+  Ggx ggx;
+  FacetFresnel fresnel;
+
+  bool smooth() const { return ggx.smooth(); }
+  LobeGroup group() const { return ggx.rough() ? LobeGroup::Rough : LobeGroup::Specular; }
+  Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
+    if (smooth() || wi.z <= 0.0f) return {};
+    const Vec3 h = normalize(wo + wi);
+    return fresnel.at(dot(wo, h)) * ggx.reflected(wo, wi, h);
+  }
+  float pdf(Vec3 wo, Vec3 wi) const {
+    if (smooth() || wi.z <= 0.0f) return 0.0f;
+    const Vec3 h = normalize(wo + wi);
+    return ggx.visibleDensity(wo, h) / (4.0f * dot(wo, h));
+  }
+  bool sample(Vec3 wo, float, Point2 at, LobeSample& out) const {
+    if (smooth()) {
+      out.wi = mirrored(wo);
+      out.weight = fresnel.at(wo.z);
+      return true;
+    }
+    out.wi = normalize(reflect(wo, ggx.sampleVisible(wo, at)));
+    return out.wi.z > 0.0f;
+  }
+  Vec3 albedo(Vec3 wo) const {
+    return smooth() ? fresnel.at(wo.z) : fresnel.albedo(wo.z, ggx.meanAlpha());
+  }
+  Vec3 bound(Vec3 wo, float maxCosine, float cosMirror) const {
+    return fresnel.most(wo) * ggx.reflectedBound(wo, maxCosine, cosMirror);
+  }
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,96 @@
+#include "transport/bsdf/metallic_roughness/metallic_roughness.h"
+
+#include "transport/bsdf/fresnel.h"
+#include "transport/bsdf/lobe_sum.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr float kCoatF0 = 0.04f;  // of a clearcoat, whose index is 1.5
+
+Vec3 below(Vec3 w) { return {w.x, w.y, -w.z}; }
+float mixed(float a, float b, float share) { return a + (b - a) * share; }
+Vec3 mixed(Vec3 a, Vec3 b, float share) { return a + (b - a) * share; }
+
+}  // namespace
+
+float LayeredBase::schlick(float cosine) { return schlickWeight(cosine); }
+
+float LayeredBase::unlayered(float cosine) const {
+  if (!transmitted) return 1.0f - f0 - (f90 - f0) * schlickOverHemisphere(cosine);
+  const SchlickFresnel through{Vec3(1.0f - f0), Vec3(1.0f - f90), {}};
+  return ggxAlbedo(through, cosine, alpha).x;
+}
+
+float LayeredBase::kept(float cosine) const {
+  const float reflected = ggxAlbedo({Vec3(f0), Vec3(f90), {}}, cosine, alpha).x;
+  const float base = unlayered(cosine);
+  return base > 1.0f - reflected ? (1.0f - reflected) / base : 1.0f;
+}
+
+Vec3 LayeredBase::value(Vec3 wo, Vec3 wi, Transport) const {
+  if (smooth() || (transmitted ? wi.z >= 0.0f : wi.z <= 0.0f)) return {};
+  const Vec3 above = transmitted ? below(wi) : wi, h = normalize(wo + above);
+  const float share = (1.0f - layer(dot(wo, h))) * std::min(kept(wo.z), kept(above.z));
+  return colour * (share * (transmitted ? ggx().reflected(wo, above, h) : 1.0f / kPi));
+}
+
+float LayeredBase::pdf(Vec3 wo, Vec3 wi) const {
+  if (!transmitted) return pdfCosineHemisphere(wi.z);
+  if (smooth() || wi.z >= 0.0f) return 0.0f;
+  const Vec3 h = normalize(wo + below(wi));
+  return ggx().visibleDensity(wo, h) / (4.0f * dot(wo, h));
+}
+
+bool LayeredBase::sample(Vec3 wo, float, Point2 at, LobeSample& out) const {
+  if (!transmitted) {
+    out.wi = sampleCosineHemisphere(at.x, at.y);
+    return out.wi.z > 0.0f;
+  }
+  if (smooth()) {
+    out.wi = -wo;
+    out.weight = colour * ((1.0f - layer(wo.z)) * kept(wo.z));
+    return true;
+  }
+  out.wi = below(normalize(reflect(wo, ggx().sampleVisible(wo, at))));
+  return out.wi.z < 0.0f;
+}
+
+Vec3 LayeredBase::albedo(Vec3 wo) const {
+  const float base = smooth() ? 1.0f - layer(wo.z) : unlayered(wo.z);
+  return colour * (base * kept(wo.z));
+}
+
+void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out) {
+  const Vec3 base = inputs.share(model.baseColour);
+  const float metallic = inputs.share(model.metallic), specular = inputs.share(model.specular);
+  const float ior = inputs.raw(model.ior) > 0.0f ? inputs.ior(model.ior) : 0.0f;
+  const float normal = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
+  const Vec3 f0 =
+      min(Vec3(1), max(Vec3(), inputs.raw(model.specularColour)) * (normal * normal)) * specular;
+  const Ggx ggx = ggxOf(Roughness(model.roughness, Roughness::Alpha::Square), inputs);
+
+  const float clearcoat = inputs.share(model.clearcoat);
+  const Ggx coat = ggxOf(Roughness(model.clearcoatRoughness, Roughness::Alpha::Square), inputs);
+  const CoatAbove above{clearcoat, coat.smooth() ? 0.0f : coat.meanAlpha()};
+  // Facets of metal and non-metal are the same: so are their lobes, but for the reflectance.
+  out.add(weight,
+          GgxReflection{ggx,
+                        {FacetFresnel::Kind::Schlick, mixed(f0, base, metallic),
+                         Vec3(mixed(specular, 1.0f, metallic))}},
+          above);
+  const float transmission = inputs.share(model.transmission);
+  const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();
+  LayeredBase lower{base * ((1.0f - metallic) * (1.0f - transmission)), maxComponent(f0), specular,
+                    alpha, false};
+  out.add(weight, lower, above);
+  lower.colour = base * ((1.0f - metallic) * transmission);
+  lower.transmitted = true;
+  out.add(weight, lower, above);
+  out.add(weight * clearcoat,
+          GgxReflection{coat, {FacetFresnel::Kind::Schlick, Vec3(kCoatF0), Vec3(1)}});
+}
+
+}  // namespace bnvpl

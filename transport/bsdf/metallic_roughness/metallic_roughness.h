@@ -1,0 +1,39 @@
+// glTF 2.0's material, appendix B, with the extensions ior, specular, clearcoat and transmission.
+#pragma once
+
+#include "transport/bsdf/ggx/reflection.h"
+
+namespace bnvpl {
+
+// What lies below the specular layer of a non-metal: Lambert, or, of a thin wall, rough light that
+// goes on. glTF's fresnel_mix leaves it 1 - F(wo.h); less where that would gain energy: theory.md,
+// eq. 3.
+struct LayeredBase {
+  Vec3 colour;
+  float f0 = 0.04f, f90 = 1.0f;  // the largest channels of the layer's
+  float alpha = 0.0f;            // the layer's
+  bool transmitted = false;
+
+  bool smooth() const { return transmitted && alpha < kSmoothAlpha; }
+  LobeGroup group() const { return transmitted ? LobeGroup::Specular : LobeGroup::Rough; }
+  Vec3 value(Vec3 wo, Vec3 wi, Transport) const;
+  float pdf(Vec3 wo, Vec3 wi) const;
+  bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
+  Vec3 albedo(Vec3 wo) const;
+  Vec3 bound(Vec3 wo, float maxCosine, float) const {
+    return colour * (kept(wo.z) * std::max(0.0f, maxCosine) / kPi);
+  }
+
+ private:
+  Ggx ggx() const { return {alpha, alpha}; }
+  float layer(float cosine) const { return f0 + (f90 - f0) * schlick(cosine); }
+  static float schlick(float cosine);
+  float unlayered(float cosine) const;  // albedo below fresnel_mix, of white
+  float kept(float cosine) const;
+};
+
+class LobeSum;
+void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs, Vec3 weight,
+              LobeSum& out);
+
+}  // namespace bnvpl

@@ -1,0 +1,17 @@
+#include "transport/bsdf/mix/mix.h"
+
+#include "transport/bsdf/lobe_sum.h"
+
+namespace bnvpl {
+
+void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out) {
+  const float amount = inputs.share(model.amount);
+  const auto add = [&](uint32_t part, float share) {
+    if (part == kNone || share == 0.0f || out.full()) return;
+    addModel(inputs.scene().materials[part].model, inputs, weight * share, out);
+  };
+  add(model.first, 1.0f - amount);
+  add(model.second, amount);
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,11 @@
+// Two materials side by side: the weighted sum of their lobes.
+#pragma once
+
+#include "transport/bsdf/lobe.h"
+
+namespace bnvpl {
+
+class LobeSum;
+void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out);
+
+}  // namespace bnvpl

@@ -1,0 +1,63 @@
+// MTL's model: Lambert plus a Phong lobe or a mirror; or smooth glass. theory.md beside this file.
+#pragma once
+
+#include "transport/bsdf/scatter.h"
+
+namespace bnvpl {
+
+// Phong exponents above this are "specular": alpha = sqrt(2 / (n + 2)) below 0.3.
+inline constexpr float kSharpExponent = 20.0f;
+
+class PhongBsdf {
+ public:
+  PhongBsdf(const Scene& scene, const PhongModel& model, const SurfacePoint& point);
+  explicit PhongBsdf(Vec3 albedo) : diffuse_(albedo) {}  // Lambert alone
+
+  Vec3 roughAlbedo() const { return diffuse_ + roughGlossy(); }
+  Vec3 diffuseValue() const { return diffuse_ * (1.0f / kPi); }
+  bool diffuseOnly() const { return isBlack(roughGlossy()); }
+  float specularProbability() const { return specularProbability_; }
+  bool specularIsDelta() const { return !sharp_; }
+  float reflectance() const;
+
+  Vec3 eval(const SurfacePoint& point, LobeGroup group, Vec3 wi) const;
+  float pdf(const SurfacePoint& point, LobeGroup group, Vec3 wi) const;
+  template <typename MaxCosine>
+  Vec3 roughUpperBound(const SurfacePoint& point, float maxCosNs,
+                       const MaxCosine& maxCosine) const {
+    Vec3 bound = diffuseValue();
+    if (!isBlack(roughGlossy())) bound += glossyBound(maxCosine(glossyAxis(point)));
+    return bound * std::max(0.0f, maxCosNs);
+  }
+  static Vec3 glossyAxis(const SurfacePoint& point) { return reflect(point.wo, point.ns); }
+  bool sample(const SurfacePoint& point, LobeGroup group, Transport transport, Rng& rng,
+              BsdfSample& out) const;
+  bool sample(const SurfacePoint& point, LobeGroup group, Transport transport, float pick,
+              Point2 at, BsdfSample& out) const;
+  static float photonShadingFactor(const SurfacePoint& point) {
+    if (point.ns == point.ng) return dot(point.ng, point.wo) > 0.0f ? 1.0f : 0.0f;
+    return shadingFactor(point, point.ns);
+  }
+
+ private:
+  Vec3 roughGlossy() const { return sharp_ ? Vec3{} : glossy_; }
+  float groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const;
+  Vec3 glossyBound(float cosAlpha) const;  // Phong lobe without the cosine
+  bool sampleDiffuse(const SurfacePoint& point, bool photons, float shading, Point2 at,
+                     BsdfSample& out) const;
+  bool sampleGlass(const SurfacePoint& point, Transport transport, Rng& rng, BsdfSample& out) const;
+
+  Vec3 diffuse_, glossy_, mirror_, transmission_;
+  float exponent_ = 0.0f, ior_ = 1.5f;
+  bool sharp_ = false, glass_ = false;
+  float specularProbability_ = 0.0f;
+  float diffuseShare_ = 1.0f;  // of the rough samples that go to the diffuse lobe
+};
+
+inline bool isSharp(const PhongModel& m) { return m.exponent > kSharpExponent; }
+// Whether the model has lobes of the specular group.
+inline bool hasSpecularLobes(const PhongModel& m) {
+  return m.glass || !isBlack(m.mirror) || (!isBlack(m.glossy) && isSharp(m));
+}
+
+}  // namespace bnvpl
