@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/number_text.h"
 #include "core/read_file.h"
+#include "scene/material_inputs.h"
 #include "scene/scene_hash.h"
 
 namespace bnvpl {
@@ -17,12 +18,20 @@ namespace {
 // Sizes of scenes that floats hold: products of four lengths must stay in range.
 constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
 
+// Of an expression: operands may share operands, so that few expressions ask for very many lookups.
+constexpr uint32_t kMaxLookups = 1000;
+
 bool isFinite(const FilePoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
 bool hasTexture(const Material& m) {
-  return m.diffuseMap != kNone || m.glossyMap != kNone || m.opacityMap != kNone;
+  if (const auto* p = std::get_if<PhongModel>(&m.model)) {
+    if (p->diffuseMap != kNone || p->glossyMap != kNone) return true;
+  }
+  bool expression = false;
+  forEachExpression(m, [&](uint32_t number) { expression |= number != kNone; });
+  return expression || m.opacityMap != kNone;
 }
 
 }  // namespace
@@ -48,10 +57,26 @@ uint32_t SceneBuilder::addMaterial(Material material) {
   return static_cast<uint32_t>(scene_.materials.size() - 1);
 }
 
+uint32_t SceneBuilder::addExpression(const TextureExpression& expression) {
+  uint32_t lookups = 1;
+  for (const uint32_t operand : {expression.first, expression.second, expression.amount}) {
+    assert(operand == kNone || operand < scene_.expressions.size());
+    if (operand != kNone) lookups += lookups_[operand];
+  }
+  if (lookups > kMaxLookups) {
+    warn(name() + ": a texture is made of more than " + std::to_string(kMaxLookups) +
+         " textures; the plain material colour is used");
+    return kNone;
+  }
+  scene_.expressions.push_back(expression);
+  lookups_.push_back(lookups);
+  return static_cast<uint32_t>(scene_.expressions.size() - 1);
+}
+
 uint32_t SceneBuilder::greyMaterial() {
   if (grey_ == kNone) {
     Material grey;
-    grey.diffuse = Vec3{0.5f};
+    grey.phong().diffuse = Vec3{0.5f};
     grey_ = addMaterial(std::move(grey));
   }
   return grey_;
@@ -153,11 +178,17 @@ void SceneBuilder::resolveTextures() {
     warn(problem + "; the plain material colour is used");
   scene_.textures = std::move(read.textures);
   static_assert(TexturePool::kUnreadable == kNone);
+  const auto resolve = [&](uint32_t& map) {
+    if (map != kNone) map = read.indexOf.at(map);
+  };
   for (Material& m : scene_.materials) {
-    for (uint32_t* map : {&m.diffuseMap, &m.glossyMap, &m.opacityMap}) {
-      if (*map != kNone) *map = read.indexOf.at(*map);
+    resolve(m.opacityMap);
+    if (auto* phong = std::get_if<PhongModel>(&m.model)) {
+      resolve(phong->diffuseMap);
+      resolve(phong->glossyMap);
     }
   }
+  for (TextureExpression& e : scene_.expressions) resolve(e.image);
 }
 
 void SceneBuilder::warnOfMissingUvs() {
