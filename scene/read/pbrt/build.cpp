@@ -15,6 +15,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr size_t kAtOnce = 256;  // shapes that are in memory beside the scene
+constexpr size_t kMostCopied = size_t{1} << 27;  // triangles that instances may become
 
 // A shape and where it stands: once in the world, or as often as its object is placed.
 struct Placed {
@@ -92,6 +93,10 @@ class Meshes {
     } else {
       builder_.addFile(file);
     }
+    if (placed.worldFromShape.size() > 1)
+      copied_ += placed.worldFromShape.size() * mesh.triangles.size();
+    if (copied_ > kMostCopied)
+      failAt(shape.place, "the instances of objects are more than 2^27 triangles; place fewer");
     for (const Affine& transform : placed.worldFromShape) {
       const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));
       if (material == kNone) return;  // an interface: nothing is there
@@ -111,6 +116,7 @@ class Meshes {
   const LightReader& reader_;
   Materials& materials_;
   SceneBuilder& builder_;
+  size_t copied_ = 0;
 };
 
 // What nobody asked for.

@@ -12,7 +12,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr int64_t kMostLevels = 10;
-constexpr size_t kMostTriangles = size_t{1} << 26;
+constexpr size_t kMostTriangles = size_t{1} << 22;
 
 struct Surface {
   std::vector<FilePoint> points;
@@ -161,7 +161,7 @@ MeshData loopSubdivision(const Params& params, const Place& place) {
   const std::vector<uint32_t> indices = params.indices("indices", 3, p.size() / 3);
   if (indices.empty()) failAt(place, "loopsubdiv needs \"integer indices\"");
   if (indices.size() / 3 > kMostTriangles >> (2 * levels))
-    failAt(place, "loopsubdiv would become more than 2^26 triangles; lower 'levels'");
+    failAt(place, "loopsubdiv would become more than 2^22 triangles; lower 'levels'");
   Surface s;
   for (size_t i = 0; i < p.size(); i += 3) s.points.push_back({p[i], p[i + 1], p[i + 2]});
   for (size_t i = 0; i < indices.size(); i += 3) {
