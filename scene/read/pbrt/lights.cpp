@@ -135,7 +135,7 @@ class Builder {
     builder_.addLight(spec);
   }
 
-  // Of a surface that faces the light's +z.
+  // What pbrt takes for the illuminance of a surface that faces the light's +z: half of it.
   static double illuminanceOf(const EnvironmentImage& square) {
     double sum = 0.0;
     for (size_t i = 0; i < square.radiance.size(); ++i) {
@@ -145,7 +145,7 @@ class Builder {
       const double z = 1.0 - (x + y) * (x + y);
       if (z > 0.0) sum += z * double{luminance(square.radiance[i])};
     }
-    return 4.0 * kPiD * sum / double(square.radiance.size());
+    return 2.0 * kPiD * sum / double(square.radiance.size());
   }
 
   void goniometric() {

@@ -129,11 +129,14 @@ Roughness Materials::Maker::roughness(const Params& p, const std::string& prefix
 ConductorFresnel Materials::Maker::conductor(const Params& p, const std::string& prefix) {
   ConductorFresnel f;
   const std::string eta = prefix + "eta", k = prefix + "k";
-  if (p.has("reflectance")) {
+  // Of a coated one, files have both names.
+  const std::string reflectance =
+      p.has(prefix + "reflectance") ? prefix + "reflectance" : "reflectance";
+  if (p.has(reflectance)) {
     if (p.has(eta) || p.has(k))
-      failAt(*p.placeOf("reflectance"), "the metal has a 'reflectance' and 'eta' or 'k'; use one");
+      failAt(*p.placeOf(reflectance), "the metal has a 'reflectance' and 'eta' or 'k'; use one");
     f.byReflectance = true;
-    f.reflectance = textures_.colour(p, "reflectance", Vec3{0.9f});
+    f.reflectance = textures_.colour(p, reflectance, Vec3{0.9f});
     return f;
   }
   const auto textured = [&](const std::string& name) {

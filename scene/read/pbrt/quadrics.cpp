@@ -70,11 +70,12 @@ double areaOf(const MeshData& mesh) {
   return sum;
 }
 
-// Moves corners away from the z axis, and along it where `z`, until the area is exact.
-void correctArea(MeshData& mesh, double exact, bool z) {
+// Scales x and y, and z where `z`, until the area is exact. It grows with the square of that where
+// `square`.
+void correctArea(MeshData& mesh, double exact, bool square, bool z) {
   const double area = areaOf(mesh);
   if (!(area > 0.0) || !std::isfinite(exact / area)) return;
-  const double by = z ? std::sqrt(exact / area) : exact / area;
+  const double by = square ? std::sqrt(exact / area) : exact / area;
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
     if (z || i % 3 != 2) mesh.positions[i] *= by;
   }
@@ -104,7 +105,7 @@ MeshData sphere(const Params& params) {
                       std::cos(theta)};
     return Point{{r * n[0], r * n[1], r * n[2]}, n, u, v};
   });
-  correctArea(mesh, phi * r * r * (std::cos(top) - std::cos(bottom)), true);
+  correctArea(mesh, phi * r * r * (std::cos(top) - std::cos(bottom)), true, true);
   return mesh;
 }
 
@@ -117,7 +118,7 @@ MeshData disk(const Params& params) {
     const double here = r + v * (inner - r);
     return Point{{here * std::cos(u * phi), here * std::sin(u * phi), height}, {0, 0, 1}, u, v};
   });
-  correctArea(mesh, 0.5 * phi * std::fabs(r * r - inner * inner), false);
+  correctArea(mesh, 0.5 * phi * std::fabs(r * r - inner * inner), true, false);
   mesh.windByNormals();
   return mesh;
 }
@@ -130,7 +131,7 @@ MeshData cylinder(const Params& params) {
     const FilePoint n{std::cos(u * phi), std::sin(u * phi), 0};
     return Point{{r * n[0], r * n[1], low + v * (high - low)}, n, u, v};
   });
-  correctArea(mesh, phi * r * (high - low), false);
+  correctArea(mesh, phi * r * (high - low), false, false);
   return mesh;
 }
 

@@ -42,6 +42,8 @@ Affine rotation(double degrees, const FilePoint& axis) {
   Affine a;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = 0; j < 3; ++j) a.m[i][j] = u[i] * u[j] * (1.0 - c) + (i == j ? c : 0.0);
+  }
+  for (size_t i = 0; i < 3; ++i) {
     const size_t j = (i + 1) % 3, k = (i + 2) % 3;
     a.m[j][k] -= u[i] * s;
     a.m[k][j] += u[i] * s;

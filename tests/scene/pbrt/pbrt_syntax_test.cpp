@@ -66,7 +66,7 @@ TEST_F(PbrtSyntax, ErrorsNameThePlaceAndTheCure) {
   expectError(
       "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0] "
       "\"integer indices\" [0 1 3]",
-      "2:60", {"'indices'", "3 vertices"});
+      "2:53", {"'indices'", "3 vertices"});
   expectError("WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0]", "2:22", {"multiple of 3"});
   expectError("WorldBegin\nShape \"plymesh\"", "2:1", {"filename"});
 }
@@ -101,6 +101,18 @@ TEST_F(PbrtSyntax, TransformsApplyInTheirOrder) {
   expectNear(scene.bounds.upper, {11, 2, 0}, 1e-5f);
 }
 
+// Of each axis: x to y to z to x.
+TEST_F(PbrtSyntax, RotationsFollowTheRightHandRule) {
+  const auto turned = [&](const std::string& axis, const std::string& point) {
+    return loadPbrt("WorldBegin Rotate 90 " + axis +
+                    " Shape \"trianglemesh\" \"point3 P\" [0 0 0 .01 .02 .03 " + point + "]")
+        .bounds.upper;
+  };
+  expectNear(turned("1 0 0", "0 1 0"), {0.01f, 0.02f, 1}, 0.02f);
+  expectNear(turned("0 2 0", "0 0 1"), {1, 0.02f, 0.01f}, 0.03f);
+  expectNear(turned("0 0 1", "1 0 0"), {0.02f, 1, 0.03f}, 0.03f);
+}
+
 TEST_F(PbrtSyntax, MatricesAreColumnByColumn) {
   const Scene scene = loadPbrt(
       "WorldBegin Translate 1 0 0 ConcatTransform [0 1 0 0 -1 0 0 0 0 0 1 0 5 0 0 1]\n"
@@ -124,7 +136,7 @@ TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
                "ObjectEnd\nObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\"");
   EXPECT_EQ(scene.triangles.size(), 4u);
   expectNear(scene.bounds.lower, {-1, 0, 2}, 1e-5f);
-  expectNear(scene.bounds.upper, {6, 2, 3}, 1e-5f);
+  expectNear(scene.bounds.upper, {6, 2, 2}, 1e-5f);
 }
 
 TEST_F(PbrtSyntax, AttributesHoldUntilTheirBlockEnds) {
