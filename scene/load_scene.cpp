@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "scene/read/pbrt/read_pbrt.h"
 #include "scene/read/toml/scene_toml.h"
 #include "scene/scene_builder.h"
 
@@ -15,17 +16,18 @@ struct Format {
   std::string_view extension;  // in lower case
   void (*read)(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 };
-constexpr std::array kFormats{Format{".toml", readSceneToml}};
+constexpr std::array kFormats{Format{".toml", readSceneToml}, Format{".pbrt", readScenePbrt},
+                              Format{".pbrt.gz", readScenePbrt}};
 
 const Format& formatOf(const fs::path& file) {
-  std::string extension = file.extension().string(), known;
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string name = file.filename().string(), known;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   for (const Format& format : kFormats) {
-    if (format.extension == extension) return format;
+    if (name.ends_with(format.extension)) return format;
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
   std::string problem = "is no scene file; scenes are read from " + known;
-  if (extension == ".obj") problem += ", whose [[mesh]] names an OBJ";
+  if (name.ends_with(".obj")) problem += "; the [[mesh]] of a .toml names an OBJ";
   throw InputError(file, problem);
 }
 

@@ -84,8 +84,13 @@ uint32_t SceneBuilder::greyMaterial() {
 
 uint32_t SceneBuilder::addEnvironment(const fs::path& image) {
   const ReadGuard guard(image);
-  scene_.environments.push_back(loadEnvironment(image));
+  EnvironmentImage radiance = loadEnvironment(image);
   guard.check();
+  return addEnvironment(image, std::move(radiance));
+}
+
+uint32_t SceneBuilder::addEnvironment(const fs::path& image, EnvironmentImage radiance) {
+  scene_.environments.push_back(std::move(radiance));
   addFile(image);
   return static_cast<uint32_t>(scene_.environments.size() - 1);
 }

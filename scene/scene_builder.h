@@ -58,6 +58,8 @@ class SceneBuilder {
   uint32_t addMaterial(Material material);
   // Reads it at once. Throws InputError when the file is no image.
   uint32_t addEnvironment(const fs::path& image);
+  // One that was made of `image`.
+  uint32_t addEnvironment(const fs::path& image, EnvironmentImage radiance);
   // light.position is what `position` becomes; it has no meaning for lights at infinity.
   void addLight(const LightSpec& light, const FilePoint& position = {});
 

@@ -6,6 +6,7 @@
 #include "core/prefetch.h"
 #include "formats/exr_io.h"
 #include "formats/pixels_io.h"
+#include "scene/textures/pfm.h"
 #include "scene/textures/radiance_hdr.h"
 
 namespace bnvpl {
@@ -148,6 +149,7 @@ EnvironmentImage fromExr(const fs::path& file) {
 EnvironmentImage decodeEnvironment(const fs::path& file) {
   const std::string bytes = readBytes(file);
   if (isRadianceHdr(bytes)) return readRadianceHdr(file, bytes);
+  if (isPfm(bytes)) return readPfm(file, bytes);
   const Texture t = decodeTexture(file, bytes, true);
   EnvironmentImage e{t.width, t.height, {}};
   e.radiance.resize(size_t{t.width} * t.height);
@@ -160,9 +162,10 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
 
 }  // namespace
 
-EnvironmentImage loadEnvironment(const fs::path& file) {
+EnvironmentImage loadEnvironment(const fs::path& file, bool clampNegative) {
   EnvironmentImage e = file.extension() == ".exr" ? fromExr(file) : decodeEnvironment(file);
   for (size_t i = 0; i < e.radiance.size(); ++i) {
+    if (clampNegative && isFinite(e.radiance[i])) e.radiance[i] = max(e.radiance[i], Vec3{});
     const Vec3 L = e.radiance[i];
     if (!isFinite(L) || L.x < 0 || L.y < 0 || L.z < 0) {
       throw InputError(file, "pixel " + std::to_string(i % e.width) + "," +

@@ -38,8 +38,9 @@ struct EnvironmentImage {
 // alpha if it has one that varies, else from its luminance. Throws InputError.
 Texture loadTexture(const fs::path& file, bool srgb, bool mask);
 
-// EXR, HDR, or an 8-bit image (sRGB decoded). Throws InputError.
-EnvironmentImage loadEnvironment(const fs::path& file);
+// EXR, HDR, PFM, or an 8-bit image (sRGB decoded). Throws InputError; for negative values too,
+// unless they are to be 0.
+EnvironmentImage loadEnvironment(const fs::path& file, bool clampNegative = false);
 
 float srgbToLinear(uint8_t encoded);
 

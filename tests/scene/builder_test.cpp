@@ -280,8 +280,8 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
   fs::copy_file(at("scene.toml"), at("SCENE.TOML"));
   EXPECT_EQ(error("SCENE.TOML"), "");
   EXPECT_EQ(error("room.gltf"),
-            at("room.gltf").string() + ": is no scene file; scenes are read from .toml");
-  EXPECT_NE(error("square.obj").find("scenes are read from .toml, whose [[mesh]] names an OBJ"),
+            at("room.gltf").string() + ": is no scene file; scenes are read from .toml, .pbrt, .pbrt.gz");
+  EXPECT_NE(error("square.obj").find("the [[mesh]] of a .toml names an OBJ"),
             std::string::npos);
   EXPECT_NE(error("").find("is no scene file"), std::string::npos);
 }

@@ -120,5 +120,43 @@ TEST(SharedScenes, CornellBox) {
   EXPECT_EQ(lights.emitted(hit, light), Vec3(17, 12, 4));
 }
 
+// A scene of pbrt, of which nothing is unknown.
+Scene loadPbrt(const std::string& name) {
+  Scene scene = loadScene(sharedScenes() / "pbrt" / name);
+  EXPECT_EQ(warningsWith(scene, "unknown"), 0u);
+  EXPECT_EQ(warningsWith(scene, "no such"), 0u);
+  EXPECT_TRUE(scene.hasLight());
+  return scene;
+}
+
+TEST(SharedScenes, PbrtLivingRoom) {
+  SKIP_WITHOUT("pbrt/living-room/living-room.pbrt");
+  const Scene scene = loadPbrt("living-room/living-room.pbrt");
+  EXPECT_EQ(scene.triangles.size(), 142973u);
+  EXPECT_LT(length(scene.camera.position - Vec3(5.10518f, 0.731066f, -2.31789f)), 1e-4f);
+  // Right-handed, as its transform mirrors.
+  EXPECT_LT(length(cross(scene.camera.forward, scene.camera.up) - scene.camera.right), 1e-4f);
+  ASSERT_EQ(scene.lights.size(), 1u);
+  EXPECT_EQ(scene.environments.size(), 1u);
+  EXPECT_EQ(scene.textures.size(), 4u);
+}
+
+TEST(SharedScenes, PbrtBathroom) {
+  SKIP_WITHOUT("pbrt/bathroom/bathroom.pbrt");
+  const Scene scene = loadPbrt("bathroom/bathroom.pbrt");
+  EXPECT_EQ(scene.triangles.size(), 591906u);
+  EXPECT_EQ(scene.film.width, 1024u);
+  EXPECT_EQ(scene.textures.size(), 10u);
+  EXPECT_LT(scene.maskedBegin, scene.triangles.size());  // the rug
+}
+
+TEST(SharedScenes, PbrtOthers) {
+  SKIP_WITHOUT("pbrt/veach-mis/veach-mis.pbrt");
+  const Scene mis = loadPbrt("veach-mis/veach-mis.pbrt");
+  EXPECT_EQ(mis.materials.size(), 10u);  // five lamps, four plates, a floor
+  EXPECT_EQ(loadPbrt("veach-ajar/veach-ajar.pbrt").triangles.size(), 382628u);
+  EXPECT_EQ(loadPbrt("material-testball/material-testball.pbrt").triangles.size(), 80642u);
+}
+
 }  // namespace
 }  // namespace bnvpl

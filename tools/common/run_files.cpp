@@ -50,7 +50,7 @@ std::string contentOf(const std::string& extension) {
 
 std::string sceneFileName(const fs::path& file) {
   const std::string extension = lowerCase(file.extension().string());
-  if (extension == ".toml") return "scene";
+  if (extension == ".toml" || extension == ".pbrt") return "scene";
   if (extension == ".obj") return "a mesh of the scene";
   if (extension == ".mtl") return "a material library of the scene";
   return "an image of the scene";

@@ -1,0 +1,19 @@
+// Film and camera of a pbrt file.
+#pragma once
+
+#include "scene/read/pbrt/colors.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl::pbrt {
+
+// What the film's sensor does to light: rows of the matrix that makes pixels of linear sRGB
+// radiance. The scene's lights are multiplied by it, as our pixels are radiance itself.
+struct Sensor {
+  std::array<Vec3, 3> rows{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  Vec3 operator()(Vec3 light) const;  // not negative
+};
+Sensor sensorOf(const Description& description, Notes& notes);
+
+void buildCamera(const Description& description, Notes& notes, SceneBuilder& builder);
+
+}  // namespace bnvpl::pbrt

@@ -1,0 +1,79 @@
+// The parameters of a directive: "float fov" [ 45 ] "rgb L" [ 1 2 3 ].
+#pragma once
+
+#include <array>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scene/affine.h"
+#include "scene/read/pbrt/lexer.h"
+
+namespace bnvpl::pbrt {
+
+enum class ParamType {
+  Integer,
+  Float,
+  Bool,
+  String,
+  Texture,
+  Point2,
+  Point3,
+  Rgb,
+  Blackbody,
+  Spectrum,
+  Unknown
+};
+enum class ColorSpace { Srgb, DciP3, Rec2020, Aces };
+
+struct Param {
+  ParamType type = ParamType::Unknown;
+  std::string name;
+  std::vector<double> numbers;       // finite, at most kMost in size
+  std::vector<std::string> strings;  // of strings, textures and named spectra; bools: true, false
+  ColorSpace colorSpace = ColorSpace::Srgb;  // of an rgb
+  Place place;
+  mutable bool used = false;
+};
+
+// Larger numbers are refused, so that floats hold what is computed from them.
+inline constexpr double kMost = 1e30;
+
+// Values are asked for by name. One of another type than asked for, or out of range, is an
+// InputError with its place. What nobody asked for can be listed.
+class Params {
+ public:
+  void add(Param param);  // the last of equal names holds
+  // Parameters that hold where these have none of their name: those of Attribute. Shared between
+  // shapes, which threads read side by side, they are not marked as used.
+  void setFallback(std::shared_ptr<const Params> fallback) { fallback_ = std::move(fallback); }
+
+  const Param* find(const std::string& name) const;  // marks it as used
+  bool has(const std::string& name) const { return find(name) != nullptr; }
+  // A parameter of one of the types; nullptr when there is none of that name.
+  const Param* find(const std::string& name, std::initializer_list<ParamType> types,
+                    const char* expected) const;
+
+  double number(const std::string& name, double otherwise, double least = -kMost,
+                double most = kMost) const;
+  int64_t integer(const std::string& name, int64_t otherwise, int64_t least, int64_t most) const;
+  bool boolean(const std::string& name, bool otherwise) const;
+  std::string text(const std::string& name, const std::string& otherwise = "") const;
+  FilePoint point(const std::string& name, const FilePoint& otherwise) const;
+  // All numbers, a multiple of `each`; empty when there are none.
+  const std::vector<double>& floats(const std::string& name, size_t each = 1) const;
+  std::vector<uint32_t> indices(const std::string& name, size_t each, size_t below) const;
+  const Place* placeOf(const std::string& name) const;
+
+  void ignore(std::initializer_list<const char*> names) const;
+  std::vector<const Param*> unused() const;
+  std::vector<const Param*> all() const;  // but for the fallback
+
+ private:
+  const Param* lookUp(const std::string& name) const;
+  std::vector<Param> params_;
+  std::shared_ptr<const Params> fallback_;
+};
+
+}  // namespace bnvpl::pbrt

@@ -1,0 +1,13 @@
+// .pbrt files, of pbrt-v4. docs/scenes.md says what is read and how.
+#pragma once
+
+#include "scene/load_scene.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl {
+
+// Reads a scene file, packed by gzip or not, and all that it names. The format knows no ${NAME}:
+// `defines` mean nothing to it. Throws InputError.
+void readScenePbrt(const fs::path& file, const Defines& defines, SceneBuilder& builder);
+
+}  // namespace bnvpl

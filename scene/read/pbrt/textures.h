@@ -1,0 +1,57 @@
+// Textures of a pbrt file -> expressions over images.
+#pragma once
+
+#include <set>
+
+#include "scene/read/pbrt/colors.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl::pbrt {
+
+class Textures {
+ public:
+  Textures(const Description& description, const fs::path& folder, const Colors& colors,
+           Notes& notes, SceneBuilder& builder)
+      : description_(description),
+        folder_(folder),
+        colors_(colors),
+        notes_(notes),
+        builder_(builder) {}
+
+  // A parameter of a material: a constant or a texture. What cannot be read is noted, and stays
+  // as it is without the parameter.
+  Colour colour(const Params& params, const std::string& name, Vec3 otherwise);
+  // Of any size, such as refractive indices.
+  Colour unboundedColour(const Params& params, const std::string& name, Vec3 otherwise);
+  Scalar scalar(const Params& params, const std::string& name, float otherwise, float most = 1.0f);
+  // The expression of a float texture that a parameter names; kNone without one.
+  uint32_t floatTexture(const Params& params, const std::string& name);
+  // The same as a mask: an image's own alpha channel counts where it has one. None where it is not
+  // simply an image.
+  std::optional<uint32_t> mask(const Params& params, const std::string& name);
+  // An image over the texture coordinates as they are; kNone where there is no such file.
+  uint32_t image(const fs::path& file, bool srgb);
+
+  void noteUnused() const;
+
+ private:
+  uint32_t named(const Param& p, bool isSpectrum);  // an expression; kNone
+  const TextureEntity* find(const Param& p, bool isSpectrum);
+  uint32_t make(const TextureEntity& t);
+  uint32_t operand(const TextureEntity& t, const std::string& name, float otherwise);
+  uint32_t imagemap(const TextureEntity& t);
+  std::optional<TextureUse> imageUse(const TextureEntity& t);
+  UvTransform mapping(const TextureEntity& t);
+  uint32_t constant(Vec3 value) { return builder_.addExpression(constantExpression(value)); }
+  uint32_t constantOf(const Param& p, bool isSpectrum);
+
+  const Description& description_;
+  const fs::path& folder_;
+  const Colors& colors_;
+  Notes& notes_;
+  SceneBuilder& builder_;
+  std::map<const TextureEntity*, uint32_t> made_;
+  std::set<const TextureEntity*> making_;
+};
+
+}  // namespace bnvpl::pbrt

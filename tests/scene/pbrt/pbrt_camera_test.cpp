@@ -1,0 +1,80 @@
+// Film and camera: known points fall onto known pixels, the right way round.
+#include "tests/scene/pbrt/pbrt_files.h"
+#include "transport/camera.h"
+
+namespace bnvpl {
+namespace {
+
+class PbrtCamera : public PbrtFiles {
+ protected:
+  Scene view(const std::string& before, const std::string& film = "200 100") const {
+    const size_t blank = film.find(' ');
+    return loadPbrt("Film \"rgb\" \"integer xresolution\" " + film.substr(0, blank) +
+                    " \"integer yresolution\"" + film.substr(blank) + "\n" + before +
+                    "\nWorldBegin\n" + kSquareShape);
+  }
+  static FilmPoint pixel(const Scene& s, Vec3 p) {
+    FilmPoint f = projectToFilm(s.camera, s.film, p);
+    f.x *= float(s.film.width);
+    f.y *= float(s.film.height);
+    return f;
+  }
+};
+
+// pbrt is left-handed: who looks along +z with +y up has +x to the right.
+TEST_F(PbrtCamera, LooksAlongZWithXToTheRight) {
+  const Scene s = view("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 90");
+  EXPECT_EQ(s.film.width, 200u);
+  expectNear(s.camera.position, {0, 0, -5}, 1e-5f);
+  const FilmPoint right = pixel(s, {5, 0, 0}), up = pixel(s, {0, 5, 0});
+  // The field of view is that of the shorter side: 90 degrees reach 50 pixels up.
+  EXPECT_NEAR(right.x, 150.0f, 0.01f);
+  EXPECT_NEAR(right.y, 50.0f, 0.01f);
+  EXPECT_NEAR(up.x, 100.0f, 0.01f);
+  EXPECT_NEAR(up.y, 0.0f, 0.01f);
+  EXPECT_NEAR(up.depth, 5.0f, 1e-5f);
+}
+
+TEST_F(PbrtCamera, ScaleMirrorsTheImage) {
+  const Scene s =
+      view("Scale -1 1 1 LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 90");
+  EXPECT_NEAR(pixel(s, {5, 0, 0}).x, 50.0f, 0.01f);
+  EXPECT_NEAR(pixel(s, {0, 5, 0}).y, 0.0f, 0.01f);
+}
+
+// The same camera as the matrix that converters write.
+TEST_F(PbrtCamera, Matrices) {
+  const Scene s = view("Transform [-1 0 0 0  0 1 0 0  0 0 -1 0  0 0 5 1] Camera \"perspective\"");
+  expectNear(s.camera.position, {0, 0, 5}, 1e-5f);
+  expectNear(s.camera.forward, {0, 0, -1}, 1e-6f);
+  expectNear(s.camera.right, {-1, 0, 0}, 1e-6f);
+  expectNear(s.camera.up, {0, 1, 0}, 1e-6f);
+}
+
+TEST_F(PbrtCamera, FieldOfView) {
+  const auto degrees = [](const Scene& s) { return s.camera.verticalFovRad * 57.2957795f; };
+  const std::string camera = "Camera \"perspective\" \"float fov\" 60";
+  EXPECT_NEAR(degrees(view(camera)), 60.0f, 1e-3f);
+  // Of a film that is higher than wide it is the horizontal one.
+  const Scene tall = view(camera, "100 200");
+  EXPECT_NEAR(std::tan(tall.camera.verticalFovRad / 2), 2.0 * std::tan(0.5235988), 1e-4);
+  const Scene window = view(camera + " \"float screenwindow\" [-1 1 -0.5 0.5]");
+  EXPECT_NEAR(std::tan(window.camera.verticalFovRad / 2), 0.5 * std::tan(0.5235988), 1e-4);
+  const Scene wide = view(camera + " \"float frameaspectratio\" 1");
+  EXPECT_EQ(countContaining(wide.warnings, "aspect"), 1u);
+  EXPECT_NEAR(degrees(view("Camera \"perspective\" \"float halffov\" 20")), 40.0f, 1e-3f);
+}
+
+TEST_F(PbrtCamera, WhatIsNotRenderedIsNoted) {
+  const Scene s = view(
+      "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3\n"
+      "Film \"rgb\" \"float cropwindow\" [0 0.5 0 1]");
+  EXPECT_EQ(countContaining(s.warnings, "depth of field"), 1u);
+  EXPECT_EQ(countContaining(s.warnings, "not cropped"), 1u);
+  EXPECT_EQ(countContaining(view("Camera \"realistic\"").warnings, "'realistic'"), 1u);
+  expectError("Camera \"perspective\" \"float screenwindow\" [1 2]", "1:22", {"xmin"});
+  expectError("Film \"rgb\" \"integer xresolution\" 0", "1:12", {"xresolution"});
+}
+
+}  // namespace
+}  // namespace bnvpl

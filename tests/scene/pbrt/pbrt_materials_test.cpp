@@ -1,0 +1,186 @@
+// Materials and textures become models with the parameters that the file gives them.
+#include "tests/scene/pbrt/pbrt_files.h"
+
+namespace bnvpl {
+namespace {
+
+class PbrtMaterials : public PbrtFiles {
+ protected:
+  template <typename Model>
+  Model model(const std::string& directives) const {
+    const Scene s = loadWorld(directives + "\n");
+    return std::get<Model>(s.materials.at(s.triangles.at(0).material).model);
+  }
+  void SetUp() override {
+    write("t.tga", tga(2, 1, {{255, 0, 0, 255}, {0, 0, 0, 0}}));
+    write("grey.tga", tga(2, 1, {{255, 255, 255, 255}, {0, 0, 0, 255}}));
+  }
+};
+
+TEST_F(PbrtMaterials, Diffuse) {
+  const auto reflectance = [&](const std::string& text) {
+    return model<DiffuseModel>(text).reflectance.value;
+  };
+  EXPECT_EQ(reflectance(""), Vec3{0.5f});
+  EXPECT_EQ(reflectance("Material \"diffuse\""), Vec3{0.5f});
+  EXPECT_EQ(reflectance("Material \"diffuse\" \"rgb reflectance\" [0.1 0.2 0.3]"),
+            Vec3(.1f, .2f, .3f));
+  EXPECT_EQ(reflectance("MakeNamedMaterial \"m\" \"string type\" \"diffuse\" \"rgb reflectance\" "
+                        "[0 1 0]\nNamedMaterial \"m\""),
+            Vec3(0, 1, 0));
+  const Scene s = loadWorld("NamedMaterial \"none\"\n");
+  EXPECT_EQ(countContaining(s.warnings, "no material 'none'"), 1u);
+}
+
+TEST_F(PbrtMaterials, Roughness) {
+  const auto m = model<CoatedDiffuseModel>(
+      "Material \"coateddiffuse\" \"float uroughness\" 0.1 \"float vroughness\" 0.4 "
+      "\"bool remaproughness\" false \"float eta\" 1.3 \"float thickness\" 0.1");
+  EXPECT_EQ(m.roughness.along.value, 0.1f);
+  EXPECT_EQ(m.roughness.across.value, 0.4f);
+  EXPECT_EQ(m.roughness.alpha, Roughness::Alpha::Same);
+  EXPECT_EQ(m.ior.value, 1.3f);
+  const auto smooth = model<CoatedDiffuseModel>("Material \"coateddiffuse\"");
+  EXPECT_EQ(smooth.roughness.along.value, 0.0f);
+  EXPECT_EQ(smooth.roughness.alpha, Roughness::Alpha::Root);
+  const auto fog = loadWorld("Material \"coateddiffuse\" \"rgb albedo\" [1 1 1]\n");
+  EXPECT_EQ(countContaining(fog.warnings, "'albedo'"), 1u);
+}
+
+TEST_F(PbrtMaterials, Conductors) {
+  const auto rgb = model<ConductorModel>(
+      "Material \"conductor\" \"rgb eta\" [1.6 0.8 0.5] \"rgb k\" [9 6 4] \"float roughness\" "
+      "0.25");
+  EXPECT_EQ(rgb.fresnel.eta.value, Vec3(1.6f, 0.8f, 0.5f));
+  EXPECT_EQ(rgb.fresnel.k.value, Vec3(9, 6, 4));
+  EXPECT_EQ(rgb.roughness.across.value, 0.25f);
+  const auto gold = model<ConductorModel>(
+      "Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"");
+  EXPECT_GT(gold.fresnel.k.value.x, gold.fresnel.k.value.z);
+  const auto reflecting =
+      model<ConductorModel>("Material \"conductor\" \"rgb reflectance\" [0.9 0.8 0.1]");
+  EXPECT_TRUE(reflecting.fresnel.byReflectance);
+  EXPECT_EQ(reflecting.fresnel.reflectance.value, Vec3(0.9f, 0.8f, 0.1f));
+  const auto coated = model<CoatedConductorModel>(
+      "Material \"coatedconductor\" \"float interface.roughness\" 0.01 \"float interface.eta\" 1.4 "
+      "\"float conductor.roughness\" 0.2 \"rgb conductor.eta\" [1 1 1] \"rgb conductor.k\" [2 3 "
+      "4]");
+  EXPECT_EQ(coated.coatIor.value, 1.4f);
+  EXPECT_EQ(coated.coatRoughness.along.value, 0.01f);
+  EXPECT_EQ(coated.roughness.along.value, 0.2f);
+  EXPECT_EQ(coated.fresnel.k.value, Vec3(2, 3, 4));
+}
+
+TEST_F(PbrtMaterials, Dielectrics) {
+  EXPECT_EQ(model<DielectricModel>("Material \"dielectric\" \"float eta\" 1.33").ior.value, 1.33f);
+  EXPECT_TRUE(model<DielectricModel>("Material \"thindielectric\"").thin);
+  EXPECT_NEAR(
+      model<DielectricModel>("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"").ior.value,
+      1.5168f, 1e-4f);
+}
+
+TEST_F(PbrtMaterials, MixesAndWhatIsNotRead) {
+  const Scene s = loadWorld(
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n"
+      "MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n"
+      "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" 0.3\n");
+  const auto& mix = std::get<MixModel>(s.materials.at(s.triangles[0].material).model);
+  EXPECT_EQ(mix.amount.value, 0.3f);
+  EXPECT_TRUE(std::holds_alternative<DiffuseModel>(s.materials.at(mix.first).model));
+  EXPECT_TRUE(std::holds_alternative<ConductorModel>(s.materials.at(mix.second).model));
+  EXPECT_NE(
+      pbrtError("WorldBegin MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" "
+                "[\"m\" \"m\"] NamedMaterial \"m\"\n" +
+                kSquareShape)
+          .find("contains itself"),
+      std::string::npos);
+  EXPECT_EQ(countContaining(loadWorld("Material \"hair\" \"float beta_m\" 1\n").warnings, "'hair'"),
+            1u);
+}
+
+TEST_F(PbrtMaterials, ImagesWithTheirMapping) {
+  const Scene s = loadWorld(
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.tga\" \"float uscale\" 3 "
+      "\"float vdelta\" 0.5 \"float scale\" 0.25 \"bool invert\" true \"string wrap\" \"clamp\" "
+      "\"string filter\" \"trilinear\"\n"
+      "Material \"diffusetransmission\" \"texture reflectance\" \"t\" \"float scale\" 0.5\n");
+  const auto& m = std::get<DiffuseTransmissionModel>(s.materials.at(s.triangles[0].material).model);
+  EXPECT_EQ(m.reflectance.value, Vec3{0.5f});
+  EXPECT_EQ(m.transmittance.value, Vec3{0.125f});
+  const TextureExpression& e = s.expressions.at(m.reflectance.texture);
+  EXPECT_EQ(e.kind, TextureExpression::Kind::Image);
+  EXPECT_EQ(e.uv.a, 3.0f);
+  EXPECT_EQ(e.uv.f, 0.5f);
+  EXPECT_EQ(e.value, Vec3{0.25f});
+  EXPECT_TRUE(e.invert);
+  EXPECT_EQ(e.wrapU, Wrap::Clamp);
+  EXPECT_TRUE(s.textures.at(e.image).srgb);
+  EXPECT_EQ(countContaining(s.warnings, "unknown"), 0u) << joined(s.warnings);
+}
+
+// Values of texture graphs at texture coordinates.
+TEST_F(PbrtMaterials, Graphs) {
+  const auto at = [&](const std::string& textures, float u, float v) {
+    const Scene s = loadWorld(textures + "\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n");
+    const Colour c =
+        std::get<DiffuseModel>(s.materials.at(s.triangles[0].material).model).reflectance;
+    return c.value * TextureEvaluator(s.expressions, s.textures).at(c.texture, u, v);
+  };
+  const std::string checks =
+      "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [1 0 0] \"rgb tex2\" [0 1 0] "
+      "\"float uscale\" 4 \"float vscale\" 4";
+  expectNear(at(checks, 0.1f, 0.1f), {1, 0, 0}, 1e-5f);
+  expectNear(at(checks, 0.3f, 0.1f), {0, 1, 0}, 1e-5f);
+  expectNear(at(checks, 0.3f, 0.3f), {1, 0, 0}, 1e-5f);
+  const std::string mixed =
+      "Texture \"a\" \"spectrum\" \"constant\" \"rgb value\" [0.2 0.4 0.8]\n"
+      "Texture \"f\" \"float\" \"constant\" \"float value\" 0.25\n"
+      "Texture \"s\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.5\n"
+      "Texture \"t\" \"spectrum\" \"mix\" \"texture tex1\" \"s\" \"rgb tex2\" [1 1 1] "
+      "\"texture amount\" \"f\"";
+  expectNear(at(mixed, 0, 0), Vec3(0.1f, 0.2f, 0.4f) * 0.75f + Vec3{0.25f}, 1e-5f);
+}
+
+TEST_F(PbrtMaterials, AlphaCutsAway) {
+  const std::string texture =
+      "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"t.tga\"\n"
+      "Attribute \"shape\" \"texture alpha\" \"a\"\n";
+  const Scene s = loadWorld(texture);
+  const Material& m = s.materials.at(s.triangles[0].material);
+  ASSERT_NE(m.opacityMap, kNone);
+  EXPECT_GT(s.textures.at(m.opacityMap).lookupAlpha(0.25f, 0.5f), 0.9f);
+  EXPECT_LT(s.textures.at(m.opacityMap).lookupAlpha(0.75f, 0.5f), 0.1f);
+  EXPECT_EQ(s.maskedBegin, 0u);
+}
+
+TEST_F(PbrtMaterials, Relief) {
+  const Scene s = loadWorld(
+      "Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"grey.tga\" \"float scale\" 0.1\n"
+      "Material \"diffuse\" \"texture displacement\" \"h\"\n");
+  EXPECT_NE(s.materials.at(s.triangles[0].material).relief.bumpMap, kNone);
+  const Scene n = loadWorld("Material \"diffuse\" \"string normalmap\" \"grey.tga\"\n");
+  const Relief& relief = n.materials.at(n.triangles[0].material).relief;
+  ASSERT_NE(relief.normalMap, kNone);
+  EXPECT_FALSE(n.textures.at(n.expressions.at(relief.normalMap).image).srgb);
+}
+
+TEST_F(PbrtMaterials, MissingTexturesKeepTheDefault) {
+  const Scene s = loadWorld(
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
+  EXPECT_EQ(std::get<DiffuseModel>(s.materials.at(s.triangles[0].material).model).reflectance.value,
+            Vec3{0.5f});
+  EXPECT_EQ(countContaining(s.warnings, "none.png"), 1u);
+  const Scene loop = loadWorld(
+      "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"u\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
+  EXPECT_EQ(countContaining(loop.warnings, "no spectrum texture 'u'"), 1u);
+  EXPECT_NE(pbrtError("WorldBegin Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\"\n"
+                      "Material \"diffuse\" \"texture reflectance\" \"t\"\n" +
+                      kSquareShape)
+                .find("contains itself"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,188 @@
+// Directives, transforms, files and mistakes.
+#include <zlib.h>
+
+#include "scene/read/pbrt/lexer.h"
+#include "tests/scene/pbrt/pbrt_files.h"
+
+namespace bnvpl {
+namespace {
+
+class PbrtSyntax : public PbrtFiles {};
+
+TEST(PbrtLexer, TokensAndPlaces) {
+  const std::string file = "a.pbrt";
+  pbrt::Lexer lexer(file, "# note\nShape \"a\\\"b\"[1 -2e3]\r\n\t+.5#end");
+  using Kind = pbrt::Token::Kind;
+  const std::pair<Kind, std::string> wanted[]{
+      {Kind::Word, "Shape"}, {Kind::String, "a\\\"b"}, {Kind::Open, "["},  {Kind::Word, "1"},
+      {Kind::Word, "-2e3"},  {Kind::Close, "]"},       {Kind::Word, "+.5"}};
+  pbrt::Token token;
+  for (const auto& [kind, text] : wanted) {
+    token = lexer.next();
+    EXPECT_EQ(token.kind, kind);
+    EXPECT_EQ(token.text, text);
+  }
+  EXPECT_EQ(token.place.text(), "a.pbrt:3:2");
+  EXPECT_EQ(lexer.next().kind, Kind::End);
+  EXPECT_EQ(pbrt::unescaped("a\\\"b\\\\c\\n"), "a\"b\\c\n");
+}
+
+TEST(PbrtLexer, Numbers) {
+  double n;
+  EXPECT_TRUE(pbrt::toNumber("+1.5e2", n));
+  EXPECT_EQ(n, 150.0);
+  for (const char* bad : {"", "+", "1x", "nan", "inf", "0x10", "--1"})
+    EXPECT_FALSE(pbrt::toNumber(bad, n)) << bad;
+}
+
+TEST_F(PbrtSyntax, ErrorsNameThePlaceAndTheCure) {
+  expectError("Shape \"sphere", "1:7", {"closing"});
+  expectError("WorldBegin\n  Shape \"sphere\" \"float radius\" [1 x]", "2:36", {"number", "'x'"});
+  expectError("WorldBegin\nShape \"sphere\" \"float radius\" [1", "2:16", {"'radius'", "]"});
+  expectError("WorldBegin\nShape \"sphere\" \"radius\" 1", "2:16", {"a type and a name"});
+  expectError("WorldBegin\nShape \"sphere\" \"float radius\" -1", "2:16", {"'radius'", "from 0"});
+  expectError("WorldBegin\nShape \"sphere\" \"float radius\" [1 2]", "2:16", {"one number"});
+  expectError("WorldBegin\nShape \"sphere\" \"string radius\" \"a\"", "2:16", {"a float"});
+  expectError("WorldBegin\nShape \"sphere\" \"float radius\" \"a\"", "2:16", {"numbers"});
+  expectError("WorldBegin\nTranslate 1 2", "2:14", {"ends", "number"});
+  expectError("WorldBegin\nTranslate 1 2 1e31", "2:15", {"1e30"});
+  expectError("WorldBegin\nScale 1 0 1", "2:1", {"Scale"});
+  expectError("WorldBegin\nRotate 10 0 0 0", "2:1", {"axis"});
+  expectError("LookAt 0 0 0 0 0 0 0 1 0", "1:1", {"LookAt"});
+  expectError("Transform [1 0 0 0 0 1 0 0 0 0 1 1 0 0 0 1]", "1:1", {"last row"});
+  expectError("WorldBegin\n12", "2:1", {"directive", "'12'"});
+  expectError("WorldBegin\n]", "2:1", {"directive"});
+  expectError("AttributeEnd", "1:1", {"AttributeBegin"});
+  expectError("AttributeBegin\n", "2:1", {"scene.pbrt:1:1"});
+  expectError("AttributeBegin\nTransformEnd", "2:1", {"another block"});
+  expectError("ColorSpace \"acescg\"", "1:1", {"acescg", "rec2020"});
+  expectError("ObjectBegin \"a\"\nObjectBegin \"b\"", "2:1", {"ObjectEnd"});
+  expectError("ObjectBegin \"a\"\nObjectInstance \"a\"", "2:1", {"nests"});
+  expectError("ObjectEnd", "1:1", {"ObjectBegin"});
+  expectError("WorldBegin\nObjectInstance \"a\"", "2:1", {"no object 'a'"});
+  expectError("WorldBegin\nTexture \"t\" \"color\" \"constant\"", "2:1", {"spectrum"});
+  expectError("MakeNamedMaterial \"m\"", "1:1", {"'m'", "type"});
+  expectError("Attribute \"shapes\" \"float alpha\" 1", "1:1", {"shapes"});
+  expectError(
+      "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0] "
+      "\"integer indices\" [0 1 3]",
+      "2:53", {"'indices'", "3 vertices"});
+  expectError("WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0]", "2:22", {"multiple of 3"});
+  expectError("WorldBegin\nShape \"plymesh\"", "2:1", {"filename"});
+}
+
+TEST_F(PbrtSyntax, BlocksOfAThousandLevelsAreTooDeep) {
+  std::string text;
+  for (int i = 0; i < 1001; ++i) text += "AttributeBegin\n";
+  expectError(text, "1001:1", {"1000 blocks"});
+}
+
+TEST_F(PbrtSyntax, UnknownThingsAreWarningsByNameAndLine) {
+  const Scene scene = loadWorld(
+      "Wobble \"x\" \"float y\" [1 2] 3 true\n"
+      "Shape \"torus\" \"float r\" 1\nShape \"torus\" \"float r\" 1\n"
+      "Shape \"sphere\" \"float colour\" 3\n"
+      "LightSource \"laser\"\nSampler \"x\" \"float y\" 1\nOption \"bool z\" true\n");
+  const std::string all = joined(scene.warnings);
+  for (const char* part : {"scene.pbrt:2:1: directive 'Wobble' is unknown",
+                           "scene.pbrt:3:1: shape 'torus' is not read; it is left out (and 1 more)",
+                           "scene.pbrt:5:16: Shape \"sphere\": parameter 'colour' is unknown",
+                           "scene.pbrt:6:1: light 'laser' is not read"})
+    EXPECT_NE(all.find(part), std::string::npos) << part << " not in\n" << all;
+  EXPECT_EQ(countContaining(scene.warnings, "Sampler"), 0u);
+  EXPECT_EQ(countContaining(scene.warnings, "Option"), 0u);
+}
+
+TEST_F(PbrtSyntax, TransformsApplyInTheirOrder) {
+  const Scene scene = loadWorld("AttributeBegin\nTranslate 10 0 0 Rotate 90 0 0 1 Scale 2 1 1\n" +
+                                kSquareShape + "AttributeEnd\n");
+  // The square, 2 wide and 2 high, becomes 4 wide, turns into the y direction and moves.
+  expectNear(scene.bounds.lower, {-1, -2, 0}, 1e-5f);
+  expectNear(scene.bounds.upper, {11, 2, 0}, 1e-5f);
+}
+
+// Of each axis: x to y to z to x.
+TEST_F(PbrtSyntax, RotationsFollowTheRightHandRule) {
+  const auto turned = [&](const std::string& axis, const std::string& point) {
+    return loadPbrt("WorldBegin Rotate 90 " + axis +
+                    " Shape \"trianglemesh\" \"point3 P\" [0 0 0 .01 .02 .03 " + point + "]")
+        .bounds.upper;
+  };
+  expectNear(turned("1 0 0", "0 1 0"), {0.01f, 0.02f, 1}, 0.02f);
+  expectNear(turned("0 2 0", "0 0 1"), {1, 0.02f, 0.01f}, 0.03f);
+  expectNear(turned("0 0 1", "1 0 0"), {0.02f, 1, 0.03f}, 0.03f);
+}
+
+TEST_F(PbrtSyntax, MatricesAreColumnByColumn) {
+  const Scene scene = loadPbrt(
+      "WorldBegin Translate 1 0 0 ConcatTransform [0 1 0 0 -1 0 0 0 0 0 1 0 5 0 0 1]\n"
+      "CoordinateSystem \"here\" Identity CoordSysTransform \"here\"\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 0 3 0 0 0 1 0]");
+  expectNear(scene.bounds.lower, {5, 0, 0}, 1e-5f);
+  expectNear(scene.bounds.upper, {6, 3, 0}, 1e-5f);
+}
+
+TEST_F(PbrtSyntax, TheCameraIsACoordinateSystem) {
+  const Scene scene = loadPbrt(
+      "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\"\nWorldBegin CoordSysTransform "
+      "\"camera\"\n"
+      "Shape \"trianglemesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1]");
+  expectNear(scene.bounds.lower, {0, 0, -4}, 1e-5f);
+}
+
+TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
+  const Scene scene =
+      loadPbrt("WorldBegin Translate 0 0 1 ObjectBegin \"o\" Translate 0 1 0\n" + kSquareShape +
+               "ObjectEnd\nObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\"");
+  EXPECT_EQ(scene.triangles.size(), 4u);
+  expectNear(scene.bounds.lower, {-1, 0, 2}, 1e-5f);
+  expectNear(scene.bounds.upper, {6, 2, 2}, 1e-5f);
+}
+
+TEST_F(PbrtSyntax, AttributesHoldUntilTheirBlockEnds) {
+  const Scene scene = loadWorld("AttributeBegin Attribute \"shape\" \"float alpha\" 0\n" +
+                                kSquareShape + "AttributeEnd\n");
+  EXPECT_EQ(scene.triangles.size(), 4u);
+  EXPECT_EQ(scene.maskedBegin, 2u);
+}
+
+TEST_F(PbrtSyntax, IncludedFilesAreReadFromTheScenesFolder) {
+  write("geometry/all.pbrt", "Translate 0 0 3\n" + kSquareShape + "Include \"more.pbrt\"\n");
+  write("more.pbrt", kSquareShape);
+  const Scene scene = loadPbrt("WorldBegin\nInclude \"geometry/all.pbrt\"\n" + kSquareShape);
+  EXPECT_EQ(scene.triangles.size(), 6u);
+  EXPECT_EQ(scene.bounds.lower.z, 3.0f);  // the Include's transform stays
+  EXPECT_EQ(scene.files.size(), 3u);
+  const Scene imported = loadPbrt("WorldBegin\nImport \"geometry/all.pbrt\"\n" + kSquareShape);
+  EXPECT_EQ(imported.bounds.lower.z, 0.0f);
+}
+
+TEST_F(PbrtSyntax, IncludesThatGoInCirclesAreRefused) {
+  write("a.pbrt", "\nInclude \"b.pbrt\"");
+  write("b.pbrt", "Include \"./a.pbrt\"");
+  EXPECT_NE(pbrtError("Include \"a.pbrt\"").find("b.pbrt:1:1: "), std::string::npos);
+  EXPECT_NE(pbrtError("Include \"a.pbrt\"").find("includes itself"), std::string::npos);
+  EXPECT_NE(pbrtError("Include \"none.pbrt\"").find("no such file"), std::string::npos);
+}
+
+TEST_F(PbrtSyntax, PackedFiles) {
+  const std::string text = "WorldBegin\n" + kSquareShape;
+  gzFile packed = gzopen(at("room.pbrt.gz").c_str(), "wb");
+  gzwrite(packed, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(packed);
+  EXPECT_EQ(loadScene(at("room.pbrt.gz")).triangles.size(), 2u);
+  fs::resize_file(at("room.pbrt.gz"), fs::file_size(at("room.pbrt.gz")) - 9);
+  EXPECT_THROW(loadScene(at("room.pbrt.gz")), InputError);
+}
+
+TEST_F(PbrtSyntax, MediaAreNamedAsNotRendered) {
+  const Scene scene = loadWorld(
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1]\n"
+      "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\"\n"
+      "Shape \"sphere\" AttributeEnd\n");
+  EXPECT_EQ(scene.triangles.size(), 2u);  // an interface is nothing to see
+  EXPECT_EQ(countContaining(scene.warnings, "media are not rendered"), 2u);
+}
+
+}  // namespace
+}  // namespace bnvpl
