@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "scene/read/gltf/load_gltf.h"
 #include "scene/read/toml/scene_toml.h"
 #include "scene/scene_builder.h"
 
@@ -15,7 +16,8 @@ struct Format {
   std::string_view extension;  // in lower case
   void (*read)(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 };
-constexpr std::array kFormats{Format{".toml", readSceneToml}};
+constexpr std::array kFormats{Format{".toml", readSceneToml}, Format{".gltf", readGltf},
+                              Format{".glb", readGltf}};
 
 const Format& formatOf(const fs::path& file) {
   std::string extension = file.extension().string(), known;

@@ -28,6 +28,13 @@ struct Camera {
   float verticalFovRad = 1.0f;
 };
 
+// A camera of the scene's file, and the film that it asks for.
+struct View {
+  std::string name;  // empty: it has none
+  Camera camera;
+  Film film;
+};
+
 // One corner index triple into each of Scene's arrays. `normal` and `uv` may be kNone.
 struct Triangle {
   std::array<uint32_t, 3> position, normal, uv;
@@ -75,6 +82,8 @@ inline constexpr const char* kNoLight =
 struct Scene {
   Film film;
   Camera camera;
+  // All cameras of the file; film and camera are the first's until choose_view.h takes another.
+  std::vector<View> views;
 
   std::vector<Vec3> positions;  // one more than indexed: Embree reads 16 bytes at each vertex
   std::vector<Vec3> normals;    // unit length

@@ -41,9 +41,14 @@ class SceneBuilder {
   // `sceneFile` names the scene in messages and is the first of the files.
   explicit SceneBuilder(fs::path sceneFile);
 
-  void setFilm(const Film& film) { scene_.film = film; }
+  // Of a format that has one camera.
+  void setFilm(const Film& film);
   // camera.position is what `position` becomes.
   void setCamera(const FilePoint& position, const Camera& camera);
+  // Of a format that has several; the first is the scene's unless the user chooses. A scene without
+  // any camera gets one that sees all of it, with a warning.
+  void addCamera(const std::string& name, const FilePoint& position, const Camera& camera,
+                 const Film& film);
 
   // A texture that will be wanted: it is decoded while the loader goes on. Nothing comes of it but
   // time.
@@ -93,13 +98,14 @@ class SceneBuilder {
   void dropUnusable();
   void dropDoubledLamps();
   void sortByMask();
+  void placeViews();
   void requireSize() const;
 
   Scene scene_;
   TexturePool textures_;
   std::vector<FilePoint> points_;  // what scene_.positions will be
   std::vector<Part> parts_;
-  FilePoint cameraPosition_{};
+  std::vector<FilePoint> viewPositions_;   // of scene_.views
   std::vector<FilePoint> lightPositions_;  // of scene_.lights
   uint32_t grey_ = kNone;
   std::set<std::string> warned_;

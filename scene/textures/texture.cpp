@@ -55,7 +55,7 @@ std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
                   {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
-Texture decodeTexture(const fs::path& file, const std::string& bytes, bool srgb) {
+Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb) {
   Pixels pixels = decodePixels(file, bytes, 4);
   Texture t;
   t.width = pixels.width;
@@ -106,7 +106,11 @@ Vec3 EnvironmentImage::lookup(float u, float v) const {
 }
 
 Texture loadTexture(const fs::path& file, bool srgb, bool mask) {
-  Texture t = decodeTexture(file, readBytes(file), srgb);
+  return decodeTexture(file, readBytes(file), srgb, mask);
+}
+
+Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask) {
+  Texture t = decodeColours(name, bytes, srgb);
   if (mask) {
     bool varies = false;
     for (size_t i = 3; i < t.rgba.size(); i += 4) varies |= t.rgba[i] != 255;
@@ -137,7 +141,7 @@ EnvironmentImage fromExr(const fs::path& file) {
 EnvironmentImage decodeEnvironment(const fs::path& file) {
   const std::string bytes = readBytes(file);
   if (isRadianceHdr(bytes)) return readRadianceHdr(file, bytes);
-  const Texture t = decodeTexture(file, bytes, true);
+  const Texture t = decodeColours(file, bytes, true);
   EnvironmentImage e{t.width, t.height, {}};
   e.radiance.resize(size_t{t.width} * t.height);
   for (size_t i = 0; i < e.radiance.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/errors.h"
@@ -32,6 +33,8 @@ struct EnvironmentImage {
 // PNG, JPEG, TGA or BMP, by content. For a mask, the alpha channel is filled from the image's own
 // alpha if it has one that varies, else from its luminance. Throws InputError.
 Texture loadTexture(const fs::path& file, bool srgb, bool mask);
+// The same of its bytes; `name` is for messages.
+Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask);
 
 // EXR, HDR, or an 8-bit image (sRGB decoded). Throws InputError.
 EnvironmentImage loadEnvironment(const fs::path& file);
