@@ -26,16 +26,28 @@ inline void requireSane(const EnvironmentImage& e) {
   for (const Vec3 radiance : e.radiance) require(isLight(radiance), "radiance is light");
 }
 
-inline void requireSane(const Material& m, size_t textures) {
-  for (const Vec3 c : {m.diffuse, m.glossy, m.mirror, m.transmission, m.emission}) {
+inline void requireSane(const PhongModel& m, size_t textures) {
+  for (const Vec3 c : {m.diffuse, m.glossy, m.mirror, m.transmission}) {
     require(isLight(c), "colours of materials are light");
   }
   require(std::isfinite(m.exponent) && m.exponent >= 0, "exponents are >= 0");
   require(std::isfinite(m.ior) && m.ior >= 1, "refractive indices are >= 1");
-  require(std::isfinite(m.opacity), "opacities are finite");
-  for (const uint32_t map : {m.diffuseMap, m.glossyMap, m.opacityMap}) {
+  for (const uint32_t map : {m.diffuseMap, m.glossyMap}) {
     require(map == kNone || map < textures, "maps are textures");
   }
+}
+
+inline void requireSane(const Material& m, size_t textures) {
+  require(isLight(m.emission), "colours of materials are light");
+  require(std::isfinite(m.opacity), "opacities are finite");
+  require(m.opacityMap == kNone || m.opacityMap < textures, "maps are textures");
+  if (const auto* p = std::get_if<PhongModel>(&m.model)) requireSane(*p, textures);
+}
+
+inline void requireSane(const TextureExpression& e, size_t number, size_t textures) {
+  require(e.image == kNone || e.image < textures, "images of expressions are textures");
+  for (const uint32_t operand : {e.first, e.second, e.amount})
+    require(operand == kNone || operand < number, "expressions name earlier ones");
 }
 
 inline void requireSane(const Scene& s, const Triangle& t) {
@@ -49,7 +61,8 @@ inline void requireSane(const Scene& s, const Triangle& t) {
     if (t.uv[k] == kNone) continue;
     const auto [u, v] = s.uvs[t.uv[k]];
     const Material& m = s.materials[t.material];
-    if (m.diffuseMap != kNone) s.textures[m.diffuseMap].lookup(u, v);
+    const auto* phong = std::get_if<PhongModel>(&m.model);
+    if (phong && phong->diffuseMap != kNone) s.textures[phong->diffuseMap].lookup(u, v);
     if (m.opacityMap != kNone) s.textures[m.opacityMap].lookupAlpha(u, v);
   }
 }
@@ -58,6 +71,8 @@ inline void requireSane(const Scene& s, const Triangle& t) {
 inline void requireSaneMeshes(const Scene& s) {
   for (const Texture& t : s.textures) requireSane(t);
   for (const Material& m : s.materials) requireSane(m, s.textures.size());
+  for (size_t i = 0; i < s.expressions.size(); ++i)
+    requireSane(s.expressions[i], i, s.textures.size());
   for (const Triangle& t : s.triangles) requireSane(s, t);
   require(s.maskedBegin <= s.triangles.size(), "masked triangles come last");
   for (size_t i = 0; i < s.triangles.size(); ++i) {

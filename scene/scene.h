@@ -10,11 +10,11 @@
 
 #include "core/errors.h"
 #include "core/vec3.h"
+#include "scene/material.h"
+#include "scene/textures/expression.h"
 #include "scene/textures/texture.h"
 
 namespace bnvpl {
-
-inline constexpr uint32_t kNone = 0xffffffffu;
 
 inline constexpr uint32_t kMaxFilmSide = 16384;  // pixels, of [film] and --size
 struct Film {
@@ -42,23 +42,6 @@ struct Triangle {
 };
 static_assert(sizeof(Triangle) == 40);
 
-// docs/scene-format.md says how the fields of an MTL are read.
-struct Material {
-  std::string name;
-  Vec3 diffuse;                // Kd
-  Vec3 glossy;                 // Ks of a Phong lobe; 0 for mirror and glass
-  float exponent = 10.0f;      // Ns of that lobe
-  Vec3 mirror;                 // Ks of a perfect mirror, or of glass; never beside a Phong lobe
-  bool glass = false;          // smooth dielectric
-  float ior = 1.5f;            // Ni
-  Vec3 transmission{1, 1, 1};  // Tf
-  Vec3 emission;               // Ke, radiance, W/(m2 sr)
-  bool twoSidedEmission = false;
-  float opacity = 1.0f;  // d; below 0.5 the surface is cut away
-  uint32_t diffuseMap = kNone, glossyMap = kNone, opacityMap = kNone;  // into Scene::textures
-  bool masked() const { return opacityMap != kNone || opacity < 0.5f; }
-};
-
 enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 
 // A light that is no surface. Emissive triangles are lights too; LightSet gathers both.
@@ -79,6 +62,12 @@ struct LightSpec {
 inline constexpr const char* kNoLight =
     "has no light with power: its images are black; add a [[light]] or an emissive material (Ke)";
 
+// What the files call a mesh, before anything is left out of it.
+struct MeshRecord {
+  std::string name;
+  size_t triangles = 0, instances = 0;  // triangles of one instance
+};
+
 struct Scene {
   Film film;
   Camera camera;
@@ -95,8 +84,10 @@ struct Scene {
   // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).
   std::array<double, 3> origin{};
 
+  std::vector<MeshRecord> meshes;  // for people
   std::vector<Material> materials;
   std::vector<Texture> textures;
+  std::vector<TextureExpression> expressions;
   std::vector<LightSpec> lights;
   std::vector<EnvironmentImage> environments;
 
@@ -111,6 +102,10 @@ struct Scene {
 
   std::string name() const {  // for messages
     return files.empty() ? "the scene" : files.front().string();
+  }
+  // What an expression is at finite texture coordinates.
+  Vec3 expressionAt(uint32_t expression, float u, float v) const {
+    return TextureEvaluator(expressions, textures).at(expression, u, v);
   }
   Vec3 corner(uint32_t triangle, size_t i) const {
     return positions[triangles[triangle].position[i]];

@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/number_text.h"
 #include "core/read_file.h"
+#include "scene/material_inputs.h"
 #include "scene/scene_hash.h"
 
 namespace bnvpl {
@@ -16,6 +17,9 @@ namespace {
 
 // Sizes of scenes that floats hold: products of four lengths must stay in range.
 constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
+
+// Of an expression: operands may share operands, so that few expressions ask for very many lookups.
+constexpr uint32_t kMaxLookups = 1000;
 
 bool isFinite(const FilePoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
@@ -34,7 +38,12 @@ Camera cameraThatSees(const Bounds& bounds) {
 }
 
 bool hasTexture(const Material& m) {
-  return m.diffuseMap != kNone || m.glossyMap != kNone || m.opacityMap != kNone;
+  if (const auto* p = std::get_if<PhongModel>(&m.model)) {
+    if (p->diffuseMap != kNone || p->glossyMap != kNone) return true;
+  }
+  bool expression = false;
+  forEachExpression(m, [&](uint32_t number) { expression |= number != kNone; });
+  return expression || m.opacityMap != kNone;
 }
 
 }  // namespace
@@ -73,10 +82,26 @@ uint32_t SceneBuilder::addMaterial(Material material) {
   return static_cast<uint32_t>(scene_.materials.size() - 1);
 }
 
+uint32_t SceneBuilder::addExpression(const TextureExpression& expression) {
+  uint32_t lookups = 1;
+  for (const uint32_t operand : {expression.first, expression.second, expression.amount}) {
+    assert(operand == kNone || operand < scene_.expressions.size());
+    if (operand != kNone) lookups += lookups_[operand];
+  }
+  if (lookups > kMaxLookups) {
+    warn(name() + ": a texture is made of more than " + std::to_string(kMaxLookups) +
+         " textures; the plain material colour is used");
+    return kNone;
+  }
+  scene_.expressions.push_back(expression);
+  lookups_.push_back(lookups);
+  return static_cast<uint32_t>(scene_.expressions.size() - 1);
+}
+
 uint32_t SceneBuilder::greyMaterial() {
   if (grey_ == kNone) {
     Material grey;
-    grey.diffuse = Vec3{0.5f};
+    grey.phong().diffuse = Vec3{0.5f};
     grey_ = addMaterial(std::move(grey));
   }
   return grey_;
@@ -125,7 +150,14 @@ SceneBuilder::Base SceneBuilder::addCorners(const fs::path& file, const Mesh& me
   return base;
 }
 
+void SceneBuilder::recordMesh(const std::string& name, size_t triangles) {
+  const auto [it, isNew] = meshOfName_.try_emplace(name, scene_.meshes.size());
+  if (isNew) scene_.meshes.push_back({name, triangles, 0});
+  ++scene_.meshes[it->second].instances;
+}
+
 size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& transform) {
+  recordMesh(file.string(), mesh.triangles.size());
   const Base base = addCorners(file, mesh, transform);
   const bool mirrored = transform.determinant() < 0.0;
   const auto moved = [](uint32_t index, size_t begin, size_t end) {
@@ -173,11 +205,17 @@ void SceneBuilder::resolveTextures() {
     warn(problem + "; the plain material colour is used");
   scene_.textures = std::move(read.textures);
   static_assert(TexturePool::kUnreadable == kNone);
+  const auto resolve = [&](uint32_t& map) {
+    if (map != kNone) map = read.indexOf.at(map);
+  };
   for (Material& m : scene_.materials) {
-    for (uint32_t* map : {&m.diffuseMap, &m.glossyMap, &m.opacityMap}) {
-      if (*map != kNone) *map = read.indexOf.at(*map);
+    resolve(m.opacityMap);
+    if (auto* phong = std::get_if<PhongModel>(&m.model)) {
+      resolve(phong->diffuseMap);
+      resolve(phong->glossyMap);
     }
   }
+  for (TextureExpression& e : scene_.expressions) resolve(e.image);
 }
 
 void SceneBuilder::warnOfMissingUvs() {

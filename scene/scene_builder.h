@@ -2,7 +2,7 @@
 //
 //   SceneBuilder builder("room.toml");
 //   Material paint;
-//   paint.diffuse = {0.5f, 0.5f, 0.5f};
+//   paint.model = DiffuseModel{Vec3(0.5f)};
 //   Mesh mesh{positions, {}, {}, {Triangle{{0, 1, 2}, kNoCorners, kNoCorners,
 //                                          builder.addMaterial(paint)}}};
 //   builder.addMesh("room.obj", std::move(mesh));
@@ -14,6 +14,7 @@
 // the loader refuses or repairs what is not, and warns. Numbers that add...() returns count from 0.
 #pragma once
 
+#include <map>
 #include <set>
 #include <span>
 
@@ -56,6 +57,10 @@ class SceneBuilder {
   // The number for a Material's map; the same for the same use. kNone, with a warning, where there
   // is no such file. One that turns out to be damaged is taken from its materials by finish().
   uint32_t addTexture(const TextureUse& use);
+  // The number for a parameter of a material. Its operands are numbers of expressions that were
+  // added before, its image one of addTexture(); an image that turns out to be damaged counts as
+  // white.
+  uint32_t addExpression(const TextureExpression& expression);
   uint32_t addMaterial(Material material);
   // Reads it at once. Throws InputError when the file is no image.
   uint32_t addEnvironment(const fs::path& image);
@@ -90,6 +95,7 @@ class SceneBuilder {
   };
   Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
   uint32_t greyMaterial();
+  void recordMesh(const std::string& name, size_t triangles);
 
   // Of finish(), in this order:
   void resolveTextures();
@@ -105,8 +111,10 @@ class SceneBuilder {
   TexturePool textures_;
   std::vector<FilePoint> points_;  // what scene_.positions will be
   std::vector<Part> parts_;
+  std::vector<uint32_t> lookups_;          // of scene_.expressions, operands included
   std::vector<FilePoint> viewPositions_;   // of scene_.views
   std::vector<FilePoint> lightPositions_;  // of scene_.lights
+  std::map<std::string, size_t> meshOfName_;  // in scene_.meshes
   uint32_t grey_ = kNone;
   std::set<std::string> warned_;
 };

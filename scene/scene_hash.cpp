@@ -6,6 +6,8 @@
 #include <span>
 #include <type_traits>
 
+#include "scene/material_inputs.h"
+
 namespace bnvpl {
 
 namespace {
@@ -31,6 +33,44 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
 };
 
+void hashModel(Hasher& h, const Material& m) {
+  h.value(static_cast<uint32_t>(m.model.index()));
+  struct Inputs {
+    Hasher& h;
+    void operator()(const Colour& c) const { h.value(c.value), h.value(c.texture); }
+    void operator()(const Scalar& s) const { h.value(s.value), h.value(s.texture); }
+    void operator()(uint32_t number) const { h.value(number); }
+  };
+  forEachInput(m, Inputs{h});
+  for (const float f : {m.opacityCutoff, m.relief.strength}) h.value(f);
+}
+
+void hashMaterial(Hasher& h, const Material& m) {
+  static const PhongModel kNoPhong;
+  const auto* phong = std::get_if<PhongModel>(&m.model);
+  const PhongModel& p = phong ? *phong : kNoPhong;
+  for (const Vec3 v : {p.diffuse, p.glossy, p.mirror, p.transmission, m.emission}) h.value(v);
+  for (const float f : {p.exponent, p.ior, m.opacity}) h.value(f);
+  for (const uint32_t i : {p.diffuseMap, p.glossyMap, m.opacityMap}) h.value(i);
+  // What MTL of its own cannot say comes behind, so that its scenes keep their hashes.
+  bool more = !phong || m.opacityCutoff != 0.5f;
+  forEachExpression(m, [&](uint32_t number) { more |= number != kNone; });
+  h.value(uint32_t{p.glass} | uint32_t{m.twoSidedEmission} << 1 | uint32_t{more} << 2);
+  if (more) hashModel(h, m);
+}
+
+void hashExpressions(Hasher& h, const std::vector<TextureExpression>& expressions) {
+  for (const TextureExpression& e : expressions) {
+    for (const uint32_t i :
+         {static_cast<uint32_t>(e.kind), e.image, static_cast<uint32_t>(e.channel),
+          static_cast<uint32_t>(e.wrapU), static_cast<uint32_t>(e.wrapV), uint32_t{e.invert},
+          e.first, e.second, e.amount})
+      h.value(i);
+    h.value(e.value);
+    for (const float f : {e.uv.a, e.uv.b, e.uv.c, e.uv.d, e.uv.e, e.uv.f}) h.value(f);
+  }
+}
+
 }  // namespace
 
 uint64_t hashScene(const Scene& scene) {
@@ -41,11 +81,9 @@ uint64_t hashScene(const Scene& scene) {
   h.array(scene.triangles);
   h.value(uint64_t{scene.materials.size()});
   for (const Material& m : scene.materials) {
-    for (const Vec3 v : {m.diffuse, m.glossy, m.mirror, m.transmission, m.emission}) h.value(v);
-    for (const float f : {m.exponent, m.ior, m.opacity}) h.value(f);
-    for (const uint32_t i : {m.diffuseMap, m.glossyMap, m.opacityMap}) h.value(i);
-    h.value(uint32_t{m.glass} | uint32_t{m.twoSidedEmission} << 1);
+    hashMaterial(h, m);
   }
+  hashExpressions(h, scene.expressions);
   h.value(uint64_t{scene.textures.size()});
   for (const Texture& t : scene.textures) {
     for (const uint32_t i : {t.width, t.height, uint32_t{t.srgb}}) h.value(i);

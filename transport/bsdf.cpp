@@ -11,7 +11,7 @@ namespace {
 // So grazing that one photon would outweigh all others: no surface has such shading normals.
 constexpr float kMaxShadingFactor = 1e5f;
 
-bool isSharp(const Material& m) { return m.exponent > kSharpExponent; }
+bool isSharp(const PhongModel& m) { return m.exponent > kSharpExponent; }
 
 // Unpolarised Fresnel reflectance of a smooth dielectric; cosI >= 0, eta = n_transmitted /
 // n_incident. Sets the cosine of the refracted direction; 1 under total internal reflection.
@@ -27,14 +27,15 @@ float fresnel(float cosI, float eta, float& cosT) {
 }  // namespace
 
 bool hasSpecularLobes(const Scene& scene) {
-  for (const Material& m : scene.materials) {
+  for (const Material& material : scene.materials) {
+    const PhongModel& m = material.phong();
     if (m.glass || !isBlack(m.mirror) || (!isBlack(m.glossy) && isSharp(m))) return true;
   }
   return false;
 }
 
 Bsdf::Bsdf(const Scene& scene, const SurfacePoint& point) : point_(point) {
-  const Material& m = scene.materials[point.material];
+  const PhongModel& m = scene.materials[point.material].phong();
   glass_ = m.glass;
   mirror_ = m.mirror;
   if (glass_) {

@@ -21,16 +21,19 @@ namespace bnvpl {
 
 namespace {
 
-// Alpha test: what covers less than half of a texel is not there.
-float opacityAt(const Scene& scene, uint32_t triangle, float b1, float b2) {
+// Alpha test: whether the surface is there.
+bool isThere(const Scene& scene, uint32_t triangle, float b1, float b2) {
   const Triangle& t = scene.triangles[triangle];
   const Material& m = scene.materials[t.material];
-  if (m.opacityMap == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
-    return m.opacity;
-  const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
-  const float b0 = 1.0f - b1 - b2;
-  return m.opacity * scene.textures[m.opacityMap].lookupAlpha(b0 * a[0] + b1 * b[0] + b2 * c[0],
-                                                              b0 * a[1] + b1 * b[1] + b2 * c[1]);
+  float opacity = m.opacity;
+  if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
+    const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
+    const float b0 = 1.0f - b1 - b2, u = b0 * a[0] + b1 * b[0] + b2 * c[0],
+                v = b0 * a[1] + b1 * b[1] + b2 * c[1];
+    if (m.opacityMap != kNone) opacity *= scene.textures[m.opacityMap].lookupAlpha(u, v);
+    if (m.opacityTexture != kNone) opacity *= scene.expressionAt(m.opacityTexture, u, v).x;
+  }
+  return !(opacity < m.opacityCutoff);
 }
 
 void rejectCutAway(const RTCFilterFunctionNArguments* args) {
@@ -38,9 +41,9 @@ void rejectCutAway(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const uint32_t triangle = scene.maskedBegin + RTCHitN_primID(args->hit, args->N, i);
-    const float opacity = opacityAt(scene, triangle, RTCHitN_u(args->hit, args->N, i),
-                                    RTCHitN_v(args->hit, args->N, i));
-    if (opacity < 0.5f) args->valid[i] = 0;
+    if (!isThere(scene, triangle, RTCHitN_u(args->hit, args->N, i),
+                 RTCHitN_v(args->hit, args->N, i)))
+      args->valid[i] = 0;
   }
 }
 
@@ -204,8 +207,9 @@ void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hi
   for (size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].triangle == kNone) continue;
     describe(rays[i].direction, hits[i]);
-    const uint32_t map = scene_.materials[hits[i].material].diffuseMap;
-    if (map != kNone) scene_.textures[map].prefetch(hits[i].u, hits[i].v);
+    const auto* phong = std::get_if<PhongModel>(&scene_.materials[hits[i].material].model);
+    if (phong && phong->diffuseMap != kNone)
+      scene_.textures[phong->diffuseMap].prefetch(hits[i].u, hits[i].v);
   }
 }
 

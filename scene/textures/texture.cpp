@@ -83,6 +83,17 @@ Vec3 Texture::lookup(float u, float v) const {
   return sum;
 }
 
+Vec3 Texture::texel(uint32_t column, uint32_t row) const {
+  const auto& table = srgbTable();
+  const uint8_t* p = &rgba[4 * (size_t{row} * width + column)];
+  return srgb ? Vec3{table[p[0]], table[p[1]], table[p[2]]}
+              : Vec3{float(p[0]), float(p[1]), float(p[2])} * (1.0f / 255.0f);
+}
+
+float Texture::texelAlpha(uint32_t column, uint32_t row) const {
+  return float(rgba[4 * (size_t{row} * width + column) + 3]) * (1.0f / 255.0f);
+}
+
 void Texture::prefetch(float u, float v) const {
   const std::optional<Bilinear> b = bilinear(*this, u, v);
   if (!b) return;

@@ -11,14 +11,20 @@
 
 namespace bnvpl {
 
+// No index: of textures, materials, corners and everything else that is counted in 32 bits.
+inline constexpr uint32_t kNone = 0xffffffffu;
+
 // 8-bit texture, repeated in both directions, v = 0 at the bottom row as in OBJ.
 struct Texture {
+  std::string name;  // its file, for people
   uint32_t width = 0, height = 0;
   bool srgb = true;           // decode to linear on lookup; false for masks and other plain data
   std::vector<uint8_t> rgba;  // row-major from the top
   std::array<float, 2> scale{1, 1}, offset{0, 0};  // of the texture coordinates (MTL -s, -o)
 
-  Vec3 lookup(float u, float v) const;        // bilinear, linear sRGB
+  Vec3 lookup(float u, float v) const;              // bilinear, linear sRGB
+  Vec3 texel(uint32_t column, uint32_t row) const;  // linear sRGB
+  float texelAlpha(uint32_t column, uint32_t row) const;
   void prefetch(float u, float v) const;      // what lookup() will read
   float lookupAlpha(float u, float v) const;  // bilinear; of the mask channel: see loadTexture
 };

@@ -34,6 +34,7 @@ TexturePool::Entry& TexturePool::start(const TextureUse& use) {
       try {
         entry.texture = use.bytes ? decodeTexture(use.file, *use.bytes, use.srgb, use.mask)
                                   : loadTexture(use.file, use.srgb, use.mask);
+        entry.texture.name = use.file.string();
         entry.texture.scale = use.scale;
         entry.texture.offset = use.offset;
       } catch (const InputError& e) {

@@ -22,8 +22,8 @@ TEST(Heuristic, DensitiesOfAnySize) {
 TEST(Lobes, OfAnyExponent) {
   for (const float exponent : {0.0f, 1.0f, 20.0f, 1e4f, 1e6f}) {
     Material m = lambert(Vec3(0.2f));
-    m.glossy = Vec3(0.5f);
-    m.exponent = exponent;
+    m.phong().glossy = Vec3(0.5f);
+    m.phong().exponent = exponent;
     const Scene scene = sceneOf(m);
     const SurfacePoint at = pointSeenFrom({0.3f, 0.1f, 0.9f});
     const Bsdf bsdf(scene, at);
@@ -41,7 +41,7 @@ TEST(Lobes, OfAnyExponent) {
 // A mirror beside a diffuse surface, too faint to be drawn: not by the number 0 either.
 TEST(Lobes, OfNoStrengthAreNotThere) {
   Material m = lambert(Vec3(0.5f));
-  m.mirror = Vec3(1e-40f);
+  m.phong().mirror = Vec3(1e-40f);
   const Scene scene = sceneOf(m);
   const SurfacePoint at = pointSeenFrom({0, 0, 1});
   EXPECT_EQ(Bsdf(scene, at).specularProbability(), 0.0f);

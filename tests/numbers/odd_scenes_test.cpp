@@ -167,7 +167,10 @@ TEST_F(OddScenes, FaintLight) {
 
 TEST_F(OddScenes, BlackSurfaces) {
   Scene scene = room(metres_);
-  for (Material& m : scene.materials) m.diffuse = m.glossy = m.mirror = m.transmission = {};
+  for (Material& m : scene.materials) {
+    PhongModel& p = m.phong();
+    p.diffuse = p.glossy = p.mirror = p.transmission = {};
+  }
   const std::string error = placeError(scene);
   EXPECT_NE(error.find("scene.toml: only 0 of 20 VPLs"), std::string::npos) << error;
   EXPECT_NE(error.find("met surfaces that reflect nothing"), std::string::npos) << error;

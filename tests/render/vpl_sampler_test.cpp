@@ -31,10 +31,10 @@ VplLights lightsAbout(size_t count, Rng& rng) {
 Scene withMaterial(bool glossy) {
   Scene scene;
   scene.materials.resize(1);
-  scene.materials[0].diffuse = Vec3{0.5f, 0.3f, 0.1f};
+  scene.materials[0].phong().diffuse = Vec3{0.5f, 0.3f, 0.1f};
   if (glossy) {
-    scene.materials[0].glossy = Vec3{0.4f};
-    scene.materials[0].exponent = 15.0f;
+    scene.materials[0].phong().glossy = Vec3{0.4f};
+    scene.materials[0].phong().exponent = 15.0f;
   }
   return scene;
 }

@@ -8,13 +8,13 @@ namespace {
 
 Material phong(Vec3 kd, Vec3 ks, float exponent) {
   Material m = lambert(kd);
-  m.glossy = ks;
-  m.exponent = exponent;
+  m.phong().glossy = ks;
+  m.phong().exponent = exponent;
   return m;
 }
 Material mirror(Vec3 ks, Vec3 kd = {}) {
   Material m = lambert(kd);
-  m.mirror = ks;
+  m.phong().mirror = ks;
   return m;
 }
 
@@ -93,7 +93,7 @@ TEST(Bsdf, NeverReflectsMoreThanArrives) {
       for (const LobeGroup group : kGroups)
         sum += meanWeight(bsdf, group, Transport::Radiance, 50000);
       const Material& m = c.material;
-      const Vec3 most = min(m.diffuse + m.glossy + m.mirror, Vec3(1));
+      const Vec3 most = min(m.phong().diffuse + m.phong().glossy + m.phong().mirror, Vec3(1));
       for (size_t k = 0; k < 3; ++k)
         EXPECT_LE(sum[k], most[k] * 1.01f) << c.name << " from z = " << wo.z;
       EXPECT_LE(maxComponent(bsdf.roughAlbedo()), 1.0f) << c.name;

@@ -40,9 +40,9 @@ TEST_F(Builder, MakesWhatAFileSays) {
   builder.setCamera({0, 0, 5}, camera);
   Material paint;
   paint.name = "paint";
-  paint.diffuse = Vec3(.5f);
-  paint.diffuseMap = builder.addTexture({.file = at("square.tga")});
-  paint.exponent = 1.0f;  // of an MTL without Ns
+  paint.phong().diffuse = Vec3(.5f);
+  paint.phong().diffuseMap = builder.addTexture({.file = at("square.tga")});
+  paint.phong().exponent = 1.0f;  // of an MTL without Ns
   const uint32_t number = builder.addMaterial(paint);
   const std::vector<double> positions{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   const std::vector<double> uvs{0, 0, 1, 0, 1, 1, 0, 1};
@@ -130,7 +130,7 @@ TEST_F(Builder, GreyIsOneMaterialOfItsOwn) {
   const Scene scene = builder.finish();
   ASSERT_EQ(scene.materials.size(), 2u);
   for (const Triangle& t : scene.triangles)
-    EXPECT_EQ(scene.materials[t.material].diffuse, Vec3(.5f));
+    EXPECT_EQ(scene.materials[t.material].phong().diffuse, Vec3(.5f));
 }
 
 TEST_F(Builder, OpaqueTrianglesComeFirst) {
@@ -154,18 +154,18 @@ TEST_F(Builder, TexturesAreNumberedByTheirUse) {
   builder.expectTexture({.file = at("a.tga")});
   builder.expectTexture({.file = at("nobody-asks-again.tga")});
   Material m = lampOf(1);
-  m.glossyMap = builder.addTexture({.file = at("bad.tga")});
-  m.diffuseMap = builder.addTexture({.file = at("a.tga")});
+  m.phong().glossyMap = builder.addTexture({.file = at("bad.tga")});
+  m.phong().diffuseMap = builder.addTexture({.file = at("a.tga")});
   m.opacityMap = builder.addTexture({.file = at("a.tga"), .srgb = false, .mask = true});
-  EXPECT_EQ(builder.addTexture({.file = at("a.tga")}), m.diffuseMap);
-  EXPECT_NE(m.opacityMap, m.diffuseMap);
+  EXPECT_EQ(builder.addTexture({.file = at("a.tga")}), m.phong().diffuseMap);
+  EXPECT_NE(m.opacityMap, m.phong().diffuseMap);
   EXPECT_EQ(builder.addTexture({.file = at("gone.tga")}), kNone);
   addTriangle(builder, builder.addMaterial(m));
   const Scene scene = builder.finish();
   const Material& read = scene.materials.at(0);
   EXPECT_EQ(scene.textures.size(), 2u);
-  EXPECT_EQ(read.glossyMap, kNone);
-  EXPECT_EQ(read.diffuseMap, 0u);
+  EXPECT_EQ(read.phong().glossyMap, kNone);
+  EXPECT_EQ(read.phong().diffuseMap, 0u);
   EXPECT_EQ(read.opacityMap, 1u);
   EXPECT_FALSE(scene.textures.at(1).srgb);
   for (const char* part : {"bad.tga: cannot read", "gone.tga: no such texture",

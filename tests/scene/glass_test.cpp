@@ -6,9 +6,9 @@ namespace {
 
 Material glass(float ior) {
   Material m;
-  m.glass = true;
-  m.ior = ior;
-  m.mirror = Vec3(1);
+  m.phong().glass = true;
+  m.phong().ior = ior;
+  m.phong().mirror = Vec3(1);
   return m;
 }
 Vec3 at(double degrees) {
@@ -59,13 +59,13 @@ TEST(Glass, SharesFollowFresnelAndDirectionsSnell) {
 
 TEST(Glass, WeightsOfPhotonsSumToOne) {
   Material tinted = glass(1.33f);
-  tinted.transmission = {0.5f, 0.7f, 1.0f};
+  tinted.phong().transmission = {0.5f, 0.7f, 1.0f};
   for (const Material& m : {glass(1.33f), tinted}) {
     const Scene scene = sceneOf(m);
     const SurfacePoint p = pointSeenFrom(at(40));
     const Split s = split(Bsdf(scene, p), Transport::Photons);
     expectClose(s.weightUp, Vec3(1), 1e-6f);
-    expectClose(s.weightDown, m.transmission, 1e-6f);
+    expectClose(s.weightDown, m.phong().transmission, 1e-6f);
   }
 }
 

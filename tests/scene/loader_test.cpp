@@ -43,11 +43,11 @@ TEST(LoaderQuirks, EachOddityIsNamedOnce) {
 
 TEST(LoaderQuirks, BackslashPathAndCarriageReturns) {
   const Scene scene = loadScene(kScenes / "test/quirks.toml");
-  const uint32_t map = materialNamed(scene, "BackslashPath").diffuseMap;
+  const uint32_t map = materialNamed(scene, "BackslashPath").phong().diffuseMap;
   ASSERT_NE(map, kNone);
-  EXPECT_EQ(map, materialNamed(scene, "Checker").diffuseMap);  // one file, read once
-  EXPECT_EQ(materialNamed(scene, "MissingTexture").diffuseMap, kNone);
-  EXPECT_EQ(materialNamed(scene, "MissingTexture").diffuse, Vec3(0.4f));
+  EXPECT_EQ(map, materialNamed(scene, "Checker").phong().diffuseMap);  // one file, read once
+  EXPECT_EQ(materialNamed(scene, "MissingTexture").phong().diffuseMap, kNone);
+  EXPECT_EQ(materialNamed(scene, "MissingTexture").phong().diffuse, Vec3(0.4f));
   for (const Material& m : scene.materials) EXPECT_EQ(m.name.find('\r'), std::string::npos);
   std::vector<std::string> files;
   for (const fs::path& f : scene.files) files.push_back(f.filename().string());
@@ -71,7 +71,7 @@ TEST_F(Loader, DamagedTextureIsAWarningToo) {
   const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 0.3 0.3 0.3\nmap_Kd bad.png\n");
   EXPECT_EQ(countContaining(scene.warnings, "bad.png: cannot read the image"), 1u)
       << joined(scene.warnings);
-  EXPECT_EQ(scene.materials.at(0).diffuseMap, kNone);
+  EXPECT_EQ(scene.materials.at(0).phong().diffuseMap, kNone);
 }
 
 // Which of its two diagonals splits a dart matters: one lies outside it.
@@ -111,14 +111,14 @@ TEST_F(Loader, MissingLibraryMakesThingsGrey) {
   EXPECT_EQ(countContaining(scene.warnings, "square.mtl: no such material library"), 1u)
       << joined(scene.warnings);
   ASSERT_EQ(scene.triangles.size(), 2u);
-  EXPECT_EQ(scene.materials.at(scene.triangles[0].material).diffuse, Vec3(0.5f));
+  EXPECT_EQ(scene.materials.at(scene.triangles[0].material).phong().diffuse, Vec3(0.5f));
 }
 
 TEST_F(Loader, OverrideReplacesTheLibrary) {
   write("other.mtl", "newmtl paint\nKd 0.25 0.5 0.75\n");
   const Scene scene =
       loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\n", "materials = \"other.mtl\"\n");
-  EXPECT_EQ(scene.materials.at(0).diffuse, Vec3(0.25f, 0.5f, 0.75f));
+  EXPECT_EQ(scene.materials.at(0).phong().diffuse, Vec3(0.25f, 0.5f, 0.75f));
   for (const fs::path& f : scene.files) EXPECT_NE(f.filename(), "square.mtl");
 }
 
@@ -142,20 +142,20 @@ TEST_F(Loader, MirrorAndGlassByTheirFields) {
     return loadMesh(kSquareObj, "newmtl paint\n" + fields).materials.at(0);
   };
   const Material mirror = material("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n");
-  EXPECT_EQ(mirror.mirror, Vec3(0.9f, 0.8f, 0.7f));
-  EXPECT_EQ(mirror.glossy, Vec3());
-  EXPECT_EQ(material("Kd 0 0 0\nKs 1 1 1\nNs 100000\nillum 2\n").mirror, Vec3(1));
+  EXPECT_EQ(mirror.phong().mirror, Vec3(0.9f, 0.8f, 0.7f));
+  EXPECT_EQ(mirror.phong().glossy, Vec3());
+  EXPECT_EQ(material("Kd 0 0 0\nKs 1 1 1\nNs 100000\nillum 2\n").phong().mirror, Vec3(1));
   const Material glossy = material("Kd 0.3 0.3 0.3\nKs 0.2 0.2 0.2\nNs 12\nillum 2\n");
-  EXPECT_EQ(glossy.glossy, Vec3(0.2f));
-  EXPECT_EQ(glossy.exponent, 12.0f);
-  EXPECT_EQ(glossy.mirror, Vec3());
+  EXPECT_EQ(glossy.phong().glossy, Vec3(0.2f));
+  EXPECT_EQ(glossy.phong().exponent, 12.0f);
+  EXPECT_EQ(glossy.phong().mirror, Vec3());
   for (const char* illum : {"4", "6", "7", "9"}) {
     const Material glass =
         material(std::string("Kd 1 1 1\nNi 1.33\nTf 0.5 0.6 0.7\nillum ") + illum + "\n");
-    EXPECT_TRUE(glass.glass) << illum;
-    EXPECT_FLOAT_EQ(glass.ior, 1.33f);
-    EXPECT_EQ(glass.transmission, Vec3(0.5f, 0.6f, 0.7f));
-    EXPECT_EQ(glass.diffuse, Vec3());
+    EXPECT_TRUE(glass.phong().glass) << illum;
+    EXPECT_FLOAT_EQ(glass.phong().ior, 1.33f);
+    EXPECT_EQ(glass.phong().transmission, Vec3(0.5f, 0.6f, 0.7f));
+    EXPECT_EQ(glass.phong().diffuse, Vec3());
   }
 }
 

@@ -21,7 +21,7 @@ class ObjNames : public SceneFiles {
   std::vector<float> reds(const std::string& obj) const {
     const Scene scene = loadText(obj);
     std::vector<float> out;
-    for (const Triangle& t : scene.triangles) out.push_back(scene.materials[t.material].diffuse.x);
+    for (const Triangle& t : scene.triangles) out.push_back(scene.materials[t.material].phong().diffuse.x);
     return out;
   }
   static std::string paint(const std::string& name, const std::string& red) {
@@ -52,7 +52,7 @@ TEST_F(ObjNames, MaterialsMayHoldBlanks) {
 TEST_F(ObjNames, PartOfANameIsNotTheName) {
   write("a.mtl", paint("my", ".25") + paint("my  left", ".5"));
   const Scene scene = loadText("mtllib a.mtl\n" + kCorners + "usemtl my left\n" + kFace);
-  EXPECT_EQ(scene.materials.at(scene.triangles.at(0).material).diffuse, Vec3(0.5f));  // grey
+  EXPECT_EQ(scene.materials.at(scene.triangles.at(0).material).phong().diffuse, Vec3(0.5f));  // grey
   EXPECT_EQ(warning(scene, "grey"),
             at("m.obj").string() +
                 ": has faces without a known material; they are grey (Kd 0.5): "
@@ -204,10 +204,10 @@ TEST(Blender, RoomIsReadWhole) {
   fs::remove(toml);
   EXPECT_EQ(joined(scene.warnings), "");
   ASSERT_EQ(scene.materials.size(), 4u);
-  EXPECT_EQ(materialNamed(scene, "my_left").diffuse, Vec3(.8f, .1f, .1f));
-  EXPECT_EQ(materialNamed(scene, "my.right_2").diffuse, Vec3(.1f, .8f, .1f));
+  EXPECT_EQ(materialNamed(scene, "my_left").phong().diffuse, Vec3(.8f, .1f, .1f));
+  EXPECT_EQ(materialNamed(scene, "my.right_2").phong().diffuse, Vec3(.1f, .8f, .1f));
   EXPECT_EQ(materialNamed(scene, "Lampe__weiß.001").emission, Vec3(10));
-  const uint32_t map = materialNamed(scene, "Fußboden_Kachel").diffuseMap;
+  const uint32_t map = materialNamed(scene, "Fußboden_Kachel").phong().diffuseMap;
   ASSERT_NE(map, kNone);
   EXPECT_EQ(scene.textures.at(map).lookup(.5f, .5f), Vec3(0, 0, 1));
 }

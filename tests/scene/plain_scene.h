@@ -36,7 +36,7 @@ inline void finishScene(Scene& scene) {
 inline Material lambert(Vec3 kd) {
   Material m;
   m.name = "lambert";
-  m.diffuse = kd;
+  m.phong().diffuse = kd;
   return m;
 }
 inline Material lamp(Vec3 radiance, bool twoSided = false) {

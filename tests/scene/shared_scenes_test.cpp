@@ -84,7 +84,7 @@ TEST(SharedScenes, VeachAjar) {
   const float area = lights.power(0).x / (1000.0f * 3.14159265f);  // one-sided, radiance 1000
   EXPECT_NEAR(area, 3.86f, 0.01f);
   EXPECT_EQ(std::count_if(scene.materials.begin(), scene.materials.end(),
-                          [](const Material& m) { return m.glass; }),
+                          [](const Material& m) { return m.phong().glass; }),
             1);
   // Its winding faces -z, into the room.
   size_t shining = 0;

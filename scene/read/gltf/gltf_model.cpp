@@ -1,8 +1,10 @@
 #define TINYGLTF_IMPLEMENTATION  // of tinygltf.h, here alone
 #include "scene/read/gltf/gltf_model.h"
 
+#include <cmath>
+#include <limits>
+
 #include "core/files.h"
-#include "core/memory.h"
 #include "core/read_file.h"
 #include "scene/read/gltf/extensions.h"
 #include "scene/read/gltf/gltf_rules.h"
@@ -56,10 +58,15 @@ const Json* extensionOf(const Json& part, const char* name) {
   return it != extensions->end() && it->is_object() ? &*it : nullptr;
 }
 
-void eraseExtras(Json& json) {
+// Also makes reals of large integers in extensions, of which tinygltf would keep 32 bits.
+void eraseExtras(Json& json, bool inExtension = false) {
   if (json.is_object()) json.erase("extras");
   if (json.is_structured()) {
-    for (Json& child : json) eraseExtras(child);
+    for (auto it = json.begin(); it != json.end(); ++it)
+      eraseExtras(*it, inExtension || (json.is_object() && it.key() == "extensions"));
+  } else if (inExtension && json.is_number_integer()) {
+    const double value = json.get<double>();
+    if (std::fabs(value) > double{std::numeric_limits<int>::max()}) json = value;
   }
 }
 

@@ -40,21 +40,22 @@ TextureUse describe(const MaterialSource& from, const std::string& field,
   return use;
 }
 
-// Calls fn(map of Material, use) for each texture of the material.
-template <typename Fn>
-void forEachTexture(const MaterialSource& from, const tinyobj::material_t& in, const Fn& fn) {
+// Sets the material's maps to number(use).
+template <typename Number>
+void setTextures(const MaterialSource& from, const tinyobj::material_t& in, Material& m,
+                 const Number& number) {
   if (isGlass(in.illum)) return;
   const auto give = [&](const std::string& field, const tinyobj::texture_option_t& options,
-                        bool srgb, bool mask, uint32_t Material::*map) {
-    if (!field.empty()) fn(map, describe(from, field, options, srgb, mask));
+                        bool srgb, bool mask, uint32_t& map) {
+    if (!field.empty()) map = number(describe(from, field, options, srgb, mask));
   };
-  give(in.diffuse_texname, in.diffuse_texopt, true, false, &Material::diffuseMap);
-  give(in.specular_texname, in.specular_texopt, true, false, &Material::glossyMap);
-  give(in.alpha_texname, in.alpha_texopt, false, true, &Material::opacityMap);
+  give(in.diffuse_texname, in.diffuse_texopt, true, false, m.phong().diffuseMap);
+  give(in.specular_texname, in.specular_texopt, true, false, m.phong().glossyMap);
+  give(in.alpha_texname, in.alpha_texopt, false, true, m.opacityMap);
 }
 
 void readGlass(const tinyobj::material_t& in, Vec3 ks, const std::string& where,
-               SceneBuilder& builder, Material& m) {
+               SceneBuilder& builder, PhongModel& m) {
   m.glass = true;
   m.diffuse = {};
   m.mirror = isBlack(ks) ? Vec3{1, 1, 1} : min(ks, Vec3{1, 1, 1});
@@ -66,9 +67,10 @@ void readGlass(const tinyobj::material_t& in, Vec3 ks, const std::string& where,
 }
 
 void readOpaque(const tinyobj::material_t& in, Vec3 ks, Material& m) {
+  PhongModel& p = m.phong();
   const bool mirror = in.illum == 3 || in.illum == 5 || in.illum == 8 ||
-                      (isBlack(m.diffuse) && m.exponent >= kMirrorExponent);
-  (mirror ? m.mirror : m.glossy) = ks;
+                      (isBlack(p.diffuse) && p.exponent >= kMirrorExponent);
+  (mirror ? p.mirror : p.glossy) = ks;
   m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
 }
 
@@ -96,8 +98,11 @@ void warnOfIgnored(const tinyobj::material_t& in, const std::string& where, Scen
 
 void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder) {
-  forEachTexture(from, in,
-                 [&](uint32_t Material::*, const TextureUse& use) { builder.expectTexture(use); });
+  Material unused;
+  setTextures(from, in, unused, [&](const TextureUse& use) {
+    builder.expectTexture(use);
+    return kNone;
+  });
 }
 
 uint32_t addMaterial(const MaterialSource& from, const tinyobj::material_t& in,
@@ -105,23 +110,22 @@ uint32_t addMaterial(const MaterialSource& from, const tinyobj::material_t& in,
   const std::string where = from.library.string() + ": material '" + in.name + "': ";
   Material m;
   m.name = in.name;
-  m.diffuse = nonNegative(toVec3(in.diffuse));
+  PhongModel& p = m.phong();
+  p.diffuse = nonNegative(toVec3(in.diffuse));
   const Vec3 ks = nonNegative(toVec3(in.specular));
   const auto exponent = static_cast<float>(in.shininess);
-  m.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMaxExponent) : 0.0f;
+  p.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMaxExponent) : 0.0f;
   if (isGlass(in.illum))
-    readGlass(in, ks, where, builder, m);
+    readGlass(in, ks, where, builder, p);
   else
     readOpaque(in, ks, m);
-  const float limit = maxComponent(m.diffuse + m.glossy + (m.glass ? Vec3{} : m.mirror));
+  const float limit = maxComponent(p.diffuse + p.glossy + (p.glass ? Vec3{} : p.mirror));
   const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
   if (limit > 1.0f && !hasMap) {
     builder.warn(where + "Kd + Ks exceeds 1; both are scaled down so that energy is conserved");
   }
   readEmission(in, where, builder, m);
-  forEachTexture(from, in, [&](uint32_t Material::*map, const TextureUse& use) {
-    m.*map = builder.addTexture(use);
-  });
+  setTextures(from, in, m, [&](const TextureUse& use) { return builder.addTexture(use); });
   warnOfIgnored(in, where, builder);
   return builder.addMaterial(std::move(m));
 }

@@ -151,12 +151,12 @@ TEST(LightTracer, AgreesWithMirrorsAndGloss) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {32, 32};
   Material& tall = scene.materials.at(scene.triangles.back().material);
-  tall.diffuse = Vec3{0.2f};
-  tall.mirror = Vec3{0.7f};
+  tall.phong().diffuse = Vec3{0.2f};
+  tall.phong().mirror = Vec3{0.7f};
   Material& wall = scene.materials.at(scene.triangles.front().material);
-  wall.diffuse = Vec3{0.3f};
-  wall.glossy = Vec3{0.5f};
-  wall.exponent = 12.0f;
+  wall.phong().diffuse = Vec3{0.3f};
+  wall.phong().glossy = Vec3{0.5f};
+  wall.phong().exponent = 12.0f;
   expectTheSameImage(World(std::move(scene)), 16, 0.08, 0.015);
 }
 

@@ -31,12 +31,12 @@ TEST(PathTracer, TwoPatchFormFactor) {
   double sum = 0.0;
   size_t covered = 0;
   for (size_t i = 0; i < r.size(); ++i) {
-    if (albedo[i] < 0.999f * receiver->diffuse.x) continue;
+    if (albedo[i] < 0.999f * receiver->phong().diffuse.x) continue;
     sum += double{r[i]};
     ++covered;
   }
   ASSERT_GT(covered, 100u);
-  const double expected = double{emitter->emission.x} * double{receiver->diffuse.x} * 0.012404;
+  const double expected = double{emitter->emission.x} * double{receiver->phong().diffuse.x} * 0.012404;
   EXPECT_NEAR(sum / double(covered), expected, 0.02 * expected);
 }
 

@@ -1,0 +1,129 @@
+#include "scene/textures/expression.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bnvpl {
+
+namespace {
+
+// Beyond this many texels or squares, floats have no fraction left: the coordinate counts as 0.
+constexpr float kLargest = 0x1p22f;
+float wholeBelow(float x) { return std::fabs(x) < kLargest ? std::floor(x) : 0.0f; }
+
+// The texel that stands for column or row i of n. False: black.
+bool wrapped(Wrap wrap, int64_t i, int64_t n, uint32_t& out) {
+  if (wrap == Wrap::Black && (i < 0 || i >= n)) return false;
+  if (wrap == Wrap::Clamp) i = std::clamp<int64_t>(i, 0, n - 1);
+  if (wrap == Wrap::Repeat) i = (i % n + n) % n;
+  if (wrap == Wrap::Mirror) {
+    i = (i % (2 * n) + 2 * n) % (2 * n);
+    if (i >= n) i = 2 * n - 1 - i;
+  }
+  out = static_cast<uint32_t>(i);
+  return true;
+}
+
+// Bilinear; x texel's colour, w its alpha.
+struct Texel {
+  Vec3 colour;
+  float alpha = 0.0f;
+};
+Texel texelsAt(const Texture& t, const TextureExpression& e, float u, float v) {
+  u = u * t.scale[0] + t.offset[0];
+  v = v * t.scale[1] + t.offset[1];
+  const float x = u * static_cast<float>(t.width) - 0.5f;
+  const float y = (1.0f - v) * static_cast<float>(t.height) - 0.5f;
+  if (!(std::fabs(x) < 0x1p60f && std::fabs(y) < 0x1p60f)) return {};
+  const float left = std::floor(x), top = std::floor(y);
+  const auto column = static_cast<int64_t>(left), row = static_cast<int64_t>(top);
+  Texel sum;
+  for (int k = 0; k < 4; ++k) {
+    const int right = k & 1, below = k >> 1;
+    const float weight =
+        (right ? x - left : 1.0f - (x - left)) * (below ? y - top : 1.0f - (y - top));
+    uint32_t i = 0, j = 0;
+    if (!wrapped(e.wrapU, column + right, t.width, i) ||
+        !wrapped(e.wrapV, row + below, t.height, j))
+      continue;
+    if (e.channel == Channel::Alpha)
+      sum.alpha += weight * t.texelAlpha(i, j);
+    else
+      sum.colour += weight * t.texel(i, j);
+  }
+  return sum;
+}
+
+Vec3 channelOf(Channel channel, const Texel& texel) {
+  switch (channel) {
+    case Channel::Rgb:
+      return texel.colour;
+    case Channel::Red:
+      return Vec3(texel.colour.x);
+    case Channel::Green:
+      return Vec3(texel.colour.y);
+    case Channel::Blue:
+      return Vec3(texel.colour.z);
+    case Channel::Alpha:
+      return Vec3(texel.alpha);
+    case Channel::Mean:
+      return Vec3(mean(texel.colour));
+  }
+  return {};
+}
+
+}  // namespace
+
+Vec3 TextureEvaluator::at(uint32_t expression, float u, float v) const {
+  if (expression == kNone) return Vec3(1);
+  const TextureExpression& e = expressions_[expression];
+  const float tu = e.uv.a * u + e.uv.b * v + e.uv.c, tv = e.uv.d * u + e.uv.e * v + e.uv.f;
+  switch (e.kind) {
+    case TextureExpression::Kind::Constant:
+      return e.value;
+    case TextureExpression::Kind::Image: {
+      if (e.image == kNone) return max(e.invert ? Vec3(1) - e.value : e.value, Vec3());
+      const Vec3 c = e.value * channelOf(e.channel, texelsAt(textures_[e.image], e, tu, tv));
+      return max(e.invert ? Vec3(1) - c : c, Vec3());
+    }
+    case TextureExpression::Kind::Product:
+      return at(e.first, u, v) * at(e.second, u, v);
+    case TextureExpression::Kind::Mix: {
+      const float amount = std::clamp(at(e.amount, u, v).x, 0.0f, 1.0f);
+      return (1.0f - amount) * at(e.first, u, v) + amount * at(e.second, u, v);
+    }
+    case TextureExpression::Kind::Checkerboard: {
+      const float sum = wholeBelow(tu) + wholeBelow(tv);
+      return at(sum == 2.0f * std::floor(0.5f * sum) ? e.first : e.second, u, v);
+    }
+  }
+  return {};
+}
+
+Vec3 TextureEvaluator::mean(uint32_t expression) const {
+  constexpr int kSide = 64;
+  double sum[3] = {};
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const Vec3 c =
+        at(expression, (float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide);
+    for (size_t k = 0; k < 3; ++k) sum[k] += double{c[k]};
+  }
+  return Vec3(float(sum[0]), float(sum[1]), float(sum[2])) * (1.0f / (kSide * kSide));
+}
+
+float TextureEvaluator::step(uint32_t expression) const {
+  constexpr float kCoarsest = 1.0f / 256;
+  if (expression == kNone) return kCoarsest;
+  const TextureExpression& e = expressions_[expression];
+  float finest = std::min({kCoarsest, step(e.first), step(e.second)});
+  if (e.kind == TextureExpression::Kind::Image && e.image != kNone) {
+    const Texture& t = textures_[e.image];
+    const float scale = std::max({std::fabs(e.uv.a), std::fabs(e.uv.b), std::fabs(e.uv.d),
+                                  std::fabs(e.uv.e), 1e-3f}) *
+                        std::max({std::fabs(t.scale[0]), std::fabs(t.scale[1]), 1e-3f});
+    finest = std::min(finest, 1.0f / (scale * static_cast<float>(std::max(t.width, t.height))));
+  }
+  return finest;
+}
+
+}  // namespace bnvpl

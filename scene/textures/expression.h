@@ -1,0 +1,103 @@
+// Expressions over textures: what a parameter of a material looks up.
+//
+// An expression is a node in Scene::expressions that names its operands by their numbers there.
+// Operands have smaller numbers than what uses them, so that no expression contains itself.
+//
+//   const uint32_t image = builder.addTexture({"wood.png"});                  // may be kNone
+//   const uint32_t wood = builder.addExpression(imageExpression(image));
+//   const uint32_t dark = builder.addExpression(productExpression(wood, builder.addExpression(
+//                                                  constantExpression(Vec3(0.5f)))));
+//   paint.reflectance = {Vec3(1), dark};
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/vec3.h"
+#include "scene/textures/texture.h"
+
+namespace bnvpl {
+
+// u' = a u + b v + c, v' = d u + e v + f. Texture coordinates have v = 0 at the bottom row of an
+// image.
+struct UvTransform {
+  float a = 1, b = 0, c = 0, d = 0, e = 1, f = 0;
+  friend bool operator==(const UvTransform&, const UvTransform&) = default;
+};
+
+enum class Wrap : uint32_t { Repeat, Mirror, Clamp, Black };
+// What is taken of a texel. A parameter that is one number takes the first of the three: name a
+// channel, or Mean, for it. Alpha is the image's own, not decoded: not of images read as masks.
+enum class Channel : uint32_t { Rgb, Red, Green, Blue, Alpha, Mean };
+
+struct TextureExpression {
+  enum class Kind : uint32_t {
+    Constant,     // value
+    Image,        // value * texel; 1 - that where `invert`; never below 0
+    Product,      // first * second
+    Mix,          // (1 - amount) * first + amount * second
+    Checkerboard  // first where floor(u') + floor(v') is even, else second
+  };
+  Kind kind = Kind::Constant;
+  Vec3 value{1, 1, 1};
+  uint32_t image = kNone;  // into Scene::textures; kNone: the texel is 1
+  Channel channel = Channel::Rgb;
+  Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
+  bool invert = false;
+  UvTransform uv;                                          // of images and checkerboards
+  uint32_t first = kNone, second = kNone, amount = kNone;  // into Scene::expressions
+};
+
+inline TextureExpression constantExpression(Vec3 value) {
+  TextureExpression e;
+  e.value = value;
+  return e;
+}
+inline TextureExpression imageExpression(uint32_t image, Channel channel = Channel::Rgb) {
+  TextureExpression e;
+  e.kind = TextureExpression::Kind::Image;
+  e.image = image;
+  e.channel = channel;
+  return e;
+}
+inline TextureExpression productExpression(uint32_t first, uint32_t second) {
+  TextureExpression e;
+  e.kind = TextureExpression::Kind::Product;
+  e.first = first, e.second = second;
+  return e;
+}
+inline TextureExpression mixExpression(uint32_t first, uint32_t second, uint32_t amount) {
+  TextureExpression e = productExpression(first, second);
+  e.kind = TextureExpression::Kind::Mix;
+  e.amount = amount;
+  return e;
+}
+inline TextureExpression checkerboardExpression(uint32_t first, uint32_t second,
+                                                const UvTransform& uv) {
+  TextureExpression e = productExpression(first, second);
+  e.kind = TextureExpression::Kind::Checkerboard;
+  e.uv = uv;
+  return e;
+}
+
+// What an expression is at texture coordinates, which must be finite; linear, bilinear between
+// texels.
+class TextureEvaluator {
+ public:
+  TextureEvaluator(std::span<const TextureExpression> expressions,
+                   std::span<const Texture> textures)
+      : expressions_(expressions), textures_(textures) {}
+  Vec3 at(uint32_t expression, float u, float v) const;
+  // Mean over texture coordinates from 0 to 1, by a grid of 64 x 64.
+  Vec3 mean(uint32_t expression) const;
+  // A step in texture coordinates in which the expression changes by about a texel of its finest
+  // image.
+  float step(uint32_t expression) const;
+
+ private:
+  std::span<const TextureExpression> expressions_;
+  std::span<const Texture> textures_;
+};
+
+}  // namespace bnvpl
