@@ -19,6 +19,12 @@ FilePoint Affine::point(const FilePoint& p) const {
   return q;
 }
 
+FilePoint Affine::direction(const FilePoint& d) const {
+  FilePoint q;
+  for (size_t i = 0; i < 3; ++i) q[i] = m[i][0] * d[0] + m[i][1] * d[1] + m[i][2] * d[2];
+  return q;
+}
+
 Vec3 Affine::normal(const FilePoint& n) const {
   // The cofactor matrix is the inverse transpose but for the determinant, whose sign matters.
   FilePoint q{};
@@ -53,6 +59,17 @@ Affine Affine::fromParts(const FilePoint& translate, const FilePoint& rotateRad,
     a.m[i][3] = translate[i];
   }
   return a;
+}
+
+Affine operator*(const Affine& outer, const Affine& inner) {
+  Affine out;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 4; ++j) {
+      out.m[i][j] = j == 3 ? outer.m[i][3] : 0.0;
+      for (size_t k = 0; k < 3; ++k) out.m[i][j] += outer.m[i][k] * inner.m[k][j];
+    }
+  }
+  return out;
 }
 
 FilePoint sceneOrigin(const FilePoint& lower, const FilePoint& upper) {

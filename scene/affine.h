@@ -15,12 +15,16 @@ struct Affine {
   std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
   FilePoint point(const FilePoint& p) const;
+  FilePoint direction(const FilePoint& d) const;  // turned and scaled, not moved
   Vec3 normal(const FilePoint& n) const;  // by the inverse transpose; unit length, or 0
   double determinant() const;             // negative: mirrors, so that windings must turn
   // Scales, then turns about x, then y, then z, then moves.
   static Affine fromParts(const FilePoint& translate, const FilePoint& rotateRad,
                           const FilePoint& scale);
 };
+
+// `inner` first.
+Affine operator*(const Affine& outer, const Affine& inner);
 
 // Where coordinates should count from so that floats resolve a scene of these bounds: the origin of
 // the files unless the scene lies many times its own size away from it.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 
+#include "scene/read/gltf/load_gltf.h"
 #include "scene/read/pbrt/read_pbrt.h"
 #include "scene/read/toml/scene_toml.h"
 #include "scene/scene_builder.h"
@@ -17,7 +18,8 @@ struct Format {
   void (*read)(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 };
 constexpr std::array kFormats{Format{".toml", readSceneToml}, Format{".pbrt", readScenePbrt},
-                              Format{".pbrt.gz", readScenePbrt}};
+                              Format{".pbrt.gz", readScenePbrt}, Format{".gltf", readGltf},
+                              Format{".glb", readGltf}};
 
 const Format& formatOf(const fs::path& file) {
   std::string name = file.filename().string(), known;

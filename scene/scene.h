@@ -28,6 +28,13 @@ struct Camera {
   float verticalFovRad = 1.0f;
 };
 
+// A camera of the scene's file, and the film that it asks for.
+struct View {
+  std::string name;  // empty: it has none
+  Camera camera;
+  Film film;
+};
+
 // One corner index triple into each of Scene's arrays. `normal` and `uv` may be kNone.
 struct Triangle {
   std::array<uint32_t, 3> position, normal, uv;
@@ -55,9 +62,17 @@ struct LightSpec {
 inline constexpr const char* kNoLight =
     "has no light with power: its images are black; add a [[light]] or an emissive material (Ke)";
 
+// What the files call a mesh, before anything is left out of it.
+struct MeshRecord {
+  std::string name;
+  size_t triangles = 0, instances = 0;  // triangles of one instance
+};
+
 struct Scene {
   Film film;
   Camera camera;
+  // All cameras of the file; film and camera are the first's until choose_view.h takes another.
+  std::vector<View> views;
 
   std::vector<Vec3> positions;  // one more than indexed: Embree reads 16 bytes at each vertex
   std::vector<Vec3> normals;    // unit length
@@ -69,6 +84,7 @@ struct Scene {
   // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).
   std::array<double, 3> origin{};
 
+  std::vector<MeshRecord> meshes;  // for people
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<TextureExpression> expressions;

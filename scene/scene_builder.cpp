@@ -25,6 +25,18 @@ bool isFinite(const FilePoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
+// From above and to the right, looking at the middle.
+Camera cameraThatSees(const Bounds& bounds) {
+  Camera c;
+  c.verticalFovRad = 0.7f;
+  c.forward = normalize(Vec3{-1.0f, -0.6f, -1.2f});
+  c.right = normalize(cross(c.forward, {0, 1, 0}));
+  c.up = cross(c.right, c.forward);
+  const float distance = 0.5f * bounds.diagonal() / std::sin(0.5f * c.verticalFovRad);
+  c.position = bounds.center() - distance * c.forward;
+  return c;
+}
+
 bool hasTexture(const Material& m) {
   if (const auto* p = std::get_if<PhongModel>(&m.model)) {
     if (p->diffuseMap != kNone || p->glossyMap != kNone) return true;
@@ -38,12 +50,25 @@ bool hasTexture(const Material& m) {
 
 SceneBuilder::SceneBuilder(fs::path sceneFile) { scene_.files.push_back(std::move(sceneFile)); }
 
+void SceneBuilder::setFilm(const Film& film) {
+  scene_.film = film;
+  for (View& view : scene_.views) view.film = film;
+}
+
 void SceneBuilder::setCamera(const FilePoint& position, const Camera& camera) {
-  cameraPosition_ = position;
-  scene_.camera = camera;
+  scene_.views.clear();
+  viewPositions_.clear();
+  addCamera("", position, camera, scene_.film);
+}
+
+void SceneBuilder::addCamera(const std::string& name, const FilePoint& position,
+                             const Camera& camera, const Film& film) {
+  scene_.views.push_back({name, camera, film});
+  viewPositions_.push_back(position);
 }
 
 uint32_t SceneBuilder::addTexture(const TextureUse& use) {
+  if (use.bytes) return textures_.add(use);
   if (!isRegularFile(use.file)) {
     warn(use.file.string() + ": no such texture; the plain material colour is used");
     return kNone;
@@ -130,7 +155,14 @@ SceneBuilder::Base SceneBuilder::addCorners(const fs::path& file, const Mesh& me
   return base;
 }
 
+void SceneBuilder::recordMesh(const std::string& name, size_t triangles) {
+  const auto [it, isNew] = meshOfName_.try_emplace(name, scene_.meshes.size());
+  if (isNew) scene_.meshes.push_back({name, triangles, 0});
+  ++scene_.meshes[it->second].instances;
+}
+
 size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& transform) {
+  recordMesh(file.string(), mesh.triangles.size());
   const Base base = addCorners(file, mesh, transform);
   const bool mirrored = transform.determinant() < 0.0;
   const auto moved = [](uint32_t index, size_t begin, size_t end) {
@@ -224,7 +256,6 @@ void SceneBuilder::roundPositions() {
   scene_.positions.reserve(points_.size() + 1);
   for (const FilePoint& p : points_) scene_.positions.push_back(fromOrigin(p, scene_.origin));
   points_ = {};
-  scene_.camera.position = fromOrigin(cameraPosition_, scene_.origin);
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
     LightSpec& light = scene_.lights[i];
     if (light.type == LightType::Point || light.type == LightType::Spot)
@@ -298,6 +329,17 @@ void SceneBuilder::sortByMask() {
   scene_.maskedBegin = static_cast<uint32_t>(firstMasked - scene_.triangles.begin());
 }
 
+void SceneBuilder::placeViews() {
+  for (size_t i = 0; i < scene_.views.size(); ++i)
+    scene_.views[i].camera.position = fromOrigin(viewPositions_[i], scene_.origin);
+  if (scene_.views.empty()) {
+    scene_.views.push_back({"", cameraThatSees(scene_.bounds), scene_.film});
+    warn(scene_.name() + ": has no camera; one is placed that sees the whole scene");
+  }
+  scene_.camera = scene_.views.front().camera;
+  scene_.film = scene_.views.front().film;
+}
+
 void SceneBuilder::requireSize() const {
   if (scene_.triangles.empty())
     throw InputError(scene_.name() + ": has no triangle; give it a mesh that has an area");
@@ -320,6 +362,7 @@ Scene SceneBuilder::finish() {
   }
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex
   requireSize();
+  placeViews();
   if (!scene_.hasLight()) warn(scene_.name() + ": " + kNoLight);
   scene_.contentHash = hashScene(scene_);
   return std::exchange(scene_, {});

@@ -14,6 +14,7 @@
 // the loader refuses or repairs what is not, and warns. Numbers that add...() returns count from 0.
 #pragma once
 
+#include <map>
 #include <set>
 #include <span>
 
@@ -41,9 +42,14 @@ class SceneBuilder {
   // `sceneFile` names the scene in messages and is the first of the files.
   explicit SceneBuilder(fs::path sceneFile);
 
-  void setFilm(const Film& film) { scene_.film = film; }
+  // Of a format that has one camera.
+  void setFilm(const Film& film);
   // camera.position is what `position` becomes.
   void setCamera(const FilePoint& position, const Camera& camera);
+  // Of a format that has several; the first is the scene's unless the user chooses. A scene without
+  // any camera gets one that sees all of it, with a warning.
+  void addCamera(const std::string& name, const FilePoint& position, const Camera& camera,
+                 const Film& film);
 
   // A texture that will be wanted: it is decoded while the loader goes on. Nothing comes of it but
   // time.
@@ -91,6 +97,7 @@ class SceneBuilder {
   };
   Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
   uint32_t greyMaterial();
+  void recordMesh(const std::string& name, size_t triangles);
 
   // Of finish(), in this order:
   void resolveTextures();
@@ -99,15 +106,17 @@ class SceneBuilder {
   void dropUnusable();
   void dropDoubledLamps();
   void sortByMask();
+  void placeViews();
   void requireSize() const;
 
   Scene scene_;
   TexturePool textures_;
   std::vector<FilePoint> points_;  // what scene_.positions will be
   std::vector<Part> parts_;
-  std::vector<uint32_t> lookups_;  // of scene_.expressions, operands included
-  FilePoint cameraPosition_{};
+  std::vector<uint32_t> lookups_;          // of scene_.expressions, operands included
+  std::vector<FilePoint> viewPositions_;   // of scene_.views
   std::vector<FilePoint> lightPositions_;  // of scene_.lights
+  std::map<std::string, size_t> meshOfName_;  // in scene_.meshes
   uint32_t grey_ = kNone;
   std::set<std::string> warned_;
 };

@@ -10,6 +10,7 @@ packages=(
   libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB asks for Boost
   libopenexr-dev zlib1g-dev libstb-dev                    # images
   libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
+  libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums
   libgtest-dev libbenchmark-dev                           # tests, benchmarks
   python3-numpy python3-matplotlib python3-openimageio    # evaluation

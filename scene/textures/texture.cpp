@@ -56,7 +56,7 @@ std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
                   {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
 }
 
-Texture decodeTexture(const fs::path& file, const std::string& bytes, bool srgb) {
+Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb) {
   Pixels pixels = decodePixels(file, bytes, 4);
   Texture t;
   t.width = pixels.width;
@@ -118,7 +118,11 @@ Vec3 EnvironmentImage::lookup(float u, float v) const {
 }
 
 Texture loadTexture(const fs::path& file, bool srgb, bool mask) {
-  Texture t = decodeTexture(file, readBytes(file), srgb);
+  return decodeTexture(file, readBytes(file), srgb, mask);
+}
+
+Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask) {
+  Texture t = decodeColours(name, bytes, srgb);
   if (mask) {
     bool varies = false;
     for (size_t i = 3; i < t.rgba.size(); i += 4) varies |= t.rgba[i] != 255;
@@ -150,7 +154,7 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
   const std::string bytes = readBytes(file);
   if (isRadianceHdr(bytes)) return readRadianceHdr(file, bytes);
   if (isPfm(bytes)) return readPfm(file, bytes);
-  const Texture t = decodeTexture(file, bytes, true);
+  const Texture t = decodeColours(file, bytes, true);
   EnvironmentImage e{t.width, t.height, {}};
   e.radiance.resize(size_t{t.width} * t.height);
   for (size_t i = 0; i < e.radiance.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/errors.h"
@@ -15,6 +16,7 @@ inline constexpr uint32_t kNone = 0xffffffffu;
 
 // 8-bit texture, repeated in both directions, v = 0 at the bottom row as in OBJ.
 struct Texture {
+  std::string name;  // its file, for people
   uint32_t width = 0, height = 0;
   bool srgb = true;           // decode to linear on lookup; false for masks and other plain data
   std::vector<uint8_t> rgba;  // row-major from the top
@@ -37,6 +39,8 @@ struct EnvironmentImage {
 // PNG, JPEG, TGA or BMP, by content. For a mask, the alpha channel is filled from the image's own
 // alpha if it has one that varies, else from its luminance. Throws InputError.
 Texture loadTexture(const fs::path& file, bool srgb, bool mask);
+// The same of its bytes; `name` is for messages.
+Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask);
 
 // EXR, HDR, PFM, or an 8-bit image (sRGB decoded). Throws InputError; for negative values too,
 // unless they are to be 0.

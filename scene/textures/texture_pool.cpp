@@ -32,7 +32,9 @@ TexturePool::Entry& TexturePool::start(const TextureUse& use) {
     try {
       const ReadGuard guard(use.file);
       try {
-        entry.texture = loadTexture(use.file, use.srgb, use.mask);
+        entry.texture = use.bytes ? decodeTexture(use.file, *use.bytes, use.srgb, use.mask)
+                                  : loadTexture(use.file, use.srgb, use.mask);
+        entry.texture.name = use.file.string();
         entry.texture.scale = use.scale;
         entry.texture.offset = use.offset;
       } catch (const InputError& e) {
@@ -47,7 +49,7 @@ TexturePool::Entry& TexturePool::start(const TextureUse& use) {
 }
 
 void TexturePool::expect(const TextureUse& use) {
-  if (isRegularFile(use.file)) start(use);
+  if (use.bytes || isRegularFile(use.file)) start(use);
 }
 
 uint32_t TexturePool::add(const TextureUse& use) {

@@ -5,6 +5,7 @@
 
 #include <exception>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "scene/textures/texture.h"
@@ -13,10 +14,11 @@ namespace bnvpl {
 
 // A file and how a material reads it.
 struct TextureUse {
-  fs::path file;
+  fs::path file;  // or a name of its own for an image that lies in another file:
   bool srgb = true;                                // decode to linear on lookup
   bool mask = false;                               // fill the alpha channel: see loadTexture
   std::array<float, 2> scale{1, 1}, offset{0, 0};  // of the texture coordinates
+  std::shared_ptr<const std::string> bytes = {};   // that image, as PNG, JPEG, ...
 };
 
 class TexturePool {

@@ -1,5 +1,6 @@
 #include "tools/common/scene_options.h"
 
+#include "scene/choose_view.h"
 #include "scene/scene_hash.h"
 #include "tools/common/film_size.h"
 
@@ -7,23 +8,33 @@ namespace bnvpl {
 
 namespace {
 
-CLI::Option* addDefine(CLI::App& cli, SceneOptions& options) {
-  return cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
+// What follows the scene's name, all of which needs `scene`.
+void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene) {
+  cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
       ->take_all()
-      ->allow_extra_args(false);  // or it would swallow what follows
+      ->allow_extra_args(false)  // or it would swallow what follows
+      ->needs(scene);
+  CLI::Option* camera = cli.add_option("--camera", options.camera,
+                                       "camera of the scene's file; the first unless given")
+                            ->type_name("NAME|NUMBER")
+                            ->needs(scene);
+  cli.add_option("--view", options.view,
+                 "a .toml of [film] and [camera] in place of the scene's own")
+      ->needs(scene)
+      ->excludes(camera);
 }
 
 }  // namespace
 
 void addSceneOptions(CLI::App& cli, SceneOptions& options) {
-  cli.add_option("scene", options.file, "the scene (.toml)")->required();
-  addDefine(cli, options);
+  addOptions(cli, options,
+             cli.add_option("scene", options.file, "the scene (.toml, .gltf, .glb)")->required());
 }
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {
   CLI::Option* option = cli.add_option("--scene", options.file, help);
-  addDefine(cli, options)->needs(option);
+  addOptions(cli, options, option);
   return option;
 }
 
@@ -37,6 +48,14 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
     defines[d.substr(0, equals)] = d.substr(equals + 1);
   }
   Scene scene = loadScene(options.file, defines);
+  if (!options.view.empty()) {
+    useViewFile(options.view, scene);
+  } else if (!options.camera.empty()) {
+    chooseCamera(options.camera, scene);
+  } else if (scene.views.size() > 1) {
+    scene.warnings.push_back(scene.name() + ": has several cameras, " + cameraList(scene) +
+                             "; the first is taken, another by --camera");
+  }
   if (warnings == Warnings::Print) printWarnings(tool, scene.warnings);
   return scene;
 }

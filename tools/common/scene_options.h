@@ -10,14 +10,16 @@ namespace bnvpl {
 struct SceneOptions {
   fs::path file;
   std::vector<std::string> defines;  // NAME=VALUE
+  std::string camera;                // of the file, by name or number; empty: its first
+  fs::path view;                     // instead of any of its cameras; empty: none
 };
 
-// The positional argument SCENE and --define.
+// The positional argument SCENE, --define, --camera and --view.
 void addSceneOptions(CLI::App& cli, SceneOptions& options);
-// The same for tools that need a scene at times: --scene SCENE and --define.
+// The same for tools that need a scene at times: --scene SCENE in place of the argument.
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);
 
-// Loads the scene and prints its warnings in the tool's name. They are silent where an earlier
+// Loads the scene, chooses the camera, and prints its warnings in the tool's name. They are silent where an earlier
 // stage has read the same scene, by its content, and so has said them.
 enum class Warnings { Print, Silent };
 Scene loadSceneFor(const std::string& tool, const SceneOptions& options,

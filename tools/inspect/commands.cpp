@@ -12,6 +12,8 @@
 #include "tools/inspect/check.h"
 #include "tools/inspect/export_table.h"
 #include "tools/inspect/info.h"
+#include "tools/inspect/scene_report.h"
+#include "tools/inspect/write_scene.h"
 
 namespace bnvpl {
 
@@ -92,6 +94,33 @@ int runExport(const ExportCommand& command, const ToolOptions& tool) {
   exportTable(table, files.add(command.output));
   summary.add("rows", table.size(), "wrote " + std::to_string(table.size()) + " rows");
   summary.finish(tool, files);
+  return kExitOk;
+}
+
+int runScene(const SceneCommand& command, const ToolOptions& tool) {
+  Summary summary("vpl-inspect");
+  RunFiles used;
+  used.reads("scene", command.scene.file).writes(tool);
+  if (!command.toml.empty()) {
+    for (const char* name : {"scene.toml", "scene.obj", "scene.mtl"})
+      used.writes("--to-toml", command.toml / name);
+    createSceneFolder(command.toml);
+  }
+  used.check();
+  // Its warnings are part of the answer.
+  const Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  used.ready(scene.files);
+  const RayScene rays(scene);
+  Json description = describeScene(scene, LightSet(rays));
+  OutputSet files;
+  if (!command.toml.empty()) {
+    description["not_in_toml"] = writeSceneToml(scene, command.toml, files);
+    printWarnings("vpl-inspect", description["not_in_toml"].get<std::vector<std::string>>());
+  }
+  const std::string text = command.json ? description.dump(2) + "\n" : sceneText(description);
+  summary.add("scene", std::move(description));
+  summary.save(tool, files);
+  print(text);
   return kExitOk;
 }
 

@@ -27,6 +27,11 @@ struct PlotCommand {
   bool colourGiven = false;  // else flux for lit rows, plain for others
   std::string size;          // WxH, empty: the scene's film
 };
+struct SceneCommand {
+  SceneOptions scene;
+  bool json = false;
+  fs::path toml;  // a folder for the scene in our own format; empty: none
+};
 struct CompareCommand {
   fs::path imageA, imageB, secondB, mask, diff;
   std::string layer, layerA, layerB;  // layerA and layerB go first
@@ -43,6 +48,7 @@ int runInfo(const InfoCommand& command, const ToolOptions& tool);
 int runCheck(const CheckCommand& command, const ToolOptions& tool);
 int runExport(const ExportCommand& command, const ToolOptions& tool);
 int runPlot(const PlotCommand& command, const ToolOptions& tool);
+int runScene(const SceneCommand& command, const ToolOptions& tool);
 int runCompare(const CompareCommand& command, const ToolOptions& tool);
 
 // The options of `compare`.

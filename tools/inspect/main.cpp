@@ -36,6 +36,16 @@ CLI::App* addExport(CLI::App& cli, ExportCommand& c) {
   return sub;
 }
 
+CLI::App* addScene(CLI::App& cli, SceneCommand& c) {
+  CLI::App* sub = cli.add_subcommand(
+      "scene", "What is understood of a scene: meshes, materials, lights with their power, cameras, "
+               "textures, and all that is ignored or approximated.");
+  addSceneOptions(*sub, c.scene);
+  sub->add_flag("--json", c.json, "the same as JSON");
+  sub->add_option("--to-toml", c.toml, "also write it as scene.toml, OBJ and MTL to this folder");
+  return sub;
+}
+
 CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   CLI::App* sub =
       cli.add_subcommand("plot", "Draw the rows as dots over the camera's view of the scene.");
@@ -70,10 +80,12 @@ int main(int argc, char** argv) {
   CheckCommand check;
   ExportCommand exported;
   PlotCommand plot;
+  SceneCommand scene;
   CompareCommand compare;
   const CLI::App* infoCli = addInfo(cli, info);
   const CLI::App* checkCli = addCheck(cli, check);
   const CLI::App* exportCli = addExport(cli, exported);
+  const CLI::App* sceneCli = addScene(cli, scene);
   CLI::App* plotCli = addPlot(cli, plot);
   addDepfileOption(*plotCli, tool);
   addCompare(cli, compare);
@@ -82,6 +94,7 @@ int main(int argc, char** argv) {
     if (infoCli->parsed()) return runInfo(info, tool);
     if (checkCli->parsed()) return runCheck(check, tool);
     if (exportCli->parsed()) return runExport(exported, tool);
+    if (sceneCli->parsed()) return runScene(scene, tool);
     if (plotCli->parsed()) return runPlot(plot, tool);
     return runCompare(compare, tool);
   });

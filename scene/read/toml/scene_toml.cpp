@@ -4,20 +4,17 @@
 #include <numbers>
 #include <set>
 
-#include "core/sampling.h"
 #include "scene/read/obj/load_obj.h"
 #include "scene/read/toml/toml_section.h"
+#include "scene/read/toml/toml_view.h"
 
 namespace bnvpl {
 
 namespace {
 
-constexpr float kRadPerDeg = kPi / 180.0f;
 constexpr double kMost = TomlSection::kMost;
 // A smaller sun is a point: the direction of no float ray lies in it.
 constexpr double kMinSunDeg = 1e-4;
-
-float radians(double degrees) { return static_cast<float>(degrees) * kRadPerDeg; }
 
 // Names in the file: with ${NAME} filled in, and relative to its folder unless absolute.
 class FileNames {
@@ -56,30 +53,6 @@ class FileNames {
   fs::path folder_;
   const Defines& defines_;
 };
-
-Film readFilm(const TomlSection& s) {
-  return {s.integer("width", 1, kMaxFilmSide), s.integer("height", 1, kMaxFilmSide)};
-}
-
-// But for the position.
-Camera readCamera(const TomlSection& s, const FilePoint& position) {
-  Camera c;
-  if (s.has("look_at") == s.has("forward")) s.fail("needs exactly one of 'look_at' and 'forward'");
-  if (s.has("forward")) {
-    c.forward = s.direction("forward");
-  } else {
-    if (!toUnit(s.point("look_at"), position, c.forward))
-      s.fail(s.node("look_at"), "'look_at' equals 'position'; move one of them");
-  }
-  const Vec3 up = s.has("up") ? s.direction("up") : Vec3{0, 1, 0};
-  const Vec3 right = cross(c.forward, up);
-  if (length(right) < 1e-6f)
-    s.fail("'up' is parallel to the viewing direction; choose another 'up'");
-  c.right = normalize(right);
-  c.up = cross(c.right, c.forward);
-  c.verticalFovRad = radians(s.number("vertical_fov_deg", 0.001, 179.9));
-  return c;
-}
 
 Affine readMatrix(const TomlSection& s) {
   const toml::array* rows = s.node("transform").as_array();
@@ -198,12 +171,9 @@ void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& b
   const FileNames names(file, defines);
 
   // What is small comes first: a mistake in it shows before the meshes are read.
-  const TomlSection film(file, "[film]", tableOf(file, root, "film"), {"width", "height"});
-  builder.setFilm(readFilm(film));
-  const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
-                           {"position", "look_at", "forward", "up", "vertical_fov_deg"});
-  const FilePoint position = camera.point("position");
-  builder.setCamera(position, readCamera(camera, position));
+  const TomlView view = readTomlView(file, root);
+  builder.setFilm(view.film);
+  builder.setCamera(view.position, view.camera);
 
   const auto meshes = tablesOf(file, root, "mesh");
   if (meshes.empty())

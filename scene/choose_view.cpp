@@ -1,0 +1,55 @@
+#include "scene/choose_view.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "scene/read/toml/toml_view.h"
+
+namespace bnvpl {
+
+namespace {
+
+void use(const View& view, Scene& scene) {
+  scene.camera = view.camera;
+  scene.film = view.film;
+}
+
+}  // namespace
+
+void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
+  const auto named = std::find_if(scene.views.begin(), scene.views.end(),
+                                  [&](const View& v) { return v.name == nameOrIndex; });
+  if (!nameOrIndex.empty() && named != scene.views.end()) return use(*named, scene);
+  size_t index = 0;
+  const char* end = nameOrIndex.data() + nameOrIndex.size();
+  const auto [stop, error] = std::from_chars(nameOrIndex.data(), end, index);
+  if (error == std::errc() && stop == end && index < scene.views.size())
+    return use(scene.views[index], scene);
+  throw UsageError("--camera '" + nameOrIndex + "': " + scene.name() +
+                   " has no such camera; it has " + cameraList(scene));
+}
+
+void useViewFile(const fs::path& file, Scene& scene) {
+  const toml::table root = parseToml(file);
+  const TomlSection top(file, "view", root, {"film", "camera"});
+  const TomlView view = readTomlView(file, root);
+  scene.film = view.film;
+  scene.camera = view.camera;
+  scene.camera.position = fromOrigin(view.position, scene.origin);
+  if (std::find(scene.files.begin(), scene.files.end(), file) == scene.files.end())
+    scene.files.push_back(file);
+}
+
+std::string cameraList(const Scene& scene) {
+  constexpr size_t kNamed = 12;
+  std::string list;
+  for (size_t i = 0; i < std::min(kNamed, scene.views.size()); ++i) {
+    list += (i > 0 ? ", " : "") + std::to_string(i);
+    if (!scene.views[i].name.empty()) list += " '" + scene.views[i].name + "'";
+  }
+  if (scene.views.size() > kNamed)
+    list += " and " + std::to_string(scene.views.size() - kNamed) + " more";
+  return list;
+}
+
+}  // namespace bnvpl

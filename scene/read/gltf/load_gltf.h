@@ -1,0 +1,13 @@
+// glTF 2.0, .gltf and .glb, with the buffers and images that it names. docs/scenes-gltf.md says
+// what is read and how.
+#pragma once
+
+#include "scene/load_scene.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl {
+
+// Throws InputError: file, JSON pointer, problem and cure. glTF has no names to be defined.
+void readGltf(const fs::path& file, const Defines&, SceneBuilder& builder);
+
+}  // namespace bnvpl

@@ -1,0 +1,107 @@
+#include "scene/read/gltf/views_and_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace bnvpl {
+
+namespace {
+
+constexpr double kLumensPerWatt = 683.0;
+
+// A unit vector; `otherwise` where a node is scaled to nothing.
+Vec3 unitOr(const FilePoint& d, Vec3 otherwise) {
+  const double length = std::hypot(d[0], d[1], d[2]);
+  if (!(length > 0.0) || !std::isfinite(length)) return otherwise;
+  return fromOrigin({d[0] / length, d[1] / length, d[2] / length}, {});
+}
+
+bool isFinite(const FilePoint& p) {
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+FilePoint placeOf(const GltfModel& model, const GltfPlacement& placement) {
+  const FilePoint place = placement.world.point({0, 0, 0});
+  if (!isFinite(place)) {
+    model.fail(gltfPointer("nodes", placement.node),
+               "lies out of range; move it nearer to the origin");
+  }
+  return place;
+}
+
+// As large as a 960 x 540 film at most, with the camera's aspect.
+Film filmOf(double aspect) {
+  constexpr uint32_t kShorter = 540;
+  constexpr double kUsual = 16.0 / 9.0;
+  if (!(aspect > 0.0)) aspect = kUsual;
+  const auto longer = [](double ratio) {
+    return std::min(kMaxFilmSide, static_cast<uint32_t>(std::lround(kShorter * ratio)));
+  };
+  return aspect >= 1.0 ? Film{longer(aspect), kShorter} : Film{kShorter, longer(1.0 / aspect)};
+}
+
+float radians(double angle) { return static_cast<float>(angle); }
+
+// The rim is between the two cones; its profile is scene.toml's.
+void setCone(const tinygltf::SpotLight& spot, LightSpec& light) {
+  constexpr double kLeast = 1e-4;
+  const double outer = std::clamp(spot.outerConeAngle, kLeast, std::numbers::pi / 2);
+  light.coneRad = radians(outer);
+  light.falloffRad = std::min(light.coneRad,
+                              radians(std::max(0.0, outer - std::max(0.0, spot.innerConeAngle))));
+}
+
+}  // namespace
+
+void addGltfCamera(const GltfModel& model, const GltfPlacement& placement, SceneBuilder& builder) {
+  const tinygltf::Node& node = model.parts().nodes[placement.node];
+  if (node.camera < 0) return;
+  const tinygltf::Camera& from = model.parts().cameras[static_cast<size_t>(node.camera)];
+  const std::string& name = node.name.empty() ? from.name : node.name;
+  if (from.type != "perspective") {
+    model.warn("camera '" + name + "' is " + from.type + ", which is not rendered; it is left out");
+    return;
+  }
+  Camera camera;
+  camera.forward = unitOr(placement.world.direction({0, 0, -1}), {0, 0, -1});
+  const Vec3 up = unitOr(placement.world.direction({0, 1, 0}), {0, 1, 0});
+  const Vec3 right = cross(camera.forward, up);
+  camera.right = length(right) > 1e-6f ? normalize(right) : Basis(camera.forward).s;
+  camera.up = cross(camera.right, camera.forward);
+  camera.verticalFovRad = radians(from.perspective.yfov);
+  builder.addCamera(name, placeOf(model, placement), camera, filmOf(from.perspective.aspectRatio));
+}
+
+void addGltfLight(const GltfModel& model, const GltfPlacement& placement, SceneBuilder& builder) {
+  const auto& extensions = model.parts().nodes[placement.node].extensions;
+  const auto it = extensions.find("KHR_lights_punctual");
+  if (it == extensions.end()) return;
+  const auto index = static_cast<size_t>(it->second.Get("light").GetNumberAsInt());
+  const tinygltf::Light& from = model.parts().lights[index];
+  LightSpec light;
+  for (size_t i = 0; i < 3; ++i) {
+    const double colour = from.color.size() == 3 ? from.color[i] : 1.0;
+    light.emission[i] = static_cast<float>(colour * from.intensity / kLumensPerWatt);
+  }
+  light.direction = unitOr(placement.world.direction({0, 0, -1}), {0, 0, -1});
+  if (from.type == "point") {
+    light.type = LightType::Point;
+  } else if (from.type == "spot") {
+    light.type = LightType::Spot;
+    setCone(from.spot, light);
+  } else if (from.type == "directional") {
+    light.type = LightType::Directional;
+  } else {
+    model.warn("a light of unknown type '" + from.type + "' is left out");
+    return;
+  }
+  if (from.range > 0.0) {
+    model.warn("the range of lights is ignored: light falls off with the square of the distance "
+               "alone");
+  }
+  if (isBlack(light.emission)) return;
+  builder.addLight(light, placeOf(model, placement));
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,41 @@
+#include "scene/read/toml/toml_view.h"
+
+namespace bnvpl {
+
+namespace {
+
+Film readFilm(const TomlSection& s) {
+  return {s.integer("width", 1, kMaxFilmSide), s.integer("height", 1, kMaxFilmSide)};
+}
+
+// But for the position.
+Camera readCamera(const TomlSection& s, const FilePoint& position) {
+  Camera c;
+  if (s.has("look_at") == s.has("forward")) s.fail("needs exactly one of 'look_at' and 'forward'");
+  if (s.has("forward")) {
+    c.forward = s.direction("forward");
+  } else {
+    if (!toUnit(s.point("look_at"), position, c.forward))
+      s.fail(s.node("look_at"), "'look_at' equals 'position'; move one of them");
+  }
+  const Vec3 up = s.has("up") ? s.direction("up") : Vec3{0, 1, 0};
+  const Vec3 right = cross(c.forward, up);
+  if (length(right) < 1e-6f)
+    s.fail("'up' is parallel to the viewing direction; choose another 'up'");
+  c.right = normalize(right);
+  c.up = cross(c.right, c.forward);
+  c.verticalFovRad = radians(s.number("vertical_fov_deg", 0.001, 179.9));
+  return c;
+}
+
+}  // namespace
+
+TomlView readTomlView(const fs::path& file, const toml::table& root) {
+  const TomlSection film(file, "[film]", tableOf(file, root, "film"), {"width", "height"});
+  const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
+                           {"position", "look_at", "forward", "up", "vertical_fov_deg"});
+  const FilePoint position = camera.point("position");
+  return {readFilm(film), position, readCamera(camera, position)};
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,107 @@
+#include "tests/scene/gltf_files.h"
+
+namespace bnvpl {
+namespace {
+
+class GltfErrors : public GltfFiles {
+ protected:
+  void expectError(const Gltf& g, const std::string& place, const std::string& problem) const {
+    const std::string error = loadError(g);
+    EXPECT_NE(error.find("room.gltf#" + place + ": "), std::string::npos) << error;
+    EXPECT_NE(error.find(problem), std::string::npos) << error;
+  }
+};
+
+TEST_F(GltfErrors, NameThePlaceInTheFile) {
+  Gltf mesh = triangleGltf();
+  mesh.show("{\"mesh\":7}");
+  expectError(mesh, "/nodes/1/mesh", "is 7, but there are 1 of meshes");
+
+  Gltf type = triangleGltf();
+  type.show("{\"translation\":[0,\"up\",0]}");
+  expectError(type, "/nodes/1/translation/1", "must be a number");
+
+  Gltf missing = triangleGltf();
+  missing.add("accessors", "{\"componentType\":5126,\"type\":\"VEC3\"}");
+  expectError(missing, "/accessors/1", "needs 'count'");
+
+  Gltf range = triangleGltf();
+  range.add("materials", "{\"pbrMetallicRoughness\":{\"metallicFactor\":1.5}}");
+  expectError(range, "/materials/0/pbrMetallicRoughness/metallicFactor", "is 1.5, outside 0 to 1");
+
+  Gltf old = triangleGltf();
+  EXPECT_NE(loadError("{\"asset\":{\"version\":\"1.0\"}}").find("/asset/version"),
+            std::string::npos);
+  EXPECT_NE(loadError("{\"meshes\":[]}").find("needs 'asset'"), std::string::npos);
+}
+
+TEST_F(GltfErrors, BytesThatAreNotThere) {
+  Gltf view = cornerGltf();
+  view.add("bufferViews", "{\"buffer\":0,\"byteOffset\":30,\"byteLength\":8}");
+  expectError(view, "/bufferViews/1", "reaches beyond the end of its buffer");
+
+  Gltf accessor;
+  accessor.addAccessor(floats(kCorner), 4, "VEC3");
+  accessor.addMesh("{\"attributes\":{\"POSITION\":0}}");
+  accessor.show("{\"mesh\":0}");
+  expectError(accessor, "/accessors/0", "reaches beyond the end of its buffer view");
+
+  Gltf zeros;
+  zeros.add("accessors", "{\"componentType\":5126,\"count\":2000000000,\"type\":\"VEC3\"}");
+  zeros.addMesh("{\"attributes\":{\"POSITION\":0}}");
+  zeros.show("{\"mesh\":0}");
+  expectError(zeros, "/accessors/0", "no 'bufferView'");
+
+  const Gltf g = triangleGltf();
+  EXPECT_NE(loadError(g.text("gone.bin")).find("/buffers/0/uri: no such file"), std::string::npos);
+  EXPECT_NE(loadError(g.text("https://a.b/c.bin")).find("no file beside the scene"),
+            std::string::npos);
+  write("short.bin", "abc");
+  EXPECT_NE(loadError(g.text("short.bin")).find("holds 3 of its 36 bytes"), std::string::npos);
+}
+
+TEST_F(GltfErrors, DamagedContainers) {
+  EXPECT_NE(loadError("{\"asset\":\n{\"version\" \"2.0\"}}").find("room.gltf:2: is no JSON"),
+            std::string::npos);
+  const std::string glb = triangleGltf().glb();
+  for (size_t length = 0; length < glb.size(); length += 7)
+    EXPECT_NE(loadError(glb.substr(0, length), "room.glb"), "") << length;
+  std::string version = glb;
+  version[4] = 1;
+  EXPECT_NE(loadError(version, "room.glb").find("byte 4: GLB version 1"), std::string::npos);
+  EXPECT_NE(loadError(std::string(100000, '[')).find("nested deeper"), std::string::npos);
+  EXPECT_NE(loadError("[1]").find("is no glTF"), std::string::npos);
+}
+
+TEST_F(GltfErrors, NodesThatAreNoTree) {
+  Gltf cycle = cornerGltf();
+  cycle.addMesh("{\"attributes\":{\"POSITION\":0}}");
+  cycle.show("{\"mesh\":0,\"children\":[1]}");
+  cycle.add("nodes", "{\"children\":[0]}");
+  expectError(cycle, "/nodes/0", "two parents, or is its own ancestor");
+}
+
+TEST_F(GltfErrors, ExtensionsThatNobodyKnows) {
+  Gltf required = triangleGltf();
+  required.more = ",\"extensionsRequired\":[\"KHR_texture_basisu\"]";
+  expectError(required, "/extensionsRequired/0", "KHR_texture_basisu is not read");
+
+  Gltf used = triangleGltf();
+  used.more = ",\"extensionsUsed\":[\"KHR_materials_sheen\",\"KHR_materials_unlit\"]";
+  const Scene s = load(used);
+  EXPECT_EQ(countContaining(s.warnings, "KHR_materials_sheen is ignored"), 1u);
+  EXPECT_EQ(countContaining(s.warnings, "unlit"), 0u);
+}
+
+TEST_F(GltfErrors, WhatIsLeftOutIsNamed) {
+  Gltf g = cornerGltf();
+  g.add("skins", "{\"joints\":[0]}");
+  g.addMesh("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":0},\"targets\":[{\"POSITION\":0}]}");
+  g.show("{\"mesh\":0,\"skin\":0}");
+  const Scene s = load(g);
+  for (const char* part : {"skins are not applied", "morph targets are not applied", "COLOR_0"})
+    EXPECT_EQ(countContaining(s.warnings, part), 1u) << part << "\n" << joined(s.warnings);
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,150 @@
+// What the tests of glTF share: buffers as data URIs, small files around a triangle.
+#pragma once
+
+#include <cstring>
+
+#include "tests/scene/scene_files.h"
+
+namespace bnvpl {
+
+inline std::string base64(const std::string& bytes) {
+  constexpr const char* kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t word = 0;
+    for (size_t k = 0; k < 3; ++k)
+      word = word << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k)
+      out += i + k < bytes.size() + 1 ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+template <typename T>
+std::string bytesOf(const std::vector<T>& values) {
+  std::string out(values.size() * sizeof(T), '\0');
+  std::memcpy(out.data(), values.data(), out.size());
+  return out;
+}
+inline std::string floats(const std::vector<float>& values) { return bytesOf(values); }
+
+// A glTF in the making: parts by their JSON, bytes by buffer views of one buffer.
+class Gltf {
+ public:
+  // The number of the new part of an array such as "nodes".
+  size_t add(const std::string& array, const std::string& json) {
+    std::vector<std::string>& list = listOf(array);
+    list.push_back(json);
+    return list.size() - 1;
+  }
+  size_t addView(const std::string& bytes, const std::string& members = "") {
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    const size_t view = add("bufferViews", "{\"buffer\":0,\"byteOffset\":" +
+                                               std::to_string(bytes_.size()) + ",\"byteLength\":" +
+                                               std::to_string(bytes.size()) + members + "}");
+    bytes_ += bytes;
+    return view;
+  }
+  // `type` is VEC3 or the like, `componentType` 5126 for floats.
+  size_t addAccessor(const std::string& bytes, size_t count, const std::string& type,
+                     int componentType = 5126, const std::string& members = "") {
+    return add("accessors", "{\"bufferView\":" + std::to_string(addView(bytes)) +
+                                ",\"componentType\":" + std::to_string(componentType) +
+                                ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type +
+                                "\"" + members + "}");
+  }
+  size_t addMesh(const std::string& primitives) {
+    return add("meshes", "{\"primitives\":[" + primitives + "]}");
+  }
+  // As a root of scene 0.
+  void show(const std::string& node) {
+    const size_t number = add("nodes", node);
+    roots += (roots.empty() ? "" : ",") + std::to_string(number);
+  }
+
+  // With the bytes as a data URI; `uri` replaces it.
+  std::string text(const std::string& uri = "") const {
+    return json("{\"byteLength\":" + std::to_string(bytes_.size()) + ",\"uri\":\"" +
+                (uri.empty() ? "data:application/octet-stream;base64," + base64(bytes_) : uri) +
+                "\"}");
+  }
+  std::string glb() const {
+    const std::string scene =
+        padded(json("{\"byteLength\":" + std::to_string(bytes_.size()) + "}"), ' ');
+    const std::string bin = padded(bytes_, '\0');
+    return "glTF" + word(2) + word(12 + 8 + scene.size() + 8 + bin.size()) + word(scene.size()) +
+           "JSON" + scene + word(bin.size()) + std::string("BIN\0", 4) + bin;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+  std::string more;        // members of the root: ",\"extensionsUsed\":[...]"
+  std::string roots;       // of scene 0
+  bool withScenes = true;  // else the file has none, or those in `more`
+
+ private:
+  static std::string padded(std::string bytes, char with) {
+    bytes.resize((bytes.size() + 3) / 4 * 4, with);
+    return bytes;
+  }
+  static std::string word(size_t value) {
+    return bytesOf(std::vector<uint32_t>{static_cast<uint32_t>(value)});
+  }
+  std::vector<std::string>& listOf(const std::string& array) {
+    for (auto& [name, list] : arrays_) {
+      if (name == array) return list;
+    }
+    return arrays_.emplace_back(array, std::vector<std::string>()).second;
+  }
+  std::string json(const std::string& buffer) const {
+    std::string out = "{\"asset\":{\"version\":\"2.0\"}";
+    if (!bytes_.empty()) out += ",\"buffers\":[" + buffer + "]";
+    for (const auto& [name, list] : arrays_) {
+      out += ",\"" + name + "\":[";
+      for (size_t i = 0; i < list.size(); ++i) out += (i > 0 ? "," : "") + list[i];
+      out += "]";
+    }
+    if (withScenes) out += ",\"scenes\":[{\"nodes\":[" + roots + "]}]";
+    return out + more + "}";
+  }
+
+  std::string bytes_;
+  std::vector<std::pair<std::string, std::vector<std::string>>> arrays_;
+};
+
+// A right angle at the origin in the plane z = 0 that faces +z, legs of length 1.
+inline const std::vector<float> kCorner{0, 0, 0, 1, 0, 0, 0, 1, 0};
+
+// With one accessor, 0: the positions of kCorner.
+inline Gltf cornerGltf() {
+  Gltf g;
+  g.addAccessor(floats(kCorner), 3, "VEC3");
+  return g;
+}
+// And mesh 0, a triangle, shown by node 0. `members` are the primitive's.
+inline Gltf triangleGltf(const std::string& members = "") {
+  Gltf g = cornerGltf();
+  g.addMesh("{\"attributes\":{\"POSITION\":0}" + members + "}");
+  g.show("{\"mesh\":0}");
+  return g;
+}
+
+class GltfFiles : public SceneFiles {
+ protected:
+  Scene load(const std::string& bytes, const std::string& name = "room.gltf") const {
+    write(name, bytes);
+    return loadScene(at(name));
+  }
+  Scene load(const Gltf& gltf) const { return load(gltf.text()); }
+  std::string loadError(const std::string& bytes, const std::string& name = "room.gltf") const {
+    try {
+      load(bytes, name);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  std::string loadError(const Gltf& gltf) const { return loadError(gltf.text()); }
+};
+
+}  // namespace bnvpl
