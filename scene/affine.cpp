@@ -19,14 +19,29 @@ FilePoint Affine::point(const FilePoint& p) const {
   return q;
 }
 
-Vec3 Affine::normal(const FilePoint& n) const {
-  // The cofactor matrix is the inverse transpose but for the determinant, whose sign matters.
+FilePoint Affine::cofactors(const FilePoint& n) const {
   FilePoint q{};
   for (size_t i = 0; i < 3; ++i) {
     const auto &a = m[(i + 1) % 3], &b = m[(i + 2) % 3];
     q[i] = (a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1] +
            (a[0] * b[1] - a[1] * b[0]) * n[2];
   }
+  return q;
+}
+
+Affine Affine::after(const Affine& first) const {
+  Affine out;
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 4; ++j) {
+      out.m[i][j] = j == 3 ? m[i][3] : 0.0;
+      for (size_t k = 0; k < 3; ++k) out.m[i][j] += m[i][k] * first.m[k][j];
+    }
+  }
+  return out;
+}
+
+Vec3 Affine::normal(const FilePoint& n) const {
+  const FilePoint q = cofactors(n);  // the sign of the determinant matters
   const double length = std::hypot(q[0], q[1], q[2]);
   if (!(length > 0.0) || !std::isfinite(length)) return {};
   const double perLength = (determinant() < 0.0 ? -1.0 : 1.0) / length;

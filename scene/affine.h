@@ -15,8 +15,10 @@ struct Affine {
   std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
   FilePoint point(const FilePoint& p) const;
-  Vec3 normal(const FilePoint& n) const;  // by the inverse transpose; unit length, or 0
-  double determinant() const;             // negative: mirrors, so that windings must turn
+  Vec3 normal(const FilePoint& n) const;          // by the inverse transpose; unit length, or 0
+  FilePoint cofactors(const FilePoint& n) const;  // the inverse transpose but for the determinant
+  Affine after(const Affine& first) const;        // this of what `first` makes
+  double determinant() const;                     // negative: mirrors, so that windings must turn
   // Scales, then turns about x, then y, then z, then moves.
   static Affine fromParts(const FilePoint& translate, const FilePoint& rotateRad,
                           const FilePoint& scale);
