@@ -75,10 +75,19 @@ inline void requireSaneMeshes(const Scene& s) {
     requireSane(s.expressions[i], i, s.textures.size());
   for (const Triangle& t : s.triangles) requireSane(s, t);
   require(s.maskedBegin <= s.triangles.size(), "masked triangles come last");
-  for (size_t i = 0; i < s.triangles.size(); ++i) {
-    require(s.materials[s.triangles[i].material].masked() == (i >= s.maskedBegin),
-            "masked triangles come last");
+  const auto requireSorted = [&](uint32_t begin, uint32_t maskedBegin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i) {
+      require(s.materials[s.triangles[i].material].masked() == (i >= maskedBegin),
+              "masked triangles come last");
+    }
+  };
+  requireSorted(0, s.maskedBegin, s.worldEnd());
+  for (const Prototype& p : s.prototypes) {
+    require(p.begin < p.end && p.end <= s.triangles.size(), "prototypes have triangles");
+    requireSorted(p.begin, p.maskedBegin, p.end);
   }
+  for (const Instance& i : s.instances)
+    require(i.prototype < s.prototypes.size(), "instances are of prototypes");
   if (s.triangles.empty()) return;
   require(isFinite(s.bounds.lower) && isFinite(s.bounds.upper), "bounds are finite");
 }

@@ -25,14 +25,18 @@ FilePoint Affine::direction(const FilePoint& d) const {
   return q;
 }
 
-Vec3 Affine::normal(const FilePoint& n) const {
-  // The cofactor matrix is the inverse transpose but for the determinant, whose sign matters.
+FilePoint Affine::cofactors(const FilePoint& n) const {
   FilePoint q{};
   for (size_t i = 0; i < 3; ++i) {
     const auto &a = m[(i + 1) % 3], &b = m[(i + 2) % 3];
     q[i] = (a[1] * b[2] - a[2] * b[1]) * n[0] + (a[2] * b[0] - a[0] * b[2]) * n[1] +
            (a[0] * b[1] - a[1] * b[0]) * n[2];
   }
+  return q;
+}
+
+Vec3 Affine::normal(const FilePoint& n) const {
+  const FilePoint q = cofactors(n);  // the sign of the determinant matters
   const double length = std::hypot(q[0], q[1], q[2]);
   if (!(length > 0.0) || !std::isfinite(length)) return {};
   const double perLength = (determinant() < 0.0 ? -1.0 : 1.0) / length;

@@ -16,8 +16,9 @@ struct Affine {
 
   FilePoint point(const FilePoint& p) const;
   FilePoint direction(const FilePoint& d) const;  // turned and scaled, not moved
-  Vec3 normal(const FilePoint& n) const;  // by the inverse transpose; unit length, or 0
-  double determinant() const;             // negative: mirrors, so that windings must turn
+  Vec3 normal(const FilePoint& n) const;          // by the inverse transpose; unit length, or 0
+  FilePoint cofactors(const FilePoint& n) const;  // the inverse transpose but for the determinant
+  double determinant() const;                     // negative: mirrors, so that windings must turn
   // Scales, then turns about x, then y, then z, then moves.
   static Affine fromParts(const FilePoint& translate, const FilePoint& rotateRad,
                           const FilePoint& scale);

@@ -42,6 +42,36 @@ struct Triangle {
 };
 static_assert(sizeof(Triangle) == 40);
 
+// Triangles that occur many times: stored once, in coordinates of their own. None of them shines:
+// lamps stand in the world.
+struct Prototype {
+  uint32_t begin = 0, maskedBegin = 0, end = 0;  // of Scene::triangles; opaque ones first
+};
+
+// An occurrence of a prototype.
+struct Instance {
+  uint32_t prototype = 0;
+  uint32_t mirrored = 0;                 // 1: windings turn
+  std::array<float, 12> toWorld{};       // rows of a 3x4 matrix, applied to column vectors
+  std::array<float, 9> normalToWorld{};  // rows of its inverse transpose but for a factor
+  Vec3 point(Vec3 p) const {
+    const auto row = [&](size_t r) {
+      return toWorld[4 * r] * p.x + toWorld[4 * r + 1] * p.y + toWorld[4 * r + 2] * p.z +
+             toWorld[4 * r + 3];
+    };
+    return {row(0), row(1), row(2)};
+  }
+  Vec3 normal(Vec3 n) const {  // of no particular length
+    const auto row = [&](size_t r) {
+      return normalToWorld[3 * r] * n.x + normalToWorld[3 * r + 1] * n.y +
+             normalToWorld[3 * r + 2] * n.z;
+    };
+    return {row(0), row(1), row(2)};
+  }
+  // Of direction vectors in the surface.
+  Vec3 vector(Vec3 v) const { return point(v) - point({}); }
+};
+
 enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 
 // A light that is no surface. Emissive triangles are lights too; LightSet gathers both.
@@ -77,8 +107,14 @@ struct Scene {
   std::vector<Vec3> positions;  // one more than indexed: Embree reads 16 bytes at each vertex
   std::vector<Vec3> normals;    // unit length
   std::vector<std::array<float, 2>> uvs;
-  std::vector<Triangle> triangles;  // opaque ones first
-  uint32_t maskedBegin = 0;         // first triangle whose material has an alpha mask
+  // Of the world, opaque ones first, then of the prototypes.
+  std::vector<Triangle> triangles;
+  uint32_t maskedBegin = 0;  // first of the world whose material has an alpha mask
+  uint32_t worldEnd() const {
+    return prototypes.empty() ? static_cast<uint32_t>(triangles.size()) : prototypes.front().begin;
+  }
+  std::vector<Prototype> prototypes;
+  std::vector<Instance> instances;
   Bounds bounds;
   // What the coordinates count from, in the coordinates of the files: 0 but for scenes that lie far
   // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).

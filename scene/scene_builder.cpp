@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "core/files.h"
@@ -17,6 +18,9 @@ namespace {
 
 // Sizes of scenes that floats hold: products of four lengths must stay in range.
 constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
+
+// Of prototypes, which stand in the world one by one.
+constexpr size_t kMaxLamps = size_t{1} << 27;  // triangles
 
 // Of an expression: operands may share operands, so that few expressions ask for very many lookups.
 constexpr uint32_t kMaxLookups = 1000;
@@ -161,7 +165,20 @@ void SceneBuilder::recordMesh(const std::string& name, size_t triangles) {
   ++scene_.meshes[it->second].instances;
 }
 
+uint32_t SceneBuilder::beginPrototype() {
+  open_ = static_cast<uint32_t>(prototypes_.size());
+  prototypes_.emplace_back();
+  return open_;
+}
+
 size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& transform) {
+  if (open_ != kNone) {
+    const auto all = [](std::span<const double> s) { return std::vector(s.begin(), s.end()); };
+    const auto grey = std::ranges::count(mesh.triangles, kNone, &Triangle::material);
+    prototypes_[open_].push_back({file, all(mesh.positions), all(mesh.normals), all(mesh.uvs),
+                                  std::move(mesh.triangles), transform});
+    return static_cast<size_t>(grey);
+  }
   recordMesh(file.string(), mesh.triangles.size());
   const Base base = addCorners(file, mesh, transform);
   const bool mirrored = transform.determinant() < 0.0;
@@ -199,8 +216,46 @@ size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& tran
   } else {
     scene_.triangles.insert(scene_.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
   }
-  parts_.push_back({file, scene_.triangles.size()});
+  parts_.push_back({file, scene_.triangles.size(), points_.size(), shared_});
   return grey;
+}
+
+// Into the prototype, but for the lamps, which stand in the world wherever it is placed.
+void SceneBuilder::shareMesh(const KeptMesh& kept, uint32_t prototype) {
+  std::vector<Triangle> rest, lamps;
+  for (const Triangle& t : kept.triangles) {
+    const bool lamp = t.material != kNone && !isBlack(scene_.materials[t.material].emission);
+    (lamp ? lamps : rest).push_back(t);
+  }
+  const auto uses = static_cast<size_t>(std::ranges::count(placed_, prototype, &Placed::prototype));
+  if (lamps.size() * uses > kMaxLamps) {
+    throw InputError(kept.file, "is placed so often that its lamps are more than " +
+                                    std::to_string(kMaxLamps) + " triangles; place it less often");
+  }
+  for (const Placed& p : placed_) {
+    if (p.prototype == prototype && !lamps.empty())
+      addMesh(kept.file, kept.mesh(lamps), p.toWorld * kept.transform);
+  }
+  if (rest.empty()) return;
+  shared_ = prototype;
+  addMesh(kept.file, kept.mesh(std::move(rest)), kept.transform);
+  shared_ = kNone;
+  scene_.meshes[meshOfName_.at(kept.file.string())].instances += uses - 1;
+}
+
+void SceneBuilder::placePrototypes() {
+  open_ = kNone;
+  for (uint32_t p = 0; p < prototypes_.size(); ++p) {
+    const auto uses = std::ranges::count(placed_, p, &Placed::prototype);
+    for (const KeptMesh& kept : prototypes_[p]) {
+      if (uses > 1) shareMesh(kept, p);
+      if (uses != 1) continue;
+      const auto placed = std::ranges::find(placed_, p, &Placed::prototype);
+      addMesh(kept.file, kept.mesh(kept.triangles), placed->toWorld * kept.transform);
+    }
+    if (uses == 1) std::erase_if(placed_, [&](const Placed& o) { return o.prototype == p; });
+    prototypes_[p] = {};
+  }
 }
 
 // Until here, maps hold the numbers of the pool.
@@ -240,21 +295,33 @@ void SceneBuilder::warnOfMissingUvs() {
   }
 }
 
+// The points of prototypes keep the coordinates that instances are placed by.
 void SceneBuilder::roundPositions() {
   FilePoint lower, upper;
   lower.fill(INFINITY);
   upper.fill(-INFINITY);
-  for (const Triangle& t : scene_.triangles) {
-    for (const uint32_t p : t.position) {
-      for (size_t i = 0; i < 3; ++i) {
-        lower[i] = std::min(lower[i], points_[p][i]);
-        upper[i] = std::max(upper[i], points_[p][i]);
+  const auto extend = [&](const FilePoint& p) {
+    for (size_t i = 0; i < 3; ++i) {
+      lower[i] = std::min(lower[i], p[i]);
+      upper[i] = std::max(upper[i], p[i]);
+    }
+  };
+  size_t triangle = 0;
+  for (const Part& part : parts_) {
+    for (; triangle < part.endTriangle; ++triangle) {
+      for (const uint32_t p : scene_.triangles[triangle].position) {
+        if (part.prototype == kNone) extend(points_[p]);
       }
     }
   }
+  for (const Placed& p : placed_) extend(p.toWorld.point({}));
   if (!scene_.triangles.empty()) scene_.origin = sceneOrigin(lower, upper);
   scene_.positions.reserve(points_.size() + 1);
-  for (const FilePoint& p : points_) scene_.positions.push_back(fromOrigin(p, scene_.origin));
+  for (const Part& part : parts_) {
+    const FilePoint origin = part.prototype == kNone ? scene_.origin : FilePoint{};
+    while (scene_.positions.size() < part.endPoint)
+      scene_.positions.push_back(fromOrigin(points_[scene_.positions.size()], origin));
+  }
   points_ = {};
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
     LightSpec& light = scene_.lights[i];
@@ -273,7 +340,7 @@ void SceneBuilder::roundPositions() {
 // A triangle is of use when its normal can be computed in floats, as every ray that hits it will.
 void SceneBuilder::dropUnusable() {
   size_t kept = 0, next = 0;
-  for (const Part& part : parts_) {
+  for (Part& part : parts_) {
     size_t flat = 0, extreme = 0;
     for (; next < part.endTriangle; ++next) {
       const Triangle& t = scene_.triangles[next];
@@ -287,6 +354,7 @@ void SceneBuilder::dropUnusable() {
         ++(isBlack(normal) ? flat : extreme);
       }
     }
+    part.endTriangle = kept;
     if (flat > 0) {
       warn(part.file.string() + ": " + std::to_string(flat) +
            " triangles without area are left out");
@@ -315,18 +383,99 @@ void SceneBuilder::dropDoubledLamps() {
     for (size_t i = 0; i < 9; ++i) key[i] = corners[i / 3][i % 3];
     return !seen.insert(key).second;
   };
-  const size_t dropped = std::erase_if(scene_.triangles, doubled);
+  const uint32_t worldEnd = scene_.worldEnd();
+  const auto begin = scene_.triangles.begin();
+  const auto end = std::remove_if(begin, begin + worldEnd, doubled);  // prototypes hold no lamps
+  const auto dropped = static_cast<uint32_t>(begin + worldEnd - end);
+  scene_.triangles.erase(end, begin + worldEnd);
+  for (Prototype& p : scene_.prototypes) p.begin -= dropped, p.end -= dropped;
   if (dropped > 0) {
     warn(scene_.name() + ": " + std::to_string(dropped) +
          " emissive triangles lie on others; one of each is left, or it would shine twice");
   }
 }
 
+// The world first, then prototype by prototype; in each, opaque triangles first.
 void SceneBuilder::sortByMask() {
   const auto opaque = [&](const Triangle& t) { return !scene_.materials[t.material].masked(); };
-  const auto firstMasked =
-      std::stable_partition(scene_.triangles.begin(), scene_.triangles.end(), opaque);
-  scene_.maskedBegin = static_cast<uint32_t>(firstMasked - scene_.triangles.begin());
+  const auto begin = scene_.triangles.begin();
+  const auto sort = [&](size_t from, size_t to) {
+    const auto masked = std::stable_partition(begin + static_cast<std::ptrdiff_t>(from),
+                                              begin + static_cast<std::ptrdiff_t>(to), opaque);
+    return static_cast<uint32_t>(masked - begin);
+  };
+  scene_.maskedBegin = sort(0, scene_.worldEnd());
+  for (Prototype& p : scene_.prototypes) p.maskedBegin = sort(p.begin, p.end);
+}
+
+// Takes the triangles of prototypes behind those of the world, and places them.
+void SceneBuilder::placeInstances() {
+  if (placed_.empty()) return;
+  std::vector<Triangle> world;
+  std::map<uint32_t, std::vector<Triangle>> shared;
+  size_t next = 0;
+  for (const Part& part : parts_) {
+    auto& to = part.prototype == kNone ? world : shared[part.prototype];
+    for (; next < part.endTriangle; ++next) to.push_back(scene_.triangles[next]);
+  }
+  scene_.triangles = std::move(world);
+  std::map<uint32_t, uint32_t> numberOf;
+  for (const auto& [prototype, triangles] : shared) {
+    if (triangles.empty()) continue;
+    numberOf[prototype] = static_cast<uint32_t>(scene_.prototypes.size());
+    const auto begin = static_cast<uint32_t>(scene_.triangles.size());
+    scene_.triangles.insert(scene_.triangles.end(), triangles.begin(), triangles.end());
+    scene_.prototypes.push_back({begin, begin, static_cast<uint32_t>(scene_.triangles.size())});
+  }
+  for (const Placed& p : placed_) {
+    const auto found = numberOf.find(p.prototype);
+    if (found == numberOf.end()) continue;
+    Instance instance{found->second, p.toWorld.determinant() < 0.0, {}, {}};
+    for (size_t r = 0; r < 3; ++r) {
+      for (size_t c = 0; c < 4; ++c)
+        instance.toWorld[4 * r + c] =
+            static_cast<float>(p.toWorld.m[r][c] - (c == 3 ? scene_.origin[r] : 0.0));
+    }
+    const double scale = std::cbrt(std::fabs(p.toWorld.determinant()));
+    for (size_t c = 0; c < 3; ++c) {
+      FilePoint axis{};
+      axis[c] = 1.0 / (scale * scale);
+      const FilePoint column = p.toWorld.cofactors(axis);
+      for (size_t r = 0; r < 3; ++r)
+        instance.normalToWorld[3 * r + c] =
+            static_cast<float>(instance.mirrored ? -column[r] : column[r]);
+    }
+    if (!(scale > 0.0) || !std::isfinite(scale)) {
+      warn(scene_.name() + ": an instance without volume, or beyond what floats hold, is left out");
+      continue;
+    }
+    scene_.instances.push_back(instance);
+  }
+  if (scene_.instances.empty() && !scene_.prototypes.empty()) {
+    scene_.triangles.resize(scene_.worldEnd());
+    scene_.prototypes.clear();
+  }
+}
+
+// Of prototypes, the corners of their boxes count: what lies between cannot be further out.
+void SceneBuilder::extendBounds() {
+  std::vector<Bounds> boxes(scene_.prototypes.size());
+  const auto extend = [&](Bounds& box, uint32_t begin, uint32_t end) {
+    for (uint32_t t = begin; t < end; ++t) {
+      for (size_t c = 0; c < 3; ++c) box.extend(scene_.corner(t, c));
+    }
+  };
+  extend(scene_.bounds, 0, scene_.worldEnd());
+  for (size_t p = 0; p < boxes.size(); ++p)
+    extend(boxes[p], scene_.prototypes[p].begin, scene_.prototypes[p].end);
+  for (const Instance& i : scene_.instances) {
+    const Bounds& box = boxes[i.prototype];
+    for (int corner = 0; corner < 8; ++corner) {
+      scene_.bounds.extend(
+          i.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                   corner & 4 ? box.upper.z : box.lower.z}));
+    }
+  }
 }
 
 void SceneBuilder::placeViews() {
@@ -351,15 +500,15 @@ void SceneBuilder::requireSize() const {
 }
 
 Scene SceneBuilder::finish() {
+  placePrototypes();
   resolveTextures();
   warnOfMissingUvs();
   roundPositions();
   dropUnusable();
+  placeInstances();
   dropDoubledLamps();
   sortByMask();
-  for (const Triangle& t : scene_.triangles) {
-    for (const uint32_t p : t.position) scene_.bounds.extend(scene_.positions[p]);
-  }
+  extendBounds();
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex
   requireSize();
   placeViews();

@@ -75,6 +75,15 @@ class SceneBuilder {
   // when the scene has more vertices than 32 bits count.
   size_t addMesh(const fs::path& file, Mesh mesh, const Affine& transform = {});
 
+  // What addMesh() gets until endPrototype() stands nowhere: addInstance() places it, as often as
+  // is asked for. It is stored once if it is placed more than once, except for its lamps.
+  // Prototypes hold no prototypes.
+  uint32_t beginPrototype();
+  void endPrototype() { open_ = kNone; }
+  void addInstance(uint32_t prototype, const Affine& toWorld) {
+    placed_.push_back({prototype, toWorld});
+  }
+
   // A file that was read, or whose absence showed, for depfiles. Once each.
   void addFile(const fs::path& file);
   // Tells the user, once, what was ignored or repaired: file, problem, what became of it.
@@ -90,7 +99,19 @@ class SceneBuilder {
  private:
   struct Part {  // the triangles of one addMesh()
     fs::path file;
-    size_t endTriangle;
+    size_t endTriangle, endPoint;
+    uint32_t prototype;  // kNone: of the world
+  };
+  struct KeptMesh {  // of a prototype, until finish()
+    fs::path file;
+    std::vector<double> positions, normals, uvs;
+    std::vector<Triangle> triangles;
+    Affine transform;
+    Mesh mesh(std::vector<Triangle> of) const { return {positions, normals, uvs, std::move(of)}; }
+  };
+  struct Placed {
+    uint32_t prototype;
+    Affine toWorld;
   };
   struct Base {  // where the arrays of a mesh begin in the scene's
     size_t position, normal, uv;
@@ -99,13 +120,17 @@ class SceneBuilder {
   uint32_t greyMaterial();
   void recordMesh(const std::string& name, size_t triangles);
 
+  void shareMesh(const KeptMesh& kept, uint32_t prototype);
   // Of finish(), in this order:
+  void placePrototypes();
   void resolveTextures();
   void warnOfMissingUvs();
   void roundPositions();
   void dropUnusable();
+  void placeInstances();
   void dropDoubledLamps();
   void sortByMask();
+  void extendBounds();
   void placeViews();
   void requireSize() const;
 
@@ -113,9 +138,13 @@ class SceneBuilder {
   TexturePool textures_;
   std::vector<FilePoint> points_;  // what scene_.positions will be
   std::vector<Part> parts_;
-  std::vector<uint32_t> lookups_;          // of scene_.expressions, operands included
-  std::vector<FilePoint> viewPositions_;   // of scene_.views
-  std::vector<FilePoint> lightPositions_;  // of scene_.lights
+  std::vector<std::vector<KeptMesh>> prototypes_;
+  std::vector<Placed> placed_;
+  uint32_t open_ = kNone;                     // prototype that meshes go to; kNone: the world
+  uint32_t shared_ = kNone;                   // the same of finish()
+  std::vector<uint32_t> lookups_;             // of scene_.expressions, operands included
+  std::vector<FilePoint> viewPositions_;      // of scene_.views
+  std::vector<FilePoint> lightPositions_;     // of scene_.lights
   std::map<std::string, size_t> meshOfName_;  // in scene_.meshes
   uint32_t grey_ = kNone;
   std::set<std::string> warned_;

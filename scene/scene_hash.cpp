@@ -104,6 +104,10 @@ uint64_t hashScene(const Scene& scene) {
     h.value(e.height);
     h.array(e.radiance);
   }
+  if (!scene.instances.empty()) {  // others keep the hash that they had before there were any
+    h.array(scene.prototypes);
+    h.array(scene.instances);
+  }
   return h.digest();
 }
 

@@ -36,12 +36,18 @@ bool isThere(const Scene& scene, uint32_t triangle, float b1, float b2) {
   return !(opacity < m.opacityCutoff);
 }
 
+// The masked triangles of the world, or of a prototype.
+struct Masked {
+  const Scene* scene;
+  uint32_t begin;
+};
+
 void rejectCutAway(const RTCFilterFunctionNArguments* args) {
-  const auto& scene = *static_cast<const Scene*>(args->geometryUserPtr);
+  const Masked& masked = *static_cast<const Masked*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    const uint32_t triangle = scene.maskedBegin + RTCHitN_primID(args->hit, args->N, i);
-    if (!isThere(scene, triangle, RTCHitN_u(args->hit, args->N, i),
+    const uint32_t triangle = masked.begin + RTCHitN_primID(args->hit, args->N, i);
+    if (!isThere(*masked.scene, triangle, RTCHitN_u(args->hit, args->N, i),
                  RTCHitN_v(args->hit, args->N, i)))
       args->valid[i] = 0;
   }
@@ -64,13 +70,16 @@ RTCRay makeRay(Vec3 origin, Vec3 direction, float tfar) {
 
 struct RayScene::Impl {
   RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  RTCScene scene = nullptr;  // the world: opaque, masked, and instances from kFirstInstance on
+  std::vector<RTCScene> prototypes;
+  std::vector<std::unique_ptr<Masked>> masked;  // where filters find them
   // What the device reported first. From any thread, and perhaps for want of memory: no allocation.
   std::atomic<RTCError> error{RTC_ERROR_NONE};
   std::array<char, 256> errorText{};
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
+    for (const RTCScene prototype : prototypes) rtcReleaseScene(prototype);
     if (device) rtcReleaseDevice(device);
   }
 
@@ -86,21 +95,58 @@ struct RayScene::Impl {
     throw std::runtime_error(std::string("Embree: ") + errorText.data());
   }
 
-  void attach(const Scene& s, uint32_t begin, uint32_t end, unsigned id) {
+  static constexpr unsigned kOpaque = 0, kMasked = 1, kFirstInstance = 2;  // geometries
+
+  RTCScene makeScene() {
+    const RTCScene made = rtcNewScene(device);
+    throwIfFailed();
+    rtcSetSceneFlags(made, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
+    return made;
+  }
+  void attach(RTCScene to, const Scene& s, uint32_t begin, uint32_t end, unsigned id) {
+    if (begin == end) return;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                s.positions.data(), 0, sizeof(Vec3), s.positions.size() - 1);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                s.triangles.data() + begin, 0, sizeof(Triangle), end - begin);
-    if (id == 1) {
-      rtcSetGeometryUserData(geometry,
-                             const_cast<Scene*>(&s));  // Embree's API is not const-correct
+    if (id == kMasked) {
+      masked.push_back(std::make_unique<Masked>(Masked{&s, begin}));
+      rtcSetGeometryUserData(geometry, masked.back().get());
       rtcSetGeometryIntersectFilterFunction(geometry, rejectCutAway);
       rtcSetGeometryOccludedFilterFunction(geometry, rejectCutAway);
     }
+    attach(to, geometry, id);
+  }
+  void attach(RTCScene to, RTCGeometry geometry, unsigned id) {
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, id);
+    rtcAttachGeometryByID(to, geometry, id);
     rtcReleaseGeometry(geometry);
+  }
+  void commit(RTCScene made) {
+#if defined(__SANITIZE_THREAD__)
+    // By this thread alone: Embree is not compiled for the sanitizer, which does not see it wait
+    // for other threads.
+    tbb::task_arena(1).execute([&] { rtcCommitScene(made); });
+#else
+    rtcCommitScene(made);
+#endif
+    throwIfFailed();
+  }
+  void addInstances(const Scene& s) {
+    for (const Prototype& p : s.prototypes) {
+      prototypes.push_back(makeScene());
+      attach(prototypes.back(), s, p.begin, p.maskedBegin, kOpaque);
+      attach(prototypes.back(), s, p.maskedBegin, p.end, kMasked);
+      commit(prototypes.back());
+    }
+    for (unsigned i = 0; i < s.instances.size(); ++i) {
+      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+      rtcSetGeometryInstancedScene(geometry, prototypes[s.instances[i].prototype]);
+      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR,
+                              s.instances[i].toWorld.data());
+      attach(scene, geometry, kFirstInstance + i);
+    }
   }
 
   bool closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const;
@@ -120,30 +166,21 @@ RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<I
     throw std::runtime_error("Embree cannot start on this machine");
   }
   rtcSetDeviceErrorFunction(impl_->device, Impl::report, impl_.get());
-  impl_->scene = rtcNewScene(impl_->device);
-  impl_->throwIfFailed();
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
-  const auto count = static_cast<uint32_t>(scene.triangles.size());
-  if (scene.maskedBegin > 0) impl_->attach(scene, 0, scene.maskedBegin, 0);
-  if (scene.maskedBegin < count) impl_->attach(scene, scene.maskedBegin, count, 1);
-#if defined(__SANITIZE_THREAD__)
-  // By this thread alone: Embree is not compiled for the sanitizer, which does not see it wait for
-  // other threads.
-  tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene); });
-#else
-  rtcCommitScene(impl_->scene);
-#endif
-  impl_->throwIfFailed();
+  impl_->scene = impl_->makeScene();
+  impl_->attach(impl_->scene, scene, 0, scene.maskedBegin, Impl::kOpaque);
+  impl_->attach(impl_->scene, scene, scene.maskedBegin, scene.worldEnd(), Impl::kMasked);
+  impl_->addInstances(scene);
+  impl_->commit(impl_->scene);
   offsetBase_ = scene.bounds.diagonal() * 0x1p-20f;
 }
 
 RayScene::~RayScene() = default;
 
-// Sets triangle, distance, and u and v to the barycentric coordinates.
+// Sets triangle, instance, distance, and u and v to the barycentric coordinates.
 bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const {
   RTCRayHit rh{};
   rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
-  rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, &rh);
@@ -151,7 +188,15 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
     hit.triangle = kNone;
     return false;
   }
-  hit.triangle = rh.hit.primID + (rh.hit.geomID == 1 ? s.maskedBegin : 0);
+  const bool isMasked = rh.hit.geomID == kMasked;
+  if (rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    hit.instance = kNone;
+    hit.triangle = rh.hit.primID + (isMasked ? s.maskedBegin : 0);
+  } else {
+    hit.instance = rh.hit.instID[0] - kFirstInstance;
+    const Prototype& p = s.prototypes[s.instances[hit.instance].prototype];
+    hit.triangle = rh.hit.primID + (isMasked ? p.maskedBegin : p.begin);
+  }
   hit.distance = rh.ray.tfar;
   hit.u = rh.hit.u, hit.v = rh.hit.v;
   return true;
@@ -160,20 +205,28 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
 // The rest of a hit, from its triangle, its distance and the barycentric coordinates in u and v.
 void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
   const Triangle& t = scene_.triangles[hit.triangle];
-  const Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
-             p2 = scene_.positions[t.position[2]];
+  Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
+       p2 = scene_.positions[t.position[2]];
+  const Instance* instance = hit.instance == kNone ? nullptr : &scene_.instances[hit.instance];
+  if (instance) p0 = instance->point(p0), p1 = instance->point(p1), p2 = instance->point(p2);
   const float b1 = hit.u, b2 = hit.v, b0 = 1.0f - b1 - b2;
   // From the corners, not along the ray: exact to a few ulps of the triangle, however long the ray.
   hit.position = b0 * p0 + b1 * p1 + b2 * p2;
   hit.material = t.material;
   hit.wo = -direction;
   Vec3 ng = normalize(cross(p1 - p0, p2 - p0));
+  if (instance && instance->mirrored) ng = -ng;
   hit.front = dot(ng, hit.wo) >= 0.0f;
   hit.ng = hit.front ? ng : -ng;
   hit.ns = hit.ng;
   if (t.normal[0] != kNone && t.normal[1] != kNone && t.normal[2] != kNone) {
-    const Vec3 n = b0 * scene_.normals[t.normal[0]] + b1 * scene_.normals[t.normal[1]] +
-                   b2 * scene_.normals[t.normal[2]];
+    Vec3 n0 = scene_.normals[t.normal[0]], n1 = scene_.normals[t.normal[1]],
+         n2 = scene_.normals[t.normal[2]];
+    if (instance) {
+      n0 = normalize(instance->normal(n0)), n1 = normalize(instance->normal(n1));
+      n2 = normalize(instance->normal(n2));
+    }
+    const Vec3 n = b0 * n0 + b1 * n1 + b2 * n2;
     const float len = length(n);
     if (len > 1e-6f) hit.ns = n * ((dot(n, hit.ng) < 0.0f ? -1.0f : 1.0f) / len);
   }

@@ -19,6 +19,7 @@ struct SurfacePoint {
   float u = 0, v = 0;  // texture coordinates; NaN where the mesh has none
   float distance = 0;  // along the ray
   uint32_t triangle = kNone;
+  uint32_t instance = kNone;  // of Scene::instances; kNone: of the world itself
   uint32_t material = kNone;
   bool front = true;  // wo lies on the side of the triangle's winding
 };

@@ -15,7 +15,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr size_t kAtOnce = 256;                  // shapes that are in memory beside the scene
-constexpr size_t kMostCopied = size_t{1} << 27;  // triangles that instances may become
+constexpr size_t kMostCopied = size_t{1} << 27;  // triangles that lamps of objects may become
 
 // A shape and where it stands: once in the world, or as often as its object is placed.
 struct Placed {
@@ -83,7 +83,8 @@ class Meshes {
   }
 
  private:
-  // The one place where an object's copies become triangles of their own.
+  // What stands in many places is stored once, but for lamps, whose light depends on where they
+  // are.
   void place(const Placed& placed, MeshData mesh) {
     const Shape& shape = *placed.shape;
     for (const std::string& note : mesh.notes) reader_.notes.add(shape.place, note);
@@ -93,16 +94,29 @@ class Meshes {
     } else {
       builder_.addFile(file);
     }
+    if (placed.worldFromShape.size() > 1 && shape.areaLight == kNone)
+      return share(placed, std::move(mesh), file);
     if (placed.worldFromShape.size() > 1)
       copied_ += placed.worldFromShape.size() * mesh.triangles.size();
     if (copied_ > kMostCopied)
-      failAt(shape.place, "the instances of objects are more than 2^27 triangles; place fewer");
+      failAt(shape.place, "the lamps of objects are more than 2^27 triangles; place fewer");
     for (const Affine& transform : placed.worldFromShape) {
       const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));
       if (material == kNone) return;  // an interface: nothing is there
       for (Triangle& t : mesh.triangles) t.material = material;
       builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles}, transform);
     }
+  }
+
+  void share(const Placed& placed, MeshData mesh, const fs::path& file) {
+    const uint32_t material = materials_.of(*placed.shape, {});
+    if (material == kNone) return;  // an interface: nothing is there
+    for (Triangle& t : mesh.triangles) t.material = material;
+    const uint32_t prototype = builder_.beginPrototype();
+    builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles});
+    builder_.endPrototype();
+    for (const Affine& transform : placed.worldFromShape)
+      builder_.addInstance(prototype, transform);
   }
 
   Emission emission(const Shape& shape, const MeshData& mesh, const Affine& transform) const {

@@ -1,0 +1,177 @@
+// Instances against the same triangles, each stored where it stands.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "core/sampling.h"
+#include "scene/scene_builder.h"
+#include "tools/common/streams.h"
+#include "transport/lights.h"
+#include "transport/rays.h"
+
+namespace bnvpl {
+namespace {
+
+// A tent of four faces with shading normals and texture coordinates, one of them cut away, and a
+// lamp on top.
+struct Tent {
+  std::vector<double> positions{-1, 0,   -1, 1, 0, -1, 1, 0, 1, -1, 0, 1,
+                                0,  1.5, 0,  0, 2, 0,  1, 2, 0, 0,  2, 1};
+  std::vector<double> normals{-1, 1, -1, 1, 1, -1, 1, 1, 1, -1, 1, 1, 0, 1, 0};
+  std::vector<double> uvs{0, 0, 1, 0, 1, 1, 0, 1, 0.5, 0.5};
+  uint32_t paint, holes, lamp;
+
+  explicit Tent(SceneBuilder& builder) {
+    Material m;
+    m.phong().diffuse = Vec3(0.5f);
+    paint = builder.addMaterial(m);
+    m.opacity = 0.2f;
+    holes = builder.addMaterial(m);
+    Material shining;
+    shining.emission = Vec3(2.0f);
+    lamp = builder.addMaterial(shining);
+  }
+  Mesh mesh() const {
+    Mesh made{positions, normals, uvs, {}};
+    for (uint32_t k = 0; k < 4; ++k) {
+      const std::array<uint32_t, 3> c{(k + 1) % 4, k, 4};
+      made.triangles.push_back({c, c, c, k == 3 ? holes : paint});
+    }
+    made.triangles.push_back({{5, 6, 7}, kNoCorners, kNoCorners, lamp});
+    return made;
+  }
+};
+
+Affine turned(double angle, std::array<double, 3> scale, std::array<double, 3> place) {
+  return Affine::fromParts(place, {0.3 * angle, angle, 0.1}, scale);
+}
+const std::vector<Affine> kPlaces{
+    turned(0.0, {1, 1, 1}, {0, 0, 0}), turned(1.0, {2, 1, 0.5}, {6, 1, 0}),
+    turned(2.5, {-1, 1, 1}, {0, 0, 7}), turned(4.0, {1, -3, -0.4}, {-6, 2, 3})};
+
+void addFloor(SceneBuilder& builder, double away) {
+  const std::vector<double> corners{away - 20, -1, -20, away + 20, -1, -20, away, -1, 20};
+  builder.addMesh("floor", {corners, {}, {}, {{{0, 2, 1}, kNoCorners, kNoCorners, kNone}}});
+}
+
+Scene tents(bool shared, double away = 0.0) {
+  SceneBuilder builder("tents");
+  const Tent tent(builder);
+  addFloor(builder, away);
+  std::vector<Affine> places = kPlaces;
+  for (Affine& p : places) p.m[0][3] += away;
+  if (shared) {
+    const uint32_t prototype = builder.beginPrototype();
+    builder.addMesh("tent", tent.mesh());
+    builder.endPrototype();
+    for (const Affine& p : places) builder.addInstance(prototype, p);
+  } else {
+    for (const Affine& p : places) builder.addMesh("tent", tent.mesh(), p);
+  }
+  return builder.finish();
+}
+
+void expectSameHits(const Scene& one, const Scene& other, float tolerance) {
+  const RayScene a(one), b(other);
+  Rng rng(streamKey(8, 1u), 0);
+  int hits = 0, occluded = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const float u = rng.next(), v = rng.next(), s = rng.next(), t = rng.next();
+    const Vec3 centre = 0.5f * (one.bounds.lower + one.bounds.upper);
+    const Vec3 origin = centre + 9.0f * sampleSphere(u, v) + Vec3{0, 6, 0};
+    const Vec3 direction = normalize(centre + 6.0f * (sampleSphere(s, t)) - origin);
+    SurfacePoint p, q;
+    const bool met = a.closestHit(origin, direction, p);
+    ASSERT_EQ(met, b.closestHit(origin, direction, q)) << i;
+    if (!met) continue;
+    hits += p.material != 3;
+    EXPECT_NEAR(p.distance, q.distance, tolerance) << i;
+    EXPECT_LT(length(p.position - q.position), tolerance);
+    EXPECT_LT(length(p.ng - q.ng), tolerance);
+    EXPECT_LT(length(p.ns - q.ns), tolerance);
+    EXPECT_EQ(p.front, q.front);
+    EXPECT_EQ(p.material, q.material);
+    if (p.u == p.u) {
+      EXPECT_NEAR(p.u, q.u, tolerance);
+    }
+    const Vec3 to = origin + 12.0f * direction;
+    occluded += a.occluded(origin, to);
+    EXPECT_EQ(a.occluded(origin, to), b.occluded(origin, to));
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(occluded, 2000);
+}
+
+TEST(Instances, AreMetAsIfEachWereStored) { expectSameHits(tents(true), tents(false), 1e-4f); }
+
+TEST(Instances, FarFromTheOriginToo) {
+  const Scene shared = tents(true, 1e6);
+  EXPECT_NE(shared.origin[0], 0.0);
+  expectSameHits(shared, tents(false, 1e6), 1e-3f);
+}
+
+TEST(Instances, AreStoredOnce) {
+  const Scene shared = tents(true), flat = tents(false);
+  EXPECT_EQ(shared.instances.size(), kPlaces.size());
+  ASSERT_EQ(shared.prototypes.size(), 1u);
+  EXPECT_EQ(shared.prototypes[0].end - shared.prototypes[0].begin, 4u);
+  EXPECT_EQ(flat.triangles.size() - shared.triangles.size(), 4 * (kPlaces.size() - 1));
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_LE(shared.bounds.lower[i], flat.bounds.lower[i] + 1e-5f);
+    EXPECT_GE(shared.bounds.upper[i], flat.bounds.upper[i] - 1e-5f);
+  }
+}
+
+TEST(Instances, ShineWhereTheyStand) {
+  const Scene shared = tents(true), flat = tents(false);
+  const RayScene a(shared), b(flat);
+  const LightSet lamps(a), same(b);
+  ASSERT_EQ(lamps.size(), same.size());
+  EXPECT_NEAR(lamps.totalPower().x, same.totalPower().x, 1e-4f * same.totalPower().x);
+}
+
+TEST(Instances, TheHashKnowsWhereTheyStand) {
+  const auto hashOf = [](double x) {
+    SceneBuilder builder("tents");
+    const Tent tent(builder);
+    addFloor(builder, 0.0);
+    const uint32_t prototype = builder.beginPrototype();
+    builder.addMesh("tent", tent.mesh());
+    builder.endPrototype();
+    builder.addInstance(prototype, turned(0.0, {1, 1, 1}, {x, 0, 0}));
+    builder.addInstance(prototype, turned(0.0, {1, 1, 1}, {4, 0, 0}));
+    return builder.finish().contentHash;
+  };
+  EXPECT_EQ(hashOf(1.0), hashOf(1.0));
+  EXPECT_NE(hashOf(1.0), hashOf(1.5));
+}
+
+TEST(Instances, OneAloneIsStoredWhereItStands) {
+  SceneBuilder builder("tents");
+  const Tent tent(builder);
+  const uint32_t prototype = builder.beginPrototype();
+  builder.addMesh("tent", tent.mesh());
+  builder.endPrototype();
+  builder.addInstance(prototype, kPlaces[1]);
+  const Scene scene = builder.finish();
+  EXPECT_TRUE(scene.instances.empty());
+  EXPECT_TRUE(scene.prototypes.empty());
+  EXPECT_EQ(scene.triangles.size(), 5u);
+}
+
+TEST(Instances, WithoutVolumeAreLeftOut) {
+  SceneBuilder builder("tents");
+  const Tent tent(builder);
+  addFloor(builder, 0.0);
+  const uint32_t prototype = builder.beginPrototype();
+  builder.addMesh("tent", tent.mesh());
+  builder.endPrototype();
+  for (int i = 0; i < 2; ++i) builder.addInstance(prototype, turned(0.0, {1, 0, 1}, {0, 0, 0}));
+  const Scene scene = builder.finish();
+  EXPECT_TRUE(scene.instances.empty());
+  EXPECT_TRUE(scene.prototypes.empty());
+}
+
+}  // namespace
+}  // namespace bnvpl
