@@ -72,17 +72,6 @@ std::optional<Affine> fromColumns(const std::array<double, 16>& numbers) {
   return a;
 }
 
-Affine operator*(const Affine& a, const Affine& b) {
-  Affine c;
-  for (size_t i = 0; i < 3; ++i) {
-    for (size_t j = 0; j < 4; ++j) {
-      c.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] +
-                  (j == 3 ? a.m[i][3] : 0.0);
-    }
-  }
-  return c;
-}
-
 std::optional<Affine> inverse(const Affine& a) {
   const double determinant = a.determinant();
   if (determinant == 0.0 || !std::isfinite(determinant)) return std::nullopt;

@@ -17,7 +17,6 @@ std::optional<Affine> lookAt(const FilePoint& eye, const FilePoint& at, const Fi
 std::optional<Affine> fromColumns(const std::array<double, 16>& numbers);
 
 // First b, then a.
-Affine operator*(const Affine& a, const Affine& b);
 // None for a transform that flattens space.
 std::optional<Affine> inverse(const Affine& a);
 // Without the translation.
