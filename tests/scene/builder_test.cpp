@@ -200,6 +200,7 @@ TEST_F(Builder, FarScenesCountFromTheirOwnOriginWithCameraAndLights) {
 TEST_F(Builder, WarningsAndFilesAreNamedOnce) {
   SceneBuilder builder("s");
   addTriangle(builder, builder.addMaterial(lampOf(1)));
+  builder.setCamera({0, 0, 5}, {});
   for (int i = 0; i < 2; ++i) {
     builder.warn("odd");
     builder.addFile("a");

@@ -1,0 +1,63 @@
+// vpl-inspect scene: what it says, and that what it writes is the scene again.
+#include "scene/load_scene.h"
+#include "tests/inspect/run_inspect.h"
+#include "tests/inspect/tiny_scene.h"
+
+namespace bnvpl {
+namespace {
+
+using SceneReport = InspectTest;
+
+std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
+
+TEST_F(SceneReport, NamesWhatTheSceneHolds) {
+  writeTinyScene(at("."));
+  const Outcome text = runInspect("scene " + quoted(at("tiny.toml")));
+  EXPECT_EQ(text.code, 0) << text.output;
+  for (const char* part : {"triangles: 4 ", "tiny.obj: 4 triangles", "'white': phong", "point light",
+                           "film 80x60"})
+    EXPECT_NE(text.output.find(part), std::string::npos) << part << " in\n" << text.output;
+
+  const Json json =
+      Json::parse(runInspect("scene --json " + quoted(at("tiny.toml"))).output);
+  EXPECT_EQ(json["materials"].size(), 1u);
+  EXPECT_NEAR(json["lights"][0]["power_W"][0].get<double>(), 4.0 * 3.14159265, 1e-4);
+  EXPECT_EQ(json["cameras"][0]["position"][2].get<double>(), 4.0);
+  EXPECT_EQ(json["warnings"].size(), 0u);
+}
+
+TEST_F(SceneReport, WhatItWritesIsTheSceneAgain) {
+  writeTinyScene(at("."));
+  const Outcome written =
+      runInspect("scene --to-toml " + quoted(at("copy")) + " " + quoted(at("tiny.toml")));
+  ASSERT_EQ(written.code, 0) << written.output;
+  const Scene before = loadScene(at("tiny.toml")), after = loadScene(at("copy/scene.toml"));
+  EXPECT_EQ(after.contentHash, before.contentHash);
+  EXPECT_EQ(after.camera.position, before.camera.position);
+  EXPECT_LT(length(after.camera.forward - before.camera.forward), 1e-6f);
+  EXPECT_NEAR(after.camera.verticalFovRad, before.camera.verticalFovRad, 1e-6f);
+  EXPECT_EQ(after.film.width, before.film.width);
+}
+
+TEST_F(SceneReport, ItsOwnFilesAreNotOverwritten) {
+  writeTinyScene(at("."));
+  fs::rename(at("tiny.toml"), at("scene.toml"));
+  const Outcome refused =
+      runInspect("scene --to-toml " + quoted(at(".")) + " " + quoted(at("scene.toml")));
+  EXPECT_EQ(refused.code, 2) << refused.output;
+}
+
+TEST_F(SceneReport, AViewFileReplacesTheCamera) {
+  writeTinyScene(at("."));
+  writeAll(at("view.toml"),
+           "[film]\nwidth = 20\nheight = 10\n[camera]\nposition = [0, 1, 2]\nlook_at = [0, 0, 0]\n"
+           "vertical_fov_deg = 30\n");
+  const Outcome ok = runInspect("scene --view " + quoted(at("view.toml")) + " --to-toml " +
+                                quoted(at("copy")) + " " + quoted(at("tiny.toml")));
+  ASSERT_EQ(ok.code, 0) << ok.output;
+  EXPECT_EQ(loadScene(at("copy/scene.toml")).film.width, 20u);
+  EXPECT_EQ(runInspect("scene --camera 3 " + quoted(at("tiny.toml"))).code, 2);
+}
+
+}  // namespace
+}  // namespace bnvpl
