@@ -104,6 +104,8 @@ class SceneBuilder {
   std::vector<FilePoint> points_;  // what scene_.positions will be
   std::vector<Part> parts_;
   std::vector<uint32_t> lookups_;  // of scene_.expressions, operands included
+  std::vector<uint32_t>
+      mixParts_;  // of scene_.materials: those that they are mixed of, and themselves
   FilePoint cameraPosition_{};
   std::vector<FilePoint> lightPositions_;  // of scene_.lights
   uint32_t grey_ = kNone;
