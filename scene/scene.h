@@ -143,6 +143,11 @@ struct Scene {
   Vec3 expressionAt(uint32_t expression, float u, float v) const {
     return TextureEvaluator(expressions, textures).at(expression, u, v);
   }
+  // Radiance of a material, at texture coordinates that may be NaN.
+  Vec3 emissionAt(const Material& m, float u, float v) const {
+    if (m.emissionTexture == kNone || !std::isfinite(u) || !std::isfinite(v)) return m.emission;
+    return m.emission * expressionAt(m.emissionTexture, u, v);
+  }
   Vec3 corner(uint32_t triangle, size_t i) const {
     return positions[triangles[triangle].position[i]];
   }

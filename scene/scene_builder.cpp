@@ -82,6 +82,19 @@ uint32_t SceneBuilder::addTexture(const TextureUse& use) {
 }
 
 uint32_t SceneBuilder::addMaterial(Material material) {
+  uint32_t parts = 1;
+  if (const auto* mix = std::get_if<MixModel>(&material.model)) {
+    for (const uint32_t part : {mix->first, mix->second}) {
+      assert(part == kNone || part < scene_.materials.size());
+      if (part != kNone) parts += mixParts_[part];
+    }
+    if (parts > kMaxLookups) {
+      warn(name() + ": material '" + material.name + "' mixes too many materials; it is grey");
+      material.model = DiffuseModel{};
+      parts = 1;
+    }
+  }
+  mixParts_.push_back(parts);
   scene_.materials.push_back(std::move(material));
   return static_cast<uint32_t>(scene_.materials.size() - 1);
 }

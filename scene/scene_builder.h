@@ -146,6 +146,8 @@ class SceneBuilder {
   std::vector<FilePoint> viewPositions_;      // of scene_.views
   std::vector<FilePoint> lightPositions_;     // of scene_.lights
   std::map<std::string, size_t> meshOfName_;  // in scene_.meshes
+  // Of scene_.materials: those that they are mixed of, and themselves.
+  std::vector<uint32_t> mixParts_;
   uint32_t grey_ = kNone;
   std::set<std::string> warned_;
 };

@@ -9,17 +9,28 @@
 
 namespace bnvpl {
 
-Vec3 LightSet::samplePointOn(const Light& light, float u, float v, Vec3& normal) const {
+LightSet::EmitterPoint LightSet::samplePointOn(const Light& light, float u, float v) const {
   const uint32_t t = light.triangles[sampleCdf<float>(light.cdf, u)];
   const Vec3 p0 = scene_.corner(t, 0), p1 = scene_.corner(t, 1), p2 = scene_.corner(t, 2);
   const Barycentric b = sampleTriangle(u, v);
-  normal = normalize(cross(p1 - p0, p2 - p0));
-  return (1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2;
+  return {(1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2, normalize(cross(p1 - p0, p2 - p0)),
+          emissionOn(t, b)};
+}
+
+Vec3 LightSet::emissionOn(uint32_t triangle, const Barycentric& b) const {
+  const Triangle& t = scene_.triangles[triangle];
+  const Material& m = scene_.materials[t.material];
+  if (m.emissionTexture == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
+    return m.emission;
+  const auto &p = scene_.uvs[t.uv[0]], &q = scene_.uvs[t.uv[1]], &r = scene_.uvs[t.uv[2]];
+  const float first = 1.0f - b.u - b.v;
+  return scene_.emissionAt(m, first * p[0] + b.u * q[0] + b.v * r[0],
+                           first * p[1] + b.u * q[1] + b.v * r[1]);
 }
 
 bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const {
-  Vec3 n;
-  const Vec3 p = samplePointOn(light, u, v, n);
+  const auto [p, normal, emission] = samplePointOn(light, u, v);
+  Vec3 n = normal;
   const Vec3 d = p - at;
   const float d2 = lengthSquared(d);
   if (!(d2 > 0.0f)) return false;
@@ -31,7 +42,7 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectS
   }
   if (cosine <= 0.0f) return false;
   out.pdf = d2 / (cosine * light.areaTotal);
-  out.radianceOverPdf = scene_.materials[light.material].emission * (1.0f / out.pdf);
+  out.radianceOverPdf = emission * (1.0f / out.pdf);
   out.infinite = false;
   out.target = rays_.offsetOrigin(p, n);
   return true;
@@ -150,14 +161,14 @@ PhotonStart LightSet::emit(size_t index, Rng& rng) const {
   const LightSpec& s = light.spec;
   PhotonStart start;
   if (light.area) {
-    Vec3 n;
     const float u = rng.next(), v = rng.next();
-    const Vec3 p = samplePointOn(light, u, v, n);
+    const auto [p, normal, emission] = samplePointOn(light, u, v);
+    Vec3 n = normal;
     if (light.twoSided && rng.next() < 0.5f) n = -n;
     const float a = rng.next(), b = rng.next();
     start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, b));
     start.origin = rays_.offsetOrigin(p, n);
-    start.flux = light.power;
+    start.flux = fluxOf(light, emission);
   } else if (s.type == LightType::Point) {
     const float u = rng.next(), v = rng.next();
     start = {s.position, sampleSphere(u, v), light.power};

@@ -1,5 +1,7 @@
 #include "transport/lights.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/cdf.h"
@@ -48,9 +50,27 @@ void LightSet::addAreaLights() {
     for (const double a : areas[i]) total += a;
     lights_[i].areaTotal = static_cast<float>(total);
     lights_[i].cdf = makeCdf<float>(areas[i]);
-    lights_[i].power = scene_.materials[lights_[i].material].emission *
-                       (kPi * lights_[i].areaTotal * (lights_[i].twoSided ? 2.0f : 1.0f));
+    lights_[i].power = fluxOf(lights_[i], meanEmission(lights_[i], areas[i]));
   }
+}
+
+// Over the surface. Of a texture, by some points of each triangle: it only shares out rays and
+// photons.
+Vec3 LightSet::meanEmission(const Light& light, const std::vector<double>& areas) const {
+  const Material& m = scene_.materials[light.material];
+  if (m.emissionTexture == kNone) return m.emission;
+  const size_t points = std::clamp<size_t>(4096 / areas.size(), 1, 1024);
+  std::array<double, 3> sum{};
+  double total = 0.0;
+  for (size_t i = 0; i < areas.size(); ++i) {
+    for (size_t k = 0; k < points; ++k) {
+      const Point2 at = r2Sequence(k, 0.5, 0.5);
+      const Vec3 emission = emissionOn(light.triangles[i], sampleTriangle(at.x, at.y));
+      for (size_t c = 0; c < 3; ++c) sum[c] += double{emission[c]} * areas[i];
+    }
+    total += areas[i] * static_cast<double>(points);
+  }
+  return {float(sum[0] / total), float(sum[1] / total), float(sum[2] / total)};
 }
 
 void LightSet::addSpecLights() {
@@ -142,7 +162,7 @@ size_t LightSet::pick(float u, float& probability) const {
 Vec3 LightSet::emitted(const SurfacePoint& hit, size_t& light) const {
   light = lightOfMaterial_[hit.material];
   if (light == kNone || !(hit.front || lights_[light].twoSided)) return {};
-  return scene_.materials[hit.material].emission;
+  return scene_.emissionAt(scene_.materials[hit.material], hit.u, hit.v);
 }
 
 float LightSet::pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const {

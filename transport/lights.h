@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "core/sampling.h"
 #include "transport/rays.h"
 
 namespace bnvpl {
@@ -88,7 +89,16 @@ class LightSet {
   Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;
   bool sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const;
   PhotonStart emitFromInfinity(const Light& light, Rng& rng) const;
-  Vec3 samplePointOn(const Light& light, float u, float v, Vec3& normal) const;
+  struct EmitterPoint {
+    Vec3 position, normal, emission;
+  };
+  EmitterPoint samplePointOn(const Light& light, float u, float v) const;
+  Vec3 emissionOn(uint32_t triangle, const Barycentric& at) const;
+  Vec3 meanEmission(const Light& light, const std::vector<double>& areas) const;
+  // What all of an area light sends out if it shines like this everywhere.
+  static Vec3 fluxOf(const Light& light, Vec3 emission) {
+    return emission * (kPi * light.areaTotal * (light.twoSided ? 2.0f : 1.0f));
+  }
 
   const RayScene& rays_;
   const Scene& scene_;

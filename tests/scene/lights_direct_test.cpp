@@ -62,6 +62,30 @@ TEST(DirectLight, SquareLampMatchesTheFormFactor) {
               Vec3(10, 5, 1) * (kPi * float(aside)), 2e-3f);
 }
 
+// The left half of the lamp is dark, by a texture: samples, rays and photons agree on it.
+TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
+  Scene scene = lampScene(false);
+  for (size_t i = 0; i < 4; ++i)
+    scene.uvs.push_back({scene.positions[i].x * 0.5f + 0.5f, scene.positions[i].z + 0.5f});
+  for (size_t t = 0; t < 2; ++t) scene.triangles[t].uv = scene.triangles[t].position;
+  scene.expressions = {constantExpression(Vec3(0)), constantExpression(Vec3(1)),
+                       checkerboardExpression(0, 1, {2, 0, 0, 0, 1, 0})};
+  scene.materials[0].emissionTexture = 2;
+  const Lit lit(std::move(scene));
+  const double half = 2.0 * cornerFormFactor(1, 0.5, 1.5);
+  expectClose(irradiance(lit.lights, 0, {0, 0, 0}, {0, 1, 0}), Vec3(10, 5, 1) * (kPi * float(half)),
+              0.01f);
+  expectClose(lit.lights.power(0), Vec3(10, 5, 1) * kPi, 0.02f);
+  expectClose(meanOver(20000, [&](Rng& rng) { return lit.lights.emit(0, rng).flux; }),
+              Vec3(10, 5, 1) * kPi, 0.03f);
+  for (const float x : {-0.5f, 0.5f}) {
+    SurfacePoint hit;
+    ASSERT_TRUE(lit.rays.closestHit({x, 0.5f, 0.1f}, {0, 1, 0}, hit));
+    size_t light = 0;
+    EXPECT_EQ(lit.lights.emitted(hit, light), x < 0 ? Vec3() : Vec3(10, 5, 1));
+  }
+}
+
 TEST(DirectLight, LampShinesOnItsSidesOnly) {
   const Lit one(lampScene(false)), two(lampScene(true));
   EXPECT_EQ(irradiance(one.lights, 0, {0, 3, 0}, {0, -1, 0}), Vec3());

@@ -34,21 +34,20 @@ Between ofIor(float ior) {
   return {std::sqrt(std::max(0.0f, (ior - 1.0f) / (kLargestIor - 1.0f))), kIors};
 }
 
-// Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all.
+// Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all. The
+// facets on either side of the plane of incidence mirror each other.
 template <typename Fn>
 void overVisibleFacets(float cosine, float alpha, const Fn& fn) {
-  constexpr int kAround = 16, kAcross = 24;
+  constexpr uint32_t kPoints = 1024;
   const float co = std::max(kLeastCosine, cosine);
   const Vec3 wo{std::sqrt(1.0f - co * co), 0.0f, co};
   const Ggx ggx{std::max(kSmoothAlpha, alpha), std::max(kSmoothAlpha, alpha)};
-  for (int i = 0; i < kAround; ++i) {
-    for (int j = 0; j < kAcross; ++j) {
-      const Vec3 h =
-          ggx.sampleVisible(wo, {(float(i) + 0.5f) / kAround, (float(j) + 0.5f) / kAcross});
-      const Vec3 wi = reflect(wo, h);
-      if (!(wi.z > 0.0f)) continue;
-      fn(std::min(1.0f, dot(wo, h)), ggx.visible(wo, wi) / ggx.visible(wo) / (kAround * kAcross));
-    }
+  for (uint32_t i = 0; i < kPoints; ++i) {
+    const Point2 at = r2Sequence(i, 0.5, 0.5);
+    const Vec3 h = ggx.sampleVisible(wo, {0.5f * at.x, at.y});
+    const Vec3 wi = reflect(wo, h);
+    if (!(wi.z > 0.0f)) continue;
+    fn(std::min(1.0f, dot(wo, h)), ggx.visible(wo, wi) / (ggx.visible(wo) * kPoints));
   }
 }
 
@@ -119,20 +118,21 @@ struct DielectricTable {
   std::array<std::array<Row, kAlphas>, kIors> albedo{};
   std::array<std::array<float, kAlphas>, kIors> mean{};
   DielectricTable() {
-    for (size_t k = 0; k < kIors; ++k) {
-      const float ior = 1.0f + (kLargestIor - 1.0f) * nodeSquared(k, kIors);
-      for (size_t i = 0; i < kAlphas; ++i) {
-        const float alpha = nodeSquared(i, kAlphas);
-        for (size_t j = 0; j < kCosines; ++j) {
-          float& sum = albedo[k][i][j];
-          overVisibleFacets(nodeSquared(j, kCosines), alpha, [&](float c, float weight) {
-            sum += weight * fresnelDielectric(c, ior);
-          });
-        }
-        const Row& row = albedo[k][i];
-        mean[k][i] = alpha < kSmoothAlpha
-                         ? hemisphereMean([&](float c) { return fresnelDielectric(c, ior); })
-                         : hemisphereMean([&](float c) { return inRow(row, c); });
+    std::array<float, kIors> iors;
+    for (size_t k = 0; k < kIors; ++k)
+      iors[k] = 1.0f + (kLargestIor - 1.0f) * nodeSquared(k, kIors);
+    for (size_t i = 0; i < kAlphas; ++i) {
+      const float alpha = nodeSquared(i, kAlphas);
+      for (size_t j = 0; j < kCosines; ++j) {
+        overVisibleFacets(nodeSquared(j, kCosines), alpha, [&](float c, float weight) {
+          for (size_t k = 0; k < kIors; ++k)
+            albedo[k][i][j] += weight * fresnelDielectric(c, iors[k]);
+        });
+      }
+      for (size_t k = 0; k < kIors; ++k) {
+        mean[k][i] = hemisphereMean([&](float c) {
+          return alpha < kSmoothAlpha ? fresnelDielectric(c, iors[k]) : inRow(albedo[k][i], c);
+        });
       }
     }
   }

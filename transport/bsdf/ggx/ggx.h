@@ -15,7 +15,8 @@ struct Ggx {
 
   bool smooth() const { return std::max(alongX, alongY) < kSmoothAlpha; }
   bool rough() const;  // its reflection is light that VPLs stand for
-  float meanAlpha() const { return std::sqrt(alongX * alongY); }
+  // Of the isotropic surface that loses about as much between its facets.
+  float meanAlpha() const { return std::sqrt(0.5f * (alongX * alongX + alongY * alongY)); }
 
   // Density of the facets' normals, per projected area of the surface, 1/sr.
   float density(Vec3 h) const {

@@ -1,0 +1,51 @@
+// Lacquered metal.
+#include "transport/bsdf/coated_conductor/coated_conductor.h"
+
+#include "tests/support/bsdf_checks.h"
+#include "transport/bsdf/fresnel.h"
+
+namespace bnvpl::test {
+namespace {
+
+CoatedConductorModel lacquer(float metal, float coat) {
+  CoatedConductorModel m;
+  m.roughness = Roughness(Scalar(metal));
+  m.coatRoughness = Roughness(Scalar(coat));
+  return m;
+}
+
+TEST(CoatedConductor, KeepsToWhatEveryModelDoes) {
+  for (const float metal : {0.0f, 0.2f, 0.5f})
+    for (const float coat : {0.0f, 0.2f, 0.5f})
+      check(materialOf(lacquer(metal, coat)),
+            "lacquer " + std::to_string(coat) + " over " + std::to_string(metal), 0.05f);
+}
+
+// A mirror that reflects all, below a smooth coat: light goes back and forth and all of it returns.
+TEST(CoatedConductor, PerfectMirrorLosesNothing) {
+  CoatedConductorModel m = lacquer(0, 0);
+  m.fresnel.byReflectance = true;
+  m.fresnel.reflectance = Vec3(1);
+  for (const Vec3 wo : views()) EXPECT_NEAR(furnace(materialOf(m), wo).x, 1.0f, 2e-3f);
+}
+
+TEST(CoatedConductor, WithoutACoatIsTheMetal) {
+  CoatedConductorModel coated = lacquer(0.2f, 0.0f);
+  coated.coatIor = 1.0f;
+  ConductorModel bare;
+  bare.roughness = Roughness(Scalar(0.2f));
+  bare.multipleScattering = false;
+  for (const Vec3 wo : views())
+    expectClose(furnace(materialOf(coated), wo), furnace(materialOf(bare), wo), 0.01f);
+}
+
+// At normal incidence: R + T^2 M / (1 - M R), with the metal's reflectance M against the coat.
+TEST(CoatedConductor, NormalIncidenceHasTheClosedForm) {
+  const float r = fresnelDielectric(1.0f, 1.5f),
+              m = fresnelConductor(1.0f, 0.2f / 1.5f, 3.91f / 1.5f);
+  EXPECT_NEAR(furnace(materialOf(lacquer(0, 0)), {0, 0, 1}).x,
+              r + (1 - r) * (1 - r) * m / (1 - m * r), 1e-3f);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

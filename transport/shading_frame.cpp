@@ -1,0 +1,66 @@
+#include "transport/shading_frame.h"
+
+#include <cmath>
+
+namespace bnvpl {
+
+namespace {
+
+// How the position moves with u and v over a triangle. False: the coordinates do not span it.
+bool derivatives(const Scene& scene, const Triangle& t, Vec3& dpdu, Vec3& dpdv) {
+  const Vec3 p0 = scene.positions[t.position[0]];
+  const Vec3 e1 = scene.positions[t.position[1]] - p0, e2 = scene.positions[t.position[2]] - p0;
+  const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
+  const float u1 = b[0] - a[0], v1 = b[1] - a[1], u2 = c[0] - a[0], v2 = c[1] - a[1];
+  const float inverse = 1.0f / (u1 * v2 - u2 * v1);
+  dpdu = (v2 * e1 - v1 * e2) * inverse;
+  dpdv = (u1 * e2 - u2 * e1) * inverse;
+  return isFinite(dpdu) && isFinite(dpdv) && !isBlack(dpdu) && !isBlack(dpdv);
+}
+
+// In the frame of tangent, its partner on the side of growing v, and normal.
+Vec3 mappedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 n,
+                  Vec3 dpdu, Vec3 dpdv) {
+  const Vec3 along = dpdu - n * dot(n, dpdu);
+  if (!(lengthSquared(along) > 0.0f)) return n;
+  const Vec3 t = normalize(along), s = cross(n, t), b = dot(s, dpdv) < 0.0f ? -s : s;
+  const Vec3 c = 2.0f * scene.expressionAt(relief.normalMap, hit.u, hit.v) - Vec3(1);
+  const Vec3 m =
+      t * (c.x * relief.strength) + b * (c.y * relief.strength) + n * std::max(c.z, 1e-3f);
+  return normalize(m);
+}
+
+// The normal of the displaced surface (Blinn 1978), by differences over a texel on both sides.
+Vec3 bumpedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 n,
+                  Vec3 dpdu, Vec3 dpdv) {
+  const TextureEvaluator texture(scene.expressions, scene.textures);
+  const float step = texture.step(relief.bumpMap);
+  const auto height = [&](float u, float v) { return texture.at(relief.bumpMap, u, v).x; };
+  const float scale = relief.strength / (2.0f * step);
+  const float du = scale * (height(hit.u + step, hit.v) - height(hit.u - step, hit.v)),
+              dv = scale * (height(hit.u, hit.v + step) - height(hit.u, hit.v - step));
+  const Vec3 u = dpdu - n * dot(n, dpdu), v = dpdv - n * dot(n, dpdv);
+  const Vec3 flat = cross(u, v), m = cross(u + n * du, v + n * dv);
+  return normalize(dot(flat, n) < 0.0f ? -m : m);
+}
+
+}  // namespace
+
+void applyRelief(const Scene& scene, const Triangle& triangle, SurfacePoint& hit) {
+  Vec3 dpdu, dpdv;
+  if (!std::isfinite(hit.u) || !std::isfinite(hit.v) || !derivatives(scene, triangle, dpdu, dpdv))
+    return;
+  hit.tangent = normalize(dpdu);
+  const Relief& relief = scene.materials[hit.material].relief;
+  if (relief.flat()) return;
+  const float side = hit.front ? 1.0f : -1.0f;
+  const Vec3 outwards = hit.ns * side;
+  const Vec3 bent = (relief.normalMap != kNone ? mappedNormal : bumpedNormal)(
+                        scene, relief, hit, outwards, dpdu, dpdv) *
+                    side;
+  if (!isFinite(bent)) return;
+  const float above = dot(bent, hit.ng);
+  hit.ns = above >= kLeastRelief ? bent : normalize(bent + hit.ng * (kLeastRelief - above));
+}
+
+}  // namespace bnvpl
