@@ -50,6 +50,10 @@ void applyRelief(const Scene& scene, const Triangle& triangle, SurfacePoint& hit
   Vec3 dpdu, dpdv;
   if (!std::isfinite(hit.u) || !std::isfinite(hit.v) || !derivatives(scene, triangle, dpdu, dpdv))
     return;
+  if (hit.instance != kNone) {
+    const Instance& instance = scene.instances[hit.instance];
+    dpdu = instance.vector(dpdu), dpdv = instance.vector(dpdv);
+  }
   hit.tangent = normalize(dpdu);
   const Relief& relief = scene.materials[hit.material].relief;
   if (relief.flat()) return;
