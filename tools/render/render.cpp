@@ -22,7 +22,7 @@ std::span<const Option> stageOptions() {
       unrecorded(textOption("layers", "", "names with commas between", layersHelp())),
       unrecorded(textOption("size", "", "WIDTHxHEIGHT, pixels",
                             "another film than the scene's, with the same vertical field of view")),
-      unrecorded(choiceOption("pixels", "float", "half|float", "EXR channel type")),
+      choiceOption("pixels", "float", "half|float", "EXR channel type"),
       unrecorded(textOption("exposure", "auto", "EV", "of the PNG, in stops; auto: middle grey"))};
   return options;
 }
