@@ -56,7 +56,7 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   for (const fs::path& file : command.files) used.reads("file", file);
   used.reads("--scene", command.scene.file).writes(tool).check();
   Scene scene;
-  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene);
+  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
 
   const auto say = [&](const std::string& line) {
@@ -101,7 +101,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   used.reads("file", command.file).reads("--scene", command.scene.file);
   used.writes("-o", command.output, {".png"}).writes(tool).check();
   const VplTable table = readVpl(command.file);
-  Scene scene = loadSceneFor("vpl-inspect", command.scene);
+  Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
   requireSameScene(command.file, table.sceneHash, scene,
                    "name the scene it was made from, or rerun vpl-place");
