@@ -42,7 +42,7 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
 }
 
 Json viewRecord(const Scene& scene) {
-  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene))}};
+  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene.camera, scene.film))}};
 }
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

@@ -66,9 +66,9 @@ int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool
 
   Json inputs{{"candidates", hashText(candidates.checksum)}};
   if (world) inputs["scene"] = hashText(world->scene.contentHash);
-  kept.table.provenance =
-      extendProvenance(candidates.provenance,
-                       stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs));
+  Json record = stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs);
+  if (world) record["view"] = viewRecord(world->scene);
+  kept.table.provenance = extendProvenance(candidates.provenance, record);
   OutputSet files;
   writeVpl(files.add(paths.output), kept.table);
   std::vector<fs::path> read{paths.input};

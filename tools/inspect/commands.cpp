@@ -69,10 +69,10 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   }
   const std::string hash = withScene ? hashText(scene.contentHash) : "";
   if (command.deep) {
-    checkChain(checked, withScene ? scene.name() : "SCENE", hash);
+    checkChain(checked, withScene ? &scene : nullptr);
   } else {
     checkTogether(checked);
-    if (withScene) checkScene(checked, scene.name(), hash);
+    if (withScene) checkScene(checked, scene);
   }
   saveStats("check", describeChecked(checked, hash, command.deep), summary, tool);
   if (command.deep)
@@ -80,6 +80,8 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   else if (checked.size() > 1)
     say("no contradiction between the files");
   if (withScene) say("made from " + scene.name() + " as it is now");
+  if (withScene && placedForAnotherView(checked, scene))
+    say("the VPLs were placed for another view, which is no error: they light any");
   return kExitOk;
 }
 

@@ -43,7 +43,7 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Giv
 
   Json record = stageRecord("vpl-place", recordOf(placeSpec(), options),
                             {{"scene", hashText(scene.contentHash)}});
-  record["view"] = viewRecord(scene);
+  if (placeMethod(options).forView) record["view"] = viewRecord(scene);
   placed.table.provenance = extendProvenance("", record);
   OutputSet files;
   writeVpl(files.add(output), placed.table);
