@@ -49,7 +49,7 @@ vpl-render scenes/cornell/scene.toml -o reference.exr --integrator path --spp 64
 # Build identities and hashes; progress, seconds and memory.
 NORMAL = ((re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
           (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'),
-          (re.compile(r'^vpl-\w+: (.* left|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
+          (re.compile(r'^vpl-\w+: (.* of \S+ \(\d+ %\)(, .* left)?|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
 
 SESSION = re.compile(r'(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)',
                      re.S)

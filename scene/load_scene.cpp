@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "core/files.h"
 #include "scene/read/toml/scene_toml.h"
 #include "scene/scene_builder.h"
 
@@ -18,8 +18,8 @@ struct Format {
 constexpr std::array kFormats{Format{".toml", readSceneToml}};
 
 const Format& formatOf(const fs::path& file) {
-  std::string extension = file.extension().string(), known;
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lowerExtension(file);
+  std::string known;
   for (const Format& format : kFormats) {
     if (format.extension == extension) return format;
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
@@ -32,6 +32,9 @@ const Format& formatOf(const fs::path& file) {
 }  // namespace
 
 Scene loadScene(const fs::path& path, const Defines& defines) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw InputError(path, "is a folder; name the scene.toml in it");
   const Format& format = formatOf(path);
   SceneBuilder builder(path);
   format.read(path, defines, builder);

@@ -50,7 +50,8 @@ Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, ui
 }  // namespace
 
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows) {
+                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows,
+                                 const ProgressFn& progress) {
   Bounds bounds;
   for (const Vec3 p : position) bounds.extend(p);
   const float smallest = 1e-6f * bounds.diagonal();
@@ -69,13 +70,14 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
       const float distanceSquared = std::max(reach.distanceSquared, smallest * smallest);
       share[i] = kPi * distanceSquared / static_cast<float>(reach.count);
     }
+    if (progress) progress(end - begin);
   });
   return share;
 }
 
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k) {
-  return surfaceShares(position, normal, k, KdTree(position));
+                                 unsigned k, const ProgressFn& progress) {
+  return surfaceShares(position, normal, k, KdTree(position), {}, progress);
 }
 
 }  // namespace bnvpl

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/vec3.h"
 #include "spatial/kd_tree.h"
 
@@ -18,10 +19,12 @@ namespace bnvpl {
 // coincident points get a small positive share. When every point is at one place, which has no
 // scale but its distance from the origin, each share is the square of that, or 1 at the origin
 // itself. `rows` picks whose shares are wanted, one result each; empty = all points in order.
+// `progress` counts them.
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
                                  unsigned k, const KdTree& tree,
-                                 std::span<const uint32_t> rows = {});
+                                 std::span<const uint32_t> rows = {},
+                                 const ProgressFn& progress = {});
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k);
+                                 unsigned k, const ProgressFn& progress = {});
 
 }  // namespace bnvpl

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/files.h"
 #include "core/prefetch.h"
 #include "formats/exr_io.h"
 #include "formats/pixels_io.h"
@@ -150,7 +151,7 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
 }  // namespace
 
 EnvironmentImage loadEnvironment(const fs::path& file) {
-  EnvironmentImage e = file.extension() == ".exr" ? fromExr(file) : decodeEnvironment(file);
+  EnvironmentImage e = lowerExtension(file) == ".exr" ? fromExr(file) : decodeEnvironment(file);
   for (size_t i = 0; i < e.radiance.size(); ++i) {
     const Vec3 L = e.radiance[i];
     if (!isFinite(L) || L.x < 0 || L.y < 0 || L.z < 0) {

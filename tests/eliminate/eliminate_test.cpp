@@ -113,6 +113,28 @@ TEST(Eliminate, EstimatesTheAreaOfMany) {
   EXPECT_NEAR(candidateRadii(sorted.position, sorted.normal, 1000, options).area, 6.0, 0.1);
 }
 
+// All that comes before the first removal is told of, and counted to its end.
+TEST(Eliminate, TellsOfItsPreparations) {
+  const Cloud flat = plane(20000, 3.0f, 2.0f, 4);
+  std::vector<std::string> names;
+  uint64_t total = 0;
+  std::atomic<uint64_t> done{0};
+  const ProgressFn progress([&](uint64_t units) { done += units; },
+                            [&](std::string_view what, uint64_t of) {
+                              names.emplace_back(what);
+                              total = of;
+                              done = 0;
+                            },
+                            [&] { EXPECT_EQ(done, total) << names.back(); });
+  VplTable candidates;
+  candidates.position = flat.position;
+  candidates.normal = flat.normal;
+  candidates.albedo.assign(flat.position.size(), Vec3(0.5f));
+  candidates.id.resize(flat.position.size());
+  eliminate(candidates, resolve(eliminateSpec(), keep(1000, "local")), nullptr, nullptr, progress);
+  EXPECT_EQ(names, (std::vector<std::string>{"radii", "weights"}));
+}
+
 TEST(Eliminate, RadiiStandForTheArea) {
   const Cloud cloud = unevenPlane(20000, 6);
   for (const double given : {0.0, 2.0}) {

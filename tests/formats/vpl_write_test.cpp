@@ -177,7 +177,7 @@ TEST_F(VplWrite, WrongStageNamesTheMakerByTheProvenance) {
     }
     return std::string();
   };
-  const std::string cure = ", stage eliminated is needed; make it with vpl-eliminate";
+  const std::string cure = ": its VPLs have their flux; pass it to vpl-render";
   EXPECT_EQ(complaint(R"([{"tool":"vpl-place","options":{"method":"light"}}])"),
             ": is of stage lit (by vpl-place --method light)" + cure);
   EXPECT_EQ(complaint(R"([{"tool":"vpl-place"},{"tool":"vpl-estimate","options":{"seed":1}}])"),

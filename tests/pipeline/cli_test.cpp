@@ -83,6 +83,34 @@ TEST_F(Options, UnknownChoices) {
   EXPECT_TRUE(listing().empty());
 }
 
+// As of a variable that a script forgot to set; before any work.
+TEST_F(Options, EmptyFileNames) {
+  const std::pair<const char*, std::string> lines[] = {
+      {"vpl-place", "'' -o x"},
+      {"vpl-place", scene_ + " -o ''"},
+      {"vpl-place", scene_ + " -o x --stats ''"},
+      {"vpl-place", scene_ + " -o x --depfile ''"},
+      {"vpl-eliminate", "'' -n 1 -o x"},
+      {"vpl-eliminate", "a -n 1 -o ''"},
+      {"vpl-eliminate", "a -n 1 -o x --scene ''"},
+      {"vpl-estimate", scene_ + " '' -o x"},
+      {"vpl-estimate", scene_ + " a -o ''"},
+      {"vpl-estimate", scene_ + " a -o x --checkpoint ''"},
+      {"vpl-render", scene_ + " '' -o x"},
+      {"vpl-render", scene_ + " a -o ''"},
+      {"vpl-render", scene_ + " a -o x --png ''"},
+      {"vpl-inspect", "info ''"},
+      {"vpl-inspect", "check a ''"},
+      {"vpl-inspect", "export a -o ''"},
+      {"vpl-inspect", "plot a --scene s -o ''"},
+      {"vpl-inspect", "compare a b --diff ''"},
+      {"vpl-inspect", "compare a b --mask ''"}};
+  for (const auto& [name, arguments] : lines)
+    fail(name, arguments, kExitUsage, {"'' is no file name"});
+  fail("vpl-place", scene_ + " -o ''", kExitUsage, {"--output"});
+  EXPECT_TRUE(listing().empty());
+}
+
 TEST_F(Options, BadCounts) {
   const std::pair<const char*, std::string> counts[] = {
       {"vpl-place", scene_ + " -o x -n "},

@@ -37,6 +37,21 @@ TEST_F(Effect, OptionsWithoutEffectAreRefused) {
   EXPECT_FALSE(fs::exists(at("i.exr")) || fs::exists(at("v.vpl")) || fs::exists(at("c.vpl")));
 }
 
+// Why VPLs are dark, and what helps.
+TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
+  makeStages(scene_);
+  const auto warning = [&](const std::string& options) {
+    const Outcome r = tool(
+        "vpl-estimate", scene_ + " " + path("vpls.vpl") + " -o " + path("l.vpl") + " " + options);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    return r.err;
+  };
+  const std::string few = warning("--photons 5"), near = warning("--radius 0.01 --photons 10k");
+  EXPECT_TRUE(contains(few, "hits, for 60 VPLs; raise --photons")) << few;
+  EXPECT_TRUE(contains(near, "raise --radius (1.7 unless given)")) << near;
+  EXPECT_EQ(warning("--photons 10k"), "");
+}
+
 TEST_F(Effect, NumbersAreWhatTheySay) {
   for (const char* seed : {"-1", "18446744073709551616", "''", "0x10", "1e3", "1.5"}) {
     fail("vpl-place", scene_ + " -n 5 -o " + path("c.vpl") + " --seed " + seed, kExitUsage,

@@ -12,8 +12,9 @@ struct GatherOf {
   GatherOf(const World& world, const VplLights& vpls, const Given& options)
       : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
     const Values values = resolve(renderSpec(), options);
+    const ProgressFn silent;
     gather = methodNamed(gatherMethods(), values.text("gather"))
-                 .make({world.rays, vpls, tree, 1, [] { return FilmPoints{}; }}, values);
+                 .make({world.rays, vpls, tree, 1, [] { return FilmPoints{}; }, silent}, values);
   }
   Gathered at(const Bsdf& bsdf) const {
     const Bsdf* const one[] = {&bsdf};

@@ -55,6 +55,13 @@ inline RenderResult renderWithout(const World& world, const std::string& integra
   return renderVpls(world, {}, with({{"integrator", integrator}}, options), resume);
 }
 
+// The preparations that a stage tells of, by name, as they begin.
+struct Preparations {
+  ProgressFn progress{[](uint64_t) {},
+                      [this](std::string_view what, uint64_t) { names.emplace_back(what); }};
+  std::vector<std::string> names;
+};
+
 // Few of everything; every VPL is gathered, and only what VPLs bring.
 inline const Given kFewCandidates{{"count", "20k"}};
 inline const Given kFewVpls{{"count", "1000"}};

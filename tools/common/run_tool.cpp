@@ -99,7 +99,24 @@ bool parse(CLI::App& cli, int argc, char** argv) {
   }
 }
 
+CLI::Validator named() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return text.empty() ? std::string("'' is no file name; give one") : std::string();
+      },
+      "");
+}
+
 }  // namespace
+
+CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
+                     const std::string& help) {
+  return cli.add_option(name, file, help)->check(named());
+}
+CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
+                     const std::string& help) {
+  return cli.add_option(name, files, help)->check(named());
+}
 
 void addToolOptions(CLI::App& cli, ToolOptions& options) {
   cli.add_option_function<std::string>(
@@ -108,14 +125,14 @@ void addToolOptions(CLI::App& cli, ToolOptions& options) {
       ->type_name("NUMBER")
       ->default_str("0");
   cli.add_flag("--quiet", options.quiet, "no progress and no summary; errors and warnings stay");
-  cli.add_option("--stats", options.stats, "also write the summary to this file, as JSON");
+  addFile(cli, "--stats", options.stats, "also write the summary to this file, as JSON");
   cli.set_version_flag("--version", cli.get_name() + " " + buildId());
   cli.get_formatter()->column_width(34);
 }
 
 void addDepfileOption(CLI::App& cli, ToolOptions& options) {
-  cli.add_option("--depfile", options.depfile,
-                 "write the files that were read, in Make syntax, for make and ninja");
+  addFile(cli, "--depfile", options.depfile,
+          "write the files that were read, in Make syntax, for make and ninja");
 }
 
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,

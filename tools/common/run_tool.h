@@ -21,6 +21,13 @@ struct ToolOptions {
   fs::path depfile;  // Make/ninja dependencies, empty: none
 };
 
+// An option, or without dashes an argument, that names a file, or several. An empty name, as of an
+// unset variable of a script, is refused.
+CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
+                     const std::string& help);
+CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
+                     const std::string& help);
+
 // --threads --quiet --stats --version, and --depfile where the stage reads more than it is named.
 void addToolOptions(CLI::App& cli, ToolOptions& options);
 void addDepfileOption(CLI::App& cli, ToolOptions& options);

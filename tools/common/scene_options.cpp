@@ -17,12 +17,12 @@ CLI::Option* addDefine(CLI::App& cli, SceneOptions& options) {
 }  // namespace
 
 void addSceneOptions(CLI::App& cli, SceneOptions& options) {
-  cli.add_option("scene", options.file, "the scene (.toml)")->required();
+  addFile(cli, "scene", options.file, "the scene (.toml)")->required();
   addDefine(cli, options);
 }
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {
-  CLI::Option* option = cli.add_option("--scene", options.file, help);
+  CLI::Option* option = addFile(cli, "--scene", options.file, help);
   addDefine(cli, options)->needs(option);
   return option;
 }
@@ -42,7 +42,7 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
 }
 
 Json viewRecord(const Scene& scene) {
-  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene))}};
+  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene.camera, scene.film))}};
 }
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

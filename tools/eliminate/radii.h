@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/vec3.h"
 #include "tools/common/option.h"
 
@@ -38,8 +39,8 @@ double packedDiskRadius(double area, double count);
 // from an evenly spaced 16,384 of them, and of 2^18 candidates drawn at random where there are
 // more. With --area the shares are scaled to add up to it. Candidates should be in an order that
 // keeps neighbours together (mortonOrder). Throws InputError for radii beyond what floats can
-// square.
+// square. `progress` is told of them as of preparations.
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
-                              double count, const Values& options);
+                              double count, const Values& options, const ProgressFn& progress = {});
 
 }  // namespace bnvpl

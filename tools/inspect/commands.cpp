@@ -56,7 +56,7 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   for (const fs::path& file : command.files) used.reads("file", file);
   used.reads("--scene", command.scene.file).writes(tool).check();
   Scene scene;
-  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene);
+  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
 
   const auto say = [&](const std::string& line) {
@@ -69,10 +69,10 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   }
   const std::string hash = withScene ? hashText(scene.contentHash) : "";
   if (command.deep) {
-    checkChain(checked, withScene ? scene.name() : "SCENE", hash);
+    checkChain(checked, withScene ? &scene : nullptr);
   } else {
     checkTogether(checked);
-    if (withScene) checkScene(checked, scene.name(), hash);
+    if (withScene) checkScene(checked, scene);
   }
   saveStats("check", describeChecked(checked, hash, command.deep), summary, tool);
   if (command.deep)
@@ -80,6 +80,8 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   else if (checked.size() > 1)
     say("no contradiction between the files");
   if (withScene) say("made from " + scene.name() + " as it is now");
+  if (withScene && placedForAnotherView(checked, scene))
+    say("the VPLs were placed for another view, which is no error: they light any");
   return kExitOk;
 }
 
@@ -101,7 +103,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   used.reads("file", command.file).reads("--scene", command.scene.file);
   used.writes("-o", command.output, {".png"}).writes(tool).check();
   const VplTable table = readVpl(command.file);
-  Scene scene = loadSceneFor("vpl-inspect", command.scene);
+  Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
   requireSameScene(command.file, table.sceneHash, scene,
                    "name the scene it was made from, or rerun vpl-place");

@@ -10,6 +10,7 @@
 #include "tools/common/run_files.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
+#include "tools/inspect/file_kind.h"
 
 namespace bnvpl {
 namespace {
@@ -29,9 +30,15 @@ struct Sides {
   bool halves = false;
 };
 
+Image readImage(const fs::path& file) {
+  if (fileKind(file) == FileKind::Vpl)
+    throw InputError(file, "is a .vpl file, not an image; name an .exr of vpl-render");
+  return readExr(file);
+}
+
 void readSides(const CompareCommand& command, Sides& s) {
-  s.imageA = readExr(command.imageA);
-  s.imageB = readExr(command.imageB);
+  s.imageA = readImage(command.imageA);
+  s.imageB = readImage(command.imageB);
   s.a =
       findLayer(command.imageA, s.imageA, command.layerA.empty() ? command.layer : command.layerA);
   s.b =
@@ -39,7 +46,7 @@ void readSides(const CompareCommand& command, Sides& s) {
   s.reference = s.b;
   s.halves = !command.secondB.empty();
   if (s.halves) {
-    s.imageSecond = readExr(command.secondB);
+    s.imageSecond = readImage(command.secondB);
     s.second = findLayer(command.secondB, s.imageSecond, s.b.name);
     requireSameShape(command.secondB, s.second, command.imageB.string(), s.b);
     requireFinite(command.secondB, s.second);
@@ -75,10 +82,10 @@ Picture pictureOf(const CompareCommand& command, const Sides& s, double epsilon,
 }
 
 void addReferenceOptions(CLI::App& sub, CompareCommand& c) {
-  sub.add_option("--second-half", c.secondB,
-                 "the reference again, with another seed: takes its noise out of RMSE and relMSE");
-  sub.add_option("--mask", c.mask,
-                 "PNG of the images' size: white pixels count, black ones do not, greys in part");
+  addFile(sub, "--second-half", c.secondB,
+          "the reference again, with another seed: takes its noise out of RMSE and relMSE");
+  addFile(sub, "--mask", c.mask,
+          "PNG of the images' size: white pixels count, black ones do not, greys in part");
   sub.add_option("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
   sub.add_option("--layer-a", c.layerA, "of A only");
   sub.add_option("--layer-b", c.layerB, "of B only");
@@ -113,7 +120,7 @@ void addFlipOptions(CLI::App& sub, CompareCommand& c) {
 }
 
 void addPictureOptions(CLI::App& sub, CompareCommand& c) {
-  CLI::Option* diff = sub.add_option("--diff", c.diff, "false-colour picture (.png) with a legend");
+  CLI::Option* diff = addFile(sub, "--diff", c.diff, "false-colour picture (.png) with a legend");
   addChoice(sub, "--map", c.map, kMaps,
             "what it shows; difference: (a-b) / (b + 0.1 mean(b)), blue darker, red brighter")
       ->needs(diff);
@@ -134,8 +141,8 @@ CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
       "SMAPE is the mean of |a-b| / (|a| + |b|).\n"
       "FLIP and HDR-FLIP are Andersson et al. 2020 and 2021, of layers of R, G, B.\n"
       "Exits with 5 when a limit is exceeded.");
-  sub->add_option("A", c.imageA, "image (.exr)")->required();
-  sub->add_option("B", c.imageB, "reference (.exr)")->required();
+  addFile(*sub, "A", c.imageA, "image (.exr)")->required();
+  addFile(*sub, "B", c.imageB, "reference (.exr)")->required();
   addReferenceOptions(*sub, c);
   addLimitOptions(*sub, c);
   addFlipOptions(*sub, c);

@@ -102,9 +102,9 @@ int main(int argc, char** argv) {
   ToolOptions tool;
   Paths paths;
   addSceneOptions(cli, paths.scene);
-  cli.add_option("lit", paths.lit, "from vpl-estimate or vpl-place --method light (.vpl)");
-  cli.add_option("-o,--output", paths.images.exr, "image (.exr)")->required();
-  cli.add_option("--png", paths.images.png, "also write a preview");
+  addFile(cli, "lit", paths.lit, "from vpl-estimate or vpl-place --method light (.vpl)");
+  addFile(cli, "-o,--output", paths.images.exr, "image (.exr)")->required();
+  addFile(cli, "--png", paths.images.png, "also write a preview");
   addStageOptions(cli, renderSpec(), given);
   addCheckpointOptions(cli, paths.checkpoint);
   addToolOptions(cli, tool);

@@ -22,7 +22,7 @@ std::span<const Option> stageOptions() {
       unrecorded(textOption("layers", "", "names with commas between", layersHelp())),
       unrecorded(textOption("size", "", "WIDTHxHEIGHT, pixels",
                             "another film than the scene's, with the same vertical field of view")),
-      unrecorded(choiceOption("pixels", "float", "half|float", "EXR channel type")),
+      choiceOption("pixels", "float", "half|float", "EXR channel type"),
       unrecorded(textOption("exposure", "auto", "EV", "of the PNG, in stops; auto: middle grey"))};
   return options;
 }
@@ -61,7 +61,7 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   const FilmOptions film{static_cast<uint32_t>(options.whole("spp")), options.whole("seed"),
                          onlyOf(options), parseLayers(options.text("layers"))};
   const Integrator integrator =
-      integratorOf(options).make({rays, lights, lit, film.seed, film.only}, options);
+      integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress}, options);
   RenderResult result;
   result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
   result.vpls = integrator.vpls;

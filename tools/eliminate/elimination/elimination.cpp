@@ -70,7 +70,7 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
     for (float& r : radius) r *= scale;
   }
   ConflictGraph graph(of.position, of.normal, std::move(radius), of.row,
-                      pairWeightRule(of.row.size(), static_cast<double>(keep), options));
+                      pairWeightRule(of.row.size(), static_cast<double>(keep), options), progress);
   std::vector<uint32_t> rows = eliminateHeaviest(graph, keep, progress);
   std::sort(rows.begin(), rows.end());
   std::vector<uint32_t> places;
@@ -89,7 +89,7 @@ Kept make(const EliminateInputs& in, const Values& options) {
   left.position = inOrder<Vec3>(in.candidates.position, left.row);
   left.normal = inOrder<Vec3>(in.candidates.normal, left.row);
   CandidateRadii radii =
-      candidateRadii(left.position, left.normal, static_cast<double>(count), options);
+      candidateRadii(left.position, left.normal, static_cast<double>(count), options, in.progress);
   left.radius = std::move(radii.radius);
   for (const size_t keep : stepsFor(in.candidates.size(), count)) {
     const std::vector<uint32_t> places = keepOf(left, keep, count, options, in.progress);

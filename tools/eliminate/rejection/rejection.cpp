@@ -31,6 +31,7 @@ constexpr unsigned kNeighbours = 20;  // of the radii, as vpl-place --method lig
 std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, uint64_t count) {
   const Scene& scene = in.rays->scene();
   std::vector<SurfacePoint> points;
+  const auto phase = in.progress.before("camera points", count);
   for (uint64_t i = 0; i < count; ++i) {
     const Point2 film = r2Sequence(i, 0.5, 0.5);
     Rng rng(key, i);
@@ -38,6 +39,7 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
         *in.rays, *in.lights, scene.camera.position,
         cameraDirection(scene.camera, scene.film, film.x, film.y), Arrival{}, rng);
     if (path.rough) points.push_back(path.hit);
+    if (in.progress) in.progress(1);
   }
   if (points.empty()) {
     throw InputError(scene.name(), "the camera sees no surface that VPLs could light; turn it");

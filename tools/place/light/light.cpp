@@ -65,7 +65,11 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
 
 extern const PlaceMethod method;
 const PlaceMethod method{
-    "light", "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
-    kOptions, make, /*needsLight=*/true};
+    "light",
+    "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
+    kOptions,
+    make,
+    /*needsLight=*/true,
+    /*forView=*/false};
 
 }  // namespace bnvpl::methods::place::light

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "formats/vpl_table.h"
 #include "tools/common/method.h"
@@ -56,6 +57,7 @@ struct IntegratorInputs {
   const VplTable& lit;  // of stage Lit; without rows unless the method needs VPLs
   uint64_t seed;
   Only only;
+  const ProgressFn& progress;  // of preparations
 };
 
 struct IntegratorMethod {

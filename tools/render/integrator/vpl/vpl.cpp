@@ -60,7 +60,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                       .make({in.rays, parts->vpls, parts->tree, in.seed,
                              [&rays = in.rays, &lights = in.lights, seed = in.seed] {
                                return tracePoints(rays, lights, seed);
-                             }},
+                             },
+                             in.progress},
                             options);
   if (!gather.point) {
     parts->point = std::make_unique<PointGather>(in.rays, parts->vpls, parts->tree);
