@@ -21,7 +21,7 @@ struct PixelSums {
     kNormal = 12,
     kDepth = 15,
     kHits = 16,
-    kExtended = 17
+    kCompensated = 17
   };
   std::array<double, 20> sum{};
 };
