@@ -89,8 +89,8 @@ int main(int argc, char** argv) {
   Given given;
   ToolOptions tool;
   Paths paths;
-  cli.add_option("candidates", paths.input, "from vpl-place (.vpl)")->required();
-  cli.add_option("-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
+  addFile(cli, "candidates", paths.input, "from vpl-place (.vpl)")->required();
+  addFile(cli, "-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
   addSceneFlag(cli, paths.scene, "the scene, for methods that ask for it");
   addStageOptions(cli, eliminateSpec(), given);
   addToolOptions(cli, tool);

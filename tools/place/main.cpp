@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   SceneOptions scene;
   fs::path output;
   addSceneOptions(cli, scene);
-  cli.add_option("-o,--output", output, "candidates (.vpl)")->required();
+  addFile(cli, "-o,--output", output, "candidates (.vpl)")->required();
   addStageOptions(cli, placeSpec(), given);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);

@@ -40,8 +40,8 @@ class FileNames {
         continue;
       }
       const std::string name = text.substr(i + 2, end - i - 2);
-      if (const auto it = defines_.find(name); it != defines_.end()) {
-        out += it->second;
+      if (const std::string* given = defines_.find(name)) {
+        out += *given;
       } else if (const char* value = std::getenv(name.c_str())) {
         out += value;
       } else {
