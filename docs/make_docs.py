@@ -139,9 +139,10 @@ class Bench:
 def option_rows(options):
     for o in options:
         facts = ', '.join(x for x in (o['unit'], o['range']) if x)
-        needs = f' Needs `--{o["needs"].replace("=", " ")}`.' if o['needs'] else ''
+        needs = f' Needs `{o["needs"]}`.' if o['needs'] else ''
         kind = o['type'].replace('|', '\\|')
-        yield f'| `--{o["name"]}` | {kind} | {o["default"] or "-"} | {facts or "-"} | {o["help"]}.{needs} |'
+        text = o['help'].replace('\n  ', '<br>')
+        yield f'| `--{o["name"]}` | {kind} | {o["default"] or "-"} | {facts or "-"} | {text}.{needs} |'
 
 
 def options_page(bench):
@@ -153,7 +154,7 @@ def options_page(bench):
         spec = bench.spec(tool)
         lines += [f'## {tool}', '', *head, *option_rows(spec['options']), '']
         for slot in spec['slots']:
-            needs = f' Needs `--{slot["needs"].replace("=", " ")}`.' if slot['needs'] else ''
+            needs = f' Needs `{slot["needs"]}`.' if slot['needs'] else ''
             lines += [f'### {tool} --{slot["name"]}', '',
                       f'{slot["help"][0].upper()}{slot["help"][1:]}; default `{slot["default"]}`.{needs}', '']
             for method in slot['methods']:

@@ -130,7 +130,7 @@ std::string_view stageTools(VplStage stage) {
     case VplStage::Eliminated:
       return "vpl-eliminate";
     case VplStage::Lit:
-      return "vpl-estimate or vpl-place --method light";
+      return "vpl-estimate or a vpl-place --method that lights VPLs";
   }
   return "unknown";
 }

@@ -31,6 +31,21 @@ const Format& formatOf(const fs::path& file) {
 
 }  // namespace
 
+const std::string* Defines::find(const std::string& name) const {
+  const auto it = values_.find(name);
+  if (it == values_.end()) return nullptr;
+  it->second.used = true;
+  return &it->second.value;
+}
+
+std::vector<std::string> Defines::unused() const {
+  std::vector<std::string> names;
+  for (const auto& [name, define] : values_) {
+    if (!define.used) names.push_back(name);
+  }
+  return names;
+}
+
 Scene loadScene(const fs::path& path, const Defines& defines) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))

@@ -80,4 +80,15 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
   return surfaceShares(position, normal, k, KdTree(position), {}, progress);
 }
 
+ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal) {
+  ShareRadii result;
+  for (const float share : surfaceShares(position, normal, kShareNeighbours)) {
+    result.area += double{share};
+    result.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
+  }
+  const auto count = static_cast<double>(std::max<size_t>(1, position.size()));
+  result.rMax = std::sqrt(result.area / (2.0 * std::sqrt(3.0) * count));
+  return result;
+}
+
 }  // namespace bnvpl

@@ -27,4 +27,16 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
                                  unsigned k, const ProgressFn& progress = {});
 
+// k, unless somebody asks for another. Clamps are in units of the radii that come of it, and so
+// compare between methods.
+inline constexpr unsigned kShareNeighbours = 20;
+
+// Radii of VPLs that nobody has spread: each stands for its share of the surface.
+struct ShareRadii {
+  std::vector<float> radius;  // share = 2 sqrt(3) radius^2, as of disks in their densest packing
+  double area = 0.0;          // the sum of the shares
+  double rMax = 0.0;          // the radius of as many equal disks
+};
+ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal);
+
 }  // namespace bnvpl

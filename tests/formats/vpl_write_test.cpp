@@ -157,7 +157,8 @@ TEST_F(VplWrite, WrongStageIsRefusedNamingTheTool) {
     EXPECT_NE(text.find("stage candidates"), std::string::npos) << text;
     EXPECT_NE(text.find("stage lit is needed"), std::string::npos) << text;
     EXPECT_NE(text.find("(by vpl-place)"), std::string::npos) << text;
-    EXPECT_NE(text.find("make it with vpl-estimate or vpl-place --method light"), std::string::npos)
+    EXPECT_NE(text.find("make it with vpl-estimate or a vpl-place --method that lights VPLs"),
+              std::string::npos)
         << text;
   }
   EXPECT_THROW(readVpl(at("c.vpl"), VplStage::Eliminated), InputError);

@@ -139,7 +139,7 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
     }
     return out.radiance;
   };
-  for (const char* method : {"tilecuts", "lightcuts", "stochastic", "ward", "all"}) {
+  for (const std::string& method : gathers()) {
     for (const float clamp2 : {1e-12f, 1e-4f}) {
       EXPECT_EQ(gathered({Vec3()}, method, clamp2), Vec3());
       EXPECT_EQ(gathered({Vec3(), Vec3(), Vec3()}, method, clamp2), Vec3());

@@ -88,10 +88,10 @@ TEST_F(VplFiles, TheWrongStageIsToldWithItsMakerAndTheRightTools) {
        {"is of stage lit (by vpl-estimate"});
   fail("vpl-render", scene_ + " " + path("vpls.vpl") + " -o " + path("x.exr"), kExitInput,
        {"is of stage eliminated (by vpl-eliminate",
-        "make it with vpl-estimate or vpl-place --method light"});
+        "make it with vpl-estimate or a vpl-place --method that lights VPLs"});
   fail("vpl-inspect",
        "plot " + path("vpls.vpl") + " --scene " + scene_ + " --color flux -o " + path("x.png"),
-       kExitInput, {"vpl-estimate or vpl-place --method light"});
+       kExitInput, {"vpl-estimate or a vpl-place --method that lights VPLs"});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "formats/atomic_file.h"
+#include "tools/common/cli_option.h"
 #include "tools/common/stage_cli.h"
 
 namespace bnvpl {
@@ -45,9 +46,6 @@ const std::string& runningTool();
 
 // Tries to write beside each output; see also run_files.h. Empty paths are not asked for.
 void requireWritable(const std::vector<fs::path>& outputs);
-
-// Numbers from least to most. CLI::Range lets NaN through.
-CLI::Validator inRange(double least, double most);
 
 // What a stage did, and that record behind those of its input (empty for the first stage).
 //   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":

@@ -34,9 +34,13 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
     if (equals == std::string::npos || equals == 0) {
       throw UsageError("--define '" + d + "' is not NAME=VALUE");
     }
-    defines[d.substr(0, equals)] = d.substr(equals + 1);
+    defines.set(d.substr(0, equals), d.substr(equals + 1));
   }
   Scene scene = loadScene(options.file, defines);
+  for (const std::string& name : defines.unused()) {
+    throw UsageError("--define " + name + " has no effect: " + scene.name() +
+                     " names no file by ${" + name + "}; leave it out");
+  }
   if (warnings == Warnings::Print) printWarnings(tool, scene.warnings);
   return scene;
 }

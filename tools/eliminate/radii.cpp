@@ -75,11 +75,11 @@ double packedDiskRadius(double area, double count) { return std::sqrt(area / (kT
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
                               double count, const Values& options, const ProgressFn& progress) {
   const auto candidates = static_cast<double>(position.size());
-  const auto k = static_cast<unsigned>(options.whole("neighbours"));
+  const auto neighbours = [&] { return static_cast<unsigned>(options.whole("neighbours")); };
   const double given = options.real("area");
   CandidateRadii result;
   if (options.text("density") == "uniform") {
-    result.area = given > 0.0 ? given : estimateArea(position, normal, k, 1, progress);
+    result.area = given > 0.0 ? given : estimateArea(position, normal, neighbours(), 1, progress);
     result.rMax = packedDiskRadius(result.area, count);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));
     requireUsable(result.radius);
@@ -87,7 +87,7 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   }
   {
     const auto phase = progress.before("radii", position.size());
-    result.radius = surfaceShares(position, normal, k, progress);
+    result.radius = surfaceShares(position, normal, neighbours(), progress);
   }
   const double estimate = sumOf(result.radius);
   result.area = given > 0.0 ? given : estimate;

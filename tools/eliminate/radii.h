@@ -7,6 +7,7 @@
 
 #include "core/progress.h"
 #include "core/vec3.h"
+#include "spatial/local_density.h"
 #include "tools/common/option.h"
 
 namespace bnvpl {
@@ -22,7 +23,10 @@ inline constexpr std::array kRadiusOptions{
                         "how many are spent evenly; the rest follows the candidates")),
     realOption("area", "0", 0, 1e300, "scene units squared",
                "indirectly visible area; 0: estimated from the candidates"),
-    wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate")};
+    neededBy("density=local;area=0",
+             wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate"))};
+
+static_assert(kShareNeighbours == 20, "the default of --neighbours");
 
 struct CandidateRadii {
   std::vector<float> radius;  // one per candidate, world units, positive

@@ -115,7 +115,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   PlotCounts counts;
   std::vector<Dot> dots = visibleDots(table, rays, options, counts);
   Canvas canvas = shadeView(rays, options.samples);
-  canvas.paint(std::move(dots), options.dotPixels);
+  canvas.paint(std::move(dots), static_cast<float>(options.dotPixels));
   OutputSet files;
   writePng(files.add(command.output), canvas.width, canvas.height, canvas.rgb8());
   std::vector<fs::path> read = scene.files;

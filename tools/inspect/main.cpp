@@ -42,16 +42,14 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   addFile(*sub, "file", c.file, ".vpl")->required();
   addSceneFlag(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
   addFile(*sub, "-o,--output", c.output, "picture (.png)")->required();
-  sub->add_option("--dot", c.plot.dotPixels, "diameter of a dot, pixels")
-      ->check(inRange(1.0f, 100.0f))
-      ->capture_default_str();
+  addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
   addChoice(*sub, "--color", c.plot.colour, kDotColours,
             "what the dots' colour shows, violet for little to yellow for much")
       ->default_str("flux if lit, else plain");
   sub->add_flag("--show-back", c.plot.showBack,
                 "rings for rows in sight whose lit side faces away");
   sub->add_option("--size", c.size, "of the picture, pixels; the scene's film unless given")
-      ->type_name("WxH");
+      ->type_name("WIDTHxHEIGHT");
   return sub;
 }
 

@@ -156,7 +156,9 @@ FilePoint TomlSection::triple(const char* key, double least, double most) const 
   return v;
 }
 
-Vec3 TomlSection::color(const char* key) const { return fromOrigin(triple(key, 0.0, kMost), {}); }
+Vec3 TomlSection::color(const char* key) const {
+  return fromOrigin(triple(key, 0.0, kMaxMagnitude), {});
+}
 
 Vec3 TomlSection::direction(const char* key) const {
   Vec3 unit;

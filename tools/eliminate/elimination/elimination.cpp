@@ -43,19 +43,19 @@ struct Sorted {
 };
 
 // Every pair that is nearer than two radii competes, so that the work grows as candidates^2 / kept.
-// Where that is much, and there are more candidates for each VPL than kMostCandidates, kFewer of
-// them are kept first, with the radii of as many: the time then no longer grows as fewer are kept
-// (theory.md, "Cost").
-constexpr double kMostCandidates = 60, kFewer = 30, kMuchWork = 0x1p22;
+// Where that is more than kMaxWork, and there are more than kMaxPerVpl candidates for each VPL,
+// kStepFactor for each VPL are kept first, with the radii of as many: the time then no longer grows
+// as fewer are kept (theory.md, "Cost").
+constexpr double kMaxPerVpl = 60, kStepFactor = 30, kMaxWork = 0x1p22;
 
 // The last step keeps `count`; each begins with what the one before has left.
 std::vector<size_t> stepsFor(size_t candidates, size_t count) {
   std::vector<size_t> steps{count};
   const auto many = [&](size_t kept) {
     const double each = static_cast<double>(candidates) / static_cast<double>(kept);
-    return each > kMostCandidates && each * static_cast<double>(candidates) > kMuchWork;
+    return each > kMaxPerVpl && each * static_cast<double>(candidates) > kMaxWork;
   };
-  while (many(steps.back())) steps.push_back(steps.back() * static_cast<size_t>(kFewer));
+  while (many(steps.back())) steps.push_back(steps.back() * static_cast<size_t>(kStepFactor));
   std::reverse(steps.begin(), steps.end());
   return steps;
 }

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array kOptions{
     countOption("slices", "300", 0x1p20, "", "groups of neighbouring points, at least"),
-    countOption("columns", "400", 0x1p20, "clusters", "clusters of VPLs for each slice"),
+    countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice"),
     countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters")};
 constexpr double kCommonShare = 0.3;  // of the clusters of a slice: found once, for all slices
 constexpr size_t kDraws = 16;         // of each cluster's VPL; the samples of a pixel take turns
