@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "tests/support/pipeline.h"
+#include "transport/virtual_light_kinds.h"
 
 namespace bnvpl::test {
 

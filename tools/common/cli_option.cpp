@@ -54,9 +54,4 @@ CLI::Option* addReal(CLI::App& cli, const Option& option, std::optional<double>&
   return addOption(cli, option, [&value](const Value& v) { value = std::get<double>(v); });
 }
 
-CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
-                     const std::string& help) {
-  return cli.add_option(name, file, help)->type_name("FILE");
-}
-
 }  // namespace bnvpl

@@ -21,8 +21,5 @@ CLI::Option* addOption(CLI::App& cli, const Option& option, std::function<void(c
 // The same for a number, whose default is the value that it has now.
 CLI::Option* addReal(CLI::App& cli, const Option& option, double& value);
 CLI::Option* addReal(CLI::App& cli, const Option& option, std::optional<double>& value);
-// A file, as an option ("-o,--output") or by its place ("scene").
-CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
-                     const std::string& help);
 
 }  // namespace bnvpl

@@ -119,11 +119,11 @@ CLI::Validator named() {
 
 CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
                      const std::string& help) {
-  return cli.add_option(name, file, help)->check(named());
+  return cli.add_option(name, file, help)->type_name("FILE")->check(named());
 }
 CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
                      const std::string& help) {
-  return cli.add_option(name, files, help)->check(named());
+  return cli.add_option(name, files, help)->type_name("FILE")->check(named());
 }
 
 void addToolOptions(CLI::App& cli, ToolOptions& options) {
