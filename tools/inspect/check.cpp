@@ -107,15 +107,14 @@ bool wasRead(const CheckedFile& reader, const std::string& checksum) {
   });
 }
 
-// The given files of `stage`, when none of them is the one with this checksum.
+// A given file of `stage` that the reader never read, when none is the one with this checksum.
 const CheckedFile* strangerOfStage(std::span<const CheckedFile> files, const std::string& input,
                                    const std::string& checksum, const CheckedFile& reader) {
   const CheckedFile* stranger = nullptr;
   for (const CheckedFile& f : files) {
     if (!f.stage || inputName(*f.stage) != input) continue;
-    if (wasRead(reader, f.checksum) && f.checksum != checksum) continue;
     if (f.checksum == checksum) return nullptr;
-    if (stranger == nullptr) stranger = &f;
+    if (stranger == nullptr && !wasRead(reader, f.checksum)) stranger = &f;
   }
   return stranger;
 }
