@@ -145,8 +145,7 @@ TEST_F(Options, EmptyFileNames) {
       {"vpl-inspect", "plot a --scene s -o ''"},
       {"vpl-inspect", "compare a b --diff ''"},
       {"vpl-inspect", "compare a b --mask ''"}};
-  for (const auto& [name, arguments] : lines)
-    fail(name, arguments, kExitUsage, {"'' is no file name"});
+  for (const auto& [name, arguments] : lines) fail(name, arguments, kExitUsage, {"'' is empty"});
   fail("vpl-place", scene_ + " -o ''", kExitUsage, {"--output"});
   EXPECT_TRUE(listing().empty());
 }

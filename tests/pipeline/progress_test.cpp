@@ -32,10 +32,10 @@ TEST(Progress, Line) {
 
 // The first per mille may take most of the time.
 TEST(Progress, TheTimeLeftWaitsForEnoughToTellIt) {
-  EXPECT_EQ(progressText("candidates", 19, 1000, 9.9), "candidates 19 of 1000 (2 %)");
+  EXPECT_EQ(progressText("candidates", 19, 1000, 9.9), "candidates 19 of 1k (2 %)");
   EXPECT_EQ(progressText("candidates", 20, 1000, 9.9),
-            "candidates 20 of 1000 (2 %), 8 min 05 s left");
-  EXPECT_EQ(progressText("candidates", 1, 1000, 12), "candidates 1 of 1000 (0 %), 3 h 20 min left");
+            "candidates 20 of 1k (2 %), 8 min 05 s left");
+  EXPECT_EQ(progressText("candidates", 1, 1000, 12), "candidates 1 of 1k (0 %), 3 h 20 min left");
 }
 
 using ProgressOfTools = PipelineTest;
@@ -47,15 +47,6 @@ TEST_F(ProgressOfTools, BeginsWithTheToolsNameOffATerminal) {
   EXPECT_EQ(r.code, 124) << r.err;
   EXPECT_TRUE(contains("\n" + r.err, "\nvpl-render: samples ")) << r.err;
   EXPECT_TRUE(contains(r.err, " left\n")) << r.err;
-}
-
-// Nothing of what it counts has begun by then.
-TEST_F(ProgressOfTools, PreparationsAreToldByName) {
-  succeed("vpl-place", scene_ + " --method light -n 50 -o " + path("light.vpl"));
-  const Outcome r = shell("timeout -s INT 12 '" BNVPL_BIN "/vpl-eliminate' " + path("light.vpl") +
-                          " -n 10 --method rejection --camera-points 16M --scene " + scene_ +
-                          " -o " + path("x.vpl"));
-  EXPECT_TRUE(contains("\n" + r.err, "\nvpl-eliminate: camera points ")) << r.err;
 }
 
 }  // namespace

@@ -283,7 +283,7 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
             at("room.gltf").string() + ": is no scene file; scenes are read from .toml");
   EXPECT_NE(error("square.obj").find("scenes are read from .toml, whose [[mesh]] names an OBJ"),
             std::string::npos);
-  EXPECT_NE(error("").find("is no scene file"), std::string::npos);
+  EXPECT_NE(error("").find("is a folder"), std::string::npos);
 }
 
 }  // namespace

@@ -14,7 +14,13 @@ struct GatherOf {
     const Values values = resolve(renderSpec(), options);
     const ProgressFn silent;
     gather = methodNamed(gatherMethods(), values.text("gather"))
-                 .make({world.rays, vpls, tree, 1, [] { return FilmPoints{}; }, silent}, values);
+                 .make({world.rays, vpls, tree, 1,
+                        [this] {
+                          looksAtFilm = true;
+                          return FilmPoints{};
+                        },
+                        silent},
+                       values);
   }
   Gathered at(const Bsdf& bsdf) const {
     const Bsdf* const one[] = {&bsdf};
@@ -25,6 +31,7 @@ struct GatherOf {
     gather.tile(tile, out);
     return out[0];
   }
+  bool looksAtFilm = false;
   LightTree tree;
   PointGather point;
   Gather gather;

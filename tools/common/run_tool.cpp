@@ -110,7 +110,7 @@ bool parse(CLI::App& cli, int argc, char** argv) {
 CLI::Validator named() {
   return CLI::Validator(
       [](std::string& text) {
-        return text.empty() ? std::string("'' is no file name; give one") : std::string();
+        return text.empty() ? std::string("'' is empty; give a file name") : std::string();
       },
       "");
 }

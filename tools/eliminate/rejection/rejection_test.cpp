@@ -78,7 +78,7 @@ TEST(Rejection, IsTheSameForAnyThreads) {
 TEST(Rejection, TellsOfItsPreparations) {
   const FromLights& c = cornell();
   Preparations told;
-  const Values options = resolve(eliminateSpec(), {{"count", "10"}, {"method", "rejection"}});
+  const Values options = resolve(eliminateSpec(), {{"count", "200"}, {"method", "rejection"}});
   eliminate(c.all, options, &c.world.rays, &c.world.lights, told.progress);
   EXPECT_EQ(told.names, std::vector<std::string>{"camera points"});
 }
