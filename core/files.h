@@ -1,7 +1,9 @@
 // Asking about files without exceptions.
 #pragma once
 
+#include <cctype>
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 namespace bnvpl {
@@ -12,6 +14,13 @@ namespace bnvpl {
 inline bool isRegularFile(const std::filesystem::path& file) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(file, ignored);
+}
+
+// ".ply", also of a.PLY; empty where there is none.
+inline std::string lowerExtension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
 }  // namespace bnvpl

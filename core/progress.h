@@ -1,12 +1,54 @@
 // How a stage tells its caller how far it is, without knowing about terminals.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
+#include <string_view>
+#include <utility>
 
 namespace bnvpl {
 
 // Called with the units of work done since the last call, from any thread. May be empty.
-using ProgressFn = std::function<void(uint64_t)>;
+class ProgressFn {
+ public:
+  using Count = std::function<void(uint64_t)>;
+  using Begin = std::function<void(std::string_view what, uint64_t total)>;
+  using End = std::function<void()>;
+
+  ProgressFn() = default;
+  template <typename Fn>
+  requires(std::constructible_from<Count, Fn> && !std::same_as<std::remove_cvref_t<Fn>, ProgressFn>)
+      ProgressFn(Fn count, Begin begin = {}, End end = {})  // NOLINT: any callable is one
+      : count_(std::move(count)), begin_(std::move(begin)), end_(std::move(end)) {}
+
+  explicit operator bool() const { return static_cast<bool>(count_); }
+  void operator()(uint64_t done) const { count_(done); }
+
+  // Preparations for the main work. They end with this object; one at a time.
+  class [[nodiscard]] Phase {
+   public:
+    explicit Phase(const End* end) : end_(end) {}
+    Phase(const Phase&) = delete;
+    Phase& operator=(const Phase&) = delete;
+    ~Phase() {
+      if (end_ && *end_) (*end_)();
+    }
+
+   private:
+    const End* end_;
+  };
+  // Until the Phase is gone, calls count towards `total` units of `what` ("radii"). The ProgressFn
+  // must outlive it.
+  Phase before(std::string_view what, uint64_t total) const {
+    if (begin_) begin_(what, total);
+    return Phase(&end_);
+  }
+
+ private:
+  Count count_;
+  Begin begin_;
+  End end_;
+};
 
 }  // namespace bnvpl

@@ -49,7 +49,7 @@ vpl-render scenes/cornell/scene.toml -o reference.exr --integrator path --spp 64
 # Build identities and hashes; progress, seconds and memory.
 NORMAL = ((re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
           (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'),
-          (re.compile(r'^vpl-\w+: (.* left|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
+          (re.compile(r'^vpl-\w+: (.* of \S+ \(\d+ %\)(, .* left)?|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
 
 SESSION = re.compile(r'(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)',
                      re.S)
@@ -139,9 +139,10 @@ class Bench:
 def option_rows(options):
     for o in options:
         facts = ', '.join(x for x in (o['unit'], o['range']) if x)
-        needs = f' Needs `--{o["needs"].replace("=", " ")}`.' if o['needs'] else ''
+        needs = f' Needs `{o["needs"]}`.' if o['needs'] else ''
         kind = o['type'].replace('|', '\\|')
-        yield f'| `--{o["name"]}` | {kind} | {o["default"] or "-"} | {facts or "-"} | {o["help"]}.{needs} |'
+        text = o['help'].replace('\n  ', '<br>')
+        yield f'| `--{o["name"]}` | {kind} | {o["default"] or "-"} | {facts or "-"} | {text}.{needs} |'
 
 
 def options_page(bench):
@@ -153,7 +154,7 @@ def options_page(bench):
         spec = bench.spec(tool)
         lines += [f'## {tool}', '', *head, *option_rows(spec['options']), '']
         for slot in spec['slots']:
-            needs = f' Needs `--{slot["needs"].replace("=", " ")}`.' if slot['needs'] else ''
+            needs = f' Needs `{slot["needs"]}`.' if slot['needs'] else ''
             lines += [f'### {tool} --{slot["name"]}', '',
                       f'{slot["help"][0].upper()}{slot["help"][1:]}; default `{slot["default"]}`.{needs}', '']
             for method in slot['methods']:

@@ -74,10 +74,14 @@ VplTable makeTable(const InputFile& in, Bytes file, Opening opening) {
   std::string provenance(header.provenanceBytes, '\0');
   in.read(provenance.data(), provenance.size());
   const std::string maker = makerOf(provenance);
-  throw InputError(in.path(), "is of stage " + std::string(stageName(header.stage)) +
-                                  (maker.empty() ? "" : " (by " + maker + ")") + ", stage " +
-                                  std::string(stageName(expected)) + " is needed; make it with " +
-                                  std::string(stageTools(expected)));
+  // Who made lit VPLs without vpl-estimate did not forget a stage.
+  const bool done = header.stage == VplStage::Lit && expected == VplStage::Eliminated;
+  throw InputError(
+      in.path(), "is of stage " + std::string(stageName(header.stage)) +
+                     (maker.empty() ? "" : " (by " + maker + ")") +
+                     (done ? ": its VPLs have their flux; pass it to vpl-render"
+                           : ", stage " + std::string(stageName(expected)) +
+                                 " is needed; make it with " + std::string(stageTools(expected))));
 }
 
 VplTable readTable(const fs::path& path, std::optional<VplStage> expected) {
@@ -126,7 +130,7 @@ std::string_view stageTools(VplStage stage) {
     case VplStage::Eliminated:
       return "vpl-eliminate";
     case VplStage::Lit:
-      return "vpl-estimate or vpl-place --method light";
+      return "vpl-estimate or a vpl-place --method that lights VPLs";
   }
   return "unknown";
 }

@@ -15,8 +15,9 @@ namespace bnvpl {
 namespace {
 
 void parseAlone(const std::string& text) {
+  constexpr Option kCount = countOption("count", "1", 0x1p53, "", "help");
   uint64_t count = 0;
-  if (accepted<UsageError>([&] { count = parseCount(text); })) {
+  if (accepted<UsageError>([&] { count = std::get<uint64_t>(parseValue(kCount, text)); })) {
     require(count >= 1 && count <= uint64_t{1} << 53, "counts are from 1 to 2^53");
   }
   Film film;

@@ -71,6 +71,15 @@ def name_of(scene):
     return path.parent.name + ("" if path.stem == "scene" else f"-{path.stem}")
 
 
+def refuse_lit_placement(options):
+    """VPLs from the lights have their flux, and rejection reads the scene: other files, other stages."""
+    words = {"light", "--method=light"} & set(shlex.split(options.place_flags)) or \
+            {"rejection", "--method=rejection"} & set(shlex.split(options.eliminate_flags))
+    if words:
+        sys.exit("generate_ninja.py: vpl-place --method light and vpl-eliminate --method rejection leave no work to "
+                 "vpl-estimate; run these stages by hand, as pipelines/README.md shows")
+
+
 def build(stage, outputs, inputs, words, scene_read):
     """One build statement. The first input is the executable and does not repeat in `words`."""
     folder = outputs[0].rsplit("/", 1)[0]
@@ -113,6 +122,7 @@ def scene_rules(scene, options):
 
 def main():
     options = arguments()
+    refuse_lit_placement(options)
     for path in (*options.scenes, options.out, options.bin):
         check_path(path)
     for scene in options.scenes:

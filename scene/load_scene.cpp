@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
+#include "core/files.h"
 #include "scene/read/gltf/load_gltf.h"
 #include "scene/read/pbrt/read_pbrt.h"
 #include "scene/read/toml/scene_toml.h"
@@ -35,7 +35,25 @@ const Format& formatOf(const fs::path& file) {
 
 }  // namespace
 
+const std::string* Defines::find(const std::string& name) const {
+  const auto it = values_.find(name);
+  if (it == values_.end()) return nullptr;
+  it->second.used = true;
+  return &it->second.value;
+}
+
+std::vector<std::string> Defines::unused() const {
+  std::vector<std::string> names;
+  for (const auto& [name, define] : values_) {
+    if (!define.used) names.push_back(name);
+  }
+  return names;
+}
+
 Scene loadScene(const fs::path& path, const Defines& defines) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw InputError(path, "is a folder; name the scene.toml in it");
   const Format& format = formatOf(path);
   SceneBuilder builder(path);
   format.read(path, defines, builder);

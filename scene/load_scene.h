@@ -2,15 +2,36 @@
 // load_scene.cpp.
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scene/scene.h"
 
 namespace bnvpl {
 
 // Values for ${NAME} in file names of a scene file; environment variables are asked second.
-using Defines = std::map<std::string, std::string>;
+// Remembers which were asked for; of one thread.
+class Defines {
+ public:
+  Defines(std::initializer_list<std::pair<std::string, std::string>> values = {}) {
+    for (const auto& [name, value] : values) set(name, value);
+  }
+  void set(const std::string& name, const std::string& value) { values_[name] = {value}; }
+  // Null where there is none of that name.
+  const std::string* find(const std::string& name) const;
+  // Names that no find() asked for.
+  std::vector<std::string> unused() const;
+
+ private:
+  struct Define {
+    std::string value;
+    mutable bool used = false;
+  };
+  std::map<std::string, Define> values_;
+};
 
 // Reads a scene and everything that it names; the extension says the format. What could be
 // repaired is in Scene::warnings. Throws InputError with file, line where there is one, problem and

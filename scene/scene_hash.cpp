@@ -111,13 +111,12 @@ uint64_t hashScene(const Scene& scene) {
   return h.digest();
 }
 
-uint64_t hashView(const Scene& scene) {
+uint64_t hashView(const Camera& c, const Film& film) {
   Hasher h;
-  const Camera& c = scene.camera;
   for (const Vec3 v : {c.position, c.forward, c.right, c.up}) h.value(v);
   h.value(c.verticalFovRad);
-  h.value(scene.film.width);
-  h.value(scene.film.height);
+  h.value(film.width);
+  h.value(film.height);
   return h.digest();
 }
 

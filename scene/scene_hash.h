@@ -8,7 +8,7 @@ namespace bnvpl {
 // and the film are left out: the VPLs of one view may light another.
 uint64_t hashScene(const Scene& scene);
 
-// XXH3-64 of the camera and the film.
-uint64_t hashView(const Scene& scene);
+// XXH3-64 of a camera and its film.
+uint64_t hashView(const Camera& camera, const Film& film);
 
 }  // namespace bnvpl

@@ -50,7 +50,8 @@ Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, ui
 }  // namespace
 
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows) {
+                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows,
+                                 const ProgressFn& progress) {
   Bounds bounds;
   for (const Vec3 p : position) bounds.extend(p);
   const float smallest = 1e-6f * bounds.diagonal();
@@ -69,13 +70,25 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
       const float distanceSquared = std::max(reach.distanceSquared, smallest * smallest);
       share[i] = kPi * distanceSquared / static_cast<float>(reach.count);
     }
+    if (progress) progress(end - begin);
   });
   return share;
 }
 
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k) {
-  return surfaceShares(position, normal, k, KdTree(position));
+                                 unsigned k, const ProgressFn& progress) {
+  return surfaceShares(position, normal, k, KdTree(position), {}, progress);
+}
+
+ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal) {
+  ShareRadii result;
+  for (const float share : surfaceShares(position, normal, kShareNeighbours)) {
+    result.area += double{share};
+    result.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
+  }
+  const auto count = static_cast<double>(std::max<size_t>(1, position.size()));
+  result.rMax = std::sqrt(result.area / (2.0 * std::sqrt(3.0) * count));
+  return result;
 }
 
 }  // namespace bnvpl

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/vec3.h"
 #include "spatial/kd_tree.h"
 
@@ -18,10 +19,24 @@ namespace bnvpl {
 // coincident points get a small positive share. When every point is at one place, which has no
 // scale but its distance from the origin, each share is the square of that, or 1 at the origin
 // itself. `rows` picks whose shares are wanted, one result each; empty = all points in order.
+// `progress` counts them.
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
                                  unsigned k, const KdTree& tree,
-                                 std::span<const uint32_t> rows = {});
+                                 std::span<const uint32_t> rows = {},
+                                 const ProgressFn& progress = {});
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k);
+                                 unsigned k, const ProgressFn& progress = {});
+
+// k, unless somebody asks for another. Clamps are in units of the radii that come of it, and so
+// compare between methods.
+inline constexpr unsigned kShareNeighbours = 20;
+
+// Radii of VPLs that nobody has spread: each stands for its share of the surface.
+struct ShareRadii {
+  std::vector<float> radius;  // share = 2 sqrt(3) radius^2, as of disks in their densest packing
+  double area = 0.0;          // the sum of the shares
+  double rMax = 0.0;          // the radius of as many equal disks
+};
+ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal);
 
 }  // namespace bnvpl

@@ -63,8 +63,9 @@ TEST(Options, WholeNumbersAreWhatIsTyped) {
   };
   EXPECT_EQ(seed("010"), 10u);
   EXPECT_EQ(seed("18446744073709551615"), UINT64_MAX);
-  for (const char* text :
-       {"-1", "18446744073709551616", "", " 1", "1 ", "0x10", "1e3", "+1", "1.0"}) {
+  EXPECT_EQ(refusal({{"count", "1"}, {"seed", "18446744073709551616"}}),
+            "--seed: '18446744073709551616' is out of range: from 0 to 2^64 - 1");
+  for (const char* text : {"-1", "", " 1", "1 ", "0x10", "1e3", "+1", "1.0"}) {
     EXPECT_EQ(refusal({{"count", "1"}, {"seed", text}}),
               "--seed: '" + std::string(text) + "' is not a whole number from 0 to 2^64 - 1");
   }
@@ -75,8 +76,7 @@ TEST(Options, CountsNameTheirOption) {
   EXPECT_EQ(refusal({{"count", "101"}}), "--count: '101' is out of range: from 1 to 100");
   EXPECT_EQ(refusal({{"count", "3x"}}),
             "--count: '3x' has an unknown suffix; write a whole number such as 3000, 3k or 10M");
-  EXPECT_EQ(refusal({{"count", "-3"}}),
-            "--count: '-3' is out of range; write a whole number such as 3000, 3k or 10M");
+  EXPECT_EQ(refusal({{"count", "-3"}}), "--count: '-3' is out of range: from 1 to 100");
 }
 
 TEST(Options, RealsAreFiniteAndInRange) {
@@ -85,6 +85,39 @@ TEST(Options, RealsAreFiniteAndInRange) {
   EXPECT_EQ(refusal({{"count", "1"}, {"share", "1.01"}}),
             "--share: '1.01' is out of range: from 0 to 1");
   EXPECT_EQ(refusal({{"count", "1"}, {"share", "1"}}), "");
+  EXPECT_EQ(refusal({{"count", "1"}, {"share", "1e999"}}),
+            "--share: '1e999' is out of range: from 0 to 1");
+  EXPECT_EQ(refusal({{"count", "1"}, {"share", "0x1"}}),
+            "--share: '0x1' is not a number from 0 to 1");
+}
+
+TEST(Options, NeedsCombine) {
+  constexpr std::array kOptions{
+      choiceOption("only", "all", "all|direct", "help"), realOption("area", "0", 0, 9, "", "help"),
+      neededBy("only=all;area=0", realOption("k", "1", 0, 9, "", "help"))};
+  const StageSpec both{"vpl-y",
+                       kOptions,
+                       {{"method", "a", "help", {{"a", "first", {}}, {"b", "second", {}}}},
+                        {"inner", "d", "help", {{"d", "only", {}}}, "method=a,only=all"}}};
+  const auto refused = [&](const Given& given) -> std::string {
+    try {
+      resolve(both, given);
+    } catch (const UsageError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused({{"k", "2"}, {"only", "direct"}}), "");
+  EXPECT_EQ(refused({{"k", "2"}, {"area", "0.5"}}), "");
+  EXPECT_EQ(refused({{"k", "2"}, {"only", "direct"}, {"area", "0.5"}}),
+            "--k has no effect with --only direct and --area 0.5; it needs --only all or --area 0");
+  EXPECT_EQ(refused({{"inner", "d"}}), "");
+  EXPECT_EQ(refused({{"inner", "d"}, {"only", "direct"}}),
+            "--inner has no effect with --only direct; it needs --only all");
+  EXPECT_EQ(refused({{"inner", "d"}, {"method", "b"}}),
+            "--inner has no effect with --method b; it needs --method a");
+  EXPECT_EQ(needText("only=all;area=0"), "--only all or --area 0");
+  EXPECT_EQ(needText("method=a|b,only=all"), "--method a or b and --only all");
 }
 
 TEST(Options, TheRecordHoldsAllThatHasAnEffect) {

@@ -43,7 +43,7 @@ class PhotonWalk {
   }
 
   // Takes what next() has hit; hit.triangle is kNone where it has left the scene. Where the hit has
-  // rough lobes, visit(bsdf, flux, straight) gets the flux that arrives (before albedo), shading
+  // rough lobes, visit(bsdf, flux, firstBounce) gets the flux that arrives (before albedo), shading
   // normals accounted for, and whether nothing was between the light and the hit; at most
   // maxBounces times, counting the rough scatterings so far plus this one. Russian roulette by
   // reflectance keeps the flux about level.

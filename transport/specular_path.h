@@ -1,5 +1,5 @@
 // From a ray to the first rough vertex, through mirrors, glass and sharp lobes: the one definition
-// of "specular chain" for every integrator.
+// of "specular path" for every integrator.
 #pragma once
 
 #include "transport/direct_light.h"
@@ -10,9 +10,9 @@ struct SpecularPath {
   bool rough = false;  // `hit` is a vertex where the rough lobes were taken
   SurfacePoint hit;
   Vec3 throughput;     // from the start to the hit, one over the probability of `rough` included
-  unsigned links = 0;  // chain vertices passed
+  unsigned links = 0;  // specular vertices passed
   Vec3 metFirst;       // emission met by the first segment
-  Vec3 metLater;       // emission met behind chain vertices, and light sampled at sharp ones
+  Vec3 metLater;       // emission met behind specular vertices, and light sampled at sharp ones
   float firstDistance = INFINITY;  // of the first hit, along the ray
 };
 

@@ -11,7 +11,7 @@ namespace bnvpl {
 
 // Columns of the VPLs that carry flux; the others would only be visited in vain.
 struct VplLights {
-  LightKind kind = LightKind::Point;
+  LightKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // flux / pi: along the normal, W/sr
@@ -23,7 +23,7 @@ struct VplLights {
 
 // `clamp` in units of each VPL's own radius (r_max).
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp,
-                        LightKind kind = LightKind::Point);
+                        LightKind kind = {});
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct Coupling {

@@ -2,7 +2,8 @@
 // that tells them apart, and the only place that knows it; values, upper bounds and expectations of
 // every gather, the tree and the compensation ask it.
 //
-// A kind is a struct of static functions, named in LightKind and in withKind():
+// A kind is a struct of static functions, and an entry of the list LightKinds:
+//   name       on the command line
 //   spread     what stands where d^2 of a point light would, so that light falls off with 1/spread;
 //              must not fall with d2, and not lie below it
 //   removed    share of a point light's 1/d^2 that it leaves out at a distance, which compensation
@@ -15,7 +16,11 @@
 // F is a float, or four of them (core/lanes.h).
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "core/lanes.h"
@@ -42,6 +47,7 @@ struct LambertEmission {
 // A point whose 1/d^2 is bounded inside the distance `size` (Keller 1997; the bound: Kollig &
 // Keller 2006).
 struct PointLight : LambertEmission {
+  static constexpr std::string_view name = "point";
   template <typename F>
   static F spread(F d2, F size2) {
     return larger(d2, size2);
@@ -55,6 +61,7 @@ struct PointLight : LambertEmission {
 // A): it is exact on the axis (Wallace, Elmquist & Haines 1989, "A Ray Tracing Algorithm for
 // Progressive Radiosity").
 struct DiskLight : LambertEmission {
+  static constexpr std::string_view name = "disk";
   template <typename F>
   static F spread(F d2, F size2) {
     return d2 + size2;
@@ -64,16 +71,49 @@ struct DiskLight : LambertEmission {
   }
 };
 
-enum class LightKind : uint8_t { Point, Disk };
-inline constexpr std::string_view kLightKinds = "point|disk";
+template <typename... Kinds>
+struct KindList {
+  static constexpr std::array<std::string_view, sizeof...(Kinds)> names{Kinds::name...};
+  // "point|disk"
+  static constexpr auto choices = [] {
+    std::array<char, (Kinds::name.size() + ...) + sizeof...(Kinds) - 1> text{};
+    auto at = text.begin();
+    for (const std::string_view name : {Kinds::name...}) {
+      if (at != text.begin()) *at++ = '|';
+      at = std::copy(name.begin(), name.end(), at);
+    }
+    return text;
+  }();
+};
+
+// Every kind; the first is the default.
+using LightKinds = KindList<PointLight, DiskLight>;
+inline constexpr std::string_view kLightKinds{LightKinds::choices.data(),
+                                              LightKinds::choices.size()};
+
+enum class LightKind : uint8_t {};  // a place in LightKinds
+
+// Throws std::logic_error where no kind has that name.
 inline LightKind lightKindNamed(std::string_view name) {
-  return name == "disk" ? LightKind::Disk : LightKind::Point;
+  for (size_t i = 0; i < LightKinds::names.size(); ++i) {
+    if (LightKinds::names[i] == name) return LightKind(i);
+  }
+  throw std::logic_error("no kind of light " + std::string(name));
+}
+
+template <typename Fn, typename First, typename... Rest>
+auto withKindOf(KindList<First, Rest...>, size_t place, const Fn& fn) {
+  if constexpr (sizeof...(Rest) == 0) {
+    return fn(First{});
+  } else {
+    return place == 0 ? fn(First{}) : withKindOf(KindList<Rest...>{}, place - 1, fn);
+  }
 }
 
 // Calls fn with the struct of a kind.
 template <typename Fn>
 auto withKind(LightKind kind, const Fn& fn) {
-  return kind == LightKind::Disk ? fn(DiskLight{}) : fn(PointLight{});
+  return withKindOf(LightKinds{}, static_cast<size_t>(kind), fn);
 }
 
 // 1/d^2 as the kind has it, 1/m2.

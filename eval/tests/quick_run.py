@@ -12,11 +12,13 @@ EVAL = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(EVAL / "report"))
 from page_case import PageCase  # noqa: E402 (after its folder is known)
 from test_support import WIDTH, browser  # noqa: E402
+sys.path.insert(0, str(EVAL))
+from bnvpl_eval.pipeline import METHODS  # noqa: E402
 
 PARTS = {"methods", "scatter", "gather", "gather-equal-time", "claims", "equal-time", "convergence", "sensitivity"}
 TABLES = {"methods", "scatter", "gather", "claims", "equal-time", "energy", "references", "sensitivity"}
 PLOTS = {"convergence-vpls-u-shape", "convergence-time-u-shape"}
-IMAGES = {"reference", "light", "rejection", "random", "uniform", "local", "paths", "even", "literal", "path"}
+IMAGES = {"reference", *METHODS, "path"}
 OVERLAYS = {"dots-random", "dots-uniform", "dots-local", "cut", "cut-lightcuts"}  # laid over the images
 BIN, FOLDER = (Path(word) for word in sys.argv[1:3])
 

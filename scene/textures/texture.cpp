@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/files.h"
 #include "core/prefetch.h"
 #include "formats/exr_io.h"
 #include "formats/pixels_io.h"
@@ -167,7 +168,7 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
 }  // namespace
 
 EnvironmentImage loadEnvironment(const fs::path& file, bool clampNegative) {
-  EnvironmentImage e = file.extension() == ".exr" ? fromExr(file) : decodeEnvironment(file);
+  EnvironmentImage e = lowerExtension(file) == ".exr" ? fromExr(file) : decodeEnvironment(file);
   for (size_t i = 0; i < e.radiance.size(); ++i) {
     if (clampNegative && isFinite(e.radiance[i])) e.radiance[i] = max(e.radiance[i], Vec3{});
     const Vec3 L = e.radiance[i];

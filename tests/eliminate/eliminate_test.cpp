@@ -113,6 +113,28 @@ TEST(Eliminate, EstimatesTheAreaOfMany) {
   EXPECT_NEAR(candidateRadii(sorted.position, sorted.normal, 1000, options).area, 6.0, 0.1);
 }
 
+// All that comes before the first removal is told of, and counted to its end.
+TEST(Eliminate, TellsOfItsPreparations) {
+  const Cloud flat = plane(20000, 3.0f, 2.0f, 4);
+  std::vector<std::string> names;
+  uint64_t total = 0;
+  std::atomic<uint64_t> done{0};
+  const ProgressFn progress([&](uint64_t units) { done += units; },
+                            [&](std::string_view what, uint64_t of) {
+                              names.emplace_back(what);
+                              total = of;
+                              done = 0;
+                            },
+                            [&] { EXPECT_EQ(done, total) << names.back(); });
+  VplTable candidates;
+  candidates.position = flat.position;
+  candidates.normal = flat.normal;
+  candidates.albedo.assign(flat.position.size(), Vec3(0.5f));
+  candidates.id.resize(flat.position.size());
+  eliminate(candidates, resolve(eliminateSpec(), keep(1000, "local")), nullptr, nullptr, progress);
+  EXPECT_EQ(names, (std::vector<std::string>{"radii", "weights"}));
+}
+
 TEST(Eliminate, RadiiStandForTheArea) {
   const Cloud cloud = unevenPlane(20000, 6);
   for (const double given : {0.0, 2.0}) {
@@ -248,11 +270,15 @@ TEST(Eliminate, ProgressAddsUpToTheCandidates) {
   for (const char* count : {"1", "500", "19999", "20000"}) {
     std::atomic<uint64_t> done{0};
     int calls = 0;
-    const ProgressFn progress = [&](uint64_t more) {
-      done += more;
-      ++calls;
-      EXPECT_LE(done, table.size());
-    };
+    bool preparing = false;
+    const ProgressFn progress(
+        [&](uint64_t more) {
+          if (preparing) return;
+          done += more;
+          ++calls;
+          EXPECT_LE(done, table.size());
+        },
+        [&](std::string_view, uint64_t) { preparing = true; }, [&] { preparing = false; });
     eliminate(table, resolve(eliminateSpec(), {{"count", count}}), nullptr, nullptr, progress);
     EXPECT_EQ(done, table.size()) << count;
     EXPECT_GT(calls, count == std::string("1") ? 10 : 0);

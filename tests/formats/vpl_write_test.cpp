@@ -157,7 +157,8 @@ TEST_F(VplWrite, WrongStageIsRefusedNamingTheTool) {
     EXPECT_NE(text.find("stage candidates"), std::string::npos) << text;
     EXPECT_NE(text.find("stage lit is needed"), std::string::npos) << text;
     EXPECT_NE(text.find("(by vpl-place)"), std::string::npos) << text;
-    EXPECT_NE(text.find("make it with vpl-estimate or vpl-place --method light"), std::string::npos)
+    EXPECT_NE(text.find("make it with vpl-estimate or a vpl-place --method that lights VPLs"),
+              std::string::npos)
         << text;
   }
   EXPECT_THROW(readVpl(at("c.vpl"), VplStage::Eliminated), InputError);
@@ -177,7 +178,7 @@ TEST_F(VplWrite, WrongStageNamesTheMakerByTheProvenance) {
     }
     return std::string();
   };
-  const std::string cure = ", stage eliminated is needed; make it with vpl-eliminate";
+  const std::string cure = ": its VPLs have their flux; pass it to vpl-render";
   EXPECT_EQ(complaint(R"([{"tool":"vpl-place","options":{"method":"light"}}])"),
             ": is of stage lit (by vpl-place --method light)" + cure);
   EXPECT_EQ(complaint(R"([{"tool":"vpl-place"},{"tool":"vpl-estimate","options":{"seed":1}}])"),

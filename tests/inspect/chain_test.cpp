@@ -28,7 +28,7 @@ class DeepCheck : public InspectTest {
     return messageOf<InputError>([&] {
       const std::vector<CheckedFile> files{checkFile(at("l.vpl")), checkFile(at("c.vpl")),
                                            checkFile(at("v.vpl"))};
-      checkChain(files, "my scene.toml", "");
+      checkChain(files, nullptr);
     });
   }
   std::string checksum(const std::string& name) const {
@@ -68,7 +68,7 @@ TEST_F(DeepCheck, AHistoryThatWasRewrittenIsRefused) {
   writeVpl(at("l.vpl"), lit_);
   const std::vector<CheckedFile> files{checkFile(at("c.vpl")), checkFile(at("v.vpl")),
                                        checkFile(at("l.vpl"))};
-  EXPECT_TRUE(contains(messageOf<InputError>([&] { checkChain(files, "", ""); }),
+  EXPECT_TRUE(contains(messageOf<InputError>([&] { checkChain(files, nullptr); }),
                        "history does not continue"));
 }
 
@@ -81,7 +81,7 @@ TEST_F(DeepCheck, ToolsOfTwoVersionsAreRefused) {
   const std::vector<CheckedFile> files{checkFile(at("c.vpl")), checkFile(at("v.vpl")),
                                        checkFile(at("l.vpl"))};
   EXPECT_TRUE(
-      contains(messageOf<InputError>([&] { checkChain(files, "", ""); }), "made by version 9.9"));
+      contains(messageOf<InputError>([&] { checkChain(files, nullptr); }), "made by version 9.9"));
 }
 
 TEST_F(DeepCheck, CommandsAreQuotedAndExact) {

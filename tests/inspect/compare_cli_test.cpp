@@ -48,6 +48,45 @@ TEST_F(CompareCli, ExposuresMayComeFromTheReference) {
   EXPECT_EQ(flip["flip_settings"]["exposure_ev"], -3.5);  // log2(0.18 / 2) to a quarter
 }
 
+// What only FLIP asks for has no effect where none is measured.
+TEST_F(CompareCli, OptionsOfFlipNeedColours) {
+  for (const char* option : {"--exposure 3", "--ppd 3", "--flip-exposures 0:1"}) {
+    const Outcome result = runInspect(both() + "--layer N " + option);
+    EXPECT_EQ(result.code, kExitUsage) << result.output;
+    const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+    EXPECT_TRUE(contains(result.output, name + " needs R, G, B, but layer 'N'")) << result.output;
+    EXPECT_EQ(runInspect(both() + option).code, kExitOk);
+  }
+}
+
+TEST_F(CompareCli, EmptyValuesAreRefusedByName) {
+  for (const char* option : {"--second-half", "--mask", "--diff", "--exposure", "--flip-exposures",
+                             "--layer", "--layer-a", "--stats"}) {
+    const Outcome result = runInspect(both() + option + " ''");
+    EXPECT_EQ(result.code, kExitUsage) << option;
+    EXPECT_TRUE(contains(result.output, std::string(option) + ": '' is empty")) << result.output;
+  }
+  const Outcome scene = runInspect("check " + path("a.exr") + " --scene ''");
+  EXPECT_EQ(scene.code, kExitUsage);
+  EXPECT_TRUE(contains(scene.output, "--scene: '' is empty")) << scene.output;
+}
+
+TEST_F(CompareCli, NumbersAreDecimal) {
+  for (const char* option : {"--ppd", "--epsilon", "--max-rmse", "--exposure"}) {
+    for (const char* number : {"0x10", "' 5'", "+5", "5x"}) {
+      const Outcome result = runInspect(both() + option + " " + number);
+      EXPECT_EQ(result.code, kExitUsage) << option << " " << number;
+      EXPECT_TRUE(contains(result.output, option)) << result.output;
+    }
+  }
+  const Outcome range = runInspect(both() + "--diff d.png --diff-range 0x10");
+  EXPECT_TRUE(contains(range.output, "'0x10' is not a number from 0.000001 to 1000000"))
+      << range.output;
+  EXPECT_EQ(runInspect("plot a.vpl --scene s.toml -o p.png --dot 0x10").code, kExitUsage);
+  const Outcome dot = runInspect("plot a.vpl --scene s.toml -o p.png --dot 200");
+  EXPECT_TRUE(contains(dot.output, "--dot: '200' is out of range: from 1 to 100")) << dot.output;
+}
+
 TEST_F(CompareCli, OptionsThatMakeNoSenseExitWith2) {
   for (const char* options :
        {"--flip-exposures 4", "--flip-exposures 4:2", "--flip-exposures a:b",

@@ -25,7 +25,7 @@ TEST(CompareReport, ABlackReferenceExceedsAnyLimit) {
 TEST(CompareReport, LimitsDecideTheExitCode) {
   const Comparison c =
       compare(flatImage(1, 1, 3, 3, 3), flatImage(1, 1, 2, 2, 2));  // RMSE 1, over mean 0.5
-  const auto code = [&](double CompareOptions::*limit, double value) {
+  const auto code = [&](std::optional<double> CompareOptions::*limit, double value) {
     CompareOptions options;
     options.*limit = value;
     return comparisonExitCode(c, options);

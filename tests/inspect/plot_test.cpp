@@ -93,7 +93,7 @@ TEST_F(Plot, ColoursNeedTheirColumn) {
   options.colour = DotColour::Flux;
   VplTable table = tinyRows(scene_.contentHash);
   EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
-                       "vpl-estimate or vpl-place --method light"));
+                       "vpl-estimate or a vpl-place --method that lights VPLs"));
   options.colour = DotColour::Radius;
   EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
                        "vpl-eliminate"));

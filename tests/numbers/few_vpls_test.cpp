@@ -120,6 +120,7 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
   SurfacePoint at;
   ASSERT_TRUE(world.rays.closestHit({0.278f, 0.3f, 0.28f}, {0, -1, 0}, at));  // the floor, or a box
   const Bsdf bsdf(world.scene, at);
+  bool seesNothing = false;
   const auto gathered = [&](const std::vector<Vec3>& offsets, const std::string& method,
                             float clamp2) {
     VplLights vpls;
@@ -130,6 +131,7 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
       vpls.clamp2.push_back(clamp2);
     }
     const GatherOf gather(world, vpls, {{"gather", method}});
+    seesNothing = gather.looksAtFilm;
     const Gathered out = gather.at(bsdf);
     EXPECT_TRUE(isFinite(out.radiance) && isFinite(out.clamped));
     for (uint64_t i = 0; i < 100; ++i) {
@@ -139,12 +141,13 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
     }
     return out.radiance;
   };
-  for (const char* method : {"tilecuts", "lightcuts", "stochastic", "ward", "all"}) {
+  for (const std::string& method : gathers()) {
     for (const float clamp2 : {1e-12f, 1e-4f}) {
       EXPECT_EQ(gathered({Vec3()}, method, clamp2), Vec3());
       EXPECT_EQ(gathered({Vec3(), Vec3(), Vec3()}, method, clamp2), Vec3());
       gathered({Vec3(), at.ng * 1e-7f, at.ng * 1e-30f}, method, clamp2);
       const Vec3 lit = gathered({at.ng * 0.1f}, method, clamp2);
+      if (seesNothing) continue;
       EXPECT_GT(lit.x, 0.0f);
       const Vec3 both = gathered({Vec3(), at.ng * 0.1f}, "all", clamp2);
       EXPECT_NEAR(both.x, lit.x, 1e-5f * lit.x);

@@ -1,34 +1,52 @@
 // Options of every tool, and what they refuse.
+#include <nlohmann/json.hpp>
+
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
 namespace bnvpl {
 namespace {
 
-using Options = PipelineTest;
+class Options : public PipelineTest {
+ protected:
+  // What --help has to tell of the methods and options that a stage names.
+  std::vector<std::string> toldByJson(const std::string& name) const {
+    const auto spec = nlohmann::json::parse(tool(name, "--help-json").out);
+    std::vector<std::string> texts;
+    const auto add = [&](const nlohmann::json& options) {
+      for (const auto& option : options)
+        texts.push_back("--" + option.at("name").get<std::string>());
+    };
+    add(spec.at("options"));
+    for (const auto& slot : spec.at("slots")) {
+      std::string names;
+      for (const auto& method : slot.at("methods")) {
+        names += (names.empty() ? "" : "|") + method.at("name").get<std::string>();
+        texts.push_back(method.at("summary"));
+        add(method.at("options"));
+      }
+      texts.push_back("--" + slot.at("name").get<std::string>() + " " + names);
+    }
+    return texts;
+  }
+};
 
 TEST_F(Options, HelpListsEveryOption) {
-  const std::vector<std::pair<std::string, std::vector<std::string>>> options{
-      {"vpl-place",
-       {"scene", "--output", "--count", "--method", "camera|light", "--depth", "--light-depth",
-        "--seed", "--define", "--depfile"}},
-      {"vpl-eliminate",
-       {"candidates", "--output", "--count", "--method", "elimination|random|rejection", "--scene",
-        "--density", "uniform|local", "--area", "--alpha"}},
+  const std::vector<std::pair<std::string, std::vector<std::string>>> own{
+      {"vpl-place", {"scene", "--output", "--define", "--depfile"}},
+      {"vpl-eliminate", {"candidates", "--output", "--scene", "--define", "--depfile"}},
       {"vpl-estimate",
-       {"scene", "vpls", "--output", "--photons", "--radius", "--method", "even|guarded",
-        "--max-bounces", "--seed", "--define", "--depfile"}},
-      {"vpl-render", {"scene",          "lit",          "--output",       "--png",
-                      "--spp",          "--integrator", "light|path|vpl", "--gather",
-                      "all|lightcuts|", "--error",      "--max-cut",      "--clamp",
-                      "--max-bounces",  "--only",       "--layers",       "--pixels",
-                      "half|float",     "--exposure",   "--seed",         "--define",
-                      "--depfile",      "--size",       "--compensate",   "--near-field-rays"}},
+       {"scene", "vpls", "--output", "--define", "--depfile", "--checkpoint-every"}},
+      {"vpl-render",
+       {"scene", "lit", "--output", "--png", "--define", "--depfile", "--checkpoint-every"}},
       {"vpl-inspect", {"info", "check", "export", "plot", "compare"}}};
-  for (const auto& [name, texts] : options) {
+  for (auto [name, texts] : own) {
     const Outcome help = tool(name, "--help");
     EXPECT_EQ(help.code, kExitOk) << name;
     EXPECT_EQ(help.err, "") << name;
+    if (name != "vpl-inspect") {
+      for (const std::string& text : toldByJson(name)) texts.push_back(text);
+    }
     for (const std::string& text : texts)
       EXPECT_TRUE(contains(help.out, text)) << name << " lacks " << text;
     for (const char* text : {"--threads", "--quiet", "--stats", "--version", "--help"}) {
@@ -37,10 +55,32 @@ TEST_F(Options, HelpListsEveryOption) {
   }
 }
 
+// One way to show a kind of value, and ranges in plain numbers.
+TEST_F(Options, HelpIsPlain) {
+  std::string all;
+  for (const char* command : {"info", "check", "export", "plot", "compare"})
+    all += tool("vpl-inspect", std::string(command) + " --help").out;
+  for (const std::string& name : kStages) all += tool(name, "--help").out;
+  for (const char* odd : {"FLOAT", "UINT", "TEXT", "REQUIRED", "e+", "000000 ", " in ["})
+    EXPECT_FALSE(contains(all, odd)) << odd;
+  for (const char* text :
+       {"--checkpoint-every NUMBER=60", "(0 to 1000000)", "--photons COUNT=10M", "(1 to 2^36)",
+        "--dot NUMBER=5", "scene FILE (required)", "--layers NAME,...", "--size WIDTHxHEIGHT",
+        "cutsize: clusters or VPLs gathered", "with --only all or indirect"}) {
+    EXPECT_TRUE(contains(all, text)) << text;
+  }
+}
+
+TEST_F(Options, HelpOfWhatDoesNotExistFails) {
+  fail("vpl-inspect", "chain --help", kExitUsage, {"chain"});
+  fail("vpl-inspect", "chain", kExitUsage);
+  EXPECT_EQ(tool("vpl-place", scene_ + " --help").code, kExitOk);
+}
+
 TEST_F(Options, HelpShowsDefaults) {
   EXPECT_TRUE(contains(tool("vpl-place", "--help").out, "--count COUNT=120k"));
   EXPECT_TRUE(contains(tool("vpl-estimate", "--help").out, "COUNT=10M"));
-  EXPECT_TRUE(contains(tool("vpl-render", "--help").out, "[0.02]"));
+  EXPECT_TRUE(contains(tool("vpl-render", "--help").out, "default 0.02"));
   EXPECT_TRUE(contains(tool("vpl-render", "--help").out, "COUNT=1000"));
 }
 
@@ -80,6 +120,33 @@ TEST_F(Options, UnknownChoices) {
        scene_ + " -o " + path("x.exr") + " --integrator path --spp 1 --png " + path("x.png") +
            " --exposure bright",
        kExitUsage, {"--exposure", "bright"});
+  EXPECT_TRUE(listing().empty());
+}
+
+// As of a variable that a script forgot to set; before any work.
+TEST_F(Options, EmptyFileNames) {
+  const std::pair<const char*, std::string> lines[] = {
+      {"vpl-place", "'' -o x"},
+      {"vpl-place", scene_ + " -o ''"},
+      {"vpl-place", scene_ + " -o x --stats ''"},
+      {"vpl-place", scene_ + " -o x --depfile ''"},
+      {"vpl-eliminate", "'' -n 1 -o x"},
+      {"vpl-eliminate", "a -n 1 -o ''"},
+      {"vpl-eliminate", "a -n 1 -o x --scene ''"},
+      {"vpl-estimate", scene_ + " '' -o x"},
+      {"vpl-estimate", scene_ + " a -o ''"},
+      {"vpl-estimate", scene_ + " a -o x --checkpoint ''"},
+      {"vpl-render", scene_ + " '' -o x"},
+      {"vpl-render", scene_ + " a -o ''"},
+      {"vpl-render", scene_ + " a -o x --png ''"},
+      {"vpl-inspect", "info ''"},
+      {"vpl-inspect", "check a ''"},
+      {"vpl-inspect", "export a -o ''"},
+      {"vpl-inspect", "plot a --scene s -o ''"},
+      {"vpl-inspect", "compare a b --diff ''"},
+      {"vpl-inspect", "compare a b --mask ''"}};
+  for (const auto& [name, arguments] : lines) fail(name, arguments, kExitUsage, {"'' is empty"});
+  fail("vpl-place", scene_ + " -o ''", kExitUsage, {"--output"});
   EXPECT_TRUE(listing().empty());
 }
 
@@ -143,7 +210,7 @@ TEST_F(Options, DefinesMayStandAnywhere) {
   const std::string define = "--define DIR=far ", end = " -o " + path("c.vpl") + " -n 10 ";
   succeed("vpl-place", path("near.toml") + end + define);
   succeed("vpl-place", define + path("near.toml") + end);
-  succeed("vpl-place", "--define A=b " + define + path("near.toml") + end);
+  succeed("vpl-place", "--define DIR=nowhere " + define + path("near.toml") + end);
   fail("vpl-place", path("near.toml") + end, kExitInput,
        {"near.toml:", "${DIR} is not set", "--define DIR="});
   fail("vpl-place", path("near.toml") + end + "--define DIR", kExitUsage, {"NAME=VALUE"});

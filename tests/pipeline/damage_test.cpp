@@ -32,8 +32,7 @@ TEST_F(Damage, WrongStageNamesTheToolToRun) {
   fail("vpl-eliminate", path("lit.vpl") + out + " -n 5", kExitInput, {"lit.vpl", "vpl-place"});
   fail("vpl-estimate", scene_ + " " + path("candidates.vpl") + out, kExitInput,
        {"candidates.vpl", "vpl-eliminate"});
-  fail("vpl-estimate", scene_ + " " + path("lit.vpl") + out, kExitInput,
-       {"lit.vpl", "vpl-eliminate"});
+  fail("vpl-estimate", scene_ + " " + path("lit.vpl") + out, kExitInput, {"lit.vpl", "vpl-render"});
   fail("vpl-render", scene_ + " " + path("candidates.vpl") + out, kExitInput,
        {"candidates.vpl", "vpl-estimate"});
   fail("vpl-render", scene_ + " " + path("vpls.vpl") + out, kExitInput,

@@ -22,7 +22,7 @@ TEST_F(Effect, OptionsWithoutEffectAreRefused) {
   fail("vpl-render", paths + " --clamp 5", kExitUsage, {"--clamp", "--integrator path", "vpl"});
   fail("vpl-render", paths + " --gather all", kExitUsage, {"--gather", "--integrator vpl"});
   fail("vpl-render", lit + " --max-bounces 3", kExitUsage,
-       {"--max-bounces", "--integrator light or path"});
+       {"--max-bounces", "--integrator vpl; it needs --integrator"});
   fail("vpl-render", lit + " --exposure 2", kExitUsage, {"--exposure", "--png"});
   fail("vpl-render", lit + " --gather all --error 0.1", kExitUsage,
        {"--error", "--gather all", "tilecuts"});
@@ -37,6 +37,92 @@ TEST_F(Effect, OptionsWithoutEffectAreRefused) {
   EXPECT_FALSE(fs::exists(at("i.exr")) || fs::exists(at("v.vpl")) || fs::exists(at("c.vpl")));
 }
 
+// Why VPLs are dark, and what helps.
+TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
+  makeStages(scene_);
+  const auto warning = [&](const std::string& options) {
+    const Outcome r = tool(
+        "vpl-estimate", scene_ + " " + path("vpls.vpl") + " -o " + path("l.vpl") + " " + options);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    return r.err;
+  };
+  const std::string few = warning("--photons 5"), near = warning("--radius 0.01 --photons 10k");
+  EXPECT_TRUE(contains(few, "hits, for 60 VPLs; raise --photons")) << few;
+  EXPECT_TRUE(contains(near, "raise --radius (1.7 unless given)")) << near;
+  EXPECT_EQ(warning("--photons 10k"), "");
+}
+
+// Where the image shows direct light alone, nothing that shapes indirect light is taken.
+TEST_F(Effect, DirectLightAloneAsksNoVpls) {
+  makeStages(scene_);
+  const std::string lit =
+      scene_ + " " + path("lit.vpl") + " --spp 1 --only direct --near-field-rays 2 -o ";
+  for (const char* option : {"--gather all", "--error 0.1", "--clamp 3", "--light disk"}) {
+    const std::string name = std::string(option).substr(0, std::string(option).find(' '));
+    fail("vpl-render", lit + path("i.exr") + " " + option, kExitUsage,
+         {name + " has no effect with --only direct; it needs --only all or indirect"});
+  }
+  for (const char* integrator : {"path", "light"}) {
+    fail("vpl-render",
+         scene_ + " --spp 1 --only direct --max-bounces 3 --integrator " + integrator + " -o " +
+             path("i.exr"),
+         kExitUsage, {"--max-bounces has no effect with --only direct"});
+  }
+  succeed("vpl-render", lit + path("near.exr"));
+  succeed("vpl-render", lit + path("none.exr") + " --compensate none");
+  EXPECT_NE(*readExr(at("near.exr")).find("R"), *readExr(at("none.exr")).find("R"));
+}
+
+// Layers of gathered VPLs mean nothing in an image without any.
+TEST_F(Effect, LayersOfVplsNeedVpls) {
+  const std::string paths = scene_ + " --spp 1 --size 8x6 --integrator path -o " + path("p.exr");
+  for (const char* layer : {"clamped", "cutsize", "shadowrays"}) {
+    fail("vpl-render", paths + " --layers albedo," + layer, kExitUsage, {"--layers", layer});
+    fail("vpl-render", paths + " --layers all," + layer, kExitUsage, {"--layers", layer});
+  }
+  succeed("vpl-render", paths + " --layers all");
+  const Image all = readExr(at("p.exr"));
+  for (const char* name : {"direct.R", "indirect.R", "albedo.R", "N.X", "Z"})
+    EXPECT_NE(all.find(name), nullptr) << name;
+  for (const char* name : {"clamped.R", "cutsize", "shadowrays"})
+    EXPECT_EQ(all.find(name), nullptr) << name;
+}
+
+TEST_F(Effect, NeighboursThatNobodyCountsAreRefused) {
+  makeStages(scene_);
+  const std::string keep = path("candidates.vpl") + " -n 5 -o " + path("v.vpl");
+  fail("vpl-eliminate", keep + " --density uniform --area 4 --neighbours 7", kExitUsage,
+       {"--neighbours has no effect with --density uniform and --area 4; it needs --density local "
+        "or --area 0"});
+  succeed("vpl-eliminate", keep + " --density uniform --area 4");
+  succeed("vpl-eliminate", keep + " --density uniform --neighbours 7");
+  succeed("vpl-eliminate", keep + " --area 4 --neighbours 7");
+}
+
+TEST_F(Effect, CheckpointsThatNobodySavesAreRefused) {
+  fail("vpl-estimate", scene_ + " v.vpl -o l.vpl --checkpoint-every 5", kExitUsage,
+       {"--checkpoint-every", "--checkpoint"});
+  fail("vpl-render", scene_ + " v.vpl -o l.exr --checkpoint-every 5", kExitUsage,
+       {"--checkpoint-every", "--checkpoint"});
+}
+
+TEST_F(Effect, DefinesThatTheSceneDoesNotUseAreRefused) {
+  fail("vpl-place", scene_ + " -n 5 -o " + path("c.vpl") + " --define A=1", kExitUsage,
+       {"--define A has no effect", "${A}"});
+  EXPECT_TRUE(listing().empty());
+}
+
+// An empty text is a script's variable without a value.
+TEST_F(Effect, EmptyValuesAreRefusedByName) {
+  const std::string render = scene_ + " --integrator path --spp 1 -o " + path("i.exr");
+  for (const char* option : {"--size", "--stats", "--png", "--layers", "--exposure", "--depfile",
+                             "--checkpoint", "--define", "--threads"}) {
+    fail("vpl-render", render + " " + option + " ''", kExitUsage, {option});
+  }
+  fail("vpl-render", "'' --integrator path -o " + path("i.exr"), kExitUsage, {"scene"});
+  EXPECT_TRUE(listing().empty());
+}
+
 TEST_F(Effect, NumbersAreWhatTheySay) {
   for (const char* seed : {"-1", "18446744073709551616", "''", "0x10", "1e3", "1.5"}) {
     fail("vpl-place", scene_ + " -n 5 -o " + path("c.vpl") + " --seed " + seed, kExitUsage,
@@ -46,6 +132,22 @@ TEST_F(Effect, NumbersAreWhatTheySay) {
   succeed("vpl-place", scene_ + " -n 5 --seed 10 -o " + path("b.vpl"));
   EXPECT_EQ(readAll(at("a.vpl")), readAll(at("b.vpl")));
   fail("vpl-estimate", scene_ + " v.vpl -o l.vpl --photons 3x", kExitUsage, {"--photons", "3x"});
+  for (const char* seconds : {"0x10", "' 5'", "'5 '", "+5", "nan", "-1", "1e7"}) {
+    fail("vpl-estimate",
+         scene_ + " v.vpl -o l.vpl --checkpoint c --checkpoint-every " + std::string(seconds),
+         kExitUsage, {"--checkpoint-every", "from 0 to 1000000"});
+  }
+  for (const char* stops : {"0x10", "' 5'", "+5"}) {
+    fail("vpl-render",
+         scene_ + " --integrator path --png x.png -o x.exr --exposure " + std::string(stops),
+         kExitUsage, {"--exposure"});
+  }
+  fail("vpl-place", scene_ + " -o c.vpl --depth -1", kExitUsage,
+       {"--depth: '-1' is not a whole number from 2 to 1000"});
+  fail("vpl-render", scene_ + " l.vpl -o i.exr --clamp 1e400", kExitUsage,
+       {"--clamp: '1e400' is out of range: from 0 to 1000"});
+  fail("vpl-render", scene_ + " l.vpl -o i.exr --clamp big", kExitUsage,
+       {"--clamp: 'big' is not a number from 0 to 1000"});
 }
 
 // Rays of the near field serve specular paths as well: two images, two histories.

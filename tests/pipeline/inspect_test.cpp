@@ -62,6 +62,30 @@ TEST_F(Inspect, CheckNoticesAChangedMaterial) {
        {"candidates.vpl: made from scene "});
 }
 
+TEST_F(Inspect, TheWrongFileIsToldWithItsCure) {
+  fail("vpl-inspect", "info " + path("nix"), kExitInput,
+       {"nix: cannot open: No such file or directory; check the name, or run the stage"});
+  fail("vpl-inspect", "info " + path(""), kExitInput, {": is a folder; name a .vpl"});
+  fail("vpl-inspect", "compare " + path("image.exr") + " " + path("lit.vpl"), kExitInput,
+       {"lit.vpl: is a .vpl file, not an image"});
+  fail("vpl-inspect", "compare " + path("nix") + " " + path("image.exr"), kExitInput,
+       {"nix: cannot open: "});
+}
+
+TEST_F(Inspect, ExportTakesUpperCase) {
+  for (const std::string name : {"x.ply", "x.PLY", "x.csv", "x.CSV"})
+    succeed("vpl-inspect", "export " + path("lit.vpl") + " -o " + path(name));
+  EXPECT_TRUE(readAll(at("x.ply")) == readAll(at("x.PLY")));
+  EXPECT_TRUE(readAll(at("x.csv")) == readAll(at("x.CSV")));
+}
+
+TEST_F(Inspect, ThePixelTypeIsInTheHistory) {
+  succeed("vpl-render",
+          scene_ + " " + path("lit.vpl") + " --spp 1 --pixels half -o " + path("half.exr"));
+  EXPECT_TRUE(contains(tool("vpl-inspect", "info " + path("half.exr")).out, "pixels half"));
+  EXPECT_TRUE(contains(tool("vpl-inspect", "info " + path("image.exr")).out, "pixels float"));
+}
+
 TEST_F(Inspect, StatsOfInfo) {
   const Json json = stats("info --json " + path("lit.vpl"));
   EXPECT_EQ(json["info"]["rows"], 60);

@@ -30,6 +30,14 @@ TEST(Progress, Line) {
   EXPECT_EQ(progressText("photons", 4, 4, 10), "photons 4 of 4 (100 %), 0 s left");
 }
 
+// The first per mille may take most of the time.
+TEST(Progress, TheTimeLeftWaitsForEnoughToTellIt) {
+  EXPECT_EQ(progressText("candidates", 19, 1000, 9.9), "candidates 19 of 1k (2 %)");
+  EXPECT_EQ(progressText("candidates", 20, 1000, 9.9),
+            "candidates 20 of 1k (2 %), 8 min 05 s left");
+  EXPECT_EQ(progressText("candidates", 1, 1000, 12), "candidates 1 of 1k (0 %), 3 h 20 min left");
+}
+
 using ProgressOfTools = PipelineTest;
 
 // The first line comes after ten seconds.

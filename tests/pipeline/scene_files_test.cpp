@@ -101,6 +101,31 @@ TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
   EXPECT_FALSE(fs::exists(at("l.vpl")));
 }
 
+// Whoever reads what was made from the scene leaves them to the tool that made it.
+TEST_F(SceneFilesOfOthers, WarningsAreToldOnceForAllTools) {
+  replaceAll("von Blender/my room.mtl", "my_left", "my_right");
+  const auto warns = [&](const std::string& name, const std::string& arguments) {
+    const Outcome r = tool(name, arguments);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    return contains(r.err, "without a known material");
+  };
+  const std::string by = " --scene " + room_;
+  EXPECT_TRUE(warns("vpl-place", room_ + " -n 300 -o " + path("c.vpl")));
+  EXPECT_FALSE(warns("vpl-eliminate", path("c.vpl") + " -n 30 -o " + path("v.vpl")));
+  EXPECT_FALSE(
+      warns("vpl-estimate", room_ + " " + path("v.vpl") + " --photons 1k -o " + path("l.vpl")));
+  EXPECT_FALSE(warns("vpl-render", room_ + " " + path("l.vpl") + " --spp 1 -o " + path("i.exr")));
+  EXPECT_FALSE(warns("vpl-inspect", "check " + path("c.vpl") + " " + path("i.exr") + by));
+  EXPECT_FALSE(warns("vpl-inspect", "plot " + path("l.vpl") + by + " -o " + path("p.png")));
+  EXPECT_TRUE(warns("vpl-render", room_ + " --integrator path --spp 1 -o " + path("p.exr")));
+}
+
+TEST_F(SceneFilesOfOthers, FoldersAreRefusedAsSuch) {
+  fs::create_directories(at("dir.toml"));
+  for (const char* name : {"dir.toml", "von Blender"})
+    fail("vpl-place", path(name) + " -n 3 -o " + path("x"), kExitInput, {name, ": is a folder"});
+}
+
 TEST_F(SceneFilesOfOthers, OtherFormatsAreRefusedByName) {
   for (const char* name : {"my room.obj", "my room.mtl"}) {
     fail("vpl-place", path(std::string("von Blender/") + name) + " -n 3 -o " + path("x"),

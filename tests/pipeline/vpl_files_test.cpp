@@ -78,16 +78,20 @@ TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
 TEST_F(VplFiles, TheWrongStageIsToldWithItsMakerAndTheRightTools) {
   succeed("vpl-place", scene_ + " -o " + path("light.vpl") + " -n 20 --method light");
   fail("vpl-estimate", scene_ + " " + path("light.vpl") + " -o " + path("x.vpl"), kExitInput,
-       {"is of stage lit (by vpl-place --method light), stage eliminated is needed; make it with "
-        "vpl-eliminate"});
+       {"is of stage lit (by vpl-place --method light): its VPLs have their flux; pass it to "
+        "vpl-render"});
+  succeed("vpl-eliminate", path("light.vpl") + " -n 10 --method rejection --scene " + scene_ +
+                               " -o " + path("some.vpl"));
+  fail("vpl-estimate", scene_ + " " + path("some.vpl") + " -o " + path("x.vpl"), kExitInput,
+       {"is of stage lit (by vpl-eliminate --method rejection): its VPLs have", "vpl-render"});
   fail("vpl-estimate", scene_ + " " + path("lit.vpl") + " -o " + path("x.vpl"), kExitInput,
        {"is of stage lit (by vpl-estimate"});
   fail("vpl-render", scene_ + " " + path("vpls.vpl") + " -o " + path("x.exr"), kExitInput,
        {"is of stage eliminated (by vpl-eliminate",
-        "make it with vpl-estimate or vpl-place --method light"});
+        "make it with vpl-estimate or a vpl-place --method that lights VPLs"});
   fail("vpl-inspect",
        "plot " + path("vpls.vpl") + " --scene " + scene_ + " --color flux -o " + path("x.png"),
-       kExitInput, {"vpl-estimate or vpl-place --method light"});
+       kExitInput, {"vpl-estimate or a vpl-place --method that lights VPLs"});
 }
 
 }  // namespace

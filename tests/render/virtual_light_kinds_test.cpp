@@ -12,11 +12,24 @@ namespace bnvpl::test {
 namespace {
 
 template <typename Kind>
-class LightKinds : public testing::Test {};
-using Kinds = testing::Types<PointLight, DiskLight>;
-TYPED_TEST_SUITE(LightKinds, Kinds);
+class EachLightKind : public testing::Test {};
+template <typename... Kinds>
+testing::Types<Kinds...> typesOf(KindList<Kinds...>);
+using Kinds = decltype(typesOf(LightKinds{}));
+TYPED_TEST_SUITE(EachLightKind, Kinds);
 
-TYPED_TEST(LightKinds, FallOffWithDistanceAndNeverExceedAPoint) {
+TYPED_TEST(EachLightKind, IsFoundByItsName) {
+  EXPECT_EQ(withKind(lightKindNamed(TypeParam::name), [](auto kind) { return kind.name; }),
+            TypeParam::name);
+}
+
+TEST(LightKindsOfOptions, AreTheList) {
+  EXPECT_EQ(kLightKinds, "point|disk");
+  EXPECT_EQ(lightKindNamed("point"), LightKind{});
+  EXPECT_THROW(lightKindNamed("line"), std::logic_error);
+}
+
+TYPED_TEST(EachLightKind, FallOffWithDistanceAndNeverExceedAPoint) {
   constexpr float kSize2 = 0.04f;
   float before = 0.0f;
   for (float d = 0.0f; d < 3.0f; d += 0.01f) {
@@ -29,14 +42,14 @@ TYPED_TEST(LightKinds, FallOffWithDistanceAndNeverExceedAPoint) {
   EXPECT_NEAR(TypeParam::spread(1e6f, kSize2), 1e6f, 1.0f);
 }
 
-TYPED_TEST(LightKinds, RemoveWhatTheyDoNotBring) {
+TYPED_TEST(EachLightKind, RemoveWhatTheyDoNotBring) {
   for (float d = 0.01f; d < 3.0f; d += 0.01f) {
     EXPECT_NEAR(TypeParam::removed(d / 0.2f), 1.0f - d * d / TypeParam::spread(d * d, 0.04f),
                 1e-5f);
   }
 }
 
-TYPED_TEST(LightKinds, FourAtOnceAreFourSingleOnes) {
+TYPED_TEST(EachLightKind, FourAtOnceAreFourSingleOnes) {
   alignas(16) float d2[4] = {0.01f, 0.04f, 0.3f, 7.0f}, cosine[4] = {-0.9f, 0.1f, 0.5f, 0.99f};
   alignas(16) float spread[4], most[4];
   const float cosHalf = std::cos(0.4f), sinHalf = std::sin(0.4f);
@@ -50,7 +63,7 @@ TYPED_TEST(LightKinds, FourAtOnceAreFourSingleOnes) {
 }
 
 // Over a cone of axes: never below what any of them emits, and not above what one could.
-TYPED_TEST(LightKinds, BoundWhatAConeEmits) {
+TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
   Rng rng(streamKey(3, Stream::PixelSamples), 0);
   for (int i = 0; i < 300; ++i) {
     const float half = kPi * rng.next(), cosHalf = std::cos(half),
@@ -85,8 +98,9 @@ TEST(LightKindsOfImages, HaveTheirEnergyBroughtBack) {
   World world("furnace/scene.toml");
   world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});
-  for (const char* light : {"point", "disk"}) {
-    const FilmStats stats = renderVpls(world, lit, {{"spp", "32"}, {"light", light}}).stats;
+  for (const std::string_view light : LightKinds::names) {
+    const FilmStats stats =
+        renderVpls(world, lit, {{"spp", "32"}, {"light", std::string(light)}}).stats;
     EXPECT_NEAR(stats.indirect, 0.5, 0.02) << light;
   }
 }

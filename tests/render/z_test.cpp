@@ -91,9 +91,11 @@ Render photons(const World& world, const Given& options) {
   };
 }
 Render vpls(const World& world, const VplTable& lit, const Given& options) {
-  return [&world, &lit, options = with(kPlainRender, options)](uint64_t seed) {
-    return renderVpls(world, lit, with(options, {{"seed", typed(seed)}})).image;
-  };
+  const bool direct = std::ranges::count(options, Given::value_type{"only", "direct"}) > 0;
+  return
+      [&world, &lit, options = with(direct ? kPlainDirect : kPlainRender, options)](uint64_t seed) {
+        return renderVpls(world, lit, with(options, {{"seed", typed(seed)}})).image;
+      };
 }
 Render flat(const World& world, float value) {
   const int width = int(world.scene.film.width), height = int(world.scene.film.height);

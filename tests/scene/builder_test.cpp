@@ -284,7 +284,7 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
             at("room.gltf").string() + ": is no scene file; scenes are read from .toml, .pbrt, .pbrt.gz");
   EXPECT_NE(error("square.obj").find("the [[mesh]] of a .toml names an OBJ"),
             std::string::npos);
-  EXPECT_NE(error("").find("is no scene file"), std::string::npos);
+  EXPECT_NE(error("").find("is a folder"), std::string::npos);
 }
 
 }  // namespace

@@ -97,6 +97,32 @@ TEST_F(Loader, FacesThatNameAbsentVerticesAreLeftOut) {
       << joined(scene.warnings);
 }
 
+// As a whole, also where most corners are there.
+TEST_F(Loader, PolygonsThatNameAbsentVerticesAreLeftOutAndCounted) {
+  const std::pair<std::string, int> cases[] = {
+      {"f 1 2 3 99\n", 2},
+      {"f 1 2 3 4 99\n", 3},
+      {"f 1/1 2/1 3/1 99/1 4/1 1/1\n", 4},
+      {"f 1 2 3 99\nf 4 3 2 99999999999999999999999\nf 1 2 99\n", 5}};
+  for (const auto& [faces, lost] : cases) {
+    const Scene scene = loadMesh(kSquareObj + faces, "newmtl paint\nKd 1 1 1\n");
+    EXPECT_EQ(scene.triangles.size(), 2u) << faces;
+    EXPECT_EQ(countContaining(scene.warnings, std::to_string(lost) +
+                                                  " triangles with missing or non-finite vertices"),
+              1u)
+        << faces << joined(scene.warnings);
+  }
+}
+
+// tinyobjloader cuts a polygon before it has read the vertices of the next group.
+TEST_F(Loader, PolygonsThatCannotBeCutAreCounted) {
+  const Scene scene =
+      loadMesh(kSquareObj + "f 1 2 3 5\ng later\nv 0 0 3\nf 1 2 5\n", "newmtl paint\nKd 1 1 1\n");
+  EXPECT_EQ(scene.triangles.size(), 3u);
+  EXPECT_EQ(countContaining(scene.warnings, "2 triangles of polygons that cannot be cut"), 1u)
+      << joined(scene.warnings);
+}
+
 TEST_F(Loader, AnObjThatIsNoneIsAnErrorThatNamesIt) {
   write("square.obj", kSquareObj + "f 0 1 2\n");  // indices count from 1
   write("square.mtl", "newmtl paint\nKd 1 1 1\n");

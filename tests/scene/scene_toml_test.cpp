@@ -54,6 +54,9 @@ TEST_F(SceneToml, UnknownKeysNameTheNearest) {
   expectError(base_ + "[[light]]\ntype = \"point\"\npositon = [0,0,0]\n", 12,
               {"'positon'", "'position'"});
   expectError("[films]\n" + base_, 0, {"unknown key 'films'", "'film'"});
+  // Nothing is near.
+  expectError(base_ + "[[light]]\ntype = \"point\"\npower = 3\n", 12,
+              {"unknown key 'power'; the keys here are ", "intensity"});
   expectError("[camera]\nfov = 3\n" + base_.substr(0, 0) + "[film]\nwidth = 8\nheight = 6\n", 2,
               {"'fov'"});
 }

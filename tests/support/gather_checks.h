@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "tests/support/pipeline.h"
+#include "transport/virtual_light_kinds.h"
 
 namespace bnvpl::test {
 
@@ -46,7 +47,8 @@ inline const std::vector<const GatherCase*>& gatherCases() {
 inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint64_t seeds = 4,
                               const Given& options = {}) {
   for (const GatherCase* c : gatherCases()) {
-    for (const char* light : {"point", "disk"}) {
+    for (const std::string_view name : LightKinds::names) {
+      const std::string light(name);
       double sum = 0.0, all = 0.0;
       for (uint64_t seed = 1; seed <= seeds; ++seed) {
         sum += meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));

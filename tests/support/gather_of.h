@@ -12,8 +12,15 @@ struct GatherOf {
   GatherOf(const World& world, const VplLights& vpls, const Given& options)
       : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
     const Values values = resolve(renderSpec(), options);
+    const ProgressFn silent;
     gather = methodNamed(gatherMethods(), values.text("gather"))
-                 .make({world.rays, vpls, tree, 1, [] { return FilmPoints{}; }}, values);
+                 .make({world.rays, vpls, tree, 1,
+                        [this] {
+                          looksAtFilm = true;
+                          return FilmPoints{};
+                        },
+                        silent},
+                       values);
   }
   Gathered at(const Bsdf& bsdf) const {
     const Bsdf* const one[] = {&bsdf};
@@ -24,6 +31,7 @@ struct GatherOf {
     gather.tile(tile, out);
     return out[0];
   }
+  bool looksAtFilm = false;
   LightTree tree;
   PointGather point;
   Gather gather;

@@ -55,12 +55,21 @@ inline RenderResult renderWithout(const World& world, const std::string& integra
   return renderVpls(world, {}, with({{"integrator", integrator}}, options), resume);
 }
 
+// The preparations that a stage tells of, by name, as they begin.
+struct Preparations {
+  ProgressFn progress{[](uint64_t) {},
+                      [this](std::string_view what, uint64_t) { names.emplace_back(what); }};
+  std::vector<std::string> names;
+};
+
 // Few of everything; every VPL is gathered, and only what VPLs bring.
 inline const Given kFewCandidates{{"count", "20k"}};
 inline const Given kFewVpls{{"count", "1000"}};
 inline const Given kFewPhotons{{"photons", "300k"}};
 inline const Given kPlainRender{
     {"gather", "all"}, {"compensate", "none"}, {"clamp", "1"}, {"spp", "4"}};
+// The same without what only indirect light takes.
+inline const Given kPlainDirect{{"compensate", "none"}, {"spp", "4"}, {"only", "direct"}};
 
 // From the scene to VPLs without flux, and with it; the options go behind those above.
 inline VplTable keptVpls(const World& world, const Given& eliminated, const Given& placed = {}) {

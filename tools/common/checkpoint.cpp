@@ -30,13 +30,13 @@ std::string difference(const Json& before, const Json& now, const std::string& p
 }  // namespace
 
 void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
-  cli.add_option(
-      "--checkpoint", options.file,
-      "save the work to this file now and then, and go on from it where it exists; it is "
-      "removed when the output is written");
-  cli.add_option("--checkpoint-every", options.everyS, "seconds between two savings")
-      ->check(inRange(0.0, 1e6))
-      ->capture_default_str();
+  CLI::Option* file =
+      addFile(cli, "--checkpoint", options.file,
+              "save the work to this file now and then, and go on from it where it exists; it is "
+              "removed when the output is written");
+  addReal(cli, realOption("checkpoint-every", "", 0, 1e6, "", "seconds between two savings"),
+          options.everyS)
+      ->needs(file);
 }
 
 Checkpoint::Checkpoint(CheckpointOptions options, Json run)

@@ -1,11 +1,11 @@
 #include "tools/common/option.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/errors.h"
@@ -14,10 +14,10 @@ namespace bnvpl {
 
 namespace {
 
-std::vector<std::string_view> split(std::string_view names) {
+std::vector<std::string_view> split(std::string_view names, char separator = '|') {
   std::vector<std::string_view> out;
   for (size_t begin = 0; !names.empty() && begin <= names.size();) {
-    const size_t end = std::min(names.find('|', begin), names.size());
+    const size_t end = std::min(names.find(separator, begin), names.size());
     out.push_back(names.substr(begin, end - begin));
     begin = end + 1;
   }
@@ -34,6 +34,17 @@ std::string orList(const std::vector<std::string_view>& names) {
   return text;
 }
 
+// As one would type it: "1e300", "0.000001".
+std::string numberText(double number) {
+  std::array<char, 32> text{};
+  const auto fixed =
+      std::to_chars(text.begin(), text.begin() + 12, number, std::chars_format::fixed);
+  if (fixed.ec == std::errc{}) return {text.begin(), fixed.ptr};
+  std::string out{text.begin(), std::to_chars(text.begin(), text.end(), number).ptr};
+  std::erase(out, '+');
+  return out;
+}
+
 // Large limits are powers of two, or one less: "2^32 - 1".
 std::string limitText(double limit) {
   for (const double less : {0.0, 1.0}) {
@@ -41,27 +52,69 @@ std::string limitText(double limit) {
     if (limit >= 0x1p20 && std::frexp(limit + less, &power) == 0.5)
       return "2^" + std::to_string(power - 1) + (less > 0.0 ? " - 1" : "");
   }
-  std::ostringstream text;
-  text.precision(15);
-  text << limit;
-  return text.str();
-}
-
-std::string rangeText(const Option& o) {
-  if (o.most >= 0x1p64) return "from " + limitText(o.least) + " up";
-  return "from " + limitText(o.least) + " to " + limitText(o.most);
+  return numberText(limit);
 }
 
 [[noreturn]] void refuse(const Option& o, const std::string& why) {
   throw UsageError("--" + std::string(o.name) + ": " + why);
 }
 
-// A text of decimal digits, within 2^64.
-std::optional<uint64_t> digits(std::string_view text) {
+[[noreturn]] void refuseKind(const Option& o, const std::string& text, const char* kind) {
+  refuse(o, "'" + text + "' is not a " + kind + " from " + rangeOf(o));
+}
+
+[[noreturn]] void refuseRange(const Option& o, const std::string& text) {
+  refuse(o, "'" + text + "' is out of range: from " + rangeOf(o));
+}
+
+// Decimal digits alone.
+uint64_t wholeOf(const Option& o, const std::string& text) {
   uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  if (end != text.data() + text.size() || text.empty()) refuseKind(o, text, "whole number");
+  if (error == std::errc::result_out_of_range) refuseRange(o, text);
+  if (error != std::errc{}) refuseKind(o, text, "whole number");
   return value;
+}
+
+// The whole text is one decimal number, and doubles can hold it.
+std::errc readReal(const std::string& text, double& value) {
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (text.empty() || end != last) return std::errc::invalid_argument;
+  return error == std::errc{} && !std::isfinite(value) ? std::errc::invalid_argument : error;
+}
+
+double realOf(const Option& o, const std::string& text) {
+  double value = 0.0;
+  const std::errc error = readReal(text, value);
+  if (error == std::errc::result_out_of_range) refuseRange(o, text);
+  if (error != std::errc{}) refuseKind(o, text, "number");
+  return value;
+}
+
+// "3k" -> 3000.
+uint64_t countOf(const Option& o, const std::string& text) {
+  const auto refuseAs = [&](const char* why) {
+    refuse(o, "'" + text + "' " + why + "; write a whole number such as 3000, 3k or 10M");
+  };
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::invalid_argument) refuseAs("is not a count");
+  const std::string suffix(end, text.data() + text.size());
+  if (suffix == "k" || suffix == "K")
+    value *= 1e3;
+  else if (suffix == "m" || suffix == "M")
+    value *= 1e6;
+  else if (suffix == "g" || suffix == "G")
+    value *= 1e9;
+  else if (!suffix.empty())
+    refuseAs("has an unknown suffix");
+  if (error != std::errc{} || !(value >= o.least && value <= o.most)) refuseRange(o, text);
+  // 2.01 times 1e3 is 2009.9999999999998: the decimal point may cost the last digits.
+  const double whole = std::round(value);
+  if (std::fabs(value - whole) > 1e-15 * value) refuseAs("is not whole");
+  return static_cast<uint64_t>(whole);
 }
 
 bool holds(const std::vector<std::string_view>& names, std::string_view name) {
@@ -72,17 +125,17 @@ Value parsed(const Option& o, const std::string& text) {
   switch (o.kind) {
     case Option::Kind::Switch:
       if (text == "on" || text == "off") return text == "on";
-      throw UsageError("'" + text + "' is neither on nor off");
+      refuse(o, "'" + text + "' is neither on nor off");
     case Option::Kind::Whole:
-      return parseWhole(text);
+      return wholeOf(o, text);
     case Option::Kind::Count:
-      return parseCount(text);
+      return countOf(o, text);
     case Option::Kind::Real:
-      return parseReal(text);
+      return realOf(o, text);
     case Option::Kind::Choice: {
       const auto names = split(o.choices);
       if (holds(names, text)) return text;
-      throw UsageError("'" + text + "' is not one of its choices; use " + orList(names));
+      refuse(o, "'" + text + "' is not one of its choices; use " + orList(names));
     }
     case Option::Kind::Text:
       break;
@@ -103,24 +156,49 @@ struct Need {
   std::string_view name;
   std::vector<std::string_view> values;
 };
-Need needOf(std::string_view needs) {
-  const size_t equals = needs.find('=');
-  return {needs.substr(0, equals), split(needs.substr(equals + 1))};
+Need needOf(std::string_view condition) {
+  const size_t equals = condition.find('=');
+  return {condition.substr(0, equals), split(condition.substr(equals + 1))};
+}
+
+// One of them must hold, with all its conditions.
+std::vector<std::vector<Need>> alternativesOf(std::string_view needs) {
+  std::vector<std::vector<Need>> alternatives;
+  for (const std::string_view conditions : split(needs, ';')) {
+    std::vector<Need>& all = alternatives.emplace_back();
+    for (const std::string_view condition : split(conditions, ','))
+      all.push_back(needOf(condition));
+  }
+  return alternatives;
 }
 
 std::string spelled(const Value& value) {
   if (const auto* on = std::get_if<bool>(&value)) return *on ? "on" : "off";
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  return {};
+  if (const auto* real = std::get_if<double>(&value)) return numberText(*real);
+  return std::to_string(std::get<uint64_t>(value));
 }
 
-bool satisfied(std::string_view needs, const Values& values) {
-  if (needs.empty()) return true;
-  const Need need = needOf(needs);
+bool met(const Need& need, const Values& values) {
   for (const auto& [name, value] : values.list()) {
     if (name == need.name) return holds(need.values, spelled(value));
   }
   return false;
+}
+
+// Of each alternative the first condition that does not hold; nothing where one holds whole.
+std::vector<Need> unmet(std::string_view needs, const Values& values) {
+  std::vector<Need> missing;
+  for (const std::vector<Need>& all : alternativesOf(needs)) {
+    const auto first = std::ranges::find_if(all, [&](const Need& n) { return !met(n, values); });
+    if (first == all.end()) return {};
+    missing.push_back(*first);
+  }
+  return missing;
+}
+
+bool satisfied(std::string_view needs, const Values& values) {
+  return unmet(needs, values).empty();
 }
 
 // All options that carry a name, each with the slot and method that it belongs to.
@@ -144,50 +222,39 @@ std::vector<Found> findAll(const StageSpec& spec, std::string_view name) {
   return found;
 }
 
-// What was chosen instead of what is needed: "--density uniform", or nothing.
-std::string chosenInstead(std::string_view name, const Values& values) {
-  if (!values.has(name)) return {};
-  for (const auto& [key, value] : values.list()) {
-    if (key == name) return " with --" + key + " " + spelled(value);
+// Any of what is missing would do.
+[[noreturn]] void refuseFor(const std::string& name, const std::vector<Need>& missing,
+                            const Values& values) {
+  std::string with, needed;
+  for (const Need& need : missing) {
+    for (const auto& [key, value] : values.list()) {
+      if (key == need.name)
+        with += (with.empty() ? " with --" : " and --") + key + " " + spelled(value);
+    }
+    needed +=
+        (needed.empty() ? "--" : " or --") + std::string(need.name) + " " + orList(need.values);
   }
-  return {};
+  throw UsageError("--" + name + " has no effect" + with + "; it needs " + needed);
 }
 
 [[noreturn]] void refuseWithoutEffect(const StageSpec& spec, const std::string& name,
                                       const Values& values) {
-  std::string text = "--" + name;
   for (const MethodSlot& slot : spec.slots) {
-    if (slot.name != name) continue;
-    const Need need = needOf(slot.needs);
-    throw UsageError(text + " has no effect" + chosenInstead(need.name, values) + "; it needs --" +
-                     std::string(need.name) + " " + orList(need.values));
+    if (slot.name == name) refuseFor(name, unmet(slot.needs, values), values);
   }
   const std::vector<Found> found = findAll(spec, name);
-  if (found.empty()) throw UsageError(text + " is not an option of " + std::string(spec.tool));
-  std::string_view with;
-  std::vector<std::string_view> needed;
+  if (found.empty())
+    throw UsageError("--" + name + " is not an option of " + std::string(spec.tool));
+  Need methods;
   for (const Found& f : found) {
-    const bool byMethod =
-        f.slot && !(values.has(f.slot->name) && values.text(f.slot->name) == f.method->name);
-    if (byMethod) {
-      // A slot that is itself without effect: say what would give it one.
-      if (!values.has(f.slot->name)) {
-        const Need need = needOf(f.slot->needs);
-        with = need.name;
-        needed = need.values;
-        break;
-      }
-      with = f.slot->name;
-      needed.push_back(f.method->name);
-    } else {
-      const Need need = needOf(f.option->needs);
-      with = need.name;
-      needed = need.values;
-      break;
-    }
+    // A slot that is itself without effect: say what would give it one.
+    if (f.slot && !values.has(f.slot->name)) refuseFor(name, unmet(f.slot->needs, values), values);
+    const bool chosen = !f.slot || values.text(f.slot->name) == f.method->name;
+    if (chosen) refuseFor(name, unmet(f.option->needs, values), values);
+    methods.name = f.slot->name;
+    methods.values.push_back(f.method->name);
   }
-  throw UsageError(text + " has no effect" + chosenInstead(with, values) + "; it needs --" +
-                   std::string(with) + " " + orList(needed));
+  refuseFor(name, {methods}, values);
 }
 
 const MethodEntry& chosen(const MethodSlot& slot, const std::string& name) {
@@ -219,52 +286,35 @@ void takeOption(const Option& o, const Given& given, Values& values) {
 
 }  // namespace
 
-uint64_t parseWhole(const std::string& text) {
-  if (const auto value = digits(text)) return *value;
-  throw UsageError("'" + text + "' is not a whole number from 0 to 2^64 - 1");
+std::string rangeOf(const Option& o) {
+  if (o.kind != Option::Kind::Whole && o.kind != Option::Kind::Count &&
+      o.kind != Option::Kind::Real) {
+    return {};
+  }
+  // No whole number reaches 2^64.
+  return limitText(o.least) + " to " + (o.most == 0x1p64 ? "2^64 - 1" : limitText(o.most));
 }
 
-double parseReal(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size() && std::isfinite(value))
-    return value;
-  throw UsageError("'" + text + "' is not a number");
+std::string needText(std::string_view needs) {
+  std::string text;
+  for (const std::vector<Need>& all : alternativesOf(needs)) {
+    text += text.empty() ? "" : " or ";
+    for (size_t i = 0; i < all.size(); ++i) {
+      text += (i > 0 ? " and --" : "--") + std::string(all[i].name) + " " + orList(all[i].values);
+    }
+  }
+  return text;
 }
 
-uint64_t parseCount(const std::string& text) {
-  const auto fail = [&](const char* why) -> UsageError {
-    return UsageError("'" + text + "' " + why + "; write a whole number such as 3000, 3k or 10M");
-  };
+std::optional<double> parseReal(const std::string& text) {
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range) throw fail("is out of range");
-  if (error != std::errc{}) throw fail("is not a count");
-  const std::string suffix(end, text.data() + text.size());
-  if (suffix == "k" || suffix == "K")
-    value *= 1e3;
-  else if (suffix == "m" || suffix == "M")
-    value *= 1e6;
-  else if (suffix == "g" || suffix == "G")
-    value *= 1e9;
-  else if (!suffix.empty())
-    throw fail("has an unknown suffix");
-  if (!(value >= 1.0) || value > 0x1p53) throw fail("is out of range");
-  // 2.01 times 1e3 is 2009.9999999999998: the decimal point may cost the last digits.
-  const double whole = std::round(value);
-  if (std::fabs(value - whole) > 1e-15 * value) throw fail("is not whole");
-  return static_cast<uint64_t>(whole);
+  if (readReal(text, value) != std::errc{}) return {};
+  return value;
 }
 
 Value parseValue(const Option& option, const std::string& text) {
-  Value value;
-  try {
-    value = parsed(option, text);
-  } catch (const UsageError& e) {
-    refuse(option, e.what());
-  }
-  if (!inRange(option, value))
-    refuse(option, "'" + text + "' is out of range: " + rangeText(option));
+  const Value value = parsed(option, text);
+  if (!inRange(option, value)) refuseRange(option, text);
   return value;
 }
 
@@ -298,13 +348,14 @@ void Values::set(std::string_view name, Value value) {
 }
 
 Values resolve(const StageSpec& spec, const Given& given) {
-  Values values;
+  Values values, known;  // known: with the stage's own options first, as slots may need them
   std::vector<const MethodEntry*> methods;
+  for (const Option& o : spec.options) takeOption(o, given, known);
   for (const MethodSlot& slot : spec.slots) {
-    if (!satisfied(slot.needs, values)) continue;
+    if (!satisfied(slot.needs, known)) continue;
     const std::string* text = textOf(given, slot.name);
     const MethodEntry& method = chosen(slot, text ? *text : std::string(slot.fallback));
-    values.set(slot.name, std::string(method.name));
+    for (Values* v : {&values, &known}) v->set(slot.name, std::string(method.name));
     methods.push_back(&method);
   }
   for (const Option& o : spec.options) takeOption(o, given, values);
@@ -345,8 +396,13 @@ void requireSound(const StageSpec& spec) {
       checkTable(m.options, names);
       for (size_t other = s + 1; other < spec.slots.size(); ++other) {
         // Methods of two slots may run together, unless one slot needs another method of the other.
-        const Need need = needOf(spec.slots[other].needs);
-        const bool apart = need.name == spec.slots[s].name && !holds(need.values, m.name);
+        const auto alternatives = alternativesOf(spec.slots[other].needs);
+        const bool apart =
+            !alternatives.empty() && std::ranges::all_of(alternatives, [&](const auto& all) {
+              return std::ranges::any_of(all, [&](const Need& need) {
+                return need.name == spec.slots[s].name && !holds(need.values, m.name);
+              });
+            });
         for (const MethodEntry& n : spec.slots[other].methods) {
           std::set<std::string_view> both = names;
           if (!apart) checkTable(n.options, both);

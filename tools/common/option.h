@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,7 +23,7 @@ struct Option {
     Count,   // the same, from 1, with k, M or G for thousands, millions or billions
     Real,    // a finite number
     Choice,  // one of a few names
-    Text     // whatever the stage makes of it
+    Text     // whatever the stage makes of it; its unit is what to type
   };
   std::string_view name;  // "max-cut": --max-cut on the command line, max-cut in the record
   Kind kind;
@@ -31,7 +32,9 @@ struct Option {
   std::string_view unit;      // empty: none
   std::string_view help;
   std::string_view choices = {};  // Choice: "local|uniform"
-  std::string_view needs = {};    // "density=local|even": has an effect only then
+  std::string_view needs = {};    // "density=local|even": has an effect only then; with more
+                                  // conditions behind commas all must hold; behind semicolons
+                                  // stand alternatives
   std::string_view letter = {};   // "-n": a short spelling
   bool recorded = true;           // false: changes nothing of what is computed
 };
@@ -89,12 +92,15 @@ constexpr std::array<Option, A + B> joined(const std::array<Option, A>& a,
 
 using Value = std::variant<bool, uint64_t, double, std::string>;
 
+// Of a number, for people: "0 to 1000", "1 to 2^32 - 1"; of another kind empty.
+std::string rangeOf(const Option& option);
+// "--density local or --area 0"; empty where nothing is needed.
+std::string needText(std::string_view needs);
+
 // Throws UsageError, which names the option, what is wrong and what is right.
 Value parseValue(const Option& option, const std::string& text);
-// Throws UsageError "'TEXT' ..."; parseCount: "3k" -> 3000, at most 2^53.
-uint64_t parseWhole(const std::string& text);
-uint64_t parseCount(const std::string& text);
-double parseReal(const std::string& text);
+// A finite decimal number, for texts that hold more than one; nothing for any other text.
+std::optional<double> parseReal(const std::string& text);
 
 // The options of a run that have an effect, by name. Asking for another, or for another type, is an
 // error of the program: std::logic_error.
@@ -134,7 +140,8 @@ struct MethodSlot {
   std::string_view needs = {};  // as of Option
 };
 
-// All that a stage can be told. Slots are chosen in their order, before the options are read.
+// All that a stage can be told. Slots are chosen in their order; one may need a slot before it, or
+// an option of the stage.
 struct StageSpec {
   std::string_view tool;
   std::span<const Option> options;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "tools/common/clock.h"
 #include "tools/common/run_tool.h"
@@ -14,6 +15,9 @@ namespace bnvpl {
 namespace {
 constexpr double kTerminalIntervalS = 0.2;
 constexpr double kLogIntervalS = 10.0;  // a build log wants a sign of life, not a film
+// The first units of a work may take far longer than the others: from these on, what is left is
+// extrapolated.
+constexpr double kTellingShare = 0.02, kTellingS = 10.0;
 }  // namespace
 
 std::string durationText(double seconds) {
@@ -36,17 +40,16 @@ std::string progressText(const std::string& what, uint64_t done, uint64_t total,
   std::snprintf(percent, sizeof percent, " (%.0f %%)", 100.0 * share);
   std::string text = what + " " + formatSi(static_cast<double>(done)) + " of " +
                      formatSi(static_cast<double>(total)) + percent;
-  if (share > 0.0) text += ", " + durationText(elapsedS * (1.0 - share) / share) + " left";
+  if (share >= kTellingShare || (share > 0.0 && elapsedS >= kTellingS))
+    text += ", " + durationText(elapsedS * (1.0 - share) / share) + " left";
   return text;
 }
 
 ProgressMeter::ProgressMeter(std::string what, uint64_t total, bool quiet)
-    : what_(std::move(what)),
-      total_(total),
+    : work_{std::move(what), total, nowS()},
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
-      startS_(nowS()),
-      nextPrintS_(startS_ + (terminal_ ? kTerminalIntervalS : kLogIntervalS)) {}
+      nextPrintS_(work_.startS + (terminal_ ? kTerminalIntervalS : kLogIntervalS)) {}
 
 ProgressMeter::~ProgressMeter() {
   if (!quiet_ && terminal_) std::fprintf(stderr, "\r\x1b[K");
@@ -60,11 +63,24 @@ void ProgressMeter::add(uint64_t done) {
   const double now = nowS();
   if (now < nextPrintS_) return;
   nextPrintS_ = now + (terminal_ ? kTerminalIntervalS : kLogIntervalS);
-  print(now - startS_, sum);
+  print(now - work_.startS, sum);
+}
+
+void ProgressMeter::beginPhase(std::string_view what, uint64_t total) {
+  const std::scoped_lock lock(mutex_);
+  main_ = std::exchange(work_, {std::string(what), total, nowS()});
+  mainDone_ = done_.exchange(0);
+}
+
+void ProgressMeter::endPhase() {
+  const std::scoped_lock lock(mutex_);
+  main_.startS += nowS() - work_.startS;
+  work_ = std::move(main_);
+  done_ = mainDone_;
 }
 
 void ProgressMeter::print(double elapsedS, uint64_t done) const {
-  const std::string text = progressText(what_, done, total_, elapsedS);
+  const std::string text = progressText(work_.what, done, work_.total, elapsedS);
   if (terminal_)
     std::fprintf(stderr, "\r\x1b[K%s", text.c_str());
   else

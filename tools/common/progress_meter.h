@@ -14,7 +14,8 @@ namespace bnvpl {
 // "47 s", "2 min 05 s", "1 h 46 min". Negative counts as 0.
 std::string durationText(double seconds);
 
-// "samples 12M of 40M (30 %), 2 min 05 s left", without the time while nothing is done.
+// "samples 12M of 40M (30 %), 2 min 05 s left", without the time as long as too little is done to
+// tell it: under 2 % within 10 s.
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS);
 
 class ProgressMeter {
@@ -24,17 +25,27 @@ class ProgressMeter {
   ~ProgressMeter();  // erases the line on a terminal
 
   void add(uint64_t done);  // from any thread
+  // Preparations are shown under their own names; their time is not the main work's.
   ProgressFn callback() {
-    return [this](uint64_t done) { add(done); };
+    return {[this](uint64_t done) { add(done); },
+            [this](std::string_view what, uint64_t total) { beginPhase(what, total); },
+            [this] { endPhase(); }};
   }
 
  private:
+  struct Work {
+    std::string what;
+    uint64_t total;
+    double startS;  // later by the time that its preparations took
+  };
+  void beginPhase(std::string_view what, uint64_t total);
+  void endPhase();
   void print(double elapsedS, uint64_t done) const;
 
-  std::string what_;
-  uint64_t total_;
+  Work work_;
+  Work main_;  // what goes on after the phase
+  uint64_t mainDone_ = 0;
   bool quiet_, terminal_;
-  double startS_;
   std::atomic<uint64_t> done_{0};
   std::mutex mutex_;
   double nextPrintS_;

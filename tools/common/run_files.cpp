@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <tuple>
 
@@ -33,12 +32,6 @@ Identity identityOf(const fs::path& file) {
   return {0, 0, fs::weakly_canonical(fs::absolute(target, ignored), ignored).string()};
 }
 
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::string contentOf(const std::string& extension) {
   static const std::map<std::string, std::string> contents{{".vpl", "VPLs"},
                                                            {".exr", "an OpenEXR image"},
@@ -49,8 +42,9 @@ std::string contentOf(const std::string& extension) {
 }
 
 std::string sceneFileName(const fs::path& file) {
-  const std::string extension = lowerCase(file.extension().string());
-  if (extension == ".toml" || extension == ".pbrt") return "scene";
+  const std::string extension = lowerExtension(file);
+  if (extension == ".toml" || extension == ".pbrt" || extension == ".gltf" || extension == ".glb")
+    return "scene";
   if (extension == ".obj") return "a mesh of the scene";
   if (extension == ".mtl") return "a material library of the scene";
   return "an image of the scene";
@@ -77,7 +71,7 @@ RunFiles& RunFiles::writes(const ToolOptions& tool) {
 
 void RunFiles::checkExtensions() const {
   for (const Named& out : outputs_) {
-    const std::string extension = lowerCase(out.file.extension().string());
+    const std::string extension = lowerExtension(out.file);
     const auto& known = out.extensions;
     if (known.empty() || extension.empty() ||
         std::find(known.begin(), known.end(), extension) != known.end())

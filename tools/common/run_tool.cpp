@@ -81,17 +81,25 @@ int report() {
   ::_exit(std::uncaught_exceptions() > 0 ? failForMemory() : fail(kExitInternal, "internal error"));
 }
 
-unsigned parseThreads(const std::string& text) {
-  constexpr Option option = wholeOption("threads", "0", 0, 65536, {}, {});
-  return static_cast<unsigned>(std::get<uint64_t>(parseValue(option, text)));
+// An empty text comes from a variable that a script has not set: nobody types it to say "none".
+void requireTexts(const CLI::App& cli) {
+  for (const CLI::Option* option : cli.get_options()) {
+    for (const std::string& text : option->results()) {
+      if (text.empty()) throw UsageError(option->get_name() + ": '' is empty; give it a value");
+    }
+  }
+  for (const CLI::App* command : cli.get_subcommands()) requireTexts(*command);
 }
 
 // False when the answer was --help or --version.
 bool parse(CLI::App& cli, int argc, char** argv) {
   try {
     cli.parse(argc, argv);
+    requireTexts(cli);
     return true;
   } catch (const CLI::Success& e) {
+    // CLI11 helps before it looks at words that mean nothing, such as an unknown subcommand.
+    if (cli.remaining_size(true) > 0) throw CLI::ExtrasError(cli.remaining(true));
     std::ostringstream text;
     cli.exit(e, text, text);
     print(text.str());
@@ -99,23 +107,40 @@ bool parse(CLI::App& cli, int argc, char** argv) {
   }
 }
 
+CLI::Validator named() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return text.empty() ? std::string("'' is empty; give a file name") : std::string();
+      },
+      "");
+}
+
 }  // namespace
 
+CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
+                     const std::string& help) {
+  return cli.add_option(name, file, help)->type_name("FILE")->check(named());
+}
+CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
+                     const std::string& help) {
+  return cli.add_option(name, files, help)->type_name("FILE")->check(named());
+}
+
 void addToolOptions(CLI::App& cli, ToolOptions& options) {
-  cli.add_option_function<std::string>(
-         "--threads", [&options](const std::string& text) { options.threads = parseThreads(text); },
-         "worker threads; 0 takes every core")
-      ->type_name("NUMBER")
-      ->default_str("0");
+  addOption(cli, wholeOption("threads", "0", 0, 65536, "", "worker threads; 0 takes every core"),
+            [&options](const Value& value) {
+              options.threads = static_cast<unsigned>(std::get<uint64_t>(value));
+            });
   cli.add_flag("--quiet", options.quiet, "no progress and no summary; errors and warnings stay");
-  cli.add_option("--stats", options.stats, "also write the summary to this file, as JSON");
+  addFile(cli, "--stats", options.stats, "also write the summary to this file, as JSON");
   cli.set_version_flag("--version", cli.get_name() + " " + buildId());
   cli.get_formatter()->column_width(34);
+  cli.get_formatter()->label("REQUIRED", "(required)");
 }
 
 void addDepfileOption(CLI::App& cli, ToolOptions& options) {
-  cli.add_option("--depfile", options.depfile,
-                 "write the files that were read, in Make syntax, for make and ninja");
+  addFile(cli, "--depfile", options.depfile,
+          "write the files that were read, in Make syntax, for make and ninja");
 }
 
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
@@ -152,21 +177,6 @@ void requireWritable(const std::vector<fs::path>& outputs) {
   for (const fs::path& output : outputs) {
     if (!output.empty()) AtomicFile probe(output);  // throws; leaves nothing behind
   }
-}
-
-CLI::Validator inRange(double least, double most) {
-  std::ostringstream range;
-  range << "in [" << least << ", " << most << "]";
-  return CLI::Validator(
-      [=](std::string& text) {
-        double value = 0.0;
-        const bool valid =
-            CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
-        return valid ? std::string()
-                     : "'" + text + "' is not a number from " + std::to_string(least) + " to " +
-                           std::to_string(most);
-      },
-      range.str());
 }
 
 std::string hashText(uint64_t hash) {

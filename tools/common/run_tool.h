@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "formats/atomic_file.h"
+#include "tools/common/cli_option.h"
 #include "tools/common/stage_cli.h"
 
 namespace bnvpl {
@@ -20,6 +21,13 @@ struct ToolOptions {
   fs::path stats;    // JSON summary, empty: none
   fs::path depfile;  // Make/ninja dependencies, empty: none
 };
+
+// An option, or without dashes an argument, that names a file, or several. An empty name, as of an
+// unset variable of a script, is refused.
+CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
+                     const std::string& help);
+CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
+                     const std::string& help);
 
 // --threads --quiet --stats --version, and --depfile where the stage reads more than it is named.
 void addToolOptions(CLI::App& cli, ToolOptions& options);
@@ -38,9 +46,6 @@ const std::string& runningTool();
 
 // Tries to write beside each output; see also run_files.h. Empty paths are not asked for.
 void requireWritable(const std::vector<fs::path>& outputs);
-
-// Numbers from least to most. CLI::Range lets NaN through.
-CLI::Validator inRange(double least, double most);
 
 // What a stage did, and that record behind those of its input (empty for the first stage).
 //   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":

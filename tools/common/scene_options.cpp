@@ -28,12 +28,13 @@ void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene) {
 }  // namespace
 
 void addSceneOptions(CLI::App& cli, SceneOptions& options) {
-  addOptions(cli, options,
-             cli.add_option("scene", options.file, "the scene (.toml, .gltf, .glb)")->required());
+  addOptions(cli, options, addFile(cli, "scene", options.file,
+                                   "the scene (.toml, .pbrt, .gltf, .glb)")
+                               ->required());
 }
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {
-  CLI::Option* option = cli.add_option("--scene", options.file, help);
+  CLI::Option* option = addFile(cli, "--scene", options.file, help);
   addOptions(cli, options, option);
   return option;
 }
@@ -45,9 +46,13 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
     if (equals == std::string::npos || equals == 0) {
       throw UsageError("--define '" + d + "' is not NAME=VALUE");
     }
-    defines[d.substr(0, equals)] = d.substr(equals + 1);
+    defines.set(d.substr(0, equals), d.substr(equals + 1));
   }
   Scene scene = loadScene(options.file, defines);
+  for (const std::string& name : defines.unused()) {
+    throw UsageError("--define " + name + " has no effect: " + scene.name() +
+                     " names no file by ${" + name + "}; leave it out");
+  }
   if (!options.view.empty()) {
     useViewFile(options.view, scene);
   } else if (!options.camera.empty()) {
@@ -61,7 +66,7 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
 }
 
 Json viewRecord(const Scene& scene) {
-  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene))}};
+  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene.camera, scene.film))}};
 }
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

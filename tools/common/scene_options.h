@@ -19,11 +19,11 @@ void addSceneOptions(CLI::App& cli, SceneOptions& options);
 // The same for tools that need a scene at times: --scene SCENE in place of the argument.
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);
 
-// Loads the scene, chooses the camera, and prints its warnings in the tool's name. They are silent where an earlier
-// stage has read the same scene, by its content, and so has said them.
+// Loads the scene, chooses the camera, and prints its warnings in the tool's name, once for all tools: silent is a tool
+// that reads a file made from this scene, as whoever made that has said them, and one that prints
+// them later.
 enum class Warnings { Print, Silent };
-Scene loadSceneFor(const std::string& tool, const SceneOptions& options,
-                   Warnings warnings = Warnings::Print);
+Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings);
 
 // What a view is, for records: its size in pixels, and a hash of camera and film.
 Json viewRecord(const Scene& scene);

@@ -2,45 +2,12 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
+
+#include "tools/common/cli_option.h"
 
 namespace bnvpl {
 
 namespace {
-
-std::string rangeOf(const Option& o) {
-  std::ostringstream text;
-  text.precision(15);
-  if (o.kind == Option::Kind::Real || (o.kind == Option::Kind::Whole && o.most < 0x1p64))
-    text << o.least << " to " << o.most;
-  return text.str();
-}
-
-std::string helpOf(const Option& o) {
-  std::string facts;
-  for (const std::string& fact : {std::string(o.unit), rangeOf(o)}) {
-    if (!fact.empty()) facts += (facts.empty() ? "" : ", ") + fact;
-  }
-  return std::string(o.help) + (facts.empty() ? "" : " (" + facts + ")");
-}
-
-std::string typeOf(const Option& o) {
-  switch (o.kind) {
-    case Option::Kind::Switch:
-      return "on|off";
-    case Option::Kind::Whole:
-      return "NUMBER";
-    case Option::Kind::Count:
-      return "COUNT";
-    case Option::Kind::Real:
-      return "NUMBER";
-    case Option::Kind::Choice:
-      return std::string(o.choices);
-    case Option::Kind::Text:
-      break;
-  }
-  return "TEXT";
-}
 
 CLI::Option* addText(CLI::App& cli, std::string_view name, std::string_view letter, Given& given,
                      const std::string& help) {
@@ -58,6 +25,7 @@ void addOne(CLI::App& cli, const Option& o, Given& given) {
 
 void addSlot(CLI::App& cli, const MethodSlot& slot, Given& given) {
   std::string help(slot.help), names;
+  if (!slot.needs.empty()) help += " (with " + needText(slot.needs) + ")";
   for (const MethodEntry& m : slot.methods) {
     names += (names.empty() ? "" : "|") + std::string(m.name);
     help += "\n  " + std::string(m.name) + ": " + std::string(m.summary);
@@ -72,6 +40,25 @@ struct Shared {
   std::vector<const Option*> options;
   std::vector<std::string> methods;
 };
+
+// One text where all methods mean the same, else a line for each meaning.
+std::string helpOf(const Shared& s, bool oneDefault) {
+  std::vector<std::pair<std::string, std::string>> meanings;  // with the methods that share it
+  for (size_t i = 0; i < s.options.size(); ++i) {
+    std::string help = helpOf(*s.options[i]);
+    if (!oneDefault) help += "; default " + std::string(s.options[i]->fallback);
+    const auto same = std::ranges::find(meanings, help, [](const auto& m) { return m.first; });
+    if (same == meanings.end())
+      meanings.emplace_back(help, s.methods[i]);
+    else
+      same->second += ", " + s.methods[i];
+  }
+  if (meanings.size() == 1) return meanings.front().first;
+  std::string text;
+  for (const auto& [help, methods] : meanings)
+    text += (text.empty() ? "" : "\n") + methods + ": " + help;
+  return text;
+}
 
 void addMethodOptions(CLI::App& cli, const MethodSlot& slot, std::vector<std::string_view>& added,
                       Given& given) {
@@ -90,18 +77,15 @@ void addMethodOptions(CLI::App& cli, const MethodSlot& slot, std::vector<std::st
     added.push_back(name);
     const Shared& s = byName[name];
     const Option& first = *s.options.front();
-    std::string methods, help;
-    bool equal = true;
+    std::string methods;
+    bool oneDefault = true;
     for (size_t i = 0; i < s.options.size(); ++i) {
-      const Option& o = *s.options[i];
-      equal = equal && o.help == first.help && o.fallback == first.fallback;
       methods += (i > 0 ? ", " : "") + s.methods[i];
-      help += (i > 0 ? "; " : "") + s.methods[i] + ": " + helpOf(o) + " [" +
-              std::string(o.fallback) + "]";
+      oneDefault = oneDefault && s.options[i]->fallback == first.fallback;
     }
-    CLI::Option* option = addText(cli, name, {}, given, equal ? helpOf(first) : help);
+    CLI::Option* option = addText(cli, name, {}, given, helpOf(s, oneDefault));
     option->type_name(typeOf(first))->group("With --" + std::string(slot.name) + " " + methods);
-    if (equal) option->default_str(std::string(first.fallback));
+    if (oneDefault) option->default_str(std::string(first.fallback));
   }
 }
 
@@ -112,8 +96,8 @@ Json describe(std::span<const Option> options) {
                     {"type", typeOf(o)},
                     {"default", o.fallback},
                     {"range", rangeOf(o)},
-                    {"unit", o.unit},
-                    {"needs", o.needs},
+                    {"unit", o.kind == Option::Kind::Text ? "" : o.unit},
+                    {"needs", needText(o.needs)},
                     {"help", o.help}});
   }
   return list;
@@ -156,7 +140,7 @@ Json describeSpec(const StageSpec& spec) {
     slots.push_back({{"name", slot.name},
                      {"default", slot.fallback},
                      {"help", slot.help},
-                     {"needs", slot.needs},
+                     {"needs", needText(slot.needs)},
                      {"methods", methods}});
   }
   return {{"tool", spec.tool}, {"options", describe(spec.options)}, {"slots", slots}};

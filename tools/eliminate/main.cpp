@@ -66,9 +66,9 @@ int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool
 
   Json inputs{{"candidates", hashText(candidates.checksum)}};
   if (world) inputs["scene"] = hashText(world->scene.contentHash);
-  kept.table.provenance =
-      extendProvenance(candidates.provenance,
-                       stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs));
+  Json record = stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs);
+  if (world) record["view"] = viewRecord(world->scene);
+  kept.table.provenance = extendProvenance(candidates.provenance, record);
   OutputSet files;
   writeVpl(files.add(paths.output), kept.table);
   std::vector<fs::path> read{paths.input};
@@ -89,8 +89,8 @@ int main(int argc, char** argv) {
   Given given;
   ToolOptions tool;
   Paths paths;
-  cli.add_option("candidates", paths.input, "from vpl-place (.vpl)")->required();
-  cli.add_option("-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
+  addFile(cli, "candidates", paths.input, "from vpl-place (.vpl)")->required();
+  addFile(cli, "-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
   addSceneFlag(cli, paths.scene, "the scene, for methods that ask for it");
   addStageOptions(cli, eliminateSpec(), given);
   addToolOptions(cli, tool);

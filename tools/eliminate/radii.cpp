@@ -29,17 +29,19 @@ double sumOf(const std::vector<float>& values) {
   return parallelSum(values.size(), [&](size_t i) { return static_cast<double>(values[i]); });
 }
 
-double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k) {
+double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
+              const ProgressFn& progress) {
   const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMaxAreaRows);
   const KdTree tree(position);
-  return sumOf(surfaceShares(position, normal, k, tree, rows)) *
+  const auto phase = progress.before("shares of the area", rows.size());
+  return sumOf(surfaceShares(position, normal, k, tree, rows, progress)) *
          static_cast<double>(position.size()) / static_cast<double>(rows.size());
 }
 
 // The area that the candidates cover, world units squared: by some of a random selection, for which
 // neighbours and areas grow alike. FLANN builds its tree in one thread.
 double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
-                    uint64_t seed) {
+                    uint64_t seed, const ProgressFn& progress) {
   if (position.size() > kMaxAreaCandidates) {
     const uint64_t key = streamKey(seed, Stream::AreaEstimate);
     const uint64_t below = UINT64_MAX / position.size() * kMaxAreaCandidates;
@@ -49,9 +51,9 @@ double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal
       someOfPosition.push_back(position[i]);
       someOfNormal.push_back(normal[i]);
     }
-    return areaOf(someOfPosition, someOfNormal, k);
+    return areaOf(someOfPosition, someOfNormal, k, progress);
   }
-  return areaOf(position, normal, k);
+  return areaOf(position, normal, k, progress);
 }
 
 // Radii beyond floats, and their squares, come from candidates that lie absurdly far apart or from
@@ -71,19 +73,22 @@ void requireUsable(const std::vector<float>& radii) {
 double packedDiskRadius(double area, double count) { return std::sqrt(area / (kTwoSqrt3 * count)); }
 
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
-                              double count, const Values& options) {
+                              double count, const Values& options, const ProgressFn& progress) {
   const auto candidates = static_cast<double>(position.size());
-  const auto k = static_cast<unsigned>(options.whole("neighbours"));
+  const auto neighbours = [&] { return static_cast<unsigned>(options.whole("neighbours")); };
   const double given = options.real("area");
   CandidateRadii result;
   if (options.text("density") == "uniform") {
-    result.area = given > 0.0 ? given : estimateArea(position, normal, k, 1);
+    result.area = given > 0.0 ? given : estimateArea(position, normal, neighbours(), 1, progress);
     result.rMax = packedDiskRadius(result.area, count);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));
     requireUsable(result.radius);
     return result;
   }
-  result.radius = surfaceShares(position, normal, k);
+  {
+    const auto phase = progress.before("radii", position.size());
+    result.radius = surfaceShares(position, normal, neighbours(), progress);
+  }
   const double estimate = sumOf(result.radius);
   result.area = given > 0.0 ? given : estimate;
   result.rMax = packedDiskRadius(result.area, count);

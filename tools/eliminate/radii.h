@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/vec3.h"
+#include "spatial/local_density.h"
 #include "tools/common/option.h"
 
 namespace bnvpl {
@@ -21,7 +23,10 @@ inline constexpr std::array kRadiusOptions{
                         "how many are spent evenly; the rest follows the candidates")),
     realOption("area", "0", 0, 1e300, "scene units squared",
                "indirectly visible area; 0: estimated from the candidates"),
-    wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate")};
+    neededBy("density=local;area=0",
+             wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate"))};
+
+static_assert(kShareNeighbours == 20, "the default of --neighbours");
 
 struct CandidateRadii {
   std::vector<float> radius;  // one per candidate, world units, positive
@@ -38,8 +43,8 @@ double packedDiskRadius(double area, double count);
 // from an evenly spaced 16,384 of them, and of 2^18 candidates drawn at random where there are
 // more. With --area the shares are scaled to add up to it. Candidates should be in an order that
 // keeps neighbours together (mortonOrder). Throws InputError for radii beyond what floats can
-// square.
+// square. `progress` is told of them as of preparations.
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
-                              double count, const Values& options);
+                              double count, const Values& options, const ProgressFn& progress = {});
 
 }  // namespace bnvpl

@@ -72,8 +72,8 @@ int main(int argc, char** argv) {
   ToolOptions tool;
   Paths paths;
   addSceneOptions(cli, paths.scene);
-  cli.add_option("vpls", paths.input, "from vpl-eliminate (.vpl)")->required();
-  cli.add_option("-o,--output", paths.output, "lit VPLs (.vpl)")->required();
+  addFile(cli, "vpls", paths.input, "from vpl-eliminate (.vpl)")->required();
+  addFile(cli, "-o,--output", paths.output, "lit VPLs (.vpl)")->required();
   addStageOptions(cli, estimateSpec(), given);
   addCheckpointOptions(cli, paths.checkpoint);
   addToolOptions(cli, tool);

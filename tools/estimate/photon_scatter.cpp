@@ -48,11 +48,11 @@ class PhotonBatch {
       }
       meet(size);
       for (size_t i = 0; i < size; ++i) {
-        photons_[i].advance(rays_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+        photons_[i].advance(rays_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
           const Vec3 leaving = flux * bsdf.roughAlbedo();
           ++sums.hits;
           scatter_.tally(sums, kReflected, leaving);
-          rule_(scatter_, {bsdf.point(), near_[i], leaving, straight}, photons_[i].rng(), sums);
+          rule_(scatter_, {bsdf.point(), near_[i], leaving, firstBounce}, photons_[i].rng(), sums);
         });
       }
     }
@@ -146,7 +146,7 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scat
       const double value = scatter.fixed().decode(s.flux[c]);
       vpls.flux[i][c] = static_cast<float>(value);
       sum += value / 3.0;
-      vpls.firstBounceFlux[i][c] = static_cast<float>(scatter.fixed().decode(s.straight[c]));
+      vpls.firstBounceFlux[i][c] = static_cast<float>(scatter.fixed().decode(s.firstBounce[c]));
     }
     vpls.photons[i] = s.photons;
     // Deposits taken as independent: sqrt(sum of squares) over the sum.
@@ -202,7 +202,7 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
   for (size_t c = 0; c < 3; ++c) {
     const int64_t units = fixed_.encode(double{flux[c]});
     addChecked(s.flux[c], units);
-    if (hit.firstBounce) addChecked(s.straight[c], units);
+    if (hit.firstBounce) addChecked(s.firstBounce[c], units);
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
   addChecked(s.squares, std::llrint(relative * relative * 0x1p20));

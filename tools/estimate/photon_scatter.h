@@ -16,7 +16,7 @@ namespace bnvpl {
 // Of every method that traces photons. Sums of more than 2^36 would leave their fixed-point range.
 inline constexpr std::array kPhotonOptions{
     countOption("photons", "10M", 0x1p36, "", "photons from all lights together"), kRadiusOption,
-    wholeOption("max-bounces", "32", 1, 1000, "hits", "diffuse hits of a photon"), kRecentreOption};
+    wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"), kRecentreOption};
 inline Work photonWork(const VplTable&, const Values& options) {
   return {"photons", options.whole("photons")};
 }

@@ -7,7 +7,7 @@ namespace bnvpl {
 void VplSum::add(const VplSum& o) {
   for (size_t c = 0; c < 3; ++c) {
     addChecked(flux[c], o.flux[c]);
-    addChecked(straight[c], o.straight[c]);
+    addChecked(firstBounce[c], o.firstBounce[c]);
     addChecked(moment[c], o.moment[c]);
   }
   addChecked(squares, o.squares);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tools/estimate/vpl_surface.h"
+
 namespace bnvpl {
 
 namespace {
@@ -22,19 +24,42 @@ float medianError(const VplTable& vpls) {
 // elsewhere.
 constexpr double kManyDark = 0.5;
 
+// With fewer hits for each VPL than this, many get none wherever the light goes: e^-2 is 14 %.
+constexpr double kFewHits = 2.0;
+// Elimination packs disks of the VPLs' radii: those larger by this factor cover the surface.
+constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
+
+// Why VPLs are dark, and the cure.
+std::string causeOfDark(const EstimateResult& result) {
+  if (result.paths > 0)
+    return "no path found a light from there; raise --points or --paths, or use --method guarded";
+  const EnergyAccount& a = result.energy;
+  const auto all = static_cast<double>(result.table.size());
+  if (static_cast<double>(a.hits) < kFewHits * all) {
+    return "all photons together made " + formatSi(double(a.hits)) + " hits, for " + formatSi(all) +
+           " VPLs; raise --photons";
+  }
+  if (result.table.reach < kCovering) {
+    return "they reach so little that most light falls between them; raise --radius (" +
+           std::string(kRadiusOption.fallback) + " unless given)";
+  }
+  if (a.outside > 0.5 * a.reflected) {
+    return "most photons go where the view does not look; raise --photons, try --method paths, or "
+           "keep fewer VPLs with vpl-eliminate -n";
+  }
+  return "the light gathers at the others; raise --photons, or keep fewer VPLs with vpl-eliminate "
+         "-n";
+}
+
 void warnOfDark(uint64_t dark, const EstimateResult& result) {
   const auto all = static_cast<double>(result.table.size());
   if (static_cast<double>(dark) <= kManyDark * all) return;
-  char line[256];
-  std::snprintf(line, sizeof line,
-                result.paths > 0
-                    ? "%.0f %% of the VPLs light nothing: no path found a light from there; raise "
-                      "--points or --paths, or use --method guarded"
-                    : "%.0f %% of the VPLs got no photon and light nothing: most photons go where "
-                      "the view does not look; raise --photons, try --method paths, or keep "
-                      "fewer VPLs with vpl-eliminate -n",
-                100.0 * static_cast<double>(dark) / all);
-  printWarnings("vpl-estimate", {line});
+  char share[32];
+  std::snprintf(share, sizeof share, "%.0f %%", 100.0 * static_cast<double>(dark) / all);
+  printWarnings("vpl-estimate", {std::string(share) +
+                                 (result.paths > 0 ? " of the VPLs light nothing: "
+                                                   : " of the VPLs got no photon: ") +
+                                 causeOfDark(result)});
 }
 
 void reportPhotons(const EnergyAccount& a, Summary& summary) {

@@ -14,7 +14,7 @@ using Links = std::vector<const CheckedFile*>;  // by length of history
 
 bool sameRecord(const StageRecord& a, const StageRecord& b) {
   return a.tool == b.tool && a.version == b.version && a.options == b.options &&
-         a.inputs == b.inputs;
+         a.inputs == b.inputs && a.viewHash == b.viewHash;
 }
 
 std::string quoted(const std::string& word) {
@@ -98,10 +98,26 @@ std::string brokenHistory(const CheckedFile& earlier, const CheckedFile& later) 
   return {};
 }
 
+// Rejection divides the flux of a row by the probability of keeping it, and gives it a new radius.
+bool isReweighted(std::string_view column) {
+  return column == "flux" || column == "first_bounce_flux" || column == "radius";
+}
+bool isScaled(const VplTable& from, size_t source, const VplTable& to, size_t row) {
+  constexpr float kRounding = 1e-5f;
+  const float before = maxComponent(from.flux[source]), after = maxComponent(to.flux[row]);
+  const float weight = before > 0.0f ? after / before : 1.0f;
+  const auto scaled = [&](Vec3 a, Vec3 b) {
+    return maxComponent(max(a * weight - b, b - a * weight)) <= kRounding * after;
+  };
+  return weight >= 1.0f - kRounding && scaled(from.flux[source], to.flux[row]) &&
+         scaled(from.firstBounceFlux[source], to.firstBounceFlux[row]);
+}
+
 std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
   if (!earlier.stage || !later.stage) return {};
   const VplTable from = readVpl(earlier.file), to = readVpl(later.file);
   const bool kept = to.stage == VplStage::Eliminated || to.stage == from.stage;
+  const bool reweighted = kept && from.stage == VplStage::Lit;
   if (!kept && to.size() != from.size())
     return "has " + std::to_string(to.size()) + " rows, " + earlier.file.string() + " " +
            std::to_string(from.size());
@@ -113,8 +129,11 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
     const auto found = rowOf.find(to.id[row]);
     const size_t source = kept ? (found == rowOf.end() ? from.size() : found->second) : row;
     bool same = source < from.size();
-    for (size_t c = 0; same && c < shared; ++c)
-      same = std::ranges::equal(before[c].row(source), after[c].row(row));
+    for (size_t c = 0; same && c < shared; ++c) {
+      same = (reweighted && isReweighted(before[c].name)) ||
+             std::ranges::equal(before[c].row(source), after[c].row(row));
+    }
+    if (same && reweighted) same = isScaled(from, source, to, row);
     if (same && !kept) {
       same = double{length(to.emitPosition[row] - to.position[row])} <=
              to.reach * double{to.radius[row]};
@@ -139,8 +158,9 @@ std::string commandOf(const StageRecord& record, const std::vector<std::string>&
   return command;
 }
 
-void checkChain(std::span<const CheckedFile> files, const std::string& scene,
-                const std::string& sceneHash) {
+void checkChain(std::span<const CheckedFile> files, const Scene* scene) {
+  const std::string name = scene ? scene->name() : "SCENE",
+                    sceneHash = scene ? hashText(scene->contentHash) : "";
   Links links;
   for (const CheckedFile& f : files) links.push_back(&f);
   std::stable_sort(links.begin(), links.end(), [](const CheckedFile* a, const CheckedFile* b) {
@@ -154,17 +174,18 @@ void checkChain(std::span<const CheckedFile> files, const std::string& scene,
     std::string broken;
     size_t first = i;  // to make again
     if (!sceneHash.empty() && link.scene != sceneHash) {
-      broken = "made from scene " + link.scene + ", but " + scene + " is " + sceneHash;
+      broken = "made from scene " + link.scene + ", but " + name + " is " + sceneHash;
       first = 0;
-    } else if (i > 0) {
-      broken = brokenHistory(*links[i - 1], link);
-      if (broken.empty()) broken = brokenRows(*links[i - 1], link);
+    } else {
+      if (scene) broken = brokenView(link, link.chain.back(), *scene);
+      if (broken.empty() && i > 0) broken = brokenHistory(*links[i - 1], link);
+      if (broken.empty() && i > 0) broken = brokenRows(*links[i - 1], link);
     }
     if (broken.empty() && link.chain.back().version != version)
       broken =
           "made by version " + link.chain.back().version + ", the files before it by " + version;
     if (!broken.empty())
-      throw InputError(link.file, broken + "; run: " + mending(links, first, scene));
+      throw InputError(link.file, broken + "; run: " + mending(links, first, name));
   }
 }
 

@@ -6,13 +6,12 @@
 namespace bnvpl {
 
 // Refuses, beyond what checkTogether() does: two files of one stage, an input that is not among the
-// files, histories that do not continue each other or come from several versions of the tools, a
-// scene other than `sceneHash` (16 hex digits; empty: not asked), and rows that are not the
-// input's: kept VPLs that are no candidates, lit VPLs that are others than the kept ones or moved
-// beyond their reach. The message of the InputError ends with the commands that make the chain
-// whole; `scene` is the scene's name in them.
-void checkChain(std::span<const CheckedFile> files, const std::string& scene,
-                const std::string& sceneHash);
+// files, histories that do not continue each other or come from several versions of the tools,
+// another scene or view (as checkScene(); null: not asked), and rows that are not the input's: kept
+// VPLs that are no candidates, or whose flux was changed by more than a factor; lit VPLs that are
+// others than the kept ones or moved beyond their reach. The message of the InputError ends with
+// the commands that make the chain whole.
+void checkChain(std::span<const CheckedFile> files, const Scene* scene);
 
 // The command of a stage as its record tells it: "vpl-eliminate a.vpl -o b.vpl --count 3000 ...".
 std::string commandOf(const StageRecord& record, const std::vector<std::string>& inputs,

@@ -5,6 +5,7 @@
 
 #include "formats/exr_io.h"
 #include "formats/vpl_io.h"
+#include "scene/scene_hash.h"
 #include "tools/inspect/file_kind.h"
 
 namespace bnvpl {
@@ -93,18 +94,27 @@ CheckedFile checkExr(const fs::path& file) {
   checked.what = "OpenEXR, " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                  " pixels, " + std::to_string(image.channels.size()) + " channels";
   checked.chain = parseProvenance(file, provenanceOf(image));
+  checked.film = Film{static_cast<uint32_t>(image.width), static_cast<uint32_t>(image.height)};
   checked.moreOptions = renderOptions(image);
   return checked;
 }
 
-// The given files of `stage`, when none of them is the one with this checksum.
+// Rejection makes lit VPLs of lit ones: both are in the history of an image.
+bool wasRead(const CheckedFile& reader, const std::string& checksum) {
+  return std::ranges::any_of(reader.chain, [&](const StageRecord& record) {
+    return std::ranges::any_of(record.inputs,
+                               [&](const auto& in) { return in.second == checksum; });
+  });
+}
+
+// A given file of `stage` that the reader never read, when none is the one with this checksum.
 const CheckedFile* strangerOfStage(std::span<const CheckedFile> files, const std::string& input,
-                                   const std::string& checksum) {
+                                   const std::string& checksum, const CheckedFile& reader) {
   const CheckedFile* stranger = nullptr;
   for (const CheckedFile& f : files) {
     if (!f.stage || inputName(*f.stage) != input) continue;
     if (f.checksum == checksum) return nullptr;
-    if (stranger == nullptr) stranger = &f;
+    if (stranger == nullptr && !wasRead(reader, f.checksum)) stranger = &f;
   }
   return stranger;
 }
@@ -119,6 +129,15 @@ void requireOneScene(std::span<const CheckedFile> files) {
                                  " from scene " + first->scene +
                                  "; rerun vpl-place and every later stage on one scene");
   }
+}
+
+// What it makes is of use to any view.
+bool isPlacing(const StageRecord& record) { return record.tool == "vpl-place"; }
+
+// An image may have a size of its own.
+bool isOfAnotherView(const CheckedFile& file, const StageRecord& record, const Scene& scene) {
+  const Film& film = file.film && &record == &file.chain.back() ? *file.film : scene.film;
+  return !record.viewHash.empty() && record.viewHash != hashText(hashView(scene.camera, film));
 }
 
 }  // namespace
@@ -139,7 +158,7 @@ void checkTogether(std::span<const CheckedFile> files) {
     for (const CheckedFile& f : files) {
       if (step >= f.chain.size()) continue;
       for (const auto& [input, checksum] : f.chain[step].inputs) {
-        const CheckedFile* other = strangerOfStage(files, input, checksum);
+        const CheckedFile* other = strangerOfStage(files, input, checksum, f);
         if (other == nullptr) continue;
         const std::string& tool = f.chain[step].tool;
         std::string problem = tool + " read " + input + " ";
@@ -151,16 +170,33 @@ void checkTogether(std::span<const CheckedFile> files) {
   }
 }
 
-void checkScene(std::span<const CheckedFile> files, const std::string& scene,
-                const std::string& sceneHash) {
+std::string brokenView(const CheckedFile& file, const StageRecord& record, const Scene& scene) {
+  if (isPlacing(record) || !isOfAnotherView(file, record, scene)) return {};
+  return record.tool + " looked at another view than that of " + scene.name() + " as it is now";
+}
+
+bool placedForAnotherView(std::span<const CheckedFile> files, const Scene& scene) {
+  return std::ranges::any_of(files, [&](const CheckedFile& f) {
+    return !f.chain.empty() && isPlacing(f.chain.front()) &&
+           isOfAnotherView(f, f.chain.front(), scene);
+  });
+}
+
+void checkScene(std::span<const CheckedFile> files, const Scene& scene) {
+  const std::string name = scene.name(), sceneHash = hashText(scene.contentHash);
   for (const CheckedFile& f : files) {
     if (f.scene.empty())
       throw InputError(
-          f.file, "names no scene in its history, so nobody can tell whether it is of " + scene +
+          f.file, "names no scene in its history, so nobody can tell whether it is of " + name +
                       "; leave it or --scene out");
     if (f.scene != sceneHash)
-      throw InputError(f.file, "made from scene " + f.scene + ", but " + scene + " is " +
-                                   sceneHash + "; rerun vpl-place and every later stage on it");
+      throw InputError(f.file, "made from scene " + f.scene + ", but " + name + " is " + sceneHash +
+                                   "; rerun vpl-place and every later stage on it");
+    for (const StageRecord& record : f.chain) {
+      const std::string broken = brokenView(f, record, scene);
+      if (!broken.empty())
+        throw InputError(f.file, broken + "; rerun " + record.tool + " and every later stage");
+    }
   }
 }
 

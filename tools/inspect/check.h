@@ -5,6 +5,7 @@
 #include <span>
 
 #include "formats/vpl_table.h"
+#include "scene/scene.h"
 #include "tools/inspect/provenance.h"
 
 namespace bnvpl {
@@ -15,6 +16,7 @@ struct CheckedFile {
   std::optional<VplStage> stage;  // of a .vpl file
   std::string checksum;           // of a .vpl file, 16 hex digits
   std::string scene;              // content hash, 16 hex digits; empty where the file names none
+  std::optional<Film> film;       // of an image
   std::string moreOptions;        // of an image: those of its command that no history tells
   std::vector<StageRecord> chain;
 };
@@ -28,9 +30,14 @@ CheckedFile checkFile(const fs::path& file);
 // stage to rerun.
 void checkTogether(std::span<const CheckedFile> files);
 
-// Refuses files that were made from another scene than `sceneHash` (16 hex digits), or that name
-// none; `scene` is its name in the message of the InputError.
-void checkScene(std::span<const CheckedFile> files, const std::string& scene,
-                const std::string& sceneHash);
+// Refuses files that were made from another scene, or that name none, and those of which a stage
+// looked at another view than the scene's: images, whose size may be their own, and what rejection
+// kept. VPLs may be placed for another view. Throws InputError.
+void checkScene(std::span<const CheckedFile> files, const Scene& scene);
+
+// What is wrong with the view that the stage of this record looked at, or empty.
+std::string brokenView(const CheckedFile& file, const StageRecord& record, const Scene& scene);
+// Whether VPLs of these files were placed for another view, which is no error.
+bool placedForAnotherView(std::span<const CheckedFile> files, const Scene& scene);
 
 }  // namespace bnvpl

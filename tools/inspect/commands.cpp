@@ -58,7 +58,7 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   for (const fs::path& file : command.files) used.reads("file", file);
   used.reads("--scene", command.scene.file).writes(tool).check();
   Scene scene;
-  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene);
+  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
 
   const auto say = [&](const std::string& line) {
@@ -71,10 +71,10 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   }
   const std::string hash = withScene ? hashText(scene.contentHash) : "";
   if (command.deep) {
-    checkChain(checked, withScene ? scene.name() : "SCENE", hash);
+    checkChain(checked, withScene ? &scene : nullptr);
   } else {
     checkTogether(checked);
-    if (withScene) checkScene(checked, scene.name(), hash);
+    if (withScene) checkScene(checked, scene);
   }
   saveStats("check", describeChecked(checked, hash, command.deep), summary, tool);
   if (command.deep)
@@ -82,6 +82,8 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   else if (checked.size() > 1)
     say("no contradiction between the files");
   if (withScene) say("made from " + scene.name() + " as it is now");
+  if (withScene && placedForAnotherView(checked, scene))
+    say("the VPLs were placed for another view, which is no error: they light any");
   return kExitOk;
 }
 
@@ -130,7 +132,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   used.reads("file", command.file).reads("--scene", command.scene.file);
   used.writes("-o", command.output, {".png"}).writes(tool).check();
   const VplTable table = readVpl(command.file);
-  Scene scene = loadSceneFor("vpl-inspect", command.scene);
+  Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
   requireSameScene(command.file, table.sceneHash, scene,
                    "name the scene it was made from, or rerun vpl-place");
@@ -142,7 +144,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   PlotCounts counts;
   std::vector<Dot> dots = visibleDots(table, rays, options, counts);
   Canvas canvas = shadeView(rays, options.samples);
-  canvas.paint(std::move(dots), options.dotPixels);
+  canvas.paint(std::move(dots), static_cast<float>(options.dotPixels));
   OutputSet files;
   writePng(files.add(command.output), canvas.width, canvas.height, canvas.rgb8());
   std::vector<fs::path> read = scene.files;

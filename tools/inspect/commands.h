@@ -39,6 +39,7 @@ struct CompareCommand {
   std::string exposure;       // of LDR-FLIP, stops or auto
   std::string flipExposures;  // of HDR-FLIP, START:STOP or auto; empty: as in `flip`
   FlipOptions flip;
+  std::vector<const CLI::Option*> ofFlip;  // the options that are FLIP's alone
   MapKind map = MapKind::Difference;
   std::optional<double> diffRange;  // at the end of the colour scale; none: the map's own
   bool json = false;

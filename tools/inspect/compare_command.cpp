@@ -1,4 +1,5 @@
 // `vpl-inspect compare`: its options, and from files to figures and pictures.
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "tools/common/run_files.h"
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
+#include "tools/inspect/file_kind.h"
 
 namespace bnvpl {
 namespace {
@@ -29,9 +31,15 @@ struct Sides {
   bool halves = false;
 };
 
+Image readImage(const fs::path& file) {
+  if (fileKind(file) == FileKind::Vpl)
+    throw InputError(file, "is a .vpl file, not an image; name an .exr of vpl-render");
+  return readExr(file);
+}
+
 void readSides(const CompareCommand& command, Sides& s) {
-  s.imageA = readExr(command.imageA);
-  s.imageB = readExr(command.imageB);
+  s.imageA = readImage(command.imageA);
+  s.imageB = readImage(command.imageB);
   s.a =
       findLayer(command.imageA, s.imageA, command.layerA.empty() ? command.layer : command.layerA);
   s.b =
@@ -39,7 +47,7 @@ void readSides(const CompareCommand& command, Sides& s) {
   s.reference = s.b;
   s.halves = !command.secondB.empty();
   if (s.halves) {
-    s.imageSecond = readExr(command.secondB);
+    s.imageSecond = readImage(command.secondB);
     s.second = findLayer(command.secondB, s.imageSecond, s.b.name);
     requireSameShape(command.secondB, s.second, command.imageB.string(), s.b);
     requireFinite(command.secondB, s.second);
@@ -75,53 +83,69 @@ Picture pictureOf(const CompareCommand& command, const Sides& s, double epsilon,
 }
 
 void addReferenceOptions(CLI::App& sub, CompareCommand& c) {
-  sub.add_option("--second-half", c.secondB,
-                 "the reference again, with another seed: takes its noise out of RMSE and relMSE");
-  sub.add_option("--mask", c.mask,
-                 "PNG of the images' size: white pixels count, black ones do not, greys in part");
-  sub.add_option("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
-  sub.add_option("--layer-a", c.layerA, "of A only");
-  sub.add_option("--layer-b", c.layerB, "of B only");
+  addFile(sub, "--second-half", c.secondB,
+          "the reference again, with another seed: takes its noise out of RMSE and relMSE");
+  addFile(sub, "--mask", c.mask,
+          "PNG of the images' size: white pixels count, black ones do not, greys in part");
+  const auto addLayer = [&](const char* name, std::string& layer, const char* help) {
+    sub.add_option(name, layer, help)->type_name("NAME");
+  };
+  addLayer("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
+  addLayer("--layer-a", c.layerA, "of A only");
+  addLayer("--layer-b", c.layerB, "of B only");
 }
 
 void addLimitOptions(CLI::App& sub, CompareCommand& c) {
-  sub.add_option("--epsilon", c.limits.epsilon, "of relMSE, times the squared mean of B")
-      ->check(inRange(0.0, 1e300))
-      ->capture_default_str();
-  sub.add_option("--max-relmse", c.limits.maxRelMse, "largest relMSE allowed")
-      ->check(inRange(0.0, 1e300));
-  sub.add_option("--max-rmse", c.limits.maxRmse, "largest RMSE allowed")
-      ->check(inRange(0.0, 1e300));
-  sub.add_option("--max-rmse-over-mean", c.limits.maxRmseOverMean, "largest RMSE / mean(B) allowed")
-      ->check(inRange(0.0, 1e300));
+  constexpr double kMost = 1e300;
+  addReal(sub, realOption("epsilon", "", 0, kMost, "", "of relMSE, times the squared mean of B"),
+          c.limits.epsilon);
+  addReal(sub, realOption("max-relmse", "", 0, kMost, "", "largest relMSE allowed"),
+          c.limits.maxRelMse);
+  addReal(sub, realOption("max-rmse", "", 0, kMost, "", "largest RMSE allowed"), c.limits.maxRmse);
+  addReal(sub, realOption("max-rmse-over-mean", "", 0, kMost, "", "largest RMSE / mean(B) allowed"),
+          c.limits.maxRmseOverMean);
 }
 
 void addFlipOptions(CLI::App& sub, CompareCommand& c) {
   char range[64] = "";
   std::snprintf(range, sizeof range, "%g:%g", (*c.flip.rangeEv)[0], (*c.flip.rangeEv)[1]);
-  sub.add_option("--exposure", c.exposure,
-                 "of FLIP, in stops (EV); auto: B's logarithmic mean to middle grey")
-      ->type_name("EV|auto")
-      ->default_str("auto");
-  sub.add_option("--flip-exposures", c.flipExposures,
-                 "first and last exposure of HDR-FLIP, in stops; auto: from B, as in the paper")
-      ->type_name("START:STOP|auto")
-      ->default_str(range);
-  sub.add_option("--ppd", c.flip.ppd, "pixels in a degree of the viewer's field, for FLIP")
-      ->check(inRange(1.0, 1000.0))
-      ->capture_default_str();
+  const auto given = [&c](const CLI::Option* option) { c.ofFlip.push_back(option); };
+  given(sub.add_option("--exposure", c.exposure,
+                       "of FLIP, in stops; auto: B's logarithmic mean to middle grey")
+            ->type_name("EV|auto")
+            ->default_str("auto"));
+  given(sub.add_option("--flip-exposures", c.flipExposures,
+                       "first and last exposure of HDR-FLIP, in stops; auto: from B, as in the "
+                       "paper")
+            ->type_name("START:STOP|auto")
+            ->default_str(range));
+  given(addReal(
+      sub, realOption("ppd", "", 1, 1000, "", "pixels in a degree of the viewer's field, for FLIP"),
+      c.flip.ppd));
 }
 
 void addPictureOptions(CLI::App& sub, CompareCommand& c) {
-  CLI::Option* diff = sub.add_option("--diff", c.diff, "false-colour picture (.png) with a legend");
+  CLI::Option* diff = addFile(sub, "--diff", c.diff, "false-colour picture (.png) with a legend");
   addChoice(sub, "--map", c.map, kMaps,
             "what it shows; difference: (a-b) / (b + 0.1 mean(b)), blue darker, red brighter")
       ->needs(diff);
-  sub.add_option("--diff-range", c.diffRange,
-                 "value at the end of its colours; of the difference, 1 = 100 %")
-      ->check(inRange(1e-6, 1e6))
+  addReal(sub,
+          realOption("diff-range", "", 1e-6, 1e6, "",
+                     "value at the end of its colours; of the difference, 1 = 100 %"),
+          c.diffRange)
       ->default_str("0.5 of the difference, else 1")
       ->needs(diff);
+}
+
+// What only FLIP and HDR-FLIP ask for, of layers without colours.
+void requireNoFlip(const CompareCommand& command, const Sides& s) {
+  const auto given = std::ranges::find_if(
+      command.ofFlip, [](const CLI::Option* option) { return option->count() > 0; });
+  const bool map = command.map == MapKind::Flip || command.map == MapKind::HdrFlip;
+  if (given == command.ofFlip.end() && !map) return;
+  throw UsageError((map ? "--map " + nameOf(command.map, kMaps) : (*given)->get_name()) +
+                   " needs R, G, B, but layer '" + (s.b.isColour() ? s.a : s.b).name +
+                   "' is none; " + (map ? "choose another map" : "leave it out"));
 }
 
 }  // namespace
@@ -134,8 +158,8 @@ CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
       "SMAPE is the mean of |a-b| / (|a| + |b|).\n"
       "FLIP and HDR-FLIP are Andersson et al. 2020 and 2021, of layers of R, G, B.\n"
       "Exits with 5 when a limit is exceeded.");
-  sub->add_option("A", c.imageA, "image (.exr)")->required();
-  sub->add_option("B", c.imageB, "reference (.exr)")->required();
+  addFile(*sub, "A", c.imageA, "image (.exr)")->required();
+  addFile(*sub, "B", c.imageB, "reference (.exr)")->required();
   addReferenceOptions(*sub, c);
   addLimitOptions(*sub, c);
   addFlipOptions(*sub, c);
@@ -163,9 +187,8 @@ int runCompare(const CompareCommand& command, const ToolOptions& tool) {
   if (s.b.isColour() && s.a.isColour()) {
     flip = flipMaps(rgbOf(s.reference), rgbOf(s.a), flipOptions);
     addFlip(*flip, s.mask, c);
-  } else if (command.map == MapKind::Flip || command.map == MapKind::HdrFlip) {
-    throw UsageError("--map " + nameOf(command.map, kMaps) + " needs R, G, B, but layer '" +
-                     (s.b.isColour() ? s.a : s.b).name + "' is none; choose another map");
+  } else {
+    requireNoFlip(command, s);
   }
   OutputSet files;
   if (!command.diff.empty()) {

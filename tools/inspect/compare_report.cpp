@@ -22,7 +22,8 @@ std::string orUndefined(double value) {
 
 struct Limit {
   const char* what;
-  double value, most;  // negative: no limit
+  double value;
+  std::optional<double> most;
 };
 std::array<Limit, 3> limits(const Comparison& c, const CompareOptions& options) {
   return {{{"relMSE", c.relMse, options.maxRelMse},
@@ -30,7 +31,7 @@ std::array<Limit, 3> limits(const Comparison& c, const CompareOptions& options) 
            {"RMSE / mean", c.rmseOverMean(), options.maxRmseOverMean}}};
 }
 // Written so that an undefined value exceeds any limit.
-bool exceeds(const Limit& limit) { return limit.most >= 0.0 && !(limit.value <= limit.most); }
+bool exceeds(const Limit& limit) { return limit.most && !(limit.value <= *limit.most); }
 
 Json channelJson(const Comparison::Channel& k) {
   return {{"name", k.name},

@@ -11,9 +11,7 @@ namespace bnvpl {
 
 struct CompareOptions {
   double epsilon = kRelMseEpsilon;
-  double maxRelMse = -1;  // negative: no limit
-  double maxRmse = -1;
-  double maxRmseOverMean = -1;
+  std::optional<double> maxRelMse, maxRmse, maxRmseOverMean;  // none: no limit
 };
 
 Json comparisonJson(const Comparison& c, const CompareOptions& options);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "core/files.h"
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
 #include "tools/inspect/column_names.h"
@@ -159,14 +160,14 @@ void writeCsv(const VplTable& table, AtomicFile& output) {
 }  // namespace
 
 void requireExportable(const fs::path& output) {
-  const fs::path extension = output.extension();
+  const std::string extension = lowerExtension(output);
   if (extension == ".ply" || extension == ".csv") return;
   throw UsageError("--output " + output.string() + ": the extension must be .ply or .csv");
 }
 
 void exportTable(const VplTable& table, AtomicFile& output) {
   requireExportable(output.target());
-  if (output.target().extension() == ".ply")
+  if (lowerExtension(output.target()) == ".ply")
     writePly(table, output);
   else
     writeCsv(table, output);

@@ -1,6 +1,7 @@
 #include "tools/inspect/file_kind.h"
 
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 
@@ -11,17 +12,23 @@ namespace bnvpl {
 
 FileKind fileKind(const fs::path& file) {
   std::error_code ignored;
-  if (fs::is_directory(file, ignored)) throw InputError(file, "is a folder");
-  std::ifstream in;
-  if (isRegularFile(file)) in.open(file, std::ios::binary);
-  if (!in.is_open()) throw InputError(file, "cannot be read");
+  if (fs::is_directory(file, ignored))
+    throw InputError(file, "is a folder; name a .vpl file or an OpenEXR image");
+  if (fs::exists(file, ignored) && !isRegularFile(file))
+    throw InputError(file, "not a regular file; name a .vpl file or an OpenEXR image");
+  std::ifstream in(file, std::ios::binary);
+  if (!in.is_open()) {
+    throw InputError(file, std::string("cannot open: ") + std::strerror(errno) +
+                               "; check the name, or run the stage that makes it");
+  }
   std::array<char, 8> start{};
   in.read(start.data(), start.size());
   constexpr std::array<char, 4> kExrMagic{'\x76', '\x2f', '\x31', '\x01'};
   if (start == kVplMagic) return FileKind::Vpl;
   if (std::memcmp(start.data(), kExrMagic.data(), kExrMagic.size()) == 0) return FileKind::Exr;
-  if (file.extension() == ".vpl") return FileKind::Vpl;
-  if (file.extension() == ".exr") return FileKind::Exr;
+  const std::string extension = lowerExtension(file);
+  if (extension == ".vpl") return FileKind::Vpl;
+  if (extension == ".exr") return FileKind::Exr;
   throw InputError(file, "is neither a .vpl file nor an OpenEXR image");
 }
 

@@ -14,14 +14,14 @@ CLI::App* addInfo(CLI::App& cli, InfoCommand& c) {
   CLI::App* sub = cli.add_subcommand("info",
                                      "Header, history, columns and spacing of a .vpl file, or "
                                      "channels of an .exr image.");
-  sub->add_option("file", c.file, ".vpl or .exr")->required();
+  addFile(*sub, "file", c.file, ".vpl or .exr")->required();
   sub->add_flag("--json", c.json, "the same as JSON");
   return sub;
 }
 
 CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
   CLI::App* sub = cli.add_subcommand("check", "Verify files; several also against each other.");
-  sub->add_option("files", c.files, ".vpl and .exr")->required();
+  addFile(*sub, "files", c.files, ".vpl and .exr")->required();
   sub->add_flag("--deep", c.deep,
                 "the files must be one whole chain, row by row; what is broken comes with the "
                 "commands that mend it");
@@ -31,8 +31,8 @@ CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
 
 CLI::App* addExport(CLI::App& cli, ExportCommand& c) {
   CLI::App* sub = cli.add_subcommand("export", "Write the rows for other programs.");
-  sub->add_option("file", c.file, ".vpl")->required();
-  sub->add_option("-o,--output", c.output, ".ply (MeshLab, Blender) or .csv")->required();
+  addFile(*sub, "file", c.file, ".vpl")->required();
+  addFile(*sub, "-o,--output", c.output, ".ply (MeshLab, Blender) or .csv")->required();
   return sub;
 }
 
@@ -49,19 +49,17 @@ CLI::App* addScene(CLI::App& cli, SceneCommand& c) {
 CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   CLI::App* sub =
       cli.add_subcommand("plot", "Draw the rows as dots over the camera's view of the scene.");
-  sub->add_option("file", c.file, ".vpl")->required();
+  addFile(*sub, "file", c.file, ".vpl")->required();
   addSceneFlag(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
-  sub->add_option("-o,--output", c.output, "picture (.png)")->required();
-  sub->add_option("--dot", c.plot.dotPixels, "diameter of a dot, pixels")
-      ->check(inRange(1.0f, 100.0f))
-      ->capture_default_str();
+  addFile(*sub, "-o,--output", c.output, "picture (.png)")->required();
+  addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
   addChoice(*sub, "--color", c.plot.colour, kDotColours,
             "what the dots' colour shows, violet for little to yellow for much")
       ->default_str("flux if lit, else plain");
   sub->add_flag("--show-back", c.plot.showBack,
                 "rings for rows in sight whose lit side faces away");
   sub->add_option("--size", c.size, "of the picture, pixels; the scene's film unless given")
-      ->type_name("WxH");
+      ->type_name("WIDTHxHEIGHT");
   return sub;
 }
 

@@ -11,7 +11,7 @@ namespace bnvpl {
 enum class DotColour { Flux, Radius, Plain };
 
 struct PlotOptions {
-  float dotPixels = 5.0f;  // diameter
+  double dotPixels = 5.0;  // diameter
   DotColour colour = DotColour::Plain;
   bool showBack = false;  // rings for rows in sight whose lit side faces away
   unsigned samples = 3;   // per pixel and axis, of the view

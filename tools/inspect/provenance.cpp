@@ -43,6 +43,10 @@ std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string
     if (const auto it = entry.find("inputs"); it != entry.end() && it->is_object()) {
       for (const auto& [name, value] : it->items()) record.inputs[name] = plain(value);
     }
+    if (const auto it = entry.find("view"); it != entry.end() && it->is_object()) {
+      record.viewSize = textAt(*it, "size");
+      record.viewHash = textAt(*it, "hash");
+    }
     chain.push_back(std::move(record));
   }
   return chain;
@@ -65,6 +69,7 @@ std::string describeRecord(const StageRecord& record) {
     line.append(separator).append(name).append(" ").append(value);
     separator = ", ";
   }
+  if (!record.viewHash.empty()) line += "; view " + record.viewSize + " " + record.viewHash;
   return line;
 }
 

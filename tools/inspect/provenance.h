@@ -16,7 +16,8 @@ struct StageRecord {
   std::string tool, version;
   Json options = Json::object();
   std::map<std::string, std::string>
-      inputs;  // "scene", "candidates", "vpls", "lit" -> 16 hex digits
+      inputs;                      // "scene", "candidates", "vpls", "lit" -> 16 hex digits
+  std::string viewSize, viewHash;  // "640x480" and 16 hex digits, of stages that looked at the view
 };
 
 // Oldest first; keys that are absent stay empty. `file` is for the message.
@@ -26,7 +27,7 @@ std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string
 // The provenance attribute of an image, or an empty text.
 std::string provenanceOf(const Image& image);
 
-// "vpl-place 0.1.0: count 3000, seed 1; from scene 0123456789abcdef"
+// "vpl-place 0.1.0: count 3000, seed 1; from scene 0123456789abcdef; view 640x480 0123456789abcdef"
 std::string describeRecord(const StageRecord& record);
 
 }  // namespace bnvpl

@@ -43,7 +43,7 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Giv
 
   Json record = stageRecord("vpl-place", recordOf(placeSpec(), options),
                             {{"scene", hashText(scene.contentHash)}});
-  record["view"] = viewRecord(scene);
+  if (placeMethod(options).forView) record["view"] = viewRecord(scene);
   placed.table.provenance = extendProvenance("", record);
   OutputSet files;
   writeVpl(files.add(output), placed.table);
@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   SceneOptions scene;
   fs::path output;
   addSceneOptions(cli, scene);
-  cli.add_option("-o,--output", output, "candidates (.vpl)")->required();
+  addFile(cli, "-o,--output", output, "candidates (.vpl)")->required();
   addStageOptions(cli, placeSpec(), given);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);

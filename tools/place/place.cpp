@@ -10,11 +10,8 @@ namespace {
 constexpr double kMaxCount = 0x1p31 - 1;
 
 constexpr std::array kOptions{
-    letterFor(
-        "-n",
-        countOption(
-            "count", "120k", kMaxCount, "",
-            "VPLs to place: exactly, or with --method light at most, for photons stay whole")),
+    letterFor("-n", countOption("count", "120k", kMaxCount, "",
+                                "VPLs to place; at most, where a method keeps its paths whole")),
     seedOption()};
 
 }  // namespace

@@ -31,6 +31,7 @@ struct PlaceMethod {
   std::span<const Option> options;
   PlaceResult (*make)(const PlaceInputs&, const Values&);
   bool needsLight = false;  // a scene in which nothing shines is refused
+  bool forView = true;      // the rows depend on camera and film
 };
 std::span<const PlaceMethod* const> placeMethods();  // one for each folder beside this file
 

@@ -26,17 +26,26 @@ struct Paths {
   CheckpointOptions checkpoint;
 };
 
+// "--integrator light or path".
+std::string withoutVpls() {
+  std::string names;
+  for (const IntegratorMethod* m : integratorMethods()) {
+    if (!m->needsVpls) names += (names.empty() ? "--integrator " : " or ") + std::string(m->name);
+  }
+  return names;
+}
+
 // Before any work: what the paths and the options say together.
 void requireConsistent(const Paths& paths, const Given& given, const Values& options) {
   const IntegratorMethod& integrator = integratorOf(options);
-  parseLayers(options.text("layers"));
+  layersOf(options);
   parseExposure(options.text("exposure"));
   const bool exposure =
       std::ranges::any_of(given, [](const auto& g) { return g.first == "exposure"; });
   if (exposure && paths.images.png.empty())
     throw UsageError("--exposure has no effect without --png; it is the preview's");
   if (integrator.needsVpls && paths.lit.empty())
-    throw UsageError("needs the lit VPLs (from vpl-estimate) or --integrator path or light");
+    throw UsageError("needs the lit VPLs (from vpl-estimate), or " + withoutVpls());
   if (!integrator.needsVpls && !paths.lit.empty()) {
     throw UsageError("--integrator " + std::string(integrator.name) + " takes no VPLs; leave " +
                      paths.lit.string() + " out");
@@ -102,9 +111,9 @@ int main(int argc, char** argv) {
   ToolOptions tool;
   Paths paths;
   addSceneOptions(cli, paths.scene);
-  cli.add_option("lit", paths.lit, "from vpl-estimate or vpl-place --method light (.vpl)");
-  cli.add_option("-o,--output", paths.images.exr, "image (.exr)")->required();
-  cli.add_option("--png", paths.images.png, "also write a preview");
+  addFile(cli, "lit", paths.lit, "lit VPLs (.vpl), for integrators that take them");
+  addFile(cli, "-o,--output", paths.images.exr, "image (.exr)")->required();
+  addFile(cli, "--png", paths.images.png, "also write a preview");
   addStageOptions(cli, renderSpec(), given);
   addCheckpointOptions(cli, paths.checkpoint);
   addToolOptions(cli, tool);

@@ -74,9 +74,9 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     std::snprintf(line, sizeof line,
                   "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
                   percentOf(stats.clamped, stats.indirect),
-                  percentOf(stats.extended, stats.indirect));
+                  percentOf(stats.compensated, stats.indirect));
     summary.add("mean_clamped", stats.clamped, only == "direct" ? "" : line);
-    summary.add("mean_extended", stats.extended);
+    summary.add("mean_compensated", stats.compensated);
     std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample",
                   result.vpls, stats.cut, stats.shadowRays);
     summary.add("vpls", result.vpls, only == "direct" ? "" : line);

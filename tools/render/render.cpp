@@ -10,7 +10,7 @@ namespace bnvpl {
 namespace {
 
 const std::string& layersHelp() {
-  static const std::string help = "extra channels of the image: " + layerNames() + ", or all";
+  static const std::string help = "extra channels of the image, or all" + layerList();
   return help;
 }
 
@@ -19,11 +19,12 @@ std::span<const Option> stageOptions() {
       countOption("spp", "8", 0x1p32 - 1, "", "samples a pixel"),
       choiceOption("only", "all", "all|direct|indirect", "which light the image shows"),
       seedOption(),
-      unrecorded(textOption("layers", "", "names with commas between", layersHelp())),
-      unrecorded(textOption("size", "", "WIDTHxHEIGHT, pixels",
+      unrecorded(textOption("layers", "", "NAME,...", layersHelp())),
+      unrecorded(textOption("size", "", "WIDTHxHEIGHT",
                             "another film than the scene's, with the same vertical field of view")),
-      unrecorded(choiceOption("pixels", "float", "half|float", "EXR channel type")),
-      unrecorded(textOption("exposure", "auto", "EV", "of the PNG, in stops; auto: middle grey"))};
+      choiceOption("pixels", "float", "half|float", "EXR channel type"),
+      unrecorded(
+          textOption("exposure", "auto", "EV|auto", "of the PNG, in stops; auto: middle grey"))};
   return options;
 }
 
@@ -32,17 +33,26 @@ Only onlyOf(const Values& options) {
   return name == "direct" ? Only::Direct : name == "indirect" ? Only::Indirect : Only::Everything;
 }
 
+// The integrators that take VPLs, for an image that shows indirect light; or for any.
+std::string needOfVpls() {
+  std::string names;
+  for (const IntegratorMethod* m : integratorMethods()) {
+    if (m->needsVpls) names += (names.empty() ? "" : "|") + std::string(m->name);
+  }
+  return "integrator=" + names;
+}
+
 }  // namespace
 
 const StageSpec& renderSpec() {
+  static const std::string vpls = needOfVpls(), shown = vpls + ",only=all|indirect";
   static const StageSpec spec{
       "vpl-render",
       stageOptions(),
       {{"integrator", "vpl", "what finds the light", entriesOf(integratorMethods())},
-       {"gather", "tilecuts", "how VPLs are gathered", entriesOf(gatherMethods()),
-        "integrator=vpl"},
+       {"gather", "tilecuts", "how VPLs are gathered", entriesOf(gatherMethods()), shown},
        {"compensate", "near-field", "what makes good the light that VPLs do not bring",
-        entriesOf(compensateMethods()), "integrator=vpl"}}};
+        entriesOf(compensateMethods()), vpls}}};
   return spec;
 }
 
@@ -50,18 +60,23 @@ const IntegratorMethod& integratorOf(const Values& options) {
   return methodNamed(integratorMethods(), options.text("integrator"));
 }
 
+std::vector<const Layer*> layersOf(const Values& options) {
+  return parseLayers(options.text("layers"),
+                     integratorOf(options).needsVpls && onlyOf(options) != Only::Direct);
+}
+
 uint64_t renderWork(const Scene& scene, const Values& options) {
   const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * options.whole("spp");
-  const bool photons = options.text("integrator") == "light" && onlyOf(options) != Only::Direct;
+  const bool photons = integratorOf(options).photons && onlyOf(options) != Only::Direct;
   return photons ? 2 * samples : samples;
 }
 
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress, const Resume& resume) {
   const FilmOptions film{static_cast<uint32_t>(options.whole("spp")), options.whole("seed"),
-                         onlyOf(options), parseLayers(options.text("layers"))};
+                         onlyOf(options), layersOf(options)};
   const Integrator integrator =
-      integratorOf(options).make({rays, lights, lit, film.seed, film.only}, options);
+      integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress}, options);
   RenderResult result;
   result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
   result.vpls = integrator.vpls;

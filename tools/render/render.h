@@ -12,6 +12,9 @@ namespace bnvpl {
 const StageSpec& renderSpec();
 const IntegratorMethod& integratorOf(const Values& options);
 
+// By --layers. Throws UsageError.
+std::vector<const Layer*> layersOf(const Values& options);
+
 // Samples and photons that progress will count.
 uint64_t renderWork(const Scene& scene, const Values& options);
 

@@ -107,6 +107,13 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
 
   Mesh mesh{reading.attrib.vertices, reading.attrib.normals, reading.attrib.texcoords, {}};
   mesh.triangles = takeTriangles(reading.shapes, numbers);
+  // The builder leaves them out and counts them, as triangles that lack a vertex.
+  mesh.triangles.resize(mesh.triangles.size() + reading.lostTriangles,
+                        {kNoCorners, kNoCorners, kNoCorners, kNone});
+  if (reading.uncutTriangles > 0) {
+    builder.warn(obj.string() + ": " + std::to_string(reading.uncutTriangles) +
+                 " triangles of polygons that cannot be cut are left out; triangulate the mesh");
+  }
   if (builder.addMesh(obj, std::move(mesh), transform) > 0) warnOfGrey(obj, reading, builder);
 }
 

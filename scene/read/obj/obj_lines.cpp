@@ -1,6 +1,8 @@
 #include "scene/read/obj/obj_lines.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <set>
 #include <string_view>
 
@@ -46,6 +48,20 @@ bool mayCountBack(std::string_view face) {
   return false;
 }
 
+// The largest vertex number of a face's corners, "3" of "3/1/2"; those that count back are 0.
+// Beyond any mesh where digits overflow.
+size_t largestVertex(std::string_view face) {
+  size_t largest = 0;
+  for (size_t at = 0; at < face.size();) {
+    const size_t begin = std::min(face.find_first_not_of(" \t", at), face.size());
+    at = std::min(face.find_first_of(" \t", begin), face.size());
+    size_t number = 0;
+    const auto [end, error] = std::from_chars(face.data() + begin, face.data() + at, number);
+    largest = std::max(largest, error == std::errc::result_out_of_range ? SIZE_MAX : number);
+  }
+  return largest;
+}
+
 // A stretch of whole lines.
 struct Stretch {
   size_t begin = 0, end = 0;
@@ -57,8 +73,9 @@ struct Stretch {
   std::optional<std::string_view> material;  // named last
   bool materialUsed = false;
   std::vector<std::string_view> libraries;
-  bool alone = true;          // its faces need nothing from other stretches
-  size_t endlessFace = kNot;  // line, from its first on
+  size_t largestOfPolygons = 0;  // of their vertices' numbers
+  bool alone = true;             // its faces need nothing from other stretches
+  size_t endlessFace = kNot;     // line, from its first on
   static constexpr size_t kNot = ~size_t{0};
 };
 
@@ -66,6 +83,7 @@ void noteFace(std::string_view rest, Stretch& s) {
   const size_t corners = cornersOf(rest);
   if (corners > kMaxCorners) s.endlessFace = std::min(s.endlessFace, s.newlines);
   if (corners >= 3) s.triangles += corners - 2;
+  if (corners > 3) s.largestOfPolygons = std::max(s.largestOfPolygons, largestVertex(rest));
   s.alone = s.alone && corners == 3 && !mayCountBack(rest);
   if (!s.material) {
     s.facesBeforeNames = true;
@@ -133,6 +151,27 @@ void scan(std::string& text, Stretch& s) {
   }
 }
 
+// Comments out the polygons that name a vertex beyond the last; returns how many triangles they
+// were.
+size_t dropLostPolygons(std::string& text, size_t vertices) {
+  size_t lost = 0;
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = lineEnd(text, at);
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    const size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+    if (line.size() > begin + 1 && line[begin] == 'f' && isBlank(line[begin + 1])) {
+      const std::string_view rest = line.substr(begin + 1);
+      const size_t corners = cornersOf(rest);
+      if (corners > 3 && largestVertex(rest) > vertices) {
+        lost += corners - 2;
+        text[at + begin] = '#';
+      }
+    }
+    at = end + 1;
+  }
+  return lost;
+}
+
 // Of about `bytes` each.
 std::vector<Stretch> stretchesOf(std::string_view text, size_t bytes) {
   std::vector<Stretch> out;
@@ -159,7 +198,7 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
   if (!many) out.pieces.push_back({0, out.text.size(), {}});
   std::set<std::string_view> materials;
   std::optional<std::string_view> material;
-  size_t line = 1;
+  size_t line = 1, largestOfPolygons = 0;
   for (const Stretch& s : stretches) {
     if (s.endlessFace != Stretch::kNot) {
       throw InputError(file.string() + ":" + std::to_string(line + s.endlessFace) +
@@ -172,6 +211,7 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
     out.normals += s.normals;
     out.coordinates += s.coordinates;
     out.triangles += s.triangles;
+    largestOfPolygons = std::max(largestOfPolygons, s.largestOfPolygons);
     out.libraries.insert(out.libraries.end(), s.libraries.begin(), s.libraries.end());
     materials.insert(s.materials.begin(), s.materials.end());
     if (s.facesBeforeNames) materials.insert(material.value_or(""));
@@ -180,6 +220,10 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
       if (material) out.pieces.back().material = std::string(*material);
     }
     if (s.material) material = s.material;
+  }
+  if (largestOfPolygons > out.vertices) {
+    out.lostTriangles = dropLostPolygons(out.text, out.vertices);
+    out.triangles -= out.lostTriangles;
   }
   for (const std::string_view word : materials) out.materials.push_back(fromOneWord(word));
   std::sort(out.materials.begin(), out.materials.end());

@@ -16,6 +16,9 @@ struct MeshLines {
   std::string text;
   size_t vertices = 0, normals = 0, coordinates = 0;
   size_t triangles = 0;
+  // Of polygons that name a vertex that there is not; commented out, and not in `triangles`:
+  // tinyobj would cut what is left of some, and lose the others without a word.
+  size_t lostTriangles = 0;
   // The vertices, by number, that are not given by numbers: tinyobj reads a word such as nan as 0.
   std::vector<size_t> verticesOfWords;
   std::vector<std::string> materials;  // that faces ask for, "" for none: sorted, each once

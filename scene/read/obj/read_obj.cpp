@@ -150,6 +150,10 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
   }
   out.attrib = std::move(parsed.attrib);
   out.shapes = std::move(parsed.shapes);
+  out.lostTriangles = lines.lostTriangles;
+  size_t made = 0;
+  for (const tinyobj::shape_t& shape : out.shapes) made += shape.mesh.num_face_vertices.size();
+  out.uncutTriangles = lines.triangles - std::min(lines.triangles, made);
   for (const size_t vertex : lines.verticesOfWords) out.attrib.vertices.at(3 * vertex) = NAN;
   return out;
 }

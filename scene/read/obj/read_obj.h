@@ -13,6 +13,8 @@ struct ObjReading {
   std::vector<tinyobj::shape_t> shapes;  // material_ids count in libraries.materials; -1: none
   MaterialLibraries libraries;
   std::vector<std::string> unknown;  // materials that faces ask for and no library has
+  size_t lostTriangles = 0;          // of polygons that name a vertex that there is not
+  size_t uncutTriangles = 0;         // of polygons that tinyobj cannot cut
 };
 
 // `materials` replaces the libraries that the OBJ names; empty: those are used, and hold for the

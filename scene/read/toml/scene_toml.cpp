@@ -12,7 +12,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kMost = TomlSection::kMost;
+constexpr double kMaxMagnitude = TomlSection::kMaxMagnitude;
 // A smaller sun is a point: the direction of no float ray lies in it.
 constexpr double kMinSunDeg = 1e-4;
 
@@ -37,8 +37,8 @@ class FileNames {
         continue;
       }
       const std::string name = text.substr(i + 2, end - i - 2);
-      if (const auto it = defines_.find(name); it != defines_.end()) {
-        out += it->second;
+      if (const std::string* given = defines_.find(name)) {
+        out += *given;
       } else if (const char* value = std::getenv(name.c_str())) {
         out += value;
       } else {
@@ -62,7 +62,7 @@ Affine readMatrix(const TomlSection& s) {
     if (!row || row->size() != 4)
       s.fail(s.node("transform"), "'transform' must be four rows of four numbers");
     for (size_t j = 0; j < 4; ++j) {
-      const double v = s.numberOf(*row->get(j), "transform", -kMost, kMost);
+      const double v = s.numberOf(*row->get(j), "transform", -kMaxMagnitude, kMaxMagnitude);
       if (i < 3)
         a.m[i][j] = v;
       else if (v != (j == 3 ? 1.0 : 0.0))
@@ -83,7 +83,7 @@ Affine readTransform(const TomlSection& s) {
     if (s.node("scale").is_array())
       scale = s.point("scale");
     else
-      scale.fill(s.number("scale", -kMost, kMost));
+      scale.fill(s.number("scale", -kMaxMagnitude, kMaxMagnitude));
   }
   if (s.has("rotate_deg")) rotate = s.point("rotate_deg");
   for (double& angle : rotate) angle *= std::numbers::pi / 180.0;
@@ -134,7 +134,7 @@ void readEnvironment(const TomlSection& s, const FileNames& names, SceneBuilder&
                      LightSpec& light) {
   requireKeys(s, "environment", {"radiance", "image", "rotate_deg", "scale"});
   if (s.has("radiance") == s.has("image")) s.fail("needs exactly one of 'radiance' and 'image'");
-  light.scale = static_cast<float>(s.number("scale", 0.0, kMost, 1.0));
+  light.scale = static_cast<float>(s.number("scale", 0.0, kMaxMagnitude, 1.0));
   light.rotateRad = radians(s.number("rotate_deg", -1e6, 1e6, 0.0));
   if (s.has("radiance"))
     light.emission = s.color("radiance");

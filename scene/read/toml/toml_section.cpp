@@ -99,10 +99,14 @@ TomlSection::TomlSection(const fs::path& file, std::string name, const toml::tab
 void TomlSection::checkKnown(const std::string& key, const toml::node& node,
                              const std::vector<std::string>& known) const {
   if (std::find(known.begin(), known.end(), key) != known.end()) return;
-  const auto nearest = std::min_element(
-      known.begin(), known.end(),
-      [&](const auto& a, const auto& b) { return editDistance(key, a) < editDistance(key, b); });
-  fail(node, "unknown key '" + key + "'; did you mean '" + *nearest + "'?");
+  const auto distance = [&](const std::string& name) { return editDistance(key, name); };
+  const std::string nearest = *std::ranges::min_element(known, {}, distance);
+  // A third of the letters may be wrong: what is farther was hardly meant.
+  if (3 * distance(nearest) <= std::max(key.size(), nearest.size()))
+    fail(node, "unknown key '" + key + "'; did you mean '" + nearest + "'?");
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+  fail(node, "unknown key '" + key + "'; the keys here are " + list);
 }
 
 void TomlSection::fail(const toml::node& node, const std::string& problem) const {
@@ -152,7 +156,9 @@ FilePoint TomlSection::triple(const char* key, double least, double most) const 
   return v;
 }
 
-Vec3 TomlSection::color(const char* key) const { return fromOrigin(triple(key, 0.0, kMost), {}); }
+Vec3 TomlSection::color(const char* key) const {
+  return fromOrigin(triple(key, 0.0, kMaxMagnitude), {});
+}
 
 Vec3 TomlSection::direction(const char* key) const {
   Vec3 unit;

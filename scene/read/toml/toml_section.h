@@ -45,11 +45,11 @@ class TomlSection {
   double numberOf(const toml::node& n, const char* key, double least, double most) const;
   uint32_t integer(const char* key, uint32_t least, uint32_t most) const;
   std::string text(const char* key) const;
-  FilePoint point(const char* key) const { return triple(key, -kMost, kMost); }
+  FilePoint point(const char* key) const { return triple(key, -kMaxMagnitude, kMaxMagnitude); }
   Vec3 color(const char* key) const;      // not negative
   Vec3 direction(const char* key) const;  // unit length
 
-  static constexpr double kMost = 1e30;  // of a coordinate, a factor or a power
+  static constexpr double kMaxMagnitude = 1e30;  // of a coordinate, a factor or a power
 
  private:
   FilePoint triple(const char* key, double least, double most) const;

@@ -32,7 +32,7 @@ void keepOnly(std::vector<T>& values, const std::vector<uint8_t>& keep, size_t p
 
 ConflictGraph::ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> normal,
                              std::vector<float> radius, std::vector<uint32_t> row,
-                             const PairWeight& rule)
+                             const PairWeight& rule, const ProgressFn& progress)
     : cells_(makeCellLists(position, radius)),
       radius_(std::move(radius)),
       normal_(std::move(normal)),
@@ -53,11 +53,14 @@ ConflictGraph::ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> norma
   row_ = inOrder<uint32_t>(row_, order);
   cells_.order = {};
   weight_.resize(size());
-  parallelFor(size(), 256, [&](size_t k) {
-    const auto i = static_cast<uint32_t>(k);
-    uint64_t sum = 0;
-    visitNeighbours(i, [&](uint32_t j, float d2) { sum += pairWeight(i, j, d2); });
-    weight_[i] = sum;
+  const auto phase = progress.before("weights", size());
+  parallelRanges(size(), 256, [&](size_t begin, size_t end) {
+    for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
+      uint64_t sum = 0;
+      visitNeighbours(i, [&](uint32_t j, float d2) { sum += pairWeight(i, j, d2); });
+      weight_[i] = sum;
+    }
+    if (progress) progress(end - begin);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/vec3.h"
 #include "spatial/cell_lists.h"
 
@@ -41,9 +42,10 @@ class ConflictGraph {
   static constexpr uint32_t kNone = UINT32_MAX;
 
   // One entry a candidate: position, unit normal, radius > 0, and a number that tells equal weights
-  // apart. The vectors are given up so that nothing is in memory twice.
+  // apart. The vectors are given up so that nothing is in memory twice. `progress` is told of the
+  // weights as of preparations.
   ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> normal, std::vector<float> radius,
-                std::vector<uint32_t> row, const PairWeight& rule);
+                std::vector<uint32_t> row, const PairWeight& rule, const ProgressFn& progress = {});
 
   size_t size() const { return row_.size(); }
   uint32_t row(uint32_t i) const { return row_[i]; }

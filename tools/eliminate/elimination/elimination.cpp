@@ -43,19 +43,19 @@ struct Sorted {
 };
 
 // Every pair that is nearer than two radii competes, so that the work grows as candidates^2 / kept.
-// Where that is much, and there are more candidates for each VPL than kMostCandidates, kFewer of
-// them are kept first, with the radii of as many: the time then no longer grows as fewer are kept
-// (theory.md, "Cost").
-constexpr double kMostCandidates = 60, kFewer = 30, kMuchWork = 0x1p22;
+// Where that is more than kMaxWork, and there are more than kMaxPerVpl candidates for each VPL,
+// kStepFactor for each VPL are kept first, with the radii of as many: the time then no longer grows
+// as fewer are kept (theory.md, "Cost").
+constexpr double kMaxPerVpl = 60, kStepFactor = 30, kMaxWork = 0x1p22;
 
 // The last step keeps `count`; each begins with what the one before has left.
 std::vector<size_t> stepsFor(size_t candidates, size_t count) {
   std::vector<size_t> steps{count};
   const auto many = [&](size_t kept) {
     const double each = static_cast<double>(candidates) / static_cast<double>(kept);
-    return each > kMostCandidates && each * static_cast<double>(candidates) > kMuchWork;
+    return each > kMaxPerVpl && each * static_cast<double>(candidates) > kMaxWork;
   };
-  while (many(steps.back())) steps.push_back(steps.back() * static_cast<size_t>(kFewer));
+  while (many(steps.back())) steps.push_back(steps.back() * static_cast<size_t>(kStepFactor));
   std::reverse(steps.begin(), steps.end());
   return steps;
 }
@@ -70,7 +70,7 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
     for (float& r : radius) r *= scale;
   }
   ConflictGraph graph(of.position, of.normal, std::move(radius), of.row,
-                      pairWeightRule(of.row.size(), static_cast<double>(keep), options));
+                      pairWeightRule(of.row.size(), static_cast<double>(keep), options), progress);
   std::vector<uint32_t> rows = eliminateHeaviest(graph, keep, progress);
   std::sort(rows.begin(), rows.end());
   std::vector<uint32_t> places;
@@ -89,7 +89,7 @@ Kept make(const EliminateInputs& in, const Values& options) {
   left.position = inOrder<Vec3>(in.candidates.position, left.row);
   left.normal = inOrder<Vec3>(in.candidates.normal, left.row);
   CandidateRadii radii =
-      candidateRadii(left.position, left.normal, static_cast<double>(count), options);
+      candidateRadii(left.position, left.normal, static_cast<double>(count), options, in.progress);
   left.radius = std::move(radii.radius);
   for (const size_t keep : stepsFor(in.candidates.size(), count)) {
     const std::vector<uint32_t> places = keepOf(left, keep, count, options, in.progress);

@@ -35,7 +35,7 @@ Kept make(const EliminateInputs& in, const Values& options) {
   const std::vector<uint32_t> order = mortonOrder(in.candidates.position);
   const CandidateRadii radii = candidateRadii(inOrder<Vec3>(in.candidates.position, order),
                                               inOrder<Vec3>(in.candidates.normal, order),
-                                              static_cast<double>(count), options);
+                                              static_cast<double>(count), options, in.progress);
   std::vector<float> radiusOfRow(order.size());
   parallelFor(order.size(), 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
   Kept kept{randomRows(order.size(), count, options.whole("seed")), {}, radii.rMax, radii.area, {}};

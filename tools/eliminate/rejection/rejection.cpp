@@ -2,7 +2,6 @@
 // proportion to what they bring to the image, and weighted by one over it.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/errors.h"
 #include "core/parallel.h"
@@ -23,14 +22,16 @@ constexpr std::array kOptions{
     countOption("camera-points", "400", 0x1p24, "", "points of the image that VPLs are judged by"),
     // Keeps every VPL possible: what the points do not see may still be seen, so that the image is
     // right on average.
-    realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL")};
-constexpr float kClamp = 1.0f;  // of 1/d^2, in units of r_max: else a VPL beside a point takes all
-constexpr unsigned kNeighbours = 20;  // of the radii, as vpl-place --method light
+    realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL"),
+    // A VPL beside a point would take all.
+    realOption("clamp", "1", 0, 1000, "r_max",
+               "the light by which VPLs are judged grows no further inside this distance")};
 
 // Spread over the film; those that see nothing are left out.
 std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, uint64_t count) {
   const Scene& scene = in.rays->scene();
   std::vector<SurfacePoint> points;
+  const auto phase = in.progress.before("camera points", count);
   for (uint64_t i = 0; i < count; ++i) {
     const Point2 film = r2Sequence(i, 0.5, 0.5);
     Rng rng(key, i);
@@ -38,6 +39,7 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
         *in.rays, *in.lights, scene.camera.position,
         cameraDirection(scene.camera, scene.film, film.x, film.y), Arrival{}, rng);
     if (path.rough) points.push_back(path.hit);
+    if (in.progress) in.progress(1);
   }
   if (points.empty()) {
     throw InputError(scene.name(), "the camera sees no surface that VPLs could light; turn it");
@@ -89,7 +91,7 @@ Kept make(const EliminateInputs& in, const Values& options) {
   const VplTable& all = in.candidates;
   const uint64_t key = streamKey(options.whole("seed"), Stream::Eliminate) + 1;
   const std::vector<SurfacePoint> points = cameraPoints(in, key, options.whole("camera-points"));
-  const VplLights vpls = makeVplLights(all, *in.rays, kClamp);
+  const VplLights vpls = makeVplLights(all, *in.rays, options.real32("clamp"));
   std::vector<double> brings(all.size(), 0.0);
   parallelFor(vpls.size(), 16, [&](size_t k) {
     brings[vpls.row[k]] = contribution(vpls, k, *in.rays, points);
@@ -110,12 +112,10 @@ Kept make(const EliminateInputs& in, const Values& options) {
     position.push_back(all.position[i]);
     normal.push_back(all.normal[i]);
   }
-  for (const float share : surfaceShares(position, normal, kNeighbours)) {
-    kept.area += double{share};
-    kept.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
-  }
-  kept.rMax =
-      std::sqrt(kept.area / (2.0 * std::sqrt(3.0) * double(std::max<size_t>(1, kept.rows.size()))));
+  ShareRadii radii = shareRadii(position, normal);
+  kept.radius = std::move(radii.radius);
+  kept.area = radii.area;
+  kept.rMax = radii.rMax;
   return kept;
 }
 

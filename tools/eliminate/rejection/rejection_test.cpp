@@ -75,6 +75,14 @@ TEST(Rejection, IsTheSameForAnyThreads) {
   EXPECT_EQ(tables[0].flux, tables[1].flux);
 }
 
+TEST(Rejection, TellsOfItsPreparations) {
+  const FromLights& c = cornell();
+  Preparations told;
+  const Values options = resolve(eliminateSpec(), {{"count", "200"}, {"method", "rejection"}});
+  eliminate(c.all, options, &c.world.rays, &c.world.lights, told.progress);
+  EXPECT_EQ(told.names, std::vector<std::string>{"camera points"});
+}
+
 TEST(Rejection, AsksForTheScene) {
   const Values options = resolve(eliminateSpec(), {{"count", "10"}, {"method", "rejection"}});
   EXPECT_THROW(eliminate(cornell().all, options), UsageError);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array kOptions{
     countOption("points", "64", 1u << 20, "", "points of the surface that each VPL stands for"),
     countOption("paths", "4", 1u << 20, "", "paths from each of these points"), kRadiusOption,
-    wholeOption("max-bounces", "32", 1, 1000, "bounces",
+    wholeOption("max-bounces", "32", 1, 1000, "",
                 "diffuse bounces between a light and the view, that at the VPL included"),
     kRecentreOption};
 

@@ -12,7 +12,7 @@ namespace bnvpl::methods::place::camera {
 namespace {
 
 constexpr std::array kOptions{
-    wholeOption("depth", "2", 2, 1000, "vertices",
+    wholeOption("depth", "2", 2, 1000, "",
                 "diffuse vertices of a path; the first is never a candidate, the second lights the "
                 "view directly")};
 

@@ -1,6 +1,5 @@
 // Instant radiosity (Keller 1997): a VPL at every diffuse hit of photons from the lights.
 #include <array>
-#include <cmath>
 
 #include "spatial/local_density.h"
 #include "tools/common/streams.h"
@@ -12,8 +11,7 @@ namespace bnvpl::methods::place::light {
 namespace {
 
 constexpr std::array kOptions{
-    wholeOption("light-depth", "32", 1, 1000, "hits", "diffuse hits of a photon")};
-constexpr unsigned kNeighbours = 20;  // as vpl-eliminate, so that clamps compare
+    wholeOption("light-depth", "32", 1, 1000, "", "diffuse hits of a photon")};
 
 void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned depth, uint64_t path,
                      uint64_t key, PathRows& chunk) {
@@ -23,10 +21,10 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned dept
   PhotonStart start = lights.emit(light, rng);
   start.flux *= 1.0f / probability;
   const PhotonFate fate = followPhoton(
-      rays, PhotonWalk(start, depth, rng), [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
+      rays, PhotonWalk(start, depth, rng), [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
         if (!chunk.add(bsdf, path)) return;
         chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
-        chunk.rows.firstBounceFlux.push_back(straight ? chunk.rows.flux.back() : Vec3{});
+        chunk.rows.firstBounceFlux.push_back(firstBounce ? chunk.rows.flux.back() : Vec3{});
       });
   chunk.nonFinite += fate.finite ? 0 : 1;
   chunk.rays += fate.rays;
@@ -53,11 +51,10 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
   for (Vec3& f : t.firstBounceFlux) f *= 1.0f / static_cast<float>(result.paths);
   t.photons.assign(t.size(), 1);
   t.relativeError.assign(t.size(), 1.0f);
-  for (const float share : surfaceShares(t.position, t.normal, kNeighbours)) {
-    t.areaEstimate += double{share};
-    t.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
-  }
-  t.rMax = std::sqrt(t.areaEstimate / (2.0 * std::sqrt(3.0) * static_cast<double>(t.size())));
+  ShareRadii radii = shareRadii(t.position, t.normal);
+  t.radius = std::move(radii.radius);
+  t.areaEstimate = radii.area;
+  t.rMax = radii.rMax;
   return result;
 }
 
@@ -65,7 +62,11 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
 
 extern const PlaceMethod method;
 const PlaceMethod method{
-    "light", "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
-    kOptions, make, /*needsLight=*/true};
+    "light",
+    "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
+    kOptions,
+    make,
+    /*needsLight=*/true,
+    /*forView=*/false};
 
 }  // namespace bnvpl::methods::place::light

@@ -23,7 +23,7 @@ void addTo(PixelSums& p, size_t slot, Vec3 v) {
 }
 
 bool isFinite(const RadianceSample& r) {
-  return isFinite(r.direct + r.indirect) && isFinite(r.clamped) && isFinite(r.extended) &&
+  return isFinite(r.direct + r.indirect) && isFinite(r.clamped) && isFinite(r.compensated) &&
          isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
 }
 
@@ -35,7 +35,7 @@ void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   addTo(pixel, PixelSums::kDirect, r.direct);
   addTo(pixel, PixelSums::kIndirect, r.indirect);
   addTo(pixel, PixelSums::kClamped, r.clamped);
-  addTo(pixel, PixelSums::kExtended, r.extended);
+  addTo(pixel, PixelSums::kCompensated, r.compensated);
   addTo(pixel, PixelSums::kAlbedo, r.albedo);
   addTo(pixel, PixelSums::kNormal, r.normal);
   pixel.sum[PixelSums::kDepth] += double{r.depth};
@@ -215,7 +215,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   stats.direct = meanOf(PixelSums::kDirect);
   stats.indirect = meanOf(PixelSums::kIndirect);
   stats.clamped = meanOf(PixelSums::kClamped);
-  stats.extended = meanOf(PixelSums::kExtended);
+  stats.compensated = meanOf(PixelSums::kCompensated);
   stats.samples = uint64_t{options.spp} * pixels.size();
   stats.nonFinite = at.splats.nonFinite;
   for (const PixelCounts& c : counts) {

@@ -20,7 +20,7 @@ struct FilmOptions {
 
 struct FilmStats {
   double direct = 0, indirect = 0, clamped = 0,
-         extended = 0;             // image means of the channels' mean, W/(m2 sr)
+         compensated = 0;          // image means of the channels' mean, W/(m2 sr)
   double cut = 0, shadowRays = 0;  // a sample, on average
   uint64_t samples = 0;
   uint64_t nonFinite = 0;  // samples counted as zero because a value was NaN or infinite

@@ -1,7 +1,7 @@
 #include "tools/render/film/layers.h"
 
-#include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "core/errors.h"
@@ -30,12 +30,12 @@ constexpr std::array kLayers{
     Layer{"direct", "RGB", "light straight from the lights, W/(m2 sr)", meanOf<PixelSums::kDirect>},
     Layer{"indirect", "RGB", "all other light, W/(m2 sr)", meanOf<PixelSums::kIndirect>},
     Layer{"clamped", "RGB", "indirect light that the clamp took from VPLs, W/(m2 sr)",
-          meanOf<PixelSums::kClamped>},
-    Layer{"albedo", "RGB", "of the first rough vertex", meanOf<PixelSums::kAlbedo>},
-    Layer{"N", "XYZ", "shading normal there", meanOf<PixelSums::kNormal>},
+          meanOf<PixelSums::kClamped>, true},
+    Layer{"albedo", "RGB", "reflectance of the first rough vertex", meanOf<PixelSums::kAlbedo>},
+    Layer{"N", "XYZ", "shading normal of the first rough vertex", meanOf<PixelSums::kNormal>},
     Layer{"Z", "", "depth along the viewing axis, scene units", depthOf},
-    Layer{"cutsize", "", "clusters or VPLs gathered, a sample", countOf<&PixelCounts::cut>},
-    Layer{"shadowrays", "", "rays towards VPLs, a sample", countOf<&PixelCounts::shadowRays>},
+    Layer{"cutsize", "", "clusters or VPLs gathered, a sample", countOf<&PixelCounts::cut>, true},
+    Layer{"shadowrays", "", "rays towards VPLs, a sample", countOf<&PixelCounts::shadowRays>, true},
 };
 
 }  // namespace
@@ -46,29 +46,31 @@ std::string channelName(const Layer& layer, size_t channel) {
   return name;
 }
 
-std::string layerNames() {
-  std::string names;
-  for (const Layer& layer : kLayers) names += (names.empty() ? "" : ",") + std::string(layer.name);
-  return names;
+std::string layerList() {
+  std::string lines;
+  for (const Layer& layer : kLayers)
+    lines += "\n  " + std::string(layer.name) + ": " + std::string(layer.help);
+  return lines;
 }
 
-std::vector<const Layer*> parseLayers(const std::string& list) {
-  std::vector<const Layer*> layers;
+std::vector<const Layer*> parseLayers(const std::string& list, bool vpls) {
   std::istringstream words(list);
-  std::vector<std::string> names;
-  for (std::string name; std::getline(words, name, ',');) names.push_back(name);
-  for (const std::string& name : names) {
-    const bool all = name == "all";
-    const bool known = std::ranges::any_of(kLayers, [&](const Layer& l) { return l.name == name; });
-    if (!all && !known) {
-      throw UsageError("--layers: unknown layer '" + name + "'; use " + layerNames() + " or all");
-    }
-  }
+  std::set<std::string, std::less<>> names;
+  for (std::string name; std::getline(words, name, ',');) names.insert(name);
+  const bool all = names.erase("all") > 0;
+  std::vector<const Layer*> layers;
+  std::string known;
   for (const Layer& layer : kLayers) {
-    const bool asked = std::ranges::any_of(
-        names, [&](const std::string& n) { return n == "all" || n == layer.name; });
-    if (asked) layers.push_back(&layer);
+    const bool named = names.erase(std::string(layer.name)) > 0;
+    if (named && layer.ofVpls && !vpls) {
+      throw UsageError("--layers: '" + std::string(layer.name) +
+                       "' tells of gathered VPLs, of which the image has none; leave it out");
+    }
+    if (named || (all && (vpls || !layer.ofVpls))) layers.push_back(&layer);
+    known += std::string(layer.name) + ", ";
   }
+  if (!names.empty())
+    throw UsageError("--layers: unknown layer '" + *names.begin() + "'; use " + known + "or all");
   return layers;
 }
 

@@ -21,7 +21,7 @@ struct PixelSums {
     kNormal = 12,
     kDepth = 15,
     kHits = 16,
-    kExtended = 17
+    kCompensated = 17
   };
   std::array<double, 20> sum{};
 };
@@ -41,12 +41,15 @@ struct Layer {
   std::string_view channels;  // "RGB": NAME.R, NAME.G, NAME.B; empty: one channel, NAME
   std::string_view help;      // with its unit
   double (*value)(const LayerPixel&, size_t channel);
+  bool ofVpls = false;  // means something only where VPLs are gathered
 };
 
 std::string channelName(const Layer& layer, size_t channel);
-std::string layerNames();  // "direct,indirect,..."
+// For --help: a line for each, with its name and help; with a line break before each.
+std::string layerList();
 
-// Of a comma-separated list of names, or "all". Throws UsageError for an unknown name.
-std::vector<const Layer*> parseLayers(const std::string& list);
+// Of a comma-separated list of names, or "all" that the image can have; `vpls`: those of VPLs, too.
+// Throws UsageError for a name that is unknown or that the image cannot have.
+std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true);
 
 }  // namespace bnvpl

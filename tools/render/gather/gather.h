@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "tools/common/method.h"
 #include "tools/render/light_tree/light_tree.h"
@@ -54,6 +55,7 @@ struct GatherInputs {
   const LightTree& tree;  // of the VPLs; empty without any
   uint64_t seed;
   std::function<FilmPoints()> film;  // traced when it is asked for
+  const ProgressFn& progress;        // of preparations
 };
 
 using GatherMethod = Method<Gather (*)(const GatherInputs&, const Values&)>;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "formats/vpl_table.h"
 #include "tools/common/method.h"
@@ -20,7 +21,7 @@ struct RadianceSample {
                   // vertex, and nothing between that and a light
   Vec3 indirect;  // everything else
   Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
-  Vec3 extended;  // indirect light that sampled rays brought instead; part of `indirect`
+  Vec3 compensated;     // indirect light that sampled rays brought instead; part of `indirect`
   Vec3 albedo, normal;  // of the first rough vertex
   float depth = 0.0f;   // of the first hit along the viewing axis; 0: none
   uint32_t cut = 0, shadowRays = 0;
@@ -56,6 +57,7 @@ struct IntegratorInputs {
   const VplTable& lit;  // of stage Lit; without rows unless the method needs VPLs
   uint64_t seed;
   Only only;
+  const ProgressFn& progress;  // of preparations
 };
 
 struct IntegratorMethod {
@@ -63,6 +65,7 @@ struct IntegratorMethod {
   std::span<const Option> options;
   Integrator (*make)(const IntegratorInputs&, const Values&);
   bool needsVpls = false;
+  bool photons = false;  // sends photons for indirect light
 };
 std::span<const IntegratorMethod* const> integratorMethods();
 

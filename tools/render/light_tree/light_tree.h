@@ -34,7 +34,7 @@ struct LightNode {
   AxisFrame frame;                                 // about it
   float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
   Vec3 intensity;                                  // sum over the cluster, W/sr
-  LightKind kind = LightKind::Point;
+  LightKind kind = {};
   float clamp2 = 0.0f;  // smallest of the cluster, so that the bound holds for all
   uint32_t representative = 0;
   uint32_t left = 0, right = 0;  // both 0: a leaf

@@ -68,7 +68,7 @@ class VplSampler {
 
   std::vector<Four> fours_;  // the start cut's first
   size_t startFours_ = 0;
-  LightKind kind_ = LightKind::Point;
+  LightKind kind_ = {};
 };
 
 }  // namespace bnvpl

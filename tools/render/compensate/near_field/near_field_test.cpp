@@ -174,9 +174,8 @@ TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
   const auto noise = [&](const char* compensate) {
     std::array<Image, 2> images;
     for (uint64_t seed = 0; seed < 2; ++seed) {
-      const Given options = with(
-          kPlainRender,
-          {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}, {"only", "direct"}});
+      const Given options =
+          with(kPlainDirect, {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}});
       images[seed] = renderVpls(world, {}, options).image;
     }
     const std::vector<float>&a = *images[0].find("G"), &b = *images[1].find("G");

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array kOptions{
     countOption("slices", "300", 0x1p20, "", "groups of neighbouring points, at least"),
-    countOption("columns", "400", 0x1p20, "clusters", "clusters of VPLs for each slice"),
+    countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice"),
     countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters")};
 constexpr double kCommonShare = 0.3;  // of the clusters of a slice: found once, for all slices
 constexpr size_t kDraws = 16;         // of each cluster's VPL; the samples of a pixel take turns
@@ -185,10 +185,12 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   slice(points, std::max<size_t>(1, points.size() / options.whole("slices")), rng, plan.slices);
 
   Columns columns(in.vpls.size(), Vector(plan.slices.size()));
+  const auto phase = in.progress.before("slices", plan.slices.size());
   parallelFor(plan.slices.size(), 1, [&](size_t s) {
     const Bsdf bsdf(in.rays.scene(), plan.slices[s].point);
     const ShadowTest test(in.rays, in.vpls, bsdf);
     for (size_t i = 0; i < columns.size(); ++i) columns[i][s] = double{length(test.of(i).radiance)};
+    if (in.progress) in.progress(1);
   });
   std::vector<double> norms;
   std::ranges::transform(columns, std::back_inserter(norms), norm);

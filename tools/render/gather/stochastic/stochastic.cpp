@@ -12,7 +12,7 @@ namespace bnvpl::methods::gather::stochastic {
 namespace {
 
 constexpr std::array kOptions{
-    countOption("cut", "10", 0x1p20, "clusters", "clusters of a point's cut, one shadow ray each")};
+    countOption("cut", "10", 0x1p20, "", "clusters of a point's cut, one shadow ray each")};
 
 struct Cluster {
   float bound;

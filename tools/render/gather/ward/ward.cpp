@@ -30,6 +30,7 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
   }
   std::vector<float> rates(in.vpls.size(), 0.5f);
   if (seen.empty()) return rates;
+  const auto phase = in.progress.before("visibility of VPLs", rates.size());
   parallelFor(rates.size(), 16, [&](size_t i) {
     uint32_t faced = 0, hits = 0;
     for (uint64_t k = 0; k < tests; ++k) {
@@ -40,6 +41,7 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
       hits += in.rays.occluded(in.rays.offsetOrigin(p.position, p.ng), in.vpls.position[i]) ? 0 : 1;
     }
     rates[i] = (static_cast<float>(hits) + 1.0f) / (static_cast<float>(faced) + 2.0f);
+    if (in.progress) in.progress(1);
   });
   return rates;
 }

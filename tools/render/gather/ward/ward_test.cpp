@@ -27,5 +27,13 @@ TEST(Ward, SavesShadowRays) {
   EXPECT_LT(rays("ward"), 0.6 * rays("all"));
 }
 
+TEST(Ward, TellsOfItsPreparations) {
+  const GatherCase& c = *gatherCases().front();
+  Preparations told;
+  const Values options = resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}}));
+  render(c.world.rays, c.world.lights, c.lit, options, told.progress);
+  EXPECT_EQ(told.names, std::vector<std::string>{"visibility of VPLs"});
+}
+
 }  // namespace
 }  // namespace bnvpl::test

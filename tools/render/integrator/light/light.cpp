@@ -12,7 +12,7 @@ namespace {
 constexpr std::array kOptions{kMaxBouncesOption};
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  const auto maxBounces = static_cast<unsigned>(options.whole("max-bounces"));
+  const unsigned maxBounces = maxBouncesOf(options);
   const bool photons = in.only != Only::Direct;
   const auto paths =
       std::make_shared<const PathTracer>(in.rays, in.lights, maxBounces, in.only, !photons);
@@ -34,6 +34,9 @@ const IntegratorMethod method{
     "light",
     "path tracing with indirect light by photons that are connected with the camera, for where "
     "paths hardly find the lights; takes no VPLs",
-    kOptions, make};
+    kOptions,
+    make,
+    /*needsVpls=*/false,
+    /*photons=*/true};
 
 }  // namespace bnvpl::methods::integrator::light

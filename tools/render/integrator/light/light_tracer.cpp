@@ -41,8 +41,8 @@ void LightTracer::follow(PhotonWalk photon, uint64_t index, Splats& out) const {
     rays_.closestHit(photon.next().origin, photon.next().direction, hit);
     const PhotonWalk before = photon;
     bool seen = false;
-    photon.advance(rays_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool straight) {
-      if (!straight) connect(bsdf.point(), flux, out);
+    photon.advance(rays_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
+      if (!firstBounce) connect(bsdf.point(), flux, out);
       seen = inSight(bsdf.point());
     });
     if (seen) return followBranches(before, hit, index, out);

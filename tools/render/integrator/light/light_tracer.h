@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// Photons from the lights; each rough vertex but those in straight light is connected with the
+// Photons from the lights; each rough vertex but those of first-bounce light is connected with the
 // camera. Brings the indirect light of points that the camera sees directly, unbiased and without
 // a radius; what it sees over mirrors, glass and sharp lobes is left to the PathTracer. Has the
 // path tracer's energy, and that of caustics of lights that no ray can hit besides. Rough

@@ -11,8 +11,8 @@ namespace {
 constexpr std::array kOptions{kMaxBouncesOption};
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  const auto tracer = std::make_shared<const PathTracer>(
-      in.rays, in.lights, static_cast<unsigned>(options.whole("max-bounces")), in.only);
+  const auto tracer =
+      std::make_shared<const PathTracer>(in.rays, in.lights, maxBouncesOf(options), in.only);
   return {[tracer](const TileSamples& tile) { tracer->render(tile); }};
 }
 

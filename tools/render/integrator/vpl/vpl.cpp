@@ -13,14 +13,17 @@ namespace bnvpl::methods::integrator::vpl {
 
 namespace {
 
+constexpr std::string_view kIndirect = "only=all|indirect";
 constexpr std::array kOptions{
-    choiceOption("light", "point", kLightKinds,
-                 "what a VPL is to what it lights: a point with a bound on 1/d^2, or a disk"),
-    realOption("clamp", "2", 0, 1000, "r_max",
-               "radius of a VPL: 1/d^2 of a point grows no further inside, a disk is so large"),
-    wholeOption("near-field-rays", "16", 1, 4096, "rays",
-                "by the BSDF from each shaded point: for --compensate, for light over specular "
-                "surfaces, and for half of the direct light")};
+    neededBy(kIndirect, choiceOption("light", "point", kLightKinds,
+                                     "what a VPL is to what it lights: a point with a bound on "
+                                     "1/d^2, or a disk")),
+    neededBy(kIndirect, realOption("clamp", "2", 0, 1000, "r_max",
+                                   "radius of a VPL: 1/d^2 of a point grows no further inside, a "
+                                   "disk is so large")),
+    wholeOption("near-field-rays", "16", 1, 4096, "",
+                "rays by the BSDF from each shaded point: for --compensate, for light over "
+                "specular surfaces, and for half of the direct light")};
 
 FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t seed) {
   const Scene& scene = rays.scene();
@@ -50,24 +53,33 @@ struct Parts {
   std::unique_ptr<const VplIntegrator> integrator;
 };
 
-Integrator make(const IntegratorInputs& in, const Values& options) {
-  const float clamp = options.real32("clamp");
-  const LightKind light = lightKindNamed(options.text("light"));
-  const auto parts = std::make_shared<Parts>();
-  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
-  parts->tree = buildLightTree(parts->vpls, in.seed);
+// With a point function.
+Gather makeGather(const IntegratorInputs& in, const Values& options, Parts& parts) {
+  parts.tree = buildLightTree(parts.vpls, in.seed);
   Gather gather = methodNamed(gatherMethods(), options.text("gather"))
-                      .make({in.rays, parts->vpls, parts->tree, in.seed,
+                      .make({in.rays, parts.vpls, parts.tree, in.seed,
                              [&rays = in.rays, &lights = in.lights, seed = in.seed] {
                                return tracePoints(rays, lights, seed);
-                             }},
+                             },
+                             in.progress},
                             options);
   if (!gather.point) {
-    parts->point = std::make_unique<PointGather>(in.rays, parts->vpls, parts->tree);
-    gather.point = [&point = *parts->point](const Bsdf& bsdf, unsigned draws, Rng& rng) {
+    parts.point = std::make_unique<PointGather>(in.rays, parts.vpls, parts.tree);
+    gather.point = [&point = *parts.point](const Bsdf& bsdf, unsigned draws, Rng& rng) {
       return point(bsdf, draws, rng);
     };
   }
+  return gather;
+}
+
+Integrator make(const IntegratorInputs& in, const Values& options) {
+  // Of direct light alone no VPL is asked, whatever it were.
+  const bool indirect = in.only != Only::Direct;
+  const float clamp = indirect ? options.real32("clamp") : 1.0f;
+  const LightKind light = indirect ? lightKindNamed(options.text("light")) : LightKind{};
+  const auto parts = std::make_shared<Parts>();
+  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
+  Gather gather = indirect ? makeGather(in, options, *parts) : Gather{};
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
                                   .make({in.lit, in.rays, clamp, light}, options);
   const bool wholePixels = gather.wholePixels;

@@ -125,12 +125,12 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
     const Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
     throughput *= end.throughput;
-    // Where a VPL knows the scattered light the path ends, so nothing shares the straight light
+    // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
     // with the shadow ray. Else it goes on, by roulette at full weight.
     const bool known = missing.scattered.has_value();
     const bool lit = known ? missing.share > 0.0f : rng.next() < missing.share;
     if (!lit) {
-      out.extended += light;
+      out.compensated += light;
       out.indirect += light;
       return;
     }
@@ -145,7 +145,7 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
       out.clamped += throughput * g.clamped;
       out.shadowRays += g.shadowRays;
     }
-    out.extended += light;
+    out.compensated += light;
     out.indirect += light;
     BsdfSample sample;
     Ray next;

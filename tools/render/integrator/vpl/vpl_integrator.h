@@ -12,7 +12,7 @@ namespace bnvpl {
 // is completed by sampled rays from the vertex (Compensation).
 class VplIntegrator {
  public:
-  // `gather` with a point function.
+  // `gather` with a point function; empty for direct light alone.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather,
                 Compensation compensation, unsigned nearFieldRays, Only only)
       : rays_(rays),
