@@ -108,8 +108,10 @@ def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[d
         for seed in range(1, case.seeds + 1):
             image = scene.parent / f"ours.{view.name}.{spp}spp.{seed}.exr"
             command = [options.vpl_render, str(scene), "-o", str(image), "--integrator", "path",
-                       "--only", view.quantity, "--max-bounces", str(view.bounces), "--spp",
-                       str(spp), "--seed", str(seed), "--threads", str(options.threads), "--quiet"]
+                       "--only", view.quantity, "--spp", str(spp), "--seed", str(seed), "--threads",
+                       str(options.threads), "--quiet"]
+            if view.quantity != "direct":  # which has no bounce
+                command += ["--max-bounces", str(view.bounces)]
             if not (options.reuse and image.is_file()):
                 image.unlink(missing_ok=True)
                 seconds += run(command, scene.parent / "ours.log", [image])
