@@ -27,7 +27,7 @@ Legend differenceLegend(double range) {
 
 }  // namespace
 
-Colour differenceColour(double value) {
+Rgb8 differenceColour(double value) {
   // Dark ends, a strong middle and white: distances look even and survive a grey print.
   constexpr std::array<std::array<double, 3>, 3> kBlue{
       {{255, 255, 255}, {90, 150, 235}, {15, 30, 120}}};
@@ -36,7 +36,7 @@ Colour differenceColour(double value) {
   const double t = 2.0 * std::min(std::fabs(value), 1.0);
   const auto& stops = value < 0.0 ? kBlue : kRed;
   const size_t from = t < 1.0 ? 0 : 1;
-  Colour colour{};
+  Rgb8 colour{};
   for (size_t k = 0; k < 3; ++k) {
     const double mixed =
         stops[from][k] + (stops[from + 1][k] - stops[from][k]) * (t - double(from));

@@ -13,6 +13,6 @@ namespace bnvpl {
 Picture differencePicture(const Layer& a, const Layer& b, double range, const Mask& mask = {});
 
 // The picture's colour for a value in [-1, 1]; values beyond are clamped.
-Colour differenceColour(double value);
+Rgb8 differenceColour(double value);
 
 }  // namespace bnvpl

@@ -49,7 +49,7 @@ Legend legendOf(const ErrorMap& map) {
 }
 
 // sRGB of Oklab (Ottosson 2020), in which equal steps look equal.
-Colour fromOklab(const std::array<double, 3>& c) {
+Rgb8 fromOklab(const std::array<double, 3>& c) {
   const auto cube = [&](double a, double b) {
     const double root = c[0] + a * c[1] + b * c[2];
     return root * root * root;
@@ -66,7 +66,7 @@ Colour fromOklab(const std::array<double, 3>& c) {
 
 }  // namespace
 
-Colour errorColour(double value) {
+Rgb8 errorColour(double value) {
   // Lightness rises in even steps; hue and chroma stay within what sRGB can show.
   constexpr std::array<std::array<double, 3>, 6> kStops{{{0.10, 0.007, -0.019},
                                                          {0.27, 0.051, -0.109},

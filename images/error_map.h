@@ -29,6 +29,6 @@ Picture errorPicture(const ErrorMap& map, int width, int height, const Mask& mas
 
 // From black for 0 over violet, red and orange to pale yellow for 1; lighter means more, also in a
 // grey print. Values beyond are clamped.
-Colour errorColour(double value);
+Rgb8 errorColour(double value);
 
 }  // namespace bnvpl

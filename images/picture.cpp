@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMargin = 14;  // left and right of the bar: half a number
 constexpr int kBarTop = 4, kBarHeight = 8, kTextTop = 15, kTitleTop = 26;
-constexpr Colour kInk{0, 0, 0};
+constexpr Rgb8 kInk{0, 0, 0};
 
 // Centred on x, but whole.
 void drawCentred(Picture& picture, const std::string& text, int x, int top) {
@@ -23,7 +23,7 @@ void drawCentred(Picture& picture, const std::string& text, int x, int top) {
 Picture::Picture(int w, int h)
     : width(w), height(h), rgb8(3 * static_cast<size_t>(w) * static_cast<size_t>(h), 255) {}
 
-void Picture::set(int x, int y, Colour colour) {
+void Picture::set(int x, int y, Rgb8 colour) {
   if (x < 0 || y < 0 || x >= width || y >= height) return;
   const size_t at =
       3 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x));
@@ -33,7 +33,7 @@ void Picture::set(int x, int y, Colour colour) {
 void drawLegend(Picture& picture, int top, const Legend& legend) {
   const int left = kMargin, right = picture.width - 1 - kMargin;
   for (int x = left; x <= right; ++x) {
-    const Colour colour = legend.colourAt(double(x - left) / double(right - left));
+    const Rgb8 colour = legend.colourAt(double(x - left) / double(right - left));
     for (int y = 0; y < kBarHeight; ++y) picture.set(x, top + kBarTop + y, colour);
   }
   const int last = static_cast<int>(legend.labels.size()) - 1;

@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-using Colour = std::array<uint8_t, 3>;  // 8-bit sRGB
+using Rgb8 = std::array<uint8_t, 3>;  // 8-bit sRGB
 
 // Row by row from the top, for writePng.
 struct Picture {
@@ -18,12 +18,12 @@ struct Picture {
 
   Picture() = default;
   Picture(int w, int h);                  // white
-  void set(int x, int y, Colour colour);  // nothing outside
+  void set(int x, int y, Rgb8 colour);  // nothing outside
 };
 
 // A bar of colours with a number below each of its marks, and a line of text below them.
 struct Legend {
-  std::function<Colour(double)> colourAt;  // 0 at the left end, 1 at the right one
+  std::function<Rgb8(double)> colourAt;  // 0 at the left end, 1 at the right one
   std::vector<std::string> labels;         // evenly spaced from end to end
   std::string title;                       // empty: no line
 };
@@ -34,6 +34,6 @@ inline constexpr int kMinLegendWidth = 180;     // five numbers need this much
 void drawLegend(Picture& picture, int top, const Legend& legend);
 
 // Pixels that a mask leaves out: grey, which is in no colour scale.
-inline constexpr Colour kLeftOut{128, 128, 128};
+inline constexpr Rgb8 kLeftOut{128, 128, 128};
 
 }  // namespace bnvpl
