@@ -17,15 +17,15 @@ struct Picture {
   std::vector<uint8_t> rgb8;
 
   Picture() = default;
-  Picture(int w, int h);                  // white
+  Picture(int w, int h);                // white
   void set(int x, int y, Rgb8 colour);  // nothing outside
 };
 
 // A bar of colours with a number below each of its marks, and a line of text below them.
 struct Legend {
   std::function<Rgb8(double)> colourAt;  // 0 at the left end, 1 at the right one
-  std::vector<std::string> labels;         // evenly spaced from end to end
-  std::string title;                       // empty: no line
+  std::vector<std::string> labels;       // evenly spaced from end to end
+  std::string title;                     // empty: no line
 };
 inline constexpr int kLegendHeight = 26;        // pixels added below an image
 inline constexpr int kTitledLegendHeight = 37;  // with a title

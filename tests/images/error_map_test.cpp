@@ -12,13 +12,13 @@
 namespace bnvpl {
 namespace {
 
-Colour pixel(const Picture& picture, int x, int y) {
+Rgb8 pixel(const Picture& picture, int x, int y) {
   const size_t at =
       3 * (static_cast<size_t>(y) * static_cast<size_t>(picture.width) + static_cast<size_t>(x));
   return {picture.rgb8[at], picture.rgb8[at + 1], picture.rgb8[at + 2]};
 }
 
-double lightness(Colour colour) {  // luminance orders as CIE lightness does
+double lightness(Rgb8 colour) {  // luminance orders as CIE lightness does
   const auto linear = [](uint8_t v) { return std::pow(v / 255.0, 2.2); };
   return 0.2126 * linear(colour[0]) + 0.7152 * linear(colour[1]) + 0.0722 * linear(colour[2]);
 }
@@ -78,7 +78,7 @@ TEST(ErrorMap, TheLegendHasTheBarNumbersAndTheName) {
   const auto ink = [&](int top, int bottom) {
     int count = 0;
     for (int y = top; y < bottom; ++y) {
-      for (int x = 0; x < picture.width; ++x) count += pixel(picture, x, y) == Colour{0, 0, 0};
+      for (int x = 0; x < picture.width; ++x) count += pixel(picture, x, y) == Rgb8{0, 0, 0};
     }
     return count;
   };

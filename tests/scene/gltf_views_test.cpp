@@ -32,13 +32,13 @@ TEST_F(GltfViews, TheFirstCameraIsTheScenes) {
 TEST_F(GltfViews, AnotherIsChosenByNameOrNumber) {
   for (const char* choice : {"Window", "1"}) {
     Scene s = load(twoCameras());
-    const uint64_t before = hashView(s);
+    const uint64_t before = hashView(s.camera, s.film);
     chooseCamera(choice, s);
     EXPECT_EQ(s.camera.position, Vec3(0, 0, -5));
     EXPECT_NEAR(s.camera.forward.z, 1.0f, 1e-6f);
     EXPECT_NEAR(s.camera.right.x, -1.0f, 1e-6f);
     EXPECT_EQ(s.film.width, 960u);
-    EXPECT_NE(hashView(s), before);
+    EXPECT_NE(hashView(s.camera, s.film), before);
   }
   Scene s = load(twoCameras());
   for (const char* choice : {"2", "Doors", "", "-1"})

@@ -7,10 +7,17 @@ namespace bnvpl::test {
 namespace {
 
 // The mix is material 0, as that is what points are made of; its parts follow.
+void addMaterial(Scene& scene, const char* name, const MaterialModel& model) {
+  Material m;
+  m.name = name;
+  m.model = model;
+  scene.materials.push_back(m);
+}
+
 Scene mixed(const MaterialModel& first, const MaterialModel& second, Scalar amount) {
   Scene scene = sceneOf(materialOf(MixModel{1, 2, amount}));
-  scene.materials.push_back({"first", first});
-  scene.materials.push_back({"second", second});
+  addMaterial(scene, "first", first);
+  addMaterial(scene, "second", second);
   return scene;
 }
 
@@ -49,8 +56,8 @@ TEST(Mix, TexturesChoose) {
 
 TEST(Mix, OfMixesEndsAtTheMostLobes) {
   Scene scene = mixed(MixModel{3, 3, 0.5f}, MixModel{3, 3, 0.5f}, 0.5f);
-  scene.materials.push_back({"third", MixModel{4, 4, 0.5f}});
-  scene.materials.push_back({"plastic", CoatedDiffuseModel{}});
+  addMaterial(scene, "third", MixModel{4, 4, 0.5f});
+  addMaterial(scene, "plastic", CoatedDiffuseModel{});
   const SurfacePoint p = seenFrom({0, 0, 1});
   EXPECT_LE(maxComponent(Bsdf(scene, p).roughAlbedo()), 1.0f);
   EXPECT_GT(maxComponent(Bsdf(scene, p).roughAlbedo()), 0.0f);
