@@ -101,8 +101,9 @@ void TomlSection::checkKnown(const std::string& key, const toml::node& node,
   if (std::find(known.begin(), known.end(), key) != known.end()) return;
   const auto distance = [&](const std::string& name) { return editDistance(key, name); };
   const std::string nearest = *std::ranges::min_element(known, {}, distance);
-  // A third of the letters may be wrong: what is farther was hardly meant.
-  if (3 * distance(nearest) <= std::max(key.size(), nearest.size()))
+  // Half of the letters may be wrong, as two that swapped places are: what is farther was not
+  // meant.
+  if (2 * distance(nearest) <= std::max(key.size(), nearest.size()))
     fail(node, "unknown key '" + key + "'; did you mean '" + nearest + "'?");
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
