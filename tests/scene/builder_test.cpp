@@ -280,8 +280,9 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
   loadMesh(kSquareObj, "");
   fs::copy_file(at("scene.toml"), at("SCENE.TOML"));
   EXPECT_EQ(error("SCENE.TOML"), "");
-  EXPECT_EQ(error("room.gltf"),
-            at("room.gltf").string() + ": is no scene file; scenes are read from .toml, .pbrt, .pbrt.gz");
+  EXPECT_EQ(error("room.fbx"), at("room.fbx").string() +
+                                   ": is no scene file; scenes are read from .toml, .pbrt, "
+                                   ".pbrt.gz, .gltf, .glb");
   EXPECT_NE(error("square.obj").find("the [[mesh]] of a .toml names an OBJ"),
             std::string::npos);
   EXPECT_NE(error("").find("is a folder"), std::string::npos);

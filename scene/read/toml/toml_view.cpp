@@ -31,11 +31,12 @@ Camera readCamera(const TomlSection& s, const FilePoint& position) {
 }  // namespace
 
 TomlView readTomlView(const fs::path& file, const toml::table& root) {
-  const TomlSection film(file, "[film]", tableOf(file, root, "film"), {"width", "height"});
+  const Film film = readFilm(
+      TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
   const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
                            {"position", "look_at", "forward", "up", "vertical_fov_deg"});
   const FilePoint position = camera.point("position");
-  return {readFilm(film), position, readCamera(camera, position)};
+  return {film, position, readCamera(camera, position)};
 }
 
 }  // namespace bnvpl

@@ -3,6 +3,7 @@
 
 #include "scene/read/pbrt/lexer.h"
 #include "tests/scene/pbrt/pbrt_files.h"
+#include "tests/support/world_triangles.h"
 
 namespace bnvpl {
 namespace {
@@ -134,7 +135,8 @@ TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
   const Scene scene =
       loadPbrt("WorldBegin Translate 0 0 1 ObjectBegin \"o\" Translate 0 1 0\n" + kSquareShape +
                "ObjectEnd\nObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\"");
-  EXPECT_EQ(scene.triangles.size(), 4u);
+  EXPECT_EQ(scene.triangles.size(), 2u);  // stored once
+  EXPECT_EQ(test::worldTriangles(scene).size(), 4u);
   expectNear(scene.bounds.lower, {-1, 0, 2}, 1e-5f);
   expectNear(scene.bounds.upper, {6, 2, 2}, 1e-5f);
 }

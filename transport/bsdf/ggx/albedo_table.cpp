@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "transport/bsdf/between_nodes.h"
 #include "transport/bsdf/fresnel.h"
 #include "transport/bsdf/ggx/ggx.h"
 
@@ -10,35 +11,20 @@ namespace bnvpl {
 
 namespace {
 
-// Nodes are denser where cosine and alpha are small: value = t^2 with t in [0, 1].
-constexpr size_t kCosines = 24, kAlphas = 16, kIors = 13;
+// Nodes are denser where cosine and alpha are small.
+constexpr size_t kCosines = 24, kAlphas = 28, kIors = 13;
 constexpr float kLeastCosine = 1e-4f, kLargestIor = 3.0f;
-float nodeSquared(size_t i, size_t count) {
-  const float t = static_cast<float>(i) / static_cast<float>(count - 1);
-  return t * t;
-}
-
-// Linear interpolation between nodes: the lower one, and the share of the upper.
-struct Between {
-  size_t node;
-  float share;
-  Between(float t, size_t count) {
-    const float x = std::clamp(t, 0.0f, 1.0f) * static_cast<float>(count - 1);
-    node = std::min(count - 2, static_cast<size_t>(x));
-    share = x - static_cast<float>(node);
-  }
-};
-Between ofCosine(float c) { return {std::sqrt(std::max(0.0f, c)), kCosines}; }
-Between ofAlpha(float a) { return {std::sqrt(std::max(0.0f, a)), kAlphas}; }
-Between ofIor(float ior) {
-  return {std::sqrt(std::max(0.0f, (ior - 1.0f) / (kLargestIor - 1.0f))), kIors};
+BetweenNodes ofCosine(float c) { return betweenSquared(c, kCosines); }
+BetweenNodes ofAlpha(float a) { return betweenSquared(a, kAlphas); }
+BetweenNodes ofIor(float ior) {
+  return betweenSquared((ior - 1.0f) / (kLargestIor - 1.0f), kIors);
 }
 
 // Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all. The
 // facets on either side of the plane of incidence mirror each other.
 template <typename Fn>
 void overVisibleFacets(float cosine, float alpha, const Fn& fn) {
-  constexpr uint32_t kPoints = 1024;
+  constexpr uint32_t kPoints = 512;
   const float co = std::max(kLeastCosine, cosine);
   const Vec3 wo{std::sqrt(1.0f - co * co), 0.0f, co};
   const Ggx ggx{std::max(kSmoothAlpha, alpha), std::max(kSmoothAlpha, alpha)};
@@ -95,11 +81,11 @@ struct SchlickTable {
     }
   }
   Parts row(size_t alpha, float cosine) const {
-    const Between c = ofCosine(cosine);
+    const BetweenNodes c = ofCosine(cosine);
     return mixed(parts[alpha][c.node], parts[alpha][c.node + 1], c.share);
   }
   Parts at(float cosine, float alpha) const {
-    const Between a = ofAlpha(alpha);
+    const BetweenNodes a = ofAlpha(alpha);
     return mixed(row(a.node, cosine), row(a.node + 1, cosine), a.share);
   }
   static const SchlickTable& get() {
@@ -109,7 +95,7 @@ struct SchlickTable {
 };
 
 float between(const std::array<float, kAlphas>& values, float alpha) {
-  const Between a = ofAlpha(alpha);
+  const BetweenNodes a = ofAlpha(alpha);
   return values[a.node] + (values[a.node + 1] - values[a.node]) * a.share;
 }
 
@@ -137,7 +123,7 @@ struct DielectricTable {
     }
   }
   static float inRow(const Row& row, float cosine) {
-    const Between c = ofCosine(cosine);
+    const BetweenNodes c = ofCosine(cosine);
     return row[c.node] + (row[c.node + 1] - row[c.node]) * c.share;
   }
   static const DielectricTable& get() {
@@ -149,7 +135,7 @@ struct DielectricTable {
 // fn(ior's node, alpha's node), interpolated.
 template <typename Fn>
 float overIorAndAlpha(float ior, float alpha, const Fn& fn) {
-  const Between k = ofIor(ior), a = ofAlpha(alpha);
+  const BetweenNodes k = ofIor(ior), a = ofAlpha(alpha);
   const auto row = [&](size_t node) {
     const float low = fn(node, a.node);
     return low + (fn(node, a.node + 1) - low) * a.share;
@@ -216,7 +202,7 @@ float schlickOverHemisphere(float cosine) {
     }
     return t;
   }();
-  const Between c = ofCosine(cosine);
+  const BetweenNodes c = ofCosine(cosine);
   return table[c.node] + (table[c.node + 1] - table[c.node]) * c.share;
 }
 

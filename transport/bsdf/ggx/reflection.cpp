@@ -47,4 +47,17 @@ Vec3 FacetFresnel::albedo(float cosine, float alpha) const {
   return {};
 }
 
+// Tables are of isotropic facets; what brushed ones reflect depends on the azimuth too.
+Vec3 GgxReflection::albedo(Vec3 wo) const {
+  if (smooth()) return fresnel.at(wo.z);
+  if (ggx.alongX == ggx.alongY) return fresnel.albedo(wo.z, ggx.alongX);
+  constexpr uint32_t kPoints = 32;
+  Vec3 sum;
+  for (uint32_t i = 0; i < kPoints; ++i) {
+    const Vec3 h = ggx.sampleVisible(wo, r2Sequence(i, 0.5, 0.5)), wi = reflect(wo, h);
+    if (wi.z > 0.0f) sum += fresnel.at(dot(wo, h)) * (ggx.visible(wo, wi) / ggx.visible(wo));
+  }
+  return sum * (1.0f / kPoints);
+}
+
 }  // namespace bnvpl

@@ -47,9 +47,7 @@ struct GgxReflection {
     out.wi = normalize(reflect(wo, ggx.sampleVisible(wo, at)));
     return out.wi.z > 0.0f;
   }
-  Vec3 albedo(Vec3 wo) const {
-    return smooth() ? fresnel.at(wo.z) : fresnel.albedo(wo.z, ggx.meanAlpha());
-  }
+  Vec3 albedo(Vec3 wo) const;
   Vec3 bound(Vec3 wo, float maxCosine, float cosMirror) const {
     return fresnel.most(wo) * ggx.reflectedBound(wo, maxCosine, cosMirror);
   }

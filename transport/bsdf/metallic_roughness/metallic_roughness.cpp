@@ -2,6 +2,7 @@
 
 #include "transport/bsdf/fresnel.h"
 #include "transport/bsdf/lobe_sum.h"
+#include "transport/bsdf/metallic_roughness/layered_albedo.h"
 
 namespace bnvpl {
 
@@ -15,7 +16,7 @@ Vec3 mixed(Vec3 a, Vec3 b, float share) { return a + (b - a) * share; }
 
 }  // namespace
 
-float LayeredBase::schlick(float cosine) { return schlickWeight(cosine); }
+float LayeredBase::layer(float cosine) const { return f0 + (f90 - f0) * schlickWeight(cosine); }
 
 float LayeredBase::unlayered(float cosine) const {
   if (!transmitted) return 1.0f - f0 - (f90 - f0) * schlickOverHemisphere(cosine);
@@ -58,6 +59,7 @@ bool LayeredBase::sample(Vec3 wo, float, Point2 at, LobeSample& out) const {
 }
 
 Vec3 LayeredBase::albedo(Vec3 wo) const {
+  if (!transmitted) return colour * layeredAlbedo(wo.z, f0, f90, alpha);
   const float base = smooth() ? 1.0f - layer(wo.z) : unlayered(wo.z);
   return colour * (base * kept(wo.z));
 }

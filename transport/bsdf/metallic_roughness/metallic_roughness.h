@@ -24,12 +24,12 @@ struct LayeredBase {
     return colour * (kept(wo.z) * std::max(0.0f, maxCosine) / kPi);
   }
 
+  float layer(float cosine) const;  // the layer's reflectance, at a facet
+  float kept(float cosine) const;   // theory.md, eq. 3
+
  private:
   Ggx ggx() const { return {alpha, alpha}; }
-  float layer(float cosine) const { return f0 + (f90 - f0) * schlick(cosine); }
-  static float schlick(float cosine);
   float unlayered(float cosine) const;  // albedo below fresnel_mix, of white
-  float kept(float cosine) const;
 };
 
 class LobeSum;

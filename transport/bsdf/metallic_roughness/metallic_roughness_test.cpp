@@ -71,6 +71,27 @@ TEST(MetallicRoughness, IsAppendixB) {
   }
 }
 
+// theory.md, eq. 4: what a VPL of this material sends on.
+TEST(MetallicRoughness, BaseSendsOnItsAlbedo) {
+  for (const float ior : {1.2f, 1.5f, 2.5f})
+    for (const float specular : {0.0f, 0.3f, 1.0f})
+      for (const float roughness : {0.0f, 0.2f, 0.7f, 0.95f})
+        for (const Vec3 wo : {views()[0], views()[1], views()[2], normalize({1, 0, 0.03f})}) {
+          const float normal = (ior - 1.0f) / (ior + 1.0f);
+          const LayeredBase base{Vec3(1), normal * normal * specular, specular,
+                                 roughness * roughness, false};
+          double sum = 0.0;
+          constexpr int kSide = 64;
+          for (int i = 0; i < kSide * kSide; ++i) {
+            const Vec3 wi = sampleCosineHemisphere((float(i % kSide) + 0.5f) / kSide,
+                                                   (float(i / kSide) + 0.5f) / kSide);
+            sum += double{base.value(wo, wi, Transport::Radiance).x} * double{kPi};
+          }
+          EXPECT_NEAR(base.albedo(wo).x, sum / (kSide * kSide), 0.005)
+              << ior << " " << specular << " " << roughness << " from " << wo.z;
+        }
+}
+
 // theory.md, eq. 3: at grazing angles the appendix gives more than arrives; here all is kept, and
 // no more.
 TEST(MetallicRoughness, WhiteStaysBelowWhatArrives) {

@@ -1,0 +1,27 @@
+// Tables whose nodes are denser near 0: value = t^2 with t evenly spaced in [0, 1].
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace bnvpl {
+
+inline float nodeSquared(size_t i, size_t count) {
+  const float t = static_cast<float>(i) / static_cast<float>(count - 1);
+  return t * t;
+}
+
+// Linear interpolation between two nodes: the lower one, and the share of the upper.
+struct BetweenNodes {
+  size_t node;
+  float share;
+};
+// Of a value in [0, 1], clamped.
+inline BetweenNodes betweenSquared(float value, size_t count) {
+  const float x = std::sqrt(std::clamp(value, 0.0f, 1.0f)) * static_cast<float>(count - 1);
+  const size_t node = std::min(count - 2, static_cast<size_t>(x));
+  return {node, x - static_cast<float>(node)};
+}
+
+}  // namespace bnvpl
