@@ -127,6 +127,9 @@ struct CoatedConductorModel {
 struct MetallicRoughnessModel {
   Colour baseColour{Vec3(1)};
   Scalar metallic{1.0f}, roughness{1.0f};
+  // Disney's: alpha is roughness^2 / a along growing u and roughness^2 a across, a^2 = 1 - 0.9
+  // anisotropy.
+  Scalar anisotropy{0.0f};
   Scalar ior{1.5f};  // 0: reflects all, as the extension has it
   Scalar specular{1.0f};
   Colour specularColour{Vec3(1)};
@@ -154,8 +157,10 @@ struct Relief {
   // Tangent-space normals as colours, linear (TextureUse::srgb false): n = 2 colour - 1, x along
   // growing u, y along growing v (v up), z outwards; `strength` scales x and y.
   uint32_t normalMap = kNone;  // into Scene::expressions
-  // Height along the outward normal: its first channel times `strength`, in scene units.
+  // Height along the outward normal: its first channel times `strength`, in scene units, or, as in
+  // MTL, in texels of the finest image: slopes then do not depend on how far it is stretched.
   uint32_t bumpMap = kNone;
+  bool heightInTexels = false;
   float strength = 1.0f;
   bool flat() const { return normalMap == kNone && bumpMap == kNone; }
 };

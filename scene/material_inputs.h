@@ -63,7 +63,7 @@ template <typename Fn>
 void forEachInput(const MetallicRoughnessModel& m, const Fn& fn) {
   fn(m.baseColour);
   fn(m.specularColour);
-  for (const Scalar& s : {m.metallic, m.roughness, m.ior, m.specular, m.clearcoat,
+  for (const Scalar& s : {m.metallic, m.roughness, m.anisotropy, m.ior, m.specular, m.clearcoat,
                           m.clearcoatRoughness, m.transmission})
     fn(s);
 }

@@ -43,6 +43,7 @@ void hashModel(Hasher& h, const Material& m) {
   };
   forEachInput(m, Inputs{h});
   for (const float f : {m.opacityCutoff, m.relief.strength}) h.value(f);
+  h.value(uint32_t{m.relief.heightInTexels});
 }
 
 void hashMaterial(Hasher& h, const Material& m) {

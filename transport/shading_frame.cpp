@@ -36,10 +36,11 @@ Vec3 bumpedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& 
   const TextureEvaluator texture(scene.expressions, scene.textures);
   const float step = texture.step(relief.bumpMap);
   const auto height = [&](float u, float v) { return texture.at(relief.bumpMap, u, v).x; };
-  const float scale = relief.strength / (2.0f * step);
+  const float scale = relief.strength / (relief.heightInTexels ? 2.0f : 2.0f * step);
   const float du = scale * (height(hit.u + step, hit.v) - height(hit.u - step, hit.v)),
               dv = scale * (height(hit.u, hit.v + step) - height(hit.u, hit.v - step));
-  const Vec3 u = dpdu - n * dot(n, dpdu), v = dpdv - n * dot(n, dpdv);
+  Vec3 u = dpdu - n * dot(n, dpdu), v = dpdv - n * dot(n, dpdv);
+  if (relief.heightInTexels) u = normalize(u), v = normalize(v);
   const Vec3 flat = cross(u, v), m = cross(u + n * du, v + n * dv);
   return normalize(dot(flat, n) < 0.0f ? -m : m);
 }

@@ -21,7 +21,8 @@ class ObjNames : public SceneFiles {
   std::vector<float> reds(const std::string& obj) const {
     const Scene scene = loadText(obj);
     std::vector<float> out;
-    for (const Triangle& t : scene.triangles) out.push_back(scene.materials[t.material].phong().diffuse.x);
+    for (const Triangle& t : scene.triangles)
+      out.push_back(scene.materials[t.material].phong().diffuse.x);
     return out;
   }
   static std::string paint(const std::string& name, const std::string& red) {
@@ -52,7 +53,8 @@ TEST_F(ObjNames, MaterialsMayHoldBlanks) {
 TEST_F(ObjNames, PartOfANameIsNotTheName) {
   write("a.mtl", paint("my", ".25") + paint("my  left", ".5"));
   const Scene scene = loadText("mtllib a.mtl\n" + kCorners + "usemtl my left\n" + kFace);
-  EXPECT_EQ(scene.materials.at(scene.triangles.at(0).material).phong().diffuse, Vec3(0.5f));  // grey
+  EXPECT_EQ(scene.materials.at(scene.triangles.at(0).material).phong().diffuse,
+            Vec3(0.5f));  // grey
   EXPECT_EQ(warning(scene, "grey"),
             at("m.obj").string() +
                 ": has faces without a known material; they are grey (Kd 0.5): "
@@ -204,12 +206,15 @@ TEST(Blender, RoomIsReadWhole) {
   fs::remove(toml);
   EXPECT_EQ(joined(scene.warnings), "");
   ASSERT_EQ(scene.materials.size(), 4u);
-  EXPECT_EQ(materialNamed(scene, "my_left").phong().diffuse, Vec3(.8f, .1f, .1f));
-  EXPECT_EQ(materialNamed(scene, "my.right_2").phong().diffuse, Vec3(.1f, .8f, .1f));
+  const auto base = [&](const char* name) {
+    return std::get<MetallicRoughnessModel>(materialNamed(scene, name).model).baseColour;
+  };
+  EXPECT_EQ(base("my_left").value, Vec3(.8f, .1f, .1f));
+  EXPECT_EQ(base("my.right_2").value, Vec3(.1f, .8f, .1f));
   EXPECT_EQ(materialNamed(scene, "Lampe__weiß.001").emission, Vec3(10));
-  const uint32_t map = materialNamed(scene, "Fußboden_Kachel").phong().diffuseMap;
+  const uint32_t map = base("Fußboden_Kachel").texture;
   ASSERT_NE(map, kNone);
-  EXPECT_EQ(scene.textures.at(map).lookup(.5f, .5f), Vec3(0, 0, 1));
+  EXPECT_EQ(scene.expressionAt(map, .5f, .5f), Vec3(0, 0, 1));
 }
 
 }  // namespace

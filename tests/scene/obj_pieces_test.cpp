@@ -129,7 +129,7 @@ TEST_F(Pieces, OddLinesAreReadAsInTheWhole) {
   };
   for (const std::string& text : texts) {
     write("square.obj", text);
-    const auto none = [](const fs::path&, const tinyobj::material_t&) {};
+    const auto none = [](const fs::path&, const tinyobj::material_t&, const MtlKeys&) {};
     const ObjReading whole = readObj(at("square.obj"), {}, none, text.size());
     for (const size_t bytes : {1u, 20u, 40u}) {
       const ObjReading pieces = readObj(at("square.obj"), {}, none, bytes);

@@ -78,6 +78,7 @@ class MaterialReport {
     add("base_colour", m.baseColour);
     add("metallic", m.metallic);
     add("roughness", m.roughness);
+    if (m.anisotropy.value > 0) add("anisotropy", m.anisotropy);
     add("ior", m.ior);
     if (m.specular.value != 1 || m.specular.texture != kNone) add("specular", m.specular);
     if (m.specularColour.value != Vec3(1) || m.specularColour.texture != kNone)
@@ -111,6 +112,7 @@ class MaterialReport {
     textures("normal", m.relief.normalMap);
     textures("bump", m.relief.bumpMap);
     json["relief_strength"] = m.relief.strength;
+    if (m.relief.heightInTexels) json["relief_unit"] = "texels";
   }
 
  private:

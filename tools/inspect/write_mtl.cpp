@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "core/number_text.h"
 #include "tools/inspect/write_scene.h"
@@ -6,6 +7,8 @@
 namespace bnvpl {
 
 namespace {
+
+constexpr float kF0PerKs = 0.08f;  // reflectance at normal incidence (docs/scene-format.md)
 
 std::string triple(Vec3 v) {
   return shortestText(v.x) + " " + shortestText(v.y) + " " + shortestText(v.z);
@@ -21,22 +24,33 @@ uint32_t plainImage(const Scene& scene, uint32_t expression) {
   return plain ? e.image : kNone;
 }
 
-// What is nearest to each model among Lambert, Phong lobe, mirror and glass. False: not the same.
-class NearestPhong {
+// What is nearest to each model among Lambert, Phong lobe, mirror, glass, and roughness and metal.
+class NearestMtl {
  public:
-  explicit NearestPhong(const Scene& scene) : scene_(scene) {}
+  explicit NearestMtl(const Scene& scene) : scene_(scene) {}
 
   PhongModel phong;
+  std::optional<MetallicRoughnessModel> facets;  // stated beside Kd, if any; specularColour is f0
   bool same = true;
 
   void operator()(const PhongModel& m) { phong = m; }
   void operator()(const DiffuseModel& m) { diffuse(m.reflectance, 1.0f); }
   void operator()(const MetallicRoughnessModel& m) {
-    same = false;
-    if (m.transmission.value > 0.5f) return glass(m.ior.value, m.baseColour.value);
-    diffuse(m.baseColour, 1.0f - m.metallic.value);
-    const float alpha = m.roughness.value * m.roughness.value;
-    lobe(m.metallic.value * m.baseColour.value, alpha);
+    if (m.transmission.value > 0.5f) {
+      same = false;
+      return glass(m.ior.value, m.baseColour.value);
+    }
+    facets = m;
+    const float normal = (m.ior.value - 1.0f) / (m.ior.value + 1.0f);
+    facets->specularColour.value = m.specularColour.value * (normal * normal * m.specular.value);
+    diffuse(m.baseColour, 1.0f);
+    for (const uint32_t texture :
+         {m.metallic.texture, m.roughness.texture, m.anisotropy.texture, m.specular.texture,
+          m.specularColour.texture, m.clearcoat.texture, m.clearcoatRoughness.texture})
+      same = same && texture == kNone;
+    same = same && m.transmission.value == 0.0f &&
+           (m.specular.value == 1.0f || m.metallic.value == 1.0f) &&
+           maxComponent(facets->specularColour.value) <= kF0PerKs;
   }
   void operator()(const ConductorModel& m) {
     same = false;
@@ -104,6 +118,15 @@ std::string mapLine(const Scene& scene, const char* key, uint32_t map) {
   return line + "textures/" + std::to_string(map) + ".png\n";
 }
 
+std::string facetsText(const Scene& scene, const MetallicRoughnessModel& m, const PhongModel& p) {
+  return "illum 2\nKd " + triple(p.diffuse) + "\nKs " +
+         triple(m.specularColour.value * (1.0f / kF0PerKs)) + "\nPr " +
+         shortestText(m.roughness.value) + "\nPm " + shortestText(m.metallic.value) + "\nPc " +
+         shortestText(m.clearcoat.value) + "\nPcr " + shortestText(m.clearcoatRoughness.value) +
+         "\naniso " + shortestText(m.anisotropy.value) + "\n" +
+         mapLine(scene, "map_Kd", p.diffuseMap);
+}
+
 std::string phongText(const Scene& scene, const PhongModel& p) {
   if (p.glass) {
     return "illum 7\nNi " + shortestText(p.ior) + "\nTf " + triple(p.transmission) + "\nKs " +
@@ -129,9 +152,11 @@ std::string mtlText(const Scene& scene, std::vector<std::string>& approximated) 
   std::string text;
   for (uint32_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
-    NearestPhong nearest(scene);
+    NearestMtl nearest(scene);
     std::visit(nearest, m.model);
-    text += "newmtl " + mtlName(scene, i) + "\n" + phongText(scene, nearest.phong);
+    text += "newmtl " + mtlName(scene, i) + "\n" +
+            (nearest.facets ? facetsText(scene, *nearest.facets, nearest.phong)
+                            : phongText(scene, nearest.phong));
     if (!isBlack(m.emission)) text += "Ke " + triple(m.emission) + "\n";
     if (m.twoSidedEmission) text += "emission_sides 2\n";
     if (m.opacity != 1.0f) text += "d " + shortestText(m.opacity) + "\n";

@@ -19,9 +19,11 @@ struct BetweenNodes {
 };
 // Of a value in [0, 1], clamped.
 inline BetweenNodes betweenSquared(float value, size_t count) {
-  const float x = std::sqrt(std::clamp(value, 0.0f, 1.0f)) * static_cast<float>(count - 1);
-  const size_t node = std::min(count - 2, static_cast<size_t>(x));
-  return {node, x - static_cast<float>(node)};
+  value = std::clamp(value, 0.0f, 1.0f);
+  const auto t = static_cast<size_t>(std::sqrt(value) * static_cast<float>(count - 1));
+  const size_t node = std::min(count - 2, t);
+  const float low = nodeSquared(node, count), high = nodeSquared(node + 1, count);
+  return {node, std::clamp((value - low) / (high - low), 0.0f, 1.0f)};
 }
 
 }  // namespace bnvpl

@@ -1,6 +1,7 @@
 #include "scene/read/gltf/materials.h"
 
 #include "scene/read/gltf/material_textures.h"
+#include "scene/read/see_through.h"
 
 namespace bnvpl {
 
@@ -109,7 +110,7 @@ class MaterialReader {
       m.opacityCutoff = real(from_.alphaCutoff);
       m.opacityTexture = textures_.alpha(base);
     } else if (from_.alphaMode == "BLEND" && alpha > 0.0f && alpha < 1.0f) {
-      blend(m, {alpha, textures_.alpha(base)});
+      addTransparency({alpha, textures_.alpha(base)}, builder_, m);
       warn("alphaMode BLEND: light goes straight through in proportion to alpha, but not to "
            "shadow rays");
     } else if (from_.alphaMode == "BLEND") {
@@ -118,20 +119,6 @@ class MaterialReader {
       if (m.opacityTexture != kNone)
         warn("alphaMode BLEND with a texture's alpha: cut away below 0.5, opaque above");
     }
-  }
-
-  // `amount` of the material beside what lets all light through.
-  void blend(Material& m, Scalar amount) {
-    Material clear;
-    clear.name = m.name + " (clear)";
-    DielectricModel nothing;
-    nothing.ior = 1.0f;
-    nothing.thin = true;
-    clear.model = nothing;
-    Material solid;
-    solid.name = m.name + " (solid)";
-    solid.model = m.model;
-    m.model = MixModel{builder_.addMaterial(clear), builder_.addMaterial(solid), amount};
   }
 
   const GltfModel& model_;

@@ -1,9 +1,8 @@
 #include "scene/read/obj/load_materials.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "core/files.h"
+#include "scene/read/obj/mtl_metallic_roughness.h"
 #include "scene/read/obj/obj_text.h"
 
 namespace bnvpl {
@@ -22,38 +21,6 @@ Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
 
 bool isGlass(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
 
-TextureUse describe(const MaterialSource& from, const std::string& field,
-                    const tinyobj::texture_option_t& options, bool srgb, bool mask) {
-  std::string name = field;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  TextureUse use;
-  use.file = (from.library.parent_path() / name).lexically_normal();
-  if (!isRegularFile(use.file)) {
-    const fs::path other = (from.obj.parent_path() / name).lexically_normal();
-    if (isRegularFile(other)) use.file = other;
-  }
-  use.srgb = srgb;
-  use.mask = mask;
-  const Vec3 scale = toVec3(options.scale), offset = toVec3(options.origin_offset);
-  use.scale = {scale.x, scale.y};
-  use.offset = {offset.x, offset.y};
-  return use;
-}
-
-// Sets the material's maps to number(use).
-template <typename Number>
-void setTextures(const MaterialSource& from, const tinyobj::material_t& in, Material& m,
-                 const Number& number) {
-  if (isGlass(in.illum)) return;
-  const auto give = [&](const std::string& field, const tinyobj::texture_option_t& options,
-                        bool srgb, bool mask, uint32_t& map) {
-    if (!field.empty()) map = number(describe(from, field, options, srgb, mask));
-  };
-  give(in.diffuse_texname, in.diffuse_texopt, true, false, m.phong().diffuseMap);
-  give(in.specular_texname, in.specular_texopt, true, false, m.phong().glossyMap);
-  give(in.alpha_texname, in.alpha_texopt, false, true, m.opacityMap);
-}
-
 void readGlass(const tinyobj::material_t& in, Vec3 ks, const std::string& where,
                SceneBuilder& builder, PhongModel& m) {
   m.glass = true;
@@ -66,17 +33,40 @@ void readGlass(const tinyobj::material_t& in, Vec3 ks, const std::string& where,
   m.transmission = isBlack(tf) ? Vec3{1, 1, 1} : min(tf, Vec3{1, 1, 1});
 }
 
-void readOpaque(const tinyobj::material_t& in, Vec3 ks, Material& m) {
+// illum 0 and 1 have no highlight, whatever Ks is.
+void readOpaque(const tinyobj::material_t& in, const MtlKeys& keys, Vec3 ks, Material& m) {
   PhongModel& p = m.phong();
+  if (keys.has("illum") && (in.illum == 0 || in.illum == 1)) ks = {};
   const bool mirror = in.illum == 3 || in.illum == 5 || in.illum == 8 ||
                       (isBlack(p.diffuse) && p.exponent >= kMirrorExponent);
   (mirror ? p.mirror : p.glossy) = ks;
-  m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
 }
 
-void readEmission(const tinyobj::material_t& in, const std::string& where, SceneBuilder& builder,
-                  Material& m) {
-  m.emission = nonNegative(toVec3(in.emission));
+void readPhong(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
+               const std::string& where, SceneBuilder& builder, Material& m) {
+  PhongModel& p = m.phong();
+  p.diffuse = nonNegative(toVec3(in.diffuse));
+  const Vec3 ks = nonNegative(toVec3(in.specular));
+  const auto exponent = static_cast<float>(in.shininess);
+  p.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMaxExponent) : 0.0f;
+  if (isGlass(in.illum)) return readGlass(in, ks, where, builder, p);
+  readOpaque(in, keys, ks, m);
+  m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
+  const float limit = maxComponent(p.diffuse + p.glossy + p.mirror);
+  const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
+  if (limit > 1.0f && !hasMap) {
+    builder.warn(where + "Kd + Ks exceeds 1; both are scaled down so that energy is conserved");
+  }
+  p.diffuseMap = maps.image(in.diffuse_texname, in.diffuse_texopt, true);
+  p.glossyMap = maps.image(in.specular_texname, in.specular_texopt, true);
+}
+
+void readEmission(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
+                  const std::string& where, SceneBuilder& builder, Material& m) {
+  const bool plainMap = !in.emissive_texname.empty() && !keys.has("Ke");
+  m.emission = plainMap ? Vec3(1) : nonNegative(toVec3(in.emission));
+  if (isBlack(m.emission)) return;
+  m.emissionTexture = maps.colour(in.emissive_texname, in.emissive_texopt);
   const auto sides = in.unknown_parameter.find("emission_sides");
   if (sides == in.unknown_parameter.end()) return;
   m.twoSidedEmission = firstLine(sides->second) == "2";
@@ -84,49 +74,74 @@ void readEmission(const tinyobj::material_t& in, const std::string& where, Scene
     builder.warn(where + "emission_sides must be 1 or 2; 1 is used");
 }
 
-void warnOfIgnored(const tinyobj::material_t& in, const std::string& where, SceneBuilder& builder) {
-  const std::pair<const std::string&, const char*> ignored[] = {
-      {in.bump_texname, "map_Bump (height map)"}, {in.normal_texname, "norm (normal map)"},
-      {in.displacement_texname, "disp"},          {in.emissive_texname, "map_Ke"},
-      {in.specular_highlight_texname, "map_Ns"},  {in.reflection_texname, "refl"}};
-  for (const auto& [name, field] : ignored) {
-    if (!name.empty()) builder.warn(where + field + " is ignored");
+// Blender writes normal maps as map_Bump.
+void readRelief(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
+                Material& m) {
+  Relief& relief = m.relief;
+  const auto multiplier = static_cast<float>(in.bump_texopt.bump_multiplier);
+  const float strength = std::isfinite(multiplier) ? multiplier : 1.0f;
+  if (!in.normal_texname.empty()) {
+    relief.normalMap = maps.data(in.normal_texname, in.normal_texopt, Channel::Rgb);
+  } else if (keys.blender) {
+    relief.normalMap = maps.data(in.bump_texname, in.bump_texopt, Channel::Rgb);
+    relief.strength = strength;
+  } else {
+    relief.bumpMap = maps.data(in.bump_texname, in.bump_texopt);
+    relief.heightInTexels = true;
+    relief.strength = strength;
   }
+  if (relief.flat()) relief = {};
+}
+
+void warnOfIgnored(const tinyobj::material_t& in, const MtlKeys& keys, const std::string& where,
+                   SceneBuilder& builder) {
+  const auto ignored = [&](const std::string& name, const char* field) {
+    if (!name.empty()) builder.warn(where + field + " is ignored");
+  };
+  ignored(in.displacement_texname, "disp");
+  ignored(in.reflection_texname, "refl");
+  if (!keys.metallicRoughness()) ignored(in.specular_highlight_texname, "map_Ns");
+  if (!in.normal_texname.empty() && !keys.blender) ignored(in.bump_texname, "map_Bump beside norm");
 }
 
 }  // namespace
 
 void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder) {
-  Material unused;
-  setTextures(from, in, unused, [&](const TextureUse& use) {
-    builder.expectTexture(use);
-    return kNone;
-  });
+  const MtlMaps maps(from, builder, true);
+  const bool facets = from.keys.metallicRoughness();
+  if (!facets && isGlass(in.illum)) return;
+  maps.image(in.diffuse_texname, in.diffuse_texopt, true);
+  maps.image(in.specular_texname, in.specular_texopt, !facets);
+  maps.image(in.alpha_texname, in.alpha_texopt, false, true);
+  maps.image(in.emissive_texname, in.emissive_texopt, true);
+  maps.image(in.bump_texname, in.bump_texopt, false);
+  maps.image(in.normal_texname, in.normal_texopt, false);
+  if (!facets) return;
+  maps.image(in.roughness_texname, in.roughness_texopt, false);
+  maps.image(in.metallic_texname, in.metallic_texopt, false);
+  maps.image(in.specular_highlight_texname, in.specular_highlight_texopt, false);
 }
 
 uint32_t addMaterial(const MaterialSource& from, const tinyobj::material_t& in,
                      SceneBuilder& builder) {
   const std::string where = from.library.string() + ": material '" + in.name + "': ";
+  const MtlMaps maps(from, builder, false);
+  const bool facets = from.keys.metallicRoughness();
   Material m;
   m.name = in.name;
-  PhongModel& p = m.phong();
-  p.diffuse = nonNegative(toVec3(in.diffuse));
-  const Vec3 ks = nonNegative(toVec3(in.specular));
-  const auto exponent = static_cast<float>(in.shininess);
-  p.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMaxExponent) : 0.0f;
-  if (isGlass(in.illum))
-    readGlass(in, ks, where, builder, p);
+  if (facets)
+    readMetallicRoughness(
+        in, from.keys, maps, builder, [&](const std::string& text) { builder.warn(where + text); },
+        m);
   else
-    readOpaque(in, ks, m);
-  const float limit = maxComponent(p.diffuse + p.glossy + (p.glass ? Vec3{} : p.mirror));
-  const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
-  if (limit > 1.0f && !hasMap) {
-    builder.warn(where + "Kd + Ks exceeds 1; both are scaled down so that energy is conserved");
+    readPhong(in, from.keys, maps, where, builder, m);
+  readEmission(in, from.keys, maps, where, builder, m);
+  if (facets || !isGlass(in.illum)) {
+    readRelief(in, from.keys, maps, m);
+    m.opacityMap = maps.image(in.alpha_texname, in.alpha_texopt, false, true);
   }
-  readEmission(in, where, builder, m);
-  setTextures(from, in, m, [&](const TextureUse& use) { return builder.addTexture(use); });
-  warnOfIgnored(in, where, builder);
+  warnOfIgnored(in, from.keys, where, builder);
   return builder.addMaterial(std::move(m));
 }
 

@@ -1,6 +1,7 @@
 // Materials of MTL libraries -> those of a scene. docs/scene-format.md says how fields are read.
 #pragma once
 
+#include "scene/read/obj/mtl_keys.h"
 #include "scene/read/obj/tinyobj.h"
 #include "scene/scene_builder.h"
 
@@ -10,6 +11,7 @@ namespace bnvpl {
 struct MaterialSource {
   const fs::path& library;
   const fs::path& obj;
+  const MtlKeys& keys;  // that the material states
 };
 
 // Textures that will be wanted, to be read while the mesh is.

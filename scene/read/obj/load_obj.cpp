@@ -25,7 +25,8 @@ std::vector<uint32_t> addMaterials(const fs::path& obj, const ObjReading& readin
   std::vector<uint32_t> numbers(used.size(), kNone);
   for (size_t i = 0; i < used.size(); ++i) {
     if (used[i])
-      numbers[i] = addMaterial({libraries.libraryOf[i], obj}, libraries.materials[i], builder);
+      numbers[i] = addMaterial({libraries.libraryOf[i], obj, libraries.keysOf[i]},
+                               libraries.materials[i], builder);
   }
   return numbers;
 }
@@ -96,9 +97,10 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
     throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
   }
   builder.addFile(obj);
-  ObjReading reading =
-      readObj(obj, materials, [&](const fs::path& library, const tinyobj::material_t& material) {
-        expectTextures({library, obj}, material, builder);
+  ObjReading reading = readObj(
+      obj, materials,
+      [&](const fs::path& library, const tinyobj::material_t& material, const MtlKeys& keys) {
+        expectTextures({library, obj, keys}, material, builder);
       });
   for (const fs::path& library : reading.libraries.missing)
     builder.warn(library.string() + ": no such material library; its materials are grey");

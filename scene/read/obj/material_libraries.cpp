@@ -49,15 +49,19 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
   // Once: an OBJ can name one library in many ways, as often as it has lines.
   if (std::find(read.begin(), read.end(), library) != read.end()) return;
   read.push_back(library);
-  std::istringstream in(logicalLines(readText(library)));
+  const std::string text = logicalLines(readText(library));
+  const std::map<std::string, MtlKeys> keys = mtlKeys(text);
+  std::istringstream in(text);
   std::map<std::string, int> byName;
   std::string warnings, errors;
   tinyobj::LoadMtl(&byName, &materials, &in, &warnings, &errors);
   for (size_t i = libraryOf.size(); i < materials.size(); ++i) {
     tinyobj::material_t& m = materials[i];
     m.name = std::string(trimmed(m.name));
+    const auto stated = keys.find(m.name);
+    keysOf.push_back(stated == keys.end() ? MtlKeys{} : stated->second);
     if (numbers.try_emplace(oneWord(m.name), static_cast<int>(i)).second)  // the first of a name
-      onMaterial(library, m);
+      onMaterial(library, m, keysOf.back());
   }
   libraryOf.resize(materials.size(), library);
 }

@@ -8,13 +8,15 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "scene/read/obj/mtl_keys.h"
 #include "scene/read/obj/tinyobj.h"
 
 namespace bnvpl {
 
 class MaterialLibraries {
  public:
-  using OnMaterial = std::function<void(const fs::path& library, const tinyobj::material_t&)>;
+  using OnMaterial =
+      std::function<void(const fs::path& library, const tinyobj::material_t&, const MtlKeys&)>;
 
   // What follows an mtllib: one library whose name may hold blanks, if there is such a file in the
   // folder; else several, each a word. Each library is read once.
@@ -28,6 +30,7 @@ class MaterialLibraries {
 
   std::vector<tinyobj::material_t> materials;
   std::vector<fs::path> libraryOf;     // of each material
+  std::vector<MtlKeys> keysOf;         // of each
   std::map<std::string, int> numbers;  // of the materials, by their names as one word: obj_text.h
   std::vector<fs::path> read;
   std::set<fs::path> missing;

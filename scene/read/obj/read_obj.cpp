@@ -131,8 +131,9 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
                 kTooLarge);
 
   ObjReading out;
-  const auto ifAsked = [&](const fs::path& library, const tinyobj::material_t& material) {
-    if (std::ranges::binary_search(lines.materials, material.name)) expect(library, material);
+  const auto ifAsked = [&](const fs::path& library, const tinyobj::material_t& material,
+                           const MtlKeys& keys) {
+    if (std::ranges::binary_search(lines.materials, material.name)) expect(library, material, keys);
   };
   if (!materials.empty()) {
     out.libraries.readFile(materials, ifAsked);

@@ -16,9 +16,7 @@ constexpr size_t kCosines = 24, kAlphas = 28, kIors = 13;
 constexpr float kLeastCosine = 1e-4f, kLargestIor = 3.0f;
 BetweenNodes ofCosine(float c) { return betweenSquared(c, kCosines); }
 BetweenNodes ofAlpha(float a) { return betweenSquared(a, kAlphas); }
-BetweenNodes ofIor(float ior) {
-  return betweenSquared((ior - 1.0f) / (kLargestIor - 1.0f), kIors);
-}
+BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kLargestIor - 1.0f), kIors); }
 
 // Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all. The
 // facets on either side of the plane of incidence mirror each other.

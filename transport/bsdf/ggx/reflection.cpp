@@ -51,13 +51,14 @@ Vec3 FacetFresnel::albedo(float cosine, float alpha) const {
 Vec3 GgxReflection::albedo(Vec3 wo) const {
   if (smooth()) return fresnel.at(wo.z);
   if (ggx.alongX == ggx.alongY) return fresnel.albedo(wo.z, ggx.alongX);
-  constexpr uint32_t kPoints = 32;
+  constexpr int kSide = 8;
   Vec3 sum;
-  for (uint32_t i = 0; i < kPoints; ++i) {
-    const Vec3 h = ggx.sampleVisible(wo, r2Sequence(i, 0.5, 0.5)), wi = reflect(wo, h);
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const Point2 middle{(float(i % kSide) + 0.5f) / kSide, (float(i / kSide) + 0.5f) / kSide};
+    const Vec3 h = ggx.sampleVisible(wo, middle), wi = reflect(wo, h);
     if (wi.z > 0.0f) sum += fresnel.at(dot(wo, h)) * (ggx.visible(wo, wi) / ggx.visible(wo));
   }
-  return sum * (1.0f / kPoints);
+  return sum * (1.0f / (kSide * kSide));
 }
 
 }  // namespace bnvpl

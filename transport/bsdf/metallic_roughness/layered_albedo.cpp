@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kCosines = 14, kF0s = 6, kF90s = 3, kAlphas = 10;
+constexpr size_t kCosines = 18, kF0s = 6, kF90s = 4, kAlphas = 16;
 constexpr int kPolar = 12, kAzimuths = 12;  // of the quadrature; half the circle, by symmetry
 
 using OverCosine = std::array<float, kCosines>;

@@ -4,7 +4,7 @@
 
 namespace bnvpl {
 
-// All arguments 0..1; within 0.005 of the integral. Tables are made at first use.
+// All arguments 0..1; within 0.01 of the integral. Tables are made at first use.
 float layeredAlbedo(float cosine, float f0, float f90, float alpha);
 
 }  // namespace bnvpl

@@ -72,7 +72,11 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
   const float normal = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   const Vec3 f0 =
       min(Vec3(1), max(Vec3(), inputs.raw(model.specularColour)) * (normal * normal)) * specular;
-  const Ggx ggx = ggxOf(Roughness(model.roughness, Roughness::Alpha::Square), inputs);
+  Ggx ggx = ggxOf(Roughness(model.roughness, Roughness::Alpha::Square), inputs);
+  if (const float anisotropy = inputs.share(model.anisotropy); anisotropy > 0.0f && !ggx.smooth()) {
+    const float aspect = std::sqrt(1.0f - 0.9f * anisotropy);
+    ggx = {std::min(1.0f, ggx.alongX / aspect), std::max(kSmoothAlpha, ggx.alongY * aspect)};
+  }
 
   const float clearcoat = inputs.share(model.clearcoat);
   const Ggx coat = ggxOf(Roughness(model.clearcoatRoughness, Roughness::Alpha::Square), inputs);

@@ -1,0 +1,37 @@
+// Textures of an MTL's material.
+#pragma once
+
+#include "scene/read/obj/load_materials.h"
+
+namespace bnvpl {
+
+class MtlMaps {
+ public:
+  // `expectOnly`: textures are announced to the builder, and all numbers are kNone.
+  MtlMaps(const MaterialSource& from, SceneBuilder& builder, bool expectOnly)
+      : from_(from), builder_(builder), expectOnly_(expectOnly) {}
+
+  // Into Scene::textures; kNone without a name.
+  uint32_t image(const std::string& field, const tinyobj::texture_option_t& options, bool srgb,
+                 bool mask = false) const;
+  // Into Scene::expressions. Colours are sRGB, data linear, masks as opacities are.
+  uint32_t colour(const std::string& field, const tinyobj::texture_option_t& options) const {
+    return expression(image(field, options, true), Channel::Rgb);
+  }
+  uint32_t data(const std::string& field, const tinyobj::texture_option_t& options,
+                Channel channel = Channel::Mean) const {
+    return expression(image(field, options, false), channel);
+  }
+
+ private:
+  uint32_t expression(uint32_t image, Channel channel) const {
+    return image == kNone ? kNone : builder_.addExpression(imageExpression(image, channel));
+  }
+  TextureUse describe(const std::string& field, const tinyobj::texture_option_t& options) const;
+
+  const MaterialSource& from_;
+  SceneBuilder& builder_;
+  bool expectOnly_;
+};
+
+}  // namespace bnvpl
