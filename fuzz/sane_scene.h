@@ -102,6 +102,7 @@ inline void requireSane(const Scene& s) {
   require(isFinite(c.position) && isUnit(c.forward) && isUnit(c.right) && isUnit(c.up) &&
               std::fabs(dot(c.forward, c.right)) < 1e-3f && std::fabs(dot(c.forward, c.up)) < 1e-3f,
           "the camera is orthonormal");
+  require(std::isfinite(c.shift[0]) && std::isfinite(c.shift[1]), "the lens is shifted by numbers");
   require(c.verticalFovRad > 0 && c.verticalFovRad < 3.15f, "the field of view is an angle");
   for (const EnvironmentImage& e : s.environments) requireSane(e);
   for (const LightSpec& l : s.lights) {

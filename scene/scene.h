@@ -21,11 +21,13 @@ struct Film {
   uint32_t width = 640, height = 480;  // pixels
 };
 
-// Pinhole. Pixel (0, 0) is the top left one.
+// Pinhole. Pixel (0, 0) is the top left one. The film's centre lies `shift` film heights to the
+// right of the viewing axis and above it: not 0 of crops and shifted lenses.
 struct Camera {
   Vec3 position;
   Vec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};  // orthonormal
-  float verticalFovRad = 1.0f;
+  float verticalFovRad = 1.0f;                           // of the film, were it not shifted
+  std::array<float, 2> shift{};
 };
 
 // A camera of the scene's file, and the film that it asks for.

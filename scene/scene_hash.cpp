@@ -116,6 +116,7 @@ uint64_t hashView(const Camera& c, const Film& film) {
   Hasher h;
   for (const Vec3 v : {c.position, c.forward, c.right, c.up}) h.value(v);
   h.value(c.verticalFovRad);
+  if (c.shift != std::array<float, 2>{}) h.value(c.shift[0]), h.value(c.shift[1]);
   h.value(film.width);
   h.value(film.height);
   return h.digest();

@@ -11,8 +11,9 @@ namespace bnvpl {
 inline Vec3 cameraDirection(const Camera& camera, const Film& film, float x, float y) {
   const float tanHalf = std::tan(0.5f * camera.verticalFovRad);
   const float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
-  return normalize(camera.forward + camera.right * ((2.0f * x - 1.0f) * tanHalf * aspect) +
-                   camera.up * ((1.0f - 2.0f * y) * tanHalf));
+  const float right = (2.0f * x - 1.0f) * tanHalf * aspect + 2.0f * camera.shift[0] * tanHalf;
+  const float up = (1.0f - 2.0f * y) * tanHalf + 2.0f * camera.shift[1] * tanHalf;
+  return normalize(camera.forward + camera.right * right + camera.up * up);
 }
 
 // Film position of a point in the same coordinates and its distance along the viewing axis, which
@@ -25,8 +26,9 @@ inline FilmPoint projectToFilm(const Camera& camera, const Film& film, Vec3 p) {
   const float depth = dot(d, camera.forward);
   const float tanHalf = std::tan(0.5f * camera.verticalFovRad);
   const float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
-  return {0.5f + 0.5f * dot(d, camera.right) / (depth * tanHalf * aspect),
-          0.5f - 0.5f * dot(d, camera.up) / (depth * tanHalf), depth};
+  return {
+      0.5f + 0.5f * dot(d, camera.right) / (depth * tanHalf * aspect) - camera.shift[0] / aspect,
+      0.5f - 0.5f * dot(d, camera.up) / (depth * tanHalf) + camera.shift[1], depth};
 }
 
 // Area of a pixel on the plane at distance 1 along the viewing axis.

@@ -283,8 +283,7 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
   EXPECT_EQ(error("room.fbx"), at("room.fbx").string() +
                                    ": is no scene file; scenes are read from .toml, .pbrt, "
                                    ".pbrt.gz, .gltf, .glb");
-  EXPECT_NE(error("square.obj").find("the [[mesh]] of a .toml names an OBJ"),
-            std::string::npos);
+  EXPECT_NE(error("square.obj").find("the [[mesh]] of a .toml names an OBJ"), std::string::npos);
   EXPECT_NE(error("").find("is a folder"), std::string::npos);
 }
 

@@ -15,8 +15,8 @@ void expectCorners(const Scene& s, uint32_t triangle, const std::array<Vec3, 3>&
   ASSERT_LT(triangle, triangles.size());
   for (size_t k = 0; k < 3; ++k) {
     const Vec3 p = triangles[triangle][k];
-    EXPECT_LT(length(p - corners[k]), 1e-5f) << "triangle " << triangle << ", corner " << k << ": "
-                                             << p.x << " " << p.y << " " << p.z;
+    EXPECT_LT(length(p - corners[k]), 1e-5f)
+        << "triangle " << triangle << ", corner " << k << ": " << p.x << " " << p.y << " " << p.z;
   }
 }
 const std::array<Vec3, 3> kAsWritten{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}};
@@ -39,8 +39,9 @@ TEST_F(GltfGeometry, ReadsIndicesOfAllTypesAndStrides) {
   const std::vector<uint8_t> bytes{2, 1, 0};
   const std::vector<uint16_t> shorts{2, 1, 0};
   const std::vector<uint32_t> words{2, 1, 0};
-  for (const auto& [data, type] : {std::pair{bytesOf(bytes), 5121}, std::pair{bytesOf(shorts), 5123},
-                                   std::pair{bytesOf(words), 5125}}) {
+  for (const auto& [data, type] :
+       {std::pair{bytesOf(bytes), 5121}, std::pair{bytesOf(shorts), 5123},
+        std::pair{bytesOf(words), 5125}}) {
     Gltf g = cornerGltf();
     g.addMesh("{\"attributes\":{\"POSITION\":0},\"indices\":" +
               std::to_string(g.addAccessor(data, 3, "SCALAR", type)) + "}");
@@ -78,8 +79,9 @@ TEST_F(GltfGeometry, SplitsStripsAndFansWithTheirWindings) {
 
 TEST_F(GltfGeometry, LeavesOutPointsAndLines) {
   Gltf g = cornerGltf();
-  g.addMesh("{\"attributes\":{\"POSITION\":0}},{\"attributes\":{\"POSITION\":0},\"mode\":0},"
-            "{\"attributes\":{\"POSITION\":0},\"mode\":3}");
+  g.addMesh(
+      "{\"attributes\":{\"POSITION\":0}},{\"attributes\":{\"POSITION\":0},\"mode\":0},"
+      "{\"attributes\":{\"POSITION\":0},\"mode\":3}");
   g.show("{\"mesh\":0}");
   const Scene s = load(g);
   EXPECT_EQ(s.triangles.size(), 1u);
@@ -106,15 +108,17 @@ TEST_F(GltfGeometry, ReadsNormalsAndTurnsTextureCoordinatesOver) {
 
 TEST_F(GltfGeometry, ReadsQuantizedAttributes) {
   Gltf h;
-  const size_t view = h.addView(
-      bytesOf(std::vector<int16_t>{0, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0}), ",\"byteStride\":8");
+  const size_t view =
+      h.addView(bytesOf(std::vector<int16_t>{0, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0}),
+                ",\"byteStride\":8");
   h.add("accessors", "{\"bufferView\":" + std::to_string(view) +
                          ",\"componentType\":5122,\"normalized\":true,\"count\":3,"
                          "\"type\":\"VEC3\"}");
   h.addMesh("{\"attributes\":{\"POSITION\":0}}");
   h.show("{\"mesh\":0}");
-  h.more = ",\"extensionsUsed\":[\"KHR_mesh_quantization\"],"
-           "\"extensionsRequired\":[\"KHR_mesh_quantization\"]";
+  h.more =
+      ",\"extensionsUsed\":[\"KHR_mesh_quantization\"],"
+      "\"extensionsRequired\":[\"KHR_mesh_quantization\"]";
   expectCorners(load(h), 0, kAsWritten);
 }
 
@@ -126,8 +130,8 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
   const std::string sparse =
       ",\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{"
       "\"bufferView\":" +
-      std::to_string(places) + ",\"componentType\":5123},\"values\":{\"bufferView\":" +
-      std::to_string(values) + "}}}";
+      std::to_string(places) +
+      ",\"componentType\":5123},\"values\":{\"bufferView\":" + std::to_string(values) + "}}}";
   g.add("accessors", "{\"bufferView\":" + std::to_string(base) + sparse);
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
   g.show("{\"mesh\":0}");
@@ -136,9 +140,10 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
   Gltf zeros;  // over nothing: 0 but for what is sparse
   zeros.addView(bytesOf(std::vector<uint8_t>{1, 2}));
   zeros.addView(floats({1, 0, 0, 0, 1, 0}));
-  zeros.add("accessors",
-            "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"
-            "\"indices\":{\"bufferView\":0,\"componentType\":5121},\"values\":{\"bufferView\":1}}}");
+  zeros.add(
+      "accessors",
+      "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"
+      "\"indices\":{\"bufferView\":0,\"componentType\":5121},\"values\":{\"bufferView\":1}}}");
   zeros.addMesh("{\"attributes\":{\"POSITION\":0}}");
   zeros.show("{\"mesh\":0}");
   expectCorners(load(zeros), 0, kAsWritten);
@@ -148,8 +153,9 @@ TEST_F(GltfGeometry, PlacesNodesUnderTheirParents) {
   Gltf g = cornerGltf();
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
   // A quarter turn about z, then twice as large, then moved; the parent's matrix moves along x.
-  const size_t child = g.add("nodes", "{\"mesh\":0,\"translation\":[0,0,3],\"scale\":[2,2,2],"
-                                      "\"rotation\":[0,0,0.70710678,0.70710678]}");
+  const size_t child = g.add("nodes",
+                             "{\"mesh\":0,\"translation\":[0,0,3],\"scale\":[2,2,2],"
+                             "\"rotation\":[0,0,0.70710678,0.70710678]}");
   g.show("{\"children\":[" + std::to_string(child) +
          "],\"matrix\":[1,0,0,0, 0,1,0,0, 0,0,1,0, 10,0,0,1]}");
   expectCorners(load(g), 0, {Vec3{10, 0, 3}, Vec3{10, 2, 3}, Vec3{8, 0, 3}});
@@ -167,9 +173,10 @@ TEST_F(GltfGeometry, StoresAMeshOnceForAllItsNodesAndInstances) {
   const size_t moves = g.addAccessor(floats({1, 0, 0, 0, 0, 7}), 2, "VEC3");
   const size_t scales = g.addAccessor(floats({1, 1, 1, 3, 3, 3}), 2, "VEC3");
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
-  g.show("{\"mesh\":0,\"translation\":[0,5,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
-         "\"attributes\":{\"TRANSLATION\":" +
-         std::to_string(moves) + ",\"SCALE\":" + std::to_string(scales) + "}}}}");
+  g.show(
+      "{\"mesh\":0,\"translation\":[0,5,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+      "\"attributes\":{\"TRANSLATION\":" +
+      std::to_string(moves) + ",\"SCALE\":" + std::to_string(scales) + "}}}}");
   g.show("{\"mesh\":0}");
   const Scene s = load(g);
   ASSERT_EQ(s.triangles.size(), 1u);
@@ -195,6 +202,39 @@ TEST_F(GltfGeometry, ReadsTheDefaultSceneAndSaysSo) {
       << joined(s.warnings);
 }
 
+// The joint has moved by (0, 0, 2) since the mesh was bound to it at (0, 0, 1); half of the last
+// vertex stays with the other joint. The transform of the mesh's own node has no meaning.
+TEST_F(GltfGeometry, JointsPlaceASkinnedMesh) {
+  Gltf g = cornerGltf();
+  const size_t joints = g.addAccessor(
+      bytesOf(std::vector<uint8_t>{0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}), 3, "VEC4", 5121);
+  const size_t weights = g.addAccessor(floats({1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0}), 3, "VEC4");
+  const size_t inverses = g.addAccessor(floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 1,  //
+                                                1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0,  1}),
+                                        2, "MAT4");
+  g.addMesh("{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":" + std::to_string(joints) +
+            ",\"WEIGHTS_0\":" + std::to_string(weights) + "}}");
+  g.add("skins", "{\"joints\":[1,2],\"inverseBindMatrices\":" + std::to_string(inverses) + "}");
+  g.show("{\"mesh\":0,\"skin\":0,\"translation\":[9,9,9]}");
+  g.show("{\"translation\":[0,0,3]}");
+  g.show("{\"translation\":[0,0,0]}");
+  expectCorners(load(g), 0, {Vec3{0, 0, 2}, Vec3{1, 0, 2}, Vec3{0, 1, 1}});
+}
+
+TEST_F(GltfGeometry, MorphTargetsHaveTheirWeights) {
+  Gltf g = cornerGltf();
+  const size_t target = g.addAccessor(floats({0, 0, 4, 0, 0, 0, 0, 2, 0}), 3, "VEC3");
+  g.add("meshes",
+        "{\"weights\":[0.5],\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":"
+        "[{\"POSITION\":" +
+            std::to_string(target) + "}]}]}");
+  g.show("{\"mesh\":0}");
+  g.show("{\"mesh\":0,\"weights\":[0.25],\"translation\":[5,0,0]}");
+  const Scene s = load(g);
+  expectCorners(s, 0, {Vec3{0, 0, 2}, Vec3{1, 0, 0}, Vec3{0, 2, 0}});
+  expectCorners(s, 1, {Vec3{5, 0, 1}, Vec3{6, 0, 0}, Vec3{5, 1.5f, 0}});
+}
+
 TEST_F(GltfGeometry, DecodesMeshopt) {
   const std::vector<uint16_t> indices{0, 1, 2};
   std::vector<unsigned char> vertices(meshopt_encodeVertexBufferBound(3, 12)),
@@ -207,12 +247,12 @@ TEST_F(GltfGeometry, DecodesMeshopt) {
   const auto compressed = [&](const std::vector<unsigned char>& data, size_t stride,
                               const std::string& mode) {
     const size_t at = (g.bytes().size() + 3) / 4 * 4;
-    g.addView(bytesOf(data), ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,"
-                             "\"byteOffset\":" +
-                                 std::to_string(at) + ",\"byteLength\":" +
-                                 std::to_string(data.size()) + ",\"byteStride\":" +
-                                 std::to_string(stride) + ",\"count\":3,\"mode\":\"" + mode +
-                                 "\"}}");
+    g.addView(bytesOf(data),
+              ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,"
+              "\"byteOffset\":" +
+                  std::to_string(at) + ",\"byteLength\":" + std::to_string(data.size()) +
+                  ",\"byteStride\":" + std::to_string(stride) + ",\"count\":3,\"mode\":\"" + mode +
+                  "\"}}");
   };
   compressed(vertices, 12, "ATTRIBUTES");
   compressed(triangles, 2, "TRIANGLES");
@@ -246,9 +286,10 @@ TEST_F(GltfGeometry, DecodesDraco) {
     const size_t view = g.addView(bytes);
     g.add("accessors", "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
     g.add("accessors", "{\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}");
-    g.addMesh("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{"
-              "\"KHR_draco_mesh_compression\":{\"bufferView\":" +
-              std::to_string(view) + ",\"attributes\":{\"POSITION\":0}}}}");
+    g.addMesh(
+        "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{"
+        "\"KHR_draco_mesh_compression\":{\"bufferView\":" +
+        std::to_string(view) + ",\"attributes\":{\"POSITION\":0}}}}");
     g.show("{\"mesh\":0}");
     g.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]";
     return g;

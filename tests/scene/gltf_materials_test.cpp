@@ -129,10 +129,10 @@ TEST_F(GltfMaterials, AlphaModes) {
 
 TEST_F(GltfMaterials, TextureTransformsMoveTurnAndScale) {
   const auto colourAt = [&](const std::string& transform, float u, float v) {
-    const Scene s = load(withMaterial(
-        "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,"
-        "\"extensions\":{\"KHR_texture_transform\":" +
-        transform + "}}}}"));
+    const Scene s = load(
+        withMaterial("{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,"
+                     "\"extensions\":{\"KHR_texture_transform\":" +
+                     transform + "}}}}"));
     return lookUp(s, modelOf(s).baseColour.texture, u, 1.0f - v);  // v as in the file
   };
   const Vec3 red{1, 0, 0}, blue{0, 0, 1};

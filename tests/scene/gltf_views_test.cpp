@@ -9,8 +9,9 @@ using GltfViews = GltfFiles;
 
 Gltf twoCameras() {
   Gltf g = triangleGltf();
-  g.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.8,\"aspectRatio\":2,"
-                   "\"znear\":0.1}}");
+  g.add("cameras",
+        "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.8,\"aspectRatio\":2,"
+        "\"znear\":0.1}}");
   g.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":0.1}}");
   g.show("{\"name\":\"Door\",\"camera\":0,\"translation\":[0,0,5],\"scale\":[3,3,3]}");
   // Half a turn about y: looks along +z.
@@ -68,20 +69,21 @@ TEST_F(GltfViews, WithoutACameraTheWholeSceneIsSeen) {
 
 TEST_F(GltfViews, OrthographicCamerasAreLeftOut) {
   Gltf g = triangleGltf();
-  g.add("cameras", "{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":1,\"ymag\":1,"
-                   "\"zfar\":10,\"znear\":0.1}}");
+  g.add("cameras",
+        "{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":1,\"ymag\":1,"
+        "\"zfar\":10,\"znear\":0.1}}");
   g.show("{\"name\":\"Plan\",\"camera\":0}");
   const Scene s = load(g);
-  EXPECT_EQ(countContaining(s.warnings, "camera 'Plan' is orthographic"), 1u)
-      << joined(s.warnings);
+  EXPECT_EQ(countContaining(s.warnings, "camera 'Plan' is orthographic"), 1u) << joined(s.warnings);
 }
 
 Gltf withLight(const std::string& light) {
   Gltf g = triangleGltf();
   g.show("{\"translation\":[1,2,3],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}");
-  g.more = ",\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{"
-           "\"lights\":[" +
-           light + "]}}";
+  g.more =
+      ",\"extensionsUsed\":[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{"
+      "\"lights\":[" +
+      light + "]}}";
   return g;
 }
 
@@ -99,8 +101,9 @@ TEST_F(GltfViews, CandelaAndLuxBecomeRadiometric) {
   EXPECT_EQ(sun.lights[0].emission, Vec3(1, 1, 1));
   EXPECT_EQ(sun.lights[0].direction, Vec3(0, 0, -1));
 
-  const Scene spot = load(withLight("{\"type\":\"spot\",\"range\":5,\"spot\":{"
-                                    "\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}"));
+  const Scene spot =
+      load(withLight("{\"type\":\"spot\",\"range\":5,\"spot\":{"
+                     "\"innerConeAngle\":0.2,\"outerConeAngle\":0.5}}"));
   EXPECT_EQ(spot.lights.at(0).type, LightType::Spot);
   EXPECT_FLOAT_EQ(spot.lights[0].coneRad, 0.5f);
   EXPECT_FLOAT_EQ(spot.lights[0].falloffRad, 0.3f);

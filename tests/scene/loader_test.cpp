@@ -33,8 +33,7 @@ TEST(LoaderQuirks, NegativeIndicesCountFromTheEnd) {
 
 TEST(LoaderQuirks, EachOddityIsNamedOnce) {
   const Scene scene = loadScene(kScenes / "test/quirks.toml");
-  for (const char* part :
-       {"missing.png: no such texture", "without a known material"}) {
+  for (const char* part : {"missing.png: no such texture", "without a known material"}) {
     EXPECT_EQ(countContaining(scene.warnings, part), 1u) << part << " in:\n"
                                                          << joined(scene.warnings);
   }

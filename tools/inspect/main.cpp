@@ -38,8 +38,9 @@ CLI::App* addExport(CLI::App& cli, ExportCommand& c) {
 
 CLI::App* addScene(CLI::App& cli, SceneCommand& c) {
   CLI::App* sub = cli.add_subcommand(
-      "scene", "What is understood of a scene: meshes, materials, lights with their power, cameras, "
-               "textures, and all that is ignored or approximated.");
+      "scene",
+      "What is understood of a scene: meshes, materials, lights with their power, cameras, "
+      "textures, and all that is ignored or approximated.");
   addSceneOptions(*sub, c.scene);
   sub->add_flag("--json", c.json, "the same as JSON");
   sub->add_option("--to-toml", c.toml, "also write it as scene.toml, OBJ and MTL to this folder");

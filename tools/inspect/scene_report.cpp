@@ -15,8 +15,7 @@ Json vectorJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
 
 // In the coordinates of the files.
 Json placeJson(const Scene& scene, Vec3 p) {
-  return Json::array(
-      {p.x + scene.origin[0], p.y + scene.origin[1], p.z + scene.origin[2]});
+  return Json::array({p.x + scene.origin[0], p.y + scene.origin[1], p.z + scene.origin[2]});
 }
 
 Json describeViews(const Scene& scene) {
@@ -29,6 +28,7 @@ Json describeViews(const Scene& scene) {
                     {"forward", vectorJson(c.forward)},
                     {"up", vectorJson(c.up)},
                     {"vertical_fov_deg", c.verticalFovRad * kDegPerRad},
+                    {"shift", c.shift},
                     {"film", sizeText(scene.views[i].film)}});
   }
   return list;
@@ -127,12 +127,10 @@ std::string sceneText(const Json& d) {
     return "'" + text(m, "name") + "': " + text(m, "model") + "; " +
            membersText(m, {"name", "model"});
   });
-  section("lights", [&](const Json& l) {
-    return text(l, "light") + ": " + valueText(l["power_W"]) + " W";
-  });
+  section("lights",
+          [&](const Json& l) { return text(l, "light") + ": " + valueText(l["power_W"]) + " W"; });
   section("cameras", [&](const Json& c) {
-    return c["number"].dump() + " '" + text(c, "name") + "': " +
-           membersText(c, {"number", "name"});
+    return c["number"].dump() + " '" + text(c, "name") + "': " + membersText(c, {"number", "name"});
   });
   section("textures", [&](const Json& t) {
     return t["number"].dump() + " " + text(t, "file") + ": " + t["width"].dump() + "x" +

@@ -55,7 +55,10 @@ std::string viewText(const Scene& scene, const Film& film, const Camera& c) {
          "\nheight = " + std::to_string(film.height) +
          "\n\n[camera]\nposition = " + listText(filePlace(scene, c.position)) +
          "\nforward = " + listText(c.forward) + "\nup = " + listText(c.up) +
-         "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n";
+         "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n" +
+         (c.shift == std::array<float, 2>{}
+              ? ""
+              : "shift = [" + shortestText(c.shift[0]) + ", " + shortestText(c.shift[1]) + "]\n");
 }
 
 std::string lightText(const Scene& scene, const LightSpec& l) {
@@ -121,8 +124,8 @@ void writeImages(const Scene& scene, const fs::path& folder, OutputSet& files) {
       std::vector<float>& channel = image.add(std::string(1, "RGB"[k]));
       for (size_t p = 0; p < e.radiance.size(); ++p) channel[p] = e.radiance[p][k];
     }
-    writeExr(files.add(folder / "textures" / ("environment-" + std::to_string(i) + ".exr")),
-             image, ExrPixelType::Float);
+    writeExr(files.add(folder / "textures" / ("environment-" + std::to_string(i) + ".exr")), image,
+             ExrPixelType::Float);
   }
 }
 
@@ -136,7 +139,8 @@ void createSceneFolder(const fs::path& folder) {
 
 std::vector<std::string> writeSceneToml(const Scene& scene, const fs::path& folder,
                                         OutputSet& files) {
-  std::string toml = viewText(scene, scene.film, scene.camera) + "\n[[mesh]]\nfile = \"scene.obj\"\n";
+  std::string toml =
+      viewText(scene, scene.film, scene.camera) + "\n[[mesh]]\nfile = \"scene.obj\"\n";
   for (const LightSpec& light : scene.lights) toml += lightText(scene, light);
   files.add(folder / "scene.toml").write(toml);
   files.add(folder / "scene.obj").write(objText(scene));

@@ -100,8 +100,8 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
     out.resize(count * components);
     for (size_t i = 0; i < count; ++i) copyElement(all, i, read, &out[i * components]);
   } else if (count > kMostZeros) {
-    model.fail(pointer, "has " + std::to_string(count) +
-                            " elements but no 'bufferView'; give it one");
+    model.fail(pointer,
+               "has " + std::to_string(count) + " elements but no 'bufferView'; give it one");
   } else {
     out.resize(count * components);
   }
@@ -109,7 +109,8 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
 
   const auto& sparse = accessor.sparse;
   const auto changed = static_cast<size_t>(sparse.count);
-  if (changed > count) model.fail(pointer + "/sparse/count", std::string("exceeds 'count'") + kAgain);
+  if (changed > count)
+    model.fail(pointer + "/sparse/count", std::string("exceeds 'count'") + kAgain);
   const Elements places = elementsIn(model, pointer + "/sparse/indices", sparse.indices.bufferView,
                                      static_cast<size_t>(sparse.indices.byteOffset), changed, 1,
                                      sparse.indices.componentType);
@@ -119,8 +120,8 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
   for (size_t i = 0; i < changed; ++i) {
     const double place = numberAt(places.first + i * places.stride, places.componentType, false);
     if (!(place >= 0.0 && place < static_cast<double>(count))) {
-      model.fail(pointer + "/sparse/indices", std::string("names an element that is not there") +
-                                                  kAgain);
+      model.fail(pointer + "/sparse/indices",
+                 std::string("names an element that is not there") + kAgain);
     }
     copyElement(values, i, read, &out[static_cast<size_t>(place) * components]);
   }

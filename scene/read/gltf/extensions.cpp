@@ -9,21 +9,12 @@ namespace bnvpl {
 namespace {
 
 constexpr std::array<std::string_view, 14> kUnderstood{
-    "EXT_mesh_gpu_instancing",
-    "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",
-    "KHR_materials_clearcoat",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_draco_mesh_compression",
+    "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
+    "KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform",
     // Of no effect on a picture:
-    "KHR_xmp_json_ld",
-    "KHR_materials_variants"};  // the default variant is shown
+    "KHR_xmp_json_ld", "KHR_materials_variants"};  // the default variant is shown
 
 bool isUnderstood(const std::string& name) {
   return std::find(kUnderstood.begin(), kUnderstood.end(), name) != kUnderstood.end();

@@ -51,8 +51,7 @@ nlohmann::json parseJson(const fs::path& file, std::string_view text) {
     if (json.is_object()) return json;
   } catch (const nlohmann::json::parse_error& e) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(e.byte, text.size()));
-    throw InputError(file.string() + ":" +
-                     std::to_string(1 + std::count(text.begin(), end, '\n')) +
+    throw InputError(file.string() + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
                      ": is no JSON that can be read; export it again");
   } catch (const nlohmann::json::exception&) {  // such as a number that no double holds
     throw InputError(file, "holds a number out of range; export it again");

@@ -70,8 +70,8 @@ void eraseExtras(Json& json, bool inExtension = false) {
   }
 }
 
-// What tinygltf would read in its own way, or not at all. Draco's indices have no buffer view, which
-// it refuses.
+// What tinygltf would read in its own way, or not at all. Draco's indices have no buffer view,
+// which it refuses.
 void removeOurParts(Json& json) {
   json.erase("buffers");
   json.erase("images");
@@ -104,8 +104,8 @@ GltfModel::GltfModel(const fs::path& file, SceneBuilder& builder) : file_(file),
   std::string problem, warnings;
   if (!parser.LoadASCIIFromString(&model_, &problem, &warnings, text.data(),
                                   static_cast<unsigned>(text.size()), "")) {
-    throw InputError(file, "cannot read the glTF: " + problem.substr(0, problem.find('\n')) +
-                               kAgain);
+    throw InputError(file,
+                     "cannot read the glTF: " + problem.substr(0, problem.find('\n')) + kAgain);
   }
 }
 

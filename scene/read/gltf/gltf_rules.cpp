@@ -35,7 +35,7 @@ constexpr Rule numberRule(std::string_view path, double least = -kMost, double m
   return {path, Kind::Number, false, least, most};
 }
 constexpr Rule numbersRule(std::string_view path, size_t count, double least = -kMost,
-                        double most = kMost) {
+                           double most = kMost) {
   return {path, Kind::Numbers, false, least, most, count};
 }
 constexpr Rule sizeRule(std::string_view path, double least = 0, double most = kMostBytes) {
@@ -87,8 +87,14 @@ constexpr Rule kRules[] = {
     indexRule("meshes/*/primitives/*/material", "materials"),
     sizeRule("meshes/*/primitives/*/mode", 0, 6),
     objectRule("meshes/*/primitives/*/targets/*"),
+    indexRule("meshes/*/primitives/*/targets/*/*", "accessors"),
+    objectRule("skins/*"),
+    indexRule("skins/*/joints/*", "nodes"),
+    indexRule("skins/*/inverseBindMatrices", "accessors"),
+    numberRule("meshes/*/weights/*", -1e6, 1e6),
+    numberRule("nodes/*/weights/*", -1e6, 1e6),
     needed(indexRule("meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/bufferView",
-                  "bufferViews")),
+                     "bufferViews")),
     sizeRule("meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/attributes/*", 0, 0x1p31),
     textRule("nodes/*/name"),
     indexRule("nodes/*/children/*", "nodes"),
@@ -100,7 +106,7 @@ constexpr Rule kRules[] = {
     indexRule("nodes/*/camera", "cameras"),
     indexRule("nodes/*/skin", "skins"),
     needed(indexRule("nodes/*/extensions/KHR_lights_punctual/light",
-                  "extensions/KHR_lights_punctual/lights")),
+                     "extensions/KHR_lights_punctual/lights")),
     needed(indexRule("nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*", "accessors")),
     indexRule("scene", "scenes"),
     textRule("scenes/*/name"),
@@ -157,13 +163,12 @@ constexpr std::string_view kTextureInfos[] = {
     "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
     "extensions/KHR_materials_specular/specularTexture",
     "extensions/KHR_materials_specular/specularColorTexture"};
-constexpr Rule kTextureRules[] = {
-    needed(indexRule("/index", "textures")),
-    sizeRule("/texCoord", 0, 1000),
-    numbersRule("/extensions/KHR_texture_transform/offset", 2),
-    numberRule("/extensions/KHR_texture_transform/rotation"),
-    numbersRule("/extensions/KHR_texture_transform/scale", 2),
-    sizeRule("/extensions/KHR_texture_transform/texCoord", 0, 1000)};
+constexpr Rule kTextureRules[] = {needed(indexRule("/index", "textures")),
+                                  sizeRule("/texCoord", 0, 1000),
+                                  numbersRule("/extensions/KHR_texture_transform/offset", 2),
+                                  numberRule("/extensions/KHR_texture_transform/rotation"),
+                                  numbersRule("/extensions/KHR_texture_transform/scale", 2),
+                                  sizeRule("/extensions/KHR_texture_transform/texCoord", 0, 1000)};
 
 std::string escaped(const std::string& key) {  // RFC 6901
   std::string out;

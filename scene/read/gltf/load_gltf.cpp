@@ -11,7 +11,7 @@ namespace bnvpl {
 
 namespace {
 
-// Each mesh is decoded and stored once, however many nodes show it.
+// Each mesh is decoded and stored once, however many nodes show it, unless they pose it.
 class Meshes {
  public:
   Meshes(const GltfModel& model, SceneBuilder& builder)
@@ -22,14 +22,18 @@ class Meshes {
 
   void add(size_t mesh, const Affine& world, const std::vector<Affine>& instances) {
     std::optional<uint32_t>& prototype = prototypes_[mesh];
-    if (!prototype) prototype = read(mesh);
+    if (!prototype) prototype = read(mesh, {});
     for (const Affine& instance : instances) builder_.addInstance(*prototype, world * instance);
+  }
+  // A skin's joints place the mesh, whatever its node's transform is.
+  void addPosed(size_t mesh, const GltfPose& pose, const Affine& world) {
+    builder_.addInstance(read(mesh, pose), pose.joints.empty() ? world : Affine());
   }
 
  private:
-  uint32_t read(size_t mesh) {
+  uint32_t read(size_t mesh, const GltfPose& pose) {
     const uint32_t prototype = builder_.beginPrototype();
-    for (const GltfPrimitive& p : readPrimitives(model_, mesh, surfaces_)) {
+    for (const GltfPrimitive& p : readPrimitives(model_, mesh, surfaces_, pose)) {
       builder_.addMesh(model_.file().string() + "#" + p.pointer,
                        {p.positions, p.normals, p.uvs, p.triangles});
     }
@@ -48,13 +52,18 @@ class Meshes {
 void readGltf(const fs::path& file, const Defines&, SceneBuilder& builder) {
   const GltfModel model(file, builder);
   Meshes meshes(model, builder);
-  for (const GltfPlacement& placement : placeNodes(model)) {
+  const std::vector<GltfPlacement> placed = placeNodes(model);
+  for (const GltfPlacement& placement : placed) {
     const tinygltf::Node& node = model.parts().nodes[placement.node];
     addGltfCamera(model, placement, builder);
     addGltfLight(model, placement, builder);
     if (node.mesh < 0) continue;
-    if (node.skin >= 0) model.warn("skins are not applied: meshes are shown as they were bound");
-    meshes.add(static_cast<size_t>(node.mesh), placement.world, instancesOf(model, placement.node));
+    const auto mesh = static_cast<size_t>(node.mesh);
+    const GltfPose pose = poseOf(model, placement.node, placed);
+    if (pose.rests())
+      meshes.add(mesh, placement.world, instancesOf(model, placement.node));
+    else
+      meshes.addPosed(mesh, pose, placement.world);
   }
 }
 

@@ -1,4 +1,4 @@
-// glTF 2.0, .gltf and .glb, with the buffers and images that it names. docs/scenes-gltf.md says
+// glTF 2.0, .gltf and .glb, with the buffers and images that it names. docs/scenes.md says
 // what is read and how.
 #pragma once
 

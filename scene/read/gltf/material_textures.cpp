@@ -42,7 +42,7 @@ void GltfTextureRef::read(unsigned texCoord, const tinygltf::Value& transform) {
   const double sx = elementOf(transform, "scale", 0, 1), sy = elementOf(transform, "scale", 1, 1),
                ox = elementOf(transform, "offset", 0, 0), oy = elementOf(transform, "offset", 1, 0);
   const auto real = [](double value) { return static_cast<float>(value); };
-  uv = {real(sx * cosine), real(-sy * sine), real(ox + sy * sine),
+  uv = {real(sx * cosine), real(-sy * sine),  real(ox + sy * sine),
         real(sx * sine),   real(sy * cosine), real(1.0 - oy - sy * cosine)};
 }
 

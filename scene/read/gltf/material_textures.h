@@ -44,9 +44,7 @@ class GltfMaterialTextures {
 
  private:
   uint32_t add(const GltfTextureRef& ref, bool srgb, Channel channel);
-  void warn(const std::string& text) const {
-    model_.warn("material '" + material_ + "': " + text);
-  }
+  void warn(const std::string& text) const { model_.warn("material '" + material_ + "': " + text); }
 
   const GltfModel& model_;
   SceneBuilder& builder_;

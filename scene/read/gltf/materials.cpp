@@ -70,7 +70,8 @@ class MaterialReader {
 
     m.ior = {real(gltfNumber(extensionOf(from_, "KHR_materials_ior"), "ior", 1.5))};
     const tinygltf::Value& specular = extensionOf(from_, "KHR_materials_specular");
-    const GltfTextureRef weight(specular, "specularTexture"), tint(specular, "specularColorTexture");
+    const GltfTextureRef weight(specular, "specularTexture"),
+        tint(specular, "specularColorTexture");
     m.specular = {real(gltfNumber(specular, "specularFactor", 1.0)), textures_.alpha(weight)};
     m.specularColour = {colourOf(specular, "specularColorFactor"), textures_.colour(tint)};
 
@@ -96,8 +97,8 @@ class MaterialReader {
 
   // Radiance as it is: Blender writes its emission strength so, in W/(m2 sr).
   void addEmission(Material& m) {
-    const double strength = gltfNumber(extensionOf(from_, "KHR_materials_emissive_strength"),
-                                       "emissiveStrength", 1.0);
+    const double strength =
+        gltfNumber(extensionOf(from_, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
     m.emission = colourOf(from_.emissiveFactor) * real(strength);
     if (isBlack(m.emission)) return;
     m.emissionTexture = textures_.colour(GltfTextureRef(from_.emissiveTexture));
@@ -111,8 +112,9 @@ class MaterialReader {
       m.opacityTexture = textures_.alpha(base);
     } else if (from_.alphaMode == "BLEND" && alpha > 0.0f && alpha < 1.0f) {
       addTransparency({alpha, textures_.alpha(base)}, builder_, m);
-      warn("alphaMode BLEND: light goes straight through in proportion to alpha, but not to "
-           "shadow rays");
+      warn(
+          "alphaMode BLEND: light goes straight through in proportion to alpha, but not to "
+          "shadow rays");
     } else if (from_.alphaMode == "BLEND") {
       m.opacity = alpha;
       m.opacityTexture = textures_.alpha(base);

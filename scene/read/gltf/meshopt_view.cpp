@@ -43,7 +43,8 @@ bool unfilter(const std::string& filter, std::string& out, size_t count, size_t 
 
 std::string decodeMeshopt(const fs::path& file, const std::string& pointer,
                           const nlohmann::json& extension, std::string_view compressed) {
-  const auto count = extension["count"].get<size_t>(), stride = extension["byteStride"].get<size_t>();
+  const auto count = extension["count"].get<size_t>(),
+             stride = extension["byteStride"].get<size_t>();
   const auto fail = [&](const std::string& problem) {
     throw GltfError(file, pointer, problem + "; export the file again, or without compression");
   };

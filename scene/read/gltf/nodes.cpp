@@ -13,10 +13,9 @@ Affine fromTrs(std::span<const double> t, std::span<const double> q, std::span<c
   const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   const double per = length > 0.0 ? 1.0 / length : 0.0;
   const double x = q[0] * per, y = q[1] * per, z = q[2] * per, w = per > 0.0 ? q[3] * per : 1.0;
-  const double r[3][3] = {
-      {1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-      {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-      {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+  const double r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                          {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                          {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
   Affine a;
   for (size_t i = 0; i < 3; ++i) {
     for (size_t j = 0; j < 3; ++j) a.m[i][j] = r[i][j] * s[j];
@@ -115,9 +114,9 @@ std::vector<Affine> instancesOf(const GltfModel& model, size_t node) {
   std::vector<Affine> out;
   for (size_t i = 0; i < count; ++i) {
     const auto element = [&](const std::vector<double>& of, std::span<const double> otherwise) {
-      return of.empty() ? otherwise
-                        : std::span<const double>(of).subspan(i * otherwise.size(),
-                                                              otherwise.size());
+      return of.empty()
+                 ? otherwise
+                 : std::span<const double>(of).subspan(i * otherwise.size(), otherwise.size());
     };
     out.push_back(
         fromTrs(element(moves, kNoMove), element(turns, kNoTurn), element(scales, kNoScale)));

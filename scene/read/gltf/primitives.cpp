@@ -68,10 +68,57 @@ std::string setName(const char* attribute, unsigned set) {
   return std::string(attribute) + "_" + std::to_string(set);
 }
 
+// Adds the morph targets' differences of positions or normals.
+void morph(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& pointer,
+           const char* attribute, std::span<const double> weights, std::vector<double>& values) {
+  for (size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
+    const auto it = primitive.targets[t].find(attribute);
+    if (weights[t] == 0.0 || it == primitive.targets[t].end() || values.empty()) continue;
+    const std::vector<double> differences = readNumbers(model, it->second, 3);
+    if (differences.size() != values.size())
+      model.fail(pointer + "/targets/" + std::to_string(t),
+                 "has another number of vertices than the mesh; export the file again");
+    for (size_t i = 0; i < values.size(); ++i) values[i] += weights[t] * differences[i];
+  }
+}
+
+// Moves vertices by their joints (glTF 2.0, 3.7.3.3); up to eight a vertex.
+void applySkin(const GltfModel& model, const PrimitiveData& data, std::span<const Affine> joints,
+               GltfPrimitive& out) {
+  const size_t vertices = out.positions.size() / 3;
+  std::vector<double> numbers = data.numbers("JOINTS_0", 4), weights = data.numbers("WEIGHTS_0", 4);
+  const std::vector<double> more = data.numbers("JOINTS_1", 4),
+                            weightsOfMore = data.numbers("WEIGHTS_1", 4);
+  const bool eight = !more.empty();
+  if (numbers.size() != 4 * vertices || weights.size() != 4 * vertices ||
+      (eight && (more.size() != 4 * vertices || weightsOfMore.size() != 4 * vertices)))
+    model.fail(out.pointer, "has no four JOINTS and WEIGHTS a vertex, though its node has a skin");
+  for (size_t v = 0; v < vertices; ++v) {
+    std::array<double, 8> joint{}, weight{};
+    for (size_t k = 0; k < (eight ? 8u : 4u); ++k) {
+      joint[k] = k < 4 ? numbers[4 * v + k] : more[4 * v + k - 4];
+      weight[k] = k < 4 ? weights[4 * v + k] : weightsOfMore[4 * v + k - 4];
+    }
+    const Affine m = blended(joints, joint, weight);
+    const auto at = [&](std::vector<double>& values, const auto& move) {
+      if (values.empty()) return;
+      const FilePoint moved = move(FilePoint{values[3 * v], values[3 * v + 1], values[3 * v + 2]});
+      std::copy(moved.begin(), moved.end(), values.begin() + static_cast<std::ptrdiff_t>(3 * v));
+    };
+    at(out.positions, [&](const FilePoint& p) { return m.point(p); });
+    const double side = m.determinant() < 0.0 ? -1.0 : 1.0;
+    at(out.normals, [&](const FilePoint& n) {
+      const FilePoint turned = m.cofactors(n);
+      return FilePoint{side * turned[0], side * turned[1], side * turned[2]};
+    });
+  }
+}
+
 std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
                                            const tinygltf::Primitive& primitive,
                                            const std::string& pointer,
-                                           std::span<const GltfSurface> surfaces) {
+                                           std::span<const GltfSurface> surfaces,
+                                           const GltfPose& pose) {
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) {
     model.warn("points and lines are left out");
     return std::nullopt;
@@ -80,7 +127,6 @@ std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
     model.warn("primitives without POSITION are left out");
     return std::nullopt;
   }
-  if (!primitive.targets.empty()) model.warn("morph targets are not applied");
   if (primitive.attributes.contains("COLOR_0")) model.warn("vertex colours (COLOR_0) are ignored");
 
   const PrimitiveData data(model, primitive, pointer);
@@ -90,13 +136,18 @@ std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
   if (!flat && out.normals.size() != out.positions.size())
     model.fail(pointer, "has another number of normals than of positions; export the file again");
 
+  morph(model, primitive, pointer, "POSITION", pose.morphWeights, out.positions);
+  morph(model, primitive, pointer, "NORMAL", pose.morphWeights, out.normals);
+  if (!pose.joints.empty()) applySkin(model, data, pose.joints, out);
+
   const GltfSurface& surface =
       surfaces[primitive.material < 0 ? surfaces.size() - 1
                                       : static_cast<size_t>(primitive.material)];
   out.uvs = data.numbers(setName("TEXCOORD", surface.uvSet), 2);
   if (!out.uvs.empty() && out.uvs.size() / 2 != vertices)
-    model.fail(pointer, "has another number of texture coordinates than of positions; "
-                        "export the file again");
+    model.fail(pointer,
+               "has another number of texture coordinates than of positions; "
+               "export the file again");
   for (size_t i = 1; i < out.uvs.size(); i += 2) out.uvs[i] = 1.0 - out.uvs[i];
 
   const std::vector<uint32_t> indices = data.indices(vertices);
@@ -111,13 +162,13 @@ std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
 }  // namespace
 
 std::vector<GltfPrimitive> readPrimitives(const GltfModel& model, size_t mesh,
-                                          std::span<const GltfSurface> surfaces) {
+                                          std::span<const GltfSurface> surfaces,
+                                          const GltfPose& pose) {
   const auto& primitives = model.parts().meshes[mesh].primitives;
   std::vector<GltfPrimitive> out;
   for (size_t i = 0; i < primitives.size(); ++i) {
-    const std::string pointer =
-        gltfPointer("meshes", mesh) + "/primitives/" + std::to_string(i);
-    if (auto one = readPrimitive(model, primitives[i], pointer, surfaces))
+    const std::string pointer = gltfPointer("meshes", mesh) + "/primitives/" + std::to_string(i);
+    if (auto one = readPrimitive(model, primitives[i], pointer, surfaces, pose))
       out.push_back(*std::move(one));
   }
   return out;

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "scene/read/gltf/gltf_model.h"
+#include "scene/read/gltf/pose.h"
 
 namespace bnvpl {
 
@@ -20,9 +20,11 @@ struct GltfSurface {
   unsigned uvSet = 0;         // TEXCOORD_n
 };
 
-// The primitives of a mesh at rest pose. `surfaces` are those of the file's materials, then one for
-// primitives without. Points and lines are left out with a warning. Throws GltfError.
+// The primitives of a mesh; with joints, in the coordinates of the scene. `surfaces` are those of
+// the file's materials, then one for primitives without. Points and lines are left out with a
+// warning. Throws GltfError.
 std::vector<GltfPrimitive> readPrimitives(const GltfModel& model, size_t mesh,
-                                          std::span<const GltfSurface> surfaces);
+                                          std::span<const GltfSurface> surfaces,
+                                          const GltfPose& pose);
 
 }  // namespace bnvpl

@@ -48,8 +48,8 @@ void setCone(const tinygltf::SpotLight& spot, LightSpec& light) {
   constexpr double kLeast = 1e-4;
   const double outer = std::clamp(spot.outerConeAngle, kLeast, std::numbers::pi / 2);
   light.coneRad = radians(outer);
-  light.falloffRad = std::min(light.coneRad,
-                              radians(std::max(0.0, outer - std::max(0.0, spot.innerConeAngle))));
+  light.falloffRad =
+      std::min(light.coneRad, radians(std::max(0.0, outer - std::max(0.0, spot.innerConeAngle))));
 }
 
 }  // namespace
@@ -97,8 +97,9 @@ void addGltfLight(const GltfModel& model, const GltfPlacement& placement, SceneB
     return;
   }
   if (from.range > 0.0) {
-    model.warn("the range of lights is ignored: light falls off with the square of the distance "
-               "alone");
+    model.warn(
+        "the range of lights is ignored: light falls off with the square of the distance "
+        "alone");
   }
   if (isBlack(light.emission)) return;
   builder.addLight(light, placeOf(model, placement));

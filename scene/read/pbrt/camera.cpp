@@ -9,22 +9,48 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-Film filmOf(const Description& description, Notes& notes) {
-  const Params& p = description.film.params;
+// The pixels that are rendered: all of the film, or a crop of it.
+struct Pixels {
   Film film;
-  film.width = static_cast<uint32_t>(p.integer("xresolution", 1280, 1, kMaxFilmSide));
-  film.height = static_cast<uint32_t>(p.integer("yresolution", 720, 1, kMaxFilmSide));
-  if (p.has("cropwindow") || p.has("pixelbounds")) {
-    notes.add(*p.placeOf(p.has("cropwindow") ? "cropwindow" : "pixelbounds"),
-              "the film is not cropped: the whole of it is rendered");
+  double left = 0, right = 1, top = 0, bottom = 1;  // of the crop, as shares of the film
+  Film cropped() const {
+    const auto side = [](double from, double to, uint32_t n) {
+      return static_cast<uint32_t>(std::max(1.0, std::ceil(to * n) - std::ceil(from * n)));
+    };
+    return {side(left, right, film.width), side(top, bottom, film.height)};
   }
-  p.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue", "quickrender", "nbuckets",
-            "lambdamin", "lambdamax", "coordinatesystem"});
-  return film;
+};
+
+void readCrop(const Param& window, bool inPixels, Pixels& out) {
+  const double w = inPixels ? out.film.width : 1.0, h = inPixels ? out.film.height : 1.0;
+  const auto& n = window.numbers;
+  if (n.size() != 4 ||
+      !(n[0] >= 0 && n[1] > n[0] && n[1] <= w && n[2] >= 0 && n[3] > n[2] && n[3] <= h))
+    failAt(window.place, "'" + std::string(inPixels ? "pixelbounds" : "cropwindow") +
+                             "' must be xmin xmax ymin ymax within the film");
+  out.left = n[0] / w, out.right = n[1] / w, out.top = n[2] / h, out.bottom = n[3] / h;
 }
 
-// The part of the plane at distance 1 that is seen: half its height.
-double halfHeight(const Description& description, const Film& film, Notes& notes) {
+Pixels pixelsOf(const Description& description) {
+  const Params& p = description.film.params;
+  Pixels out;
+  Film& film = out.film;
+  film.width = static_cast<uint32_t>(p.integer("xresolution", 1280, 1, kMaxFilmSide));
+  film.height = static_cast<uint32_t>(p.integer("yresolution", 720, 1, kMaxFilmSide));
+  if (const Param* crop = p.find("cropwindow", {ParamType::Float}, "four floats"))
+    readCrop(*crop, false, out);
+  if (const Param* crop = p.find("pixelbounds", {ParamType::Integer}, "four integers"))
+    readCrop(*crop, true, out);
+  p.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue", "quickrender", "nbuckets",
+            "lambdamin", "lambdamax", "coordinatesystem"});
+  return out;
+}
+
+// What is seen of the plane at distance 1.
+struct Window {
+  double halfHeight, centreX, centreY;  // upwards
+};
+Window windowOf(const Description& description, const Film& film, Notes& notes) {
   const Entity& camera = description.camera;
   const Params& p = camera.params;
   const double pixels = double(film.width) / double(film.height);
@@ -39,9 +65,6 @@ double halfHeight(const Description& description, const Film& film, Notes& notes
     for (size_t i = 0; i < 4; ++i) screen[i] = window->numbers[i];
   }
   const double width = screen[1] - screen[0], height = screen[3] - screen[2];
-  if (std::fabs(screen[0] + screen[1]) > 1e-4 * width ||
-      std::fabs(screen[2] + screen[3]) > 1e-4 * height)
-    notes.add(camera.place, "the camera's screen window is not in its centre; it is moved there");
   if (std::fabs(width / height - pixels) > 1e-3 * pixels) {
     notes.add(camera.place,
               "the camera's frame has another aspect than the film's pixels; its "
@@ -54,7 +77,20 @@ double halfHeight(const Description& description, const Film& film, Notes& notes
     if (half > 0.0) fov = 2.0 * half;
     scale = std::tan(0.5 * fov * std::numbers::pi / 180.0);
   }
-  return 0.5 * height * scale;
+  return {0.5 * height * scale, 0.5 * (screen[0] + screen[1]) * scale,
+          0.5 * (screen[2] + screen[3]) * scale};
+}
+
+void aim(const Window& window, const Pixels& pixels, Camera& camera) {
+  const double half = window.halfHeight,
+               aspect = double(pixels.film.width) / double(pixels.film.height);
+  const Film cropped = pixels.cropped();
+  const double part = double(cropped.height) / double(pixels.film.height);
+  camera.verticalFovRad = static_cast<float>(2.0 * std::atan(half * part));
+  const double x = window.centreX + half * aspect * (pixels.left + pixels.right - 1.0);
+  const double y = window.centreY + half * (1.0 - pixels.top - pixels.bottom);
+  camera.shift = {static_cast<float>(x / (2.0 * half * part)),
+                  static_cast<float>(y / (2.0 * half * part))};
 }
 
 bool unit(FilePoint v, Vec3& out) {
@@ -86,8 +122,8 @@ Sensor sensorOf(const Description& description, Notes& notes) {
 
 void buildCamera(const Description& description, Notes& notes, SceneBuilder& builder) {
   const Entity& entity = description.camera;
-  const Film film = filmOf(description, notes);
-  builder.setFilm(film);
+  const Pixels pixels = pixelsOf(description);
+  builder.setFilm(pixels.cropped());
   if (entity.type != "perspective") {
     notes.add(entity.place, "camera '" + entity.type +
                                 "' is not read; a perspective one of 90 "
@@ -107,8 +143,7 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
   camera.up = cross(camera.forward, camera.right);
   Vec3 up;
   if (unit(axis(0, 1, 0), up) && dot(up, camera.up) < 0.0f) camera.up = -camera.up;
-  const double half = halfHeight(description, film, notes);
-  camera.verticalFovRad = static_cast<float>(2.0 * std::atan(half));
+  aim(windowOf(description, pixels.film, notes), pixels, camera);
   constexpr float kLeast = 1e-5f, kMostFov = 3.1415f;
   if (!(camera.verticalFovRad > kLeast && camera.verticalFovRad < kMostFov))
     failAt(entity.place, "the field of view is too small or too large");

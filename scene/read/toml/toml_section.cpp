@@ -157,6 +157,15 @@ FilePoint TomlSection::triple(const char* key, double least, double most) const 
   return v;
 }
 
+std::array<float, 2> TomlSection::pair(const char* key, double most) const {
+  const toml::array* a = node(key).as_array();
+  if (!a || a->size() != 2) fail(node(key), std::string("'") + key + "' must be [x, y]");
+  const auto at = [&](size_t i) {
+    return static_cast<float>(numberOf(*a->get(i), key, -most, most));
+  };
+  return {at(0), at(1)};
+}
+
 Vec3 TomlSection::color(const char* key) const {
   return fromOrigin(triple(key, 0.0, kMaxMagnitude), {});
 }

@@ -25,16 +25,17 @@ Camera readCamera(const TomlSection& s, const FilePoint& position) {
   c.right = normalize(right);
   c.up = cross(c.right, c.forward);
   c.verticalFovRad = radians(s.number("vertical_fov_deg", 0.001, 179.9));
+  if (s.has("shift")) c.shift = s.pair("shift", 1000.0);
   return c;
 }
 
 }  // namespace
 
 TomlView readTomlView(const fs::path& file, const toml::table& root) {
-  const Film film = readFilm(
-      TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
+  const Film film =
+      readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
   const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
-                           {"position", "look_at", "forward", "up", "vertical_fov_deg"});
+                           {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift"});
   const FilePoint position = camera.point("position");
   return {film, position, readCamera(camera, position)};
 }

@@ -65,12 +65,39 @@ TEST_F(PbrtCamera, FieldOfView) {
   EXPECT_NEAR(degrees(view("Camera \"perspective\" \"float halffov\" 20")), 40.0f, 1e-3f);
 }
 
+// Pixel (x, y) of a crop looks where pixel (x + left, y + top) of the whole film does.
+TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
+  const std::string camera = "Camera \"perspective\" \"float fov\" 60\n";
+  const std::string film = "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 80 ";
+  const Scene whole = view(camera + film);
+  for (const char* crop :
+       {"\"float cropwindow\" [0.1 0.5 0.25 0.75]", "\"integer pixelbounds\" [10 50 20 60]"}) {
+    const Scene s = view(camera + film + crop);
+    ASSERT_EQ(s.film.width, 40u);
+    ASSERT_EQ(s.film.height, 40u);
+    for (const auto& [x, y] : {std::pair{0.0f, 0.0f}, {40.0f, 40.0f}, {13.5f, 31.5f}}) {
+      const Vec3 part = cameraDirection(s.camera, s.film, x / 40, y / 40);
+      expectNear(part, cameraDirection(whole.camera, whole.film, (x + 10) / 100, (y + 20) / 80),
+                 1e-6f);
+      const FilmPoint back = projectToFilm(s.camera, s.film, s.camera.position + 3.0f * part);
+      EXPECT_NEAR(back.x, x / 40, 1e-5f);
+      EXPECT_NEAR(back.y, y / 40, 1e-5f);
+    }
+  }
+  expectError(film + "\"float cropwindow\" [0.5 0.1 0 1]",
+              "1:", {"cropwindow", "xmin xmax ymin ymax"});
+}
+
+TEST_F(PbrtCamera, ScreenWindowsMayLieAnywhere) {
+  const std::string camera = "Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" ";
+  const Scene s = view(camera + "[0 2 0.5 2.5]", "100 100");
+  const Vec3 middle = cameraDirection(s.camera, s.film, 0.5f, 0.5f);
+  expectNear(middle, normalize(s.camera.forward + s.camera.right + 1.5f * s.camera.up), 1e-6f);
+}
+
 TEST_F(PbrtCamera, WhatIsNotRenderedIsNoted) {
-  const Scene s = view(
-      "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3\n"
-      "Film \"rgb\" \"float cropwindow\" [0 0.5 0 1]");
+  const Scene s = view("Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3");
   EXPECT_EQ(countContaining(s.warnings, "depth of field"), 1u);
-  EXPECT_EQ(countContaining(s.warnings, "not cropped"), 1u);
   EXPECT_EQ(countContaining(view("Camera \"realistic\"").warnings, "'realistic'"), 1u);
   expectError("Camera \"perspective\" \"float screenwindow\" [1 2]", "1:22", {"xmin"});
   expectError("Film \"rgb\" \"integer xresolution\" 0", "1:12", {"xresolution"});
