@@ -58,7 +58,7 @@ TEST_F(Options, HelpListsEveryOption) {
 // One way to show a kind of value, and ranges in plain numbers.
 TEST_F(Options, HelpIsPlain) {
   std::string all;
-  for (const char* command : {"info", "check", "export", "plot", "compare"})
+  for (const char* command : {"info", "check", "scene", "export", "plot", "compare"})
     all += tool("vpl-inspect", std::string(command) + " --help").out;
   for (const std::string& name : kStages) all += tool(name, "--help").out;
   for (const char* odd : {"FLOAT", "UINT", "TEXT", "REQUIRED", "e+", "000000 ", " in ["})

@@ -19,8 +19,7 @@ void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene) {
                                        "camera of the scene's file; the first unless given")
                             ->type_name("NAME|NUMBER")
                             ->needs(scene);
-  cli.add_option("--view", options.view,
-                 "a .toml of [film] and [camera] in place of the scene's own")
+  addFile(cli, "--view", options.view, "a .toml of [film] and [camera] in place of the scene's own")
       ->needs(scene)
       ->excludes(camera);
 }
@@ -28,9 +27,9 @@ void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene) {
 }  // namespace
 
 void addSceneOptions(CLI::App& cli, SceneOptions& options) {
-  addOptions(cli, options, addFile(cli, "scene", options.file,
-                                   "the scene (.toml, .pbrt, .gltf, .glb)")
-                               ->required());
+  addOptions(
+      cli, options,
+      addFile(cli, "scene", options.file, "the scene (.toml, .pbrt, .gltf, .glb)")->required());
 }
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {

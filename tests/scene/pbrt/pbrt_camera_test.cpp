@@ -85,7 +85,7 @@ TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
     }
   }
   expectError(film + "\"float cropwindow\" [0.5 0.1 0 1]",
-              "1:", {"cropwindow", "xmin xmax ymin ymax"});
+              "1:63", {"cropwindow", "xmin xmax ymin ymax"});
 }
 
 TEST_F(PbrtCamera, ScreenWindowsMayLieAnywhere) {
