@@ -44,7 +44,7 @@ std::pair<std::vector<int>, std::vector<int>> cornersAndMaterials(const ObjReadi
 // As large files are read.
 void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
   ObjReading whole, pieces;
-  const auto ignore = [](const fs::path&, const tinyobj::material_t&) {};
+  const auto ignore = [](const fs::path&, const tinyobj::material_t&, const MtlKeys&) {};
   constexpr size_t kPiece = 16, kAll = size_t{1} << 30;
   const bool asWhole = accepted([&] { whole = readObj(obj, materials, ignore, kAll); });
   const bool asPieces = accepted([&] { pieces = readObj(obj, materials, ignore, kPiece); });
