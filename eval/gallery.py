@@ -135,7 +135,7 @@ def save(pixels: np.ndarray, name: str) -> None:
 def write_table(rows: list[str]) -> None:
     path = write_docs.DOCS / "results.md"
     heads = "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / author's render |\n|---|---|---|---|"
-    made = f"Tools of {commit()}, {datetime.date.today().isoformat()}."
+    made = f"<!-- tools of {commit()}, {datetime.date.today().isoformat()} -->"
     text = "\n".join(["<!-- gallery -->", heads, *rows, "", made, "<!-- end -->"])
     output.write_text(path, re.sub(r"<!-- gallery -->.*?<!-- end -->", lambda _: text, path.read_text(), flags=re.S))
 

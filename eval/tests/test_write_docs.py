@@ -39,7 +39,7 @@ class Tables(unittest.TestCase):
         self.assertIn("old one", page)
         self.assertNotIn("old two", page)
         self.assertIn("| a room | ours | 0.0123 ± 0.0004 |", page)
-        self.assertIn("Tools of abc1234, 2026-11-22.", page)
+        self.assertIn("<!-- tools of abc1234, 2026-11-22 -->", page)
         self.assertTrue(page.endswith("<!-- end -->\nlast\n"))
 
     def test_what_is_not_there_is_refused(self):
