@@ -92,7 +92,7 @@ class Gallery:
         """Ratios of blocks, ours over the author's: the middle one, and where four fifths of them lie."""
         if not scene.author:
             return ""
-        ours = images.read(self.image(scene, "path", 640, self.spp, 1))
+        ours = images.read(self.image(scene, "path", 640, max(1, self.spp // 4), 1))
         theirs = resized(images.read(scene.path.parent / scene.author), ours.shape)
         ratios = np.sort(blocks(ours) / np.maximum(blocks(theirs), 1e-6))
         low, middle, high = ratios[len(ratios) // 10], ratios[len(ratios) // 2], ratios[-1 - len(ratios) // 10]

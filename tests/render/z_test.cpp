@@ -190,6 +190,45 @@ TEST(SameExpectation, PathsAndPhotonsInTheCornellBox) {
   }
 }
 
+// The green wall of another material, and the red one: light goes both ways over each model.
+TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
+  const auto ggx = [](float alpha) { return Roughness(Scalar(alpha), Roughness::Alpha::Same); };
+  ConductorModel rough, sharp;
+  rough.roughness = Roughness(Scalar(0.4f), Scalar(0.7f), Roughness::Alpha::Same);
+  sharp.roughness = ggx(0.15f);
+  CoatedDiffuseModel smoothCoat, roughCoat;
+  smoothCoat.reflectance = Vec3(0.8f, 0.4f, 0.2f);
+  roughCoat.roughness = ggx(0.35f);
+  CoatedConductorModel varnished;
+  varnished.roughness = ggx(0.4f);
+  varnished.coatRoughness = ggx(0.1f);
+  MetallicRoughnessModel gltf;
+  gltf.baseColour = Vec3(0.3f, 0.7f, 0.9f);
+  gltf.metallic = 0.4f;
+  gltf.roughness = 0.7f;
+  gltf.clearcoat = 0.5f;
+  DielectricModel frosted;
+  frosted.roughness = ggx(0.3f);
+  const std::vector<std::pair<const char*, std::array<MaterialModel, 2>>> walls{
+      {"conductors", {rough, sharp}},
+      {"coated diffuse", {smoothCoat, roughCoat}},
+      {"coated conductor, diffuse transmission", {varnished, DiffuseTransmissionModel{}}},
+      {"glTF, frosted glass", {gltf, frosted}}};
+  for (const auto& [name, models] : walls) {
+    Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+    scene.film = {16, 16};
+    for (Material& m : scene.materials) {
+      if (m.name == "Green") m.model = models[0];
+      if (m.name == "Red") m.model = models[1];
+    }
+    const World world(std::move(scene));
+    const Given indirect{{"only", "indirect"}};
+    EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
+                                photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}))
+        << name;
+  }
+}
+
 // The two estimators of direct light: one lamp picked and one ray, and each lamp with rays besides.
 TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
