@@ -1,0 +1,319 @@
+"""Writes room.glb, a small living room in late daylight, with Blender's own glTF exporter.
+
+    blender --background --python scenes/gltf-room/make_room.py      # made with Blender 3.4.1
+
+Metres, z up as in Blender (the exporter turns it to y up). The room spans x -2.5..2.5, y -2..2,
+z 0..2.8; its window, in the wall at x = 2.5, opens on a courtyard with a sky panel and a low sun.
+"""
+import math
+import pathlib
+import random
+import sys
+import tempfile
+import types
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import textures  # noqa: E402
+from shapes import add, ball, boxes, lathe, sheet  # noqa: E402
+
+IMAGES = tempfile.TemporaryDirectory()
+
+
+def image(name, pixels, kind="png", colour=True):
+    """A texture of the given array, by way of a file so that the exporter keeps its format."""
+    if pixels.ndim == 2:
+        pixels = np.repeat(pixels[..., None], 3, -1)
+    height, width, channels = pixels.shape
+    drawn = bpy.data.images.new(name, width, height, alpha=channels == 4)
+    rgba = np.ones((height, width, 4), np.float32)
+    rgba[..., :channels] = pixels
+    drawn.pixels.foreach_set(rgba.ravel())
+    drawn.filepath_raw = str(pathlib.Path(IMAGES.name) / f"{name}.{kind}")
+    drawn.file_format = {"png": "PNG", "jpg": "JPEG"}[kind]
+    drawn.save()
+    made = bpy.data.images.load(drawn.filepath_raw)
+    bpy.data.images.remove(drawn)
+    made.name = name
+    made.colorspace_settings.name = "sRGB" if colour else "Non-Color"
+    return made
+
+
+# Materials
+
+def material(name, colour=(1, 1, 1), base=None, normal=None, rough=None, cutout=False, **inputs):
+    """A Principled material: `colour` is linear; `base`, `normal` and `rough` are images."""
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    nodes, link = made.node_tree.nodes, made.node_tree.links.new
+    shader = nodes["Principled BSDF"].inputs
+    shader["Base Color"].default_value = (*colour, 1)
+    for key, value in inputs.items():
+        shader[key.replace("_", " ")].default_value = value
+
+    def texture(of):
+        node = nodes.new("ShaderNodeTexImage")
+        node.image = of
+        return node.outputs
+
+    if base:
+        outputs = texture(base)
+        link(outputs["Color"], shader["Base Color"])
+        if cutout:
+            link(outputs["Alpha"], shader["Alpha"])
+            made.blend_method = "CLIP"
+    if normal:
+        bump = nodes.new("ShaderNodeNormalMap")
+        link(texture(normal)["Color"], bump.inputs["Color"])
+        link(bump.outputs["Normal"], shader["Normal"])
+    if rough:
+        split = nodes.new("ShaderNodeSeparateColor")
+        link(texture(rough)["Color"], split.inputs["Color"])
+        link(split.outputs["Green"], shader["Roughness"])
+    return made
+
+
+def light_material(name, colour, radiance, both_sides=False):
+    made = material(name, (0.8, 0.8, 0.8), Emission=(*colour, 1), Emission_Strength=radiance)
+    made.use_backface_culling = not both_sides
+    return made
+
+
+# The room
+
+def at(x, y, z=0.0, turn_deg=0.0):
+    return Matrix.Translation((x, y, z)) @ Matrix.Rotation(math.radians(turn_deg), 4, "Z")
+
+
+def make_shell(mat):
+    """Floor, ceiling and walls; the window's opening is y 0.35..1.45, z 0.8..2.2, in a deep niche."""
+    add("floor", boxes("floor", [mat.planks], [((-2.7, -2.2, -0.2), (2.85, 2.2, 0))], tile=(2.56, 1.28)))
+    add("brick wall", boxes("brick wall", [mat.bricks], [((-2.7, 2, 0), (2.85, 2.2, 2.8))], tile=(1, 0.64)))
+    add("walls", boxes("walls", [mat.plaster], [
+        ((-2.7, -2.2, 2.8), (2.9, 2.2, 3)), ((-2.7, -2, 0), (-2.5, 2, 2.8)),
+        ((-2.7, -2.2, 0), (2.85, -2, 2.8)), ((2.5, -2, 0), (2.9, 0.35, 2.8)),
+        ((2.5, 1.45, 0), (2.9, 2, 2.8)), ((2.5, 0.35, 0), (2.9, 1.45, 0.8)),
+        ((2.5, 0.35, 2.2), (2.9, 1.45, 2.8))]))
+    add("beams", boxes("beams", [mat.oak], [((x, -2, 2.64), (x + 0.14, 2, 2.8))
+                                            for x in (-1.75, -0.07, 1.61)], bevel=0.01))
+    add("skirting", boxes("skirting", [mat.paint], [
+        ((-2.5, 1.985, 0), (2.5, 2, 0.09)), ((-2.5, -2, 0), (-2.485, 1.985, 0.09)),
+        ((2.485, -2, 0), (2.5, 1.985, 0.09))]))
+
+
+def make_window(mat):
+    bars = [((2.76, y, 0.8), (2.81, y + w, 2.2)) for y, w in ((0.35, 0.06), (0.885, 0.03), (1.39, 0.06))]
+    bars += [((2.765, 0.36, z), (2.805, 1.44, z + w)) for z, w in ((0.8, 0.06), (1.70, 0.03), (2.14, 0.06))]
+    add("window frame", boxes("window frame", [mat.paint], bars))
+    add("window sill", boxes("window sill", [mat.oak], [((2.44, 0.30, 0.79), (2.76, 1.50, 0.825))], bevel=0.006))
+    add("courtyard", boxes("courtyard", [mat.bricks], [
+        ((6.2, -3, -0.2), (6.4, 5, 3.6)), ((2.9, 4, -0.2), (6.2, 4.2, 3.6))], tile=(1, 0.64)))
+    add("courtyard floor", boxes("courtyard floor", [mat.clay], [((2.9, -3, -0.4), (6.4, 5, -0.2))]))
+
+    def folds(u, v):
+        return 0.035 * math.sin(2 * math.pi * (4 * u + 0.1 * math.sin(5 * v))), 0.42 * (u - 0.5), 2.36 * v
+    curtain = sheet("curtain", mat.linen, folds, 48, 6)
+    for y in (0.19, 1.61):
+        add("curtain", curtain, matrix=at(2.42, y, 0.03))
+    rod = lathe("curtain rod", mat.brass, [(0, -0.98), (0.012, -0.98), (0.012, 0.98), (0, 0.98)], 12)
+    add("curtain rod", rod, matrix=at(2.42, 0.9, 2.4) @ Matrix.Rotation(math.pi / 2, 4, "X"))
+
+
+def make_sofa(mat, name, width, seats, matrix):
+    """A sofa of `seats` cushions that looks towards -y."""
+    group, half = add(name, None, matrix=matrix), width / 2
+    add("frame", boxes(name + " frame", [mat.cloth], [
+        ((-half, -0.42, 0.14), (half, 0.42, 0.30)), ((-half, 0.22, 0.16), (half, 0.42, 0.78)),
+        ((-half, -0.42, 0.16), (-half + 0.16, 0.42, 0.58)),
+        ((half - 0.16, -0.42, 0.16), (half, 0.42, 0.58))], 0.05, 4, (0.4, 0.4), 180), group)
+    seat = (width - 0.34) / seats
+    cushion = boxes(name + " cushion", [mat.cloth], [((-seat / 2, -0.34, 0), (seat / 2, 0.34, 0.17))],
+                    0.06, 4, (0.4, 0.4), 180)
+    for i in range(seats):
+        x = (i - (seats - 1) / 2) * (seat + 0.005)
+        add("seat", cushion, group, at(x, -0.11, 0.295))
+        lean = Matrix.Rotation(math.radians(78), 4, "X")
+        add("back", cushion, group, at(x, 0.17, 0.72) @ lean @ Matrix.Diagonal((0.98, 0.62, 0.95, 1)))
+    leg = lathe("leg", mat.oak, [(0, 0), (0.018, 0), (0.028, 0.16), (0, 0.16)], 12)
+    for x in (-half + 0.1, half - 0.1):
+        for y in (-0.33, 0.33):
+            add("leg", leg, group, at(x, y))
+    return group
+
+
+def make_table(mat):
+    group = add("coffee table", None, matrix=at(-0.15, 0.30))
+    add("top", boxes("table top", [mat.lacquer], [((-0.6, -0.31, 0.39), (0.6, 0.31, 0.425))], 0.012, 3,
+                     smooth_deg=50), group)
+    add("legs", boxes("table legs", [mat.steel], [
+        ((x - 0.015, y - 0.015, 0), (x + 0.015, y + 0.015, 0.39))
+        for x in (-0.54, 0.54) for y in (-0.25, 0.25)]), group)
+    for i in range(5):
+        step = i / 4
+        of = material(f"ball {i}", (0.95, 0.64 + 0.1 * step, 0.38 + 0.1 * step), Metallic=step,
+                      Roughness=0.6 - 0.5 * step)
+        add("ball", lathe(f"ball {i}", of, ball(0.055), 24, 180), group, at(-0.45 + 0.14 * i, -0.12, 0.48))
+    shape = [(0, 0.004), (0.05, 0), (0.075, 0.03), (0.085, 0.09), (0.07, 0.16), (0.04, 0.22), (0.035, 0.26),
+             (0.05, 0.30)]
+    add("glass vase", lathe("glass vase", mat.glass, shape, 40, 180), group, at(0.40, 0.08, 0.426))
+    add("magazines", boxes("magazines", [mat.books[2], mat.paper], [
+        ((-0.12, -0.15, 0), (0.10, 0.14, 0.008), 1), ((-0.10, -0.14, 0.008), (0.11, 0.14, 0.02), 0)]),
+        group, at(0.08, 0.14, 0.4255, 12))
+
+
+def make_shelf(mat, chance):
+    group = add("bookshelf", None, matrix=at(-2.0, 1.82))
+    boards = [((-0.45, -0.15, z), (0.45, 0.15, z + 0.025)) for z in (0.10, 0.46, 0.82, 1.18, 1.54, 1.90)]
+    sides = [((x, -0.15, 0), (x + 0.025, 0.15, 1.925)) for x in (-0.475, 0.45)]
+    back = [((-0.45, 0.13, 0.1), (0.45, 0.15, 1.9))]
+    add("case", boxes("bookcase", [mat.oak], boards + sides + back, tile=(0.8, 0.8)), group)
+    books = [boxes("book", [of, mat.paper], [
+        ((0, -0.085, 0), (0.003, 0.085, 0.24)), ((0.027, -0.085, 0), (0.03, 0.085, 0.24)),
+        ((0.003, -0.085, 0), (0.027, -0.082, 0.24)), ((0.003, -0.082, 0.004), (0.027, 0.08, 0.236), 1)])
+        for of in mat.books]
+    for z in (0.125, 0.485, 0.845, 1.205, 1.565):
+        x, end = -0.44, chance.uniform(0.0, 0.4)
+        while x < end:
+            thick, tall = chance.uniform(0.6, 1.6), chance.uniform(0.8, 1.15)
+            add("book", chance.choice(books), group, at(x, -0.03 + chance.uniform(-0.02, 0.01), z)
+                @ Matrix.Diagonal((thick, 0.95, tall, 1)))
+            x += 0.03 * thick + 0.001
+
+
+def make_sideboard(mat):
+    group = add("sideboard", None, matrix=at(2.27, 0.90))
+    add("body", boxes("sideboard body", [mat.oak, mat.paint], [
+        ((-0.20, -0.50, 0.10), (0.20, 0.50, 0.64)), ((-0.215, -0.485, 0.115), (-0.2, -0.005, 0.61), 1),
+        ((-0.215, 0.005, 0.115), (-0.2, 0.485, 0.61), 1)], 0.004, 1, (0.8, 0.8)), group)
+    add("feet", boxes("sideboard feet", [mat.steel], [
+        ((x, y, 0), (x + 0.03, y + 0.03, 0.1)) for x in (-0.17, 0.14) for y in (-0.45, 0.42)]), group)
+    shape = [(0, 0), (0.045, 0), (0.07, 0.05), (0.075, 0.11), (0.05, 0.18), (0.022, 0.24), (0.022, 0.29),
+             (0.032, 0.31), (0.026, 0.31), (0.016, 0.29), (0.016, 0.20), (0, 0.20)]
+    for y, scale, of in ((-0.36, 0.8, mat.brass), (-0.19, 1.0, mat.glaze), (0.36, 0.7, mat.copper)):
+        add("vase", lathe("vase", of, shape, 32, 60), group,
+            at(-0.02, y, 0.64) @ Matrix.Scale(scale, 4))
+
+
+def make_lamp(mat):
+    group = add("floor lamp", None, matrix=at(-1.30, 1.70))
+    add("stand", lathe("lamp stand", mat.brass, [
+        (0, 0), (0.14, 0), (0.14, 0.015), (0.012, 0.025), (0.012, 1.52), (0, 1.52)]), group)
+    add("shade", lathe("lamp shade", mat.shade, [(0.21, 1.42), (0.15, 1.74)], 40), group)
+    add("bulb", lathe("bulb", mat.bulb, ball(0.035, 8), 12, 180), group, at(0, 0, 1.56))
+
+
+def make_palm(mat, chance):
+    group = add("palm", None, matrix=at(2.02, 1.66))
+    add("pot", lathe("pot", mat.glaze, [(0, 0), (0.12, 0), (0.17, 0.30), (0.155, 0.30), (0.145, 0.26)]), group)
+    add("soil", lathe("soil", mat.soil, [(0.147, 0.26), (0, 0.27)]), group)
+
+    def droop(u, v):
+        return 0.36 * (u - 0.5), 0.95 * math.sin(1.3 * v) / 1.3, 0.95 * (math.cos(1.3 * v) - 1) / 1.3 - abs(u - 0.5) * 0.12
+    leaf = sheet("leaf", mat.leaf, droop, 2, 8, 180)
+    for i in range(16):
+        rise = math.radians(88 - 3.2 * i + chance.uniform(-4, 4))
+        add("leaf", leaf, group, Matrix.Translation((0, 0, 0.26)) @ Matrix.Rotation(2.4 * i, 4, "Z")
+            @ Matrix.Rotation(rise, 4, "X") @ Matrix.Scale(chance.uniform(0.8, 1.15), 4))
+
+
+def make_pictures(mat):
+    frame = boxes("picture frame", [mat.black, mat.paper], [
+        ((-0.38, -0.03, -0.30), (0.38, 0, -0.28)), ((-0.38, -0.03, 0.28), (0.38, 0, 0.30)),
+        ((-0.38, -0.03, -0.28), (-0.36, 0, 0.28)), ((0.36, -0.03, -0.28), (0.38, 0, 0.28)),
+        ((-0.36, -0.015, -0.28), (0.36, 0, 0.28), 1)])
+    scene = sheet("print", mat.picture, lambda u, v: (0.6 * u - 0.3, -0.017, 0.45 * v - 0.225), 1, 1)
+    for x, scale in ((-0.62, 1.0), (0.30, 0.8)):
+        group = add("picture", None, matrix=at(x, 2, 1.62) @ Matrix.Scale(scale, 4))
+        add("frame", frame, group)
+        add("print", scene, group)
+
+
+def make_rug(mat):
+    add("rug", sheet("rug", mat.rug, lambda u, v: (2.5 * u - 1.4, 1.7 * v - 0.75, 0.008), 1, 1))
+    add("rug edge", boxes("rug edge", [mat.linen], [((-1.4, -0.75, 0), (1.1, 0.95, 0.007))]))
+
+
+def make_lights(mat):
+    panel = sheet("sky", mat.sky, lambda u, v: (u - 0.5, 1.2 * (0.5 - v), 0), 1, 1)
+    add("sky", panel, matrix=aimed((3.6, 0.1, 1.9), (2.6, 0.95, 1.5)))
+    sun = bpy.data.lights.new("sun", "SPOT")
+    sun.energy, sun.color = 25000, (1.0, 0.78, 0.52)
+    sun.spot_size, sun.spot_blend = math.radians(26), 0.1
+    add("sun", sun, matrix=aimed((5.6, 2.3, 3.5), (2.7, 0.9, 1.5)))
+
+
+def aimed(position, target):
+    """A camera's or lamp's matrix: it looks along its -z."""
+    toward = Vector(target) - Vector(position)
+    return Matrix.Translation(position) @ toward.to_track_quat("-Z", "Y").to_matrix().to_4x4()
+
+
+def make_camera(name, position, target, angle_deg):
+    camera = bpy.data.cameras.new(name)
+    camera.angle = math.radians(angle_deg)
+    add(name, camera, matrix=aimed(position, target))
+
+
+def make_materials():
+    mat = types.SimpleNamespace()
+    colour, normal, rough = textures.planks()
+    mat.planks = material("planks", base=image("planks", colour, "jpg"),
+                          normal=image("planks normal", normal, "jpg", False),
+                          rough=image("planks rough", rough, "jpg", False))
+    colour, normal = textures.bricks()
+    mat.bricks = material("bricks", base=image("bricks", colour, "jpg"), Roughness=0.9,
+                          normal=image("bricks normal", normal, "jpg", False))
+    mat.oak = material("oak", base=image("oak", textures.oak(), "jpg"), Roughness=0.45)
+    weave = image("weave", textures.weave(), "png", False)
+    mat.cloth = material("cloth", (0.16, 0.26, 0.27), normal=weave, Roughness=0.95)
+    mat.linen = material("linen", (0.72, 0.66, 0.55), Roughness=1.0)
+    mat.plaster = material("plaster", (0.80, 0.77, 0.71), Roughness=0.95)
+    mat.paint = material("paint", (0.78, 0.77, 0.73), Roughness=0.35)
+    mat.clay = material("clay", (0.45, 0.36, 0.28), Roughness=1.0)
+    mat.lacquer = material("lacquer", (0.12, 0.035, 0.025), Roughness=0.5, Clearcoat=1.0, Clearcoat_Roughness=0.05)
+    mat.steel = material("steel", (0.25, 0.25, 0.26), Metallic=1.0, Roughness=0.4)
+    mat.brass = material("brass", (0.87, 0.66, 0.30), Metallic=1.0, Roughness=0.28)
+    mat.copper = material("copper", (0.93, 0.55, 0.42), Metallic=1.0, Roughness=0.15)
+    mat.glaze = material("glaze", (0.10, 0.22, 0.34), Roughness=0.15)
+    mat.glass = material("glass", (0.92, 0.97, 0.95), Transmission=1.0, Roughness=0.0)
+    mat.soil = material("soil", (0.05, 0.035, 0.025), Roughness=1.0)
+    mat.black = material("black", (0.03, 0.03, 0.03), Roughness=0.4)
+    mat.paper = material("paper", (0.80, 0.77, 0.68), Roughness=0.9)
+    mat.books = [material(f"cover {i}", of, Roughness=0.6) for i, of in enumerate((
+        (0.42, 0.09, 0.07), (0.07, 0.13, 0.26), (0.55, 0.38, 0.14), (0.10, 0.22, 0.13), (0.60, 0.55, 0.46)))]
+    mat.rug = material("rug", base=image("rug", textures.rug(), "jpg"), Roughness=1.0)
+    mat.picture = material("picture", base=image("picture", textures.landscape(), "jpg"), Roughness=0.5)
+    mat.leaf = material("leaf", base=image("frond", textures.frond()), cutout=True, Roughness=0.5)
+    mat.sky = light_material("sky", (0.72, 0.86, 1.0), 45)
+    mat.bulb = light_material("bulb", (1.0, 0.70, 0.40), 800)
+    mat.shade = light_material("shade", (1.0, 0.68, 0.36), 1.2, both_sides=True)
+    return mat
+
+
+def main():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    mat, chance = make_materials(), random.Random(11)
+    make_shell(mat)
+    make_window(mat)
+    make_sofa(mat, "sofa", 1.95, 2, at(-0.05, 1.50))
+    make_sofa(mat, "armchair", 0.95, 1, at(-1.75, -0.15, 0, 72))
+    make_table(mat)
+    make_shelf(mat, chance)
+    make_sideboard(mat)
+    make_lamp(mat)
+    make_palm(mat, chance)
+    make_pictures(mat)
+    make_rug(mat)
+    make_lights(mat)
+    make_camera("Room", (0.35, -1.90, 1.50), (0.02, 1.5, 0.97), 82)
+    make_camera("Window", (-2.2, -1.7, 1.55), (2.2, 0.75, 0.95), 62)
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 1280, 720
+    bpy.ops.export_scene.gltf(filepath=str(HERE / "room.glb"), export_format="GLB",
+                              export_cameras=True, export_lights=True, export_tangents=True)
+
+
+main()
