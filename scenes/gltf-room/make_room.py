@@ -4,86 +4,21 @@
 
 Metres, z up as in Blender (the exporter turns it to y up). The room spans x -2.5..2.5, y -2..2,
 z 0..2.8; its window, in the wall at x = 2.5, opens on a courtyard with a sky panel and a low sun.
+The textures are in textures.py, the materials in materials.py, the meshes' shapes in shapes.py.
 """
 import math
 import pathlib
 import random
 import sys
-import tempfile
-import types
 
 import bpy
-import numpy as np
 from mathutils import Matrix, Vector
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-import textures  # noqa: E402
+from materials import make_materials  # noqa: E402
 from shapes import add, ball, boxes, lathe, sheet  # noqa: E402
 
-IMAGES = tempfile.TemporaryDirectory()
-
-
-def image(name, pixels, kind="png", colour=True):
-    """A texture of the given array, by way of a file so that the exporter keeps its format."""
-    if pixels.ndim == 2:
-        pixels = np.repeat(pixels[..., None], 3, -1)
-    height, width, channels = pixels.shape
-    drawn = bpy.data.images.new(name, width, height, alpha=channels == 4)
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., :channels] = pixels
-    drawn.pixels.foreach_set(rgba.ravel())
-    drawn.filepath_raw = str(pathlib.Path(IMAGES.name) / f"{name}.{kind}")
-    drawn.file_format = {"png": "PNG", "jpg": "JPEG"}[kind]
-    drawn.save()
-    made = bpy.data.images.load(drawn.filepath_raw)
-    bpy.data.images.remove(drawn)
-    made.name = name
-    made.colorspace_settings.name = "sRGB" if colour else "Non-Color"
-    return made
-
-
-# Materials
-
-def material(name, colour=(1, 1, 1), base=None, normal=None, rough=None, cutout=False, **inputs):
-    """A Principled material: `colour` is linear; `base`, `normal` and `rough` are images."""
-    made = bpy.data.materials.new(name)
-    made.use_nodes = True
-    nodes, link = made.node_tree.nodes, made.node_tree.links.new
-    shader = nodes["Principled BSDF"].inputs
-    shader["Base Color"].default_value = (*colour, 1)
-    for key, value in inputs.items():
-        shader[key.replace("_", " ")].default_value = value
-
-    def texture(of):
-        node = nodes.new("ShaderNodeTexImage")
-        node.image = of
-        return node.outputs
-
-    if base:
-        outputs = texture(base)
-        link(outputs["Color"], shader["Base Color"])
-        if cutout:
-            link(outputs["Alpha"], shader["Alpha"])
-            made.blend_method = "CLIP"
-    if normal:
-        bump = nodes.new("ShaderNodeNormalMap")
-        link(texture(normal)["Color"], bump.inputs["Color"])
-        link(bump.outputs["Normal"], shader["Normal"])
-    if rough:
-        split = nodes.new("ShaderNodeSeparateColor")
-        link(texture(rough)["Color"], split.inputs["Color"])
-        link(split.outputs["Green"], shader["Roughness"])
-    return made
-
-
-def light_material(name, colour, radiance, both_sides=False):
-    made = material(name, (0.8, 0.8, 0.8), Emission=(*colour, 1), Emission_Strength=radiance)
-    made.use_backface_culling = not both_sides
-    return made
-
-
-# The room
 
 def at(x, y, z=0.0, turn_deg=0.0):
     return Matrix.Translation((x, y, z)) @ Matrix.Rotation(math.radians(turn_deg), 4, "Z")
@@ -145,6 +80,14 @@ def make_sofa(mat, name, width, seats, matrix):
     return group
 
 
+def make_throw_cushions(mat, sofa):
+    pad = boxes("throw cushion", [mat.rust], [((-0.21, -0.07, -0.21), (0.21, 0.07, 0.21))], 0.065, 4,
+                (0.4, 0.4), 180)
+    for x, turn in ((-0.58, 14), (0.52, -20)):
+        lean = Matrix.Rotation(math.radians(-22), 4, "X")
+        add("throw cushion", pad, sofa, at(x, -0.10, 0.665, turn) @ lean)
+
+
 def make_table(mat):
     group = add("coffee table", None, matrix=at(-0.15, 0.30))
     add("top", boxes("table top", [mat.lacquer], [((-0.6, -0.31, 0.39), (0.6, 0.31, 0.425))], 0.012, 3,
@@ -152,11 +95,8 @@ def make_table(mat):
     add("legs", boxes("table legs", [mat.steel], [
         ((x - 0.015, y - 0.015, 0), (x + 0.015, y + 0.015, 0.39))
         for x in (-0.54, 0.54) for y in (-0.25, 0.25)]), group)
-    for i in range(5):
-        step = i / 4
-        of = material(f"ball {i}", (0.95, 0.64 + 0.1 * step, 0.38 + 0.1 * step), Metallic=step,
-                      Roughness=0.6 - 0.5 * step)
-        add("ball", lathe(f"ball {i}", of, ball(0.055), 24, 180), group, at(-0.45 + 0.14 * i, -0.12, 0.48))
+    for i, of in enumerate(mat.balls):
+        add("ball", lathe(of.name, of, ball(0.062), 24, 180), group, at(-0.46 + 0.15 * i, -0.12, 0.487))
     shape = [(0, 0.004), (0.05, 0), (0.075, 0.03), (0.085, 0.09), (0.07, 0.16), (0.04, 0.22), (0.035, 0.26),
              (0.05, 0.30)]
     add("glass vase", lathe("glass vase", mat.glass, shape, 40, 180), group, at(0.40, 0.08, 0.426))
@@ -212,7 +152,8 @@ def make_palm(mat, chance):
     add("soil", lathe("soil", mat.soil, [(0.147, 0.26), (0, 0.27)]), group)
 
     def droop(u, v):
-        return 0.36 * (u - 0.5), 0.95 * math.sin(1.3 * v) / 1.3, 0.95 * (math.cos(1.3 * v) - 1) / 1.3 - abs(u - 0.5) * 0.12
+        along, down = math.sin(1.3 * v), 1 - math.cos(1.3 * v)
+        return 0.36 * (u - 0.5), 0.73 * along, -0.73 * down - 0.12 * abs(u - 0.5)
     leaf = sheet("leaf", mat.leaf, droop, 2, 8, 180)
     for i in range(16):
         rise = math.radians(88 - 3.2 * i + chance.uniform(-4, 4))
@@ -241,9 +182,9 @@ def make_lights(mat):
     panel = sheet("sky", mat.sky, lambda u, v: (u - 0.5, 1.2 * (0.5 - v), 0), 1, 1)
     add("sky", panel, matrix=aimed((3.6, 0.1, 1.9), (2.6, 0.95, 1.5)))
     sun = bpy.data.lights.new("sun", "SPOT")
-    sun.energy, sun.color = 25000, (1.0, 0.78, 0.52)
+    sun.energy, sun.color = 25000, (1.0, 0.84, 0.64)
     sun.spot_size, sun.spot_blend = math.radians(26), 0.1
-    add("sun", sun, matrix=aimed((5.6, 2.3, 3.5), (2.7, 0.9, 1.5)))
+    add("sun", sun, matrix=aimed((5.8, 1.7, 3.3), (2.7, 0.9, 1.5)))
 
 
 def aimed(position, target):
@@ -258,48 +199,12 @@ def make_camera(name, position, target, angle_deg):
     add(name, camera, matrix=aimed(position, target))
 
 
-def make_materials():
-    mat = types.SimpleNamespace()
-    colour, normal, rough = textures.planks()
-    mat.planks = material("planks", base=image("planks", colour, "jpg"),
-                          normal=image("planks normal", normal, "jpg", False),
-                          rough=image("planks rough", rough, "jpg", False))
-    colour, normal = textures.bricks()
-    mat.bricks = material("bricks", base=image("bricks", colour, "jpg"), Roughness=0.9,
-                          normal=image("bricks normal", normal, "jpg", False))
-    mat.oak = material("oak", base=image("oak", textures.oak(), "jpg"), Roughness=0.45)
-    weave = image("weave", textures.weave(), "png", False)
-    mat.cloth = material("cloth", (0.16, 0.26, 0.27), normal=weave, Roughness=0.95)
-    mat.linen = material("linen", (0.72, 0.66, 0.55), Roughness=1.0)
-    mat.plaster = material("plaster", (0.80, 0.77, 0.71), Roughness=0.95)
-    mat.paint = material("paint", (0.78, 0.77, 0.73), Roughness=0.35)
-    mat.clay = material("clay", (0.45, 0.36, 0.28), Roughness=1.0)
-    mat.lacquer = material("lacquer", (0.12, 0.035, 0.025), Roughness=0.5, Clearcoat=1.0, Clearcoat_Roughness=0.05)
-    mat.steel = material("steel", (0.25, 0.25, 0.26), Metallic=1.0, Roughness=0.4)
-    mat.brass = material("brass", (0.87, 0.66, 0.30), Metallic=1.0, Roughness=0.28)
-    mat.copper = material("copper", (0.93, 0.55, 0.42), Metallic=1.0, Roughness=0.15)
-    mat.glaze = material("glaze", (0.10, 0.22, 0.34), Roughness=0.15)
-    mat.glass = material("glass", (0.92, 0.97, 0.95), Transmission=1.0, Roughness=0.0)
-    mat.soil = material("soil", (0.05, 0.035, 0.025), Roughness=1.0)
-    mat.black = material("black", (0.03, 0.03, 0.03), Roughness=0.4)
-    mat.paper = material("paper", (0.80, 0.77, 0.68), Roughness=0.9)
-    mat.books = [material(f"cover {i}", of, Roughness=0.6) for i, of in enumerate((
-        (0.42, 0.09, 0.07), (0.07, 0.13, 0.26), (0.55, 0.38, 0.14), (0.10, 0.22, 0.13), (0.60, 0.55, 0.46)))]
-    mat.rug = material("rug", base=image("rug", textures.rug(), "jpg"), Roughness=1.0)
-    mat.picture = material("picture", base=image("picture", textures.landscape(), "jpg"), Roughness=0.5)
-    mat.leaf = material("leaf", base=image("frond", textures.frond()), cutout=True, Roughness=0.5)
-    mat.sky = light_material("sky", (0.72, 0.86, 1.0), 45)
-    mat.bulb = light_material("bulb", (1.0, 0.70, 0.40), 800)
-    mat.shade = light_material("shade", (1.0, 0.68, 0.36), 1.2, both_sides=True)
-    return mat
-
-
 def main():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     mat, chance = make_materials(), random.Random(11)
     make_shell(mat)
     make_window(mat)
-    make_sofa(mat, "sofa", 1.95, 2, at(-0.05, 1.50))
+    make_throw_cushions(mat, make_sofa(mat, "sofa", 1.95, 2, at(-0.05, 1.50)))
     make_sofa(mat, "armchair", 0.95, 1, at(-1.75, -0.15, 0, 72))
     make_table(mat)
     make_shelf(mat, chance)
