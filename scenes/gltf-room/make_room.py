@@ -41,8 +41,10 @@ def make_shell(mat):
 
 
 def make_window(mat):
-    bars = [((2.76, y, 0.8), (2.81, y + w, 2.2)) for y, w in ((0.35, 0.06), (0.885, 0.03), (1.39, 0.06))]
-    bars += [((2.765, 0.36, z), (2.805, 1.44, z + w)) for z, w in ((0.8, 0.06), (1.70, 0.03), (2.14, 0.06))]
+    bars = [((2.76, y, 0.8), (2.81, y + w, 2.2))
+            for y, w in ((0.35, 0.06), (0.885, 0.03), (1.39, 0.06))]
+    bars += [((2.765, 0.36, z), (2.805, 1.44, z + w))
+             for z, w in ((0.8, 0.06), (1.70, 0.03), (2.14, 0.06))]
     add("window frame", boxes("window frame", [mat.paint], bars))
     add("window sill", boxes("window sill", [mat.oak], [((2.44, 0.30, 0.79), (2.76, 1.50, 0.825))], bevel=0.006))
     add("courtyard", boxes("courtyard", [mat.bricks], [
@@ -99,7 +101,7 @@ def make_table(mat):
         add("ball", lathe(of.name, of, ball(0.062), 24, 180), group, at(-0.46 + 0.15 * i, -0.12, 0.487))
     shape = [(0, 0.004), (0.05, 0), (0.075, 0.03), (0.085, 0.09), (0.07, 0.16), (0.04, 0.22), (0.035, 0.26),
              (0.05, 0.30)]
-    add("glass vase", lathe("glass vase", mat.glass, shape, 40, 180), group, at(0.40, 0.08, 0.426))
+    add("glass vase", lathe("glass vase", mat.glass, shape, 40, 180), group, at(0.42, 0.04, 0.426))
     add("magazines", boxes("magazines", [mat.books[2], mat.paper], [
         ((-0.12, -0.15, 0), (0.10, 0.14, 0.008), 1), ((-0.10, -0.14, 0.008), (0.11, 0.14, 0.02), 0)]),
         group, at(0.08, 0.14, 0.4255, 12))
@@ -141,7 +143,9 @@ def make_sideboard(mat):
 def make_lamp(mat):
     group = add("floor lamp", None, matrix=at(-1.30, 1.70))
     add("stand", lathe("lamp stand", mat.brass, [
-        (0, 0), (0.14, 0), (0.14, 0.015), (0.012, 0.025), (0.012, 1.52), (0, 1.52)]), group)
+        (0, 0), (0.14, 0), (0.14, 0.015), (0.012, 0.025), (0.012, 1.42), (0, 1.42)]), group)
+    add("socket", lathe("lamp socket", mat.black, [
+        (0, 1.42), (0.022, 1.42), (0.022, 1.53), (0, 1.53)], 16), group)
     add("shade", lathe("lamp shade", mat.shade, [(0.21, 1.42), (0.15, 1.74)], 40), group)
     add("bulb", lathe("bulb", mat.bulb, ball(0.035, 8), 12, 180), group, at(0, 0, 1.56))
 
@@ -182,7 +186,7 @@ def make_lights(mat):
     panel = sheet("sky", mat.sky, lambda u, v: (u - 0.5, 1.2 * (0.5 - v), 0), 1, 1)
     add("sky", panel, matrix=aimed((3.6, 0.1, 1.9), (2.6, 0.95, 1.5)))
     sun = bpy.data.lights.new("sun", "SPOT")
-    sun.energy, sun.color = 25000, (1.0, 0.84, 0.64)
+    sun.energy, sun.color = 20000, (1.0, 0.84, 0.64)
     sun.spot_size, sun.spot_blend = math.radians(26), 0.1
     add("sun", sun, matrix=aimed((5.8, 1.7, 3.3), (2.7, 0.9, 1.5)))
 

@@ -90,7 +90,7 @@ def make_materials():
     mat.brass = material("brass", (0.87, 0.66, 0.30), Metallic=1.0, Roughness=0.28)
     mat.copper = material("copper", (0.93, 0.55, 0.42), Metallic=1.0, Roughness=0.15)
     mat.glaze = material("glaze", (0.10, 0.22, 0.34), Roughness=0.15)
-    mat.glass = material("glass", (0.92, 0.97, 0.95), Transmission=1.0, Roughness=0.0)
+    mat.glass = material("glass", (0.70, 0.90, 0.82), Transmission=1.0, Roughness=0.0)
     mat.soil = material("soil", (0.05, 0.035, 0.025), Roughness=1.0)
     mat.black = material("black", (0.03, 0.03, 0.03), Roughness=0.4)
     mat.paper = material("paper", (0.80, 0.77, 0.68), Roughness=0.9)
