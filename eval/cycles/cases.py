@@ -50,7 +50,7 @@ ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 128, "cycles_spp
         "views": (DIRECT, INDIRECT), "drop": ("Ke",)}
 BOX = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 256, "cycles_spp": 256, "seeds": 12,
        "views": (DIRECT, INDIRECT)}
-MODEL = {"size": model_scenes.SIZE, "spp": 64, "cycles_spp": 64, "seeds": 4, "views": (ALL,)}
+MODEL = {"size": model_scenes.SIZE, "spp": 32, "cycles_spp": 32, "seeds": 4, "views": (ALL,)}
 TEAPOT = {"scale": 0.09, "rotate_deg": [0.0, 40.0, 0.0], "translate": [0.186, 0.165, 0.168]}
 SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.0, 2.5, 2.0]}
 
@@ -81,7 +81,8 @@ CASES = (
            model=model_cases.SPHERES.get(name, {}), **MODEL)
       for name in model_cases.SKETCHES if name != "windows"),
     Case("windows", "windows.obj", lights=({"type": "environment", "image": "sky.exr",
-                                            "rotate_deg": 160.0},), **MODEL),
+                                            "rotate_deg": 160.0},),
+         **MODEL | {"spp": 128, "cycles_spp": 128}),
 )
 
 

@@ -34,7 +34,7 @@ from scene_source import SceneError
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-WALKS = 32  # batches of walk.py
+WALKS = 64  # batches of walk.py
 EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
 
 
@@ -167,6 +167,7 @@ def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple
 def verdict(figures: dict, tolerance: float) -> str:
     """`noisy` where the error bar is too wide to hold the claim either way."""
     ratio, error = figures["mean"]["ratio"], figures["mean"]["error"]
+    error = None if error is None else np.hypot(error, figures.get("expected_error", 0.0))
     difference = None if ratio is None else abs(ratio - figures.get("expected", 1.0))
     if difference is None or difference > tolerance + 3.0 * error:
         return "differs"
