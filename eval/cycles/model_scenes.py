@@ -94,13 +94,18 @@ def sphere_in_box(material: dict) -> Sketch:
                   [*box_parts(), Part("sphere", position, normal)])
 
 
-def mapped_box() -> Sketch:
-    """Floor and back wall have a normal map: waves without symmetry, up to 25 degrees steep."""
-    y, x = (g / 64 * 2 * np.pi for g in np.mgrid[0:64, 0:64] + 0.5)
+def mapped_normal(u, v) -> np.ndarray:
+    """Waves without symmetry, up to 24 degrees steep; v down."""
+    x, y = 2 * np.pi * u, 2 * np.pi * v
     normal = np.stack([0.3 * np.sin(x) + 0.1 * np.sin(3 * y), 0.2 * np.cos(2 * y + x),
                        np.ones_like(x)], -1)
-    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    pixels = np.rint((normal + 1) / 2 * 255)
+    return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+
+
+def mapped_box() -> Sketch:
+    """Floor and back wall have a normal map."""
+    v, u = (np.mgrid[0:64, 0:64] + 0.5) / 64
+    pixels = np.rint((mapped_normal(u, v) + 1) / 2 * 255)
     materials = box_materials()
     for name in ("floor", "back"):
         materials[name] = {"type": "diffuse", "reflectance": GREY, "normal": pixels}

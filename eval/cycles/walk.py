@@ -190,6 +190,60 @@ def scatter_of(data: dict) -> Scatter:
     return coated(data["roughness"], data["eta"], data["reflectance"])
 
 
+def relief_factors(p, axis, wo, n, wi):
+    """Of Lambert under a normal map, over plain Lambert: (n, 2, 1)."""
+    floor = (axis == 1)[:, None]
+    u, v = (p[:, 0] + 1) / 2, np.where(axis == 1, 1 - p[:, 2], 1 + p[:, 1]) / 2
+    green = np.where(floor, [[0.0, 0.0, 1.0]], [[0.0, -1.0, 0.0]])  # against glTF's v
+    c = scenes.mapped_normal(u, v)
+    normal = unit(c[:, :1] * [1.0, 0.0, 0.0] + c[:, 1:2] * green + c[:, 2:] * n)
+    cosine = dot(wi, n)
+    ours, theirs = our_bend(normal, wo, n), cycles_bend(normal, wo, n)
+    lit = np.stack([dot(ours, wi), dot(theirs, wi) * softened(theirs, wi, n)], 1)
+    return (np.maximum(lit, 0.0) / np.maximum(cosine, 1e-9)[:, None])[:, :, None]
+
+
+def softened(normal, wi, n):
+    """Cycles dims what a map turns to the light (Chiang et al. 2019, "Taming the shadow
+    terminator")."""
+    g = dot(n, wi) / np.maximum(dot(normal, wi) * dot(n, normal), 1e-9)
+    return np.where(g < 1, g + g**2 - g**3, 1.0)
+
+
+def our_bend(normal, wo, n):
+    """transport/bsdf/ggx/theory.md, shading normals: the mirror image of wo stays above n."""
+    mirror, o = reflected(wo, normal), dot(wo, n)
+    least = np.minimum(0.01, 0.9 * o)[:, None]
+    up = dot(mirror, n)[:, None]
+    along = unit(mirror - n * up + 1e-12)
+    bent = unit(wo + along * np.sqrt(1 - least**2) + n * least)
+    return np.where((up >= least) & (dot(normal, wo) > 0)[:, None], normal, bent)
+
+
+def cycles_bend(normal, wo, n):
+    """The same of Cycles (ensure_valid_reflection), which turns the normal straight towards n."""
+    least = np.minimum(0.01, 0.9 * dot(wo, n))
+    x = unit(normal - dot(normal, n)[:, None] * n + 1e-12)
+    ix, iz = dot(wo, x), dot(wo, n)
+    a = ix**2 + iz**2
+    b, c = np.sqrt(np.maximum(0, ix**2 * (a - least**2))), iz * least + a
+    z2 = np.stack([b + c, c - b]) / (2 * a)
+    valid = (z2 > 1e-5) & (z2 <= 1 + 1e-5)
+    z2 = np.clip(z2, 0, 1)
+    nx, nz = np.sqrt(1 - z2), np.sqrt(z2)
+    height = 2 * (nx * ix + nz * iz) * nz - iz
+    both = valid.all(0)
+    good = (height >= 1e-5) & both
+    first = np.where(good.all(0), height[0] < height[1], height[0] > height[1])
+    first = np.where(both, first, valid[0])
+    rows = np.arange(len(n))
+    which = np.where(first, 0, 1)
+    bent = nx[which, rows][:, None] * x + nz[which, rows][:, None] * n
+    bent = np.where(valid.any(0)[:, None], bent, n)
+    keep = dot(reflected(wo, normal), n) >= least
+    return np.where(keep[:, None], normal, bent)
+
+
 def camera_rays(count: int, random) -> tuple[np.ndarray, np.ndarray]:
     camera = source.read_camera(scenes.CAMERA)
     reach = np.tan(np.radians(camera.vertical_fov_deg) / 2)
@@ -215,8 +269,10 @@ def frame(n):
     return x, np.cross(n, x)
 
 
-def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int) -> np.ndarray:
-    """Radiance (count, 2, 3) of random points of the film: with our model, and with Cycles'."""
+def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
+         mapped: bool = False) -> np.ndarray:
+    """Radiance (count, 2, 3) of random points of the film: with our model, and with Cycles'.
+    `mapped`: of model_scenes.mapped_box, which has no sphere."""
     random = np.random.default_rng(seed)
     o, d = camera_rays(count, random)
     found, weight, row = np.zeros((count, 2, 3)), np.ones((count, 2, 3)), np.arange(count)
@@ -224,7 +280,7 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int) -> np.nda
         u = random.random((len(row), 4))
         with np.errstate(divide="ignore"):
             planes = (np.sign(d) - o) / d
-        axis, ball = planes.argmin(axis=1), to_sphere(o, d)
+        axis, ball = planes.argmin(axis=1), np.full(len(o), np.inf) if mapped else to_sphere(o, d)
         t = np.minimum(planes.min(axis=1), ball)
         p, on_ball, sign = o + t[:, None] * d, ball <= t, np.sign(d[np.arange(len(d)), axis])
         lit = ~on_ball & (axis == 1) & (sign > 0)  # the lamp's gap of 0.001 is left out
@@ -240,6 +296,10 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int) -> np.nda
         b = np.flatnonzero(on_ball)
         wo = np.stack([-dot(d[b], x[b]), -dot(d[b], y[b]), np.maximum(-dot(d[b], n[b]), 1e-6)], 1)
         wi[b], factor[b] = scatter(wo, inside[b], u[b])
+        if mapped:
+            b = np.flatnonzero((sign < 0) & (axis > 0))
+            factor[b] *= relief_factors(p[b], axis[b], -d[b], n[b],
+                                        wi[b, :1] * x[b] + wi[b, 1:2] * y[b] + wi[b, 2:] * n[b])
         weight = weight * factor
         stay = np.minimum(weight.max(axis=(1, 2)), 1.0) * ~lit  # Russian roulette
         live = u[:, 3] < stay
@@ -250,11 +310,12 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int) -> np.nda
 
 
 def image_means(data: dict, batches: int, batch: int = 1 << 15) -> np.ndarray:
-    """Mean grey radiance (batch, 2) with our model and with Cycles', by the same paths."""
+    """Mean grey radiance (batch, 2) with our model and with Cycles', by the same paths. `data`: the
+    sphere's material; none: of mapped_box."""
     materials = scenes.box_materials()
     colours = np.array([materials[name]["reflectance"] for name in FACES], float)
-    scatter = scatter_of(data)
-    return np.array([walk(scatter, colours, batch, seed).mean(axis=(0, 2))
+    scatter = scatter_of(data) if data else conductor(1.0)
+    return np.array([walk(scatter, colours, batch, seed, not data).mean(axis=(0, 2))
                      for seed in range(batches)])
 
 
