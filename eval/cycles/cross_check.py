@@ -236,8 +236,9 @@ def write_results(path: Path, runs: dict) -> None:
 
 
 def table(results: dict) -> str:
-    lines = ["| case | view | ours | Cycles | ratio | standard error | expected | blocks: mean z² |",
-             "|---|---|---|---|---|---|---|---|"]
+    heads = ("case", "view", "ours", "Cycles", "ratio", "standard error", "expected",
+             "blocks: mean z²")
+    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for case in (case.name for case in CASES if case.name in results):
         for view, figures in results[case]["views"].items():
             mean, z2 = figures["mean"], figures["blocks"]["mean_square_z"]

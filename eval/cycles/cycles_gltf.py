@@ -31,7 +31,7 @@ def _plain(tree: bpy.types.NodeTree) -> None:
             node = _replace(tree, old, "ShaderNodeEmission")
             node.inputs["Color"].default_value = (*glow, 1.0)
             node.inputs["Strength"].default_value = 1.0
-        elif (old.inputs["Roughness"].default_value, old.inputs["Metallic"].default_value) == (1, 0):
+        elif [old.inputs[key].default_value for key in ("Roughness", "Metallic")] == [1, 0]:
             _replace(tree, old, "ShaderNodeBsdfDiffuse").inputs["Roughness"].default_value = 0.0
 
 

@@ -45,7 +45,8 @@ def quad(a, b, c, d, cells: int = 1) -> tuple[np.ndarray, np.ndarray]:
     assert np.allclose(a + ab + ad, c)
     i, j = (g.ravel() / cells for g in np.mgrid[0:cells, 0:cells])
     step = 1.0 / cells
-    corner = [np.stack([i + x * step, j + y * step], 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    corner = [np.stack([i + x * step, j + y * step], 1)
+              for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
     uv = np.concatenate([np.stack([corner[k] for k in t], 1) for t in ((0, 1, 2), (0, 2, 3))])
     return a + uv[..., :1] * ab + uv[..., 1:] * ad, uv
 

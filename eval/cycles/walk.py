@@ -90,12 +90,14 @@ def dielectric(alpha: float, index: float) -> Scatter:
         o = np.minimum(dot(wo, h), 1.0)
         facet, t = fresnel(o, eta)
         smooth = fresnel(np.minimum(wo[:, 2], 1.0), eta)[0]
-        mirror = u[:, 2] < facet
+        chance = (facet + smooth) / 2
+        mirror = u[:, 2] < chance
         refracted = unit(h * (o / eta - t)[:, None] - wo / eta[:, None])
         wi = np.where(mirror[:, None], reflected(wo, h), refracted)
         good = np.where(mirror, wi[:, 2] > 0, (wi[:, 2] < 0) & (t > 0))
-        share = np.where(mirror, smooth / facet, (1 - smooth) / np.maximum(1 - facet, 1e-9))
-        both = shadowing(wo, wi, alpha) * np.stack([np.ones(len(wo)), share], 1)
+        share = np.stack([facet, smooth], 1)
+        drawn = np.where(mirror[:, None], share, 1 - share)
+        both = shadowing(wo, wi, alpha) * drawn / np.where(mirror, chance, 1 - chance)[:, None]
         return wi, np.where(good[:, None], both, 0.0)[:, :, None]
     return scatter
 
