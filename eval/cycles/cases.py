@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 
+import model_cases
+import model_scenes
 from scene_source import SceneError, read_toml, resolve
 
 
@@ -24,6 +26,7 @@ class View:
 
 
 DIRECT, ONE_BOUNCE, INDIRECT = View("direct", 0), View("indirect", 1), View("indirect", 32)
+ALL = View("all", 32)
 
 
 @dataclass(frozen=True)
@@ -40,12 +43,14 @@ class Case:
     tall_block: str = ""  # MTL lines for the Cornell box's tall block
     teapot: str = ""  # MTL lines for a teapot put on the short block
     note: str = ""
+    model: dict = field(default_factory=dict)  # the sphere's, of model_cases.py
 
 
 ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 128, "cycles_spp": 128, "seeds": 12,
         "views": (DIRECT, INDIRECT), "drop": ("Ke",)}
 BOX = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 256, "cycles_spp": 256, "seeds": 12,
        "views": (DIRECT, INDIRECT)}
+MODEL = {"size": model_scenes.SIZE, "spp": 32, "cycles_spp": 32, "seeds": 4, "views": (ALL,)}
 TEAPOT = {"scale": 0.09, "rotate_deg": [0.0, 40.0, 0.0], "translate": [0.186, 0.165, 0.168]}
 SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.0, 2.5, 2.0]}
 
@@ -72,6 +77,12 @@ CASES = (
     Case("teapot-mirror", teapot="Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n", **BOX),
     Case("teapot-glass", teapot="Kd 0 0 0\nNi 1.5\nillum 7\n", **BOX),
     Case("box-glass", tall_block="Kd 0 0 0\nNi 1.5\nillum 7\n", **BOX),
+    *(Case(name, f"{name}.{'glb' if name in model_cases.GLTF else 'pbrt'}",
+           model=model_cases.SPHERES.get(name, {}), **MODEL)
+      for name in model_cases.SKETCHES if name != "windows"),
+    Case("windows", "windows.obj", lights=({"type": "environment", "image": "sky.exr",
+                                            "rotate_deg": 160.0},),
+         **MODEL | {"spp": 128, "cycles_spp": 128}),
 )
 
 
@@ -133,10 +144,17 @@ def write_sky(path: Path) -> None:
 
 
 def prepare(case: Case, scenes: Path, folder: Path) -> Path:
-    """Writes the scene.toml (and libraries) that both renderers read; returns its path."""
-    original = scenes / case.scene
-    table = read_toml(original)
+    """Writes the scene (and libraries) that both renderers read; returns its path."""
     folder.mkdir(parents=True, exist_ok=True)
+    original = scenes / case.scene
+    if case.name in model_cases.SKETCHES:
+        original = folder / case.scene
+        model_cases.write(case.name, original)
+    if original.suffix in (".glb", ".pbrt"):
+        return original
+    table = ({"camera": model_scenes.CAMERA, "mesh": [
+        {"file": str(original), "materials": str(original.with_suffix(".mtl"))}]}
+        if original.suffix == ".obj" else read_toml(original))
     width, height = case.size
     text = _toml_table("[film]", {"width": width, "height": height})
     text += _toml_table("[camera]", table["camera"])

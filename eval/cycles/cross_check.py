@@ -28,11 +28,13 @@ from pathlib import Path
 import numpy as np
 
 import compare
+import walk
 from cases import CASES, Case, View, prepare
 from scene_source import SceneError
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+WALKS = 64  # batches of walk.py
 EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
 
 
@@ -109,7 +111,7 @@ def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[d
             image = scene.parent / f"ours.{view.name}.{spp}spp.{seed}.exr"
             command = [options.vpl_render, str(scene), "-o", str(image), "--integrator", "path",
                        "--only", view.quantity, "--spp", str(spp), "--seed", str(seed), "--threads",
-                       str(options.threads), "--quiet"]
+                       str(options.threads), "--quiet", "--size", "x".join(map(str, case.size))]
             if view.quantity != "direct":  # which has no bounce
                 command += ["--max-bounces", str(view.bounces)]
             if not (options.reuse and image.is_file()):
@@ -165,11 +167,13 @@ def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple
 def verdict(figures: dict, tolerance: float) -> str:
     """`noisy` where the error bar is too wide to hold the claim either way."""
     ratio, error = figures["mean"]["ratio"], figures["mean"]["error"]
-    if ratio is None or abs(ratio - 1.0) > tolerance + 3.0 * error:
+    error = None if error is None else np.hypot(error, figures.get("expected_error", 0.0))
+    difference = None if ratio is None else abs(ratio - figures.get("expected", 1.0))
+    if difference is None or difference > tolerance + 3.0 * error:
         return "differs"
     if 2.0 * error > tolerance:
         return "noisy"
-    return "agrees" if abs(ratio - 1.0) <= tolerance else "differs"
+    return "agrees" if difference <= tolerance else "differs"
 
 
 def check(case: Case, options: argparse.Namespace) -> dict:
@@ -185,6 +189,9 @@ def check(case: Case, options: argparse.Namespace) -> dict:
               "cycles_time_s": round(cycles_seconds, 1) or None}
     for view in case.views:
         figures = compare.compare(ours[view], cycles[view])
+        if case.model or case.name == "gltf-normal-map":
+            figures["expected"], figures["expected_error"] = walk.expected_ratio(
+                case.model, max(2, round(WALKS * options.effort)))
         figures["verdict"] = verdict(figures, options.tolerance)
         result["views"][view.name] = figures
         report(case, view, figures)
@@ -196,6 +203,8 @@ def check(case: Case, options: argparse.Namespace) -> dict:
 def report(case: Case, view: View, figures: dict) -> None:
     mean, blocks = figures["mean"], figures["blocks"]
     ratio = "-" if mean["ratio"] is None else f"{mean['ratio']:.4f} +- {mean['error']:.4f}"
+    if "expected" in figures:
+        ratio += f" (expected {figures['expected']:.4f} +- {figures['expected_error']:.4f})"
     print(f"{case.name:15} {view.name:12} ours {mean['ours']:.5g}  Cycles {mean['cycles']:.5g}  "
           f"ratio {ratio}  blocks z^2 {blocks['mean_square_z']:.2f}  {figures['verdict']}",
           flush=True)
@@ -208,7 +217,7 @@ def first_line(command: list[str]) -> str:
 
 def describe_run(options: argparse.Namespace) -> dict:
     git = ["git", "-C", str(ROOT)]
-    parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render"]
+    parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render", "transport"]
     changed = first_line([*git, "status", "--porcelain", "--", *parts]) != ""
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     return {"commit": first_line([*git, "rev-parse", "--short=10", "HEAD"]),
@@ -227,15 +236,16 @@ def write_results(path: Path, runs: dict) -> None:
 
 
 def table(results: dict) -> str:
-    lines = ["| case | view | ours | Cycles | ratio | standard error | blocks: mean z² |",
-             "|---|---|---|---|---|---|---|"]
+    heads = ("case", "view", "ours", "Cycles", "ratio", "standard error", "expected",
+             "blocks: mean z²")
+    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for case in (case.name for case in CASES if case.name in results):
         for view, figures in results[case]["views"].items():
             mean, z2 = figures["mean"], figures["blocks"]["mean_square_z"]
             ratio, error = ("-" if mean[key] is None else f"{mean[key]:.4f}"
                             for key in ("ratio", "error"))
             lines.append(f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
-                         f"| {ratio} | {error} | {z2:.2f} |")
+                         f"| {ratio} | {error} | {figures.get('expected', 1.0):.4f} | {z2:.2f} |")
     return "\n".join(lines)
 
 

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 import scene_source as source
+from cycles_models import model_shader
 from scene_source import SceneError
 
 
@@ -94,7 +95,8 @@ def make_material(material: source.Material, encoded: bool) -> bpy.types.Materia
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    shader = reflection_shader(tree, material, encoded)
+    shader = (model_shader(tree, material.model) if material.model
+              else reflection_shader(tree, material, encoded))
     if any(material.ke):
         shader = add_shaders(tree, shader, emission_shader(tree, material))
     output = tree.nodes.new("ShaderNodeOutputMaterial")

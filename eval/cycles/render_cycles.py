@@ -19,7 +19,10 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import model_cases  # noqa: E402
+import model_scenes  # noqa: E402
 import scene_source as source  # noqa: E402
+from cycles_gltf import import_gltf  # noqa: E402
 from cycles_lights import make_lamp, make_world, place  # noqa: E402
 from cycles_materials import make_material  # noqa: E402
 from scene_source import SceneError  # noqa: E402
@@ -101,10 +104,10 @@ def make_camera(camera: source.Camera) -> None:
     bpy.context.scene.camera = thing
 
 
-def set_film(scene: source.Scene, threads: int) -> None:
+def set_film(width: int, height: int, threads: int) -> None:
     render = bpy.context.scene.render
     render.engine = "CYCLES"
-    render.resolution_x, render.resolution_y = scene.width, scene.height
+    render.resolution_x, render.resolution_y = width, height
     render.resolution_percentage = 100
     render.pixel_aspect_x = render.pixel_aspect_y = 1.0
     render.film_transparent = False
@@ -150,11 +153,17 @@ def set_bounces(bounces: int) -> None:
     cycles.min_light_bounces = 0  # Russian roulette from the start, as ours
 
 
-def run() -> None:
-    options = parse_arguments()
-    scene = source.read_scene(options.scene)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.preferences.addon_enable(module="cycles")
+def read(path: Path) -> source.Scene:
+    """A .pbrt is not read, but built again from what it was written from."""
+    if path.suffix == ".pbrt":
+        return model_scenes.source_scene(
+            model_scenes.sphere_in_box(model_cases.SPHERES[path.stem]))
+    return source.read_scene(path)
+
+
+def build(options: argparse.Namespace) -> tuple[int, int]:
+    """Scene and camera; returns the size of the film."""
+    scene = read(options.scene)
     for number, mesh in enumerate(scene.meshes):
         if not options.whole_emitters:
             mesh = source.split_emitters(mesh, EMITTER_EDGE)
@@ -164,7 +173,20 @@ def run() -> None:
             make_lamp(light, f"light{number}")
     make_world([x for x in scene.lights if x["type"] == "environment"], options.scene.parent)
     make_camera(scene.camera)
-    set_film(scene, options.threads)
+    return scene.width, scene.height
+
+
+def run() -> None:
+    options = parse_arguments()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module="cycles")
+    if options.scene.suffix == ".glb":
+        import_gltf(options.scene)
+        make_world([], options.scene.parent)
+        film = model_scenes.SIZE
+    else:
+        film = build(options)
+    set_film(*film, options.threads)
     set_unbiased(options.spp)
     for bounces in options.bounces.split(","):
         set_bounces(int(bounces))

@@ -33,6 +33,7 @@ class Material:
     map_kd: Path | None = None
     two_sided: bool = False
     maps: list[str] = field(default_factory=list)  # other maps, refused if a face uses them
+    model: dict = field(default_factory=dict)  # of model_scenes.py, in place of the MTL fields
 
     @property
     def mirror(self) -> bool:
