@@ -82,27 +82,30 @@ class Gallery:
         return self.runner.run("vpl-render", ["{scene}", *options], inputs, ["image.exr"])["image.exr"]
 
     def row(self, scene: Scene) -> str:
-        seeds = (1, 2, 3)
-        means = {name: np.array([images.read(self.image(scene, name, 160, self.spp, seed)).mean() for seed in seeds])
+        shown = {name: [images.read(self.image(scene, name, 160, self.spp, seed)) for seed in (1, 2, 3)]
                  for name in ("path", "light", "vpl")}
+        means = {name: np.array([pixels.mean() for pixels in of]) for name, of in shown.items()}
         cells = [scene.title] + [ratio(means[name], means["path"]) for name in ("light", "vpl")]
-        return "| " + " | ".join([*cells, self.beside_author(scene)]) + " |"
-
-    def beside_author(self, scene: Scene) -> str:
-        """Ratios of blocks, ours over the author's: the middle one, and where four fifths of them lie."""
-        if not scene.author:
-            return ""
-        ours = images.read(self.image(scene, "path", 640, max(1, self.spp // 4), 1))
-        theirs = resized(images.read(scene.path.parent / scene.author), ours.shape)
-        ratios = np.sort(blocks(ours) / np.maximum(blocks(theirs), 1e-6))
-        low, middle, high = ratios[len(ratios) // 10], ratios[len(ratios) // 2], ratios[-1 - len(ratios) // 10]
-        shown = [write_docs.srgb(picture, exposure(theirs)) for picture in (ours, theirs)]
-        save(write_docs.beside(shown), f"author-{scene.id}")
-        return f"{middle:.2f} ({low:.2f} to {high:.2f})"
+        return "| " + " | ".join([*cells, beside_author(scene, np.mean(shown["path"], axis=0))]) + " |"
 
     def picture(self, scene: Scene, spp: int) -> None:
         pixels = images.read(self.image(scene, "vpl", WIDTH, spp, 1))
         save(write_docs.srgb(pixels, exposure(pixels)), f"gallery-{scene.id}")
+        if scene.author:
+            theirs = images.read(scene.path.parent / scene.author)
+            size = (640 * scene.aspect[1] // scene.aspect[0], 640)
+            save(write_docs.beside([write_docs.srgb(resized(picture, size), exposure(theirs))
+                                    for picture in (pixels, theirs)]), f"author-{scene.id}")
+
+
+def beside_author(scene: Scene, ours: np.ndarray) -> str:
+    """Ratios of blocks, ours over the author's: the middle one, and where four fifths of them lie."""
+    if not scene.author:
+        return ""
+    theirs = resized(images.read(scene.path.parent / scene.author), ours.shape[:2])
+    ratios = np.sort(blocks(ours) / np.maximum(blocks(theirs), 1e-6))
+    low, middle, high = ratios[len(ratios) // 10], ratios[len(ratios) // 2], ratios[-1 - len(ratios) // 10]
+    return f"{middle:.2f} ({low:.2f} to {high:.2f})"
 
 
 def ratio(values: np.ndarray, to: np.ndarray) -> str:
@@ -123,7 +126,8 @@ def blocks(pixels: np.ndarray) -> np.ndarray:
     return cut.reshape(BLOCKS, height // BLOCKS, BLOCKS, width // BLOCKS).mean(axis=(1, 3)).ravel()
 
 
-def resized(pixels: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+def resized(pixels: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """By means over what falls into each pixel; `shape`: height, width."""
     channels = [Image.fromarray(pixels[:, :, c]).resize((shape[1], shape[0]), Image.BOX) for c in range(3)]
     return np.stack([np.asarray(channel) for channel in channels], axis=2)
 
