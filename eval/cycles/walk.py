@@ -144,7 +144,7 @@ def metallic_roughness(colour, metallic: float, roughness: float) -> Scatter:
     alpha, colour = roughness**2, np.array(colour, float)
     f0 = 0.04 * (1 - metallic) + colour * metallic
     base = colour * (1 - metallic)
-    kept = _kept_base(alpha, f0.max())
+    kept = _kept_base(alpha, 0.04)  # the base lies below the non-metal alone
 
     def scatter(wo, inside, u):
         gloss = u[:, 2] < 0.5
@@ -156,7 +156,8 @@ def metallic_roughness(colour, metallic: float, roughness: float) -> Scatter:
         f = f0 + (1 - f0) * rises[:, :, None]
         shine = f * shadowing(wo, wi, alpha)[:, :, None]
         o, i = wo[:, 2], np.clip(wi[:, 2], 0, 1)
-        ours = (1 - f[:, 0]) * np.minimum(kept(o), kept(i))[:, None]
+        below_gloss = 0.96 * (1 - rises[:, 0]) * np.minimum(kept(o), kept(i))
+        ours = np.repeat(below_gloss[:, None], 3, 1)
         fo, fi, back = (1 - o) ** 5, (1 - i) ** 5, 2 * roughness * m**2
         disney = (1 - fo / 2) * (1 - fi / 2) + back * (fo + fi + fo * fi * (back - 1))
         below = base * np.stack([ours, np.repeat(disney[:, None], 3, 1)], 1)
