@@ -6,10 +6,13 @@ namespace bnvpl {
 
 namespace {
 
+// Made where it stays: a LobeSum is large.
 std::variant<PhongBsdf, LobeSum> makeModel(const Scene& scene, const SurfacePoint& point) {
+  using Made = std::variant<PhongBsdf, LobeSum>;
   const MaterialModel& model = scene.materials[point.material].model;
-  if (const auto* phong = std::get_if<PhongModel>(&model)) return PhongBsdf(scene, *phong, point);
-  return LobeSum(scene, model, point);
+  if (const auto* phong = std::get_if<PhongModel>(&model))
+    return Made(std::in_place_type<PhongBsdf>, scene, *phong, point);
+  return Made(std::in_place_type<LobeSum>, scene, model, point);
 }
 
 // Textures may make any model but Lambert's specular somewhere.

@@ -14,13 +14,13 @@ LightSet::EmitterPoint LightSet::samplePointOn(const Light& light, float u, floa
   const Vec3 p0 = scene_.corner(t, 0), p1 = scene_.corner(t, 1), p2 = scene_.corner(t, 2);
   const Barycentric b = sampleTriangle(u, v);
   return {(1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2, normalize(cross(p1 - p0, p2 - p0)),
-          emissionOn(t, b)};
+          emissionOn(scene_.materials[light.material], t, b)};
 }
 
-Vec3 LightSet::emissionOn(uint32_t triangle, const Barycentric& b) const {
+Vec3 LightSet::emissionOn(const Material& m, uint32_t triangle, const Barycentric& b) const {
+  if (m.emissionTexture == kNone) return m.emission;
   const Triangle& t = scene_.triangles[triangle];
-  const Material& m = scene_.materials[t.material];
-  if (m.emissionTexture == kNone || t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
+  if (t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
     return m.emission;
   const auto &p = scene_.uvs[t.uv[0]], &q = scene_.uvs[t.uv[1]], &r = scene_.uvs[t.uv[2]];
   const float first = 1.0f - b.u - b.v;

@@ -65,7 +65,7 @@ Vec3 LightSet::meanEmission(const Light& light, const std::vector<double>& areas
   for (size_t i = 0; i < areas.size(); ++i) {
     for (size_t k = 0; k < points; ++k) {
       const Point2 at = r2Sequence(k, 0.5, 0.5);
-      const Vec3 emission = emissionOn(light.triangles[i], sampleTriangle(at.x, at.y));
+      const Vec3 emission = emissionOn(m, light.triangles[i], sampleTriangle(at.x, at.y));
       for (size_t c = 0; c < 3; ++c) sum[c] += double{emission[c]} * areas[i];
     }
     total += areas[i] * static_cast<double>(points);

@@ -93,7 +93,7 @@ class LightSet {
     Vec3 position, normal, emission;
   };
   EmitterPoint samplePointOn(const Light& light, float u, float v) const;
-  Vec3 emissionOn(uint32_t triangle, const Barycentric& at) const;
+  Vec3 emissionOn(const Material& m, uint32_t triangle, const Barycentric& at) const;
   Vec3 meanEmission(const Light& light, const std::vector<double>& areas) const;
   // What all of an area light sends out if it shines like this everywhere.
   static Vec3 fluxOf(const Light& light, Vec3 emission) {

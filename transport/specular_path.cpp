@@ -4,6 +4,16 @@
 
 namespace bnvpl {
 
+namespace {
+
+// Lambert and nothing else, without a texture: paths end there, and need no Bsdf to know.
+bool isPlain(const Material& material) {
+  const auto* m = std::get_if<PhongModel>(&material.model);
+  return m && m->diffuseMap == kNone && !m->glass && isBlack(m->glossy) && isBlack(m->mirror);
+}
+
+}  // namespace
+
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& start, Rng& rng) {
   SurfacePoint first;
@@ -27,6 +37,12 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     if (end.links == 0) end.firstDistance = end.hit.distance;
     met += end.throughput * emissionMet(lights, end.hit, arrival);
 
+    const Material& material = rays.scene().materials[end.hit.material];
+    if (isPlain(material)) {
+      rng.next();  // as chooseLobes does
+      end.rough = !isBlack(material.phong().diffuse);
+      return end;
+    }
     const Bsdf bsdf(rays.scene(), end.hit);
     const LobeChoice lobes = chooseLobes(bsdf, rng);
     end.throughput *= 1.0f / lobes.probability;
