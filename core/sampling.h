@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "core/random.h"
 #include "core/vec3.h"
 
 namespace bnvpl {
@@ -45,6 +46,12 @@ inline Vec3 sampleSphere(float u, float v) {
   return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
 }
 
+// The point by which sampleSphere draws a direction.
+inline Point2 sphereDrawnBy(Vec3 d) {
+  const float turns = std::atan2(d.y, d.x) / (2.0f * kPi);
+  return {0.5f * (1.0f - d.z), turns < 0.0f ? turns + 1.0f : turns};
+}
+
 // Uniform in the cone about +z with the given cosine of its half angle; density in 1/sr below.
 inline Vec3 sampleCone(float u, float v, float cosHalfAngle) {
   const float z = 1.0f - u * (1.0f - cosHalfAngle);
@@ -71,6 +78,12 @@ struct Barycentric {
 inline Barycentric sampleTriangle(float u, float v) {
   const float root = std::sqrt(u);
   return {root * (1.0f - v), root * v};
+}
+
+// The point by which sampleTriangle draws one.
+inline Point2 triangleDrawnBy(Barycentric b) {
+  const float root = std::min(1.0f, b.u + b.v);
+  return {root * root, root > 0.0f ? std::min(1.0f, b.v / root) : 0.0f};
 }
 
 // Power heuristic with exponent 2 (Veach 1997, eq. 9.13) for the technique with density `a`. In

@@ -13,24 +13,26 @@ float raysTo(const LightSet& lights, size_t light, LightChoice choice) {
   return static_cast<float>(kMaxLightsEach) * lights.pickProbability(light);
 }
 
-// Share of a hit found by the BSDF, against light sampling.
-float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arrival& arrival) {
+// Share of a hit found by the BSDF, against light sampling. `place`: -> where on the light it is.
+template <typename Place>
+float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arrival& arrival,
+                const Place& place) {
   if (!(arrival.bsdfPdf > 0.0f)) return 1.0f;
-  return powerHeuristic(arrival.bsdfPdf, lightPdf * raysTo(lights, light, arrival.choice));
+  const LearnedLight& learned = arrival.learned;
+  const float rays = learned.strata
+                         ? static_cast<float>(learned.rays) *
+                               learned.strata->density({static_cast<uint32_t>(light), place()})
+                         : raysTo(lights, light, arrival.choice);
+  return powerHeuristic(arrival.bsdfPdf, lightPdf * rays);
 }
 
-// One shadow ray towards one light; its share where the light gets `count` in the mean.
+// One shadow ray towards a point of a light; its share where that gets `count` in the mean.
 Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 size_t light, float count, unsigned bsdfRays, Rng& rng) {
-  const SurfacePoint& at = bsdf.point();
-  const float u = rng.next(), v = rng.next();
+                 const LightPlace& place, float count, unsigned bsdfRays) {
   DirectSample s;
-  if (!lights.sampleDirect(light, at.position, u, v, s)) return {};
-  const Vec3 reflected = bsdf.eval(group, s.wi) * s.radianceOverPdf;
-  if (isBlack(reflected)) return {};
-  const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
-  const Vec3 from = rays.offsetOrigin(at.position, side);
-  if (s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target)) return {};
+  Vec3 reflected;
+  if (!unoccludedLight(lights, bsdf, group, place, s, reflected)) return {};
+  if (isHidden(rays, bsdf.point(), s)) return {};
   const bool mis = bsdfRays > 0 && s.pdf > 0.0f;
   const float bsdfPdf = mis ? static_cast<float>(bsdfRays) * bsdf.pdf(group, s.wi) : 0.0f;
   return reflected * ((mis ? powerHeuristic(s.pdf * count, bsdfPdf) : 1.0f) / count);
@@ -47,23 +49,56 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
     float probability = 1.0f;
     const size_t light = all ? k : lights.pick(rng.next(), probability);
     if (!(probability > 0.0f)) continue;
-    sum +=
-        sampleLight(rays, lights, bsdf, group, light, raysTo(lights, light, choice), bsdfRays, rng);
+    const float u = rng.next(), v = rng.next();
+    sum += sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}},
+                       raysTo(lights, light, choice), bsdfRays);
   }
   return sum;
+}
+
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint,
+                 uint64_t key) {
+  const LearnedStrata& strata = *learned.strata;
+  Vec3 sum;
+  for (unsigned k = 0; k < learned.rays; ++k) {
+    Point2 at = owenSobol(firstPoint + k, key);
+    const uint32_t stratum = strata.pick(at.x);
+    const LightPlace place = strata.all->place(stratum, at);
+    const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
+                        strata.all->share(stratum) * strata.all->lightShare(place.light);
+    sum += sampleLight(rays, lights, bsdf, group, place, count, bsdfRays);
+  }
+  return sum;
+}
+
+bool unoccludedLight(const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                     const LightPlace& place, DirectSample& out, Vec3& reflected) {
+  if (!lights.sampleDirect(place.light, bsdf.point().position, place.at.x, place.at.y, out))
+    return false;
+  reflected = bsdf.eval(group, out.wi) * out.radianceOverPdf;
+  return !isBlack(reflected);
+}
+
+bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& s) {
+  const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
+  const Vec3 from = rays.offsetOrigin(at.position, side);
+  return s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target);
 }
 
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  return emitted * hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival);
+  return emitted * hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival,
+                             [&] { return lights.drawnBy(light, hit); });
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
-    sum += radiance * hitWeight(lights, light, pdf, arrival);
+    sum += radiance *
+           hitWeight(lights, light, pdf, arrival, [&] { return lights.drawnBy(light, direction); });
   });
   return sum;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transport/bsdf.h"
+#include "transport/light_strata.h"
 #include "transport/lights.h"
 
 namespace bnvpl {
@@ -19,16 +20,33 @@ inline constexpr size_t kMaxLightsEach = 32;
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, unsigned bsdfRays, Rng& rng);
 
+// Light sampling by what was learned about the place: shadow rays to strata of all lights.
+struct LearnedLight {
+  const LearnedStrata* strata = nullptr;
+  unsigned rays = 0;
+};
+// The same by it; its rays are the points of a sequence (owenSobol) from `firstPoint` on.
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint, uint64_t key);
+
 // How the ray that found a light was chosen, for the other half of MIS.
 struct Arrival {
   float bsdfPdf = 0.0f;  // 1/sr, times the rays sent like this one; 0: camera ray, mirror or glass,
                          // which light sampling cannot reach
   Vec3 from;             // where the ray started
-  LightChoice choice = LightChoice::One;  // there
+  LightChoice choice = LightChoice::One;  // there, unless learned.strata is given
+  LearnedLight learned = {};
 };
 // Emission met by a ray, with its MIS weight: of the surface that it hit, and of what lies at
 // infinity where it hit nothing.
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival);
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival);
+
+// What a point of the lights would bring to the vertex if it were drawn with density 1 over the
+// unit square of its light and nothing hid it; `out`: how it is seen. False: nothing.
+bool unoccludedLight(const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                     const LightPlace& place, DirectSample& out, Vec3& reflected);
+// Whether anything lies between.
+bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& sample);
 
 }  // namespace bnvpl

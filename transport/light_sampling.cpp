@@ -20,8 +20,7 @@ LightSet::EmitterPoint LightSet::samplePointOn(const Light& light, float u, floa
 Vec3 LightSet::emissionOn(const Material& m, uint32_t triangle, const Barycentric& b) const {
   if (m.emissionTexture == kNone) return m.emission;
   const Triangle& t = scene_.triangles[triangle];
-  if (t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone)
-    return m.emission;
+  if (t.uv[0] == kNone || t.uv[1] == kNone || t.uv[2] == kNone) return m.emission;
   const auto &p = scene_.uvs[t.uv[0]], &q = scene_.uvs[t.uv[1]], &r = scene_.uvs[t.uv[2]];
   const float first = 1.0f - b.u - b.v;
   return scene_.emissionAt(m, first * p[0] + b.u * q[0] + b.v * r[0],
@@ -130,6 +129,53 @@ bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSampl
   out.radianceOverPdf = out.pdf > 0.0f ? radiance * (1.0f / out.pdf) : radiance;
   out.infinite = true;
   return !isBlack(out.radianceOverPdf);
+}
+
+Point2 LightSet::drawnBy(size_t index, const SurfacePoint& hit) const {
+  const Light& light = lights_[index];
+  const auto it = std::lower_bound(light.triangles.begin(), light.triangles.end(), hit.triangle);
+  const auto i = static_cast<size_t>(it - light.triangles.begin());
+  const Vec3 p0 = scene_.corner(hit.triangle, 0), e1 = scene_.corner(hit.triangle, 1) - p0,
+             e2 = scene_.corner(hit.triangle, 2) - p0, d = hit.position - p0;
+  const Vec3 n = cross(e1, e2);
+  const float perArea = 1.0f / lengthSquared(n);
+  const float b1 = std::max(0.0f, dot(cross(d, e2), n) * perArea),
+              b2 = std::max(0.0f, dot(cross(e1, d), n) * perArea);
+  const Point2 within = triangleDrawnBy({b1, b2});
+  const float begin = i > 0 ? light.cdf[i - 1] : 0.0f;
+  return {begin + within.x * cdfShare<float>(light.cdf, i), within.y};
+}
+
+Point2 LightSet::drawnBy(size_t index, Vec3 direction) const {
+  const Light& light = lights_[index];
+  const LightSpec& s = light.spec;
+  if (s.type == LightType::Directional) return {0.5f, 0.5f};  // of a narrow cone: not divisible
+  if (s.image == kNone) return sphereDrawnBy(direction);
+  const EnvironmentImage& image = scene_.environments[s.image];
+  float u, v;
+  texelOf(s, direction, u, v);
+  u *= float(image.width);
+  const auto x = static_cast<size_t>(u);
+  const auto y = static_cast<uint32_t>(v * float(image.height));
+  const float top = std::cos(kPi * float(y) / float(image.height));
+  const float down = std::clamp((top - direction.y) / bandHeight(y, image.height), 0.0f, 1.0f);
+  const std::span<const float> row = light.cdfOfRow(y, image.width);
+  const double above = y > 0 ? light.rowCdf[y - 1] : 0.0;
+  return {(x > 0 ? row[x - 1] : 0.0f) + (u - float(x)) * cdfShare(row, x),
+          static_cast<float>(above + double{down} * cdfShare<double>(light.rowCdf, y))};
+}
+
+LightSet::Extent LightSet::extent(size_t index) const {
+  const Light& light = lights_[index];
+  if (light.area) {
+    Bounds bounds;
+    for (const uint32_t t : light.triangles)
+      for (size_t c = 0; c < 3; ++c) bounds.extend(scene_.corner(t, c));
+    return {true, true, bounds.center(), light.triangles.size()};
+  }
+  const LightType type = light.spec.type;
+  return {type == LightType::Environment, type == LightType::Point || type == LightType::Spot,
+          light.spec.position, 1};
 }
 
 // Photons from infinity start on the faces of the scene's box that look towards the light,

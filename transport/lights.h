@@ -48,6 +48,20 @@ class LightSet {
   // Density in 1/sr with which sampleDirect() would have chosen this hit from `from`.
   float pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const;
 
+  // The point of the unit square by which sampleDirect() draws what was hit: of an emissive
+  // surface, or, by the direction towards it, of a light at infinity.
+  Point2 drawnBy(size_t light, const SurfacePoint& hit) const;
+  Point2 drawnBy(size_t light, Vec3 direction) const;
+
+  // How that square may be cut up.
+  struct Extent {
+    bool divisible = false;  // its parts can be hidden one by one
+    bool local = false;      // it has a place,
+    Vec3 centre;             // this one
+    size_t facets = 1;       // lie side by side along u, by their power
+  };
+  Extent extent(size_t light) const;
+
   // Lights at infinity that a ray can hit: calls fn(light, radiance, pdf) for each.
   template <typename Fn>
   void forEachAtInfinity(Vec3 direction, const Fn& fn) const {

@@ -5,10 +5,13 @@
 
 namespace bnvpl {
 
+inline constexpr uint32_t kTileSide = 8;  // pixels; a tile's samples meet the same surfaces
+
 // Slot by slot, a slot being one sample of each pixel, row by row.
 struct TileSlots {
   uint32_t pixels = 0;     // in each slot
   uint32_t width = 1;      // of a row
+  uint32_t x = 0, y = 0;   // the first pixel, on the film
   uint32_t firstSlot = 0;  // of all slots
   uint32_t allSlots = 1;   // samples a pixel
   uint64_t key = 0;        // of the tile's own random numbers

@@ -12,7 +12,6 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint32_t kTile = 8;           // pixels; a tile's samples meet the same surfaces
 constexpr uint32_t kSlotsAtOnce = 16;   // samples of each pixel that are held in memory together
 constexpr uint32_t kSlotsPerPass = 64;  // over the whole image; work stops between tiles of a pass
 
@@ -108,7 +107,9 @@ void renderTile(const Scene& scene, const Integrator& integrator, const FilmOpti
         samples.push_back(makeSample(scene, key, options.spp, tile.x(p), tile.y(p), s));
       }
     }
-    integrator.samples({{tile.pixels(), tile.x1 - tile.x0, slot, options.spp, tileKey}, samples});
+    integrator.samples(
+        {{tile.pixels(), tile.x1 - tile.x0, tile.x0, tile.y0, slot, options.spp, tileKey},
+         samples});
     for (size_t k = 0; k < samples.size(); ++k) {
       const auto p = static_cast<uint32_t>(k % tile.pixels());
       const size_t i = size_t{tile.y(p)} * scene.film.width + tile.x(p);
@@ -153,11 +154,12 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   std::vector<PixelSums> pixels(image.pixelCount());
   std::vector<PixelCounts> counts(image.pixelCount());
 
-  const size_t tilesX = (width + kTile - 1) / kTile, tilesY = (height + kTile - 1) / kTile;
+  const size_t tilesX = (width + kTileSide - 1) / kTileSide,
+               tilesY = (height + kTileSide - 1) / kTileSide;
   const auto tileOf = [&](size_t index) {
-    const auto x0 = static_cast<uint32_t>(index % tilesX) * kTile,
-               y0 = static_cast<uint32_t>(index / tilesX) * kTile;
-    return Tile{x0, y0, std::min(width, x0 + kTile), std::min(height, y0 + kTile)};
+    const auto x0 = static_cast<uint32_t>(index % tilesX) * kTileSide,
+               y0 = static_cast<uint32_t>(index / tilesX) * kTileSide;
+    return Tile{x0, y0, std::min(width, x0 + kTileSide), std::min(height, y0 + kTileSide)};
   };
   std::vector<uint8_t> done(tilesX * tilesY);
   Progress at;

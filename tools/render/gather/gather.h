@@ -42,10 +42,11 @@ struct Gather {
 };
 
 // What the camera sees, one point for each pixel, row by row; triangle is kNone where there is
-// nothing to light.
+// nothing to light. `seen`: the light on the way there, mean of the channels, W/(m2 sr).
 struct FilmPoints {
   uint32_t width = 0, height = 0;
   std::vector<SurfacePoint> points;
+  std::vector<float> seen;
 };
 
 // Borrowed until the image is done.

@@ -13,7 +13,7 @@ namespace bnvpl::methods::integrator::vpl {
 
 namespace {
 
-constexpr std::string_view kIndirect = "only=all|indirect";
+constexpr std::string_view kIndirect = "only=all|indirect", kDirect = "only=all|direct";
 constexpr std::array kOptions{
     neededBy(kIndirect, choiceOption("light", "point", kLightKinds,
                                      "what a VPL is to what it lights: a point with a bound on "
@@ -23,12 +23,18 @@ constexpr std::array kOptions{
                                    "disk is so large")),
     wholeOption("near-field-rays", "16", 1, 4096, "",
                 "rays by the BSDF from each shaded point: for --compensate, for light over "
-                "specular surfaces, and for half of the direct light")};
+                "specular surfaces, and for half of the direct light"),
+    neededBy(kDirect, choiceOption("direct", "learned", "learned|each",
+                                   "shadow rays to what each tile of the film has learned to see, "
+                                   "or one to each light")),
+    neededBy("direct=learned",
+             wholeOption("light-rays", "4", 1, 4096, "", "shadow rays from each shaded point"))};
 
 FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t seed) {
   const Scene& scene = rays.scene();
-  FilmPoints film{scene.film.width, scene.film.height, {}};
+  FilmPoints film{scene.film.width, scene.film.height, {}, {}};
   film.points.resize(size_t{film.width} * film.height);
+  film.seen.resize(film.points.size());
   const uint64_t key = streamKey(seed, Stream::FilmPoints);
   parallelFor(film.points.size(), 64, [&](size_t i) {
     Rng rng(key, i);
@@ -36,11 +42,12 @@ FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t se
         (static_cast<float>(i % film.width) + rng.next()) / static_cast<float>(film.width);
     const float y =
         (static_cast<float>(i / film.width) + rng.next()) / static_cast<float>(film.height);
-    RadianceSample unused;
+    RadianceSample sample;
     const SpecularPath path = seeFrom(rays, lights, scene.camera.position,
-                                      cameraDirection(scene.camera, scene.film, x, y), rng, unused);
+                                      cameraDirection(scene.camera, scene.film, x, y), rng, sample);
     film.points[i] = path.hit;
     if (!path.rough) film.points[i].triangle = kNone;
+    film.seen[i] = mean(sample.direct);
   });
   return film;
 }
@@ -83,9 +90,21 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
                                   .make({in.lit, in.rays, clamp, light}, options);
   const bool wholePixels = gather.wholePixels;
+  const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";
+  const auto lightRays = learned ? static_cast<unsigned>(options.whole("light-rays")) : 0;
+  std::unique_ptr<const TileLights> tileLights;
+  std::unique_ptr<const SeenLight> seenLight;
+  if (learned) {
+    const FilmPoints film = tracePoints(in.rays, in.lights, in.seed);
+    const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options.whole("spp") * lightRays;
+    tileLights = std::make_unique<const TileLights>(in.rays, in.lights, film, raysOfTile, in.seed,
+                                                    in.progress);
+    seenLight = std::make_unique<const SeenLight>(in.rays, in.lights, film);
+  }
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(compensation),
-      static_cast<unsigned>(options.whole("near-field-rays")), in.only);
+      static_cast<unsigned>(options.whole("near-field-rays")), std::move(tileLights), lightRays,
+      std::move(seenLight), in.only);
   return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
           {},
           wholePixels,

@@ -17,8 +17,21 @@ constexpr unsigned kMaxExtensions = 16;
 // down the path (measured: docs/theory.md, "Near field").
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 constexpr uint32_t kDrawDirection = 16;  // dimension of a tile's random numbers, after its gather's
+constexpr uint32_t kDrawLight = 1u << 30;
+
+// Of sample i.
+uint32_t slotOf(const TileSlots& tile, size_t i) {
+  return tile.firstSlot + static_cast<uint32_t>(i / tile.pixels);
+}
 
 }  // namespace
+
+// The rays of all samples of a pixel are points of one sequence: what they look for is much the
+// same for each of them. The sequence repeats after 2^32 points.
+struct VplIntegrator::Points {
+  uint32_t slot;
+  uint64_t directions, lights;  // keys
+};
 
 void VplIntegrator::render(const TileSamples& tile) const {
   // All vertices first, then their VPLs together, then the rest sample by sample.
@@ -31,25 +44,37 @@ void VplIntegrator::render(const TileSamples& tile) const {
     CameraSample& s = tile.samples[i];
     s.radiance = {};
     seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance);
+    if (seenLight_) {
+      s.radiance.direct = seenLight_->withMoreRays(
+          s.radiance.direct, tile, static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i));
+    }
     if (!seen[i].rough) continue;
     bsdf[i] = &made.emplace_back(rays_.scene(), seen[i].hit);
     describeVertex(*bsdf[i], s.radiance);
   }
   if (only_ != Only::Direct) gatherTile(tile, seen, bsdf);
+  const LearnedStrata strata = tileLights_ ? tileLights_->at(tile.x, tile.y) : LearnedStrata{};
+  const LearnedLight learned{tileLights_ ? &strata : nullptr, lightRays_};
   for (size_t i = 0; i < count; ++i) {
     if (!bsdf[i]) continue;
     CameraSample& s = tile.samples[i];
     const Vec3 throughput = seen[i].throughput;
-    if (only_ != Only::Indirect) {
-      s.radiance.direct += throughput * directLight(rays_, lights_, *bsdf[i], LobeGroup::Rough,
-                                                    LightChoice::Each, extensions_, s.rng);
-    }
-    // The rays of all samples of a pixel are one set of points: the hemisphere is much the same for
-    // each of them. The sequence repeats after 2^32 points.
-    const auto slot = tile.firstSlot + static_cast<uint32_t>(i / tile.pixels);
-    const uint64_t pixelKey = random64(tile.key, i % tile.pixels, kDrawDirection);
-    extendAll(*bsdf[i], throughput, slot * extensions_, pixelKey, s.rng, s.radiance);
+    const auto pixel = static_cast<uint32_t>(i % tile.pixels);
+    const Points points{slotOf(tile, i), random64(tile.key, pixel, kDrawDirection),
+                        random64(tile.key, pixel, kDrawLight)};
+    if (only_ != Only::Indirect)
+      s.radiance.direct += throughput * directAt(*bsdf[i], learned, points, s.rng);
+    extendAll(*bsdf[i], throughput, learned, points, s.rng, s.radiance);
   }
+}
+
+Vec3 VplIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, const Points& points,
+                             Rng& rng) const {
+  if (!learned.strata) {
+    return directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::Each, extensions_, rng);
+  }
+  return directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned, extensions_,
+                     points.slot * lightRays_, points.lights);
 }
 
 void VplIntegrator::gatherTile(const TileSamples& tile, std::span<const SpecularPath> seen,
@@ -73,10 +98,9 @@ struct VplIntegrator::Extension {
   const ReachGrid::Lookup* near;  // the VPLs there
 };
 
-// Rays from a sample's point wait for memory together. Where on the hemisphere they go is said by
-// the points of the pixel's sequence from `firstPoint` on.
-void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstPoint,
-                              uint64_t pixelKey, Rng& rng, RadianceSample& out) const {
+// Rays from a sample's point wait for memory together.
+void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, const LearnedLight& learned,
+                              const Points& points, Rng& rng, RadianceSample& out) const {
   constexpr size_t kBatch = RayScene::kBatch;
   std::array<Ray, kBatch> rays;
   std::array<SurfacePoint, kBatch> hits;
@@ -89,7 +113,7 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
       BsdfSample next;
       const float pick = rng.next();
       if (!from.sample(LobeGroup::Rough, Transport::Radiance, pick,
-                       owenSobol(firstPoint + k, pixelKey), next)) {
+                       owenSobol(points.slot * extensions_ + k, points.directions), next)) {
         continue;
       }
       const Vec3 position = from.point().position;
@@ -97,7 +121,7 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstP
       rays[count] = rayOn(rays_, from.point(), next);
       made[count] = {next.wi,
                      throughput * next.weight * (1.0f / all),
-                     {next.pdf * all, position, LightChoice::Each},
+                     {next.pdf * all, position, LightChoice::Each, learned},
                      &hits[count],
                      &near[count]};
       ++count;

@@ -1,9 +1,13 @@
 // Direct light by shadow rays, indirect light from the VPLs.
 #pragma once
 
+#include <memory>
+
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/vpl/seen_light.h"
+#include "tools/render/integrator/vpl/tile_lights.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {
@@ -12,21 +16,31 @@ namespace bnvpl {
 // is completed by sampled rays from the vertex (Compensation).
 class VplIntegrator {
  public:
-  // `gather` with a point function; empty for direct light alone.
+  // `gather` with a point function; empty for direct light alone. `tileLights`: where direct light
+  // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`:
+  // may be null.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather,
-                Compensation compensation, unsigned nearFieldRays, Only only)
+                Compensation compensation, unsigned nearFieldRays,
+                std::unique_ptr<const TileLights> tileLights, unsigned lightRays,
+                std::unique_ptr<const SeenLight> seenLight, Only only)
       : rays_(rays),
         lights_(lights),
         gather_(std::move(gather)),
         compensation_(std::move(compensation)),
         extensions_(compensation_ || hasSpecularLobes(rays.scene()) ? nearFieldRays : 0),
+        tileLights_(std::move(tileLights)),
+        lightRays_(lightRays),
+        seenLight_(std::move(seenLight)),
         only_(only) {}
   void render(const TileSamples& tile) const;
 
  private:
   struct Extension;
-  void extendAll(const Bsdf& from, Vec3 throughput, uint32_t firstPoint, uint64_t pixelKey,
-                 Rng& rng, RadianceSample& out) const;
+  struct Points;
+  Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, const Points& points,
+                Rng& rng) const;
+  void extendAll(const Bsdf& from, Vec3 throughput, const LearnedLight& learned,
+                 const Points& points, Rng& rng, RadianceSample& out) const;
   void extend(const Extension& first, Rng& rng, RadianceSample& out) const;
   Missing missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near, Rng& rng) const;
   void gatherTile(const TileSamples& tile, std::span<const SpecularPath> seen,
@@ -37,6 +51,9 @@ class VplIntegrator {
   Gather gather_;
   Compensation compensation_;
   unsigned extensions_;  // rays from each shaded point
+  std::unique_ptr<const TileLights> tileLights_;
+  unsigned lightRays_;
+  std::unique_ptr<const SeenLight> seenLight_;
   Only only_;
 };
 

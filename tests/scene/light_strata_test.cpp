@@ -1,0 +1,137 @@
+// Strata of lights: that each point of a light has one, and densities are those of the drawing.
+#include "transport/light_strata.h"
+
+#include "tests/scene/plain_scene.h"
+
+namespace bnvpl {
+namespace {
+
+// A lamp of two triangles with unlike areas, a sky with an image, one without, a sun, and a bulb.
+Scene manyLights() {
+  Scene scene;
+  addSquare(scene, {-2, 0, 3}, {4, 0, 0}, {0, 0, -6}, lambert(Vec3(0.5f)));
+  addSquare(scene, {-1, 2, -1}, {2, 0, 0}, {0, 0, 1}, lamp(Vec3(3.0f), true));
+  scene.positions.back() = {-1, 2.5f, 0.5f};
+  finishScene(scene);
+  EnvironmentImage sky;
+  sky.width = 16;
+  sky.height = 8;
+  for (uint32_t i = 0; i < 128; ++i)
+    sky.radiance.push_back(Vec3(i % 16 == 3 ? 0.0f : 0.1f + toUnitFloat(random64(1, i, 0))));
+  scene.environments.push_back(std::move(sky));
+  const auto add = [&](LightType type) -> LightSpec& {
+    LightSpec& s = scene.lights.emplace_back();
+    s.type = type;
+    s.emission = Vec3(1.0f);
+    return s;
+  };
+  add(LightType::Environment).image = 0;
+  scene.lights.back().rotateRad = 1.0f;
+  add(LightType::Environment);
+  LightSpec& sun = add(LightType::Directional);
+  sun.direction = normalize(Vec3{0.3f, -1, 0.2f});
+  sun.angularRadiusRad = 0.02f;
+  add(LightType::Point).position = {0, 1, 0};
+  return scene;
+}
+
+struct Lit {
+  Scene scene;
+  RayScene rays;
+  LightSet lights;
+  explicit Lit(Scene s) : scene(std::move(s)), rays(scene), lights(rays) {}
+};
+
+// What is drawn by a point, and then hit, is drawn by that point.
+TEST(LightStrata, DrawnByTurnsDrawingAround) {
+  const Lit lit(manyLights());
+  const Vec3 at{0.1f, 0.01f, 0.2f};
+  size_t areas = 0, skies = 0;
+  for (size_t light = 0; light < lit.lights.size(); ++light) {
+    for (uint32_t k = 0; k < 200; ++k) {
+      const Point2 p = r2Sequence(k, 0.3, 0.6);
+      DirectSample s;
+      if (!lit.lights.sampleDirect(light, at, p.x, p.y, s) || !(s.pdf > 0.0f)) continue;
+      Point2 back{};
+      if (s.infinite) {
+        if (!lit.lights.extent(light).divisible) continue;  // the sun
+        back = lit.lights.drawnBy(light, s.wi);
+        ++skies;
+      } else {
+        SurfacePoint hit;
+        ASSERT_TRUE(lit.rays.closestHit(at, s.wi, hit));
+        back = lit.lights.drawnBy(light, hit);
+        ++areas;
+      }
+      EXPECT_NEAR(back.x, p.x, 2e-4f) << light;
+      EXPECT_NEAR(back.y, p.y, 2e-3f) << light;  // less is known near a corner of the triangle
+    }
+  }
+  EXPECT_EQ(areas, 200u);
+  EXPECT_GT(skies, 300u);
+}
+
+void expectConsistent(const LightStrata& strata, const LightSet& lights) {
+  double all = 0.0;
+  for (uint32_t s = 0; s < strata.size(); ++s) {
+    all += double{strata.share(s)};
+    for (uint32_t k = 0; k < 3; ++k) {
+      const LightPlace place = strata.place(s, r2Sequence(k, 0.1, 0.2));
+      EXPECT_EQ(strata.stratumOf(place), s);
+      EXPECT_EQ(strata.lightShare(place.light), lights.pickProbability(place.light));
+    }
+  }
+  EXPECT_NEAR(all, 1.0, 1e-4);
+}
+
+TEST(LightStrata, EachPointLiesInTheStratumThatDrawsIt) {
+  const Lit lit(manyLights());
+  const LightStrata strata(lit.lights);
+  EXPECT_GT(strata.size(), LightStrata::kMost * 3 / 4);
+  EXPECT_LE(strata.size(), LightStrata::kMost);
+  expectConsistent(strata, lit.lights);
+}
+
+TEST(LightStrata, ManyLightsShareThem) {
+  Scene scene = floorScene();
+  for (uint32_t k = 0; k < 3000; ++k) {
+    LightSpec& s = scene.lights.emplace_back();
+    s.type = LightType::Point;
+    s.position = {toUnitFloat(random64(2, k, 0)), 1.0f + toUnitFloat(random64(2, k, 1)), 0.5f};
+    s.emission = Vec3(k % 7 == 0 ? 0.0f : 1.0f + float(k % 5));
+  }
+  scene.lights.emplace_back().type = LightType::Environment;
+  scene.lights.back().emission = Vec3(1.0f);
+  const Lit lit(std::move(scene));
+  const LightStrata strata(lit.lights);
+  EXPECT_LE(strata.size(), LightStrata::kMost);
+  EXPECT_GT(strata.size(), LightStrata::kMost / 2);
+  expectConsistent(strata, lit.lights);
+  EXPECT_EQ(strata.stratumOf({0, {0.5f, 0.5f}}), kNone);  // without power
+}
+
+// What is learned decides which strata are drawn, and probability() says how often.
+TEST(LightStrata, AreDrawnWithTheirProbabilities) {
+  const Lit lit(manyLights());
+  const LightStrata strata(lit.lights, 32);
+  const std::array<uint32_t, 3> seen{2, 3, 11};
+  const std::array<float, 3> cdf{0.5f, 0.6f, 1.0f};
+  const std::array<uint32_t, 2> both{3, 30};
+  const std::array<float, 2> half{0.5f, 1.0f};
+  for (const LearnedStrata& learned :
+       {LearnedStrata{&strata, {seen, cdf}, {both, half}}, LearnedStrata{&strata, {}, {both, half}},
+        LearnedStrata{&strata, {}, {}}}) {
+    std::vector<double> drawn(strata.size());
+    constexpr uint32_t kDraws = 1 << 16;
+    for (uint32_t k = 0; k < kDraws; ++k) {
+      float u = (float(k) + 0.5f) / kDraws;
+      drawn[learned.pick(u)] += 1.0 / kDraws;
+      EXPECT_TRUE(u >= 0.0f && u < 1.0f);
+    }
+    for (uint32_t s = 0; s < strata.size(); ++s)
+      EXPECT_NEAR(drawn[s], learned.probability(s), 1e-4) << s;
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,32 @@
+// Light that the camera sees without a surface between that scatters it: lamps, the sky in a
+// window, and both in mirrors. Its borders are sharp, and what is seen beside them is much darker:
+// there the noise of a pixel is that of where its camera rays go, which are cheap.
+#pragma once
+
+#include <vector>
+
+#include "core/random.h"
+#include "tools/render/gather/gather.h"
+#include "tools/render/tile.h"
+#include "transport/lights.h"
+
+namespace bnvpl {
+
+class SeenLight {
+ public:
+  // Pixels around which the camera's view of lights is not everywhere the same get more rays.
+  // Borrows rays and lights.
+  SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoints& film);
+
+  // The mean of `seen`, what the ray of one sample saw, and of what the pixel's further rays see.
+  // The film's points alone, not the sample, say how many these are: the mean stays unbiased.
+  Vec3 withMoreRays(Vec3 seen, const TileSlots& tile, uint32_t pixel, uint32_t slot) const;
+
+ private:
+  const RayScene& rays_;
+  const LightSet& lights_;
+  uint32_t width_;
+  std::vector<uint8_t> varies_;  // for each pixel
+};
+
+}  // namespace bnvpl

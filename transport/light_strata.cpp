@@ -1,0 +1,156 @@
+#include "transport/light_strata.h"
+
+#include <cmath>
+
+#include "core/cdf.h"
+#include "spatial/morton_order.h"
+
+namespace bnvpl {
+
+LightStrata::LightStrata(const LightSet& lights, size_t most) : cells_(lights.size()) {
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    cells_[i].share = lights.pickProbability(i);
+    if (cells_[i].share > 0.0f) order_.push_back(i);
+  }
+  if (2 * order_.size() <= most) {
+    cutUp(lights, most);
+  } else {
+    putTogether(lights, most);
+  }
+}
+
+// Each light has a stratum; those that are left go to lights whose parts can be hidden, by power.
+void LightStrata::cutUp(const LightSet& lights, size_t most) {
+  std::vector<LightSet::Extent> extents;
+  double divisible = 0.0;
+  for (const uint32_t i : order_) {
+    extents.push_back(lights.extent(i));
+    if (extents.back().divisible) divisible += double{cells_[i].share};
+  }
+  const auto left = static_cast<double>(most - order_.size());
+  const std::vector<uint32_t> own = order_;
+  order_.clear();
+  for (size_t k = 0; k < own.size(); ++k) {
+    const double more = extents[k].divisible ? left * double{cells_[own[k]].share} / divisible : 0;
+    add(own[k], extents[k], 1 + static_cast<size_t>(more));
+  }
+}
+
+// Many facets are strata of their own; else columns and rows alike, twice the columns for the
+// sphere.
+void LightStrata::add(uint32_t light, const LightSet::Extent& extent, size_t parts) {
+  Cells& c = cells_[light];
+  const double aspect = extent.local ? 1.0 : 2.0;
+  const auto square = static_cast<size_t>(std::sqrt(aspect * static_cast<double>(parts)));
+  c.columns =
+      static_cast<uint32_t>(std::clamp<size_t>(extent.facets, std::max<size_t>(1, square), parts));
+  c.rows = static_cast<uint32_t>(parts / c.columns);
+  c.first = static_cast<uint32_t>(strata_.size());
+  const auto at = static_cast<uint32_t>(order_.size());
+  order_.push_back(light);
+  cdf_.push_back(1.0f);
+  const uint32_t count = c.columns * c.rows;
+  for (uint32_t cell = 0; cell < count; ++cell)
+    strata_.push_back({at, at + 1, cell, c.share / static_cast<float>(count)});
+}
+
+// Neighbours along a Morton curve, until they have their part of the power; lights at infinity each
+// for itself.
+void LightStrata::putTogether(const LightSet& lights, size_t most) {
+  std::vector<uint32_t> local, own = order_;
+  std::vector<Vec3> centres;
+  order_.clear();
+  for (const uint32_t i : own) {
+    const LightSet::Extent extent = lights.extent(i);
+    if (extent.local) {
+      local.push_back(i);
+      centres.push_back(extent.centre);
+    } else {
+      add(i, {}, 1);
+    }
+  }
+  double total = 0.0;
+  for (const uint32_t i : local) total += double{cells_[i].share};
+  const double part = total / static_cast<double>(most - std::min(most - 1, order_.size()));
+  std::vector<double> weights;
+  for (const uint32_t k : mortonOrder(centres)) {
+    const uint32_t light = local[k];
+    order_.push_back(light);
+    weights.push_back(double{cells_[light].share});
+    cells_[light].first = static_cast<uint32_t>(strata_.size());
+    double sum = 0.0;
+    for (const double w : weights) sum += w;
+    if (sum < part && order_.size() < own.size()) continue;
+    const auto end = static_cast<uint32_t>(order_.size());
+    strata_.push_back(
+        {end - static_cast<uint32_t>(weights.size()), end, 0, static_cast<float>(sum)});
+    const std::vector<float> cdf = makeCdf<float>(weights);
+    cdf_.insert(cdf_.end(), cdf.begin(), cdf.end());
+    weights.clear();
+  }
+}
+
+LightPlace LightStrata::place(size_t stratum, Point2 at) const {
+  const Stratum& s = strata_[stratum];
+  if (s.end - s.begin > 1) {
+    const size_t i = sampleCdf(std::span(cdf_).subspan(s.begin, s.end - s.begin), at.x);
+    return {order_[s.begin + i], at};
+  }
+  const uint32_t light = order_[s.begin];
+  const Cells& c = cells_[light];
+  const auto within = [](uint32_t cell, float part, uint32_t count) {
+    return std::min((static_cast<float>(cell) + part) / static_cast<float>(count), 0x1.fffffep-1f);
+  };
+  return {light,
+          {within(s.cell % c.columns, at.x, c.columns), within(s.cell / c.columns, at.y, c.rows)}};
+}
+
+uint32_t LightStrata::stratumOf(const LightPlace& place) const {
+  const Cells& c = cells_[place.light];
+  if (c.first == kNone) return kNone;
+  const auto cellOf = [](float x, uint32_t count) {
+    return std::min(count - 1,
+                    static_cast<uint32_t>(std::max(0.0f, x) * static_cast<float>(count)));
+  };
+  return c.first + cellOf(place.at.y, c.rows) * c.columns + cellOf(place.at.x, c.columns);
+}
+
+float SeenStrata::probability(uint32_t stratum) const {
+  const auto it = std::lower_bound(strata.begin(), strata.end(), stratum);
+  return it != strata.end() && *it == stratum
+             ? cdfShare(cdf, static_cast<size_t>(it - strata.begin()))
+             : 0.0f;
+}
+
+uint32_t LearnedStrata::pick(float& u) const {
+  const auto below = [](float x) { return std::min(x, 0x1.fffffep-1f); };
+  const float first = hereShare(), second = everywhereShare();
+  if (u < first) {
+    u = below(u / first);
+    return here.strata[sampleCdf(here.cdf, u)];
+  }
+  if (u < first + second) {
+    u = below((u - first) / second);
+    return everywhere.strata[sampleCdf(everywhere.cdf, u)];
+  }
+  const float x = (u - first - second) / (1.0f - first - second) * static_cast<float>(all->size());
+  const auto i = std::min(static_cast<uint32_t>(all->size() - 1), static_cast<uint32_t>(x));
+  u = below(x - static_cast<float>(i));
+  return i;
+}
+
+float LearnedStrata::probability(uint32_t stratum) const {
+  const float first = hereShare(), second = everywhereShare();
+  float sum = (1.0f - first - second) / static_cast<float>(all->size());
+  if (first > 0.0f) sum += first * here.probability(stratum);
+  if (second > 0.0f) sum += second * everywhere.probability(stratum);
+  return sum;
+}
+
+float LearnedStrata::density(const LightPlace& place) const {
+  const uint32_t stratum = all->stratumOf(place);
+  if (stratum == kNone) return 0.0f;
+  return probability(stratum) / all->share(stratum) * all->lightShare(place.light);
+}
+
+}  // namespace bnvpl
