@@ -14,8 +14,7 @@ namespace bnvpl {
 
 class SeenLight {
  public:
-  // Pixels around which the camera's view of lights is not everywhere the same get more rays.
-  // Borrows rays and lights.
+  // The more the light seen varies around a pixel, the more rays it gets. Borrows rays and lights.
   SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoints& film);
 
   // The mean of `seen`, what the ray of one sample saw, and of what the pixel's further rays see.
@@ -26,7 +25,7 @@ class SeenLight {
   const RayScene& rays_;
   const LightSet& lights_;
   uint32_t width_;
-  std::vector<uint8_t> varies_;  // for each pixel
+  std::vector<uint8_t> more_;  // rays of each pixel, for each sample
 };
 
 }  // namespace bnvpl

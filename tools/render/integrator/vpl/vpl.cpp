@@ -21,14 +21,14 @@ constexpr std::array kOptions{
     neededBy(kIndirect, realOption("clamp", "2", 0, 1000, "r_max",
                                    "radius of a VPL: 1/d^2 of a point grows no further inside, a "
                                    "disk is so large")),
-    wholeOption("near-field-rays", "16", 1, 4096, "",
+    wholeOption("near-field-rays", "8", 1, 4096, "",
                 "rays by the BSDF from each shaded point: for --compensate, for light over "
                 "specular surfaces, and for half of the direct light"),
     neededBy(kDirect, choiceOption("direct", "learned", "learned|each",
                                    "shadow rays to what each tile of the film has learned to see, "
                                    "or one to each light")),
     neededBy("direct=learned",
-             wholeOption("light-rays", "4", 1, 4096, "", "shadow rays from each shaded point"))};
+             wholeOption("light-rays", "8", 1, 4096, "", "shadow rays from each shaded point"))};
 
 FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t seed) {
   const Scene& scene = rays.scene();
