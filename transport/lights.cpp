@@ -20,9 +20,24 @@ LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
     }
     weights.push_back(mean(lights_[i].power));
   }
+  setPickProbabilities(weights);
+}
+
+void LightSet::setPickProbabilities(const std::vector<double>& weights) {
   pickCdf_ = makeCdf<float>(weights);
   for (size_t i = 0; i < lights_.size(); ++i)
     lights_[i].pickProbability = cdfShare<float>(pickCdf_, i);
+}
+
+LightSet LightSet::withoutHittable() const {
+  LightSet out(*this);
+  std::vector<double> weights;
+  for (const Light& l : lights_) weights.push_back(l.area ? 0.0 : double{mean(l.power)});
+  for (const uint32_t i : hittableAtInfinity_) weights[i] = 0.0;
+  out.setPickProbabilities(weights);
+  for (size_t i = 0; i < weights.size(); ++i)
+    if (!(weights[i] > 0.0)) out.lights_[i].pickProbability = 0.0f;  // where none is left
+  return out;
 }
 
 void LightSet::addAreaLights() {

@@ -36,6 +36,10 @@ class LightSet {
   Vec3 totalPower() const;
   std::string name(size_t light) const;  // for messages
 
+  // The same lights, but pick() gives only those that no ray can hit: the others are left to the
+  // rays of the BSDF.
+  LightSet withoutHittable() const;
+
   // A light picked in proportion to power, for estimators that can afford one.
   size_t pick(float u, float& probability) const;
   float pickProbability(size_t light) const { return lights_[light].pickProbability; }
@@ -98,6 +102,7 @@ class LightSet {
   };
   void addAreaLights();
   void addSpecLights();
+  void setPickProbabilities(const std::vector<double>& weights);
   Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
   float texelPdf(const Light& light, size_t x, uint32_t y) const;
   Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;

@@ -118,6 +118,24 @@ TEST(SameExpectation, FurnaceIsKnownAtEveryPixel) {
   EXPECT_TRUE(sameExpectation(vpls(world, {}, direct), flat(world, 1.5f)));
 }
 
+// Lamp, sky and sun by rays of the BSDF alone, beside a point light that none can hit.
+TEST(SameExpectation, PathsWithAndWithoutLightSampling) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {12, 12};
+  scene.lights.resize(3);
+  scene.lights[0].type = LightType::Environment;
+  scene.lights[0].emission = Vec3{1.0f};
+  scene.lights[1].type = LightType::Directional;
+  scene.lights[1].direction = normalize(Vec3{0.3f, -0.4f, -1});
+  scene.lights[1].angularRadiusRad = 0.5f;
+  scene.lights[1].emission = Vec3{1.0f};
+  scene.lights[2].position = scene.bounds.center();
+  scene.lights[2].emission = Vec3{0.01f};
+  const World world(std::move(scene));
+  EXPECT_TRUE(sameExpectation(paths(world, {{"spp", "64"}}),
+                              paths(world, {{"spp", "256"}, {"light-sampling", "off"}})));
+}
+
 // Irradiance over radiance of the horizontal square at height 1 and of side 0.2 about the origin,
 // at a point below it, from its outline (Lambert 1760).
 double irradianceBelowSquare(Vec3 at) {

@@ -30,7 +30,7 @@ TEST(Ward, SavesShadowRays) {
 TEST(Ward, TellsOfItsPreparations) {
   const GatherCase& c = *gatherCases().front();
   Preparations told;
-  const Values options = resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}}));
+  const Values options = resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}, {"only", "indirect"}}));
   render(c.world.rays, c.world.lights, c.lit, options, told.progress);
   EXPECT_EQ(told.names, std::vector<std::string>{"visibility of VPLs"});
 }

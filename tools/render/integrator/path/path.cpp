@@ -8,12 +8,23 @@ namespace bnvpl::methods::integrator::path {
 
 namespace {
 
-constexpr std::array kOptions{kMaxBouncesOption};
+constexpr std::array kOptions{
+    kMaxBouncesOption,
+    switchOption("light-sampling", "on",
+                 "shadow rays to lamps and sky; off: rays of the BSDF alone find them, but for "
+                 "lights that no ray can hit")};
+
+struct Parts {
+  LightSet lights;
+  PathTracer tracer;
+  Parts(const IntegratorInputs& in, const Values& options)
+      : lights(options.on("light-sampling") ? in.lights : in.lights.withoutHittable()),
+        tracer(in.rays, lights, maxBouncesOf(options), in.only) {}
+};
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  const auto tracer =
-      std::make_shared<const PathTracer>(in.rays, in.lights, maxBouncesOf(options), in.only);
-  return {[tracer](const TileSamples& tile) { tracer->render(tile); }};
+  const auto parts = std::make_shared<const Parts>(in, options);
+  return {[parts](const TileSamples& tile) { parts->tracer.render(tile); }};
 }
 
 }  // namespace
