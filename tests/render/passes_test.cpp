@@ -52,15 +52,15 @@ double meanSquare(const std::vector<float>& values, double about) {
 // Samples of a tile share a number, as they share a cut: twelve passes of four such samples know
 // far less than 48 that are independent.
 TEST(PassError, IsTheTrueOneThoughSamplesOfATileAreCorrelated) {
-  const Film film(128, 96);
+  const Film film(256, 256);
   const auto noise =
       seen([](uint32_t, float shared, float own) { return 1.0f + 0.4f * shared + 0.4f * own; });
   const Made m = film(noise, 12, 1, false);
   const double variance = 0.16 / 12.0 * (1.0 + 1.0 / kPassSpp) / 12.0;  // uniform numbers: 1 / 12
   EXPECT_NEAR(meanSquare(*m.image.find("error.G"), 0.0) / variance, 1.0, 0.06);
-  EXPECT_NEAR(meanSquare(*m.image.find("G"), 1.4) / variance, 1.0, 0.1);
+  EXPECT_NEAR(meanSquare(*m.image.find("G"), 1.4) / variance, 1.0, 0.13);  // 1024 tiles
   EXPECT_NEAR(m.passes.error * 1.4 / std::sqrt(variance), 1.0, 0.03);
-  EXPECT_EQ(m.stats.samples, 128u * 96u * 12u * kPassSpp);
+  EXPECT_EQ(m.stats.samples, 256u * 256u * 12u * kPassSpp);
 }
 
 // With tiles that get more samples, and others less.
@@ -77,43 +77,56 @@ TEST(PassError, IsTheTrueOneOfAdaptivePasses) {
     error += std::pow(double{shown[i]} - expected, 2);
     known += std::pow(double{(*m.image.find("error.R"))[i]}, 2);
   }
-  // The first kPassSpp numbers of a stream are independent here, so nothing but chance differs.
   EXPECT_NEAR(known / error, 1.0, 0.15);
 }
 
+// Mean of a channel over the 3 x 3 pixels about one.
+double around(const Image& image, const std::string& channel, int x, int y) {
+  double sum = 0.0;
+  int count = 0;
+  for (int v = std::max(0, y - 1); v < std::min(image.height, y + 2); ++v) {
+    for (int u = std::max(0, x - 1); u < std::min(image.width, x + 2); ++u, ++count) {
+      sum += double{(*image.find(channel))[size_t(v * image.width + u)]};
+    }
+  }
+  return sum / count;
+}
+
+// Two seeds are apart by the errors of both: of each pixel, and of the image as a whole.
 TEST(PassError, IsTheTrueOneOfARealScene) {
   World world("cornell/scene.toml");
-  world.scene.film = {32, 32};
-  const auto image = [&](uint64_t seed) {
+  world.scene.film = {40, 40};
+  const auto rendered = [&](uint64_t seed) {
     return renderWithout(world, "path",
                          {{"passes", "16"}, {"layers", "error"}, {"seed", typed(seed)}});
   };
-  const RenderResult a = image(1), b = image(2);
+  const RenderResult a = rendered(1), b = rendered(2);
+  const double mean = meanOf(a.image);
   double apart = 0.0, known = 0.0;
-  for (const char* c : {"R", "G", "B"}) {
+  for (const std::string c : {"R", "G", "B"}) {
     for (size_t i = 0; i < a.image.pixelCount(); ++i) {
-      const double mean = 0.5 * (double{(*a.image.find(c))[i]} + double{(*b.image.find(c))[i]});
-      const double weight = 1.0 / (mean * mean + 1e-4);  // no pixel decides alone
+      const double about = around(a.image, c, int(i) % 40, int(i) / 40);
+      const double weight = 1.0 / (3.0 * 1600.0 * (about * about + 1e-4 * mean * mean));
       const auto square = [&](double v) { return v * v * weight; };
-      const std::string error = std::string("error.") + c;
       apart += square((*a.image.find(c))[i] - (*b.image.find(c))[i]);
-      known += square((*a.image.find(error))[i]) + square((*b.image.find(error))[i]);
+      known += square((*a.image.find("error." + c))[i]) + square((*b.image.find("error." + c))[i]);
     }
   }
-  EXPECT_NEAR(std::sqrt(known / apart), 1.0, 0.15);
-  EXPECT_NEAR(a.passes->error / b.passes->error, 1.0, 0.15);
+  EXPECT_NEAR(std::sqrt(known / apart), 1.0, 0.1);
+  EXPECT_NEAR(a.passes->error / std::sqrt(0.5 * apart), 1.0, 0.15);
+  EXPECT_NEAR(b.passes->error / std::sqrt(0.5 * apart), 1.0, 0.15);
 }
 
 // Rare bright samples: of a tile that met none in the first passes nothing is known, and it gets
-// few more. Weighted by their numbers, samples would have a mean of 0.8 here.
+// few more. Weighted by their numbers, samples would have a mean of 0.75 here (measured).
 TEST(AdaptivePasses, HaveNoBiasWhereBrightSamplesAreRare) {
   const Film film(64, 64);
-  constexpr float kRare = 1.0f / 1024.0f;
+  constexpr float kRare = 1.0f / 4096.0f;
   const auto rare =
       seen([](uint32_t, float, float own) { return own < kRare ? 1.0f / kRare : 0.0f; });
   for (const bool adaptive : {true, false}) {
     double sum = 0.0, squares = 0.0;
-    constexpr int kSeeds = 48;
+    constexpr int kSeeds = 24;
     for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
       const double mean = meanOf(film(rare, 10, seed, adaptive).image);
       sum += mean;
@@ -122,7 +135,7 @@ TEST(AdaptivePasses, HaveNoBiasWhereBrightSamplesAreRare) {
     const double mean = sum / kSeeds;
     const double deviation = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
     EXPECT_NEAR(mean, 1.0, 3.5 * deviation) << adaptive;
-    EXPECT_LT(deviation, 0.03) << adaptive;
+    EXPECT_LT(deviation, 0.05) << adaptive;
   }
 }
 
@@ -176,7 +189,7 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
     std::vector<Made> others{film(both, 7, 1, true, often)};
     EXPECT_GT(states.size(), 14u);
     for (size_t k = 0; k < states.size(); k += 5)
-      others.push_back(film(both, 7, 1, true, {states[k]}));
+      others.push_back(film(both, 7, 1, true, {states[k], {}, {}}));
     for (const size_t threads : {1u, 7u}) {
       tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       others.push_back(film(both, 7, 1, true));

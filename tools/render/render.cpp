@@ -27,7 +27,7 @@ std::span<const Option> stageOptions() {
           "render by passes over the film, until no other would end within this time; at "
           "least two"))),
       unrecorded(optional(
-          realOption("target-error", "", 0.0001, 10, "root of relMSE",
+          realOption("target-error", "", 0.0001, 10, "",
                      "render by passes, until the image's estimated error is at most this"))),
       optional(wholeOption("passes", "", kFewestPasses, 0x1p40, "",
                            "render by so many passes; with --time or --target-error at most so "

@@ -10,12 +10,13 @@
 
 namespace bnvpl {
 
-// Of each pixel the squared error over the squared brightness, mean of the channels: relMSE of
-// vpl-inspect compare, with the mean of 3 x 3 pixels for the reference's, as a pixel's own is
-// dark just where its noise has missed the light.
+// Of each pixel the squared error over the squared brightness, mean of the channels: as the relMSE
+// of vpl-inspect compare, but over the brightness of 3 x 3 pixels. A pixel's own is too dark just
+// where its noise has missed the light, and where one sample is far too bright it hides that. At
+// edges of shadows it is less than relMSE.
 std::vector<double> relativeVariances(const Exposed& film, Only only, uint32_t width);
 
-// Root of their mean: the root of the relMSE to be expected of the image.
+// Root of their mean.
 double relativeError(std::span<const double> variances);
 
 // Samples for each tile in the next pass: in proportion to the deviation of one sample of it (which

@@ -130,7 +130,8 @@ class Passes {
     if (passes < kFewestPasses) return false;
     const double spentS = nowS() - startS_;
     if (spentS + spentS / double(passes) > budget_.timeS) endedBy_ = "time";
-    if (passes >= kUniformPasses && error_ <= budget_.error) endedBy_ = "error";
+    if (passes >= kUniformPasses && budget_.error > 0.0 && error_ <= budget_.error)
+      endedBy_ = "error";
     if (passes >= budget_.passes) endedBy_ = "passes";
     return !endedBy_.empty();
   }

@@ -1,9 +1,9 @@
 // An image by passes over the film, until a time is spent or an error is reached.
 //
 // A pass is an image of its own, by kPassSpp samples a pixel, with random numbers of its own; the
-// image is the plain mean of all passes. Within a pass samples are no measure of their own error:
-// those of a tile share a cut and are stratified. Passes are, so the error is that of their mean
-// over K passes, from how they differ:
+// image is the plain mean of all K passes m_k. How samples of one pass differ tells nothing about
+// the error, as those of a tile share a cut and are stratified. Passes are independent, so how they
+// differ tells the error of their mean m, for each pixel:
 //
 //   error^2 = sum over passes (m_k - m)^2 / (K (K - 1))
 //
@@ -33,7 +33,7 @@ inline constexpr uint64_t kFewestPasses = 2;  // for an error to be known
 struct Budget {
   double timeS = INFINITY;  // of the passes, by the clock; no pass begins that is expected to end
                             // later
-  double error = 0.0;       // ends when relativeError() is at most this
+  double error = 0.0;       // ends when relativeError() is at most this; 0: never
   uint64_t passes = UINT64_MAX;  // at most; at least kFewestPasses
   bool adaptive = true;          // not with photons, which go where they will
 };
