@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes a build.ninja that renders scenes by the four stages, keeping every intermediate file.
 
-  pipelines/generate_ninja.py scenes/u-shape/scene.toml --vpls 3k --photons 10M --spp 8
+  pipelines/generate_ninja.py scenes/u-shape/scene.toml --quality draft
   ninja -f out/build.ninja
 
 Ninja remembers each stage's command and reads its depfile, so a stage runs again when an input,
@@ -36,21 +36,40 @@ rule read_scene
 """
 
 
+def presets():
+    """{"draft": {"VPLS": "1500", ...}, ...} of quality.mk."""
+    found = {}
+    for line in (HERE / "quality.mk").read_text().splitlines():
+        if assignment := re.fullmatch(r"(\w+)\.(\w+)\s*:=\s*(.*)", line):
+            name, quality, value = assignment.groups()
+            found.setdefault(quality, {})[name] = value
+    return found
+
+
 def arguments():
+    qualities = presets()
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
     p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
     p.add_argument("--out", default="out", help="folder; each scene gets one below it (default out)")
     p.add_argument("--bin", default=relative(DEFAULT_BIN), help="folder of the executables (default %(default)s)")
-    p.add_argument("--candidates", default="120k", help="default %(default)s")
-    p.add_argument("--vpls", default="3k", help="default %(default)s")
-    p.add_argument("--photons", default="10M", help="default %(default)s")
-    p.add_argument("--spp", default="8", help="samples per pixel (default %(default)s)")
+    p.add_argument("--quality", default="default", choices=sorted(qualities),
+                   help="counts and options of quality.mk (default %(default)s)")
+    p.add_argument("--candidates", help="default: the quality's")
+    p.add_argument("--vpls", help="default: the quality's")
+    p.add_argument("--photons", help="default: the quality's")
+    p.add_argument("--spp", help="samples per pixel; default: the quality's; '' for none, as with --render-flags='--time 2m'")
     p.add_argument("--seed", help="for place, estimate and render")
     p.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
     for stage in ("place", "eliminate", "estimate", "render"):
         p.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
                        help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'")
-    return p.parse_args()
+    options = p.parse_args()
+    preset = qualities[options.quality]
+    for name in ("candidates", "vpls", "photons", "spp"):
+        if getattr(options, name) is None:
+            setattr(options, name, preset[name.upper()])
+    options.render_preset = preset["RENDER"]
+    return options
 
 
 def relative(path):
@@ -95,6 +114,7 @@ def build(stage, outputs, inputs, words, scene_read):
 def scene_rules(scene, options):
     out = check_path(f"{options.out}/{name_of(scene)}")
     seed = ["--seed", options.seed] if options.seed else []
+    spp = ["--spp", options.spp] if options.spp else []
     defines = [word for define in options.define for word in ("--define", define)]
     candidates, vpls, lit = f"{out}/candidates.vpl", f"{out}/vpls.vpl", f"{out}/lit.vpl"
     image, preview = f"{out}/image.exr", f"{out}/image.png"
@@ -114,8 +134,8 @@ def scene_rules(scene, options):
         *build("estimate", [lit], [tool("estimate"), scene, vpls],
                [scene, vpls, "-o", lit, "--photons", options.photons, *seed, *defines, *flags("estimate")], True),
         *build("render", [image, preview], [tool("render"), scene, lit],
-               [scene, lit, "-o", image, "--spp", options.spp, "--png", preview, *seed, *defines,
-                *flags("render")], True),
+               [scene, lit, "-o", image, *spp, "--png", preview, *seed, *defines,
+                *shlex.split(options.render_preset), *flags("render")], True),
         f"build {name_of(scene)}: phony {image}",
     ]
 

@@ -91,6 +91,26 @@ TEST(Options, RealsAreFiniteAndInRange) {
             "--share: '0x1' is not a number from 0 to 1");
 }
 
+TEST(Options, DurationsAreSeconds) {
+  constexpr std::array kOptions{optional(durationOption("time", "help")),
+                                neededBy("time", realOption("k", "1", 0, 9, "", "help"))};
+  const StageSpec timed{"vpl-z", kOptions, {}};
+  const auto seconds = [&](const std::string& text) {
+    return resolve(timed, {{"time", text}}).real("time");
+  };
+  EXPECT_EQ(seconds("60s"), 60.0);
+  EXPECT_EQ(seconds("2m"), 120.0);
+  EXPECT_EQ(seconds("1.5h"), 5400.0);
+  for (const char* text : {"60", "", "m", "1d", "0s", "-1s", "1 s", "infs", "1s2"}) {
+    EXPECT_THROW(seconds(text), UsageError) << text;
+  }
+  // Without a value unless given, and what needs it.
+  EXPECT_FALSE(resolve(timed).has("time"));
+  EXPECT_FALSE(resolve(timed).has("k"));
+  EXPECT_TRUE(resolve(timed, {{"time", "1s"}}).has("k"));
+  EXPECT_THROW(resolve(timed, {{"k", "2"}}), UsageError);
+}
+
 TEST(Options, NeedsCombine) {
   constexpr std::array kOptions{
       choiceOption("only", "all", "all|direct", "help"), realOption("area", "0", 0, 9, "", "help"),

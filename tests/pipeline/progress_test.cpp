@@ -25,6 +25,7 @@ TEST(Durations, SecondsMinutesAndHours) {
 TEST(Progress, Line) {
   EXPECT_EQ(progressText("samples", 12000000, 40000000, 53.6),
             "samples 12M of 40M (30 %), 2 min 05 s left");
+  EXPECT_EQ(progressText("samples", 12000000, 0, 34), "samples 12M in 34 s");
   EXPECT_EQ(progressText("photons", 1, 4, 2000), "photons 1 of 4 (25 %), 1 h 40 min left");
   EXPECT_EQ(progressText("photons", 0, 4, 10), "photons 0 of 4 (0 %)");
   EXPECT_EQ(progressText("photons", 4, 4, 10), "photons 4 of 4 (100 %), 0 s left");

@@ -2,6 +2,10 @@
 // then.
 #include <unistd.h>
 
+#include <map>
+#include <regex>
+#include <sstream>
+
 #include "tests/pipeline/tool_runner.h"
 
 namespace bnvpl {
@@ -154,6 +158,39 @@ TEST_F(Rerun, NinjaRunsWhatChanged) {
   generate("30k");
   EXPECT_EQ(built(), "estimate render");
   EXPECT_EQ(built(), "");
+}
+
+// What quality.mk says is what both run, and nothing else says it.
+TEST_F(Rerun, QualitiesAreThoseOfOneFile) {
+  std::map<std::string, std::map<std::string, std::string>> presets;
+  std::istringstream lines(readAll(BNVPL_SOURCE "/pipelines/quality.mk"));
+  std::smatch m;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, m, std::regex(R"((\w+)\.(\w+)\s*:=\s*(.*))")))
+      presets[m[2]][m[1]] = m[3];
+  }
+  ASSERT_EQ(presets.size(), 3u);
+  for (auto& [quality, of] : presets) {
+    const Outcome make =
+        shell("make -n -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
+              " OUT=" + path("q") + " BIN=" BNVPL_BIN_FROM_SOURCE " QUALITY=" + quality);
+    const Outcome ninja =
+        shell("pipelines/generate_ninja.py " + path("veach-door/scene.toml") + " --out " +
+              path("q") + " --bin " BNVPL_BIN_FROM_SOURCE " --quality " + quality);
+    EXPECT_EQ(make.code + ninja.code, 0) << make.err << ninja.err;
+    const std::string render = of["RENDER"].empty() ? "" : " " + of["RENDER"];
+    for (const std::string& text : {make.out, readAll(at("q/build.ninja"))}) {
+      for (const std::string& part :
+           {"candidates.vpl -n " + of["CANDIDATES"] + " ", "vpls.vpl -n " + of["VPLS"] + " ",
+            " --photons " + of["PHOTONS"] + " ", " --spp " + of["SPP"] + " ",
+            "image.png" + render + " --"}) {
+        EXPECT_TRUE(contains(text, part)) << quality << ": " << part << "\n" << text;
+      }
+    }
+  }
+  const Outcome wrong = shell("make -n -f pipelines/Makefile QUALITY=best");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(contains(wrong.err, "QUALITY='best'")) << wrong.err;
 }
 
 // Both make the same image.

@@ -37,6 +37,10 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   succeed("vpl-render", render + " -o " + path("whole.exr"));
   EXPECT_GE(runInPieces("vpl-render", render + " -o " + path("pieces.exr")), 1);
   EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
+  const std::string passes = render + " --passes 30";
+  succeed("vpl-render", passes + " -o " + path("whole.exr"));
+  EXPECT_GE(runInPieces("vpl-render", passes + " -o " + path("pieces.exr")), 1);
+  EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
   const std::string photons = scene_ + " --integrator light --size 64x48 --spp 512";
   succeed("vpl-render", photons + " -o " + path("whole.exr"));
   EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);

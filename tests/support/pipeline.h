@@ -47,7 +47,7 @@ inline EstimateResult lightVpls(const World& world, const VplTable& vpls, const 
 }
 inline RenderResult renderVpls(const World& world, const VplTable& lit, const Given& options,
                                const Resume& resume = {}) {
-  return render(world.rays, world.lights, lit, resolve(renderSpec(), options), {}, resume);
+  return render(world.rays, world.lights, lit, resolveRender(options), {}, resume);
 }
 // By paths, or photons that are connected with the camera.
 inline RenderResult renderWithout(const World& world, const std::string& integrator,

@@ -23,6 +23,8 @@ std::string typeOf(const Option& o) {
     case Option::Kind::Whole:
     case Option::Kind::Real:
       return "NUMBER";
+    case Option::Kind::Duration:
+      return "DURATION";
     case Option::Kind::Choice:
       return std::string(o.choices);
     case Option::Kind::Text:

@@ -117,6 +117,23 @@ uint64_t countOf(const Option& o, const std::string& text) {
   return static_cast<uint64_t>(whole);
 }
 
+// "2m" -> 120.
+double durationOf(const Option& o, const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(end, text.data() + text.size());
+  const double seconds = unit == "s" ? 1.0 : unit == "m" ? 60.0 : unit == "h" ? 3600.0 : 0.0;
+  if (error == std::errc::invalid_argument || seconds == 0.0)
+    refuse(o, "'" + text + "' is not a duration; write one such as 90s, 2m or 1.5h");
+  value *= seconds;
+  if (error != std::errc{} || !(value >= o.least && value <= o.most)) {
+    refuse(o, "'" + text +
+                  "' is out of range: write a duration of more than 0s, such as 90s, 2m or " +
+                  "1.5h");
+  }
+  return value;
+}
+
 bool holds(const std::vector<std::string_view>& names, std::string_view name) {
   return std::ranges::find(names, name) != names.end();
 }
@@ -132,6 +149,8 @@ Value parsed(const Option& o, const std::string& text) {
       return countOf(o, text);
     case Option::Kind::Real:
       return realOf(o, text);
+    case Option::Kind::Duration:
+      return durationOf(o, text);
     case Option::Kind::Choice: {
       const auto names = split(o.choices);
       if (holds(names, text)) return text;
@@ -151,14 +170,18 @@ bool inRange(const Option& o, const Value& value) {
   return number >= o.least && number <= o.most;
 }
 
-// "density=local|even" as a name and its values.
+// "density=local|even" as a name and its values; "time" as a name alone: it has to be given.
 struct Need {
   std::string_view name;
   std::vector<std::string_view> values;
 };
 Need needOf(std::string_view condition) {
-  const size_t equals = condition.find('=');
-  return {condition.substr(0, equals), split(condition.substr(equals + 1))};
+  const size_t equals = std::min(condition.find('='), condition.size());
+  return {condition.substr(0, equals),
+          split(condition.substr(std::min(equals + 1, condition.size())))};
+}
+std::string textOf(const Need& need) {
+  return "--" + std::string(need.name) + (need.values.empty() ? "" : " " + orList(need.values));
 }
 
 // One of them must hold, with all its conditions.
@@ -181,7 +204,7 @@ std::string spelled(const Value& value) {
 
 bool met(const Need& need, const Values& values) {
   for (const auto& [name, value] : values.list()) {
-    if (name == need.name) return holds(need.values, spelled(value));
+    if (name == need.name) return need.values.empty() || holds(need.values, spelled(value));
   }
   return false;
 }
@@ -231,8 +254,7 @@ std::vector<Found> findAll(const StageSpec& spec, std::string_view name) {
       if (key == need.name)
         with += (with.empty() ? " with --" : " and --") + key + " " + spelled(value);
     }
-    needed +=
-        (needed.empty() ? "--" : " or --") + std::string(need.name) + " " + orList(need.values);
+    needed += (needed.empty() ? "" : " or ") + textOf(need);
   }
   throw UsageError("--" + name + " has no effect" + with + "; it needs " + needed);
 }
@@ -278,6 +300,7 @@ const std::string* textOf(const Given& given, std::string_view name) {
 void takeOption(const Option& o, const Given& given, Values& values) {
   if (!satisfied(o.needs, values)) return;
   const std::string* text = textOf(given, o.name);
+  if (!text && o.optional) return;
   if (!text && o.fallback.empty() && o.kind != Option::Kind::Text) {
     throw UsageError("--" + std::string(o.name) + " is required");
   }
@@ -300,7 +323,7 @@ std::string needText(std::string_view needs) {
   for (const std::vector<Need>& all : alternativesOf(needs)) {
     text += text.empty() ? "" : " or ";
     for (size_t i = 0; i < all.size(); ++i) {
-      text += (i > 0 ? " and --" : "--") + std::string(all[i].name) + " " + orList(all[i].values);
+      text += (i > 0 ? " and " : "") + textOf(all[i]);
     }
   }
   return text;

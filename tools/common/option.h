@@ -18,12 +18,13 @@ namespace bnvpl {
 
 struct Option {
   enum class Kind {
-    Switch,  // on or off
-    Whole,   // a whole number in decimal digits
-    Count,   // the same, from 1, with k, M or G for thousands, millions or billions
-    Real,    // a finite number
-    Choice,  // one of a few names
-    Text     // whatever the stage makes of it; its unit is what to type
+    Switch,    // on or off
+    Whole,     // a whole number in decimal digits
+    Count,     // the same, from 1, with k, M or G for thousands, millions or billions
+    Real,      // a finite number
+    Duration,  // seconds, typed as 90s, 2m or 1.5h; more than 0
+    Choice,    // one of a few names
+    Text       // whatever the stage makes of it; its unit is what to type
   };
   std::string_view name;  // "max-cut": --max-cut on the command line, max-cut in the record
   Kind kind;
@@ -32,11 +33,12 @@ struct Option {
   std::string_view unit;      // empty: none
   std::string_view help;
   std::string_view choices = {};  // Choice: "local|uniform"
-  std::string_view needs = {};    // "density=local|even": has an effect only then; with more
-                                  // conditions behind commas all must hold; behind semicolons
-                                  // stand alternatives
+  std::string_view needs = {};    // "density=local|even": has an effect only then; "time": only
+                                  // where that is given; with more conditions behind commas all
+                                  // must hold; behind semicolons stand alternatives
   std::string_view letter = {};   // "-n": a short spelling
   bool recorded = true;           // false: changes nothing of what is computed
+  bool optional = false;          // has no value unless it is given
 };
 
 // Entries of a table.
@@ -64,6 +66,9 @@ constexpr Option textOption(std::string_view name, std::string_view fallback, st
                             std::string_view help) {
   return {name, Option::Kind::Text, fallback, 0, 0, unit, help};
 }
+constexpr Option durationOption(std::string_view name, std::string_view help) {
+  return {name, Option::Kind::Duration, {}, 0x1p-10, 1e9, {}, help};
+}
 // Of every stage that draws random numbers.
 constexpr Option seedOption() { return wholeOption("seed", "1", 0, 0x1p64, {}, "random seed"); }
 
@@ -77,6 +82,11 @@ constexpr Option neededBy(std::string_view needs, Option option) {
 }
 constexpr Option unrecorded(Option option) {
   option.recorded = false;
+  return option;
+}
+
+constexpr Option optional(Option option) {
+  option.optional = true;
   return option;
 }
 
@@ -108,7 +118,7 @@ class Values {
  public:
   bool on(std::string_view name) const { return get<bool>(name); }
   uint64_t whole(std::string_view name) const { return get<uint64_t>(name); }  // Count, too
-  double real(std::string_view name) const { return get<double>(name); }
+  double real(std::string_view name) const { return get<double>(name); }  // Duration, too: seconds
   float real32(std::string_view name) const { return static_cast<float>(real(name)); }
   const std::string& text(std::string_view name) const {  // Choice, too
     return get<std::string>(name);

@@ -15,7 +15,7 @@ namespace bnvpl {
 std::string durationText(double seconds);
 
 // "samples 12M of 40M (30 %), 2 min 05 s left", without the time as long as too little is done to
-// tell it: under 2 % within 10 s.
+// tell it: under 2 % within 10 s. Of a total that nobody knows, 0: "samples 12M in 34 s".
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS);
 
 class ProgressMeter {

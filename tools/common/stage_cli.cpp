@@ -20,7 +20,7 @@ CLI::Option* addText(CLI::App& cli, std::string_view name, std::string_view lett
 void addOne(CLI::App& cli, const Option& o, Given& given) {
   CLI::Option* option = addText(cli, o.name, o.letter, given, helpOf(o))->type_name(typeOf(o));
   if (!o.fallback.empty()) option->default_str(std::string(o.fallback));
-  if (o.fallback.empty() && o.kind != Option::Kind::Text) option->required();
+  if (o.fallback.empty() && o.kind != Option::Kind::Text && !o.optional) option->required();
 }
 
 void addSlot(CLI::App& cli, const MethodSlot& slot, Given& given) {

@@ -18,6 +18,8 @@ namespace {
 
 // Measured: 190 to 270, by the number of layers; 140, and 670 with the near field.
 constexpr double kBytesPerPixel = 180, kBytesPerVpl = 100;
+// What passes keep besides.
+constexpr double kBytesPerPixelOfPasses = 120;
 
 struct Paths {
   SceneOptions scene;
@@ -54,7 +56,7 @@ void requireConsistent(const Paths& paths, const Given& given, const Values& opt
 
 int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
   Summary summary("vpl-render");
-  const Values options = resolve(renderSpec(), given);
+  const Values options = resolveRender(given);
   requireConsistent(paths, given, options);
   const bool vpl = !paths.lit.empty();
   RunFiles used;
@@ -72,25 +74,33 @@ int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
     requireSameScene(paths.lit, lit.sceneHash, scene,
                      "rerun the pipeline from vpl-place on this scene");
   }
-  requireMemory(kBytesPerPixel * scene.film.width * scene.film.height,
+  const bool passes = budgetOf(options).has_value();
+  requireMemory((kBytesPerPixel + (passes ? kBytesPerPixelOfPasses : 0.0)) * scene.film.width *
+                    scene.film.height,
                 "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   const RayScene rays(scene);
   const LightSet lights(rays);
 
   Json inputs{{"scene", hashText(scene.contentHash)}};
   if (vpl) inputs["lit"] = hashText(lit.checksum);
-  Json record = stageRecord("vpl-render", recordOf(renderSpec(), options), inputs);
-  record["view"] = viewRecord(scene);
-  Checkpoint checkpoint(paths.checkpoint, record);
+  const auto record = [&](const Json& recorded) {
+    Json json = stageRecord("vpl-render", recorded, inputs);
+    json["view"] = viewRecord(scene);
+    return json;
+  };
+  Checkpoint checkpoint(paths.checkpoint, record(resumableOptions(options)));
   ProgressMeter meter("samples", renderWork(scene, options), tool.quiet);
-  RenderResult result = render(rays, lights, lit, options, meter.callback(), checkpoint.resume());
+  RenderResult result = render(rays, lights, lit, options, meter.callback(), checkpoint.resume(),
+                               previewTo(paths.images, options));
 
   Image& image = result.image;
-  image.attributes["bnvpl.provenance"] = extendProvenance(lit.provenance, record);
-  image.attributes["bnvpl.samplesPerPixel"] = std::to_string(options.whole("spp"));
+  const Values made = optionsMade(result, given);
+  describe(result, made);
+  image.attributes["bnvpl.provenance"] =
+      extendProvenance(lit.provenance, record(recordOf(renderSpec(), made)));
   image.attributes[kImageHashAttribute] = hashText(hashImage(image, pixelTypeOf(options)));
   OutputSet files;
-  reportRender(result, options, summary);
+  reportRender(result, made, summary);
   addImages(files, paths.images, image, options, summary);
   std::vector<fs::path> read = scene.files;
   if (vpl) read.push_back(paths.lit);

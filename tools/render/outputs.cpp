@@ -28,6 +28,11 @@ float exposureOf(const Image& image, const std::string& text) {
   return static_cast<float>(std::round(ev * 4.0) / 4.0);
 }
 
+void writePreview(AtomicFile& file, const Image& image, float ev) {
+  writePng(file, image.width, image.height,
+           toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
+}
+
 double percentOf(double part, double whole) { return whole > 0 ? 100 * part / whole : 0.0; }
 
 }  // namespace
@@ -47,12 +52,74 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
   }
   if (paths.png.empty()) return;
   const float ev = exposureOf(image, options.text("exposure"));
-  writePng(files.add(paths.png), image.width, image.height,
-           toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
+  writePreview(files.add(paths.png), image, ev);
   char line[64];
   std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: ", double{ev});
   summary.add("exposure_ev", ev, line + paths.png.string());
 }
+
+PreviewFn previewTo(const ImagePaths& paths, const Values& options) {
+  if (paths.png.empty()) return {};
+  return [png = paths.png, exposure = options.text("exposure")](const Image& image) {
+    AtomicFile file(png);
+    writePreview(file, image, exposureOf(image, exposure));
+    file.commit();
+  };
+}
+
+Json resumableOptions(const Values& options) {
+  Json record = recordOf(renderSpec(), options);
+  if (budgetOf(options)) {
+    record.erase("spp");
+    record["passes"] = "any number";
+  }
+  return record;
+}
+
+Values optionsMade(const RenderResult& result, const Given& given) {
+  Given all = given;
+  if (result.passes) {
+    all.emplace_back("passes", std::to_string(result.passes->passes));
+    all.emplace_back("spp", std::to_string(result.passes->passes * kPassSpp));
+  }
+  return resolveRender(all);
+}
+
+void describe(RenderResult& result, const Values& made) {
+  auto& attributes = result.image.attributes;
+  attributes["bnvpl.samplesPerPixel"] = std::to_string(made.whole("spp"));
+  if (!result.passes) return;
+  attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
+  char error[32];
+  std::snprintf(error, sizeof error, "%.6g", result.passes->error);
+  attributes["bnvpl.relativeError"] = error;
+}
+
+namespace {
+
+void reportPasses(const PassesDone& passes, const Values& options, Summary& summary) {
+  char line[256];
+  std::snprintf(line, sizeof line,
+                "%llu passes of %u spp in %.1f s: estimated relative error %.3g; --passes %llu%s "
+                "repeats this image",
+                static_cast<unsigned long long>(passes.passes), kPassSpp, passes.timeS,
+                passes.error, static_cast<unsigned long long>(passes.passes),
+                options.on("adaptive") ? "" : " --adaptive off");
+  summary.add("passes", passes.passes, line);
+  summary.add("relative_error", passes.error);
+  summary.add("passes_time_s", passes.timeS);
+  summary.add("ended_by", passes.endedBy);
+  const double wantedS = options.has("time") ? options.real("time") : INFINITY;
+  if (passes.passes == kFewestPasses && passes.timeS > 1.1 * wantedS) {
+    std::snprintf(line, sizeof line,
+                  "two passes, the fewest, took %.1f s instead of --time's %.6g; choose a smaller "
+                  "--size, or a lower quality",
+                  passes.timeS, wantedS);
+    printWarnings("vpl-render", {line});
+  }
+}
+
+}  // namespace
 
 void reportRender(const RenderResult& result, const Values& options, Summary& summary) {
   const FilmStats& stats = result.stats;
@@ -70,6 +137,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
                 result.image.height, static_cast<unsigned long long>(options.whole("spp")),
                 means.c_str());
   summary.add("samples", stats.samples, line);
+  if (result.passes) reportPasses(*result.passes, options, summary);
   if (integratorOf(options).needsVpls) {
     std::snprintf(line, sizeof line,
                   "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",

@@ -14,8 +14,16 @@ struct ImagePaths {
 // The image, and its preview at --exposure; with what the summary says of them.
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
                Summary& summary);
+// Renews the preview of an image under way; nothing without --png.
+PreviewFn previewTo(const ImagePaths& paths, const Values& options);
 ExrPixelType pixelTypeOf(const Values& options);
 
+// Of a run that can be stopped and continued: by passes, whose number may be another then.
+Json resumableOptions(const Values& options);
+// The options that make this image again: with passes, as many of them as there were.
+Values optionsMade(const RenderResult& result, const Given& given);
+// Attributes that tell of samples and passes.
+void describe(RenderResult& result, const Values& made);
 void reportRender(const RenderResult& result, const Values& options, Summary& summary);
 
 }  // namespace bnvpl

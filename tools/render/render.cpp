@@ -1,5 +1,6 @@
 #include "tools/render/render.h"
 
+#include <algorithm>
 #include <array>
 
 #include "tools/render/compensate/compensate.h"
@@ -14,9 +15,26 @@ const std::string& layersHelp() {
   return help;
 }
 
+constexpr double kMostSpp = 0x1p32 - 1;
+
 std::span<const Option> stageOptions() {
   static const std::array options{
-      countOption("spp", "8", 0x1p32 - 1, "", "samples a pixel"),
+      countOption("spp", "8", kMostSpp, "",
+                  "samples a pixel; with --time, --target-error or --passes the most, and without "
+                  "being given no limit"),
+      unrecorded(optional(durationOption(
+          "time",
+          "render by passes over the film, until no other would end within this time; at "
+          "least two"))),
+      unrecorded(optional(
+          realOption("target-error", "", 0.0001, 10, "",
+                     "render by passes, until the image's estimated error is at most this"))),
+      optional(wholeOption("passes", "", kFewestPasses, 0x1p40, "",
+                           "render by so many passes; with --time or --target-error at most so "
+                           "many")),
+      neededBy("time;target-error;passes",
+               switchOption("adaptive", "on",
+                            "after the first passes, more samples where the error is larger")),
       choiceOption("only", "all", "all|direct|indirect", "which light the image shows"),
       seedOption(),
       unrecorded(textOption("layers", "", "NAME,...", layersHelp())),
@@ -56,30 +74,68 @@ const StageSpec& renderSpec() {
   return spec;
 }
 
+Values resolveRender(const Given& given) {
+  Values options = resolve(renderSpec(), given);
+  const bool limited = std::ranges::any_of(given, [](const auto& g) { return g.first == "spp"; });
+  if (budgetOf(options) && !limited) options.set("spp", static_cast<uint64_t>(kMostSpp));
+  return options;
+}
+
+std::optional<Budget> budgetOf(const Values& options) {
+  const bool time = options.has("time"), error = options.has("target-error"),
+             passes = options.has("passes");
+  if (!time && !error && !passes) return {};
+  Budget budget;
+  if (time) budget.timeS = options.real("time");
+  if (error) budget.error = options.real("target-error");
+  budget.passes = options.whole("spp") / kPassSpp;
+  if (budget.passes < kFewestPasses) {
+    throw UsageError("--spp: with --time, --target-error or --passes it is at least " +
+                     std::to_string(kFewestPasses * kPassSpp) + ", for " +
+                     std::to_string(kFewestPasses) + " passes of " + std::to_string(kPassSpp));
+  }
+  if (passes) budget.passes = std::min(budget.passes, options.whole("passes"));
+  budget.adaptive = options.on("adaptive");
+  return budget;
+}
+
 const IntegratorMethod& integratorOf(const Values& options) {
   return methodNamed(integratorMethods(), options.text("integrator"));
 }
 
 std::vector<const Layer*> layersOf(const Values& options) {
   return parseLayers(options.text("layers"),
-                     integratorOf(options).needsVpls && onlyOf(options) != Only::Direct);
+                     integratorOf(options).needsVpls && onlyOf(options) != Only::Direct,
+                     budgetOf(options).has_value());
 }
 
 uint64_t renderWork(const Scene& scene, const Values& options) {
-  const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * options.whole("spp");
+  const auto budget = budgetOf(options);
+  uint64_t spp = options.whole("spp");
+  if (budget) {
+    if (!options.has("passes") && spp == static_cast<uint64_t>(kMostSpp)) return 0;
+    spp = budget->passes * kPassSpp;
+  }
+  const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * spp;
   const bool photons = integratorOf(options).photons && onlyOf(options) != Only::Direct;
   return photons ? 2 * samples : samples;
 }
 
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
-                    const Values& options, const ProgressFn& progress, const Resume& resume) {
+                    const Values& options, const ProgressFn& progress, const Resume& resume,
+                    const PreviewFn& preview) {
   const FilmOptions film{static_cast<uint32_t>(options.whole("spp")), options.whole("seed"),
                          onlyOf(options), layersOf(options)};
   const Integrator integrator =
       integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress}, options);
   RenderResult result;
-  result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
   result.vpls = integrator.vpls;
+  if (const auto budget = budgetOf(options)) {
+    result.image = renderPasses(rays.scene(), integrator, film, *budget, result.stats,
+                                result.passes.emplace(), progress, resume, preview);
+  } else {
+    result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
+  }
   return result;
 }
 

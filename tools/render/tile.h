@@ -15,6 +15,8 @@ struct TileSlots {
   uint32_t firstSlot = 0;  // of all slots
   uint32_t allSlots = 1;   // samples a pixel
   uint64_t key = 0;        // of the tile's own random numbers
+  uint32_t turn = 0;       // where slot 0 begins among choices that are made once for the film;
+                           // random for each pass over it
 };
 
 }  // namespace bnvpl

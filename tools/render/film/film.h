@@ -26,6 +26,12 @@ struct FilmStats {
   uint64_t nonFinite = 0;  // samples counted as zero because a value was NaN or infinite
 };
 
+// Channel `c` of what the image shows, as the sums have it.
+inline double shownOf(const PixelSums& p, Only only, size_t c) {
+  return (only != Only::Indirect ? p.sum[PixelSums::kDirect + c] : 0.0) +
+         (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
+}
+
 // Box filter, samples stratified in each pixel. A tile depends on the seed and its place only.
 // Progress counts samples and photons; `resume` mends interruptions, and its state holds every
 // pixel's sums.

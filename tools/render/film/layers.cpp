@@ -23,8 +23,14 @@ double depthOf(const LayerPixel& p, size_t) {
 
 template <uint64_t PixelCounts::*kCount>
 double countOf(const LayerPixel& p, size_t) {
-  return static_cast<double>(p.counts.*kCount) * p.perSample;
+  return static_cast<double>(p.counts.*kCount) * p.perCount;
 }
+
+double errorOf(const LayerPixel& p, size_t channel) {
+  return std::sqrt(p.passes.variance[channel]);
+}
+
+double samplesOf(const LayerPixel& p, size_t) { return static_cast<double>(p.passes.samples); }
 
 constexpr std::array kLayers{
     Layer{"direct", "RGB", "light straight from the lights, W/(m2 sr)", meanOf<PixelSums::kDirect>},
@@ -36,6 +42,9 @@ constexpr std::array kLayers{
     Layer{"Z", "", "depth along the viewing axis, scene units", depthOf},
     Layer{"cutsize", "", "clusters or VPLs gathered, a sample", countOf<&PixelCounts::cut>, true},
     Layer{"shadowrays", "", "rays towards VPLs, a sample", countOf<&PixelCounts::shadowRays>, true},
+    Layer{"error", "RGB", "standard error of R, G, B as passes differ, W/(m2 sr)", errorOf, false,
+          true},
+    Layer{"samples", "", "samples that passes took", samplesOf, false, true},
 };
 
 }  // namespace
@@ -53,7 +62,7 @@ std::string layerList() {
   return lines;
 }
 
-std::vector<const Layer*> parseLayers(const std::string& list, bool vpls) {
+std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool passes) {
   std::istringstream words(list);
   std::set<std::string, std::less<>> names;
   for (std::string name; std::getline(words, name, ',');) names.insert(name);
@@ -66,7 +75,12 @@ std::vector<const Layer*> parseLayers(const std::string& list, bool vpls) {
       throw UsageError("--layers: '" + std::string(layer.name) +
                        "' tells of gathered VPLs, of which the image has none; leave it out");
     }
-    if (named || (all && (vpls || !layer.ofVpls))) layers.push_back(&layer);
+    if (named && layer.ofPasses && !passes) {
+      throw UsageError("--layers: '" + std::string(layer.name) +
+                       "' is known of passes; add --time, --target-error or --passes");
+    }
+    const bool possible = (vpls || !layer.ofVpls) && (passes || !layer.ofPasses);
+    if (named || (all && possible)) layers.push_back(&layer);
     known += std::string(layer.name) + ", ";
   }
   if (!names.empty())

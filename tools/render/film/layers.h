@@ -29,11 +29,19 @@ struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
 };
 
+// What passes over the film know of a pixel beside the sums of their means.
+struct PixelPasses {
+  uint64_t samples = 0;            // of all passes
+  std::array<double, 3> variance;  // of the shown R, G, B, the mean of all passes
+};
+
 // A pixel as a layer sees it.
 struct LayerPixel {
   const PixelSums& sums;
   const PixelCounts& counts;
-  double perSample;  // one over the samples of a pixel
+  double perSample;  // of the sums: one over the samples of a pixel, or the passes
+  double perCount;   // of the counts: one over the samples
+  const PixelPasses& passes;
 };
 
 struct Layer {
@@ -41,15 +49,18 @@ struct Layer {
   std::string_view channels;  // "RGB": NAME.R, NAME.G, NAME.B; empty: one channel, NAME
   std::string_view help;      // with its unit
   double (*value)(const LayerPixel&, size_t channel);
-  bool ofVpls = false;  // means something only where VPLs are gathered
+  bool ofVpls = false;    // means something only where VPLs are gathered
+  bool ofPasses = false;  // only where the image is made by passes
 };
 
 std::string channelName(const Layer& layer, size_t channel);
 // For --help: a line for each, with its name and help; with a line break before each.
 std::string layerList();
 
-// Of a comma-separated list of names, or "all" that the image can have; `vpls`: those of VPLs, too.
-// Throws UsageError for a name that is unknown or that the image cannot have.
-std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true);
+// Of a comma-separated list of names, or "all" that the image can have; `vpls`: those of VPLs, too;
+// `passes`: those of passes. Throws UsageError for a name that is unknown or that the image cannot
+// have.
+std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true,
+                                      bool passes = false);
 
 }  // namespace bnvpl

@@ -222,7 +222,8 @@ Gather make(const GatherInputs& in, const Values& options) {
       const Vector at = placeOf(tile.bsdf[i]->point(), plan->scale);
       const auto apart = [&](const Placed& s) { return ((s.at - at) * (s.at - at)).sum(); };
       const auto slice = std::ranges::min_element(plan->slices, {}, apart) - plan->slices.begin();
-      const auto& draws = plan->draws[slice][(tile.firstSlot + i / tile.pixels) % kDraws];
+      const size_t slot = tile.firstSlot + i / tile.pixels;
+      const auto& draws = plan->draws[slice][(tile.turn + slot) % kDraws];
       const ShadowTest test(rays, vpls, *tile.bsdf[i]);
       for (const VplDraw& d : draws) test.add(d.index, d.weight, out[i]);
       out[i].cut = static_cast<uint32_t>(draws.size());

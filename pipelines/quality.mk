@@ -1,0 +1,22 @@
+# What draft, default and final are: counts of all stages, and options of the render. Makefile
+# includes this file, generate_ninja.py reads it; docs/guide.md, "Presets", has the errors.
+#   VARIABLE.quality := value
+
+CANDIDATES.draft := 15k
+VPLS.draft       := 1500
+PHOTONS.draft    := 1M
+SPP.draft        := 16
+RENDER.draft     := --near-field-rays 2 --error 0.2
+
+# Those of the tools, but for VPLS, which vpl-eliminate wants to be told.
+CANDIDATES.default := 120k
+VPLS.default       := 3k
+PHOTONS.default    := 10M
+SPP.default        := 8
+RENDER.default     :=
+
+CANDIDATES.final := 240k
+VPLS.final       := 12k
+PHOTONS.final    := 20M
+SPP.final        := 256
+RENDER.final     := --near-field-rays 4 --error 0.05

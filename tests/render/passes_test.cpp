@@ -1,0 +1,252 @@
+// Passes over the film: their error is the true one, and adaptive samples bring no bias.
+#include "tools/render/film/passes.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
+
+namespace bnvpl::test {
+namespace {
+
+struct Made {
+  Image image;
+  FilmStats stats;
+  PassesDone passes;
+};
+
+// A camera over nothing, as the integrator alone says what is seen.
+struct Film {
+  explicit Film(uint32_t width, uint32_t height) { scene.film = {width, height}; }
+  Made operator()(const Integrator& integrator, uint64_t passes, uint64_t seed, bool adaptive,
+                  const Resume& resume = {}) const {
+    Made made;
+    const FilmOptions options{.seed = seed, .layers = parseLayers("error,samples", true, true)};
+    const Budget budget{.passes = passes, .adaptive = adaptive};
+    made.image =
+        renderPasses(scene, integrator, options, budget, made.stats, made.passes, {}, resume);
+    return made;
+  }
+  Scene scene;
+};
+
+// fn(pixel of the tile, the tile's own number in [0, 1), the sample's) -> what is seen.
+template <typename Fn>
+Integrator seen(const Fn& fn) {
+  return {[fn](const TileSamples& tile) {
+    const float shared = toUnitFloat(random64(tile.key, 0, 77));
+    for (size_t k = 0; k < tile.samples.size(); ++k) {
+      CameraSample& s = tile.samples[k];
+      s.radiance.direct = Vec3(fn(static_cast<uint32_t>(k % tile.pixels), shared, s.rng.next()));
+    }
+  }};
+}
+
+double meanSquare(const std::vector<float>& values, double about) {
+  double sum = 0.0;
+  for (const float v : values) sum += (double{v} - about) * (double{v} - about);
+  return sum / double(values.size());
+}
+
+// Samples of a tile share a number, as they share a cut: twelve passes of four such samples know
+// far less than 48 that are independent.
+TEST(PassError, IsTheTrueOneThoughSamplesOfATileAreCorrelated) {
+  const Film film(256, 256);
+  const auto noise =
+      seen([](uint32_t, float shared, float own) { return 1.0f + 0.4f * shared + 0.4f * own; });
+  const Made m = film(noise, 12, 1, false);
+  const double variance = 0.16 / 12.0 * (1.0 + 1.0 / kPassSpp) / 12.0;  // uniform numbers: 1 / 12
+  EXPECT_NEAR(meanSquare(*m.image.find("error.G"), 0.0) / variance, 1.0, 0.06);
+  EXPECT_NEAR(meanSquare(*m.image.find("G"), 1.4) / variance, 1.0, 0.13);  // 1024 tiles
+  EXPECT_NEAR(m.passes.error * 1.4 / std::sqrt(variance), 1.0, 0.03);
+  EXPECT_EQ(m.stats.samples, 256u * 256u * 12u * kPassSpp);
+}
+
+// With tiles that get more samples, and others less.
+TEST(PassError, IsTheTrueOneOfAdaptivePasses) {
+  const Film film(128, 96);
+  const auto noise = seen([](uint32_t p, float, float own) {
+    return p % 8 == 0 && own < 0.1f ? 10.0f : 1.0f + 0.2f * own;  // 1.9, and 1.1
+  });
+  const Made m = film(noise, 16, 1, true);
+  const std::vector<float>& shown = *m.image.find("R");
+  double error = 0.0, known = 0.0;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const double expected = i % 8 == 0 ? 0.9 * 1.11 + 0.1 * 10.0 : 1.1;
+    error += std::pow(double{shown[i]} - expected, 2);
+    known += std::pow(double{(*m.image.find("error.R"))[i]}, 2);
+  }
+  EXPECT_NEAR(known / error, 1.0, 0.15);
+}
+
+// Mean of a channel over the 3 x 3 pixels about one.
+double around(const Image& image, const std::string& channel, int x, int y) {
+  double sum = 0.0;
+  int count = 0;
+  for (int v = std::max(0, y - 1); v < std::min(image.height, y + 2); ++v) {
+    for (int u = std::max(0, x - 1); u < std::min(image.width, x + 2); ++u, ++count) {
+      sum += double{(*image.find(channel))[size_t(v * image.width + u)]};
+    }
+  }
+  return sum / count;
+}
+
+// Two seeds are apart by the errors of both: of each pixel, and of the image as a whole.
+TEST(PassError, IsTheTrueOneOfARealScene) {
+  World world("cornell/scene.toml");
+  world.scene.film = {40, 40};
+  const auto rendered = [&](uint64_t seed) {
+    return renderWithout(world, "path",
+                         {{"passes", "16"}, {"layers", "error"}, {"seed", typed(seed)}});
+  };
+  const RenderResult a = rendered(1), b = rendered(2);
+  const double mean = meanOf(a.image);
+  double apart = 0.0, known = 0.0;
+  for (const std::string c : {"R", "G", "B"}) {
+    for (size_t i = 0; i < a.image.pixelCount(); ++i) {
+      const double about = around(a.image, c, int(i) % 40, int(i) / 40);
+      const double weight = 1.0 / (3.0 * 1600.0 * (about * about + 1e-4 * mean * mean));
+      const auto square = [&](double v) { return v * v * weight; };
+      apart += square((*a.image.find(c))[i] - (*b.image.find(c))[i]);
+      known += square((*a.image.find("error." + c))[i]) + square((*b.image.find("error." + c))[i]);
+    }
+  }
+  EXPECT_NEAR(std::sqrt(known / apart), 1.0, 0.1);
+  EXPECT_NEAR(a.passes->error / std::sqrt(0.5 * apart), 1.0, 0.15);
+  EXPECT_NEAR(b.passes->error / std::sqrt(0.5 * apart), 1.0, 0.15);
+}
+
+// Rare bright samples: of a tile that met none in the first passes nothing is known, and it gets
+// few more. Weighted by their numbers, samples would have a mean of 0.75 here (measured).
+TEST(AdaptivePasses, HaveNoBiasWhereBrightSamplesAreRare) {
+  const Film film(64, 64);
+  constexpr float kRare = 1.0f / 4096.0f;
+  const auto rare =
+      seen([](uint32_t, float, float own) { return own < kRare ? 1.0f / kRare : 0.0f; });
+  for (const bool adaptive : {true, false}) {
+    double sum = 0.0, squares = 0.0;
+    constexpr int kSeeds = 24;
+    for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      const double mean = meanOf(film(rare, 10, seed, adaptive).image);
+      sum += mean;
+      squares += mean * mean;
+    }
+    const double mean = sum / kSeeds;
+    const double deviation = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+    EXPECT_NEAR(mean, 1.0, 3.5 * deviation) << adaptive;
+    EXPECT_LT(deviation, 0.05) << adaptive;
+  }
+}
+
+TEST(AdaptivePasses, HaveTheExpectationOfUniformOnes) {
+  World world("cornell/scene.toml");
+  world.scene.film = {24, 24};
+  const auto image = [&](const char* adaptive, uint64_t more) {
+    return [&world, adaptive, more](uint64_t seed) {
+      return renderWithout(world, "path",
+                           {{"passes", "8"}, {"adaptive", adaptive}, {"seed", typed(seed + more)}})
+          .image;
+    };
+  };
+  EXPECT_TRUE(sameExpectation(image("on", 0), image("off", 100), {.seeds = 16}));
+}
+
+TEST(AdaptivePasses, GoWhereTheErrorIs) {
+  const Film film(64, 64);
+  const auto half = [&](const TileSamples& tile) {
+    for (CameraSample& s : tile.samples) {
+      const bool noisy = s.direction.x > 0.0f;
+      s.radiance.direct = Vec3(noisy ? 2.0f * s.rng.next() : 1.0f + 0.1f * s.rng.next());
+    }
+  };
+  const Made adaptive = film({half}, 24, 1, true), uniform = film({half}, 24, 1, false);
+  const std::vector<float>& samples = *adaptive.image.find("samples");
+  EXPECT_LT(samples[64 * 32 + 4], 60.0f);
+  EXPECT_GT(samples[64 * 32 + 60], 120.0f);
+  EXPECT_NEAR(double(adaptive.stats.samples) / double(uniform.stats.samples), 1.0, 0.02);
+  EXPECT_LT(adaptive.passes.error, 0.85 * uniform.passes.error);
+  for (const float n : *uniform.image.find("samples")) ASSERT_EQ(n, 24.0f * kPassSpp);
+}
+
+// Camera samples and photons, with any threads, and from every state that a checkpoint may hold.
+TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
+  const Film film(40, 24);
+  Integrator both =
+      seen([](uint32_t p, float shared, float own) { return shared + float(p) * own; });
+  for (const bool photons : {false, true}) {
+    if (photons) {
+      both.photons = [](uint64_t begin, uint64_t end, Splats& out) {
+        for (uint64_t i = begin; i < end; ++i) {
+          out.list.push_back({static_cast<uint32_t>(random64(5, i, 0) % 960),
+                              Vec3(toUnitFloat(random64(5, i, 1)))});
+        }
+      };
+    }
+    std::vector<std::string> states;
+    Resume often{"", [] { return true; }, [&](const std::string& s) { states.push_back(s); }};
+    const Made whole = film(both, 7, 1, true);
+    std::vector<Made> others{film(both, 7, 1, true, often)};
+    EXPECT_GT(states.size(), 14u);
+    for (size_t k = 0; k < states.size(); k += 5)
+      others.push_back(film(both, 7, 1, true, {states[k], {}, {}}));
+    for (const size_t threads : {1u, 7u}) {
+      tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      others.push_back(film(both, 7, 1, true));
+    }
+    for (const Made& other : others) {
+      ASSERT_EQ(other.passes.passes, 7u);
+      ASSERT_EQ(other.passes.error, whole.passes.error);
+      for (const ImageChannel& c : whole.image.channels)
+        ASSERT_EQ(*other.image.find(c.name), c.data);
+    }
+  }
+}
+
+// Photons bring half of the light, and their share of the error.
+TEST(Passes, CountThePhotonsOfEachPass) {
+  const Film film(16, 16);
+  Integrator both = seen([](uint32_t, float, float) { return 1.0f; });
+  both.photons = [](uint64_t begin, uint64_t end, Splats& out) {
+    for (uint64_t i = begin; i < end; ++i) {
+      out.list.push_back({static_cast<uint32_t>(random64(3, i, 0) % 256), Vec3(1.0f)});
+    }
+  };
+  const Made m = film(both, 16, 1, true);
+  EXPECT_NEAR(meanOf(m.image), 2.0, 1e-6);
+  const double variance = 1.0 / (kPassSpp * 16.0);  // of Poisson's number of photons
+  EXPECT_NEAR(meanSquare(*m.image.find("error.R"), 0.0) / variance, 1.0, 0.1);
+  EXPECT_NEAR(meanSquare(*m.image.find("R"), 2.0) / variance, 1.0, 0.25);
+}
+
+TEST(Passes, EndByTimeErrorOrNumber) {
+  const Film film(32, 32);
+  const auto noise = seen([](uint32_t, float, float own) { return own; });
+  const auto ended = [&](const Budget& budget) {
+    Made m;
+    renderPasses(film.scene, noise, {}, budget, m.stats, m.passes);
+    return m.passes;
+  };
+  EXPECT_EQ(ended({.timeS = 1e-6}).passes, kFewestPasses);
+  EXPECT_EQ(ended({.timeS = 1e-6}).endedBy, "time");
+  EXPECT_EQ(ended({.passes = 5}).passes, 5u);
+  EXPECT_EQ(ended({.passes = 5}).endedBy, "passes");
+  const PassesDone fine = ended({.error = 0.05}), coarse = ended({.error = 0.1});
+  EXPECT_EQ(fine.endedBy, "error");
+  EXPECT_LE(fine.error, 0.05);
+  EXPECT_GT(fine.error, 0.045);  // and not by much more than was asked for
+  EXPECT_NEAR(double(fine.passes) / double(coarse.passes), 4.0, 0.8);
+}
+
+TEST(Passes, SppIsTheMostOfThem) {
+  EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
+  EXPECT_EQ(resolveRender({}).whole("spp"), 8u);
+  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->passes, 0xffffffffu / kPassSpp);
+  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}, {"spp", "33"}}))->passes, 32u / kPassSpp);
+  EXPECT_EQ(budgetOf(resolveRender({{"spp", "33"}, {"passes", "3"}}))->passes, 3u);
+  EXPECT_EQ(budgetOf(resolveRender({{"time", "1.5m"}}))->timeS, 90.0);
+  EXPECT_THROW(resolveRender({{"time", "1m"}, {"spp", "7"}}), UsageError);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

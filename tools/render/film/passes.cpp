@@ -1,0 +1,245 @@
+#include "tools/render/film/passes.h"
+
+#include <algorithm>
+#include <array>
+
+#include "tools/common/clock.h"
+#include "tools/common/streams.h"
+#include "tools/render/film/pass_error.h"
+#include "tools/render/film/splats.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr uint64_t kUniformPasses = 4;  // before errors are believed
+constexpr double kPreviewEveryS = 5.0;
+
+using Rgb = std::array<double, 3>;
+
+// What is known so far; all of it goes into a checkpoint, which is always in the middle of a pass.
+struct State {
+  struct Progress {
+    uint64_t pass = 0;  // under way
+    double spentS = 0.0;
+    SplatProgress splats;
+  };
+  State(size_t pixels, size_t tiles)
+      : done(tiles),
+        slots(tiles),
+        samples(tiles),
+        inverse(tiles),
+        sums(pixels),
+        counts(pixels),
+        values(pixels),
+        squares(pixels) {}
+
+  Progress at;
+  std::vector<uint8_t> done;        // tiles of this pass
+  std::vector<uint32_t> slots;      // samples a pixel of each tile in this pass
+  std::vector<uint64_t> samples;    // of each tile's pixels, in all passes
+  std::vector<double> inverse;      // sum over passes of 1 / slots
+  std::vector<PixelSums> sums;      // of the passes' means
+  std::vector<PixelCounts> counts;  // of samples
+  std::vector<Rgb> values;          // what this pass shows
+  std::vector<Rgb> squares;         // sums over the passes before of what they showed, squared
+
+  template <typename Fn>
+  void forArrays(const Fn& fn) {
+    fn(done), fn(slots), fn(samples), fn(inverse), fn(sums), fn(counts), fn(values), fn(squares);
+  }
+  std::string encode() {
+    std::string bytes;
+    appendArray(bytes, std::array{at});
+    forArrays([&](const auto& array) { appendArray(bytes, array); });
+    return bytes;
+  }
+  void decode(std::string_view bytes) {
+    std::array<Progress, 1> progress{};
+    takeArray(bytes, progress);
+    at = progress[0];
+    forArrays([&](auto& array) { takeArray(bytes, array); });
+    requireAllTaken(bytes);
+  }
+};
+
+class Passes {
+ public:
+  Passes(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+         const Budget& budget)
+      : scene_(scene),
+        integrator_(integrator),
+        options_(options),
+        budget_(budget),
+        tiles_(scene.film),
+        key_(streamKey(options.seed, Stream::PixelSamples)),
+        state_(size_t{scene.film.width} * scene.film.height, tiles_.count()),
+        known_(state_.sums.size()) {}
+
+  void run(const ProgressFn& progress, const Resume& resume, const PreviewFn& preview) {
+    const bool resumed = !resume.state.empty();
+    if (resumed) state_.decode(resume.state);
+    startS_ = nowS() - state_.at.spentS;
+    if (progress) progress(samplesSoFar() + state_.at.splats.photons);
+    double previewS = nowS() + kPreviewEveryS;
+    for (bool under = resumed; under || !ended(); under = false) {
+      if (!under) chooseSlots();
+      makePass(progress, resume);
+      closePass();
+      if (preview && nowS() >= previewS) {
+        Image image = blank();
+        addShown(exposed(), options_.only, image);
+        preview(image);
+        previewS = nowS() + kPreviewEveryS;
+      }
+    }
+  }
+
+  Image image(FilmStats& stats, PassesDone& done) const {
+    Image image = blank();
+    addShown(exposed(), options_.only, image);
+    for (const Layer* layer : options_.layers) addLayer(*layer, exposed(), image);
+    stats = statsOf(exposed(), samplesSoFar());
+    stats.nonFinite += state_.at.splats.nonFinite;
+    done = {state_.at.pass, error_, nowS() - startS_, endedBy_};
+    return image;
+  }
+
+ private:
+  Image blank() const {
+    Image image;
+    image.width = static_cast<int>(scene_.film.width);
+    image.height = static_cast<int>(scene_.film.height);
+    return image;
+  }
+  Exposed exposed() const {
+    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_};
+  }
+  // Of the passes that are done, and of the tiles of the one under way.
+  uint64_t samplesSoFar() const {
+    uint64_t sum = 0;
+    for (size_t t = 0; t < tiles_.count(); ++t) {
+      const uint64_t now = state_.done[t] ? state_.slots[t] : 0;
+      sum += (state_.samples[t] + now) * tiles_.at(t).pixels();
+    }
+    return sum;
+  }
+
+  bool ended() {
+    const uint64_t passes = state_.at.pass;
+    if (passes < kFewestPasses) return false;
+    const double spentS = nowS() - startS_;
+    if (spentS + spentS / double(passes) > budget_.timeS) endedBy_ = "time";
+    if (passes >= kUniformPasses && budget_.error > 0.0 && error_ <= budget_.error)
+      endedBy_ = "error";
+    if (passes >= budget_.passes) endedBy_ = "passes";
+    return !endedBy_.empty();
+  }
+
+  void chooseSlots() {
+    const uint64_t passes = state_.at.pass;
+    std::fill(state_.done.begin(), state_.done.end(), 0);
+    if (passes < kUniformPasses || !budget_.adaptive || integrator_.photons) {
+      std::fill(state_.slots.begin(), state_.slots.end(), kPassSpp);
+    } else {
+      state_.slots = allocateSamples(tiles_, variances_, state_.inverse, passes, kPassSpp,
+                                     random64(key_, passes, kDrawSlots));
+    }
+  }
+
+  void makePass(const ProgressFn& progress, const Resume& resume) {
+    const auto state = [&] {
+      state_.at.spentS = nowS() - startS_;
+      return state_.encode();
+    };
+    forUnitsLeft(
+        state_.done, resume,
+        [&](size_t index) {
+          makeTile(index);
+          if (progress) progress(uint64_t{tiles_.at(index).pixels()} * state_.slots[index]);
+        },
+        state);
+    if (!integrator_.photons) return;
+    constexpr float kShare = 1.0f / kPassSpp;
+    addSplats(
+        integrator_.photons, (state_.at.pass + 1) * kPassSpp * state_.sums.size(), state_.at.splats,
+        [&](const Splat& splat) {
+          addSplat(splat, kShare, state_.sums, state_.counts);
+          if (!isFinite(splat.radiance) || options_.only == Only::Direct) return;
+          const Vec3 brought = splat.radiance * kShare;
+          for (size_t c = 0; c < 3; ++c) state_.values[splat.pixel][c] += double{brought[int(c)]};
+        },
+        progress, resume, state);
+  }
+
+  void makeTile(size_t index) {
+    const Tile tile = tiles_.at(index);
+    const uint32_t slots = state_.slots[index];
+    const uint64_t key = random64(key_, state_.at.pass, kDrawPass);
+    const auto turn = static_cast<uint32_t>(random64(key, index, kDrawTurn) >> 33);
+    std::vector<PixelSums> sums(tile.pixels());
+    sampleTile(scene_, integrator_, key, tile, {0, slots, slots, kMostSlots, turn},
+               [&](uint32_t p, const RadianceSample& sample) {
+                 addSample(sample, sums[p], state_.counts[tiles_.pixelIndex(tile, p)]);
+               });
+    for (uint32_t p = 0; p < tile.pixels(); ++p) {
+      const size_t i = tiles_.pixelIndex(tile, p);
+      for (double& sum : sums[p].sum) sum /= slots;
+      for (size_t k = 0; k < sums[p].sum.size(); ++k) state_.sums[i].sum[k] += sums[p].sum[k];
+      for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownOf(sums[p], options_.only, c);
+    }
+  }
+
+  void closePass() {
+    ++state_.at.pass;
+    for (size_t t = 0; t < tiles_.count(); ++t) {
+      state_.samples[t] += state_.slots[t];
+      state_.inverse[t] += 1.0 / state_.slots[t];
+    }
+    std::fill(state_.done.begin(), state_.done.end(), 0);
+    const double passes = double(state_.at.pass);
+    parallelFor(tiles_.count(), 16, [&](size_t t) {
+      const Tile tile = tiles_.at(t);
+      for (uint32_t p = 0; p < tile.pixels(); ++p) {
+        const size_t i = tiles_.pixelIndex(tile, p);
+        known_[i].samples = state_.samples[t];
+        for (size_t c = 0; c < 3; ++c) {
+          const double value = state_.values[i][c];
+          state_.squares[i][c] += value * value;
+          const double mean = shownOf(state_.sums[i], options_.only, c) / passes;
+          const double spread = std::max(0.0, state_.squares[i][c] / passes - mean * mean);
+          known_[i].variance[c] = state_.at.pass > 1 ? spread / (passes - 1.0) : 0.0;
+        }
+      }
+    });
+    variances_ = relativeVariances(exposed(), options_.only, scene_.film.width);
+    error_ = relativeError(variances_);
+  }
+
+  static constexpr uint64_t kMostSlots = uint64_t{1} << 20;  // of a pixel in a pass
+  enum Draw : uint32_t { kDrawPass, kDrawSlots, kDrawTurn };
+
+  const Scene& scene_;
+  const Integrator& integrator_;
+  const FilmOptions& options_;
+  const Budget& budget_;
+  Tiles tiles_;
+  uint64_t key_;
+  State state_;
+  std::vector<PixelPasses> known_;  // of the passes that are done
+  std::vector<double> variances_;   // relative
+  double error_ = 0.0, startS_ = 0.0;
+  std::string_view endedBy_;
+};
+
+}  // namespace
+
+Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
+                   const Budget& budget, FilmStats& stats, PassesDone& done,
+                   const ProgressFn& progress, const Resume& resume, const PreviewFn& preview) {
+  Passes passes(scene, integrator, options, budget);
+  passes.run(progress, resume, preview);
+  return passes.image(stats, done);
+}
+
+}  // namespace bnvpl
