@@ -19,9 +19,11 @@ float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arri
   return powerHeuristic(arrival.bsdfPdf, lightPdf * raysTo(lights, light, arrival.choice));
 }
 
-// One shadow ray towards one light; its share where the light gets `count` in the mean.
+// One shadow ray towards one light; its share where the light gets `count` in the mean, and rays
+// are sent besides with density rayPdf(wi), or none where `shared` is false.
+template <typename RayPdf>
 Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 size_t light, float count, unsigned bsdfRays, Rng& rng) {
+                 size_t light, float count, bool shared, const RayPdf& rayPdf, Rng& rng) {
   const SurfacePoint& at = bsdf.point();
   const float u = rng.next(), v = rng.next();
   DirectSample s;
@@ -31,9 +33,8 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
   const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
   const Vec3 from = rays.offsetOrigin(at.position, side);
   if (s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target)) return {};
-  const bool mis = bsdfRays > 0 && s.pdf > 0.0f;
-  const float bsdfPdf = mis ? static_cast<float>(bsdfRays) * bsdf.pdf(group, s.wi) : 0.0f;
-  return reflected * ((mis ? powerHeuristic(s.pdf * count, bsdfPdf) : 1.0f) / count);
+  const bool mis = shared && s.pdf > 0.0f;
+  return reflected * ((mis ? powerHeuristic(s.pdf * count, rayPdf(s.wi)) : 1.0f) / count);
 }
 
 }  // namespace
@@ -41,16 +42,28 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, unsigned bsdfRays, Rng& rng) {
   Vec3 sum;
+  const auto rayPdf = [&](Vec3 wi) {
+    return static_cast<float>(bsdfRays) * bsdf.pdf(group, wi);
+  };
   const bool all = choice == LightChoice::Each && lights.size() <= kMaxLightsEach;
   const size_t count = all ? lights.size() : choice == LightChoice::Each ? kMaxLightsEach : 1;
   for (size_t k = 0; k < count && lights.size() > 0; ++k) {
     float probability = 1.0f;
     const size_t light = all ? k : lights.pick(rng.next(), probability);
     if (!(probability > 0.0f)) continue;
-    sum +=
-        sampleLight(rays, lights, bsdf, group, light, raysTo(lights, light, choice), bsdfRays, rng);
+    sum += sampleLight(rays, lights, bsdf, group, light, raysTo(lights, light, choice),
+                       bsdfRays > 0, rayPdf, rng);
   }
   return sum;
+}
+
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const std::function<float(Vec3)>& rayPdf, Rng& rng) {
+  if (lights.size() == 0) return {};
+  float probability = 1.0f;
+  const size_t light = lights.pick(rng.next(), probability);
+  if (!(probability > 0.0f)) return {};
+  return sampleLight(rays, lights, bsdf, group, light, probability, true, rayPdf, rng);
 }
 
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {

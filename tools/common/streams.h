@@ -17,7 +17,8 @@ enum class Stream : uint32_t {
   AreaEstimate,
   LightTracer,
   FilmPoints,
-  VplPaths
+  VplPaths,
+  Guide = 16
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

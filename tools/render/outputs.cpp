@@ -70,7 +70,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
                 result.image.height, static_cast<unsigned long long>(options.whole("spp")),
                 means.c_str());
   summary.add("samples", stats.samples, line);
-  if (integratorOf(options).needsVpls) {
+  if (integratorOf(options).gathers) {
     std::snprintf(line, sizeof line,
                   "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
                   percentOf(stats.clamped, stats.indirect),

@@ -1,0 +1,157 @@
+#include "tools/render/integrator/guided/guide.h"
+
+#include <array>
+
+#include "core/cdf.h"
+#include "core/parallel.h"
+#include "spatial/compatible_surface.h"
+#include "spatial/reach_grid.h"
+#include "tools/common/streams.h"
+#include "transport/specular_path.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Grids of fewer directions say too little, and of more they would seldom be used twice.
+constexpr uint32_t kMinSide = 4, kMaxSide = 32;
+// What VPLs learnt is averaged over those this near, in units of the radius: about six.
+constexpr float kSmooth = 2.5f;
+// Normals of these differ by at most 25 degrees.
+constexpr float kSmoothNormalDot = 0.9f;
+// Points of a VPL's region that its rays start from.
+constexpr uint32_t kOrigins = 8;
+// What a darker VPL tells of the light that it receives is mostly noise.
+constexpr float kMinAlbedo = 0.01f;
+
+Vec3 toLocal(const Basis& b, Vec3 v) { return {dot(v, b.s), dot(v, b.t), dot(v, b.n)}; }
+
+uint32_t sideOf(uint64_t raysEach) {
+  auto side = static_cast<uint32_t>(std::sqrt(static_cast<double>(raysEach)));
+  side = std::min(side, kMaxSide);
+  return side < kMinSide ? 0 : side;
+}
+
+}  // namespace
+
+Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
+             uint64_t raysEach, const ProgressFn& progress)
+    : position_(lit.position), normal_(lit.normal), grid_{sideOf(raysEach)} {
+  if (lit.size() == 0 || grid_.side == 0) return;
+  for (size_t i = 0; i < lit.size(); ++i) {
+    const float r = lit.radius[i], area = 2.0f * std::sqrt(3.0f) * r * r;
+    radiance_.push_back(lit.flux[i] * (1.0f / (kPi * area)));
+    total_.push_back(mean(radiance_[i]) / std::max(kMinAlbedo, mean(lit.albedo[i])));
+  }
+  regions_ = RegionGrid(position_, normal_, lit.radius);
+  const ProgressFn::Phase phase = progress.before("guide", lit.size());
+  const uint64_t key = streamKey(seed, Stream::Guide);
+  std::vector<float> learnt(lit.size() * grid_.cells());
+  parallelFor(lit.size(), 16, [&](size_t i) {
+    learn(rays, lights, key, static_cast<uint32_t>(i), lit.radius[i],
+          std::span(learnt).subspan(i * grid_.cells(), grid_.cells()));
+    if (progress) progress(1);
+  });
+  fillCdfs(smooth(lit.radius, learnt));
+}
+
+// The light that arrives from each cell of the grid, by one ray: emission by its share in multiple
+// importance sampling against light sampling, which finds the rest, and what leaves the VPLs.
+void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
+                  float radius, std::span<float> radiance) const {
+  Rng rng(key, region);
+  const Basis frame(normal_[region]);
+  const Vec3 centre = rays.offsetOrigin(position_[region], normal_[region]);
+  std::array<Vec3, kOrigins> origins;
+  origins.fill(centre);
+  for (uint32_t k = 1; k < kOrigins; ++k) {
+    const float u = rng.next(), v = rng.next();
+    const Vec3 at = centre + frame.toWorld(sampleDisk(u, v)) * radius;
+    if (!rays.occluded(centre, at)) origins[k] = at;
+  }
+  for (uint32_t cell = 0; cell < grid_.cells(); ++cell) {
+    const Vec3 from = origins[(cell + cell / grid_.side) % kOrigins];
+    const float u = rng.next(), v = rng.next();
+    const Vec3 local = grid_.direction(cell, u, v);
+    const Vec3 towards = frame.toWorld(local);
+    const SpecularPath path = followSpecularPath(rays, lights, from, towards,
+                                                 {pdfCosineHemisphere(local.z), from}, rng);
+    Vec3 found = path.metFirst + path.metLater;
+    if (path.rough) {
+      const uint32_t at = regionAt(path.hit);
+      if (at != kNone) {
+        found += path.throughput * radiance_[at];
+      } else {
+        found += path.throughput * directLight(rays, lights, Bsdf(rays.scene(), path.hit),
+                                               LobeGroup::Rough, LightChoice::One, 0, rng);
+      }
+    }
+    const float value = mean(found);
+    radiance[cell] = std::isfinite(value) ? value : 0.0f;
+  }
+}
+
+// Means over neighbouring regions, direction by direction.
+std::vector<float> Guide::smooth(std::span<const float> radius,
+                                 const std::vector<float>& learnt) const {
+  const uint32_t cells = grid_.cells();
+  std::vector<float> reach(radius.begin(), radius.end());
+  for (float& r : reach) r *= kSmooth;
+  const ReachGrid near(position_, normal_, reach);
+  std::vector<float> out(learnt.size());
+  parallelFor(position_.size(), 16, [&](size_t i) {
+    float* sum = &out[i * cells];
+    const Basis frame(normal_[i]);
+    float count = 0.0f;
+    ReachGrid::forEachReaching(near.lookUp(position_[i]), [&](const ReachGrid::Disk& d) {
+      if (!compatibleSurfaces(position_[i], normal_[i], d.centre, d.normal,
+                              kPlaneFactor * reach[i], kSmoothNormalDot)) {
+        return;
+      }
+      count += 1.0f;
+      const float* from = &learnt[size_t{d.index} * cells];
+      const Basis other(d.normal);
+      for (uint32_t cell = 0; cell < cells; ++cell) {
+        uint32_t theirs = cell;
+        if (d.normal != normal_[i]) {
+          const Vec3 local = toLocal(other, frame.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
+          if (local.z <= 0.0f) continue;
+          theirs = grid_.cellOf(local);
+        }
+        sum[cell] += from[theirs];
+      }
+    });
+    for (uint32_t cell = 0; cell < cells; ++cell) sum[cell] /= count;  // at least itself
+  });
+  return out;
+}
+
+void Guide::fillCdfs(const std::vector<float>& radiance) {
+  const uint32_t cells = grid_.cells();
+  cdf_.resize(radiance.size());
+  onward_.resize(position_.size());
+  parallelFor(position_.size(), 64, [&](size_t i) {
+    const std::vector<double> weights(&radiance[i * cells], &radiance[i * cells] + cells);
+    double sum = 0.0;
+    for (const double w : weights) sum += w;
+    onward_[i] = static_cast<float>(sum / cells);
+    const std::vector<float> running = makeCdf<float>(weights);
+    std::copy(running.begin(), running.end(), &cdf_[i * cells]);
+  });
+}
+
+Vec3 Guide::sample(uint32_t region, Rng& rng, float& pdf) const {
+  float u = rng.next();
+  const auto cell = static_cast<uint32_t>(sampleCdf(cdf(region), u));
+  const Vec3 local = grid_.direction(cell, u, rng.next());
+  pdf = cdfShare(cdf(region), cell) * grid_.pdfInCell(local.z);
+  return Basis(normal_[region]).toWorld(local);
+}
+
+float Guide::pdf(uint32_t region, Vec3 wi) const {
+  const Vec3 local = toLocal(Basis(normal_[region]), wi);
+  if (local.z <= 0.0f) return 0.0f;
+  return cdfShare(cdf(region), grid_.cellOf(local)) * grid_.pdfInCell(local.z);
+}
+
+}  // namespace bnvpl
