@@ -13,8 +13,10 @@ namespace bnvpl {
 
 namespace {
 
-// Grids of fewer directions say too little, and of more they would seldom be used twice.
+// Rays along a side of the hemisphere: fewer would say too little.
 constexpr uint32_t kMinSide = 4, kMaxSide = 32;
+// The grid is finer than the rays of one VPL, since those of its neighbours fill it too.
+constexpr uint32_t kFiner = 2;
 // What VPLs learnt is averaged over those this near, in units of the radius: about six.
 constexpr float kSmooth = 2.5f;
 // Normals of these differ by at most 25 degrees.
@@ -36,8 +38,8 @@ uint32_t sideOf(uint64_t raysEach) {
 
 Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
              uint64_t raysEach, const ProgressFn& progress)
-    : position_(lit.position), normal_(lit.normal), grid_{sideOf(raysEach)} {
-  if (lit.size() == 0 || grid_.side == 0) return;
+    : position_(lit.position), normal_(lit.normal), strata_{sideOf(raysEach)}, grid_{kFiner * strata_.side} {
+  if (lit.size() == 0 || strata_.side == 0) return;
   for (size_t i = 0; i < lit.size(); ++i) {
     const float r = lit.radius[i], area = 2.0f * std::sqrt(3.0f) * r * r;
     radiance_.push_back(lit.flux[i] * (1.0f / (kPi * area)));
@@ -46,19 +48,20 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
   regions_ = RegionGrid(position_, normal_, lit.radius);
   const ProgressFn::Phase phase = progress.before("guide", lit.size());
   const uint64_t key = streamKey(seed, Stream::Guide);
-  std::vector<float> learnt(lit.size() * grid_.cells());
+  const uint32_t each = strata_.cells();
+  std::vector<Learnt> learnt(lit.size() * each);
   parallelFor(lit.size(), 16, [&](size_t i) {
     learn(rays, lights, key, static_cast<uint32_t>(i), lit.radius[i],
-          std::span(learnt).subspan(i * grid_.cells(), grid_.cells()));
+          std::span(learnt).subspan(i * each, each));
     if (progress) progress(1);
   });
   fillCdfs(smooth(lit.radius, learnt));
 }
 
-// The light that arrives from each cell of the grid, by one ray: emission by its share in multiple
+// The light that arrives from each stratum, by one ray: emission by its share in multiple
 // importance sampling against light sampling, which finds the rest, and what leaves the VPLs.
 void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
-                  float radius, std::span<float> radiance) const {
+                  float radius, std::span<Learnt> learnt) const {
   Rng rng(key, region);
   const Basis frame(normal_[region]);
   const Vec3 centre = rays.offsetOrigin(position_[region], normal_[region]);
@@ -69,10 +72,10 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
     const Vec3 at = centre + frame.toWorld(sampleDisk(u, v)) * radius;
     if (!rays.occluded(centre, at)) origins[k] = at;
   }
-  for (uint32_t cell = 0; cell < grid_.cells(); ++cell) {
-    const Vec3 from = origins[(cell + cell / grid_.side) % kOrigins];
+  for (uint32_t k = 0; k < strata_.cells(); ++k) {
+    const Vec3 from = origins[(k + k / strata_.side) % kOrigins];
     const float u = rng.next(), v = rng.next();
-    const Vec3 local = grid_.direction(cell, u, v);
+    const Vec3 local = strata_.direction(k, u, v);
     const Vec3 towards = frame.toWorld(local);
     const SpecularPath path = followSpecularPath(rays, lights, from, towards,
                                                  {pdfCosineHemisphere(local.z), from}, rng);
@@ -87,41 +90,52 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
       }
     }
     const float value = mean(found);
-    radiance[cell] = std::isfinite(value) ? value : 0.0f;
+    learnt[k] = {std::isfinite(value) ? value : 0.0f, grid_.cellOf(local)};
   }
 }
 
-// Means over neighbouring regions, direction by direction.
+// Means over what neighbouring regions learnt, cell by cell, each with the mean of its stratum as
+// one ray more.
 std::vector<float> Guide::smooth(std::span<const float> radius,
-                                 const std::vector<float>& learnt) const {
-  const uint32_t cells = grid_.cells();
+                                 std::span<const Learnt> learnt) const {
+  const uint32_t cells = grid_.cells(), each = strata_.cells();
   std::vector<float> reach(radius.begin(), radius.end());
   for (float& r : reach) r *= kSmooth;
   const ReachGrid near(position_, normal_, reach);
-  std::vector<float> out(learnt.size());
+  struct Mean {
+    float sum = 0.0f, count = 0.0f;
+    void add(const Mean& m) { sum += m.sum, count += m.count; }
+    float value() const { return count > 0.0f ? sum / count : 0.0f; }
+  };
+  std::vector<float> out(position_.size() * cells);
   parallelFor(position_.size(), 16, [&](size_t i) {
-    float* sum = &out[i * cells];
+    std::vector<Mean> means(cells), strata(each);
     const Basis frame(normal_[i]);
-    float count = 0.0f;
     ReachGrid::forEachReaching(near.lookUp(position_[i]), [&](const ReachGrid::Disk& d) {
       if (!compatibleSurfaces(position_[i], normal_[i], d.centre, d.normal,
                               kPlaneFactor * reach[i], kSmoothNormalDot)) {
         return;
       }
-      count += 1.0f;
-      const float* from = &learnt[size_t{d.index} * cells];
       const Basis other(d.normal);
-      for (uint32_t cell = 0; cell < cells; ++cell) {
-        uint32_t theirs = cell;
+      for (const Learnt& l : learnt.subspan(size_t{d.index} * each, each)) {
+        uint32_t cell = l.cell;
         if (d.normal != normal_[i]) {
-          const Vec3 local = toLocal(other, frame.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
+          const Vec3 local = toLocal(frame, other.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
           if (local.z <= 0.0f) continue;
-          theirs = grid_.cellOf(local);
+          cell = grid_.cellOf(local);
         }
-        sum[cell] += from[theirs];
+        means[cell].add({l.radiance, 1.0f});
       }
     });
-    for (uint32_t cell = 0; cell < cells; ++cell) sum[cell] /= count;  // at least itself
+    const auto stratum = [&](uint32_t cell) -> Mean& {
+      const uint32_t x = cell % grid_.side / kFiner, y = cell / grid_.side / kFiner;
+      return strata[y * strata_.side + x];
+    };
+    for (uint32_t cell = 0; cell < cells; ++cell) stratum(cell).add(means[cell]);
+    for (uint32_t cell = 0; cell < cells; ++cell) {
+      means[cell].add({stratum(cell).value(), 1.0f});
+      out[i * cells + cell] = means[cell].value();
+    }
   });
   return out;
 }

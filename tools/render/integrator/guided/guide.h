@@ -15,8 +15,7 @@ namespace bnvpl {
 // Thread-safe and immutable once made. Owns all that it needs but the scene's rays.
 class Guide {
  public:
-  // `raysEach`: traced from each VPL to learn; a grid of as many directions comes of them. Too few
-  // for a grid, or no VPLs: an empty guide.
+  // `raysEach`: traced from each VPL to learn. Too few, or no VPLs: an empty guide.
   Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
         uint64_t raysEach, const ProgressFn& progress);
 
@@ -35,9 +34,14 @@ class Guide {
   float onward(uint32_t region) const { return onward_[region]; }
 
  private:
+  // What a ray found.
+  struct Learnt {
+    float radiance;
+    uint32_t cell;
+  };
   void learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
-             float radius, std::span<float> radiance) const;
-  std::vector<float> smooth(std::span<const float> radius, const std::vector<float>& learnt) const;
+             float radius, std::span<Learnt> learnt) const;
+  std::vector<float> smooth(std::span<const float> radius, std::span<const Learnt> learnt) const;
   void fillCdfs(const std::vector<float>& radiance);
   std::span<const float> cdf(uint32_t region) const {
     return std::span(cdf_).subspan(size_t{region} * grid_.cells(), grid_.cells());
@@ -46,6 +50,7 @@ class Guide {
   std::vector<Vec3> position_, normal_;
   std::vector<Vec3> radiance_;  // that leaves the surface around each VPL
   std::vector<float> total_, onward_;
+  DirectionGrid strata_;  // one ray each
   DirectionGrid grid_;
   std::vector<float> cdf_;  // over the cells of each region's grid
   RegionGrid regions_;

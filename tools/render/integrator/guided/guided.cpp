@@ -13,15 +13,17 @@ constexpr std::array kOptions{
     kMaxBouncesOption,
     realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
                "chosen by the guide, the others by the BSDF"),
-    wholeOption("guide-rays", "256", 0, 1024, "",
-                "rays from each VPL that learn from where light comes; no more in all than samples")};
+    wholeOption("guide-rays", "64", 0, 1024, "",
+                "rays from each VPL that learn from where light comes; fewer in a short render")};
 
-// In a short render learning must not take longer than what it is for.
+// Rays that learn are to cost little beside the samples, of which each has several.
+constexpr uint64_t kSamplesPerRay = 8;
+
 uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
   const Film& film = in.rays.scene().film;
   const uint64_t samples = uint64_t{film.width} * film.height * options.whole("spp");
   return std::min<uint64_t>(options.whole("guide-rays"),
-                            samples / std::max<size_t>(1, in.lit.size()));
+                            samples / (kSamplesPerRay * std::max<size_t>(1, in.lit.size())));
 }
 
 Integrator make(const IntegratorInputs& in, const Values& options) {

@@ -9,6 +9,13 @@ namespace bnvpl {
 
 namespace {
 
+// Paths go on for sure where they will bring this share of what the first vertex shows. Ending them
+// sooner saves time and adds noise: of 0, 1 and 2 times their share, 2 has the least error for its
+// time in the Cornell box.
+constexpr float kEager = 2.0f;
+// What the guide calls dark may not be: what is found there counts at most ten times.
+constexpr float kLeastSurvival = 0.1f;
+
 // The directions that a path goes on in from a rough vertex: the guide's for a share of the paths,
 // the BSDF's for the rest. One-sample MIS by the balance heuristic: a direction's density is that
 // of the mixture, whichever drew it.
@@ -58,6 +65,14 @@ class Mixture {
   float share_;
 };
 
+// The probability to go on from a vertex behind the first: by what rays from there will bring
+// against what the first vertex shows (Vorba & Krivanek 2016); where either is not known, by
+// reflectance.
+float survival(const Mixture& mixture, const Bsdf& bsdf, float throughput, float shown) {
+  if (!(shown > 0.0f) || !mixture.known()) return bsdf.reflectance();
+  return std::clamp(kEager * throughput * mixture.onward() / shown, kLeastSurvival, 1.0f);
+}
+
 }  // namespace
 
 void GuidedTracer::render(const TileSamples& tile) const {
@@ -73,9 +88,7 @@ void GuidedTracer::render(const TileSamples& tile) const {
 // addLeavingLight() by other directions.
 void GuidedTracer::addLeaving(const Bsdf& at, Vec3 throughput, PathLength length, Rng& rng,
                               Vec3& first, Vec3& later) const {
-  const auto env = [](const char* n, float d) { return getenv(n) ? strtof(getenv(n), nullptr) : d; };
-  static const float kScale = env("RRS", 1), kLeast = env("RRL", 0.1f);
-  float shown = 0.0f;
+  float shown = 0.0f;  // by the first vertex
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   for (unsigned bounce = 0;; ++bounce) {
@@ -86,12 +99,8 @@ void GuidedTracer::addLeaving(const Bsdf& at, Vec3 throughput, PathLength length
                             rays_, lights_, bsdf, LobeGroup::Rough,
                             [&](Vec3 wi) { return mixture.pdf(wi); }, rng);
 
-    float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
-    if (bounce == 0) shown = mixture.known() ? mean(throughput) * mixture.total() : 0.0f;
-    else if (kScale > 0 && shown > 0.0f && mixture.known()) {
-      const float expected = mean(throughput) * mixture.onward();
-      survive = std::clamp(kScale * expected / shown, kLeast, 1.0f);
-    }
+    if (bounce == 0 && mixture.known()) shown = mean(throughput) * mixture.total();
+    const float survive = bounce == 0 ? 1.0f : survival(mixture, bsdf, mean(throughput), shown);
     if (rng.next() >= survive) return;
     BsdfSample scattered;
     if (!mixture.sample(rng, scattered)) return;
