@@ -42,9 +42,7 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, unsigned bsdfRays, Rng& rng) {
   Vec3 sum;
-  const auto rayPdf = [&](Vec3 wi) {
-    return static_cast<float>(bsdfRays) * bsdf.pdf(group, wi);
-  };
+  const auto rayPdf = [&](Vec3 wi) { return static_cast<float>(bsdfRays) * bsdf.pdf(group, wi); };
   const bool all = choice == LightChoice::Each && lights.size() <= kMaxLightsEach;
   const size_t count = all ? lights.size() : choice == LightChoice::Each ? kMaxLightsEach : 1;
   for (size_t k = 0; k < count && lights.size() > 0; ++k) {

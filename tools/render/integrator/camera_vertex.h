@@ -24,8 +24,8 @@ inline void describeVertex(const Bsdf& bsdf, RadianceSample& out) {
 }
 
 // One camera path of an integrator that follows paths: leaving(bsdf, throughput, directOnly, out)
-// adds the light that leaves the first rough vertex, or of it only what comes straight from a light.
-// `indirect`: whether also the indirect light of points that the camera sees directly.
+// adds the light that leaves the first rough vertex, or of it only what comes straight from a
+// light. `indirect`: whether also the indirect light of points that the camera sees directly.
 template <typename Leaving>
 RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
                          Only only, bool indirect, Rng& rng, const Leaving& leaving) {

@@ -10,12 +10,11 @@ void PathTracer::render(const TileSamples& tile) const {
 }
 
 RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
-  return tracePath(
-      rays_, lights_, sample, only_, indirect_, rng,
-      [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
-        addLeavingLight(rays_, lights_, bsdf, throughput, {maxBounces_, directOnly}, rng,
-                        out.direct, out.indirect);
-      });
+  return tracePath(rays_, lights_, sample, only_, indirect_, rng,
+                   [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
+                     addLeavingLight(rays_, lights_, bsdf, throughput, {maxBounces_, directOnly},
+                                     rng, out.direct, out.indirect);
+                   });
 }
 
 }  // namespace bnvpl

@@ -5,7 +5,6 @@
 #include "core/cdf.h"
 #include "core/parallel.h"
 #include "spatial/compatible_surface.h"
-#include "spatial/reach_grid.h"
 #include "tools/common/streams.h"
 #include "transport/specular_path.h"
 
@@ -38,13 +37,15 @@ uint32_t sideOf(uint64_t raysEach) {
 
 Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
              uint64_t raysEach, const ProgressFn& progress)
-    : position_(lit.position), normal_(lit.normal), strata_{sideOf(raysEach)}, grid_{kFiner * strata_.side} {
+    : position_(lit.position),
+      normal_(lit.normal),
+      strata_{sideOf(raysEach)},
+      grid_{kFiner * strata_.side} {
   if (lit.size() == 0 || strata_.side == 0) return;
-  for (size_t i = 0; i < lit.size(); ++i) {
-    const float r = lit.radius[i], area = 2.0f * std::sqrt(3.0f) * r * r;
-    radiance_.push_back(lit.flux[i] * (1.0f / (kPi * area)));
-    total_.push_back(mean(radiance_[i]) / std::max(kMinAlbedo, mean(lit.albedo[i])));
-  }
+  std::vector<float> reach = lit.radius;
+  for (float& r : reach) r *= kSmooth;
+  const ReachGrid near(position_, normal_, reach);
+  findRadiance(lit, near);
   regions_ = RegionGrid(position_, normal_, lit.radius);
   const ProgressFn::Phase phase = progress.before("guide", lit.size());
   const uint64_t key = streamKey(seed, Stream::Guide);
@@ -55,7 +56,36 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
           std::span(learnt).subspan(i * each, each));
     if (progress) progress(1);
   });
-  fillCdfs(smooth(lit.radius, learnt));
+  fillCdfs(smooth(near, lit.radius, learnt));
+}
+
+template <typename Fn>
+void Guide::forEachNear(const ReachGrid& near, std::span<const float> radius, size_t i,
+                        const Fn& fn) const {
+  ReachGrid::forEachReaching(near.lookUp(position_[i]), [&](const ReachGrid::Disk& d) {
+    if (compatibleSurfaces(position_[i], normal_[i], d.centre, d.normal,
+                           kPlaneFactor * kSmooth * radius[i], kSmoothNormalDot)) {
+      fn(d.index);
+    }
+  });
+}
+
+// Flux over area, of each VPL and those near it: one alone may have met few photons.
+void Guide::findRadiance(const VplTable& lit, const ReachGrid& near) {
+  radiance_.resize(lit.size());
+  total_.resize(lit.size());
+  parallelFor(lit.size(), 64, [&](size_t i) {
+    Vec3 flux;
+    float area = 0.0f, albedo = 0.0f;
+    forEachNear(near, lit.radius, i, [&](uint32_t k) {
+      const float share = 2.0f * std::sqrt(3.0f) * lit.radius[k] * lit.radius[k];
+      flux += lit.flux[k];
+      area += share;
+      albedo += share * mean(lit.albedo[k]);
+    });
+    radiance_[i] = flux * (1.0f / (kPi * area));
+    total_[i] = mean(radiance_[i]) / std::max(kMinAlbedo, albedo / area);
+  });
 }
 
 // The light that arrives from each stratum, by one ray: emission by its share in multiple
@@ -77,8 +107,8 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
     const float u = rng.next(), v = rng.next();
     const Vec3 local = strata_.direction(k, u, v);
     const Vec3 towards = frame.toWorld(local);
-    const SpecularPath path = followSpecularPath(rays, lights, from, towards,
-                                                 {pdfCosineHemisphere(local.z), from}, rng);
+    const SpecularPath path =
+        followSpecularPath(rays, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
     Vec3 found = path.metFirst + path.metLater;
     if (path.rough) {
       const uint32_t at = regionAt(path.hit);
@@ -96,12 +126,9 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
 
 // Means over what neighbouring regions learnt, cell by cell, each with the mean of its stratum as
 // one ray more.
-std::vector<float> Guide::smooth(std::span<const float> radius,
+std::vector<float> Guide::smooth(const ReachGrid& near, std::span<const float> radius,
                                  std::span<const Learnt> learnt) const {
   const uint32_t cells = grid_.cells(), each = strata_.cells();
-  std::vector<float> reach(radius.begin(), radius.end());
-  for (float& r : reach) r *= kSmooth;
-  const ReachGrid near(position_, normal_, reach);
   struct Mean {
     float sum = 0.0f, count = 0.0f;
     void add(const Mean& m) { sum += m.sum, count += m.count; }
@@ -111,15 +138,11 @@ std::vector<float> Guide::smooth(std::span<const float> radius,
   parallelFor(position_.size(), 16, [&](size_t i) {
     std::vector<Mean> means(cells), strata(each);
     const Basis frame(normal_[i]);
-    ReachGrid::forEachReaching(near.lookUp(position_[i]), [&](const ReachGrid::Disk& d) {
-      if (!compatibleSurfaces(position_[i], normal_[i], d.centre, d.normal,
-                              kPlaneFactor * reach[i], kSmoothNormalDot)) {
-        return;
-      }
-      const Basis other(d.normal);
-      for (const Learnt& l : learnt.subspan(size_t{d.index} * each, each)) {
+    forEachNear(near, radius, i, [&](uint32_t k) {
+      const Basis other(normal_[k]);
+      for (const Learnt& l : learnt.subspan(size_t{k} * each, each)) {
         uint32_t cell = l.cell;
-        if (d.normal != normal_[i]) {
+        if (normal_[k] != normal_[i]) {
           const Vec3 local = toLocal(frame, other.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
           if (local.z <= 0.0f) continue;
           cell = grid_.cellOf(local);

@@ -13,11 +13,11 @@ constexpr std::array kOptions{
     kMaxBouncesOption,
     realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
                "chosen by the guide, the others by the BSDF"),
-    wholeOption("guide-rays", "64", 0, 1024, "",
+    wholeOption("guide-rays", "256", 0, 1024, "",
                 "rays from each VPL that learn from where light comes; fewer in a short render")};
 
 // Rays that learn are to cost little beside the samples, of which each has several.
-constexpr uint64_t kSamplesPerRay = 8;
+constexpr uint64_t kSamplesPerRay = 4;
 
 uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
   const Film& film = in.rays.scene().film;

@@ -92,9 +92,9 @@ void RegionGrid::list(uint32_t index, Vec3 point, Vec3 normal, float radius,
         const Vec3 middle = Vec3{float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f} * cell;
         const Vec3 apart = middle - centre;
         // Half the width of a cell along the normal, and a little for what is not flat.
-        const float thick = 0.5f * cell *
-                                (std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z)) +
-                            kPlaneFactor * radius;
+        const float thick =
+            0.5f * cell * (std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z)) +
+            kPlaneFactor * radius;
         if (lengthSquared(apart) > reach * reach || std::fabs(dot(apart, normal)) > thick) continue;
         for (uint32_t facing = 0; facing < kFacings; ++facing) {
           const float cosine = dot(normal, axisOf(facing));
@@ -126,8 +126,7 @@ uint32_t RegionGrid::at(Vec3 position, Vec3 normal) const {
   const uint32_t facing = facingOf(normal);
   for (size_t l = 0; l < levels_.size(); ++l) {
     const Vec3 c = d * perUnit_[l];
-    const uint64_t key =
-        hashOf(cellAlong(c.x), cellAlong(c.y), cellAlong(c.z), levels_[l], facing);
+    const uint64_t key = hashOf(cellAlong(c.x), cellAlong(c.y), cellAlong(c.z), levels_[l], facing);
     for (uint64_t slot = key >> 1 & mask_; slots_[slot].key != 0; slot = (slot + 1) & mask_) {
       if (slots_[slot].key == key) return slots_[slot].index;
     }

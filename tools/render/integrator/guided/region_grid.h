@@ -30,8 +30,8 @@ class RegionGrid {
   void list(uint32_t index, Vec3 point, Vec3 normal, float radius, std::vector<Entry>& out) const;
   void fill(std::vector<Entry>& entries);
 
-  Vec3 origin_;              // cells count from here
-  std::vector<int> levels_;  // binary exponents of the cells' widths, ascending
+  Vec3 origin_;                 // cells count from here
+  std::vector<int> levels_;     // binary exponents of the cells' widths, ascending
   std::vector<float> perUnit_;  // cells, of each level
   std::vector<Slot> slots_;     // open addressing, at most half full
   uint64_t mask_ = 0;
