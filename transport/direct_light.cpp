@@ -26,16 +26,22 @@ float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arri
   return powerHeuristic(arrival.bsdfPdf, lightPdf * rays);
 }
 
-// One shadow ray towards a point of a light; its share where that gets `count` in the mean.
+// -> density of that many rays by the BSDF.
+auto raysByBsdf(const Bsdf& bsdf, LobeGroup group, unsigned rays) {
+  return [&bsdf, group, rays](Vec3 wi) { return static_cast<float>(rays) * bsdf.pdf(group, wi); };
+}
+
+// One shadow ray towards a point of a light; its share where that gets `count` in the mean, and
+// rays are sent besides with density rayPdf(wi), or none where `shared` is false.
+template <typename RayPdf>
 Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LightPlace& place, float count, unsigned bsdfRays) {
+                 const LightPlace& place, float count, bool shared, const RayPdf& rayPdf) {
   DirectSample s;
   Vec3 reflected;
   if (!unoccludedLight(lights, bsdf, group, place, s, reflected)) return {};
   if (isHidden(rays, bsdf.point(), s)) return {};
-  const bool mis = bsdfRays > 0 && s.pdf > 0.0f;
-  const float bsdfPdf = mis ? static_cast<float>(bsdfRays) * bsdf.pdf(group, s.wi) : 0.0f;
-  return reflected * ((mis ? powerHeuristic(s.pdf * count, bsdfPdf) : 1.0f) / count);
+  const bool mis = shared && s.pdf > 0.0f;
+  return reflected * ((mis ? powerHeuristic(s.pdf * count, rayPdf(s.wi)) : 1.0f) / count);
 }
 
 }  // namespace
@@ -43,6 +49,7 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, unsigned bsdfRays, Rng& rng) {
   Vec3 sum;
+  const auto rayPdf = raysByBsdf(bsdf, group, bsdfRays);
   const bool all = choice == LightChoice::Each && lights.size() <= kMaxLightsEach;
   const size_t count = all ? lights.size() : choice == LightChoice::Each ? kMaxLightsEach : 1;
   for (size_t k = 0; k < count && lights.size() > 0; ++k) {
@@ -51,7 +58,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
     if (!(probability > 0.0f)) continue;
     const float u = rng.next(), v = rng.next();
     sum += sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}},
-                       raysTo(lights, light, choice), bsdfRays);
+                       raysTo(lights, light, choice), bsdfRays > 0, rayPdf);
   }
   return sum;
 }
@@ -60,6 +67,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
                  const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint,
                  uint64_t key) {
   const LearnedStrata& strata = *learned.strata;
+  const auto rayPdf = raysByBsdf(bsdf, group, bsdfRays);
   Vec3 sum;
   for (unsigned k = 0; k < learned.rays; ++k) {
     Point2 at = owenSobol(firstPoint + k, key);
@@ -67,7 +75,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
     const LightPlace place = strata.all->place(stratum, at);
     const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
                         strata.all->share(stratum) * strata.all->lightShare(place.light);
-    sum += sampleLight(rays, lights, bsdf, group, place, count, bsdfRays);
+    sum += sampleLight(rays, lights, bsdf, group, place, count, bsdfRays > 0, rayPdf);
   }
   return sum;
 }
@@ -84,6 +92,17 @@ bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& 
   const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
   const Vec3 from = rays.offsetOrigin(at.position, side);
   return s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target);
+}
+
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const std::function<float(Vec3)>& rayPdf, Rng& rng) {
+  if (lights.size() == 0) return {};
+  float probability = 1.0f;
+  const size_t light = lights.pick(rng.next(), probability);
+  if (!(probability > 0.0f)) return {};
+  const float u = rng.next(), v = rng.next();
+  return sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}}, probability,
+                     true, rayPdf);
 }
 
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {

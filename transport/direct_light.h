@@ -1,6 +1,8 @@
 // Light that reaches a surface point straight from the lights, by shadow rays.
 #pragma once
 
+#include <functional>
+
 #include "transport/bsdf.h"
 #include "transport/light_strata.h"
 #include "transport/lights.h"
@@ -19,6 +21,10 @@ inline constexpr size_t kMaxLightsEach = 32;
 // sampling is alone.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, unsigned bsdfRays, Rng& rng);
+// The same for one light and one ray whose direction the caller does not draw by the BSDF alone:
+// `rayPdf` is the density of all that it may draw by, 1/sr.
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const std::function<float(Vec3 wi)>& rayPdf, Rng& rng);
 
 // Light sampling by what was learned about the place: shadow rays to strata of all lights.
 struct LearnedLight {

@@ -18,7 +18,8 @@ enum class Stream : uint32_t {
   LightTracer,
   FilmPoints,
   VplPaths,
-  TileLights
+  TileLights,
+  Guide = 16
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

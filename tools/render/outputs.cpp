@@ -138,7 +138,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
                 means.c_str());
   summary.add("samples", stats.samples, line);
   if (result.passes) reportPasses(*result.passes, options, summary);
-  if (integratorOf(options).needsVpls) {
+  if (integratorOf(options).gathers) {
     std::snprintf(line, sizeof line,
                   "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
                   percentOf(stats.clamped, stats.indirect),

@@ -51,11 +51,11 @@ Only onlyOf(const Values& options) {
   return name == "direct" ? Only::Direct : name == "indirect" ? Only::Indirect : Only::Everything;
 }
 
-// The integrators that take VPLs, for an image that shows indirect light; or for any.
-std::string needOfVpls() {
+// The integrators in whose images VPLs shine.
+std::string gathering() {
   std::string names;
   for (const IntegratorMethod* m : integratorMethods()) {
-    if (m->needsVpls) names += (names.empty() ? "" : "|") + std::string(m->name);
+    if (m->gathers) names += (names.empty() ? "" : "|") + std::string(m->name);
   }
   return "integrator=" + names;
 }
@@ -63,7 +63,7 @@ std::string needOfVpls() {
 }  // namespace
 
 const StageSpec& renderSpec() {
-  static const std::string vpls = needOfVpls(), shown = vpls + ",only=all|indirect";
+  static const std::string vpls = gathering(), shown = vpls + ",only=all|indirect";
   static const StageSpec spec{
       "vpl-render",
       stageOptions(),
@@ -105,7 +105,7 @@ const IntegratorMethod& integratorOf(const Values& options) {
 
 std::vector<const Layer*> layersOf(const Values& options) {
   return parseLayers(options.text("layers"),
-                     integratorOf(options).needsVpls && onlyOf(options) != Only::Direct,
+                     integratorOf(options).gathers && onlyOf(options) != Only::Direct,
                      budgetOf(options).has_value());
 }
 

@@ -23,4 +23,21 @@ inline void describeVertex(const Bsdf& bsdf, RadianceSample& out) {
   out.normal = bsdf.point().ns;
 }
 
+// One camera path of an integrator that follows paths: leaving(bsdf, throughput, directOnly, out)
+// adds the light that leaves the first rough vertex, or of it only what comes straight from a
+// light. `indirect`: whether also the indirect light of points that the camera sees directly.
+template <typename Leaving>
+RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
+                         Only only, bool indirect, Rng& rng, const Leaving& leaving) {
+  RadianceSample out;
+  const SpecularPath vertex = seeFrom(rays, lights, sample.origin, sample.direction, rng, out);
+  const bool directOnly = only == Only::Direct || (!indirect && vertex.links == 0);
+  if (!vertex.rough) return out;
+  const Bsdf bsdf(rays.scene(), vertex.hit);
+  describeVertex(bsdf, out);
+  if (directOnly && only == Only::Indirect) return out;
+  leaving(bsdf, vertex.throughput, directOnly, out);
+  return out;
+}
+
 }  // namespace bnvpl

@@ -66,6 +66,7 @@ struct IntegratorMethod {
   Integrator (*make)(const IntegratorInputs&, const Values&);
   bool needsVpls = false;
   bool photons = false;  // sends photons for indirect light
+  bool gathers = false;  // VPLs shine in its image: --gather and --compensate count
 };
 std::span<const IntegratorMethod* const> integratorMethods();
 

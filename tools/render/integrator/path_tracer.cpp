@@ -10,16 +10,11 @@ void PathTracer::render(const TileSamples& tile) const {
 }
 
 RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
-  RadianceSample out;
-  const SpecularPath vertex = seeFrom(rays_, lights_, sample.origin, sample.direction, rng, out);
-  const bool directOnly = only_ == Only::Direct || (!indirect_ && vertex.links == 0);
-  if (!vertex.rough) return out;
-  const Bsdf bsdf(rays_.scene(), vertex.hit);
-  describeVertex(bsdf, out);
-  if (directOnly && only_ == Only::Indirect) return out;
-  addLeavingLight(rays_, lights_, bsdf, vertex.throughput, {maxBounces_, directOnly}, rng,
-                  out.direct, out.indirect);
-  return out;
+  return tracePath(rays_, lights_, sample, only_, indirect_, rng,
+                   [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
+                     addLeavingLight(rays_, lights_, bsdf, throughput, {maxBounces_, directOnly},
+                                     rng, out.direct, out.indirect);
+                   });
 }
 
 }  // namespace bnvpl

@@ -115,6 +115,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 extern const IntegratorMethod method;
 const IntegratorMethod method{"vpl", "direct light by shadow rays, indirect light from VPLs",
-                              kOptions, make, /*needsVpls=*/true};
+                              kOptions, make, /*needsVpls=*/true, /*photons=*/false,
+                              /*gathers=*/true};
 
 }  // namespace bnvpl::methods::integrator::vpl

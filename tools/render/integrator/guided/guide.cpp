@@ -1,0 +1,194 @@
+#include "tools/render/integrator/guided/guide.h"
+
+#include <array>
+
+#include "core/cdf.h"
+#include "core/parallel.h"
+#include "spatial/compatible_surface.h"
+#include "tools/common/streams.h"
+#include "transport/specular_path.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Rays along a side of the hemisphere: fewer would say too little.
+constexpr uint32_t kMinSide = 4, kMaxSide = 32;
+// The grid is finer than the rays of one VPL, since those of its neighbours fill it too.
+constexpr uint32_t kFiner = 2;
+// What VPLs learnt is averaged over those this near, in units of the radius: about six.
+constexpr float kSmooth = 2.5f;
+// Normals of these differ by at most 25 degrees.
+constexpr float kSmoothNormalDot = 0.9f;
+// Points of a VPL's region that its rays start from.
+constexpr uint32_t kOrigins = 8;
+// What a darker VPL tells of the light that it receives is mostly noise.
+constexpr float kMinAlbedo = 0.01f;
+
+Vec3 toLocal(const Basis& b, Vec3 v) { return {dot(v, b.s), dot(v, b.t), dot(v, b.n)}; }
+
+uint32_t sideOf(uint64_t raysEach) {
+  auto side = static_cast<uint32_t>(std::sqrt(static_cast<double>(raysEach)));
+  side = std::min(side, kMaxSide);
+  return side < kMinSide ? 0 : side;
+}
+
+}  // namespace
+
+Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
+             uint64_t raysEach, const ProgressFn& progress)
+    : position_(lit.position),
+      normal_(lit.normal),
+      strata_{sideOf(raysEach)},
+      grid_{kFiner * strata_.side} {
+  if (lit.size() == 0 || strata_.side == 0) return;
+  std::vector<float> reach = lit.radius;
+  for (float& r : reach) r *= kSmooth;
+  const ReachGrid near(position_, normal_, reach);
+  findRadiance(lit, near);
+  regions_ = RegionGrid(position_, normal_, lit.radius);
+  const ProgressFn::Phase phase = progress.before("guide", lit.size());
+  const uint64_t key = streamKey(seed, Stream::Guide);
+  const uint32_t each = strata_.cells();
+  std::vector<Learnt> learnt(lit.size() * each);
+  parallelFor(lit.size(), 16, [&](size_t i) {
+    learn(rays, lights, key, static_cast<uint32_t>(i), lit.radius[i],
+          std::span(learnt).subspan(i * each, each));
+    if (progress) progress(1);
+  });
+  fillCdfs(smooth(near, lit.radius, learnt));
+}
+
+template <typename Fn>
+void Guide::forEachNear(const ReachGrid& near, std::span<const float> radius, size_t i,
+                        const Fn& fn) const {
+  ReachGrid::forEachReaching(near.lookUp(position_[i]), [&](const ReachGrid::Disk& d) {
+    if (compatibleSurfaces(position_[i], normal_[i], d.centre, d.normal,
+                           kPlaneFactor * kSmooth * radius[i], kSmoothNormalDot)) {
+      fn(d.index);
+    }
+  });
+}
+
+// Flux over area, of each VPL and those near it: one alone may have met few photons.
+void Guide::findRadiance(const VplTable& lit, const ReachGrid& near) {
+  radiance_.resize(lit.size());
+  total_.resize(lit.size());
+  parallelFor(lit.size(), 64, [&](size_t i) {
+    Vec3 flux;
+    float area = 0.0f, albedo = 0.0f;
+    forEachNear(near, lit.radius, i, [&](uint32_t k) {
+      const float share = 2.0f * std::sqrt(3.0f) * lit.radius[k] * lit.radius[k];
+      flux += lit.flux[k];
+      area += share;
+      albedo += share * mean(lit.albedo[k]);
+    });
+    radiance_[i] = flux * (1.0f / (kPi * area));
+    total_[i] = mean(radiance_[i]) / std::max(kMinAlbedo, albedo / area);
+  });
+}
+
+// The light that arrives from each stratum, by one ray: emission by its share in multiple
+// importance sampling against light sampling, which finds the rest, and what leaves the VPLs.
+void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
+                  float radius, std::span<Learnt> learnt) const {
+  Rng rng(key, region);
+  const Basis frame(normal_[region]);
+  const Vec3 centre = rays.offsetOrigin(position_[region], normal_[region]);
+  std::array<Vec3, kOrigins> origins;
+  origins.fill(centre);
+  for (uint32_t k = 1; k < kOrigins; ++k) {
+    const float u = rng.next(), v = rng.next();
+    const Vec3 at = centre + frame.toWorld(sampleDisk(u, v)) * radius;
+    if (!rays.occluded(centre, at)) origins[k] = at;
+  }
+  for (uint32_t k = 0; k < strata_.cells(); ++k) {
+    const Vec3 from = origins[(k + k / strata_.side) % kOrigins];
+    const float u = rng.next(), v = rng.next();
+    const Vec3 local = strata_.direction(k, u, v);
+    const Vec3 towards = frame.toWorld(local);
+    const SpecularPath path =
+        followSpecularPath(rays, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
+    Vec3 found = path.metFirst + path.metLater;
+    if (path.rough) {
+      const uint32_t at = regionAt(path.hit);
+      if (at != kNone) {
+        found += path.throughput * radiance_[at];
+      } else {
+        found += path.throughput * directLight(rays, lights, Bsdf(rays.scene(), path.hit),
+                                               LobeGroup::Rough, LightChoice::One, 0, rng);
+      }
+    }
+    const float value = mean(found);
+    learnt[k] = {std::isfinite(value) ? value : 0.0f, grid_.cellOf(local)};
+  }
+}
+
+// Means over what neighbouring regions learnt, cell by cell, each with the mean of its stratum as
+// one ray more.
+std::vector<float> Guide::smooth(const ReachGrid& near, std::span<const float> radius,
+                                 std::span<const Learnt> learnt) const {
+  const uint32_t cells = grid_.cells(), each = strata_.cells();
+  struct Mean {
+    float sum = 0.0f, count = 0.0f;
+    void add(const Mean& m) { sum += m.sum, count += m.count; }
+    float value() const { return count > 0.0f ? sum / count : 0.0f; }
+  };
+  std::vector<float> out(position_.size() * cells);
+  parallelFor(position_.size(), 16, [&](size_t i) {
+    std::vector<Mean> means(cells), strata(each);
+    const Basis frame(normal_[i]);
+    forEachNear(near, radius, i, [&](uint32_t k) {
+      const Basis other(normal_[k]);
+      for (const Learnt& l : learnt.subspan(size_t{k} * each, each)) {
+        uint32_t cell = l.cell;
+        if (normal_[k] != normal_[i]) {
+          const Vec3 local = toLocal(frame, other.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
+          if (local.z <= 0.0f) continue;
+          cell = grid_.cellOf(local);
+        }
+        means[cell].add({l.radiance, 1.0f});
+      }
+    });
+    const auto stratum = [&](uint32_t cell) -> Mean& {
+      const uint32_t x = cell % grid_.side / kFiner, y = cell / grid_.side / kFiner;
+      return strata[y * strata_.side + x];
+    };
+    for (uint32_t cell = 0; cell < cells; ++cell) stratum(cell).add(means[cell]);
+    for (uint32_t cell = 0; cell < cells; ++cell) {
+      means[cell].add({stratum(cell).value(), 1.0f});
+      out[i * cells + cell] = means[cell].value();
+    }
+  });
+  return out;
+}
+
+void Guide::fillCdfs(const std::vector<float>& radiance) {
+  const uint32_t cells = grid_.cells();
+  cdf_.resize(radiance.size());
+  onward_.resize(position_.size());
+  parallelFor(position_.size(), 64, [&](size_t i) {
+    const std::vector<double> weights(&radiance[i * cells], &radiance[i * cells] + cells);
+    double sum = 0.0;
+    for (const double w : weights) sum += w;
+    onward_[i] = static_cast<float>(sum / cells);
+    const std::vector<float> running = makeCdf<float>(weights);
+    std::copy(running.begin(), running.end(), &cdf_[i * cells]);
+  });
+}
+
+Vec3 Guide::sample(uint32_t region, Rng& rng, float& pdf) const {
+  float u = rng.next();
+  const auto cell = static_cast<uint32_t>(sampleCdf(cdf(region), u));
+  const Vec3 local = grid_.direction(cell, u, rng.next());
+  pdf = cdfShare(cdf(region), cell) * grid_.pdfInCell(local.z);
+  return Basis(normal_[region]).toWorld(local);
+}
+
+float Guide::pdf(uint32_t region, Vec3 wi) const {
+  const Vec3 local = toLocal(Basis(normal_[region]), wi);
+  if (local.z <= 0.0f) return 0.0f;
+  return cdfShare(cdf(region), grid_.cellOf(local)) * grid_.pdfInCell(local.z);
+}
+
+}  // namespace bnvpl

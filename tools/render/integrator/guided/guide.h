@@ -1,0 +1,66 @@
+// Where light comes from, learnt from the lit VPLs: for the surface around each, a density over the
+// directions that follows the light that arrives there.
+#pragma once
+
+#include <vector>
+
+#include "core/progress.h"
+#include "formats/vpl_table.h"
+#include "spatial/reach_grid.h"
+#include "tools/render/integrator/guided/direction_grid.h"
+#include "tools/render/integrator/guided/region_grid.h"
+#include "transport/lights.h"
+
+namespace bnvpl {
+
+// Thread-safe and immutable once made. Owns all that it needs but the scene's rays.
+class Guide {
+ public:
+  // `raysEach`: traced from each VPL to learn. Too few, or no VPLs: an empty guide.
+  Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
+        uint64_t raysEach, const ProgressFn& progress);
+
+  // The VPL around which a point lies; kNone: around none.
+  uint32_t regionAt(const SurfacePoint& at) const { return regions_.at(at.position, at.ng); }
+  // Whether any light was found to arrive in the region.
+  bool knows(uint32_t region) const { return region != kNone && onward_[region] > 0.0f; }
+
+  // Of a region that the guide knows: a unit direction, and its density in 1/sr.
+  Vec3 sample(uint32_t region, Rng& rng, float& pdf) const;
+  float pdf(uint32_t region, Vec3 wi) const;
+
+  // About the radiance that a white surface would reflect in the region, mean of the channels: all
+  // of it, and what rays find that go on from there by the BSDF, the rest being light sampling's.
+  float total(uint32_t region) const { return total_[region]; }
+  float onward(uint32_t region) const { return onward_[region]; }
+
+ private:
+  // VPLs near to each, which learn together.
+  template <typename Fn>
+  void forEachNear(const ReachGrid& near, std::span<const float> radius, size_t i,
+                   const Fn& fn) const;
+  void findRadiance(const VplTable& lit, const ReachGrid& near);
+  // What a ray found.
+  struct Learnt {
+    float radiance;
+    uint32_t cell;
+  };
+  void learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
+             float radius, std::span<Learnt> learnt) const;
+  std::vector<float> smooth(const ReachGrid& near, std::span<const float> radius,
+                            std::span<const Learnt> learnt) const;
+  void fillCdfs(const std::vector<float>& radiance);
+  std::span<const float> cdf(uint32_t region) const {
+    return std::span(cdf_).subspan(size_t{region} * grid_.cells(), grid_.cells());
+  }
+
+  std::vector<Vec3> position_, normal_;
+  std::vector<Vec3> radiance_;  // that leaves the surface around each VPL
+  std::vector<float> total_, onward_;
+  DirectionGrid strata_;  // one ray each
+  DirectionGrid grid_;
+  std::vector<float> cdf_;  // over the cells of each region's grid
+  RegionGrid regions_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,186 @@
+// The guided path tracer against the path tracer, whose image it must have whatever the VPLs say,
+// and what its guide promises.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+#include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
+#include "tools/render/integrator/guided/guide.h"
+
+namespace bnvpl::test {
+namespace {
+
+VplTable fewLit(const World& world) {
+  return litVpls(world, {{"count", "60"}}, {{"photons", "20k"}}, {{"count", "1200"}});
+}
+
+Render paths(const World& world, const Given& options) {
+  return [&world, options](uint64_t seed) {
+    return renderWithout(world, "path", with(options, {{"seed", typed(seed)}})).image;
+  };
+}
+Render guided(const World& world, const VplTable& lit, const Given& options) {
+  return [&world, &lit, options](uint64_t seed) {
+    return renderVpls(world, lit,
+                      with(options, {{"integrator", "guided"}, {"seed", typed(seed + 1000)}}))
+        .image;
+  };
+}
+
+World cornell(uint32_t side) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {side, side};
+  return World(std::move(scene));
+}
+
+TEST(DirectionGrid, FindsTheCellThatADirectionWasDrawnIn) {
+  const DirectionGrid grid{7};
+  Rng rng(3, 0);
+  for (uint32_t k = 0; k < 70; ++k) {
+    for (uint32_t cell = 0; cell < grid.cells(); ++cell) {
+      const float u = 0.01f + 0.98f * rng.next(), v = 0.01f + 0.98f * rng.next();
+      ASSERT_EQ(grid.cellOf(grid.direction(cell, u, v)), cell) << u << " " << v;
+    }
+  }
+}
+
+TEST(RegionGrid, NamesTheDiskOnThePointsOwnSurface) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 0, 0.001f}, {40, 0, 0}};
+  const std::vector<Vec3> normals{{0, 0, -1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}};
+  const std::vector<float> radii{0.5f, 0.5f, 0.5f, 6.0f};
+  const RegionGrid grid(points, normals, radii);
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, -1}), 0u);
+  EXPECT_EQ(grid.at({1.1f, 0.1f, 0.0f}, {0, 0, -1}), 1u);
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, 1}), 2u);  // the wall's other side
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 1, 0}), kNone);
+  EXPECT_EQ(grid.at({40, 3, -3}, {1, 0, 0}), 3u);
+  EXPECT_EQ(grid.at({0, 0, 9}, {0, 0, -1}), kNone);
+  EXPECT_EQ(RegionGrid().at({}, {0, 0, 1}), kNone);
+}
+
+// The density over the sphere is that of the draws: its integral is 1, and half of the sphere gets
+// as many draws as it says.
+TEST(Guide, DensitiesAreThoseOfTheDraws) {
+  const World world("u-shape/scene.toml");
+  const VplTable lit = fewLit(world);
+  const Guide guide(lit, world.rays, world.lights, 1, 64, {});
+  size_t known = 0;
+  for (uint32_t region = 0; region < lit.size(); region += 7) {
+    if (!guide.knows(region)) continue;
+    ++known;
+    Rng rng(5, region);
+    double integral = 0.0, half = 0.0, halfOfDraws = 0.0;
+    int rounded = 0;
+    const Vec3 side = normalize(Vec3{1.0f, 0.3f, 0.2f});
+    constexpr int kDraws = 20000;
+    for (int k = 0; k < kDraws; ++k) {
+      const float u = rng.next(), v = rng.next();
+      const Vec3 w = sampleSphere(u, v);
+      const double pdf = double{guide.pdf(region, w)} * 4.0 * double{kPi} / kDraws;
+      integral += pdf;
+      half += dot(w, side) > 0.0f ? pdf : 0.0;
+      float drawn = 0.0f;
+      const Vec3 d = guide.sample(region, rng, drawn);
+      halfOfDraws += dot(d, side) > 0.0f ? 1.0 / kDraws : 0.0;
+      rounded += std::fabs(guide.pdf(region, d) - drawn) > 1e-3f * drawn;  // into the next cell
+    }
+    EXPECT_LT(rounded, kDraws / 1000) << region;
+    EXPECT_NEAR(integral, 1.0, 0.15) << region;
+    EXPECT_NEAR(half, halfOfDraws, 0.15) << region;
+  }
+  EXPECT_GT(known, 4u);
+}
+
+TEST(Guided, FurnaceIsExact) {
+  const World world("furnace/scene.toml");
+  const VplTable lit = fewLit(world);
+  const Image image =
+      renderVpls(world, lit, {{"integrator", "guided"}, {"spp", "64"}, {"max-bounces", "64"}})
+          .image;
+  EXPECT_NEAR(meanOf(image), 2.0, 0.01);  // Le / (1 - rho)
+}
+
+TEST(Guided, ClosedRoomsStayDark) {
+  const World world("test/two-rooms.toml");
+  const VplTable lit = fewLit(world);
+  const FilmStats stats = renderVpls(world, lit, {{"integrator", "guided"}, {"spp", "64"}}).stats;
+  EXPECT_EQ(stats.direct + stats.indirect, 0.0);
+}
+
+// The lamp, a sky through the open front, a sun and a point light; a mirror, gloss.
+TEST(Guided, HasThePathTracersImage) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {18, 18};
+  scene.lights.assign(3, LightSpec{});
+  LightSpec &sky = scene.lights[0], &sun = scene.lights[1], &bulb = scene.lights[2];
+  sky.type = LightType::Environment;
+  sky.emission = Vec3{2.0f};
+  sun.type = LightType::Directional;
+  sun.direction = normalize(Vec3{0.2f, -0.3f, 1.0f});
+  sun.emission = Vec3{3.0f};
+  sun.angularRadiusRad = 0.02f;
+  bulb.position = {0.3f, 0.45f, 0.1f};
+  bulb.emission = Vec3{0.1f};
+  Material& tall = scene.materials.at(scene.triangles.back().material);
+  tall.phong().diffuse = Vec3{0.2f};
+  tall.phong().mirror = Vec3{0.7f};
+  Material& wall = scene.materials.at(scene.triangles.front().material);
+  wall.phong().diffuse = Vec3{0.3f};
+  wall.phong().glossy = Vec3{0.5f};
+  wall.phong().exponent = 12.0f;
+  const World world(std::move(scene));
+  const VplTable lit = fewLit(world);
+  const Given options{{"spp", "64"}};
+  for (const char* only : {"all", "direct", "indirect"}) {
+    const Given shown = with(options, {{"only", only}});
+    EXPECT_TRUE(sameExpectation(paths(world, shown), guided(world, lit, shown))) << only;
+  }
+}
+
+// Whatever the VPLs say: flux that is not theirs, and a guide that takes nearly all directions.
+TEST(Guided, HasThePathTracersImageByWrongVpls) {
+  const World world = cornell(18);
+  VplTable lit = fewLit(world);
+  for (size_t i = 0; i < lit.size(); ++i) lit.flux[i] = i % 5 == 0 ? Vec3{100.0f} : Vec3{};
+  const Given options{{"spp", "64"}, {"max-bounces", "3"}};
+  EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, options)));
+  const Given bold = with(options, {{"guide-share", "0.9"}});
+  EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, bold)));
+}
+
+// RMS difference of two images with different seeds.
+double noiseOf(const Render& render) {
+  const Image a = render(1), b = render(2);
+  double sum = 0.0;
+  for (const char* channel : {"R", "G", "B"}) {
+    const std::vector<float>&p = *a.find(channel), &q = *b.find(channel);
+    for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
+  }
+  return std::sqrt(sum);
+}
+
+// Light comes round a bend, which few paths find.
+TEST(Guided, HasLessNoiseWhereLightComesRoundACorner) {
+  World world("u-shape/scene.toml");
+  world.scene.film = {32, 24};
+  const VplTable lit = litVpls(world, {{"count", "600"}}, {{"photons", "200k"}}, {});
+  const Given options{{"spp", "256"}, {"only", "indirect"}};
+  EXPECT_LT(noiseOf(guided(world, lit, options)), 0.7 * noiseOf(paths(world, options)));
+}
+
+TEST(Guided, IsTheSameForAnyThreads) {
+  const World world = cornell(24);
+  const VplTable lit = fewLit(world);
+  std::vector<std::vector<float>> green;
+  for (const size_t threads : {1u, 2u, 7u}) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    green.push_back(*guided(world, lit, {{"spp", "32"}})(1).find("G"));
+  }
+  EXPECT_EQ(green[0], green[1]);
+  EXPECT_EQ(green[0], green[2]);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

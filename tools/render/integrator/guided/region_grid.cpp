@@ -1,0 +1,137 @@
+#include "tools/render/integrator/guided/region_grid.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <bit>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "core/random.h"
+#include "scene/scene.h"
+#include "spatial/compatible_surface.h"
+
+namespace bnvpl {
+
+namespace {
+
+// A disk speaks this far, in units of its radius, where none is nearer: twice as far as its
+// neighbours are.
+constexpr float kReach = 3.0f;
+constexpr uint32_t kFacings = 6;
+
+int levelOf(float radius) {  // cells of one to two radii
+  return std::clamp(std::ilogb(2.0f * radius), -100, 100);
+}
+
+Vec3 axisOf(uint32_t facing) {
+  Vec3 axis;
+  axis[facing / 2] = facing % 2 == 0 ? 1.0f : -1.0f;
+  return axis;
+}
+uint32_t facingOf(Vec3 n) {
+  const float x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
+  const uint32_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  return 2 * axis + (n[axis] < 0.0f ? 1 : 0);
+}
+
+uint64_t hashOf(int64_t x, int64_t y, int64_t z, int level, uint32_t facing) {
+  constexpr uint64_t kAxisMask = (uint64_t{1} << 18) - 1;
+  const auto bits = [&](int64_t v) { return static_cast<uint64_t>(v) & kAxisMask; };
+  return mix64(bits(x) | bits(y) << 18 | bits(z) << 36 | uint64_t{facing} << 54 |
+               static_cast<uint64_t>(level + 128) << 57) |
+         1;  // 0 is an empty slot's
+}
+
+int64_t cellAlong(float cells) {
+  const float bounded = std::clamp(cells, -1e15f, 1e15f);
+  const auto whole = static_cast<int64_t>(bounded);
+  return whole - (bounded < static_cast<float>(whole) ? 1 : 0);
+}
+
+}  // namespace
+
+struct RegionGrid::Entry {
+  uint64_t key;
+  float score;  // the least wins
+  uint32_t index;
+  friend bool operator<(const Entry& a, const Entry& b) {
+    return std::tie(a.key, a.score, a.index) < std::tie(b.key, b.score, b.index);
+  }
+};
+
+RegionGrid::RegionGrid(std::span<const Vec3> points, std::span<const Vec3> normals,
+                       std::span<const float> radii) {
+  if (points.empty()) return;
+  origin_ = points[0];
+  std::set<int> levels;
+  for (const float r : radii) levels.insert(levelOf(r));
+  for (const int level : levels) {
+    levels_.push_back(level);
+    perUnit_.push_back(std::ldexp(1.0f, -level));
+  }
+  std::vector<Entry> entries;
+  for (size_t i = 0; i < points.size(); ++i)
+    list(static_cast<uint32_t>(i), points[i], normals[i], radii[i], entries);
+  fill(entries);
+}
+
+// All cells within reach through which the disk's plane goes, for each direction that is near to
+// its normal.
+void RegionGrid::list(uint32_t index, Vec3 point, Vec3 normal, float radius,
+                      std::vector<Entry>& out) const {
+  const int level = levelOf(radius);
+  const float cell = std::ldexp(1.0f, level), perUnit = std::ldexp(1.0f, -level);
+  const float reach = kReach * radius;
+  const Vec3 centre = point - origin_;
+  const auto low = [&](float v) { return cellAlong((v - reach) * perUnit); };
+  const auto high = [&](float v) { return cellAlong((v + reach) * perUnit); };
+  for (int64_t z = low(centre.z); z <= high(centre.z); ++z) {
+    for (int64_t y = low(centre.y); y <= high(centre.y); ++y) {
+      for (int64_t x = low(centre.x); x <= high(centre.x); ++x) {
+        const Vec3 middle = Vec3{float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f} * cell;
+        const Vec3 apart = middle - centre;
+        // Half the width of a cell along the normal, and a little for what is not flat.
+        const float thick =
+            0.5f * cell * (std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z)) +
+            kPlaneFactor * radius;
+        if (lengthSquared(apart) > reach * reach || std::fabs(dot(apart, normal)) > thick) continue;
+        for (uint32_t facing = 0; facing < kFacings; ++facing) {
+          const float cosine = dot(normal, axisOf(facing));
+          if (cosine < kMinNormalDot) continue;
+          out.push_back({hashOf(x, y, z, level, facing),
+                         lengthSquared(apart) / (radius * radius) + 4.0f * (1.0f - cosine), index});
+        }
+      }
+    }
+  }
+}
+
+void RegionGrid::fill(std::vector<Entry>& entries) {
+  tbb::parallel_sort(entries.begin(), entries.end());  // the order is total: there is one result
+  const auto end = std::unique(entries.begin(), entries.end(),
+                               [](const Entry& a, const Entry& b) { return a.key == b.key; });
+  const auto count = static_cast<size_t>(end - entries.begin());
+  slots_.resize(std::bit_ceil(2 * count + 1));
+  mask_ = slots_.size() - 1;
+  for (size_t i = 0; i < count; ++i) {
+    uint64_t slot = entries[i].key >> 1 & mask_;
+    while (slots_[slot].key != 0) slot = (slot + 1) & mask_;
+    slots_[slot] = {entries[i].key, entries[i].index};
+  }
+}
+
+uint32_t RegionGrid::at(Vec3 position, Vec3 normal) const {
+  const Vec3 d = position - origin_;
+  const uint32_t facing = facingOf(normal);
+  for (size_t l = 0; l < levels_.size(); ++l) {
+    const Vec3 c = d * perUnit_[l];
+    const uint64_t key = hashOf(cellAlong(c.x), cellAlong(c.y), cellAlong(c.z), levels_[l], facing);
+    for (uint64_t slot = key >> 1 & mask_; slots_[slot].key != 0; slot = (slot + 1) & mask_) {
+      if (slots_[slot].key == key) return slots_[slot].index;
+    }
+  }
+  return kNone;
+}
+
+}  // namespace bnvpl
