@@ -17,7 +17,9 @@ enum class Stream : uint32_t {
   AreaEstimate,
   LightTracer,
   FilmPoints,
-  VplPaths
+  VplPaths,
+  PilotPhotons = 30,  // of vpl-estimate --method both
+  PilotPaths
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {
