@@ -6,8 +6,8 @@
 
 namespace bnvpl {
 
-void addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at, Vec3 throughput,
-                     PathLength length, Rng& rng, Vec3& first, Vec3& later) {
+unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
+                         Vec3 throughput, PathLength length, Rng& rng, Vec3& first, Vec3& later) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   for (unsigned bounce = 0;; ++bounce) {
@@ -16,17 +16,18 @@ void addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& a
     sum += throughput * directLight(rays, lights, bsdf, LobeGroup::Rough, LightChoice::One, 1, rng);
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
-    if (rng.next() >= survive) return;
+    if (rng.next() >= survive) return bounce + 1;
     BsdfSample scattered;
     Ray next;
-    if (!scatter(rays, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next)) return;
+    if (!scatter(rays, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next))
+      return bounce + 1;
     throughput *= scattered.weight * (1.0f / survive);
     const Arrival arrival{scattered.pdf, bsdf.point().position};
     vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng);
     sum += throughput * vertex.metFirst;
-    if (length.firstBounce) return;
+    if (length.firstBounce) return bounce + 1;
     later += throughput * vertex.metLater;
-    if (bounce == length.maxBounces || !vertex.rough) return;
+    if (bounce == length.maxBounces || !vertex.rough) return bounce + 1;
     throughput *= vertex.throughput;
   }
 }

@@ -13,8 +13,9 @@ struct PathLength {
 // Adds throughput * radiance towards where the vertex is seen from, by light sampling and
 // scattering with multiple importance sampling (Veach 1997, section 10): to `first` what comes to
 // the vertex with nothing between it and a light, to `later` the rest. `at` is the vertex's own
-// reflection, Bsdf(scene, vertex) or what stands for it.
-void addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at, Vec3 throughput,
-                     PathLength length, Rng& rng, Vec3& first, Vec3& later);
+// reflection, Bsdf(scene, vertex) or what stands for it. Returns how many rough vertices the path
+// had, this one included; each took about two rays.
+unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
+                         Vec3 throughput, PathLength length, Rng& rng, Vec3& first, Vec3& later);
 
 }  // namespace bnvpl

@@ -2,6 +2,7 @@
 // emissive material), and the lights of scene.toml. Power in W, linear sRGB.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,10 @@ class LightSet {
   // A light picked in proportion to power, for estimators that can afford one.
   size_t pick(float u, float& probability) const;
   float pickProbability(size_t light) const { return lights_[light].pickProbability; }
+  // Whether a ray can meet it by chance: not if it is a point or comes from a single direction.
+  bool hittable(size_t light) const {
+    return lights_[light].area || std::ranges::count(hittableAtInfinity_, light) > 0;
+  }
 
   // False: nothing can arrive at `at` (behind the emitter, outside the cone, black).
   bool sampleDirect(size_t light, Vec3 at, float u, float v, DirectSample& out) const;

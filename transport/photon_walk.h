@@ -32,6 +32,9 @@ class PhotonWalk {
   bool goesOn() const { return goesOn_; }
   const Ray& next() const { return next_; }  // to be traced, where goesOn()
   const PhotonFate& fate() const { return fate_; }
+  // Whether its first scattering was by a perfect mirror or glass. Of lights that no ray can hit,
+  // no path from the other end finds such light.
+  bool beganAtPerfectMirror() const { return beganAtPerfectMirror_; }
   Rng& rng() { return rng_; }
   // One of several that go on from here instead of this one, with a share of its flux each. Their
   // fates hold the way before once more.
@@ -71,6 +74,7 @@ class PhotonWalk {
     const float survive = bsdf.reflectance();
     if (rng_.next() >= survive) return;
     const LobeChoice lobes = chooseLobes(bsdf, rng_);
+    if (rough_ + specular_ == 0) beganAtPerfectMirror_ = lobes.specular() && bsdf.specularIsDelta();
     const bool last = lobes.specular() ? ++specular_ > kMaxSpecular : ++rough_ >= maxBounces_;
     BsdfSample sample;
     Ray next;
@@ -91,7 +95,7 @@ class PhotonWalk {
   Ray next_;
   Vec3 flux_;
   unsigned maxBounces_ = 0, rough_ = 0, specular_ = 0;
-  bool goesOn_ = false;
+  bool goesOn_ = false, beganAtPerfectMirror_ = false;
   PhotonFate fate_;
 };
 

@@ -19,7 +19,9 @@ enum class Stream : uint32_t {
   FilmPoints,
   VplPaths,
   TileLights,
-  Guide = 16
+  Guide = 16,
+  PilotPhotons = 30,  // of vpl-estimate --method both
+  PilotPaths
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

@@ -27,7 +27,7 @@ struct EnergyAccount {
 
 struct EstimateResult {
   VplTable table;             // of stage Lit
-  EnergyAccount energy = {};  // of photons; without them, nonFinite of paths alone
+  EnergyAccount energy = {};  // of photons, but for nonFinite, which counts paths as well
   uint64_t paths = 0;
 };
 

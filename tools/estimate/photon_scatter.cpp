@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "tools/common/streams.h"
-#include "tools/estimate/photon_shares.h"
 #include "transport/photon_walk.h"
 
 namespace bnvpl {
@@ -16,6 +15,9 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
+constexpr uint64_t rangesOf(uint64_t photons) {
+  return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
+}
 
 // Photons on their way together: each step of one waits for memory, which the others bridge.
 class PhotonBatch {
@@ -25,16 +27,17 @@ class PhotonBatch {
         scatter_(scatter),
         rule_(rule),
         photons_(kSize),
+        hittable_(kSize),
         next_(kSize),
         hits_(kSize),
         near_(kSize) {}
 
-  // Follows photons to their ends. start(walk) makes the next one, or tells that there is none
-  // left.
+  // Follows photons to their ends. start(walk, hittable) makes the next one and says whether rays
+  // can hit its light, or tells that there is none left.
   template <typename Start>
   void follow(const Start& start, PhotonSums& sums) {
     size_t size = 0;
-    while (size < kSize && start(photons_[size])) ++size;
+    while (size < kSize && startAt(size, start)) ++size;
     while (size > 0) {
       // Those that have ended give their places to new ones.
       for (size_t i = 0; i < size;) {
@@ -44,7 +47,9 @@ class PhotonBatch {
           continue;
         }
         finish(photon, sums);
-        if (!start(photon)) photon = photons_[--size];
+        if (startAt(i, start)) continue;
+        photon = photons_[--size];
+        hittable_[i] = hittable_[size];
       }
       meet(size);
       for (size_t i = 0; i < size; ++i) {
@@ -52,7 +57,9 @@ class PhotonBatch {
           const Vec3 leaving = flux * bsdf.roughAlbedo();
           ++sums.hits;
           scatter_.tally(sums, kReflected, leaving);
-          rule_(scatter_, {bsdf.point(), near_[i], leaving, firstBounce}, photons_[i].rng(), sums);
+          const bool onlyPhotons = !hittable_[i] && photons_[i].beganAtPerfectMirror();
+          rule_(scatter_, {bsdf.point(), near_[i], leaving, firstBounce, onlyPhotons},
+                photons_[i].rng(), sums);
         });
       }
     }
@@ -61,6 +68,13 @@ class PhotonBatch {
  private:
   static constexpr size_t kSize = RayScene::kBatch;
 
+  template <typename Start>
+  bool startAt(size_t i, const Start& start) {
+    bool hittable = false;
+    if (!start(photons_[i], hittable)) return false;
+    hittable_[i] = hittable;
+    return true;
+  }
   // What the first `size` photons hit, and the VPLs near it.
   void meet(size_t size) {
     rays_.closestHits({next_.data(), size}, hits_);
@@ -77,65 +91,14 @@ class PhotonBatch {
   const RayScene& rays_;
   const PhotonScatter& scatter_;
   const ScatterRule& rule_;
-  // Of each photon: its walk, its next ray, what that hit, and the VPLs there.
+  // Of each photon: its walk, whether rays can hit its light, its next ray, what that hit, and the
+  // VPLs there.
   std::vector<PhotonWalk> photons_;
+  std::vector<uint8_t> hittable_;
   std::vector<Ray> next_;
   std::vector<SurfacePoint> hits_;
   std::vector<ReachGrid::Lookup> near_;
 };
-
-PhotonSums tracePhotons(const EstimateInputs& in, const Values& options, const PhotonShares& shares,
-                        const PhotonScatter& scatter, const ScatterRule& rule) {
-  const uint64_t key = streamKey(options.whole("seed"), Stream::Photons);
-  const auto maxBounces = static_cast<unsigned>(options.whole("max-bounces"));
-  const ProgressFn& progress = in.progress;
-  const Resume& resume = in.resume;
-  const auto fresh = [&] {
-    PhotonSums s;
-    s.vpl.resize(in.vpls.size());
-    return s;
-  };
-  tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
-  const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
-    PhotonBatch batch(in.rays, scatter, rule);
-    uint64_t photon = begin;
-    batch.follow(
-        [&](PhotonWalk& walk) {
-          if (photon == end) return false;
-          Rng rng(key, photon);
-          const size_t light = shares.lightOf(photon++);
-          PhotonStart start = in.lights.emit(light, rng);
-          start.flux *= shares.weight(light);
-          walk = PhotonWalk(start, maxBounces, rng);
-          if (walk.goesOn()) scatter.tally(sums, kEmitted, start.flux);
-          return true;
-        },
-        sums);
-  };
-  std::vector<uint8_t> done((shares.total() + kPhotonsPerRange - 1) / kPhotonsPerRange);
-  PhotonSums before = fresh();
-  if (!resume.state.empty()) decode(resume.state, done, before);
-  const auto photonsOf = [&](size_t range) {
-    return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
-  };
-  for (size_t range = 0; progress && range < done.size(); ++range) {
-    if (done[range]) progress(photonsOf(range));
-  }
-  const auto soFar = [&] {
-    PhotonSums total = before;
-    for (const PhotonSums& s : perThread) total.add(s);
-    return total;
-  };
-  forUnitsLeft(
-      done, resume,
-      [&](size_t range) {
-        const uint64_t begin = range * kPhotonsPerRange, count = photonsOf(range);
-        trace(begin, begin + count, perThread.local());
-        if (progress) progress(count);
-      },
-      [&] { return encode(done, soFar()); });
-  return soFar();
-}
 
 void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter) {
   beginLit(vpls, scatter.radius());
@@ -167,6 +130,8 @@ std::vector<Vec3> centres(const VplTable& vpls, const PhotonSums& sums, double p
   return centre;
 }
 
+}  // namespace
+
 EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons) {
   const auto watts = [&](Tally t) { return scatter.fixed().decode(sums.tally[t]); };
   EnergyAccount a;
@@ -186,7 +151,77 @@ EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, ui
   return a;
 }
 
-}  // namespace
+PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule) {
+  const PhotonShares& shares = run.shares;
+  const ProgressFn& progress = in.progress;
+  const Resume& resume = in.resume;
+  const auto fresh = [&] {
+    PhotonSums s;
+    s.vpl.resize(in.vpls.size());
+    return s;
+  };
+  tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
+  const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
+    PhotonBatch batch(in.rays, run.scatter, rule);
+    uint64_t photon = begin;
+    batch.follow(
+        [&](PhotonWalk& walk, bool& hittable) {
+          if (photon == end) return false;
+          Rng rng(run.key, photon);
+          const size_t light = shares.lightOf(photon++);
+          PhotonStart start = in.lights.emit(light, rng);
+          start.flux *= shares.weight(light);
+          hittable = in.lights.hittable(light);
+          walk = PhotonWalk(start, run.maxBounces, rng);
+          if (walk.goesOn()) run.scatter.tally(sums, kEmitted, start.flux);
+          return true;
+        },
+        sums);
+  };
+  std::vector<uint8_t> done(rangesOf(shares.total()));
+  PhotonSums before = fresh();
+  if (!resume.state.empty()) decode(resume.state, done, before);
+  const auto photonsOf = [&](size_t range) {
+    return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
+  };
+  for (size_t range = 0; progress && range < done.size(); ++range) {
+    if (done[range]) progress(photonsOf(range));
+  }
+  const auto soFar = [&] {
+    PhotonSums total = before;
+    for (const PhotonSums& s : perThread) total.add(s);
+    return total;
+  };
+  forUnitsLeft(
+      done, resume,
+      [&](size_t range) {
+        const uint64_t begin = range * kPhotonsPerRange, count = photonsOf(range);
+        trace(begin, begin + count, perThread.local());
+        if (progress) progress(count);
+      },
+      [&] { return encode(done, soFar()); });
+  return soFar();
+}
+
+std::string finishedState(const PhotonSums& sums, uint64_t photons) {
+  return encode(std::vector<uint8_t>(rangesOf(photons), 1), sums);
+}
+
+void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng& rng,
+                         PhotonSums& sums) {
+  const Coverage::Found found =
+      scatter.coverage().pick(hit.point.position, hit.point.ng, hit.near, rng);
+  sums.guardRays += found.rays;
+  if (found.vpl) {
+    scatter.deposit(*found.vpl, hit, hit.flux, sums);
+    return scatter.tally(sums, kDeposited, hit.flux);
+  }
+  scatter.tally(sums,
+                found.miss == Coverage::Miss::Outside ? kOutside
+                : found.miss == Coverage::Miss::Gap   ? kGap
+                                                      : kHidden,
+                hit.flux);
+}
 
 PhotonScatter::PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius,
                              double photonPower, uint64_t photons)
@@ -203,6 +238,7 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
     const int64_t units = fixed_.encode(double{flux[c]});
     addChecked(s.flux[c], units);
     if (hit.firstBounce) addChecked(s.firstBounce[c], units);
+    if (hit.onlyPhotons) addChecked(s.onlyPhotons[c], units);
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
   addChecked(s.squares, std::llrint(relative * relative * 0x1p20));
@@ -219,7 +255,9 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
   const PhotonShares shares(in.lights, options.whole("photons"));
   const PhotonScatter scatter(in.vpls, in.rays, options.real32("radius"),
                               power / static_cast<double>(shares.total()), shares.total());
-  const PhotonSums sums = tracePhotons(in, options, shares, scatter, rule);
+  const PhotonRun run{streamKey(options.whole("seed"), Stream::Photons),
+                      static_cast<unsigned>(options.whole("max-bounces")), shares, scatter};
+  const PhotonSums sums = tracePhotons(in, run, rule);
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
   fillTable(result.table, sums, scatter);
   if (options.on("recentre"))

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tools/estimate/estimate.h"
+#include "tools/estimate/photon_shares.h"
 #include "tools/estimate/photon_sums.h"
 #include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
@@ -27,6 +28,7 @@ struct PhotonHit {
   const ReachGrid::Lookup& near;  // the VPLs that reach it
   Vec3 flux;                      // that leaves it, W
   bool firstBounce;               // straight from a light
+  bool onlyPhotons;               // paths from the hit find no such light
 };
 
 // Where hits are handed to VPLs: exact sums, one set for each thread.
@@ -56,6 +58,24 @@ class PhotonScatter {
 // Hands a hit over; thread-safe. `rng` goes on with the photon's numbers.
 using ScatterRule =
     std::function<void(const PhotonScatter&, const PhotonHit&, Rng& rng, PhotonSums& sums)>;
+
+// Evenly among the VPLs on a compatible surface and in sight, in expectation: one of them gets all.
+void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng& rng,
+                         PhotonSums& sums);
+
+// Photons of one key.
+struct PhotonRun {
+  uint64_t key;
+  unsigned maxBounces;
+  const PhotonShares& shares;
+  const PhotonScatter& scatter;
+};
+// What they bring. `in.resume` and `in.progress`, in photons, are those of this run alone.
+PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule);
+// The state with which a run of so many photons, resumed, is at its end.
+std::string finishedState(const PhotonSums& sums, uint64_t photons);
+
+EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons);
 
 // The whole estimate by that rule and kPhotonOptions: fills the columns since Lit.
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,

@@ -8,6 +8,7 @@ void VplSum::add(const VplSum& o) {
   for (size_t c = 0; c < 3; ++c) {
     addChecked(flux[c], o.flux[c]);
     addChecked(firstBounce[c], o.firstBounce[c]);
+    addChecked(onlyPhotons[c], o.onlyPhotons[c]);
     addChecked(moment[c], o.moment[c]);
   }
   addChecked(squares, o.squares);

@@ -45,7 +45,8 @@ inline void addChecked(int64_t& sum, int64_t term) {
 // What one VPL has received.
 struct VplSum {  // without padding: it is saved as it lies
   std::array<int64_t, 3> flux{}, firstBounce{};
-  int64_t squares = 0;  // of the mean flux over the photon's, in units of 2^-20
+  std::array<int64_t, 3> onlyPhotons{};  // part of flux that paths from the VPL cannot find
+  int64_t squares = 0;                   // of the mean flux over the photon's, in units of 2^-20
   // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of
   // 2^-24.
   std::array<int64_t, 3> moment{};

@@ -31,6 +31,9 @@ constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
 
 // Why VPLs are dark, and the cure.
 std::string causeOfDark(const EstimateResult& result) {
+  if (result.paths > 0 && result.energy.photons > 0)
+    return "neither photons nor paths brought light there; raise --photons, or keep fewer VPLs with "
+           "vpl-eliminate -n";
   if (result.paths > 0)
     return "no path found a light from there; raise --points or --paths, or use --method guarded";
   const EnergyAccount& a = result.energy;
@@ -96,11 +99,8 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
 void reportEstimate(const EstimateResult& result, Summary& summary) {
   const VplTable& vpls = result.table;
   const bool photons = result.paths == 0;
-  if (photons) {
-    reportPhotons(result.energy, summary);
-  } else {
-    summary.add("paths", result.paths, formatSi(double(result.paths)) + " paths");
-  }
+  if (result.energy.photons > 0) reportPhotons(result.energy, summary);
+  if (!photons) summary.add("paths", result.paths, formatSi(double(result.paths)) + " paths");
   const auto dark = static_cast<uint64_t>(
       photons ? std::ranges::count(vpls.photons, 0u)
               : std::ranges::count_if(vpls.flux, [](Vec3 f) { return !(mean(f) > 0.0f); }));
@@ -111,7 +111,7 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
   summary.add("median_relative_error", medianError(vpls), line);
   summary.add(photons ? "vpls_without_photon" : "vpls_without_light", dark);
   warnOfDark(dark, result);
-  summary.addNonFinite(result.energy.nonFinite, photons ? "photons" : "paths");
+  summary.addNonFinite(result.energy.nonFinite, photons ? "photons" : result.energy.photons > 0 ? "photons and paths" : "paths");
 }
 
 }  // namespace bnvpl

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
 
 namespace bnvpl::test {
@@ -8,24 +9,60 @@ namespace {
 
 // Photons and paths estimate one integral by its two ends: fluxes of single VPLs agree within their
 // noise, those of all together within a per cent.
+void expectAgreement(const World& world, const VplTable& vpls, const char* name) {
+  const VplTable photons = lightVpls(world, vpls, {{"photons", "2M"}, {"recentre", "off"}}).table;
+  const VplTable paths =
+      lightVpls(world, vpls, {{"method", "paths"}, {"points", "256"}, {"recentre", "off"}}).table;
+  EXPECT_NEAR(totalFlux(paths) / totalFlux(photons), 1.0, 0.01) << name;
+  double squares = 0.0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const double a = double{mean(photons.flux[i])}, b = double{mean(paths.flux[i])};
+    const double ea = a * double{photons.relativeError[i]}, eb = b * double{paths.relativeError[i]};
+    squares += (a - b) * (a - b) / (ea * ea + eb * eb + 1e-30);
+  }
+  // 1 if the errors were just as stated; points are stratified, which makes theirs smaller.
+  EXPECT_LT(std::sqrt(squares / double(vpls.size())), 1.3) << name;
+}
+
 TEST(Paths, AgreeWithPhotonsForEachVpl) {
   for (const char* name : {"furnace/scene.toml", "cornell/scene.toml"}) {
     const World world(name);
-    const VplTable vpls = keptVpls(world, {{"count", "400"}}, {{"count", "8k"}});
-    const VplTable photons = lightVpls(world, vpls, {{"photons", "2M"}, {"recentre", "off"}}).table;
-    const VplTable paths =
-        lightVpls(world, vpls, {{"method", "paths"}, {"points", "256"}, {"recentre", "off"}}).table;
-    EXPECT_NEAR(totalFlux(paths) / totalFlux(photons), 1.0, 0.01) << name;
-    double squares = 0.0;
-    for (size_t i = 0; i < vpls.size(); ++i) {
-      const double a = double{mean(photons.flux[i])}, b = double{mean(paths.flux[i])};
-      const double ea = a * double{photons.relativeError[i]},
-                   eb = b * double{paths.relativeError[i]};
-      squares += (a - b) * (a - b) / (ea * ea + eb * eb + 1e-30);
-    }
-    // 1 if the errors were just as stated; points are stratified, which makes theirs smaller.
-    EXPECT_LT(std::sqrt(squares / double(vpls.size())), 1.3) << name;
+    expectAgreement(world, keptVpls(world, {{"count", "400"}}, {{"count", "8k"}}), name);
   }
+}
+
+// Bars of a window, far smaller than the reach of the VPLs on them: several layers lie one over the
+// other in the disk of a VPL.
+TEST(Paths, AgreeWithPhotonsOnThinLayers) {
+  constexpr float kWidth = 0.02f, kStep = 0.1f, kRadius = 0.15f;
+  Scene scene;
+  VplTable vpls;
+  vpls.stage = VplStage::Eliminated;
+  const auto addVpls = [&](float y, float z) {
+    for (float x = -0.45f; x < 0.5f; x += 0.15f) {
+      vpls.position.push_back({x, y, z});
+      vpls.normal.push_back({0, 1, 0});
+      vpls.albedo.push_back(Vec3(0.7f));
+      vpls.id.push_back(static_cast<uint32_t>(vpls.id.size()));
+      vpls.radius.push_back(kRadius);
+    }
+  };
+  const Material white = lambert(Vec3(0.7f));
+  addSquare(scene, {-0.5f, 0, 0.5f}, {1, 0, 0}, {0, 0, -1}, white);
+  for (float z = -0.45f; z < 0.5f; z += kStep) {
+    for (const float y : {0.04f, 0.07f}) {
+      addSquare(scene, {-0.5f, y, z + kWidth / 2}, {1, 0, 0}, {0, 0, -kWidth}, white);
+      addSquare(scene, {-0.5f, y - 0.01f, z - kWidth / 2}, {1, 0, 0}, {0, 0, kWidth}, white);
+      addVpls(y, z);
+    }
+    addVpls(0.0f, z + kStep / 2);
+  }
+  LightSpec sky;
+  sky.type = LightType::Environment;
+  sky.emission = Vec3(1.0f);
+  scene.lights.push_back(sky);
+  finishScene(scene);
+  expectAgreement(World(std::move(scene)), vpls, "bars");
 }
 
 TEST(Paths, FirstBounceIsThatOfPhotons) {

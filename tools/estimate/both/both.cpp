@@ -1,0 +1,218 @@
+// The flux of each VPL from both ends: photons from the lights and paths from the VPL estimate one
+// integral. Small pilots of both tell how noisy each is there; they share out the work and weigh
+// the two, and play no other part, so that no choice depends on the values it is made for.
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "tools/common/streams.h"
+#include "tools/estimate/both/phases.h"
+#include "tools/estimate/both/split.h"
+#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/vpl_paths.h"
+
+namespace bnvpl::methods::estimate::both {
+
+namespace {
+
+constexpr std::array kOptions{
+    countOption("photons", "10M", 0x1p36, "",
+                "work, as that of so many photons; paths take their part of it"),
+    kPathsOption, kRadiusOption,
+    wholeOption("max-bounces", "32", 1, 1000, "",
+                "diffuse bounces between a light and the view, that at the VPL included"),
+    kRecentreOption};
+
+// Each pilot gets about this share of the work.
+constexpr double kPilot = 1.0 / 32.0;
+// A point of a VPL may cost its pilot so many rays for each path, as a guess; the pilot measures.
+constexpr double kGuessedRays = 10.0;
+constexpr uint64_t kLeastPoints = 2, kMostPoints = 32;
+// Pilots of paths that would take more than this share of the work are not worth it.
+constexpr double kDearPilot = 0.25;
+
+// Photons of a stream, and what they bring.
+struct PhotonWork {
+  PhotonShares shares;
+  PhotonScatter scatter;
+  PhotonSums sums;
+
+  PhotonWork(const EstimateInputs& in, const Values& options, uint64_t photons)
+      : shares(in.lights, photons),
+        scatter(in.vpls, in.rays, options.real32("radius"),
+                double{mean(in.lights.totalPower())} / static_cast<double>(shares.total()),
+                shares.total()) {}
+
+  double mean3(const std::array<int64_t, 3>& v) const {
+    const FixedPoint& f = scatter.fixed();
+    return (f.decode(v[0]) + f.decode(v[1]) + f.decode(v[2])) / 3.0;
+  }
+  double variance(const VplSum& s) const {
+    return static_cast<double>(s.squares) * 0x1p-20 * scatter.photonPower() * scatter.photonPower();
+  }
+};
+
+class Estimator {
+ public:
+  Estimator(const EstimateInputs& in, const Values& options)
+      : in_(in), options_(options), phases_(in.resume), work_(options.whole("photons")) {}
+
+  EstimateResult run() {
+    in_.lights.requirePower();
+    const Split split = pilot();
+    const PhotonWork photons = trace(2, Stream::Photons, split.photons);
+    const std::vector<PathSums> paths = gather(3, Stream::VplPaths, split.points, work_ - told_);
+    return combine(split, photons, paths);
+  }
+
+ private:
+  // Work of a kind and its state. Progress is in photons' worth.
+  template <typename Work>
+  auto told(uint64_t worth, uint64_t units, const Work& work) {
+    worth = std::min(worth, work_ - told_);
+    told_ += worth;
+    std::atomic<uint64_t> done{0};
+    const auto worthOf = [&](uint64_t n) {
+      return static_cast<uint64_t>(static_cast<double>(worth) * static_cast<double>(n) /
+                                   static_cast<double>(units));
+    };
+    ProgressFn progress;
+    if (in_.progress && units > 0) {
+      progress = [&](uint64_t n) {
+        const uint64_t before = done.fetch_add(n);
+        in_.progress(worthOf(before + n) - worthOf(before));
+      };
+    }
+    auto result = work(progress);
+    if (in_.progress && units == 0) in_.progress(worth);
+    return result;
+  }
+
+  PhotonWork trace(size_t phase, Stream stream, uint64_t count) {
+    PhotonWork work(in_, options_, count);
+    const PhotonRun run{streamKey(options_.whole("seed"), stream), maxBounces(), work.shares,
+                        work.scatter};
+    work.sums = phases_.run(
+        phase,
+        [&](const Resume& resume) {
+          return told(count, work.shares.total(), [&](const ProgressFn& progress) {
+            return tracePhotons({in_.vpls, in_.rays, in_.lights, progress, resume}, run,
+                                scatterToOneInSight);
+          });
+        },
+        [&](const PhotonSums& sums) { return finishedState(sums, work.shares.total()); });
+    return work;
+  }
+
+  std::vector<PathSums> gather(size_t phase, Stream stream, std::span<const uint64_t> points,
+                               uint64_t worth) {
+    const VplPaths gatherer(
+        in_, {streamKey(options_.whole("seed"), stream), options_.whole("paths"), maxBounces(),
+              options_.real32("radius")});
+    return phases_.run(
+        phase,
+        [&](const Resume& resume) {
+          uint64_t all = 0;
+          for (const uint64_t n : points) all += gatherer.pathsOf(n);
+          return told(worth, all, [&](const ProgressFn& progress) {
+            return gatherAll({in_.vpls, in_.rays, in_.lights, progress, resume}, gatherer, points);
+          });
+        },
+        [](const std::vector<PathSums>& sums) { return finishedState(sums); });
+  }
+
+  unsigned maxBounces() const { return static_cast<unsigned>(options_.whole("max-bounces")); }
+
+  Split pilot() {
+    const auto few = static_cast<uint64_t>(std::ceil(kPilot * static_cast<double>(work_)));
+    const PhotonWork photons = trace(0, Stream::PilotPhotons, few);
+    Pilots pilots;
+    pilots.photons = static_cast<double>(photons.shares.total());
+    pilots.photonPower = photons.scatter.photonPower();
+    pilots.photonCost =
+        static_cast<double>(photons.sums.rays + photons.sums.guardRays) / pilots.photons;
+    const double whole = pilots.photonCost * static_cast<double>(work_);
+
+    const auto vpls = static_cast<double>(in_.vpls.size());
+    const double guess = vpls * kGuessedRays * static_cast<double>(options_.whole("paths"));
+    if (guess * kLeastPoints > kDearPilot * whole) return photonsAlone(work_ - told_);
+    const uint64_t points = std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess),
+                                                 kLeastPoints, kMostPoints);
+    const std::vector<uint64_t> pointsOf(in_.vpls.size(), points);
+    const std::vector<PathSums> paths = gather(1, Stream::PilotPaths, pointsOf, few);
+    pilots.points = static_cast<double>(points);
+    double spent = pilots.photonCost * pilots.photons;
+    for (size_t i = 0; i < in_.vpls.size(); ++i) {
+      const VplSum& s = photons.sums.vpl[i];
+      pilots.byPhotons.push_back(
+          {photons.mean3(s.flux) - photons.mean3(s.onlyPhotons), photons.variance(s)});
+      pilots.byPaths.push_back({paths[i].meanFlux(), paths[i].variance()});
+      const double cost = static_cast<double>(paths[i].rays);
+      pilots.pointCost.push_back(cost / pilots.points);
+      spent += cost;
+    }
+    return splitWork(in_.vpls, pilots, std::max(whole - spent, 0.5 * whole));
+  }
+
+  Split photonsAlone(uint64_t photons) const {
+    return {std::max<uint64_t>(1, photons), std::vector<uint64_t>(in_.vpls.size(), 0),
+            std::vector<double>(in_.vpls.size(), 1.0)};
+  }
+
+  EstimateResult combine(const Split& split, const PhotonWork& photons,
+                         const std::vector<PathSums>& paths) const {
+    EstimateResult result{in_.vpls,
+                          accountOf(photons.sums, photons.scatter, photons.shares.total()), 0};
+    VplTable& lit = result.table;
+    beginLit(lit, options_.real32("radius"));
+    std::vector<Vec3> centre(lit.size());
+    const FixedPoint& fixed = photons.scatter.fixed();
+    for (size_t i = 0; i < lit.size(); ++i) {
+      const VplSum& s = photons.sums.vpl[i];
+      const PathSums& r = paths[i];
+      const double w = split.share[i], rest = 1.0 - w;
+      std::array<double, 3> moment{};
+      double sum = 0.0, flux = 0.0;  // with and without what only photons bring
+      for (size_t c = 0; c < 3; ++c) {
+        const double alone = fixed.decode(s.onlyPhotons[c]);
+        const double shared = w * (fixed.decode(s.flux[c]) - alone) + rest * r.flux[c];
+        lit.flux[i][c] = static_cast<float>(shared + alone);
+        lit.firstBounceFlux[i][c] = std::min(
+            lit.flux[i][c],
+            static_cast<float>(w * fixed.decode(s.firstBounce[c]) + rest * r.firstBounce[c]));
+        sum += (shared + alone) / 3.0;
+        flux += (w * fixed.decode(s.flux[c]) + rest * r.flux[c]) / 3.0;
+        moment[c] = w * static_cast<double>(s.moment[c]) * 0x1p-24 * photons.scatter.photonPower() +
+                    rest * r.moment[c];
+      }
+      for (size_t c = 0; c < 3 && flux > 0.0; ++c)
+        centre[i][c] = static_cast<float>(moment[c] / flux);
+      lit.photons[i] = s.photons;
+      const double variance = w * w * photons.variance(s) + rest * rest * r.variance();
+      if (sum > 0.0) lit.relativeError[i] = static_cast<float>(std::sqrt(variance) / sum);
+      result.paths += r.paths;
+      result.energy.nonFinite += r.nonFinite;
+    }
+    if (options_.on("recentre")) recentre(lit, centre, in_.rays);
+    return result;
+  }
+
+  const EstimateInputs& in_;
+  const Values& options_;
+  Phases<4> phases_;
+  uint64_t work_, told_ = 0;  // photons' worth: all, and what progress knows of
+};
+
+EstimateResult make(const EstimateInputs& in, const Values& options) {
+  return Estimator(in, options).run();
+}
+
+Work work(const VplTable&, const Values& options) { return {"photons", options.whole("photons")}; }
+
+}  // namespace
+
+extern const EstimateMethod method;
+const EstimateMethod method{"both", "photons and paths, each VPL by the better of the two",
+                            kOptions, make, work};
+
+}  // namespace bnvpl::methods::estimate::both

@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <atomic>
+
+#include "tests/scene/plain_scene.h"
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+// The Cornell box, lit by its lamp and by a sky whose photons hardly ever find it: they cover a box
+// that is much larger.
+World lampAndSky() {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  LightSpec sky;
+  sky.type = LightType::Environment;
+  sky.emission = Vec3(3.0f);
+  scene.lights.push_back(sky);
+  const Vec3 size = scene.bounds.extent();
+  scene.bounds.extend(size * -2.0f);
+  scene.bounds.extend(size * 3.0f);
+  return World(std::move(scene));
+}
+
+VplTable lit(const World& world, const VplTable& vpls, const char* method, const char* seed,
+             const Given& more = {}) {
+  const Given options{{"method", method}, {"seed", seed}, {"recentre", "off"}};
+  return lightVpls(world, vpls, with(options, more)).table;
+}
+
+// Squared distance of fluxes from those of `truth`.
+double errorOf(const VplTable& vpls, const VplTable& truth) {
+  double sum = 0.0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const double d = double{mean(vpls.flux[i])} - double{mean(truth.flux[i])};
+    sum += d * d;
+  }
+  return sum;
+}
+
+// The mean of many runs is right for each VPL: what the pilots choose does not depend on what it is
+// chosen for.
+TEST(Both, HasNoBias) {
+  const World world = lampAndSky();
+  const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4k"}});
+  const VplTable truth = lit(world, vpls, "paths", "1000", {{"points", "512"}});
+  constexpr int kRuns = 24;
+  std::vector<double> sum(vpls.size()), squares(vpls.size());
+  double total = 0.0;
+  for (int run = 1; run <= kRuns; ++run) {
+    const VplTable one =
+        lit(world, vpls, "both", typed(run).c_str(), {{"photons", "60k"}, {"paths", "1"}});
+    for (size_t i = 0; i < vpls.size(); ++i) {
+      const double f = double{mean(one.flux[i])};
+      sum[i] += f, squares[i] += f * f;
+    }
+    total += totalFlux(one) / kRuns;
+  }
+  EXPECT_NEAR(total / totalFlux(truth), 1.0, 0.01);
+  double z2 = 0.0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    const double ofRuns = sum[i] / kRuns, t = double{mean(truth.flux[i])};
+    const double ofMean = (squares[i] / kRuns - ofRuns * ofRuns) / (kRuns - 1);
+    const double ofTruth = t * double{truth.relativeError[i]};
+    z2 += (ofRuns - t) * (ofRuns - t) / (ofMean + ofTruth * ofTruth + 1e-30);
+  }
+  EXPECT_NEAR(z2 / double(vpls.size()), 1.0, 0.35);
+}
+
+// At the same work: better than photons where these go astray, hardly worse where only they find
+// the lamp.
+TEST(Both, TakesTheBetterOfTheTwo) {
+  const auto errorOverThatOfPhotons = [](const World& world, const Given& truth) {
+    const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+    const VplTable right = lightVpls(world, vpls, with({{"recentre", "off"}}, truth)).table;
+    double photons = 0.0, both = 0.0;
+    for (const char* seed : {"1", "2"}) {
+      photons += errorOf(lit(world, vpls, "guarded", seed, {{"photons", "100k"}}), right);
+      both += errorOf(lit(world, vpls, "both", seed, {{"photons", "100k"}}), right);
+    }
+    return both / photons;
+  };
+  EXPECT_LT(errorOverThatOfPhotons(lampAndSky(), {{"method", "paths"}, {"points", "256"}}), 0.5);
+  EXPECT_LT(errorOverThatOfPhotons(World("u-shape/scene.toml"), {{"photons", "1M"}}), 1.3);
+}
+
+// A point light above a mirror: what comes over it no path finds, and photons bring all of it.
+TEST(Both, KeepsLightThatOnlyPhotonsFind) {
+  Scene scene;
+  Material mirror = lambert(Vec3(0.0f));
+  mirror.phong().mirror = Vec3(0.9f);
+  addSquare(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, mirror);               // floor
+  addSquare(scene, {-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lambert(Vec3(0.8f)));  // ceiling
+  LightSpec point;
+  point.type = LightType::Point;
+  point.position = Vec3(0.2f, 1.0f, 0.1f);
+  point.emission = Vec3(1.0f);
+  scene.lights.push_back(point);
+  finishScene(scene);
+  const World world(std::move(scene));
+  VplTable vpls;
+  vpls.stage = VplStage::Eliminated;
+  for (int x = 0; x < 8; ++x) {
+    for (int z = 0; z < 8; ++z) {
+      vpls.position.push_back({-0.875f + 0.25f * float(x), 2.0f, -0.875f + 0.25f * float(z)});
+      vpls.normal.push_back({0, -1, 0});
+      vpls.albedo.push_back(Vec3(0.8f));
+      vpls.id.push_back(uint32_t(vpls.id.size()));
+      vpls.radius.push_back(0.14f);
+    }
+  }
+  const double photons = totalFlux(lit(world, vpls, "guarded", "2", {{"photons", "400k"}}));
+  const double paths = totalFlux(lit(world, vpls, "paths", "1"));
+  EXPECT_LT(paths, 0.9 * photons);
+  const EstimateResult both = lightVpls(world, vpls, {{"method", "both"}, {"photons", "400k"}});
+  EXPECT_GT(both.paths, 0u);
+  EXPECT_NEAR(totalFlux(both.table) / photons, 1.0, 0.01);
+}
+
+TEST(Both, NoLightLeaksIntoAClosedRoom) {
+  const World world("test/two-rooms.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+  EXPECT_EQ(totalFlux(lit(world, vpls, "both", "1", {{"photons", "300k"}})), 0.0);
+}
+
+TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
+  const World world = lampAndSky();
+  const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
+  const Values options = resolve(estimateSpec(), {{"method", "both"}, {"photons", "100k"}});
+  const auto made = [&](size_t threads, const Resume& resume) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return estimate(vpls, world.rays, world.lights, options, {}, resume).table;
+  };
+  const VplTable one = made(1, {});
+  EXPECT_GT(totalFlux(one), 0.0);
+  // Interrupted again and again, after each unit of work that it got done.
+  struct Stopped {};
+  std::string state;
+  Resume stops{{},
+               [] { return true; },
+               [&](const std::string& s) {
+                 state = s;
+                 throw Stopped{};
+               }};
+  int interruptions = 0;
+  VplTable other;
+  for (bool ended = false; !ended; ++interruptions) {
+    ASSERT_LT(interruptions, 1000);
+    try {
+      stops.state = state;
+      other = made(2, stops);
+      ended = true;
+    } catch (const Stopped&) {
+    }
+  }
+  EXPECT_GT(interruptions, 10);  // in every part of the work
+  for (const VplTable& t : {made(7, {}), other}) {
+    EXPECT_EQ(t.flux, one.flux);
+    EXPECT_EQ(t.photons, one.photons);
+    EXPECT_EQ(t.emitPosition, one.emitPosition);
+    EXPECT_EQ(t.relativeError, one.relativeError);
+  }
+}
+
+TEST(Both, TellsProgressOnceForAllItsWork) {
+  const World world = lampAndSky();
+  const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
+  const Values options = resolve(estimateSpec(), {{"method", "both"}, {"photons", "100k"}});
+  std::atomic<uint64_t> told{0};
+  const EstimateResult result =
+      estimate(vpls, world.rays, world.lights, options, [&](uint64_t n) { told += n; });
+  EXPECT_EQ(told, estimateWork(vpls, options).count);
+  EXPECT_GT(result.paths, 0u);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,53 @@
+// Works of one method behind one another, which are interrupted and resumed as one.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/resume.h"
+
+namespace bnvpl::methods::estimate::both {
+
+template <size_t kCount>
+class Phases {
+ public:
+  explicit Phases(const Resume& whole) : whole_(whole) {
+    if (whole.state.empty()) return;
+    std::string_view bytes = whole.state;
+    std::array<uint64_t, kCount> sizes{};
+    takeArray(bytes, sizes);
+    for (size_t k = 0; k < kCount; ++k) {
+      states_[k].resize(std::min<size_t>(sizes[k], bytes.size()));
+      takeArray(bytes, states_[k]);
+    }
+    requireAllTaken(bytes);
+  }
+
+  // The k-th: body(resume) gives its result. finished(result) is the state with which it, resumed,
+  // is at its end.
+  template <typename Body, typename Finished>
+  auto run(size_t k, const Body& body, const Finished& finished) {
+    const Resume part{states_[k], whole_.pause, [&](const std::string& state) {
+                        states_[k] = state;
+                        whole_.save(encoded());
+                      }};
+    auto result = body(part);
+    if (whole_.pause) states_[k] = finished(result);
+    return result;
+  }
+
+ private:
+  std::string encoded() const {
+    std::array<uint64_t, kCount> sizes{};
+    for (size_t k = 0; k < kCount; ++k) sizes[k] = states_[k].size();
+    std::string bytes;
+    appendArray(bytes, sizes);
+    for (const std::string& state : states_) appendArray(bytes, state);
+    return bytes;
+  }
+
+  const Resume& whole_;
+  std::array<std::string, kCount> states_;
+};
+
+}  // namespace bnvpl::methods::estimate::both

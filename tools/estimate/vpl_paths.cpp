@@ -1,0 +1,103 @@
+#include "tools/estimate/vpl_paths.h"
+
+#include <algorithm>
+
+#include "core/resume.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr size_t kVplsPerUnit = 16;
+constexpr size_t unitsOf(size_t vpls) { return (vpls + kVplsPerUnit - 1) / kVplsPerUnit; }
+
+std::string encode(const std::vector<uint8_t>& done, const std::vector<PathSums>& sums) {
+  std::string bytes;
+  appendArray(bytes, done);
+  appendArray(bytes, sums);
+  return bytes;
+}
+
+}  // namespace
+
+double PathSums::variance() const {
+  const auto n = static_cast<double>(points);
+  if (points < 2) return 0.0;
+  return std::max(0.0, squares - meanFlux() * meanFlux() / n) * n / (n - 1.0);
+}
+
+PathSums VplPaths::gather(uint32_t vpl, uint64_t points) const {
+  PathSums r;
+  r.points = points;
+  Rng shift(settings_.key, vpl);
+  const double x = double{shift.next()}, y = double{shift.next()};
+  for (uint64_t k = 0; k < points; ++k) {
+    double atPoint = 0.0;
+    Rng rng(random64(settings_.key, vpl, 1), k);
+    ++r.rays;
+    coverage_.forEachLayer(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
+      atPoint += add(vpl, hit, area, rng, r);
+    });
+    r.squares += atPoint * atPoint;
+  }
+  return r;
+}
+
+// Exitance times the area that the point stands for. Returns its mean over the channels.
+double VplPaths::add(uint32_t vpl, const SurfacePoint& hit, float area, Rng& rng,
+                     PathSums& r) const {
+  const Bsdf matt(hit, Bsdf(in_.rays.scene(), hit).roughAlbedo());
+  const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
+  Vec3 first, later;
+  for (uint64_t j = 0; j < settings_.paths; ++j)
+    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, matt, weight, length_, rng, first, later);
+  r.paths += settings_.paths;
+  const Vec3 all = first + later;
+  if (!isFinite(all)) {
+    r.nonFinite += settings_.paths;
+    return 0.0;
+  }
+  const Vec3 offset = (hit.position - in_.vpls.position[vpl]) * (perReach_ / in_.vpls.radius[vpl]);
+  for (size_t c = 0; c < 3; ++c) {
+    r.flux[c] += double{all[c]};
+    r.firstBounce[c] += double{first[c]};
+    r.moment[c] += double{mean(all)} * double{offset[c]};
+  }
+  return double{mean(all)};
+}
+
+std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
+                                std::span<const uint64_t> points) {
+  std::vector<PathSums> sums(points.size());
+  std::vector<uint8_t> done(unitsOf(sums.size()));
+  const auto endOf = [&](size_t unit) { return std::min(sums.size(), (unit + 1) * kVplsPerUnit); };
+  const auto tell = [&](size_t unit) {
+    uint64_t all = 0;
+    for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i) all += points[i];
+    in.progress(gatherer.pathsOf(all));
+  };
+  if (!in.resume.state.empty()) {
+    std::string_view bytes = in.resume.state;
+    takeArray(bytes, done);
+    takeArray(bytes, sums);
+    requireAllTaken(bytes);
+  }
+  for (size_t unit = 0; in.progress && unit < done.size(); ++unit) {
+    if (done[unit]) tell(unit);
+  }
+  forUnitsLeft(
+      done, in.resume,
+      [&](size_t unit) {
+        for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
+          sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i]);
+        if (in.progress) tell(unit);
+      },
+      [&] { return encode(done, sums); });
+  return sums;
+}
+
+std::string finishedState(const std::vector<PathSums>& sums) {
+  return encode(std::vector<uint8_t>(unitsOf(sums.size()), 1), sums);
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,66 @@
+// What the methods of vpl-estimate share that gather a VPL's light where it stands: paths from
+// points of its surface back to the lights.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/estimate/estimate.h"
+#include "tools/estimate/vpl_surface.h"
+#include "transport/coverage.h"
+#include "transport/leaving_light.h"
+
+namespace bnvpl {
+
+inline constexpr Option kPathsOption =
+    countOption("paths", "4", 1u << 20, "", "paths from each of these points");
+
+// What a VPL sends, W, as its points have it.
+struct PathSums {  // without padding: it is saved as it lies
+  std::array<double, 3> flux{}, firstBounce{};
+  std::array<double, 3> moment{};  // of the points' offsets in units of its reach, by mean flux
+  double squares = 0.0;            // of the mean flux of a point
+  uint64_t points = 0, paths = 0, rays = 0, nonFinite = 0;
+
+  double meanFlux() const { return (flux[0] + flux[1] + flux[2]) / 3.0; }
+  double variance() const;  // of the mean flux, points taken as independent; 0 for a single one
+};
+
+class VplPaths {
+ public:
+  struct Settings {
+    uint64_t key, paths;  // from each point
+    unsigned maxBounces;  // at least 1: that at the VPL
+    float radius;         // how far a VPL reaches, r_max
+  };
+  VplPaths(const EstimateInputs& in, const Settings& settings)
+      : in_(in),
+        settings_(settings),
+        coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.rays),
+        length_{settings.maxBounces - 1},
+        perReach_(1.0f / settings.radius) {}
+
+  // Of one VPL, by so many points of its disk.
+  PathSums gather(uint32_t vpl, uint64_t points) const;
+  uint64_t pathsOf(uint64_t points) const { return points * settings_.paths; }
+
+ private:
+  double add(uint32_t vpl, const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const;
+
+  const EstimateInputs& in_;
+  Settings settings_;
+  Coverage coverage_;
+  PathLength length_;
+  float perReach_;
+};
+
+// Of all VPLs, by `points` of each. `in.resume` and `in.progress`, in paths, are those of this work
+// alone.
+std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
+                                std::span<const uint64_t> points);
+// The state with which that work, resumed, is at its end.
+std::string finishedState(const std::vector<PathSums>& sums);
+
+}  // namespace bnvpl
