@@ -17,7 +17,7 @@ constexpr std::array kOptions{
                 "rays from each VPL that learn from where light comes; fewer in a short render")};
 
 // Rays that learn are to cost little beside the samples, of which each has several.
-constexpr uint64_t kSamplesPerRay = 4;
+constexpr uint64_t kSamplesPerRay = 2;
 
 uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
   const Film& film = in.rays.scene().film;

@@ -9,12 +9,11 @@ namespace bnvpl {
 
 namespace {
 
-// Paths go on for sure where they will bring this share of what the first vertex shows. Ending them
-// sooner saves time and adds noise: of 0, 1 and 2 times their share, 2 has the least error for its
-// time in the Cornell box.
+// Paths go on for sure where they will bring half of what the first vertex shows. Ending more of them
+// takes less time and adds more noise.
 constexpr float kEager = 2.0f;
-// What the guide calls dark may not be: what is found there counts at most ten times.
-constexpr float kLeastSurvival = 0.1f;
+// What the guide calls dark may not be: what is found there counts at most three times.
+constexpr float kLeastSurvival = 0.3f;
 
 // The directions that a path goes on in from a rough vertex: the guide's for a share of the paths,
 // the BSDF's for the rest. One-sample MIS by the balance heuristic: a direction's density is that
