@@ -4,7 +4,9 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "formats/vpl_table.h"
 #include "spatial/reach_grid.h"
@@ -31,6 +33,9 @@ struct Compensation {
   std::function<Missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near,
                         Rng& rng)>
       missing;
+  // Factors of the VPLs' flux with which VPLs and rays together bring all light to some surface, one
+  // for each row of the table; empty: 1.
+  std::vector<float> gains = {};
   explicit operator bool() const { return missing != nullptr; }
 };
 
@@ -40,6 +45,7 @@ struct CompensateInputs {
   const RayScene& rays;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
   LightKind light;
+  const ProgressFn& progress;  // of preparations
 };
 
 using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;

@@ -23,7 +23,14 @@ class NearField {
                   Rng& rng) const;
   const Coverage& coverage() const { return coverage_; }
 
+  // Compensation::gains of VPL i, theory.md, eq. 2. VPLs shine from one place for a whole
+  // neighbourhood; what they would bring from the others, on average, over what they bring from
+  // there.
+  float gain(uint32_t vpl) const;
+
  private:
+  // What the VPL brings of the light that leaves a point by one ray, over all that arrives.
+  float brought(uint32_t vpl, Vec3 at, Vec3 normal, Point2 direction) const;
   // Of Missing: mean of the surface that the VPL speaks for; empty where that is not known.
   std::optional<Vec3> scatteredBy(uint32_t vpl) const;
 

@@ -86,9 +86,13 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const LightKind light = indirect ? lightKindNamed(options.text("light")) : LightKind{};
   const auto parts = std::make_shared<Parts>();
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
-  Gather gather = indirect ? makeGather(in, options, *parts) : Gather{};
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
-                                  .make({in.lit, in.rays, clamp, light}, options);
+                                  .make({in.lit, in.rays, clamp, light, in.progress}, options);
+  if (!compensation.gains.empty()) {
+    for (size_t i = 0; i < parts->vpls.size(); ++i)
+      parts->vpls.intensity[i] *= compensation.gains[parts->vpls.row[i]];
+  }
+  Gather gather = indirect ? makeGather(in, options, *parts) : Gather{};
   const bool wholePixels = gather.wholePixels;
   const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";
   const auto lightRays = learned ? static_cast<unsigned>(options.whole("light-rays")) : 0;
@@ -114,8 +118,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 }  // namespace
 
 extern const IntegratorMethod method;
-const IntegratorMethod method{"vpl", "direct light by shadow rays, indirect light from VPLs",
-                              kOptions, make, /*needsVpls=*/true, /*photons=*/false,
+const IntegratorMethod method{"vpl",
+                              "direct light by shadow rays, indirect light from VPLs",
+                              kOptions,
+                              make,
+                              /*needsVpls=*/true,
+                              /*photons=*/false,
                               /*gathers=*/true};
 
 }  // namespace bnvpl::methods::integrator::vpl
