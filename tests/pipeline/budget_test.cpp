@@ -46,7 +46,7 @@ TEST_F(BudgetRun, ATimeIsKeptAndItsImageRepeated) {
   const nlohmann::json done = stats();
   EXPECT_EQ(done["ended_by"], "time");
   EXPECT_LE(done["passes_time_s"].get<double>(), 4.0);
-  EXPECT_GT(done["passes_time_s"].get<double>(), 1.0);
+  EXPECT_GT(done["passes_time_s"].get<double>(), 0.5);
   EXPECT_TRUE(contains(r.out, "--passes " + passesDone() + " repeats this image")) << r.out;
   succeed("vpl-render",
           paths("--passes " + passesDone() + " --threads 3 " + more + " -o " + path("b.exr")));
@@ -89,7 +89,11 @@ TEST_F(BudgetRun, ThePreviewIsThereBeforeTheImage) {
 TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
-  shell("timeout --foreground -s INT 2 '" BNVPL_BIN "/vpl-render' " + paths("--time 1h" + work));
+  for (const char* seconds : {"2", "6", "18"}) {  // a busy machine may take long to begin
+    if (fs::exists(at("c"))) break;
+    shell(std::string("timeout --foreground -s INT ") + seconds + " '" BNVPL_BIN "/vpl-render' " +
+          paths("--time 1h" + work));
+  }
   ASSERT_TRUE(fs::exists(at("c")));
   fail("vpl-render", paths("--time 1h --seed 2" + work), kExitInput, {"seed was 1 and is now 2"});
   succeed("vpl-render", paths("--time 1s" + work));  // spent already: the pass under way ends
