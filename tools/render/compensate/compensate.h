@@ -11,7 +11,7 @@
 #include "formats/vpl_table.h"
 #include "spatial/reach_grid.h"
 #include "tools/common/method.h"
-#include "transport/rays.h"
+#include "transport/lights.h"
 #include "transport/virtual_light_kinds.h"
 
 namespace bnvpl {
@@ -43,8 +43,10 @@ struct Compensation {
 struct CompensateInputs {
   const VplTable& lit;
   const RayScene& rays;
+  const LightSet& lights;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
   LightKind light;
+  uint64_t seed;
   const ProgressFn& progress;  // of preparations
 };
 

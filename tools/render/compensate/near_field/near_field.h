@@ -23,14 +23,19 @@ class NearField {
                   Rng& rng) const;
   const Coverage& coverage() const { return coverage_; }
 
-  // Compensation::gains of VPL i, theory.md, eq. 2. VPLs shine from one place for a whole
-  // neighbourhood; what they would bring from the others, on average, over what they bring from
-  // there.
-  float gain(uint32_t vpl) const;
+  // Compensation::gains of VPL i, theory.md, eq. 2. It shines from one place for a whole
+  // neighbourhood: what it would bring from where its light leaves, over what it brings from there.
+  float gain(uint32_t vpl, const LightSet& lights, uint64_t key) const;
 
  private:
-  // What the VPL brings of the light that leaves a point by one ray, over all that arrives.
-  float brought(uint32_t vpl, Vec3 at, Vec3 normal, Point2 direction) const;
+  // What a ray from a point finds: the share that VPL i would bring there of the light of the
+  // point, and the light that comes from there, W/(m2 sr), as VPLs know it.
+  struct Found {
+    float brought = 0.0f, light = 0.0f;
+  };
+  Found look(uint32_t vpl, Vec3 at, Vec3 normal, Rng& rng) const;
+  // Of the surface that VPL i speaks for, world units squared; 0: not known.
+  float area(uint32_t vpl) const;
   // Of Missing: mean of the surface that the VPL speaks for; empty where that is not known.
   std::optional<Vec3> scatteredBy(uint32_t vpl) const;
 
