@@ -14,6 +14,7 @@
 
 #include "core/errors.h"
 #include "core/parallel.h"
+#include "core/shard.h"
 
 namespace bnvpl {
 
@@ -22,7 +23,19 @@ struct Resume {
   std::string state;                             // of earlier work, as save() got it, or empty
   std::function<bool()> pause;                   // from any thread: whether to begin no other unit
   std::function<void(const std::string&)> save;  // between units; may throw to end the work
+
+  Shard shard = {};                     // the units to do
+  const ShardSink* sink = nullptr;      // where what they brought goes, in place of a result
+  const ShardSource* source = nullptr;  // what all units brought, elsewhere
 };
+
+// Of so many units, those to do: 0, or kElsewhere for those of other shards.
+inline constexpr uint8_t kElsewhere = 2;
+inline std::vector<uint8_t> unitsToDo(size_t count, const Shard& shard) {
+  std::vector<uint8_t> done(count);
+  for (size_t i = 0; i < count; ++i) done[i] = shard.has(i) ? 0 : kElsewhere;
+  return done;
+}
 
 // Calls unit(i) for each i with done[i] == 0 and sets it. Whenever resume.pause() says so, the
 // units that were begun end, and resume.save(state()) is called unless nothing is left. The result

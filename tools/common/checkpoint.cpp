@@ -7,7 +7,7 @@
 namespace bnvpl {
 namespace {
 
-// The first thing in which two runs differ: "options photons: 10000000, now 5000000".
+// Of what stands at `path` in the two.
 std::string difference(const Json& before, const Json& now, const std::string& path) {
   if (!before.is_object() || !now.is_object())
     return path + " was " + before.dump() + " and is now " + now.dump();
@@ -29,6 +29,10 @@ std::string difference(const Json& before, const Json& now, const std::string& p
 
 }  // namespace
 
+std::string differenceOf(const Json& before, const Json& now) {
+  return difference(before, now, "");
+}
+
 void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
   CLI::Option* file =
       addFile(cli, "--checkpoint", options.file,
@@ -48,7 +52,7 @@ Checkpoint::Checkpoint(CheckpointOptions options, Json run)
   const Json theirs = Json::parse(found.run, nullptr, /*allow_exceptions=*/false);
   if (theirs != run_) {
     throw InputError(options_.file, "is the checkpoint of another run (" +
-                                        difference(theirs, run_, "") +
+                                        differenceOf(theirs, run_) +
                                         "); repeat that run's command, or name another file");
   }
   earlier_ = std::move(found.state);

@@ -9,6 +9,9 @@
 
 namespace bnvpl {
 
+// The first thing in which two runs differ: "options photons was 10000000 and is now 5000000".
+std::string differenceOf(const Json& before, const Json& now);
+
 struct CheckpointOptions {
   fs::path file;  // empty: none
   double everyS = 60.0;

@@ -37,7 +37,8 @@ std::string contentOf(const std::string& extension) {
                                                            {".exr", "an OpenEXR image"},
                                                            {".png", "a PNG picture"},
                                                            {".ply", "a PLY point cloud"},
-                                                           {".csv", "a CSV table"}};
+                                                           {".csv", "a CSV table"},
+                                                           {".shard", "a shard"}};
   return contents.at(extension);
 }
 

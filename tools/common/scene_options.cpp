@@ -38,6 +38,22 @@ CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::strin
   return option;
 }
 
+Json toJson(const SceneOptions& options) {
+  return {{"file", options.file.string()},
+          {"defines", options.defines},
+          {"camera", options.camera},
+          {"view", options.view.string()}};
+}
+
+SceneOptions sceneOptionsOf(const Json& json) {
+  SceneOptions options;
+  options.file = json.at("file").get<std::string>();
+  options.defines = json.at("defines").get<std::vector<std::string>>();
+  options.camera = json.at("camera").get<std::string>();
+  options.view = json.at("view").get<std::string>();
+  return options;
+}
+
 Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings) {
   Defines defines;
   for (const std::string& d : options.defines) {

@@ -19,6 +19,10 @@ void addSceneOptions(CLI::App& cli, SceneOptions& options);
 // The same for tools that need a scene at times: --scene SCENE in place of the argument.
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);
 
+// The options as JSON, for a file from which the scene is loaded again, and back.
+Json toJson(const SceneOptions& options);
+SceneOptions sceneOptionsOf(const Json& json);
+
 // Loads the scene, chooses the camera, and prints its warnings in the tool's name, once for all tools: silent is a tool
 // that reads a file made from this scene, as whoever made that has said them, and one that prints
 // them later.

@@ -1,11 +1,11 @@
 #include "tools/inspect/chain.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <unordered_map>
 
 #include "formats/vpl_io.h"
+#include "tools/common/shell_text.h"
 
 namespace bnvpl {
 namespace {
@@ -17,20 +17,9 @@ bool sameRecord(const StageRecord& a, const StageRecord& b) {
          a.inputs == b.inputs && a.viewHash == b.viewHash;
 }
 
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return std::isalnum(c) ||
-           std::string_view("-_./+=:,%@").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (plain) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string optionText(const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
-  if (value.is_string()) return quoted(value.get<std::string>());
+  if (value.is_string()) return shellWord(value.get<std::string>());
   if (!value.is_number_float()) return value.dump();
   char text[32];  // the shortest that gives this number back
   const auto end = std::to_chars(text, text + sizeof text, value.get<double>());
@@ -150,8 +139,8 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
 std::string commandOf(const StageRecord& record, const std::vector<std::string>& inputs,
                       const fs::path& output) {
   std::string command = record.tool;
-  for (const std::string& input : inputs) command += " " + quoted(input);
-  command += " -o " + quoted(output.string());
+  for (const std::string& input : inputs) command += " " + shellWord(input);
+  command += " -o " + shellWord(output.string());
   for (const auto& [name, value] : record.options.items()) {
     command += " --" + name + " " + optionText(value);
   }

@@ -6,49 +6,66 @@
 #include "tools/common/progress_meter.h"
 #include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
+#include "tools/common/shard.h"
 #include "tools/place/place.h"
+#include "tools/place/report.h"
 
 namespace bnvpl {
 namespace {
 
-constexpr double kBytesPerRow = 40;  // measured: 42
+constexpr Option kSpareOption =
+    realOption("shard-spare", "", 0, 10, "of its part",
+               "VPLs that a shard places besides; vpl-merge tells where it takes any");
 
-void report(const PlaceResult& placed, Summary& summary) {
-  summary.add("placed", placed.table.size(),
-              "placed " + std::to_string(placed.table.size()) + " on " +
-                  std::to_string(placed.paths) + " paths");
-  summary.add("paths", placed.paths);
-  summary.add("rays", placed.rays);
-  summary.addNonFinite(placed.nonFinite, "vertices of paths");
+struct Request {
+  SceneOptions scene;
+  fs::path output;
+  std::optional<Shard> shard;
+  double shardSpare = 0.0;
+  Given given;
+  std::string command;  // without --shard and -o
+};
+
+double memoryFor(const Request& request, uint64_t count) {
+  return request.shard ? 0.0 : kBytesPerPlaced * static_cast<double>(count);
 }
 
-int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Given& given,
-             const ToolOptions& tool) {
+int runPlace(const Request& request, const ToolOptions& tool) {
   Summary summary("vpl-place");
-  const Values options = resolve(placeSpec(), given);
+  const fs::path& output = request.output;
+  const Values options = resolve(placeSpec(), request.given);
   const uint64_t count = options.whole("count");
   RunFiles used;
-  used.reads("scene", sceneOptions.file).writes("-o", output, {".vpl"}).writes(tool).check();
-  requireMemory(kBytesPerRow * double(count), std::to_string(count) + " VPLs",
+  used.reads("scene", request.scene.file);
+  used.writes("-o", output, {request.shard ? kShardExtension : ".vpl"}).writes(tool).check();
+  requireMemory(memoryFor(request, count), std::to_string(count) + " VPLs",
                 "ask for fewer with -n");
-  const Scene scene = loadSceneFor("vpl-place", sceneOptions, Warnings::Silent);
+  const Scene scene = loadSceneFor("vpl-place", request.scene, Warnings::Silent);
   if (placeMethod(options).needsLight) scene.requireLight();
   printWarnings("vpl-place", scene.warnings);
   used.ready(scene.files);
   const RayScene rays(scene);
   const LightSet lights(rays);
 
-  ProgressMeter meter("VPLs", count, tool.quiet);
-  PlaceResult placed = place(rays, lights, options, meter.callback());
-
   Json record = stageRecord("vpl-place", recordOf(placeSpec(), options),
                             {{"scene", hashText(scene.contentHash)}});
   if (placeMethod(options).forView) record["view"] = viewRecord(scene);
-  placed.table.provenance = extendProvenance("", record);
   OutputSet files;
-  writeVpl(files.add(output), placed.table);
+  if (request.shard) {
+    ProgressMeter meter("VPLs", request.shard->shareOf(count), tool.quiet);
+    ShardOutput shard(files.add(output), *request.shard);
+    reportPlaced(placeShard(rays, lights, options, *request.shard, request.shardSpare, shard.sink(),
+                            meter.callback()),
+                 summary);
+    shard.finish({record, request.given, Json::object(), request.command, ""}, summary);
+  } else {
+    ProgressMeter meter("VPLs", count, tool.quiet);
+    PlaceResult placed = place(rays, lights, options, meter.callback());
+    placed.table.provenance = extendProvenance("", record);
+    writeVpl(files.add(output), placed.table);
+    reportPlaced(placed, summary);
+  }
   addDepfile(files, tool.depfile, output, scene.files);
-  report(placed, summary);
   summary.finish(tool, files);
   return kExitOk;
 }
@@ -60,14 +77,17 @@ int runPlace(const SceneOptions& sceneOptions, const fs::path& output, const Giv
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Drop candidate VPLs on the surfaces that light the view.", "vpl-place"};
-  Given given;
+  Request request;
   ToolOptions tool;
-  SceneOptions scene;
-  fs::path output;
-  addSceneOptions(cli, scene);
-  addFile(cli, "-o,--output", output, "candidates (.vpl)")->required();
-  addStageOptions(cli, placeSpec(), given);
+  addSceneOptions(cli, request.scene);
+  addFile(cli, "-o,--output", request.output, "candidates (.vpl)")->required();
+  addStageOptions(cli, placeSpec(), request.given);
+  addReal(cli, kSpareOption, request.shardSpare)
+      ->needs(addShardOption(cli, request.shard, "paths"));
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] { return runPlace(scene, output, given, tool); });
+  return runTool(cli, tool, argc, argv, [&] {
+    request.command = commandOf(cli);
+    return runPlace(request, tool);
+  });
 }

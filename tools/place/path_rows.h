@@ -1,7 +1,8 @@
 // What the methods of vpl-place share: paths in fixed chunks, and their rows in path order.
 #pragma once
 
-#include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/place/place.h"
@@ -24,13 +25,19 @@ struct PathRows {
 
 inline constexpr uint64_t kPathsPerChunk = 1024;
 
-// Calls tracePaths(begin, chunk) for the paths [begin, begin + kPathsPerChunk) of chunk after chunk
-// until there are `count` rows, and joins them. Cut: the last path may end in the middle, and there
-// are `count` rows exactly. Whole: the path that would exceed the count is left out, for its other
-// rows would weigh as much as all of it. Throws InputError when the effort has no end.
-using TracePaths = std::function<void(uint64_t begin, PathRows& chunk)>;
-enum class LastPath { Cut, Whole };
+// Traces chunk after chunk until there are `count` rows, and joins them. Throws InputError when the
+// effort has no end.
 PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
                         const ProgressFn& progress, const TracePaths& tracePaths);
+// The same in shards, whose units are chunks: place.h.
+PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Shard& shard,
+                       const ShardSink& sink, const ProgressFn& progress,
+                       const TracePaths& tracePaths);
+PlaceResult joinShards(uint64_t count, LastPath last, const ShardSource& source,
+                       const std::function<void(uint64_t unit)>& endedEarly);
+
+// A chunk as bytes. decode() throws InputError for what are not those of a chunk.
+std::string encode(const PathRows& chunk, uint64_t begin);
+PathRows decodeRows(std::string_view bytes, uint64_t begin);
 
 }  // namespace bnvpl

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "tools/place/path_rows.h"
+
 namespace bnvpl {
 
 namespace {
@@ -30,8 +32,27 @@ const PlaceMethod& placeMethod(const Values& options) {
 
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
                   const ProgressFn& progress) {
-  PlaceResult result = placeMethod(options).make({rays, lights, progress}, options);
+  const PlaceMethod& method = placeMethod(options);
+  PlaceResult result = collectRows(rays.scene().name(), options.whole("count"), method.last,
+                                   progress, method.make({rays, lights}, options));
+  method.finish(result);
   result.table.sceneHash = rays.scene().contentHash;
+  return result;
+}
+
+PlaceResult placeShard(const RayScene& rays, const LightSet& lights, const Values& options,
+                       const Shard& shard, double spare, const ShardSink& sink,
+                       const ProgressFn& progress) {
+  return traceShard(rays.scene().name(), options.whole("count"), spare, shard, sink, progress,
+                    placeMethod(options).make({rays, lights}, options));
+}
+
+PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ShardSource& source,
+                       const std::function<void(uint64_t unit)>& endedEarly) {
+  const PlaceMethod& method = placeMethod(options);
+  PlaceResult result = joinShards(options.whole("count"), method.last, source, endedEarly);
+  method.finish(result);
+  result.table.sceneHash = sceneHash;
   return result;
 }
 

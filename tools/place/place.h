@@ -1,7 +1,10 @@
 // The stage vpl-place without files: where VPLs might stand.
 #pragma once
 
+#include <functional>
+
 #include "core/progress.h"
+#include "core/shard.h"
 #include "formats/vpl_table.h"
 #include "tools/common/method.h"
 #include "transport/lights.h"
@@ -11,6 +14,7 @@ namespace bnvpl {
 
 struct PlaceResult {
   VplTable table;      // of stage Candidates or Lit, as the method says
+  uint64_t rows = 0;   // of the table, or handed to a shard's sink
   uint64_t paths = 0;  // traced until the count was reached
   uint64_t rays = 0;
   uint64_t nonFinite = 0;  // vertices or photons left out because a value was NaN or infinite
@@ -21,15 +25,24 @@ struct PlaceResult {
 struct PlaceInputs {
   const RayScene& rays;
   const LightSet& lights;
-  const ProgressFn& progress;  // counts VPLs
 };
 
-// Rows are in path order: the first N of 2N are those of N. Throws InputError when the scene yields
-// too few within a bounded effort.
+// Traces the paths [begin, begin + kPathsPerChunk) into a chunk without rows: path_rows.h. Called
+// from many threads.
+struct PathRows;
+using TracePaths = std::function<void(uint64_t begin, PathRows& chunk)>;
+
+// Cut: the last path may end in the middle, and there are `count` rows exactly. Whole: the path
+// that would exceed the count is left out, for its other rows would weigh as much as all of it.
+enum class LastPath { Cut, Whole };
+
+// Rows are in path order: the first N of 2N are those of N.
 struct PlaceMethod {
   std::string_view name, summary;
   std::span<const Option> options;
-  PlaceResult (*make)(const PlaceInputs&, const Values&);
+  TracePaths (*make)(const PlaceInputs&, const Values&);
+  void (*finish)(PlaceResult&);  // the stage, and the columns that follow from all rows together
+  LastPath last = LastPath::Cut;
   bool needsLight = false;  // a scene in which nothing shines is refused
   bool forView = true;      // the rows depend on camera and film
 };
@@ -39,8 +52,20 @@ std::span<const PlaceMethod* const> placeMethods();  // one for each folder besi
 const StageSpec& placeSpec();
 const PlaceMethod& placeMethod(const Values& options);
 
-// A pure function of the scene and the options: any number of threads gives the same bytes.
+// A pure function of the scene and the options: any number of threads gives the same bytes. Throws
+// InputError when the scene yields too few within a bounded effort. `progress` counts VPLs.
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
                   const ProgressFn& progress = {});
+
+// The paths of a shard, whose rows go to the sink; the result has none. Nobody knows before how
+// many paths give the count: a shard ends with its part of the rows and six standard deviations
+// more, for those that find fewer, and with `spare` of its part besides.
+PlaceResult placeShard(const RayScene& rays, const LightSet& lights, const Values& options,
+                       const Shard& shard, double spare, const ShardSink& sink,
+                       const ProgressFn& progress = {});
+// What place() gives, from the rows of all shards. `endedEarly` is called with the first unit that
+// is missing where they do not suffice, and throws.
+PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ShardSource& source,
+                       const std::function<void(uint64_t unit)>& endedEarly);
 
 }  // namespace bnvpl

@@ -85,21 +85,20 @@ void traceCameraPaths(const RayScene& rays, unsigned depth, uint64_t begin, uint
 // Camera paths over the whole film, stratified so that every prefix covers it evenly. Specular
 // vertices are passed through; each diffuse vertex after the first becomes a candidate that faces
 // the side it was seen from, up to `depth`.
-PlaceResult make(const PlaceInputs& in, const Values& options) {
+TracePaths make(const PlaceInputs& in, const Values& options) {
   const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceCamera);
   const auto depth = static_cast<unsigned>(options.whole("depth"));
-  PlaceResult result = collectRows(in.rays.scene().name(), options.whole("count"), LastPath::Cut,
-                                   in.progress, [&](uint64_t begin, PathRows& chunk) {
-                                     traceCameraPaths(in.rays, depth, begin, key, chunk);
-                                   });
-  result.table.stage = VplStage::Candidates;
-  return result;
+  return [&rays = in.rays, key, depth](uint64_t begin, PathRows& chunk) {
+    traceCameraPaths(rays, depth, begin, key, chunk);
+  };
 }
+
+void finish(PlaceResult& result) { result.table.stage = VplStage::Candidates; }
 
 }  // namespace
 
 extern const PlaceMethod method;
 const PlaceMethod method{"camera", "candidates for vpl-eliminate, where camera paths bounce to",
-                         kOptions, make};
+                         kOptions, make, finish};
 
 }  // namespace bnvpl::methods::place::camera

@@ -31,17 +31,18 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned dept
   isBlack(fate.escaped) ? ++chunk.absorbed : ++chunk.escaped;
 }
 
-// Of stage Lit, with the flux that leaves each hit: it needs no further stage.
-PlaceResult make(const PlaceInputs& in, const Values& options) {
+TracePaths make(const PlaceInputs& in, const Values& options) {
   in.lights.requirePower();
   const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceLight);
   const auto depth = static_cast<unsigned>(options.whole("light-depth"));
-  PlaceResult result =
-      collectRows(in.rays.scene().name(), options.whole("count"), LastPath::Whole, in.progress,
-                  [&](uint64_t begin, PathRows& chunk) {
-                    for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
-                      tracePhotonPath(in.rays, in.lights, depth, path, key, chunk);
-                  });
+  return [&rays = in.rays, &lights = in.lights, key, depth](uint64_t begin, PathRows& chunk) {
+    for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
+      tracePhotonPath(rays, lights, depth, path, key, chunk);
+  };
+}
+
+// Of stage Lit, with the flux that leaves each hit: it needs no further stage.
+void finish(PlaceResult& result) {
   VplTable& t = result.table;
   t.stage = VplStage::Lit;
   // Each VPL carries the flux of its photon; the estimate divides by the photons that were started.
@@ -55,7 +56,6 @@ PlaceResult make(const PlaceInputs& in, const Values& options) {
   t.radius = std::move(radii.radius);
   t.areaEstimate = radii.area;
   t.rMax = radii.rMax;
-  return result;
 }
 
 }  // namespace
@@ -66,6 +66,8 @@ const PlaceMethod method{
     "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
     kOptions,
     make,
+    finish,
+    LastPath::Whole,
     /*needsLight=*/true,
     /*forView=*/false};
 

@@ -1,0 +1,138 @@
+// --shard and vpl-merge: stages whose work is done in parts.
+#include <algorithm>
+#include <sstream>
+
+#include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
+
+namespace bnvpl {
+namespace {
+
+class ShardRun : public PipelineTest {
+ protected:
+  // The shards I/N of a command, as I.shard; returns their names, last first.
+  std::string makeShards(const std::string& name, const std::string& arguments, int of) const {
+    std::string all;
+    for (int i = 1; i <= of; ++i) {
+      const std::string file = path(std::to_string(i) + ".shard");
+      succeed(name, arguments + " --shard " + std::to_string(i) + "/" + std::to_string(of) +
+                        " --quiet -o " + file);
+      all = file + " " + all;
+    }
+    return all;
+  }
+  // The command in so many shards gives the bytes of `whole`.
+  void expectTheSame(const std::string& name, const std::string& arguments, int of,
+                     const std::string& whole) const {
+    const std::string merged = "merged" + fs::path(whole).extension().string();
+    succeed("vpl-merge", makeShards(name, arguments, of) + "--quiet -o " + path(merged));
+    EXPECT_EQ(readAll(at(merged)), readAll(at(whole))) << name << arguments << " in " << of;
+  }
+  void expectTheSameInParts(const std::string& name, const std::string& arguments,
+                            const std::string& whole, const std::vector<int>& counts) const {
+    succeed(name, arguments + " --quiet -o " + path(whole));
+    for (const int of : counts) expectTheSame(name, arguments, of, whole);
+  }
+};
+
+TEST_F(ShardRun, PlaceGivesTheSameBytesInAnyNumber) {
+  expectTheSameInParts("vpl-place", scene_ + " -n 20k --seed 5", "whole.vpl", {1, 7, 64});
+  expectTheSameInParts("vpl-place", scene_ + " -n 3k --depth 5", "deep.vpl", {3});
+  expectTheSameInParts("vpl-place", scene_ + " -n 3k --method light", "light.vpl", {1, 7});
+}
+
+TEST_F(ShardRun, RangesAndMergesOfMergesGiveTheSameBytes) {
+  const std::string place = scene_ + " -n 9k --quiet";
+  succeed("vpl-place", place + " -o " + path("whole.vpl"));
+  for (const char* part : {"1", "2-4", "5", "6-7"})
+    succeed("vpl-place",
+            place + " --shard " + part + "/7 -o " + path(part + std::string(".shard")));
+  succeed("vpl-merge", path("6-7.shard") + " " + path("1.shard") + " -o " + path("ends.shard"));
+  succeed("vpl-merge", path("5.shard") + " " + path("2-4.shard") + " -o " + path("middle.shard"));
+  succeed("vpl-merge",
+          path("middle.shard") + " " + path("ends.shard") + " -o " + path("all.shard"));
+  for (const char* parts :
+       {"all.shard", "ends.shard middle.shard", "5.shard 2-4.shard ends.shard"}) {
+    std::string files, words = parts;
+    std::replace(words.begin(), words.end(), ' ', '\n');
+    std::istringstream lines(words);
+    for (std::string name; std::getline(lines, name);) files += path(name) + " ";
+    succeed("vpl-merge", files + "-o " + path("merged.vpl"));
+    EXPECT_EQ(readAll(at("merged.vpl")), readAll(at("whole.vpl"))) << parts;
+  }
+}
+
+// What the message names makes the set complete.
+TEST_F(ShardRun, MissingShardsAreNamedWithTheCommandThatMakesThem) {
+  const std::string place = scene_ + " -n 2k";
+  succeed("vpl-place", place + " -o " + path("whole.vpl") + " --quiet");
+  makeShards("vpl-place", place, 6);
+  const std::string three = path("1.shard") + " " + path("4.shard") + " " + path("5.shard");
+  const std::string merge = three + " -o " + path("merged.vpl") + " --quiet";
+  const Outcome r = tool("vpl-merge", merge);
+  EXPECT_EQ(r.code, kExitInput);
+  EXPECT_TRUE(contains(r.err, "of 6 shards these are missing: 2-3, 6")) << r.err;
+  EXPECT_FALSE(fs::exists(at("merged.vpl")));
+  const size_t command = r.err.find("vpl-place ");
+  ASSERT_NE(command, std::string::npos) << r.err;
+  const std::string made = r.err.substr(command, r.err.find('\n') - command);
+  ASSERT_EQ(shell("'" BNVPL_BIN "'/" + made).code, kExitOk) << made;
+  succeed("vpl-merge", path("2-3-of-6.shard") + " " + path("6.shard") + " " + merge);
+  EXPECT_EQ(readAll(at("merged.vpl")), readAll(at("whole.vpl")));
+}
+
+TEST_F(ShardRun, WhatDoesNotBelongTogetherIsRefusedByName) {
+  const std::string place = scene_ + " -n 2k";
+  makeShards("vpl-place", place, 3);
+  succeed("vpl-place", place + " --shard 2-3/3 -o " + path("2-3.shard"));
+  succeed("vpl-place", place + " --shard 2/4 -o " + path("four.shard"));
+  succeed("vpl-place", scene_ + " -n 3k --shard 2/3 -o " + path("more.shard"));
+  succeed("vpl-place", "'" BNVPL_SOURCE "/scenes/cornell/scene.toml' -n 2k --shard 2/3 -o " +
+                           path("other.shard"));
+  const auto refuse = [&](const std::string& names, const std::vector<std::string>& parts) {
+    fail("vpl-merge", path("1.shard") + " " + names + " -o " + path("x.vpl"), kExitInput, parts);
+  };
+  refuse(path("2.shard") + " " + path("2-3.shard"), {"2.shard", "2-3.shard", "both hold shard 2"});
+  refuse(path("1.shard"), {"both hold shard 1 of 3", "leave one of them out"});
+  refuse(path("four.shard"), {"four.shard: is one of 4 shards"});
+  refuse(path("more.shard"), {"more.shard: is of another run", "count was 2000 and is now 3000"});
+  refuse(path("other.shard"), {"other.shard: is of another run", "inputs scene was"});
+  refuse(path("missing.shard"), {"missing.shard: cannot be read"});
+  succeed("vpl-place", place + " -o " + path("whole.vpl"));
+  refuse(path("whole.vpl"), {"whole.vpl: is no shard"});
+  EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+TEST_F(ShardRun, DamagedShardsAreRefusedByName) {
+  const std::string shards = makeShards("vpl-place", scene_ + " -n 2k", 2);
+  const std::string bytes = readAll(at("2.shard"));
+  for (const size_t length :
+       {size_t{0}, size_t{12}, size_t{30}, bytes.size() / 2, bytes.size() - 1}) {
+    write("2.shard", bytes.substr(0, length));
+    fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"2.shard: "});
+  }
+  for (size_t i = 0; i < 40; ++i) {
+    std::string damaged = bytes;
+    char& c = damaged[bytes.size() * i / 40];
+    c = static_cast<char>(c ^ 4);
+    write("2.shard", damaged);
+    fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"2.shard: "});
+  }
+  write("2.shard", bytes + "x");
+  fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"2.shard: "});
+  EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+TEST_F(ShardRun, PartsAndNamesThatMeanNothingAreRefused) {
+  const std::string place = scene_ + " -n 2k -o " + path("x.shard");
+  for (const char* part : {"0/3", "4/3", "3-2/3", "1", "1/", "/3", "a/3", "1-/3", "1/0", "-1/3"})
+    fail("vpl-place", place + " --shard=" + part, kExitUsage, {"--shard", "such as 3/64"});
+  fail("vpl-place", scene_ + " -o " + path("x.vpl") + " --shard 1/2", kExitUsage, {"x.shard"});
+  fail("vpl-place", place, kExitUsage, {"x.vpl"});
+  makeShards("vpl-place", scene_ + " -n 2k", 1);
+  fail("vpl-merge", path("1.shard") + " -o " + path("x.exr"), kExitUsage, {"x.vpl or x.shard"});
+  fail("vpl-merge", path("1.shard") + " -o " + path("1.shard"), kExitUsage, {"same file"});
+}
+
+}  // namespace
+}  // namespace bnvpl

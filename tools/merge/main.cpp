@@ -1,0 +1,74 @@
+// vpl-merge: from the shards of a stage to the very bytes that the stage writes without --shard.
+//   vpl-merge parts/*.shard -o candidates.vpl
+#include <algorithm>
+
+#include "core/files.h"
+#include "tools/common/exit_codes.h"
+#include "tools/common/run_files.h"
+#include "tools/merge/merge.h"
+
+namespace bnvpl {
+namespace {
+
+const MergeStage& stageOf(const ShardSet& shards) {
+  const std::string tool = shards.whole().run.value("tool", "");
+  const auto stages = mergeStages();
+  const auto found = std::ranges::find(stages, tool, &MergeStage::tool);
+  if (found == stages.end())
+    throw InputError("shards of " + tool + " cannot be merged; name those of another stage");
+  return *found;
+}
+
+int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
+             const ToolOptions& tool) {
+  Summary summary("vpl-merge");
+  ShardSet shards(inputs);
+  const MergeStage& stage = stageOf(shards);
+  RunFiles used;
+  for (const fs::path& file : inputs) used.reads("shard", file);
+  used.writes("-o", output.product, {std::string(stage.extension), kShardExtension});
+  used.writes("--png", output.png, {".png"}).writes(tool).check();
+  const bool toShard = lowerExtension(output.product) == kShardExtension;
+  if (!output.png.empty() && (toShard || !stage.image))
+    throw UsageError("--png is a preview of an image; leave it out");
+  if (!toShard) shards.requireComplete();
+  used.ready();
+  OutputSet files;
+  std::vector<fs::path> read;
+  if (toShard) {
+    shards.writeTo(files.add(output.product));
+  } else {
+    read = stage.merge(shards, output, files, summary);
+    shards.verifyRest();
+  }
+  summary.add("shards", inputs.size(), "merged " + std::to_string(inputs.size()) + " files");
+  read.insert(read.end(), inputs.begin(), inputs.end());
+  addDepfile(files, tool.depfile, output.product, read);
+  summary.finish(tool, files);
+  return kExitOk;
+}
+
+}  // namespace
+}  // namespace bnvpl
+
+// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
+int main(int argc, char** argv) {
+  using namespace bnvpl;
+  CLI::App cli{"Put the shards of a stage together.", "vpl-merge"};
+  std::vector<fs::path> inputs;
+  MergeOutput output;
+  ToolOptions tool;
+  addFile(cli, "shards", inputs, "that a stage made with --shard (.shard), in any order")
+      ->required();
+  addFile(cli, "-o,--output", output.product,
+          "what the stage writes (.vpl, .exr); or a shard of some of its parts (.shard)")
+      ->required();
+  addFile(cli, "--png", output.png, "of an image, also write a preview");
+  addToolOptions(cli, tool);
+  addDepfileOption(cli, tool);
+  return runTool(cli, tool, argc, argv, [&] {
+    MergeOutput asked = output;
+    asked.quiet = tool.quiet;
+    return runMerge(inputs, asked, tool);
+  });
+}

@@ -1,0 +1,33 @@
+// From the shards of a whole to what the whole run writes. A stage is one entry of mergeStages().
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "tools/common/run_tool.h"
+#include "tools/merge/shard_set.h"
+
+namespace bnvpl {
+
+struct MergeOutput {
+  fs::path product, png;  // png empty: none
+  std::string exposure;   // of the png; empty: that of the shards
+  bool quiet = false;
+};
+
+struct MergeStage {
+  std::string_view tool;       // whose shards these are
+  std::string_view extension;  // of its product
+  // Adds the product to `files` and its figures to the summary. Returns the files that it read
+  // besides the shards.
+  std::vector<fs::path> (*merge)(ShardSet& shards, const MergeOutput& output, OutputSet& files,
+                                 Summary& summary);
+  bool image = false;  // takes a png
+};
+std::span<const MergeStage> mergeStages();
+
+std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
+                                  Summary& summary);
+
+}  // namespace bnvpl

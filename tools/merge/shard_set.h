@@ -1,0 +1,67 @@
+// The shards of one whole, as vpl-merge has been given them.
+#pragma once
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tools/common/shard.h"
+
+namespace bnvpl {
+
+class ShardSet {
+ public:
+  // Reads what the files say of themselves. Throws InputError, which names file and cure, for
+  // files that are damaged, of another run, build or number of parts, and for parts that two hold.
+  explicit ShardSet(const std::vector<fs::path>& files);
+  ShardSet(const ShardSet&) = delete;
+  ShardSet& operator=(const ShardSet&) = delete;
+
+  const ShardRun& whole() const { return whole_; }
+  size_t files() const { return files_.size(); }
+  uint64_t of() const { return of_; }
+  const ShardParts& parts() const { return parts_; }
+  // Throws InputError with the command that makes what is missing.
+  void requireComplete() const;
+  // The command that makes those parts, `more` being further options.
+  std::string commandFor(const Shard& shard, const std::string& more = "") const;
+
+  ShardSource source();  // borrows this
+  // Reads the records that nobody has asked for. Throws InputError for one that is damaged.
+  void verifyRest();
+  void writeTo(AtomicFile& output);  // as one shard
+
+ private:
+  struct Record {
+    size_t work;  // in works_
+    uint64_t unit;
+    size_t file;
+    uint64_t offset;
+    ShardBlock block;
+    bool verified = false;
+  };
+  struct Holder {  // of a range of parts
+    uint64_t first, last;
+    size_t file;
+  };
+  size_t workNamed(std::string_view name);
+  void takeInfo(size_t file, const std::string& text, std::vector<Holder>& holders);
+  void takeRecords(size_t file, const ShardReader& reader);
+  void requireSameRun(const fs::path& file, const ShardRun& run, uint64_t of) const;
+  void joinParts(std::vector<Holder>& holders);
+  std::optional<std::string> record(std::string_view work, uint64_t unit);
+  std::string read(Record& record);
+  std::vector<int64_t> sums(std::string_view work, size_t count) const;
+
+  std::vector<fs::path> files_;
+  ShardRun whole_;
+  uint64_t of_ = 0;
+  ShardParts parts_;
+  std::vector<std::string> works_;
+  std::vector<std::pair<std::string, size_t>> sums_;  // works with sums, and how many
+  std::vector<Record> records_;                       // by work and unit
+  std::ifstream open_;                                // the file that was read last
+  size_t openFile_ = SIZE_MAX;
+};
+
+}  // namespace bnvpl
