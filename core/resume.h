@@ -74,6 +74,24 @@ void takeArray(std::string_view& bytes, Array& array) {
   bytes.remove_prefix(view.size());
 }
 
+// What a shard brought of one unit, which is nothing but `array`.
+template <typename Array>
+void takeRecord(const ShardSource& source, std::string_view work, uint64_t unit, Array&& array) {
+  const auto bytes = source.record(work, unit);
+  const size_t size = std::as_bytes(std::span(array)).size();
+  if (!bytes || bytes->size() != size) {
+    throw InputError("the shards hold no unit " + std::to_string(unit) + " of the " +
+                     std::string(work) + "; make them again");
+  }
+  if (size > 0) std::memcpy(std::as_writable_bytes(std::span(array)).data(), bytes->data(), size);
+}
+template <typename Array>
+void giveRecord(const ShardSink& sink, std::string_view work, uint64_t unit, const Array& array) {
+  std::string bytes;
+  appendArray(bytes, array);
+  sink.record(work, unit, bytes);
+}
+
 inline void requireAllTaken(std::string_view bytes) {
   if (!bytes.empty())
     throw InputError("the state of the checkpoint is too long; delete it and start again");

@@ -8,34 +8,40 @@
 #include "tools/common/progress_meter.h"
 #include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
+#include "tools/common/shard.h"
 #include "tools/estimate/report.h"
 
 namespace bnvpl {
 namespace {
 
-// Measured: 600 a VPL; each thread adds up sums of its own (112 a VPL).
-constexpr double kBytesPerVpl = 400, kBytesPerVplAndThread = 112;
+// Measured: 600 a VPL; each thread adds up sums of its own.
+constexpr double kBytesPerVplAndThread = 112;
 
-struct Paths {
+struct Request {
   SceneOptions scene;
   fs::path input, output;
   CheckpointOptions checkpoint;
+  std::optional<Shard> shard;
+  Given given;
+  std::string command;  // without --shard and -o
 };
 
-int runEstimate(const Paths& paths, const Given& given, const ToolOptions& tool) {
+int runEstimate(const Request& request, const ToolOptions& tool) {
   Summary summary("vpl-estimate");
-  const Values options = resolve(estimateSpec(), given);
+  const Values options = resolve(estimateSpec(), request.given);
+  const auto& shard = request.shard;
   RunFiles used;
-  used.reads("scene", paths.scene.file).reads("vpls", paths.input);
-  used.writes("-o", paths.output, {".vpl"}).writes("--checkpoint", paths.checkpoint.file);
+  used.reads("scene", request.scene.file).reads("vpls", request.input);
+  used.writes("-o", request.output, {shard ? kShardExtension : ".vpl"});
+  used.writes("--checkpoint", request.checkpoint.file);
   used.writes(tool).check();
-  requireMemoryFor(paths.input, kBytesPerVpl + kBytesPerVplAndThread * threadsInUse(),
+  requireMemoryFor(request.input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),
                    "keep fewer with vpl-eliminate -n, or lower --threads");
-  const VplTable vpls = readVpl(paths.input, VplStage::Eliminated);
-  const Scene scene = loadSceneFor("vpl-estimate", paths.scene, Warnings::Silent);
+  const VplTable vpls = readVpl(request.input, VplStage::Eliminated);
+  const Scene scene = loadSceneFor("vpl-estimate", request.scene, Warnings::Silent);
   scene.requireLight();
   used.ready(scene.files);
-  requireSameScene(paths.input, vpls.sceneHash, scene,
+  requireSameScene(request.input, vpls.sceneHash, scene,
                    "rerun vpl-place and vpl-eliminate on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);
@@ -43,19 +49,33 @@ int runEstimate(const Paths& paths, const Given& given, const ToolOptions& tool)
   const Json record =
       stageRecord("vpl-estimate", recordOf(estimateSpec(), options),
                   {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
-  Checkpoint checkpoint(paths.checkpoint, record);
+  Checkpoint checkpoint(request.checkpoint, withShard(record, shard));
   const Work work = estimateWork(vpls, options);
-  ProgressMeter meter(std::string(work.unit), work.count, tool.quiet);
-  EstimateResult result =
-      estimate(vpls, rays, lights, options, meter.callback(), checkpoint.resume());
-
-  result.table.provenance = extendProvenance(vpls.provenance, record);
+  ProgressMeter meter(std::string(work.unit), shard ? shard->shareOf(work.count) : work.count,
+                      tool.quiet);
+  const auto result = [&](const Resume& resume) {
+    return estimate(vpls, rays, lights, options, meter.callback(), resume);
+  };
   OutputSet files;
-  writeVpl(files.add(paths.output), result.table);
+  AtomicFile& output = files.add(request.output);
+  if (shard) {
+    const ShardRun run{record,
+                       request.given,
+                       {{"scene", toJson(request.scene)}, {"vpls", request.input.string()}},
+                       request.command,
+                       ""};
+    ShardOutput part(output, *shard);
+    reportShard(result(part.only(checkpoint.resume())), summary);
+    part.finish(run, summary);
+  } else {
+    EstimateResult whole = result(checkpoint.resume());
+    whole.table.provenance = extendProvenance(vpls.provenance, record);
+    writeVpl(output, whole.table);
+    reportEstimate(whole, summary);
+  }
   std::vector<fs::path> read = scene.files;
-  read.push_back(paths.input);
-  addDepfile(files, tool.depfile, paths.output, read);
-  reportEstimate(result, summary);
+  read.push_back(request.input);
+  addDepfile(files, tool.depfile, request.output, read);
   summary.finish(tool, files);
   checkpoint.remove();
   return kExitOk;
@@ -68,15 +88,18 @@ int runEstimate(const Paths& paths, const Given& given, const ToolOptions& tool)
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Find the flux that leaves each VPL's share of the surface.", "vpl-estimate"};
-  Given given;
   ToolOptions tool;
-  Paths paths;
-  addSceneOptions(cli, paths.scene);
-  addFile(cli, "vpls", paths.input, "from vpl-eliminate (.vpl)")->required();
-  addFile(cli, "-o,--output", paths.output, "lit VPLs (.vpl)")->required();
-  addStageOptions(cli, estimateSpec(), given);
-  addCheckpointOptions(cli, paths.checkpoint);
+  Request request;
+  addSceneOptions(cli, request.scene);
+  addFile(cli, "vpls", request.input, "from vpl-eliminate (.vpl)")->required();
+  addFile(cli, "-o,--output", request.output, "lit VPLs (.vpl)")->required();
+  addStageOptions(cli, estimateSpec(), request.given);
+  addCheckpointOptions(cli, request.checkpoint);
+  addShardOption(cli, request.shard, "photons, or of the VPLs for paths");
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] { return runEstimate(paths, given, tool); });
+  return runTool(cli, tool, argc, argv, [&] {
+    request.command = commandOf(cli);
+    return runEstimate(request, tool);
+  });
 }

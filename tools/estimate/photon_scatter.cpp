@@ -15,6 +15,7 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
+constexpr std::string_view kWork = "photons";
 constexpr uint64_t rangesOf(uint64_t photons) {
   return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
 }
@@ -155,6 +156,10 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   const PhotonShares& shares = run.shares;
   const ProgressFn& progress = in.progress;
   const Resume& resume = in.resume;
+  if (resume.source) {
+    const size_t vpls = in.vpls.size();
+    return sumsOf(resume.source->sums(kWork, integersFor(vpls)), vpls);
+  }
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());
@@ -178,14 +183,14 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
         },
         sums);
   };
-  std::vector<uint8_t> done(rangesOf(shares.total()));
+  std::vector<uint8_t> done = unitsToDo(rangesOf(shares.total()), resume.shard);
   PhotonSums before = fresh();
   if (!resume.state.empty()) decode(resume.state, done, before);
   const auto photonsOf = [&](size_t range) {
     return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
   };
   for (size_t range = 0; progress && range < done.size(); ++range) {
-    if (done[range]) progress(photonsOf(range));
+    if (done[range] == 1) progress(photonsOf(range));
   }
   const auto soFar = [&] {
     PhotonSums total = before;
@@ -200,7 +205,9 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
         if (progress) progress(count);
       },
       [&] { return encode(done, soFar()); });
-  return soFar();
+  PhotonSums sums = soFar();
+  if (resume.sink) resume.sink->sums(kWork, integersOf(sums));
+  return sums;
 }
 
 std::string finishedState(const PhotonSums& sums, uint64_t photons) {
@@ -260,7 +267,7 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
   const PhotonSums sums = tracePhotons(in, run, rule);
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
   fillTable(result.table, sums, scatter);
-  if (options.on("recentre"))
+  if (options.on("recentre") && !in.resume.sink)
     recentre(result.table, centres(result.table, sums, scatter.photonPower()), in.rays);
   return result;
 }

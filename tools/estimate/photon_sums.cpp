@@ -4,6 +4,14 @@
 
 namespace bnvpl {
 
+namespace {
+
+constexpr size_t kPerVpl = sizeof(VplSum) / sizeof(int64_t), kCounts = 4;
+using VplIntegers = std::array<int64_t, kPerVpl>;
+static_assert(sizeof(VplIntegers) == sizeof(VplSum));
+
+}  // namespace
+
 void VplSum::add(const VplSum& o) {
   for (size_t c = 0; c < 3; ++c) {
     addChecked(flux[c], o.flux[c]);
@@ -42,6 +50,36 @@ void decode(std::string_view bytes, std::vector<uint8_t>& done, PhotonSums& sums
   requireAllTaken(bytes);
   sums.hits = counts[0], sums.rays = counts[1];
   sums.guardRays = counts[2], sums.nonFinite = counts[3];
+}
+
+size_t integersFor(size_t vpls) { return vpls * kPerVpl + kTallies + kCounts; }
+
+std::vector<int64_t> integersOf(const PhotonSums& sums) {
+  const size_t vpls = sums.vpl.size();
+  std::vector<int64_t> all(vpls * kPerVpl);
+  for (size_t i = 0; i < vpls; ++i) {
+    const auto values = std::bit_cast<VplIntegers>(sums.vpl[i]);
+    for (size_t k = 0; k < kPerVpl; ++k) all[k * vpls + i] = values[k];
+  }
+  all.insert(all.end(), sums.tally.begin(), sums.tally.end());
+  for (const uint64_t count : {sums.hits, sums.rays, sums.guardRays, sums.nonFinite})
+    all.push_back(static_cast<int64_t>(count));
+  return all;
+}
+
+PhotonSums sumsOf(std::span<const int64_t> integers, size_t vpls) {
+  PhotonSums sums;
+  sums.vpl.resize(vpls);
+  for (size_t i = 0; i < vpls; ++i) {
+    VplIntegers values;
+    for (size_t k = 0; k < kPerVpl; ++k) values[k] = integers[k * vpls + i];
+    sums.vpl[i] = std::bit_cast<VplSum>(values);
+  }
+  const auto rest = integers.subspan(vpls * kPerVpl);
+  std::copy_n(rest.begin(), kTallies, sums.tally.begin());
+  const auto count = [&](size_t k) { return static_cast<uint64_t>(rest[kTallies + k]); };
+  sums.hits = count(0), sums.rays = count(1), sums.guardRays = count(2), sums.nonFinite = count(3);
+  return sums;
 }
 
 }  // namespace bnvpl

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -81,5 +82,10 @@ struct PhotonSums {
 // bytes are not those of as many.
 std::string encode(const std::vector<uint8_t>& done, const PhotonSums& sums);
 void decode(std::string_view bytes, std::vector<uint8_t>& done, PhotonSums& sums);
+
+// The same sums as integers that add up, each of its kind behind the other; and back.
+std::vector<int64_t> integersOf(const PhotonSums& sums);
+size_t integersFor(size_t vpls);
+PhotonSums sumsOf(std::span<const int64_t> integers, size_t vpls);
 
 }  // namespace bnvpl

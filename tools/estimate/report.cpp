@@ -32,7 +32,8 @@ constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
 // Why VPLs are dark, and the cure.
 std::string causeOfDark(const EstimateResult& result) {
   if (result.paths > 0 && result.energy.photons > 0)
-    return "neither photons nor paths brought light there; raise --photons, or keep fewer VPLs with "
+    return "neither photons nor paths brought light there; raise --photons, or keep fewer VPLs "
+           "with "
            "vpl-eliminate -n";
   if (result.paths > 0)
     return "no path found a light from there; raise --points or --paths, or use --method guarded";
@@ -96,6 +97,10 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
 
 }  // namespace
 
+void reportShard(const EstimateResult& result, Summary& summary) {
+  summary.addNonFinite(result.energy.nonFinite, result.paths > 0 ? "paths" : "photons");
+}
+
 void reportEstimate(const EstimateResult& result, Summary& summary) {
   const VplTable& vpls = result.table;
   const bool photons = result.paths == 0;
@@ -111,7 +116,9 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
   summary.add("median_relative_error", medianError(vpls), line);
   summary.add(photons ? "vpls_without_photon" : "vpls_without_light", dark);
   warnOfDark(dark, result);
-  summary.addNonFinite(result.energy.nonFinite, photons ? "photons" : result.energy.photons > 0 ? "photons and paths" : "paths");
+  summary.addNonFinite(result.energy.nonFinite, photons                     ? "photons"
+                                                : result.energy.photons > 0 ? "photons and paths"
+                                                                            : "paths");
 }
 
 }  // namespace bnvpl

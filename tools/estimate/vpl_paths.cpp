@@ -9,6 +9,7 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kVplsPerUnit = 16;
+constexpr std::string_view kWork = "paths";
 constexpr size_t unitsOf(size_t vpls) { return (vpls + kVplsPerUnit - 1) / kVplsPerUnit; }
 
 std::string encode(const std::vector<uint8_t>& done, const std::vector<PathSums>& sums) {
@@ -69,30 +70,43 @@ double VplPaths::add(uint32_t vpl, const SurfacePoint& hit, float area, Rng& rng
 std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
                                 std::span<const uint64_t> points) {
   std::vector<PathSums> sums(points.size());
-  std::vector<uint8_t> done(unitsOf(sums.size()));
+  const Resume& resume = in.resume;
+  std::vector<uint8_t> done = unitsToDo(unitsOf(sums.size()), resume.shard);
   const auto endOf = [&](size_t unit) { return std::min(sums.size(), (unit + 1) * kVplsPerUnit); };
   const auto tell = [&](size_t unit) {
     uint64_t all = 0;
     for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i) all += points[i];
     in.progress(gatherer.pathsOf(all));
   };
-  if (!in.resume.state.empty()) {
-    std::string_view bytes = in.resume.state;
+  const auto ofUnit = [&](size_t unit) {
+    const size_t begin = unit * kVplsPerUnit;
+    return std::span(sums).subspan(begin, endOf(unit) - begin);
+  };
+  if (resume.source) {
+    for (size_t unit = 0; unit < done.size(); ++unit)
+      takeRecord(*resume.source, kWork, unit, ofUnit(unit));
+    return sums;
+  }
+  if (!resume.state.empty()) {
+    std::string_view bytes = resume.state;
     takeArray(bytes, done);
     takeArray(bytes, sums);
     requireAllTaken(bytes);
   }
   for (size_t unit = 0; in.progress && unit < done.size(); ++unit) {
-    if (done[unit]) tell(unit);
+    if (done[unit] == 1) tell(unit);
   }
   forUnitsLeft(
-      done, in.resume,
+      done, resume,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
           sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i]);
         if (in.progress) tell(unit);
       },
       [&] { return encode(done, sums); });
+  for (size_t unit = 0; resume.sink && unit < done.size(); ++unit) {
+    if (resume.shard.has(unit)) giveRecord(*resume.sink, kWork, unit, ofUnit(unit));
+  }
   return sums;
 }
 

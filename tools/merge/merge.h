@@ -27,7 +27,12 @@ struct MergeStage {
 };
 std::span<const MergeStage> mergeStages();
 
+// Refuses an input that is read again and is no longer what the shards were made from.
+void requireSameInput(const fs::path& file, uint64_t hash, const Json& run, const char* name);
+
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                   Summary& summary);
+std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output, OutputSet& files,
+                                     Summary& summary);
 
 }  // namespace bnvpl

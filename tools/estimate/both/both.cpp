@@ -30,6 +30,10 @@ constexpr double kGuessedRays = 10.0;
 constexpr uint64_t kLeastPoints = 2, kMostPoints = 32;
 // Pilots of paths that would take more than this share of the work are not worth it.
 constexpr double kDearPilot = 0.25;
+// The phases that shards divide; those before are pilots.
+constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
+// Of the split, in shards.
+constexpr std::string_view kCount = "split.count", kPoints = "split.points", kShare = "split.share";
 
 // Photons of a stream, and what they bring.
 struct PhotonWork {
@@ -59,9 +63,11 @@ class Estimator {
 
   EstimateResult run() {
     in_.lights.requirePower();
-    const Split split = pilot();
-    const PhotonWork photons = trace(2, Stream::Photons, split.photons);
-    const std::vector<PathSums> paths = gather(3, Stream::VplPaths, split.points, work_ - told_);
+    const Split split = in_.resume.source ? splitOfShards() : pilot();
+    if (in_.resume.sink && in_.resume.shard.has(0)) give(split);
+    const PhotonWork photons = trace(kPhotonPhase, Stream::Photons, split.photons);
+    const std::vector<PathSums> paths =
+        gather(kPathPhase, Stream::VplPaths, split.points, work_ - told_);
     return combine(split, photons, paths);
   }
 
@@ -159,6 +165,24 @@ class Estimator {
             std::vector<double>(in_.vpls.size(), 1.0)};
   }
 
+  // Every shard finds the same by the whole pilots; the first hands it over.
+  void give(const Split& split) const {
+    const ShardSink& sink = *in_.resume.sink;
+    giveRecord(sink, kCount, 0, std::array{split.photons});
+    giveRecord(sink, kPoints, 0, split.points);
+    giveRecord(sink, kShare, 0, split.share);
+  }
+  Split splitOfShards() const {
+    const ShardSource& source = *in_.resume.source;
+    std::array<uint64_t, 1> photons{};
+    Split split{0, std::vector<uint64_t>(in_.vpls.size()), std::vector<double>(in_.vpls.size())};
+    takeRecord(source, kCount, 0, photons);
+    takeRecord(source, kPoints, 0, split.points);
+    takeRecord(source, kShare, 0, split.share);
+    split.photons = photons[0];
+    return split;
+  }
+
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const std::vector<PathSums>& paths) const {
     EstimateResult result{in_.vpls,
@@ -193,13 +217,13 @@ class Estimator {
       result.paths += r.paths;
       result.energy.nonFinite += r.nonFinite;
     }
-    if (options_.on("recentre")) recentre(lit, centre, in_.rays);
+    if (options_.on("recentre") && !in_.resume.sink) recentre(lit, centre, in_.rays);
     return result;
   }
 
   const EstimateInputs& in_;
   const Values& options_;
-  Phases<4> phases_;
+  Phases<4, kPhotonPhase> phases_;
   uint64_t work_, told_ = 0;  // photons' worth: all, and what progress knows of
 };
 

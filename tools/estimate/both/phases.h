@@ -8,7 +8,8 @@
 
 namespace bnvpl::methods::estimate::both {
 
-template <size_t kCount>
+// Shards divide the phases from kFirstShared on; those before are whole in each.
+template <size_t kCount, size_t kFirstShared>
 class Phases {
  public:
   explicit Phases(const Resume& whole) : whole_(whole) {
@@ -27,10 +28,12 @@ class Phases {
   // is at its end.
   template <typename Body, typename Finished>
   auto run(size_t k, const Body& body, const Finished& finished) {
-    const Resume part{states_[k], whole_.pause, [&](const std::string& state) {
-                        states_[k] = state;
-                        whole_.save(encoded());
-                      }};
+    Resume part{states_[k], whole_.pause, [&](const std::string& state) {
+                  states_[k] = state;
+                  whole_.save(encoded());
+                }};
+    if (k >= kFirstShared)
+      part.shard = whole_.shard, part.sink = whole_.sink, part.source = whole_.source;
     auto result = body(part);
     if (whole_.pause) states_[k] = finished(result);
     return result;

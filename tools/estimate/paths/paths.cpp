@@ -42,7 +42,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
     result.paths += r.paths;
     result.energy.nonFinite += r.nonFinite;
   }
-  if (options.on("recentre")) recentre(lit, centre, in.rays);
+  if (options.on("recentre") && !in.resume.sink) recentre(lit, centre, in.rays);
   return result;
 }
 

@@ -1,0 +1,34 @@
+#include "formats/vpl_io.h"
+#include "tools/common/memory.h"
+#include "tools/common/scene_options.h"
+#include "tools/estimate/report.h"
+#include "tools/merge/merge.h"
+
+namespace bnvpl {
+
+std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output, OutputSet& files,
+                                     Summary& summary) {
+  const ShardRun& whole = shards.whole();
+  const Values options = resolve(estimateSpec(), whole.given);
+  const fs::path input = whole.sources.at("vpls").get<std::string>();
+  requireMemoryFor(input, kBytesPerEstimated, "keep fewer with vpl-eliminate -n");
+  const VplTable vpls = readVpl(input, VplStage::Eliminated);
+  const Scene scene =
+      loadSceneFor("vpl-merge", sceneOptionsOf(whole.sources.at("scene")), Warnings::Silent);
+  requireSameInput(input, vpls.checksum, whole.run, "vpls");
+  requireSameInput(scene.name(), scene.contentHash, whole.run, "scene");
+  const RayScene rays(scene);
+  const LightSet lights(rays);
+  const ShardSource source = shards.source();
+  Resume resume;
+  resume.source = &source;
+  EstimateResult result = estimate(vpls, rays, lights, options, {}, resume);
+  result.table.provenance = extendProvenance(vpls.provenance, whole.run);
+  writeVpl(files.add(output.product), result.table);
+  reportEstimate(result, summary);
+  std::vector<fs::path> read = scene.files;
+  read.push_back(input);
+  return read;
+}
+
+}  // namespace bnvpl
