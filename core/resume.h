@@ -66,7 +66,7 @@ void appendArray(std::string& bytes, const Array& array) {
 }
 
 template <typename Array>
-void takeArray(std::string_view& bytes, Array& array) {
+void takeArray(std::string_view& bytes, Array&& array) {
   const auto view = std::as_writable_bytes(std::span(array));
   if (bytes.size() < view.size())
     throw InputError("the state of the checkpoint is too short; delete it and start again");

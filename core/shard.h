@@ -44,6 +44,7 @@ struct ShardSource {
   std::function<std::optional<std::string>(std::string_view work, uint64_t unit)> record;
   // Throws InputError unless there are `count` of them.
   std::function<std::vector<int64_t>(std::string_view work, size_t count)> sums;
+  uint64_t parts = 1;  // of the whole
 };
 
 }  // namespace bnvpl

@@ -3,11 +3,8 @@
 
     docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # ten minutes on two cores
     docs/make_guide_pictures.py --table                                 # the table of docs/images/README.md
-
-`windows` needs a model that is not part of the project; LIVING_ROOM_DIR names its folder.
 """
 import argparse
-import os
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -28,12 +25,6 @@ class Case:
     zoom: int = 1     # nearest neighbour
 
 
-@dataclass
-class Difference(Case):
-    """The path-traced reference, and the relative differences of both to it, as colours of the means of blocks."""
-    block: int = 5
-
-
 CASES = {
     'blotches': Case('scenes/u-shape/scene.toml', '320x240', 6,
                      ('-n 15k', '-n 1500', '--photons 30k', '--spp 8'),
@@ -45,7 +36,7 @@ CASES = {
                          ('-n 12k', '-n 300', '--photons 2M', '--compensate none --spp 32 --only indirect'),
                          ('-n 12k', '-n 300', '--photons 2M', '--spp 32 --only indirect'), (40, 125, 150, 100), 3),
     'leaks': Case('scenes/u-shape/scene.toml', '480x360', 3,
-                  ('-n 60k', '-n 3k', '--photons 2M --method even --recentre off', '--compensate none --spp 16'),
+                  ('-n 60k', '-n 3k', '--photons 2M --method even --emit-points 0', '--compensate none --spp 16'),
                   ('-n 60k', '-n 3k', '--photons 2M', '--spp 16')),
     'specks': Case('scenes/veach-door/table.toml', '320x180', 2.5,
                    ('-n 60k', '-n 3k', '--photons 2M', '--spp 8'),
@@ -54,9 +45,6 @@ CASES = {
                          ('-n 12k', '-n 300', '--photons 200k', '--spp 1 --near-field-rays 1 --only direct'),
                          ('-n 12k', '-n 300', '--photons 200k', '--spp 64 --near-field-rays 1 --only direct'),
                          (0, 190, 400, 290)),
-    'windows': Difference('${LIVING_ROOM_DIR}/scene.toml', '160x90', 1,
-                          ('', '-n 3k', '', '--spp 64 --near-field-rays 4 --only indirect'),
-                          ('', '-n 3k', '--radius 1', '--spp 64 --near-field-rays 4 --only indirect'), zoom=2),
 }
 
 
@@ -67,8 +55,6 @@ def table():
         columns = ['; '.join(f'`{tool} {o}`' for tool, o in zip(('place', 'eliminate', 'estimate', 'render'), options) if o)
                    for options in (case.left, case.right)]
         crop = ', '.join(map(str, case.crop)) or 'none'
-        if isinstance(case, Difference):
-            crop = f'none; means of {case.block} x {case.block} pixels'
         yield f'| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {" | ".join(columns)} |'
 
 
@@ -77,7 +63,7 @@ def run(tools, folder, tool, *words):
 
 
 def render(tools, case, options, folder, to):
-    scene = ROOT / os.path.expandvars(case.scene)
+    scene = ROOT / case.scene
     place, eliminate, estimate, image = (o.split() for o in options)
     run(tools, folder, 'vpl-place', scene, '-o', 'c.vpl', *place)
     run(tools, folder, 'vpl-eliminate', 'c.vpl', '-o', 'v.vpl', *eliminate)
@@ -89,37 +75,6 @@ def render(tools, case, options, folder, to):
 def shown(file, kind):
     import OpenImageIO
     return OpenImageIO.ImageBuf(str(file)).get_pixels(kind)[:, :, :3]
-
-
-def colours(x):
-    """Of -1 to 1: blue for too dark, white for right, red for too bright, as vpl-inspect compare --diff has them."""
-    import numpy
-    stops = numpy.array([[12, 32, 120], [90, 150, 240], [255, 255, 255], [240, 110, 80], [120, 0, 20]], float)
-    return numpy.stack([numpy.interp(x, numpy.linspace(-1, 1, 5), stops[:, c]) for c in range(3)], -1).astype(numpy.uint8)
-
-
-def differences(case, reference, *images):
-    """The reference as a picture, then the block means of each image, with a scale from -50 to +50 % below."""
-    import numpy
-    import OpenImageIO
-    linear = shown(reference, OpenImageIO.FLOAT)
-    screen = numpy.clip(linear * 2.0 ** case.exposure, 0, 1) ** (1 / 2.2)
-    n = case.block
-
-    def means(x):
-        x = x.mean(axis=2)
-        return x.reshape(x.shape[0] // n, n, x.shape[1] // n, n).mean(axis=(1, 3))
-
-    def with_scale(picture, scale):
-        white = numpy.full((2, *picture.shape[1:]), 255, numpy.uint8)
-        return numpy.vstack([picture, white, numpy.repeat(scale[None], 4, 0)])
-
-    panels = [with_scale((255 * screen).astype(numpy.uint8), numpy.full((linear.shape[1], 3), 255, numpy.uint8))]
-    for image in images:
-        relative = means(shown(image, OpenImageIO.FLOAT)) / means(linear) - 1
-        blocks = numpy.repeat(numpy.repeat(colours(relative / 0.5), n, 0), n, 1)
-        panels.append(with_scale(blocks, colours(numpy.linspace(-1, 1, blocks.shape[1]))))
-    return panels
 
 
 def write(name, panels):
@@ -140,12 +95,7 @@ def make(name, tools, folder):
     case = CASES[name]
     for options, to in (case.left, 'left'), (case.right, 'right'):
         render(tools, case, options, folder, to)
-    if isinstance(case, Difference):
-        run(tools, folder, 'vpl-render', ROOT / os.path.expandvars(case.scene), '-o', 'reference.exr', '--integrator',
-            'path', '--spp', 1024, '--size', case.size, '--only', 'indirect')
-        panels = differences(case, *(folder / f'{x}.exr' for x in ('reference', 'left', 'right')))
-    else:
-        panels = [shown(folder / f'{x}.png', OpenImageIO.UINT8) for x in ('left', 'right')]
+    panels = [shown(folder / f'{x}.png', OpenImageIO.UINT8) for x in ('left', 'right')]
     if case.crop:
         x, y, width, height = case.crop
         panels = [p[y:y + height, x:x + width] for p in panels]
@@ -162,9 +112,6 @@ def main():
         print('\n'.join(table()))
         return
     for name in options.names or CASES:
-        if '${' in os.path.expandvars(CASES[name].scene):
-            print(f'{name} is left out: {CASES[name].scene} needs a folder in the environment')
-            continue
         with tempfile.TemporaryDirectory(prefix='bnvpl-guide.') as folder:
             make(name, options.bin.resolve(), Path(folder))
 

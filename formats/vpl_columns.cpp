@@ -80,7 +80,8 @@ std::vector<VplColumnView> columnsOf(const VplTable& table) {
   for (const VplColumn& c : standardColumns(table.stage)) {
     const auto bytes =
         std::visit([&](auto member) { return std::as_bytes(std::span(table.*member)); }, c.member);
-    views.push_back({c.name, c.unit, c.meaning, c.parts, c.type(), c.components(), bytes});
+    views.push_back(
+        {c.name, c.unit, c.meaning, c.parts, c.type(), c.components() * c.elements(table), bytes});
   }
   for (const VplExtraColumn& extra : table.extras) {
     const auto bytes = std::visit(
@@ -97,11 +98,13 @@ VplTable keepRows(const VplTable& table, std::span<const uint32_t> rows) {
   kept.rMax = table.rMax;
   kept.areaEstimate = table.areaEstimate;
   kept.reach = table.reach;
+  kept.emitPoints = table.emitPoints;
   kept.sceneHash = table.sceneHash;
   kept.provenance = table.provenance;
   for (const VplColumn& column : standardColumns(table.stage)) {
-    std::visit([&](auto member) { kept.*member = pickRows(table.*member, 1, rows); },
-               column.member);
+    std::visit(
+        [&](auto member) { kept.*member = pickRows(table.*member, column.elements(table), rows); },
+        column.member);
   }
   for (const VplExtraColumn& extra : table.extras) {
     VplExtraColumn& to = kept.extras.emplace_back();

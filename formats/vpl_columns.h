@@ -55,12 +55,19 @@ struct VplColumn {
   VplStage since;
   VplCheck check;
   std::string_view meaning;
+  bool ofEmitPoints = false;  // VplTable::emitPoints elements a row instead of one
 
   constexpr VplType type() const {
     return member.index() < 2 ? VplType::F32 : member.index() == 2 ? VplType::U32 : VplType::U64;
   }
-  constexpr uint32_t components() const { return member.index() == 0 ? 3 : 1; }
+  constexpr uint32_t components() const { return member.index() == 0 ? 3 : 1; }  // of an element
+  constexpr uint32_t elements(const VplTable& table) const {                     // of a row
+    return ofEmitPoints ? table.emitPoints : 1;
+  }
 };
+
+// Points from which a VPL may shine, at most.
+inline constexpr uint32_t kMaxEmitPoints = 64;
 
 inline constexpr std::array<VplColumn, 11> kVplColumns{{
     {"position", &VplTable::position, "xyz", "scene unit", VplStage::Candidates, vpl_check::kFinite,
@@ -79,9 +86,11 @@ inline constexpr std::array<VplColumn, 11> kVplColumns{{
     {"relative_error", &VplTable::relativeError, "", "1", VplStage::Lit, vpl_check::kZeroOrMore,
      "standard error of the flux over the flux; 0 without photons"},
     {"emit_position", &VplTable::emitPosition, "xyz", "scene unit", VplStage::Lit,
-     vpl_check::kFinite, "where the light leaves from, on the surface near position"},
+     vpl_check::kFinite,
+     "where the light leaves from, in equal parts: one point or more of the surface near position",
+     true},
     {"emit_normal", &VplTable::emitNormal, "xyz", "1", VplStage::Lit, vpl_check::kUnitLength,
-     "geometric normal there"},
+     "geometric normal at each of these points", true},
     {"first_bounce_flux", &VplTable::firstBounceFlux, "rgb", "W", VplStage::Lit,
      vpl_check::kPartOfFlux, "the part of the flux that came straight from a light"},
 }};
@@ -121,7 +130,8 @@ std::vector<VplColumnView> columnsOf(const VplTable& table);
 template <typename Table, typename Visit>
 void forEachColumn(Table& table, const Visit& visit) {
   for (const VplColumn& column : standardColumns(table.stage)) {
-    std::visit([&](auto member) { visit(table.*member, size_t{1}); }, column.member);
+    std::visit([&](auto member) { visit(table.*member, size_t{column.elements(table)}); },
+               column.member);
   }
   for (auto& extra : table.extras) {
     std::visit([&](auto& values) { visit(values, size_t{extra.components}); }, extra.values);

@@ -22,7 +22,7 @@
 
 namespace bnvpl {
 
-inline constexpr uint32_t kVplVersion = 3;
+inline constexpr uint32_t kVplVersion = 4;
 inline constexpr uint64_t kVplAlign = 64;
 inline constexpr size_t kMaxExtraColumns = 256;        // of all strategies together
 inline constexpr uint32_t kMaxExtraComponents = 1024;  // of one column

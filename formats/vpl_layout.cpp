@@ -27,9 +27,10 @@ Vec3 asVec3(T value) {
 // The first row whose value the check refuses.
 template <typename T>
 std::optional<BadValue> findIn(const VplTable& table, const std::vector<T>& values, size_t column,
-                               const VplCheck& check) {
-  for (size_t row = 0; check.problem != nullptr && row < values.size(); ++row) {
-    if (const char* problem = check.problem(asVec3(values[row]), table, row))
+                               const VplColumn& of) {
+  for (size_t i = 0; of.check.problem != nullptr && i < values.size(); ++i) {
+    const size_t row = i / of.elements(table);
+    if (const char* problem = of.check.problem(asVec3(values[i]), table, row))
       return BadValue{column, row, problem};
   }
   return std::nullopt;
@@ -119,9 +120,8 @@ std::optional<BadField> findBadField(const VplExtraColumn& column,
 std::optional<BadValue> findBadValue(const VplTable& table) {
   size_t index = 0;
   for (const VplColumn& column : standardColumns(table.stage)) {
-    auto bad =
-        std::visit([&](auto member) { return findIn(table, table.*member, index, column.check); },
-                   column.member);
+    auto bad = std::visit([&](auto member) { return findIn(table, table.*member, index, column); },
+                          column.member);
     if (bad) return bad;
     ++index;
   }

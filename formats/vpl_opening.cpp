@@ -122,6 +122,17 @@ void addExtras(const InputFile& in, const std::vector<VplColumnEntry>& directory
   }
 }
 
+// How many points each VPL shines from, as the directory has it.
+uint32_t emitPointsOf(const std::vector<VplColumnEntry>& directory, VplStage stage) {
+  const auto columns = standardColumns(stage);
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const uint32_t elements = directory[i].components / columns[i].components();
+    // Whatever else stands there is refused with the entry.
+    if (columns[i].ofEmitPoints && elements >= 1 && elements <= kMaxEmitPoints) return elements;
+  }
+  return 1;
+}
+
 VplLayout checkShape(const InputFile& in, const VplHeader& header, const VplTable& shape) {
   const std::vector<VplColumnView> columns = columnsOf(shape);
   // Divided, not multiplied, so that no claimed count can overflow.
@@ -205,6 +216,7 @@ Opening readOpening(InputFile& in) {
   std::vector<VplColumnEntry> directory(opening.header.columnCount);
   in.read(directory.data(), directory.size() * sizeof(VplColumnEntry));
   opening.shape.stage = opening.header.stage;
+  opening.shape.emitPoints = emitPointsOf(directory, opening.header.stage);
   addExtras(in, directory, opening.shape);
   opening.layout = checkShape(in, opening.header, opening.shape);
   checkDirectory(in, directory, opening.layout, opening.header.stage);

@@ -23,8 +23,9 @@ struct VplExtraColumn {
   friend bool operator==(const VplExtraColumn&, const VplExtraColumn&) = default;
 };
 
-// Owns the columns. Every column of the stage has size() rows; the later stages' columns are empty.
-// What the columns mean, their units and valid values: vpl_columns.h.
+// Owns the columns. Every column of the stage has size() rows (emitPosition and emitNormal
+// emitPoints elements a row); the later stages' columns are empty. What the columns mean, their
+// units and valid values: vpl_columns.h.
 struct VplTable {
   VplStage stage = VplStage::Candidates;
 
@@ -43,6 +44,7 @@ struct VplTable {
   std::vector<Vec3> flux;
   std::vector<uint64_t> photons;
   std::vector<float> relativeError;
+  uint32_t emitPoints = 1;  // of each row in the next two, one row's after the other's
   std::vector<Vec3> emitPosition, emitNormal;
   std::vector<Vec3> firstBounceFlux;
 

@@ -25,6 +25,7 @@ std::vector<Bytes> filePieces(const VplHeader& header, const VplLayout& layout,
 
 // Which column is not as long as the table says, or is none that its stage or a strategy can have.
 std::string columnProblem(const VplTable& table) {
+  if (table.emitPoints < 1 || table.emitPoints > kMaxEmitPoints) return "too many emission points";
   if (table.extras.size() > kMaxExtraColumns) return "too many columns of strategies";
   for (size_t i = 0; i < table.extras.size(); ++i) {
     const auto bad = findBadField(table.extras[i], std::span(table.extras).first(i));

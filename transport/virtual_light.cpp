@@ -1,5 +1,8 @@
 #include "transport/virtual_light.h"
 
+#include <algorithm>
+#include <span>
+
 #include "core/sampling.h"
 
 namespace bnvpl {
@@ -11,12 +14,20 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
   const float nearest = rays.scene().bounds.diagonal() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
-    vpls.row.push_back(static_cast<uint32_t>(i));
-    vpls.position.push_back(rays.offsetOrigin(lit.emitPosition[i], lit.emitNormal[i]));
-    vpls.normal.push_back(lit.emitNormal[i]);
-    vpls.intensity.push_back(lit.flux[i] * (1.0f / kPi));
-    vpls.clamp2.push_back(
-        std::max(clamp * clamp * lit.radius[i] * lit.radius[i], nearest * nearest));
+    // Each point sends an equal part; equal points are one light.
+    const auto at = std::span(lit.emitPosition).subspan(i * lit.emitPoints, lit.emitPoints);
+    for (size_t k = 0; k < at.size(); ++k) {
+      if (std::find(at.begin(), at.end(), at[k]) != at.begin() + std::ptrdiff_t(k)) continue;
+      const auto same = std::count(at.begin(), at.end(), at[k]);
+      const Vec3 normal = lit.emitNormal[i * lit.emitPoints + k];
+      const float part = static_cast<float>(same) / static_cast<float>(lit.emitPoints);
+      vpls.row.push_back(static_cast<uint32_t>(i));
+      vpls.position.push_back(rays.offsetOrigin(at[k], normal));
+      vpls.normal.push_back(normal);
+      vpls.intensity.push_back(lit.flux[i] * (part / kPi));
+      vpls.clamp2.push_back(
+          std::max(clamp * clamp * lit.radius[i] * lit.radius[i], nearest * nearest));
+    }
   }
   return vpls;
 }

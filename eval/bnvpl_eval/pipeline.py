@@ -31,7 +31,7 @@ ELIMINATE = {
 ESTIMATE = {
     "paths": ("--method", "paths"),
     "even": ("--method", "even"),
-    "literal": ("--method", "even", "--recentre", "off"),
+    "literal": ("--method", "even", "--emit-points", "0"),
 }
 REJECTION_CANDIDATES = 10  # photons' VPLs for each that is to be kept
 RENDER = {

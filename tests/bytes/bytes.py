@@ -115,7 +115,7 @@ def cases(name):
     yield 'even.vpl', 'vpl-estimate', [*photons, '--method', 'even'], 'vpls.vpl'
     if full:
         yield 'uniform-lit.vpl', 'vpl-estimate', photons, 'uniform.vpl'
-        yield 'random-lit.vpl', 'vpl-estimate', [*photons, '--recentre', 'off'], 'random.vpl'
+        yield 'random-lit.vpl', 'vpl-estimate', [*photons, '--emit-points', '0'], 'random.vpl'
     film = ['--size', '80x60', '--spp', '2', '--layers', 'all']
     yield 'image.exr', 'vpl-render', film, 'lit.vpl'
     yield 'path.exr', 'vpl-render', [*film, '--integrator', 'path'], None

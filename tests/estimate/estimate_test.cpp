@@ -60,37 +60,32 @@ TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
   EXPECT_NEAR(ratio, 1.0, 0.2);
 }
 
-// VPLs shine from their own surface, from the centre of what they received, and off the rims of the
-// walls.
-TEST(Estimate, RecentredVplsStayOnTheirSurface) {
+// VPLs shine from points of their own surface, and stay where they are.
+TEST(Estimate, EmissionPointsLieOnTheVplsSurface) {
   const World world("furnace/scene.toml");
   const VplTable start = keptVpls(world, {{"count", "300"}}, {{"count", "6000"}});
-  const auto nearestRim = [](Vec3 p) {  // distance to the second nearest of the cube's six planes
-    std::array<float, 3> d{};
-    for (size_t a = 0; a < 3; ++a) d[a] = std::min(p[a], 1.0f - p[a]);
-    std::sort(d.begin(), d.end());
-    return double{d[1]};
-  };
-  double before = 0.0, after = 0.0;
   const Given photons{{"photons", "100k"}};
-  const VplTable still = lightVpls(world, start, with(photons, {{"recentre", "off"}})).table;
-  const VplTable moved = lightVpls(world, start, photons).table;
+  const VplTable still = lightVpls(world, start, with(photons, {{"emit-points", "0"}})).table;
+  const VplTable lit = lightVpls(world, start, photons).table;
   EXPECT_EQ(still.emitPosition, start.position);
-  EXPECT_EQ(moved.position, start.position);
-  EXPECT_EQ(moved.normal, start.normal);
-  for (size_t i = 0; i < start.size(); ++i) {
-    EXPECT_EQ(moved.emitNormal[i], start.normal[i]);
-    EXPECT_NEAR(dot(moved.emitPosition[i] - start.position[i], start.normal[i]), 0.0f, 1e-5f);
-    EXPECT_LT(length(moved.emitPosition[i] - start.position[i]), 2.0f * start.radius[i]);
-    before += nearestRim(start.position[i]) / 300.0;
-    after += nearestRim(moved.emitPosition[i]) / 300.0;
+  EXPECT_EQ(lit.position, start.position);
+  EXPECT_EQ(lit.normal, start.normal);
+  ASSERT_EQ(lit.emitPoints, 4u);
+  size_t apart = 0;
+  for (size_t k = 0; k < lit.emitPosition.size(); ++k) {
+    const size_t i = k / 4;
+    EXPECT_EQ(lit.emitNormal[k], start.normal[i]);
+    EXPECT_NEAR(dot(lit.emitPosition[k] - start.position[i], start.normal[i]), 0.0f, 1e-5f);
+    EXPECT_LT(length(lit.emitPosition[k] - start.position[i]), 1.7f * start.radius[i]);
+    apart += lit.emitPosition[k] != lit.emitPosition[4 * i];
   }
-  EXPECT_GT(after, before * 1.015);
-  EXPECT_EQ(totalFlux(moved), totalFlux(still));
+  EXPECT_GT(apart, 850u);  // of 900
+  EXPECT_EQ(totalFlux(lit), totalFlux(still));
 }
 
 // A VPL at the middle of a floor's rim, under a sun in the zenith: it stands for the half disk of
-// its reach R, whose centroid lies 4 R / (3 pi) from the rim, and goes 0.35 of the way there.
+// its reach R, whose centroid lies 4 R / (3 pi) from the rim, and shines from points that are
+// spread evenly over it.
 TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   Scene scene;
   addSquare(scene, {0, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
@@ -109,7 +104,8 @@ TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   vpls.albedo = {Vec3(0.5f)};
   vpls.id = {1};
   vpls.radius = {0.25f};
-  const VplTable lit = lightVpls(world, vpls, {{"photons", "400k"}, {"radius", "2"}}).table;
+  const VplTable lit =
+      lightVpls(world, vpls, {{"photons", "400k"}, {"radius", "2"}, {"emit-points", "64"}}).table;
 
   const double reach = 0.5, area = 0.5 * double{kPi} * reach * reach;
   const auto photons = double(lit.photons[0]);
@@ -122,10 +118,12 @@ TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   EXPECT_EQ(lit.firstBounceFlux[0], lit.flux[0]);
   const double centroid = 4.0 * reach / (3.0 * double{kPi}),
                spread = std::sqrt(reach * reach / 4.0 - centroid * centroid);
-  const Vec3 moved = lit.emitPosition[0] - lit.position[0];
-  EXPECT_NEAR(double{moved.x} / 0.35, centroid, 5.0 * spread / std::sqrt(photons) + 1e-4);
+  ASSERT_EQ(lit.emitPosition.size(), 64u);
+  Vec3 moved;
+  for (const Vec3 p : lit.emitPosition) moved += (p - lit.position[0]) / 64.0f;
+  EXPECT_NEAR(double{moved.x}, centroid, 4.0 * spread / 8.0);
   EXPECT_NEAR(double{moved.y}, 0.0, 1e-6);
-  EXPECT_NEAR(double{moved.z} / 0.35, 0.0, 5.0 * 0.5 * reach / std::sqrt(photons));
+  EXPECT_NEAR(double{moved.z}, 0.0, 4.0 * 0.5 * reach / 8.0);
 }
 
 }  // namespace

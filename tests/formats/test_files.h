@@ -14,6 +14,7 @@
 
 #include "core/errors.h"
 #include "formats/vpl_format.h"
+#include "tests/support/emit_points.h"
 
 namespace bnvpl {
 
@@ -108,6 +109,7 @@ inline void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.rMax, b.rMax);
   EXPECT_EQ(a.areaEstimate, b.areaEstimate);
   EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(a.emitPoints, b.emitPoints);
   EXPECT_EQ(a.sceneHash, b.sceneHash);
   EXPECT_EQ(a.provenance, b.provenance);
   EXPECT_EQ(a.extras, b.extras);

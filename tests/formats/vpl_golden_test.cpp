@@ -1,4 +1,4 @@
-// The bytes of version 3, pinned: a change here is a new version of the format.
+// The bytes of version 4, pinned: a change here is a new version of the format.
 #include <sstream>
 
 #include "formats/vpl_io.h"
@@ -10,10 +10,10 @@ namespace {
 // smallTable(VplStage::Lit), 16 bytes a line; lines of zeros are left out.
 constexpr size_t kLitBytes = 1608;
 constexpr const char* kLitDump = R"(
-0000: 89 56 50 4c 0d 0a 1a 0a 03 00 00 00 03 00 00 00
+0000: 89 56 50 4c 0d 0a 1a 0a 04 00 00 00 03 00 00 00
 0010: 02 00 00 00 00 00 00 00 ef cd ab 89 67 45 23 01
 0020: 3d 00 00 00 00 00 00 00 48 06 00 00 00 00 00 00
-0030: 56 b7 1c 6a 18 dc cc 9e 0b 00 00 00 00 00 00 00
+0030: 03 d1 09 2c 06 3a 56 75 0b 00 00 00 00 00 00 00
 0040: 00 00 00 00 00 00 e8 3f 00 00 00 00 00 00 28 40
 0050: 00 00 00 00 00 00 04 40 00 00 00 00 00 00 00 00
 0080: 70 6f 73 69 74 69 6f 6e 00 00 00 00 00 00 00 00

@@ -43,6 +43,18 @@ TEST_F(VplWrite, EveryStageAndSizeSurvivesTheRoundTrip) {
   }
 }
 
+TEST_F(VplWrite, SeveralEmissionPointsSurviveTheRoundTrip) {
+  for (const uint32_t points : {1u, 3u, kMaxEmitPoints}) {
+    const VplTable table = withEmitPoints(manyRows(VplStage::Lit, 17), points);
+    writeVpl(at("a.vpl"), table);
+    expectSame(readVpl(at("a.vpl")), table);
+    const std::vector<uint32_t> rows{16, 2};
+    const VplTable kept = keepRows(table, rows);
+    EXPECT_EQ(kept.emitPosition.size(), 2 * points);
+    EXPECT_EQ(kept.emitPosition.back(), table.emitPosition[3 * points - 1]);
+  }
+}
+
 TEST_F(VplWrite, EmptyProvenanceIsAnEmptyArray) {
   VplTable table = smallTable(VplStage::Candidates);
   table.provenance.clear();
@@ -83,6 +95,14 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "column relative_error, row 0", [](VplTable& t) { t.relativeError[0] = kNan; });
   expectRefused(f, "column emit_position, row 1", [](VplTable& t) { t.emitPosition[1].y = kInf; });
   expectRefused(f, "column emit_normal, row 0", [](VplTable& t) { t.emitNormal[0].y = 0.5f; });
+  expectRefused(f, "column emit_normal, row 1", [](VplTable& t) {
+    t = withEmitPoints(t, 4);
+    t.emitNormal[6].x = 0.5f;
+  });
+  expectRefused(f, "column emit_position has 48 bytes, expected 2 rows of 48", [](VplTable& t) {
+    t.emitPosition = withEmitPoints(t, 2).emitPosition, t.emitPoints = 4;
+  });
+  expectRefused(f, "too many emission points", [](VplTable& t) { t = withEmitPoints(t, 65); });
   expectRefused(f, "column first_bounce_flux, row 1",
                 [](VplTable& t) { t.firstBounceFlux[1].y = -1.0f; });
   expectRefused(f, "column first_bounce_flux, row 0: above the flux",

@@ -22,7 +22,7 @@ class DeepCheck : public InspectTest {
         stageRecord("vpl-eliminate", {{"count", 3}}, {{"candidates", checksum("c.vpl")}}));
     writeVpl(at("v.vpl"), kept_);
     lit_.provenance = extendProvenance(
-        kept_.provenance, stageRecord("vpl-estimate", {{"radius", 0.3f}, {"recentre", true}},
+        kept_.provenance, stageRecord("vpl-estimate", {{"radius", 0.3f}, {"emit-points", 4}},
                                       {{"scene", hashText(0x1234)}, {"vpls", checksum("v.vpl")}}));
     writeVpl(at("l.vpl"), lit_);
     return messageOf<InputError>([&] {
@@ -56,6 +56,11 @@ TEST_F(DeepCheck, ChangedRowsAreRefused) {
   EXPECT_EQ(problem(), "");
   lit_.emitPosition[0].y = 1.1f;
   EXPECT_TRUE(contains(problem(), "l.vpl: row 0 (id 7)"));
+  lit_.emitPosition[0].y = 0.9f;
+  lit_ = withEmitPoints(lit_, 2);
+  EXPECT_EQ(problem(), "");
+  lit_.emitPosition[3].y += 10.0f;
+  EXPECT_TRUE(contains(problem(), "l.vpl: row 1 (id 258)"));
 }
 
 TEST_F(DeepCheck, AHistoryThatWasRewrittenIsRefused) {
@@ -87,9 +92,9 @@ TEST_F(DeepCheck, ToolsOfTwoVersionsAreRefused) {
 TEST_F(DeepCheck, CommandsAreQuotedAndExact) {
   StageRecord record;
   record.tool = "vpl-estimate";
-  record.options = {{"radius", 0.1}, {"recentre", true}, {"method", "guarded"}, {"photons", 5}};
+  record.options = {{"radius", 0.1}, {"emit-points", 4}, {"method", "guarded"}, {"photons", 5}};
   EXPECT_EQ(commandOf(record, {"my scene.toml", "v.vpl"}, "it's.vpl"),
-            "vpl-estimate 'my scene.toml' v.vpl -o 'it'\\''s.vpl' --radius 0.1 --recentre on "
+            "vpl-estimate 'my scene.toml' v.vpl -o 'it'\\''s.vpl' --radius 0.1 --emit-points 4 "
             "--method guarded --photons 5");
 }
 

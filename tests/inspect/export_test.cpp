@@ -106,6 +106,19 @@ TEST_F(Export, PlyHasEveryColumnOfLitRows) {
   EXPECT_EQ(ply.vertices[0].size(), numbers);
 }
 
+TEST_F(Export, RowsWithSeveralEmissionPointsStandAtTheFirst) {
+  VplTable table = threeRows(VplStage::Lit);
+  table.emitPoints = 2;
+  table.emitPosition = {{0, 0.5f, 0}, {0, 2, 0}, {1, 0, 0}, {1, 0, 0.25f}, {4, 0, 0}, {5, 0, 0}};
+  table.emitNormal.assign(6, {0, 0, 1});
+  const Ply ply(exported("a.ply", table));
+  EXPECT_EQ(ply.place(0), Vec3(0, 0.5f, 0));
+  EXPECT_EQ(ply.place(2), Vec3(4, 0, 0));
+  EXPECT_EQ(ply.vertices[0].at("emit_position_1_y"), 2.0);
+  EXPECT_EQ(ply.vertices[1].at("emit_position_1_z"), 0.25);
+  EXPECT_EQ(ply.vertices[2].at("emit_normal_0_z"), 1.0);
+}
+
 TEST_F(Export, PlyOfCandidatesShowsTheAlbedo) {
   const Ply ply(exported("a.ply", threeRows(VplStage::Candidates)));
   EXPECT_EQ(ply.place(2), Vec3(4, 0, 0));

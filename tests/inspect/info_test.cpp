@@ -38,6 +38,18 @@ TEST_F(Info, DescribesALitFile) {
   EXPECT_TRUE(contains(text, "relative_error")) << text;
 }
 
+TEST_F(Info, PutsTheEmissionPointsOfARowTogether) {
+  VplTable table = threeRows(VplStage::Lit);
+  table.emitPoints = 2;
+  table.emitPosition = {{0, 0, 0}, {0, 2, 0}, {1, 0, 0}, {1, 0, 0}, {4, 0, 0}, {5, 0, 0}};
+  table.emitNormal.assign(6, {0, 0, 1});
+  writeVpl(at("lit.vpl"), table);
+  const Json info = describeFile(at("lit.vpl"));
+  EXPECT_EQ(columnOf(info, "emit_position.x")["max"], 5.0);
+  EXPECT_EQ(columnOf(info, "emit_position.y")["max"], 2.0);
+  EXPECT_EQ(columnOf(info, "emit_normal.z")["min"], 1.0);
+}
+
 TEST_F(Info, ListsTheColumnsOfStrategies) {
   VplTable table = threeRows(VplStage::Eliminated);
   table.extras = {{"rich.lobes", "W", 2, std::vector<float>{0, 1, 2, 3, 4, 5}},

@@ -10,6 +10,7 @@
 
 #include "formats/exr_io.h"
 #include "formats/vpl_io.h"
+#include "tests/support/emit_points.h"
 #include "tests/support/flat_image.h"
 #include "tests/support/messages.h"
 #include "tools/common/run_tool.h"

@@ -14,12 +14,11 @@ TEST_F(SceneReport, NamesWhatTheSceneHolds) {
   writeTinyScene(at("."));
   const Outcome text = runInspect("scene " + quoted(at("tiny.toml")));
   EXPECT_EQ(text.code, 0) << text.output;
-  for (const char* part : {"triangles: 4 ", "tiny.obj: 4 triangles", "'white': phong", "point light",
-                           "film 80x60"})
+  for (const char* part :
+       {"triangles: 4 ", "tiny.obj: 4 triangles", "'white': phong", "point light", "film 80x60"})
     EXPECT_NE(text.output.find(part), std::string::npos) << part << " in\n" << text.output;
 
-  const Json json =
-      Json::parse(runInspect("scene --json " + quoted(at("tiny.toml"))).output);
+  const Json json = Json::parse(runInspect("scene --json " + quoted(at("tiny.toml"))).output);
   EXPECT_EQ(json["materials"].size(), 1u);
   EXPECT_NEAR(json["lights"][0]["power_W"][0].get<double>(), 4.0 * 3.14159265, 1e-4);
   EXPECT_EQ(json["cameras"][0]["position"][2].get<double>(), 4.0);

@@ -20,7 +20,6 @@ enum class Stream : uint32_t {
   VplPaths,
   TileLights,
   Guide = 16,
-  Gains,
   PilotPhotons = 30,  // of vpl-estimate --method both
   PilotPaths
 };

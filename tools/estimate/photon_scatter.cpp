@@ -15,7 +15,7 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
-constexpr std::string_view kWork = "photons";
+constexpr std::string_view kWork = "photons", kPointsWork = "emit-points";
 constexpr uint64_t rangesOf(uint64_t photons) {
   return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
 }
@@ -120,15 +120,15 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scat
   }
 }
 
-// Of what each VPL received, from its position in units of its reach; 0 where that is nothing.
-std::vector<Vec3> centres(const VplTable& vpls, const PhotonSums& sums, double photonPower) {
-  std::vector<Vec3> centre(vpls.size());
-  for (size_t i = 0; i < vpls.size(); ++i) {
-    const double weight = double{mean(vpls.flux[i])} / photonPower;
-    for (size_t c = 0; c < 3 && weight > 0.0; ++c)
-      centre[i][c] = static_cast<float>(double(sums.vpl[i].moment[c]) * 0x1p-24 / weight);
+// The winners of all shards, each of which handed over its own under the number of its first part.
+EmitPoints pointsOfShards(const ShardSource& source, EmitPoints all) {
+  std::vector<EmitPoint> some(all.winners().size());
+  for (uint64_t part = 0; part < source.parts; ++part) {
+    if (!source.record(kPointsWork, part)) continue;
+    takeRecord(source, kPointsWork, part, some);
+    all.add(some);
   }
-  return centre;
+  return all;
 }
 
 }  // namespace
@@ -158,11 +158,14 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   const Resume& resume = in.resume;
   if (resume.source) {
     const size_t vpls = in.vpls.size();
-    return sumsOf(resume.source->sums(kWork, integersFor(vpls)), vpls);
+    PhotonSums sums = sumsOf(resume.source->sums(kWork, integersFor(vpls)), vpls);
+    sums.points = pointsOfShards(*resume.source, EmitPoints(vpls, run.emitPoints, mix64(run.key)));
+    return sums;
   }
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());
+    s.points = EmitPoints(in.vpls.size(), run.emitPoints, mix64(run.key));
     return s;
   };
   tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
@@ -206,7 +209,10 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
       },
       [&] { return encode(done, soFar()); });
   PhotonSums sums = soFar();
-  if (resume.sink) resume.sink->sums(kWork, integersOf(sums));
+  if (resume.sink) {
+    resume.sink->sums(kWork, integersOf(sums));
+    giveRecord(*resume.sink, kPointsWork, resume.shard.first, sums.points.winners());
+  }
   return sums;
 }
 
@@ -232,8 +238,7 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
 
 PhotonScatter::PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius,
                              double photonPower, uint64_t photons)
-    : vpls_(vpls),
-      radius_(radius),
+    : radius_(radius),
       fixed_(photonPower, photons),
       photonPower_(photonPower),
       perPhotonPower_(1.0 / photonPower),
@@ -249,9 +254,8 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
   addChecked(s.squares, std::llrint(relative * relative * 0x1p20));
-  const Vec3 offset = (hit.point.position - vpls_.position[vpl]) / (radius_ * vpls_.radius[vpl]);
-  for (size_t c = 0; c < 3; ++c)
-    addChecked(s.moment[c], std::llrint(relative * double{offset[c]} * 0x1p24));
+  const bool whole = share_.empty() || hit.onlyPhotons;
+  sums.points.offer(vpl, whole ? relative : relative * share_[vpl], hit.point);
   ++s.photons;
 }
 
@@ -263,12 +267,12 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
   const PhotonScatter scatter(in.vpls, in.rays, options.real32("radius"),
                               power / static_cast<double>(shares.total()), shares.total());
   const PhotonRun run{streamKey(options.whole("seed"), Stream::Photons),
+                      options.whole("emit-points"),
                       static_cast<unsigned>(options.whole("max-bounces")), shares, scatter};
   const PhotonSums sums = tracePhotons(in, run, rule);
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
   fillTable(result.table, sums, scatter);
-  if (options.on("recentre") && !in.resume.sink)
-    recentre(result.table, centres(result.table, sums, scatter.photonPower()), in.rays);
+  sums.points.fill(result.table);
   return result;
 }
 

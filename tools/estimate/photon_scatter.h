@@ -17,7 +17,7 @@ namespace bnvpl {
 // Of every method that traces photons. Sums of more than 2^36 would leave their fixed-point range.
 inline constexpr std::array kPhotonOptions{
     countOption("photons", "10M", 0x1p36, "", "photons from all lights together"), kRadiusOption,
-    wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"), kRecentreOption};
+    wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"), kEmitPointsOption};
 inline Work photonWork(const VplTable&, const Values& options) {
   return {"photons", options.whole("photons")};
 }
@@ -37,6 +37,8 @@ class PhotonScatter {
   PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius, double photonPower,
                 uint64_t photons);
 
+  // Of the light that paths find as well, the share that counts, for each VPL; without, all of it.
+  void setShare(std::span<const double> share) { share_ = share; }
   // To one VPL, in part or whole; and where the flux of a whole hit went.
   void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
   void tally(PhotonSums& sums, Tally t, Vec3 flux) const {
@@ -48,11 +50,11 @@ class PhotonScatter {
   float radius() const { return radius_; }             // reach, in units of each VPL's r_max
 
  private:
-  const VplTable& vpls_;
   float radius_;
   FixedPoint fixed_;
   double photonPower_, perPhotonPower_;
   Coverage coverage_;
+  std::span<const double> share_;
 };
 
 // Hands a hit over; thread-safe. `rng` goes on with the photon's numbers.
@@ -66,6 +68,7 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
 // Photons of one key.
 struct PhotonRun {
   uint64_t key;
+  size_t emitPoints;  // of each VPL
   unsigned maxBounces;
   const PhotonShares& shares;
   const PhotonScatter& scatter;

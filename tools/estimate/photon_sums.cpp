@@ -17,7 +17,6 @@ void VplSum::add(const VplSum& o) {
     addChecked(flux[c], o.flux[c]);
     addChecked(firstBounce[c], o.firstBounce[c]);
     addChecked(onlyPhotons[c], o.onlyPhotons[c]);
-    addChecked(moment[c], o.moment[c]);
   }
   addChecked(squares, o.squares);
   photons += o.photons;
@@ -25,6 +24,7 @@ void VplSum::add(const VplSum& o) {
 
 void PhotonSums::add(const PhotonSums& o) {
   for (size_t i = 0; i < vpl.size(); ++i) vpl[i].add(o.vpl[i]);
+  points.add(o.points.winners());
   for (size_t t = 0; t < kTallies; ++t) addChecked(tally[t], o.tally[t]);
   hits += o.hits;
   rays += o.rays;
@@ -36,6 +36,7 @@ std::string encode(const std::vector<uint8_t>& done, const PhotonSums& sums) {
   std::string bytes;
   appendArray(bytes, done);
   appendArray(bytes, sums.vpl);
+  appendArray(bytes, sums.points.winners());
   appendArray(bytes, sums.tally);
   appendArray(bytes, std::array{sums.hits, sums.rays, sums.guardRays, sums.nonFinite});
   return bytes;
@@ -44,6 +45,7 @@ std::string encode(const std::vector<uint8_t>& done, const PhotonSums& sums) {
 void decode(std::string_view bytes, std::vector<uint8_t>& done, PhotonSums& sums) {
   takeArray(bytes, done);
   takeArray(bytes, sums.vpl);
+  takeArray(bytes, sums.points.winners());
   takeArray(bytes, sums.tally);
   std::array<uint64_t, 4> counts{};
   takeArray(bytes, counts);

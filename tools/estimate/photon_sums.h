@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/estimate/emit_points.h"
+
 namespace bnvpl {
 
 // Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
@@ -48,9 +50,6 @@ struct VplSum {  // without padding: it is saved as it lies
   std::array<int64_t, 3> flux{}, firstBounce{};
   std::array<int64_t, 3> onlyPhotons{};  // part of flux that paths from the VPL cannot find
   int64_t squares = 0;                   // of the mean flux over the photon's, in units of 2^-20
-  // Of the hits' offsets from the VPL in units of its reach, weighted by that flux, in units of
-  // 2^-24.
-  std::array<int64_t, 3> moment{};
   uint64_t photons = 0;
 
   void add(const VplSum& o);
@@ -72,6 +71,7 @@ enum Tally {
 // In the unit of one FixedPoint, except for the counts.
 struct PhotonSums {
   std::vector<VplSum> vpl;
+  EmitPoints points;
   std::array<int64_t, kTallies> tally{};
   uint64_t hits = 0, rays = 0, guardRays = 0, nonFinite = 0;
 
@@ -83,7 +83,8 @@ struct PhotonSums {
 std::string encode(const std::vector<uint8_t>& done, const PhotonSums& sums);
 void decode(std::string_view bytes, std::vector<uint8_t>& done, PhotonSums& sums);
 
-// The same sums as integers that add up, each of its kind behind the other; and back.
+// The same sums, without the points, as integers that add up, each of its kind behind the other;
+// and back.
 std::vector<int64_t> integersOf(const PhotonSums& sums);
 size_t integersFor(size_t vpls);
 PhotonSums sumsOf(std::span<const int64_t> integers, size_t vpls);

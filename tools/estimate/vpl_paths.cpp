@@ -9,13 +9,14 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kVplsPerUnit = 16;
-constexpr std::string_view kWork = "paths";
+constexpr std::string_view kWork = "paths", kPointsWork = "paths.points";
 constexpr size_t unitsOf(size_t vpls) { return (vpls + kVplsPerUnit - 1) / kVplsPerUnit; }
 
-std::string encode(const std::vector<uint8_t>& done, const std::vector<PathSums>& sums) {
+std::string encode(const std::vector<uint8_t>& done, const PathResult& result) {
   std::string bytes;
   appendArray(bytes, done);
-  appendArray(bytes, sums);
+  appendArray(bytes, result.sums);
+  appendArray(bytes, result.points.winners());
   return bytes;
 }
 
@@ -27,7 +28,7 @@ double PathSums::variance() const {
   return std::max(0.0, squares - meanFlux() * meanFlux() / n) * n / (n - 1.0);
 }
 
-PathSums VplPaths::gather(uint32_t vpl, uint64_t points) const {
+PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const {
   PathSums r;
   r.points = points;
   Rng shift(settings_.key, vpl);
@@ -37,7 +38,9 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points) const {
     Rng rng(random64(settings_.key, vpl, 1), k);
     ++r.rays;
     coverage_.forEachLayer(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
-      atPoint += add(vpl, hit, area, rng, r);
+      const double light = add(hit, area, rng, r);
+      ends.offer(vpl, light, hit);
+      atPoint += light;
     });
     r.squares += atPoint * atPoint;
   }
@@ -45,8 +48,7 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points) const {
 }
 
 // Exitance times the area that the point stands for. Returns its mean over the channels.
-double VplPaths::add(uint32_t vpl, const SurfacePoint& hit, float area, Rng& rng,
-                     PathSums& r) const {
+double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const {
   const Bsdf matt(hit, Bsdf(in_.rays.scene(), hit).roughAlbedo());
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
@@ -58,18 +60,18 @@ double VplPaths::add(uint32_t vpl, const SurfacePoint& hit, float area, Rng& rng
     r.nonFinite += settings_.paths;
     return 0.0;
   }
-  const Vec3 offset = (hit.position - in_.vpls.position[vpl]) * (perReach_ / in_.vpls.radius[vpl]);
   for (size_t c = 0; c < 3; ++c) {
     r.flux[c] += double{all[c]};
     r.firstBounce[c] += double{first[c]};
-    r.moment[c] += double{mean(all)} * double{offset[c]};
   }
   return double{mean(all)};
 }
 
-std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
-                                std::span<const uint64_t> points) {
-  std::vector<PathSums> sums(points.size());
+PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
+                     std::span<const uint64_t> points) {
+  PathResult result{std::vector<PathSums>(points.size()), gatherer.noEmitPoints()};
+  std::vector<PathSums>& sums = result.sums;
+  const size_t perVpl = sums.empty() ? 0 : result.points.winners().size() / sums.size();
   const Resume& resume = in.resume;
   std::vector<uint8_t> done = unitsToDo(unitsOf(sums.size()), resume.shard);
   const auto endOf = [&](size_t unit) { return std::min(sums.size(), (unit + 1) * kVplsPerUnit); };
@@ -82,15 +84,22 @@ std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gather
     const size_t begin = unit * kVplsPerUnit;
     return std::span(sums).subspan(begin, endOf(unit) - begin);
   };
+  const auto pointsOfUnit = [&](size_t unit) {
+    const size_t begin = unit * kVplsPerUnit;
+    return result.points.winners().subspan(begin * perVpl, (endOf(unit) - begin) * perVpl);
+  };
   if (resume.source) {
-    for (size_t unit = 0; unit < done.size(); ++unit)
+    for (size_t unit = 0; unit < done.size(); ++unit) {
       takeRecord(*resume.source, kWork, unit, ofUnit(unit));
-    return sums;
+      takeRecord(*resume.source, kPointsWork, unit, pointsOfUnit(unit));
+    }
+    return result;
   }
   if (!resume.state.empty()) {
     std::string_view bytes = resume.state;
     takeArray(bytes, done);
     takeArray(bytes, sums);
+    takeArray(bytes, result.points.winners());
     requireAllTaken(bytes);
   }
   for (size_t unit = 0; in.progress && unit < done.size(); ++unit) {
@@ -100,18 +109,20 @@ std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gather
       done, resume,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
-          sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i]);
+          sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i], result.points);
         if (in.progress) tell(unit);
       },
-      [&] { return encode(done, sums); });
+      [&] { return encode(done, result); });
   for (size_t unit = 0; resume.sink && unit < done.size(); ++unit) {
-    if (resume.shard.has(unit)) giveRecord(*resume.sink, kWork, unit, ofUnit(unit));
+    if (!resume.shard.has(unit)) continue;
+    giveRecord(*resume.sink, kWork, unit, ofUnit(unit));
+    giveRecord(*resume.sink, kPointsWork, unit, pointsOfUnit(unit));
   }
-  return sums;
+  return result;
 }
 
-std::string finishedState(const std::vector<PathSums>& sums) {
-  return encode(std::vector<uint8_t>(unitsOf(sums.size()), 1), sums);
+std::string finishedState(const PathResult& result) {
+  return encode(std::vector<uint8_t>(unitsOf(result.sums.size()), 1), result);
 }
 
 }  // namespace bnvpl

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/estimate/emit_points.h"
 #include "tools/estimate/estimate.h"
 #include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
@@ -20,8 +21,7 @@ inline constexpr Option kPathsOption =
 // What a VPL sends, W, as its points have it.
 struct PathSums {  // without padding: it is saved as it lies
   std::array<double, 3> flux{}, firstBounce{};
-  std::array<double, 3> moment{};  // of the points' offsets in units of its reach, by mean flux
-  double squares = 0.0;            // of the mean flux of a point
+  double squares = 0.0;  // of the mean flux of a point
   uint64_t points = 0, paths = 0, rays = 0, nonFinite = 0;
 
   double meanFlux() const { return (flux[0] + flux[1] + flux[2]) / 3.0; }
@@ -34,33 +34,40 @@ class VplPaths {
     uint64_t key, paths;  // from each point
     unsigned maxBounces;  // at least 1: that at the VPL
     float radius;         // how far a VPL reaches, r_max
+    size_t emitPoints;    // of each VPL
   };
   VplPaths(const EstimateInputs& in, const Settings& settings)
       : in_(in),
         settings_(settings),
         coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.rays),
-        length_{settings.maxBounces - 1},
-        perReach_(1.0f / settings.radius) {}
+        length_{settings.maxBounces - 1} {}
 
-  // Of one VPL, by so many points of its disk.
-  PathSums gather(uint32_t vpl, uint64_t points) const;
+  // Of one VPL, by so many points of its disk, which run for `ends`, too.
+  PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const;
+  EmitPoints noEmitPoints() const {
+    return {in_.vpls.size(), settings_.emitPoints, mix64(settings_.key)};
+  }
   uint64_t pathsOf(uint64_t points) const { return points * settings_.paths; }
 
  private:
-  double add(uint32_t vpl, const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const;
+  double add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const;
 
   const EstimateInputs& in_;
   Settings settings_;
   Coverage coverage_;
   PathLength length_;
-  float perReach_;
+};
+
+struct PathResult {
+  std::vector<PathSums> sums;  // of each VPL
+  EmitPoints points;
 };
 
 // Of all VPLs, by `points` of each. `in.resume` and `in.progress`, in paths, are those of this work
 // alone.
-std::vector<PathSums> gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
-                                std::span<const uint64_t> points);
+PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
+                     std::span<const uint64_t> points);
 // The state with which that work, resumed, is at its end.
-std::string finishedState(const std::vector<PathSums>& sums);
+std::string finishedState(const PathResult& result);
 
 }  // namespace bnvpl

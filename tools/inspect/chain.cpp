@@ -124,8 +124,9 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
     }
     if (same && reweighted) same = isScaled(from, source, to, row);
     if (same && !kept) {
-      same = double{length(to.emitPosition[row] - to.position[row])} <=
-             to.reach * double{to.radius[row]};
+      for (size_t k = row * to.emitPoints; k < (row + 1) * to.emitPoints; ++k)
+        same = same && double{length(to.emitPosition[k] - to.position[row])} <=
+                           to.reach * double{to.radius[row]};
     }
     if (!same)
       return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +

@@ -26,22 +26,29 @@ void appendVec(std::string& bytes, Vec3 v) {
   appendValue(bytes, v.z);
 }
 
+std::vector<Vec3> firstPoints(const VplTable& table, const std::vector<Vec3>& points) {
+  std::vector<Vec3> first;
+  for (size_t row = 0; row < table.size(); ++row) first.push_back(points[row * table.emitPoints]);
+  return first;
+}
+
 // What vertices are made of: PLY's own names first, then the columns that have none.
 struct Vertices {
   explicit Vertices(const VplTable& table)
       : lit(table.stage == VplStage::Lit),
-        places(lit ? table.emitPosition : table.position),
-        normals(lit ? table.emitNormal : table.normal),
+        places(lit ? firstPoints(table, table.emitPosition) : table.position),
+        normals(lit ? firstPoints(table, table.emitNormal) : table.normal),
         colours(displayColours(table)) {
     const char* place = lit ? "emit_position" : "position";
     const char* normal = lit ? "emit_normal" : "normal";
     for (const VplColumnView& column : columnsOf(table)) {
-      if (column.name != place && column.name != normal) others.push_back(column);
+      // Of several points a row is drawn at the first, and has all of them as numbers.
+      if ((column.name != place && column.name != normal) || column.components > 3)
+        others.push_back(column);
     }
   }
   bool lit;
-  const std::vector<Vec3>&places, &normals;
-  std::vector<Vec3> colours;
+  std::vector<Vec3> places, normals, colours;
   std::vector<VplColumnView> others;
 };
 

@@ -38,21 +38,26 @@ Json rangeJson(const std::string& name, const Range& range) {
   return json;
 }
 
-// Of columns with more components than people read, one range over all of them.
+// Of columns with more components than people read, one range over all of them, or over each part
+// of points.
 Json columnsJson(const VplTable& table) {
   constexpr uint32_t kMaxListed = 4;
   Json columns = Json::array();
   for (const VplColumnView& column : columnsOf(table)) {
-    const bool each = column.components <= kMaxListed;
-    std::vector<Range> ranges(each ? column.components : 1);
+    const size_t listed = column.components <= kMaxListed ? column.components
+                          : column.parts.empty()          ? 1
+                                                          : column.parts.size();
+    std::vector<Range> ranges(listed);
     for (size_t row = 0; row < table.size(); ++row) {
-      for (size_t k = 0; k < column.components; ++k) ranges[each ? k : 0].add(column.value(row, k));
+      for (size_t k = 0; k < column.components; ++k) ranges[k % listed].add(column.value(row, k));
     }
     for (size_t k = 0; k < ranges.size(); ++k) {
-      Json json =
-          rangeJson(each ? componentName(column, k)
-                         : std::string(column.name) + "[" + std::to_string(column.components) + "]",
-                    ranges[k]);
+      const std::string name =
+          listed == column.components ? componentName(column, k)
+          : column.parts.empty()
+              ? std::string(column.name) + "[" + std::to_string(column.components) + "]"
+              : std::string(column.name) + "." + column.parts[k];
+      Json json = rangeJson(name, ranges[k]);
       json["unit"] = column.unit;
       json["meaning"] = column.meaning;
       columns.push_back(std::move(json));

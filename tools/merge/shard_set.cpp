@@ -158,7 +158,7 @@ std::string ShardSet::commandFor(const Shard& shard, const std::string& more) co
 
 ShardSource ShardSet::source() {
   return {[this](std::string_view work, uint64_t unit) { return record(work, unit); },
-          [this](std::string_view work, size_t count) { return sums(work, count); }};
+          [this](std::string_view work, size_t count) { return sums(work, count); }, of_};
 }
 
 std::optional<std::string> ShardSet::record(std::string_view work, uint64_t unit) {

@@ -27,7 +27,7 @@ def run(context: Context) -> None:
     context.tables.append(table(
         "scatter", "The thesis' scatter against the guarded one",
         "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter also spreads VPLs "
-        f"uniformly, does not recentre and has no near-field rays. {context.size['scatter']['seeds']} seeds.",
+        f"uniformly, shines from where VPLs stand and has no near-field rays. {context.size['scatter']['seeds']} seeds.",
         COLUMNS, rows))
 
 

@@ -21,7 +21,7 @@ constexpr std::array kOptions{
     kPathsOption, kRadiusOption,
     wholeOption("max-bounces", "32", 1, 1000, "",
                 "diffuse bounces between a light and the view, that at the VPL included"),
-    kRecentreOption};
+    kEmitPointsOption};
 
 // Each pilot gets about this share of the work.
 constexpr double kPilot = 1.0 / 32.0;
@@ -65,9 +65,8 @@ class Estimator {
     in_.lights.requirePower();
     const Split split = in_.resume.source ? splitOfShards() : pilot();
     if (in_.resume.sink && in_.resume.shard.has(0)) give(split);
-    const PhotonWork photons = trace(kPhotonPhase, Stream::Photons, split.photons);
-    const std::vector<PathSums> paths =
-        gather(kPathPhase, Stream::VplPaths, split.points, work_ - told_);
+    const PhotonWork photons = trace(kPhotonPhase, Stream::Photons, split.photons, split.share);
+    const PathResult paths = gather(kPathPhase, Stream::VplPaths, split.points, work_ - told_);
     return combine(split, photons, paths);
   }
 
@@ -94,10 +93,17 @@ class Estimator {
     return result;
   }
 
-  PhotonWork trace(size_t phase, Stream stream, uint64_t count) {
+  // Pilots need no emission points.
+  size_t emitPointsOf(size_t phase) const {
+    return phase < kPhotonPhase ? 0 : options_.whole("emit-points");
+  }
+
+  PhotonWork trace(size_t phase, Stream stream, uint64_t count,
+                   std::span<const double> share = {}) {
     PhotonWork work(in_, options_, count);
-    const PhotonRun run{streamKey(options_.whole("seed"), stream), maxBounces(), work.shares,
-                        work.scatter};
+    work.scatter.setShare(share);
+    const PhotonRun run{streamKey(options_.whole("seed"), stream), emitPointsOf(phase),
+                        maxBounces(), work.shares, work.scatter};
     work.sums = phases_.run(
         phase,
         [&](const Resume& resume) {
@@ -110,11 +116,10 @@ class Estimator {
     return work;
   }
 
-  std::vector<PathSums> gather(size_t phase, Stream stream, std::span<const uint64_t> points,
-                               uint64_t worth) {
+  PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points, uint64_t worth) {
     const VplPaths gatherer(
         in_, {streamKey(options_.whole("seed"), stream), options_.whole("paths"), maxBounces(),
-              options_.real32("radius")});
+              options_.real32("radius"), emitPointsOf(phase)});
     return phases_.run(
         phase,
         [&](const Resume& resume) {
@@ -124,7 +129,7 @@ class Estimator {
             return gatherAll({in_.vpls, in_.rays, in_.lights, progress, resume}, gatherer, points);
           });
         },
-        [](const std::vector<PathSums>& sums) { return finishedState(sums); });
+        [](const PathResult& result) { return finishedState(result); });
   }
 
   unsigned maxBounces() const { return static_cast<unsigned>(options_.whole("max-bounces")); }
@@ -145,7 +150,7 @@ class Estimator {
     const uint64_t points = std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess),
                                                  kLeastPoints, kMostPoints);
     const std::vector<uint64_t> pointsOf(in_.vpls.size(), points);
-    const std::vector<PathSums> paths = gather(1, Stream::PilotPaths, pointsOf, few);
+    const std::vector<PathSums> paths = gather(1, Stream::PilotPaths, pointsOf, few).sums;
     pilots.points = static_cast<double>(points);
     double spent = pilots.photonCost * pilots.photons;
     for (size_t i = 0; i < in_.vpls.size(); ++i) {
@@ -184,19 +189,19 @@ class Estimator {
   }
 
   EstimateResult combine(const Split& split, const PhotonWork& photons,
-                         const std::vector<PathSums>& paths) const {
+                         const PathResult& paths) const {
     EstimateResult result{in_.vpls,
                           accountOf(photons.sums, photons.scatter, photons.shares.total()), 0};
     VplTable& lit = result.table;
     beginLit(lit, options_.real32("radius"));
-    std::vector<Vec3> centre(lit.size());
+    std::vector<double> pathShare(lit.size());
     const FixedPoint& fixed = photons.scatter.fixed();
     for (size_t i = 0; i < lit.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
-      const PathSums& r = paths[i];
+      const PathSums& r = paths.sums[i];
       const double w = split.share[i], rest = 1.0 - w;
-      std::array<double, 3> moment{};
-      double sum = 0.0, flux = 0.0;  // with and without what only photons bring
+      double sum = 0.0;
+      pathShare[i] = rest;
       for (size_t c = 0; c < 3; ++c) {
         const double alone = fixed.decode(s.onlyPhotons[c]);
         const double shared = w * (fixed.decode(s.flux[c]) - alone) + rest * r.flux[c];
@@ -205,19 +210,16 @@ class Estimator {
             lit.flux[i][c],
             static_cast<float>(w * fixed.decode(s.firstBounce[c]) + rest * r.firstBounce[c]));
         sum += (shared + alone) / 3.0;
-        flux += (w * fixed.decode(s.flux[c]) + rest * r.flux[c]) / 3.0;
-        moment[c] = w * static_cast<double>(s.moment[c]) * 0x1p-24 * photons.scatter.photonPower() +
-                    rest * r.moment[c];
       }
-      for (size_t c = 0; c < 3 && flux > 0.0; ++c)
-        centre[i][c] = static_cast<float>(moment[c] / flux);
       lit.photons[i] = s.photons;
       const double variance = w * w * photons.variance(s) + rest * rest * r.variance();
       if (sum > 0.0) lit.relativeError[i] = static_cast<float>(std::sqrt(variance) / sum);
       result.paths += r.paths;
       result.energy.nonFinite += r.nonFinite;
     }
-    if (options_.on("recentre") && !in_.resume.sink) recentre(lit, centre, in_.rays);
+    EmitPoints points = photons.sums.points;
+    points.add(paths.points, pathShare);
+    points.fill(lit);
     return result;
   }
 

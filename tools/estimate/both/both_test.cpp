@@ -25,7 +25,7 @@ World lampAndSky() {
 
 VplTable lit(const World& world, const VplTable& vpls, const char* method, const char* seed,
              const Given& more = {}) {
-  const Given options{{"method", method}, {"seed", seed}, {"recentre", "off"}};
+  const Given options{{"method", method}, {"seed", seed}, {"emit-points", "0"}};
   return lightVpls(world, vpls, with(options, more)).table;
 }
 
@@ -73,7 +73,7 @@ TEST(Both, HasNoBias) {
 TEST(Both, TakesTheBetterOfTheTwo) {
   const auto errorOverThatOfPhotons = [](const World& world, const Given& truth) {
     const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
-    const VplTable right = lightVpls(world, vpls, with({{"recentre", "off"}}, truth)).table;
+    const VplTable right = lightVpls(world, vpls, with({{"emit-points", "0"}}, truth)).table;
     double photons = 0.0, both = 0.0;
     for (const char* seed : {"1", "2"}) {
       photons += errorOf(lit(world, vpls, "guarded", seed, {{"photons", "100k"}}), right);

@@ -17,32 +17,31 @@ constexpr std::array kOptions{
     kPathsOption, kRadiusOption,
     wholeOption("max-bounces", "32", 1, 1000, "",
                 "diffuse bounces between a light and the view, that at the VPL included"),
-    kRecentreOption};
+    kEmitPointsOption};
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
   const VplPaths gatherer(
       in, {streamKey(options.whole("seed"), Stream::VplPaths), options.whole("paths"),
-           static_cast<unsigned>(options.whole("max-bounces")), options.real32("radius")});
+           static_cast<unsigned>(options.whole("max-bounces")), options.real32("radius"),
+           options.whole("emit-points")});
   const std::vector<uint64_t> points(in.vpls.size(), options.whole("points"));
-  const std::vector<PathSums> received = gatherAll(in, gatherer, points);
+  const PathResult received = gatherAll(in, gatherer, points);
   EstimateResult result{in.vpls, {}, 0};
   VplTable& lit = result.table;
   beginLit(lit, options.real32("radius"));
-  std::vector<Vec3> centre(lit.size());
   for (size_t i = 0; i < lit.size(); ++i) {
-    const PathSums& r = received[i];
+    const PathSums& r = received.sums[i];
     const double flux = r.meanFlux();
     for (size_t c = 0; c < 3; ++c) {
       lit.flux[i][c] = static_cast<float>(r.flux[c]);
       lit.firstBounceFlux[i][c] = static_cast<float>(r.firstBounce[c]);
-      if (flux > 0.0) centre[i][c] = static_cast<float>(r.moment[c] / flux);
     }
     if (flux > 0.0) lit.relativeError[i] = static_cast<float>(std::sqrt(r.variance()) / flux);
     result.paths += r.paths;
     result.energy.nonFinite += r.nonFinite;
   }
-  if (options.on("recentre") && !in.resume.sink) recentre(lit, centre, in.rays);
+  received.points.fill(lit);
   return result;
 }
 

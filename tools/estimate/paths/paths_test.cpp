@@ -10,9 +10,9 @@ namespace {
 // Photons and paths estimate one integral by its two ends: fluxes of single VPLs agree within their
 // noise, those of all together within a per cent.
 void expectAgreement(const World& world, const VplTable& vpls, const char* name) {
-  const VplTable photons = lightVpls(world, vpls, {{"photons", "2M"}, {"recentre", "off"}}).table;
+  const VplTable photons = lightVpls(world, vpls, {{"photons", "2M"}, {"emit-points", "0"}}).table;
   const VplTable paths =
-      lightVpls(world, vpls, {{"method", "paths"}, {"points", "256"}, {"recentre", "off"}}).table;
+      lightVpls(world, vpls, {{"method", "paths"}, {"points", "256"}, {"emit-points", "0"}}).table;
   EXPECT_NEAR(totalFlux(paths) / totalFlux(photons), 1.0, 0.01) << name;
   double squares = 0.0;
   for (size_t i = 0; i < vpls.size(); ++i) {

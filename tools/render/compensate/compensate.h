@@ -4,14 +4,12 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "core/progress.h"
 #include "core/random.h"
 #include "formats/vpl_table.h"
 #include "spatial/reach_grid.h"
 #include "tools/common/method.h"
-#include "transport/lights.h"
+#include "transport/rays.h"
 #include "transport/virtual_light_kinds.h"
 
 namespace bnvpl {
@@ -33,9 +31,6 @@ struct Compensation {
   std::function<Missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near,
                         Rng& rng)>
       missing;
-  // Factors of the VPLs' flux with which VPLs and rays together bring all light to some surface, one
-  // for each row of the table; empty: 1.
-  std::vector<float> gains = {};
   explicit operator bool() const { return missing != nullptr; }
 };
 
@@ -43,11 +38,8 @@ struct Compensation {
 struct CompensateInputs {
   const VplTable& lit;
   const RayScene& rays;
-  const LightSet& lights;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
   LightKind light;
-  uint64_t seed;
-  const ProgressFn& progress;  // of preparations
 };
 
 using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;

@@ -2,11 +2,8 @@
 
 #include <memory>
 
-#include "core/parallel.h"
 #include "core/random.h"
 #include "core/sampling.h"
-#include "tools/common/streams.h"
-#include "transport/direct_light.h"
 
 namespace bnvpl {
 
@@ -23,10 +20,6 @@ constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
 // the mean of the VPL's surroundings: the point's own light is found out instead (measured:
 // docs/theory.md, "Near field").
 constexpr float kShortRay = 0.7f;
-// Points of a VPL's surface, rays from each of them, and from where it shines as many as from all.
-constexpr uint32_t kGainPoints = 32, kGainRays = 4;
-// In a crevice VPLs bring next to nothing, and how much less than elsewhere is not known well.
-constexpr double kLeastBrought = 0.05;
 constexpr float kUnknown = -1.0f;  // area that nobody has asked for
 
 std::vector<float> scaled(std::vector<float> values, float factor) {
@@ -63,21 +56,16 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, Lig
   for (std::atomic<float>& area : area_) area = kUnknown;
 }
 
-// Two threads may measure one area; both find the same.
-float NearField::area(uint32_t vpl) const {
+std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
+  if (!gaps_) return {};  // the flux of a photon says nothing of the area around it
+  // Two threads may measure one area; both find the same.
   float area = area_[vpl].load(std::memory_order_relaxed);
   if (area == kUnknown) {
     area = areaOf(vpl, coverage_);
     area_[vpl].store(area, std::memory_order_relaxed);
   }
-  return area;
-}
-
-std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
-  if (!gaps_) return {};  // the flux of a photon says nothing of the area around it
-  const float known = area(vpl);
-  if (!(known > 0.0f)) return {};
-  return (lit_.flux[vpl] - lit_.firstBounceFlux[vpl]) * (1.0f / (kPi * known));
+  if (!(area > 0.0f)) return {};
+  return (lit_.flux[vpl] - lit_.firstBounceFlux[vpl]) * (1.0f / (kPi * area));
 }
 
 Missing NearField::missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
@@ -90,63 +78,12 @@ Missing NearField::missing(const SurfacePoint& seen, float distance, const Reach
   return {share, scatteredBy(*found.vpl)};
 }
 
-NearField::Found NearField::look(uint32_t vpl, Vec3 at, Vec3 normal, Rng& rng) const {
-  SurfacePoint hit;
-  const float u = rng.next(), v = rng.next();
-  const Vec3 d = Basis(normal).toWorld(sampleCosineHemisphere(u, v));
-  if (!rays_.closestHit(rays_.offsetOrigin(at, normal), d, hit)) return {};
-  const float relative = hit.distance / clampRadius_[vpl];
-  Found found{1.0f - withKind(kind_, [&](auto k) { return k.removed(relative); })};
-  const auto there = coverage_.pick(hit.position, hit.ng, coverage_.lookUp(hit.position), rng).vpl;
-  if (there && area(*there) > 0.0f) found.light = mean(lit_.flux[*there]) / (kPi * area(*there));
-  return found;
-}
-
-float NearField::gain(uint32_t vpl, const LightSet& lights, uint64_t key) const {
-  if (!gaps_) return 1.0f;
-  Rng rng(key, vpl);
-  double light = 0.0, brought = 0.0, there = 0.0;
-  for (uint32_t point = 0; point < kGainPoints; ++point) {
-    coverage_.forEachLayer(vpl, r2Sequence(point, 0.5, 0.5),
-                           [&](const SurfacePoint& at, float ofPoint) {
-                             const Bsdf white(at, Vec3(1));
-                             // By rays of its own each: where much light arrives much may be
-                             // brought.
-                             float arriving = 0.0f, share = 0.0f;
-                             for (uint32_t k = 0; k < kGainRays; ++k) {
-                               arriving += mean(directLight(rays_, lights, white, LobeGroup::Rough,
-                                                            LightChoice::One, 0, rng)) +
-                                           look(vpl, at.position, at.ng, rng).light;
-                               share += look(vpl, at.position, at.ng, rng).brought / kGainRays;
-                             }
-                             light += double{ofPoint * arriving};
-                             brought += double{ofPoint * arriving * share};
-                           });
-  }
-  if (!(light > 0.0)) return 1.0f;
-  constexpr uint32_t kAll = kGainPoints * kGainRays;
-  for (uint32_t k = 0; k < kAll; ++k)
-    there += double{look(vpl, lit_.emitPosition[vpl], lit_.emitNormal[vpl], rng).brought} / kAll;
-  return static_cast<float>(std::max(brought / light, kLeastBrought) /
-                            std::max(there, kLeastBrought));
-}
-
 namespace methods::compensate::near_field {
 
 namespace {
 
 Compensation make(const CompensateInputs& in, const Values&) {
   const auto field = std::make_shared<const NearField>(in.lit, in.rays, in.clamp, in.light);
-  std::vector<float> gains(in.lit.size(), 1.0f);
-  {
-    const auto phase = in.progress.before("energy of VPLs", gains.size());
-    const uint64_t key = streamKey(in.seed, Stream::Gains);
-    parallelFor(gains.size(), 4, [&](size_t i) {
-      if (mean(in.lit.flux[i]) > 0.0f)
-        gains[i] = field->gain(static_cast<uint32_t>(i), in.lights, key);
-      if (in.progress) in.progress(1);
-    });
-  }
   return {
       [field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) {
         field->coverage().lookUp(hits, near);
@@ -154,8 +91,7 @@ Compensation make(const CompensateInputs& in, const Values&) {
       [field](const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near, Rng& rng) {
         return field->missing(seen, distance,
                               near ? *near : field->coverage().lookUp(seen.position), rng);
-      },
-      std::move(gains)};
+      }};
 }
 
 }  // namespace

@@ -16,26 +16,15 @@ namespace bnvpl {
 class NearField {
  public:
   // Borrows the table and the scene. `clamp` and `kind` as for makeVplLights().
-  NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {});
+  NearField(const VplTable& lit, const RayScene& rays, float clamp,
+            LightKind kind = LightKind::Point);
 
   // `near`: what coverage() finds at the point.
   Missing missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
                   Rng& rng) const;
   const Coverage& coverage() const { return coverage_; }
 
-  // Compensation::gains of VPL i, theory.md, eq. 2. It shines from one place for a whole
-  // neighbourhood: what it would bring from where its light leaves, over what it brings from there.
-  float gain(uint32_t vpl, const LightSet& lights, uint64_t key) const;
-
  private:
-  // What a ray from a point finds: the share that VPL i would bring there of the light of the
-  // point, and the light that comes from there, W/(m2 sr), as VPLs know it.
-  struct Found {
-    float brought = 0.0f, light = 0.0f;
-  };
-  Found look(uint32_t vpl, Vec3 at, Vec3 normal, Rng& rng) const;
-  // Of the surface that VPL i speaks for, world units squared; 0: not known.
-  float area(uint32_t vpl) const;
   // Of Missing: mean of the surface that the VPL speaks for; empty where that is not known.
   std::optional<Vec3> scatteredBy(uint32_t vpl) const;
 

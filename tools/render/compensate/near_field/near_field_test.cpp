@@ -46,6 +46,44 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
   }
 }
 
+// A room that is lit from below slats close above its floor. VPLs of the floor shine from one
+// place, in a gap or under a slat, for a surface that is lit most where it is least open.
+Scene slattedRoom() {
+  Scene scene;
+  const Material white = lambert(Vec3(0.6f));
+  addSquare(scene, {0, 0, 2}, {2, 0, 0}, {0, 0, -2}, white);  // floor
+  addSquare(scene, {0, 2, 0}, {2, 0, 0}, {0, 0, 2}, white);   // ceiling
+  addSquare(scene, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, white);   // back
+  addSquare(scene, {2, 0, 2}, {-2, 0, 0}, {0, 2, 0}, white);  // front
+  addSquare(scene, {0, 0, 2}, {0, 0, -2}, {0, 2, 0}, white);  // left
+  addSquare(scene, {2, 0, 0}, {0, 0, 2}, {0, 2, 0}, white);   // right
+  for (int slat = 0; slat < 10; ++slat) {
+    const float x = 0.05f + 0.2f * float(slat);
+    addSquare(scene, {x, 0.04f, 0}, {0.1f, 0, 0}, {0, 0, 2}, lamp(Vec3(5)));
+  }
+  finishScene(scene);
+  scene.film = {48, 36};
+  scene.camera.position = {1.0f, 1.4f, 1.95f};
+  scene.camera.forward = normalize(Vec3(0.0f, -0.4f, -1.0f));
+  scene.camera.right = {1, 0, 0};
+  scene.camera.up = cross(scene.camera.right, scene.camera.forward);
+  scene.camera.verticalFovRad = 1.4f;
+  return scene;
+}
+
+// A VPL shines from points that its light comes from, so that what leaves below the slats does not
+// pass for light in the open: from the places of VPLs the room is a tenth too bright.
+TEST(NearField, LightFromBelowSlatsStaysThere) {
+  const World world{slattedRoom()};
+  const double path = indirectByPaths(world, {{"spp", "256"}});
+  const VplTable vpls = keptVpls(world, {{"count", "600"}}, {{"count", "12k"}});
+  for (const Given& method : {Given{{"method", "paths"}}, Given{{"photons", "1M"}}}) {
+    const VplTable lit = lightVpls(world, vpls, method).table;
+    const double ours = indirectByVpls(world, lit, {{"compensate", "near-field"}, {"spp", "8"}});
+    EXPECT_NEAR(ours / path, 1.0, 0.02) << method.front().second;
+  }
+}
+
 // The clamp takes 1 - (distance / (clamp r))^2 of the light of a VPL of radius r, but not less than
 // nothing. How far `share` is from that of the VPL nearest to it, of those whose disk holds the
 // hit.

@@ -86,13 +86,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const LightKind light = indirect ? lightKindNamed(options.text("light")) : LightKind{};
   const auto parts = std::make_shared<Parts>();
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
-  Compensation compensation =
-      methodNamed(compensateMethods(), options.text("compensate"))
-          .make({in.lit, in.rays, in.lights, clamp, light, in.seed, in.progress}, options);
-  if (!compensation.gains.empty()) {
-    for (size_t i = 0; i < parts->vpls.size(); ++i)
-      parts->vpls.intensity[i] *= compensation.gains[parts->vpls.row[i]];
-  }
+  Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
+                                  .make({in.lit, in.rays, clamp, light}, options);
   Gather gather = indirect ? makeGather(in, options, *parts) : Gather{};
   const bool wholePixels = gather.wholePixels;
   const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";

@@ -1,0 +1,79 @@
+// The points from which VPLs shine, drawn in proportion to what they receive.
+#include "tools/estimate/emit_points.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace bnvpl {
+namespace {
+
+constexpr size_t kDraws = 20000;
+constexpr std::array kWeights{0.5, 2.0, 0.0, 1.5};
+
+SurfacePoint hitAt(float x) {
+  SurfacePoint hit;
+  hit.position = {x, 0.25f, -1.0f};
+  hit.ng = {0, 1, 0};
+  return hit;
+}
+
+// One race for each of many VPLs, all of the same four hits, those with index from `begin` to
+// `end`.
+EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7) {
+  EmitPoints points(kDraws, 1, key);
+  for (size_t vpl = 0; vpl < kDraws; ++vpl) {
+    for (size_t h = begin; h < end; ++h) points.offer(vpl, kWeights[h], hitAt(float(h)));
+  }
+  return points;
+}
+
+std::array<double, 4> sharesOf(const EmitPoints& points) {
+  std::array<double, 4> shares{};
+  for (const EmitPoint& p : points.winners()) shares[size_t(p.position.x)] += 1.0 / kDraws;
+  return shares;
+}
+
+TEST(EmitPoints, AreDrawnInProportionToTheLight) {
+  const auto shares = sharesOf(raced());
+  for (size_t h = 0; h < 4; ++h) {
+    const double expected = kWeights[h] / 4.0;
+    EXPECT_NEAR(shares[h], expected, 4.0 * std::sqrt(expected * (1.0 - expected) / kDraws)) << h;
+  }
+}
+
+TEST(EmitPoints, OfPartsAreThoseOfTheWhole) {
+  const EmitPoints whole = raced();
+  for (const size_t middle : {1u, 3u}) {
+    EmitPoints behind = raced(middle, 4);
+    behind.add(std::as_const(raced(0, middle)).winners());
+    for (size_t i = 0; i < kDraws; ++i)
+      ASSERT_EQ(behind.winners()[i].position, whole.winners()[i].position);
+  }
+}
+
+// As if all hits of the others had that share of their weight: 3/4 of 2.5 against 1.5 in full.
+TEST(EmitPoints, OfOthersCountByTheirShare) {
+  EmitPoints points = raced(3, 4);
+  points.add(raced(0, 3, 8), std::vector<double>(kDraws, 0.75));
+  const double expected = 1.5 / (1.5 + 0.75 * 2.5);
+  EXPECT_NEAR(sharesOf(points)[3], expected, 4.0 * std::sqrt(0.25 / kDraws));
+}
+
+TEST(EmitPoints, WithoutLightAreThePlaceOfTheVpl) {
+  VplTable lit;
+  lit.position = {{1, 2, 3}, {4, 5, 6}};
+  lit.normal = {{0, 0, 1}, {1, 0, 0}};
+  EmitPoints points(2, 3, 7);
+  points.offer(0, 1.0, hitAt(8.0f));
+  points.fill(lit);
+  ASSERT_EQ(lit.emitPoints, 3u);
+  ASSERT_EQ(lit.emitPosition.size(), 6u);
+  EXPECT_EQ(lit.emitPosition[2], Vec3(8.0f, 0.25f, -1.0f));
+  EXPECT_EQ(lit.emitNormal[2], Vec3(0, 1, 0));
+  EXPECT_EQ(lit.emitPosition[3], Vec3(4, 5, 6));
+  EXPECT_EQ(lit.emitNormal[5], Vec3(1, 0, 0));
+}
+
+}  // namespace
+}  // namespace bnvpl

@@ -1,0 +1,22 @@
+// Rows of stage Lit with several emission points.
+#pragma once
+
+#include "formats/vpl_table.h"
+
+namespace bnvpl {
+
+// The same rows, each with so many emission points, a step apart.
+inline VplTable withEmitPoints(VplTable table, uint32_t count) {
+  const VplTable one = table;
+  table.emitPoints = count;
+  table.emitPosition.clear();
+  table.emitNormal.clear();
+  for (size_t k = 0; k < one.size() * count; ++k) {
+    table.emitPosition.push_back(one.emitPosition[k / count] +
+                                 Vec3(0.25f * float(k % count), 0, 0));
+    table.emitNormal.push_back(one.emitNormal[k / count]);
+  }
+  return table;
+}
+
+}  // namespace bnvpl
