@@ -130,7 +130,8 @@ struct MetallicRoughnessModel {
   // Disney's: alpha is roughness^2 / a along growing u and roughness^2 a across, a^2 = 1 - 0.9
   // anisotropy.
   Scalar anisotropy{0.0f};
-  Scalar ior{1.5f};  // 0: reflects all, as the extension has it
+  Scalar anisotropyTurns{0.0f};  // of that direction, anticlockwise as seen from outside; 1: full
+  Scalar ior{1.5f};              // 0: reflects all, as the extension has it
   Scalar specular{1.0f};
   Colour specularColour{Vec3(1)};
   Scalar clearcoat{0.0f}, clearcoatRoughness{0.0f};
@@ -184,6 +185,8 @@ struct Material {
   }
 
   Relief relief;
+  // Of a clearcoat, which `relief` leaves as smooth as the mesh is.
+  Relief coatRelief;
 
   // Of a material that is known to be one: the loaders of MTL and tests.
   PhongModel& phong() { return std::get<PhongModel>(model); }

@@ -7,7 +7,7 @@
 namespace bnvpl {
 
 // Calls fn with each Colour, Scalar, and number or switch of a model (Vec3, float, uint32_t), in a
-// fixed order. Not of the PhongModel.
+// fixed order. Not of the PhongModel, nor the coat's relief.
 template <typename Fn>
 void forEachInput(const PhongModel&, const Fn&) {}
 template <typename Fn>
@@ -64,7 +64,7 @@ void forEachInput(const MetallicRoughnessModel& m, const Fn& fn) {
   fn(m.baseColour);
   fn(m.specularColour);
   for (const Scalar& s : {m.metallic, m.roughness, m.anisotropy, m.ior, m.specular, m.clearcoat,
-                          m.clearcoatRoughness, m.transmission})
+                          m.clearcoatRoughness, m.transmission, m.anisotropyTurns})
     fn(s);
 }
 template <typename Fn>
@@ -91,8 +91,8 @@ void forEachExpression(const Material& m, const Fn& fn) {
     void operator()(uint32_t) const {}
   };
   std::visit([&](const auto& model) { forEachInput(model, Expressions{fn}); }, m.model);
-  for (const uint32_t number :
-       {m.emissionTexture, m.opacityTexture, m.relief.normalMap, m.relief.bumpMap})
+  for (const uint32_t number : {m.emissionTexture, m.opacityTexture, m.relief.normalMap,
+                                m.relief.bumpMap, m.coatRelief.normalMap, m.coatRelief.bumpMap})
     fn(number);
 }
 

@@ -44,6 +44,10 @@ void hashModel(Hasher& h, const Material& m) {
   forEachInput(m, Inputs{h});
   for (const float f : {m.opacityCutoff, m.relief.strength}) h.value(f);
   h.value(uint32_t{m.relief.heightInTexels});
+  if (m.coatRelief.flat()) return;
+  for (const uint32_t i : {m.coatRelief.normalMap, m.coatRelief.bumpMap}) h.value(i);
+  h.value(m.coatRelief.strength);
+  h.value(uint32_t{m.coatRelief.heightInTexels});
 }
 
 void hashMaterial(Hasher& h, const Material& m) {

@@ -232,13 +232,13 @@ void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
     if (len > 1e-6f) hit.ns = n * ((dot(n, hit.ng) < 0.0f ? -1.0f : 1.0f) / len);
   }
   hit.u = hit.v = std::numeric_limits<float>::quiet_NaN();
-  hit.tangent = {};
+  hit.tangent = hit.coat = {};
   if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
     const auto &a = scene_.uvs[t.uv[0]], &b = scene_.uvs[t.uv[1]], &c = scene_.uvs[t.uv[2]];
     hit.u = b0 * a[0] + b1 * b[0] + b2 * c[0];
     hit.v = b0 * a[1] + b1 * b[1] + b2 * c[1];
     const Material& m = scene_.materials[t.material];
-    if (!m.relief.flat() || !std::holds_alternative<PhongModel>(m.model))
+    if (!m.relief.flat() || !m.coatRelief.flat() || !std::holds_alternative<PhongModel>(m.model))
       applyRelief(scene_, t, hit);
   }
 }

@@ -15,6 +15,7 @@ struct SurfacePoint {
   Vec3 wo;             // unit, back along the ray
   Vec3 ng;             // geometric normal, unit, dot(ng, wo) >= 0
   Vec3 ns;             // shading normal, unit, in the hemisphere of ng
+  Vec3 coat;           // as ns, of a clearcoat; 0: it is ns
   Vec3 tangent;        // where u grows, not unit; 0 where it is not known or no model asks
   float u = 0, v = 0;  // texture coordinates; NaN where the mesh has none
   float distance = 0;  // along the ray

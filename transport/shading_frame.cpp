@@ -45,6 +45,19 @@ Vec3 bumpedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& 
   return normalize(dot(flat, n) < 0.0f ? -m : m);
 }
 
+// The shading normal of the hit with that relief.
+Vec3 relieved(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 ns, Vec3 dpdu,
+              Vec3 dpdv) {
+  if (relief.flat()) return ns;
+  const float side = hit.front ? 1.0f : -1.0f;
+  const Vec3 bent = (relief.normalMap != kNone ? mappedNormal : bumpedNormal)(
+                        scene, relief, hit, ns * side, dpdu, dpdv) *
+                    side;
+  if (!isFinite(bent)) return ns;
+  const float above = dot(bent, hit.ng);
+  return above >= kLeastRelief ? bent : normalize(bent + hit.ng * (kLeastRelief - above));
+}
+
 }  // namespace
 
 void applyRelief(const Scene& scene, const Triangle& triangle, SurfacePoint& hit) {
@@ -56,16 +69,10 @@ void applyRelief(const Scene& scene, const Triangle& triangle, SurfacePoint& hit
     dpdu = instance.vector(dpdu), dpdv = instance.vector(dpdv);
   }
   hit.tangent = normalize(dpdu);
-  const Relief& relief = scene.materials[hit.material].relief;
-  if (relief.flat()) return;
-  const float side = hit.front ? 1.0f : -1.0f;
-  const Vec3 outwards = hit.ns * side;
-  const Vec3 bent = (relief.normalMap != kNone ? mappedNormal : bumpedNormal)(
-                        scene, relief, hit, outwards, dpdu, dpdv) *
-                    side;
-  if (!isFinite(bent)) return;
-  const float above = dot(bent, hit.ng);
-  hit.ns = above >= kLeastRelief ? bent : normalize(bent + hit.ng * (kLeastRelief - above));
+  const Material& m = scene.materials[hit.material];
+  if (m.relief.flat() && m.coatRelief.flat()) return;
+  hit.coat = relieved(scene, m.coatRelief, hit, hit.ns, dpdu, dpdv);
+  hit.ns = relieved(scene, m.relief, hit, hit.ns, dpdu, dpdv);
 }
 
 }  // namespace bnvpl

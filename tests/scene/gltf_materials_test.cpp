@@ -81,7 +81,8 @@ TEST_F(GltfMaterials, ExtensionsSetTheirParameters) {
   const Scene s = load(withMaterial(
       "{\"name\":\"a\",\"extensions\":{\"KHR_materials_ior\":{\"ior\":2},"
       "\"KHR_materials_transmission\":{\"transmissionFactor\":1,\"transmissionTexture\":{\"index\":"
-      "0}},\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.5,\"clearcoatRoughnessFactor\":0.25},"
+      "0}},\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.5,\"clearcoatRoughnessFactor\":0.25,"
+      "\"clearcoatNormalTexture\":{\"index\":1,\"scale\":0.5}},"
       "\"KHR_materials_specular\":{\"specularFactor\":0.125,\"specularColorFactor\":[1,0,1]}}}"));
   const MetallicRoughnessModel& m = modelOf(s);
   EXPECT_EQ(m.ior.value, 2.0f);
@@ -89,6 +90,10 @@ TEST_F(GltfMaterials, ExtensionsSetTheirParameters) {
   EXPECT_NE(m.transmission.texture, kNone);
   EXPECT_EQ(m.clearcoat.value, 0.5f);
   EXPECT_EQ(m.clearcoatRoughness.value, 0.25f);
+  const Material& a = materialNamed(s, "a");
+  EXPECT_NE(a.coatRelief.normalMap, kNone);
+  EXPECT_EQ(a.coatRelief.strength, 0.5f);
+  EXPECT_TRUE(a.relief.flat());
   EXPECT_EQ(m.specular.value, 0.125f);
   EXPECT_EQ(m.specularColour.value, Vec3(1, 0, 1));
 }

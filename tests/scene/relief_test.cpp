@@ -67,6 +67,25 @@ TEST(Relief, BackShowsTheSameRelief) {
   expectNear(back.ng, {0, 0, -1});
 }
 
+// glTF: a clearcoat has its own map, and is smooth without one.
+TEST(Relief, CoatHasItsOwn) {
+  Material m = mapped(&Relief::normalMap);
+  Scene scene = square(m);
+  scene.expressions = {colourOf(kTilt), colourOf({0, 0.6f, 0.8f})};
+  expectNear(hitFrom(scene, {0.3f, 0.6f, 2}).coat, {0, 0, 1});
+  m.coatRelief.normalMap = 1;
+  scene.materials[0] = m;
+  expectNear(hitFrom(scene, {0.3f, 0.6f, 2}).coat, {0, 0.6f, 0.8f});
+  expectNear(hitFrom(scene, {0.3f, 0.6f, -2}).coat, {0, -0.6f, -0.8f});
+  m.relief = {};
+  scene.materials[0] = m;
+  expectNear(hitFrom(scene, {0.3f, 0.6f, 2}).coat, {0, 0.6f, 0.8f});
+  expectNear(hitFrom(scene, {0.3f, 0.6f, 2}).ns, {0, 0, 1});
+  m.coatRelief = {};
+  scene.materials[0] = m;
+  expectNear(hitFrom(scene, {0.3f, 0.6f, 2}).coat, {});
+}
+
 TEST(Relief, StaysAboveTheSurface) {
   Scene scene = square(mapped(&Relief::normalMap, 1000.0f));
   scene.expressions.push_back(colourOf({1, 0, -1}));

@@ -79,6 +79,8 @@ class MaterialReport {
     add("metallic", m.metallic);
     add("roughness", m.roughness);
     if (m.anisotropy.value > 0) add("anisotropy", m.anisotropy);
+    if (m.anisotropy.value > 0 && m.anisotropyTurns.value != 0)
+      add("anisotropy_turns", m.anisotropyTurns);
     add("ior", m.ior);
     if (m.specular.value != 1 || m.specular.texture != kNone) add("specular", m.specular);
     if (m.specularColour.value != Vec3(1) || m.specularColour.texture != kNone)
@@ -107,6 +109,10 @@ class MaterialReport {
       json["opacity_cutoff"] = m.opacityCutoff;
       textures("opacity", m.opacityTexture);
       if (m.opacityMap != kNone) json["opacity_textures"] = Json::array({m.opacityMap});
+    }
+    if (!m.coatRelief.flat()) {
+      textures("coat_normal", m.coatRelief.normalMap);
+      json["coat_relief_strength"] = m.coatRelief.strength;
     }
     if (m.relief.flat()) return;
     textures("normal", m.relief.normalMap);

@@ -45,8 +45,9 @@ class NearestMtl {
     facets->specularColour.value = m.specularColour.value * (normal * normal * m.specular.value);
     diffuse(m.baseColour, 1.0f);
     for (const uint32_t texture :
-         {m.metallic.texture, m.roughness.texture, m.anisotropy.texture, m.specular.texture,
-          m.specularColour.texture, m.clearcoat.texture, m.clearcoatRoughness.texture})
+         {m.metallic.texture, m.roughness.texture, m.anisotropy.texture, m.anisotropyTurns.texture,
+          m.specular.texture, m.specularColour.texture, m.clearcoat.texture,
+          m.clearcoatRoughness.texture})
       same = same && texture == kNone;
     same = same && m.transmission.value == 0.0f &&
            (m.specular.value == 1.0f || m.metallic.value == 1.0f) &&
@@ -123,8 +124,8 @@ std::string facetsText(const Scene& scene, const MetallicRoughnessModel& m, cons
          triple(m.specularColour.value * (1.0f / kF0PerKs)) + "\nPr " +
          shortestText(m.roughness.value) + "\nPm " + shortestText(m.metallic.value) + "\nPc " +
          shortestText(m.clearcoat.value) + "\nPcr " + shortestText(m.clearcoatRoughness.value) +
-         "\naniso " + shortestText(m.anisotropy.value) + "\n" +
-         mapLine(scene, "map_Kd", p.diffuseMap);
+         "\naniso " + shortestText(m.anisotropy.value) + "\nanisor " +
+         shortestText(m.anisotropyTurns.value) + "\n" + mapLine(scene, "map_Kd", p.diffuseMap);
 }
 
 std::string phongText(const Scene& scene, const PhongModel& p) {
@@ -161,8 +162,9 @@ std::string mtlText(const Scene& scene, std::vector<std::string>& approximated) 
     if (m.twoSidedEmission) text += "emission_sides 2\n";
     if (m.opacity != 1.0f) text += "d " + shortestText(m.opacity) + "\n";
     text += mapLine(scene, "map_d", m.opacityMap);
-    const bool same = nearest.same && m.relief.flat() && m.emissionTexture == kNone &&
-                      m.opacityTexture == kNone && m.opacityCutoff == 0.5f;
+    const bool same = nearest.same && m.relief.flat() && m.coatRelief.flat() &&
+                      m.emissionTexture == kNone && m.opacityTexture == kNone &&
+                      m.opacityCutoff == 0.5f;
     if (!same) approximated.push_back("material '" + m.name + "' is more than MTL can say");
   }
   return text;

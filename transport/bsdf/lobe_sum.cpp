@@ -12,25 +12,6 @@ static_assert(std::is_trivially_copyable_v<LobeSum> && std::is_trivially_destruc
 
 namespace {
 
-// The mirror image of wo lies at least so far above the geometric surface, as a cosine.
-constexpr float kAboveSurface = 0.01f;
-
-// The shading normal for lobes that look for wo's mirror image: where that lies below the surface,
-// or wo below the shading normal's horizon, the one whose mirror image is just above. It moves
-// continuously.
-Vec3 bentNormal(const SurfacePoint& p) {
-  const Vec3 mirror = reflect(p.wo, p.ns);
-  const float up = dot(mirror, p.ng), least = std::min(kAboveSurface, 0.9f * dot(p.ng, p.wo));
-  if (dot(p.ns, p.wo) > 0.0f && up >= least) return p.ns;
-  const Vec3 along = mirror - p.ng * up;
-  const float length2 = lengthSquared(along);
-  if (!(length2 > 1e-12f) || !(least > 0.0f)) return p.ng;
-  const Vec3 raised = along * std::sqrt((1.0f - least * least) / length2) + p.ng * least;
-  return normalize(p.wo + raised);
-}
-
-constexpr float kLeastCosine = 1e-5f;  // of wo: lobes divide by it
-
 bool isLambert(const Lobe& lobe) { return std::holds_alternative<LambertLobe>(lobe); }
 
 // The mean over directions of a diffuse base, cosine-weighted.
@@ -58,37 +39,35 @@ void addModel(const MaterialModel& model, const MaterialInputs& inputs, Vec3 wei
 }
 
 LobeSum::LobeSum(const Scene& scene, const MaterialModel& model, const SurfacePoint& point) {
-  setFrame(point);
+  std::construct_at(&frames_[0], point, point.ns, 0.0f);
   addModel(model, MaterialInputs(scene, point), Vec3(1), *this);
   finish();
 }
 
-void LobeSum::setFrame(const SurfacePoint& point) {
-  const Vec3 n = bentNormal(point);
-  bent_ = n != point.ns;
-  const Vec3 along = point.tangent - n * dot(n, point.tangent);
-  const Basis basis(n);
-  frame_[2] = n;
-  frame_[0] = lengthSquared(along) > 1e-8f ? normalize(along) : basis.s;
-  frame_[1] = cross(n, frame_[0]);
-  wo_ = toLocal(point.wo);
-  wo_.z = std::max(kLeastCosine, wo_.z);
+uint32_t LobeSum::frame(const SurfacePoint& point, Vec3 shadingNormal, float turns) {
+  for (uint32_t f = 0; f < frameCount_; ++f) {
+    if (frames_[f].ns == shadingNormal && frames_[f].turns == turns) return f;
+  }
+  if (frameCount_ == kMaxFrames) return 0;
+  std::construct_at(&frames_[frameCount_], point, shadingNormal, turns);
+  return frameCount_++;
 }
 
-void LobeSum::add(Vec3 weight, const Lobe& lobe, CoatAbove above) {
+void LobeSum::add(Vec3 weight, const Lobe& lobe, CoatAbove above, uint32_t frame) {
   if (full()) return;
   Summand s;
   s.lobe = lobe;
   s.weight = weight;
   s.above = above;
+  s.frame = frame;
   std::visit(
       [&](const auto& l) {
         s.group = l.group();
-        s.albedo = weight * l.albedo(wo_);
+        s.albedo = weight * l.albedo(frames_[frame].wo);
       },
       lobe);
   if (above.weight > 0.0f) {
-    s.coatOut = above.through(wo_.z);
+    s.coatOut = above.through(frames_[above.frame].wo.z);
     const bool diffuse = s.group == LobeGroup::Rough && std::holds_alternative<LayeredBase>(lobe);
     s.albedo *= diffuse ? meanThrough(above, s.coatOut) : s.coatOut;
   }
@@ -121,12 +100,13 @@ void LobeSum::finish() {
   if (reflectance_ < kMinProbability) reflectance_ = 0.0f;
 }
 
-Vec3 LobeSum::glossyBound(float maxCosine, float cosMirror) const {
+Vec3 LobeSum::glossyBound(uint32_t frame, float maxCosine, float cosMirror) const {
   Vec3 sum;
+  const Vec3 wo = frames_[frame].wo;
   for (const Summand& s : lobes()) {
-    if (s.group != LobeGroup::Rough || isLambert(s.lobe)) continue;
+    if (s.frame != frame || s.group != LobeGroup::Rough || isLambert(s.lobe)) continue;
     sum += s.weight * s.coatOut *
-           std::visit([&](const auto& l) { return l.bound(wo_, maxCosine, cosMirror); }, s.lobe);
+           std::visit([&](const auto& l) { return l.bound(wo, maxCosine, cosMirror); }, s.lobe);
   }
   return sum;
 }
@@ -135,30 +115,48 @@ float LobeSum::photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) con
   return shadingFactor(point, normal) * std::fabs(dot(point.ng, wi));
 }
 
-// Light must come from the shading normal's side of the surface: radiance from wi, photons from wo.
-// Lobes have their own side at the other end, but for Lambert's, which leave by the geometric one.
+float LobeSum::coat(const Summand& s, Vec3 wi) const {
+  if (!(s.above.weight > 0.0f)) return 1.0f;
+  return std::min(s.coatOut, s.above.through(std::fabs(dot(frames_[s.above.frame].z, wi))));
+}
+
+bool LobeSum::lit(const SurfacePoint& point, const Summand& s, Transport transport, Vec3 wi) const {
+  const bool photons = transport == Transport::Photons;
+  const Vec3 from = photons ? point.wo : wi;
+  const float side = photons ? 1.0f : dot(point.ng, wi);
+  const auto on = [&](Vec3 ns) { return side * dot(ns, from) > 0.0f; };
+  return on(frames_[s.frame].ns) &&
+         (s.frame == 0 || s.group == LobeGroup::Specular || on(point.ns));
+}
+
+// Lobes have their own side at the end that light does not come from, but for Lambert's, which
+// leave by the geometric one.
 LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
                                      Transport transport, Vec3 wi) const {
   Evaluated sum;
   const bool photons = transport == Transport::Photons;
-  const float ng = dot(point.ng, wi), ns = dot(point.ns, wi);
-  if (ng == 0.0f || (!photons && ng * ns <= 0.0f)) return sum;
-  const Vec3 local = toLocal(wi);
+  const float ng = dot(point.ng, wi);
+  if (ng == 0.0f) return sum;
+  Vec3 locals[kMaxFrames];
+  for (uint32_t f = 0; f < frameCount_; ++f) locals[f] = frames_[f].toLocal(wi);
   for (const Summand& s : lobes()) {
-    if (s.group != group) continue;
+    if (s.group != group || !lit(point, s, transport, wi)) continue;
+    const LobeFrame& frame = frames_[s.frame];
     if (const auto* lambert = std::get_if<LambertLobe>(&s.lobe)) {
+      const float ns = dot(point.ns, wi);
       const Vec3 w{0.0f, 0.0f, photons ? ng : ns};
       const float cosine = photons ? photonCosine(point, point.ns, wi) : std::fabs(ns);
-      sum.value += s.weight * lambert->value(wo_, w, transport) * cosine;
-      sum.pdf += s.share * lambert->pdf(wo_, w);
+      sum.value += s.weight * lambert->value(frame.wo, w, transport) * cosine;
+      sum.pdf += s.share * lambert->pdf(frame.wo, w);
       continue;
     }
+    const Vec3 local = locals[s.frame];
     if (local.z * ng <= 0.0f) continue;
-    const float cosine = photons ? photonCosine(point, frame_[2], wi) : std::fabs(local.z);
+    const float cosine = photons ? photonCosine(point, frame.z, wi) : std::fabs(local.z);
     std::visit(
         [&](const auto& l) {
-          sum.value += s.weight * l.value(wo_, local, transport) * (cosine * s.coat(local.z));
-          sum.pdf += s.share * l.pdf(wo_, local);
+          sum.value += s.weight * l.value(frame.wo, local, transport) * (cosine * coat(s, wi));
+          sum.pdf += s.share * l.pdf(frame.wo, local);
         },
         s.lobe);
   }
@@ -168,7 +166,6 @@ LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
 bool LobeSum::sample(const SurfacePoint& point, LobeGroup group, Transport transport, float pick,
                      Point2 at, BsdfSample& out) const {
   const bool photons = transport == Transport::Photons;
-  if (photons && dot(point.ns, point.wo) <= 0.0f) return false;
   const Summand* chosen = nullptr;
   float rest = pick;
   for (const Summand& s : lobes()) {
@@ -178,23 +175,26 @@ bool LobeSum::sample(const SurfacePoint& point, LobeGroup group, Transport trans
     if (rest < s.share) break;
   }
   if (!chosen) return false;
+  const LobeFrame& frame = frames_[chosen->frame];
   LobeSample drawn;
   const float within = std::clamp(rest / chosen->share, 0.0f, 0x1.fffffep-1f);
-  if (!std::visit([&](const auto& l) { return l.sample(wo_, within, at, drawn); }, chosen->lobe))
+  if (!std::visit([&](const auto& l) { return l.sample(frame.wo, within, at, drawn); },
+                  chosen->lobe))
     return false;
   out.wi = isLambert(chosen->lobe) ? Basis(photons ? point.ng : point.ns).toWorld(drawn.wi)
-                                   : toWorld(drawn.wi);
+                                   : frame.toWorld(drawn.wi);
   const float ng = dot(point.ng, out.wi);
   const bool crosses = drawn.wi.z < 0.0f;
   if (crosses ? ng >= 0.0f : ng <= 0.0f) return false;
+  if (!lit(point, *chosen, transport, out.wi)) return false;
   out.side = crosses ? -point.ng : point.ng;
   if (std::visit([](const auto& l) { return l.smooth(); }, chosen->lobe)) {
     out.pdf = 0.0f;
-    out.weight = chosen->weight * drawn.weight * (chosen->coat(drawn.wi.z) / chosen->share);
+    out.weight = chosen->weight * drawn.weight * (coat(*chosen, out.wi) / chosen->share);
     if (const auto* glass = std::get_if<DielectricLobe>(&chosen->lobe); glass && crosses)
       out.weight *= glass->squeezed(transport);
     if (photons)
-      out.weight *= photonCosine(point, frame_[2], out.wi) / std::max(1e-6f, std::fabs(drawn.wi.z));
+      out.weight *= photonCosine(point, frame.z, out.wi) / std::max(1e-6f, std::fabs(drawn.wi.z));
     return !isBlack(out.weight);
   }
   const Evaluated all = evaluate(point, group, transport, out.wi);

@@ -10,6 +10,7 @@
 #include "transport/bsdf/conductor/conductor.h"
 #include "transport/bsdf/dielectric/dielectric.h"
 #include "transport/bsdf/diffuse/diffuse.h"
+#include "transport/bsdf/lobe_frame.h"
 #include "transport/bsdf/metallic_roughness/metallic_roughness.h"
 
 namespace bnvpl {
@@ -21,17 +22,21 @@ using Lobe = std::variant<LambertLobe, GgxReflection, MultipleScattering, Dielec
 // more. So the sum of coat and base is reciprocal, and reflects no more than arrives.
 struct CoatAbove {
   float weight = 0.0f, alpha = 0.0f;
+  uint32_t frame = 0;  // whose cosines count
   float through(float cosine) const;
 };
 
 class LobeSum {
  public:
-  static constexpr size_t kMaxLobes = 8;
+  static constexpr size_t kMaxLobes = 8, kMaxFrames = 4;
 
   LobeSum(const Scene& scene, const MaterialModel& model, const SurfacePoint& point);
 
   // For models. Black lobes, and lobes beyond kMaxLobes, are left out.
-  void add(Vec3 weight, const Lobe& lobe, CoatAbove above = {});
+  void add(Vec3 weight, const Lobe& lobe, CoatAbove above = {}, uint32_t frame = 0);
+  // The number of a frame with another shading normal, or turned about it (LobeFrame). 0, the
+  // point's own, once there are kMaxFrames.
+  uint32_t frame(const SurfacePoint& point, Vec3 shadingNormal, float turns = 0.0f);
   bool full() const { return count_ == kMaxLobes; }
 
   Vec3 roughAlbedo() const { return roughAlbedo_; }
@@ -40,7 +45,7 @@ class LobeSum {
   float specularProbability() const { return specularProbability_; }
   bool specularIsDelta() const { return specularIsDelta_; }
   float reflectance() const { return reflectance_; }
-  Vec3 glossyAxis() const { return reflect(toWorld(wo_), frame_[2]); }
+  Vec3 glossyAxis() const { return frames_[0].mirrorAxis(); }
 
   Vec3 eval(const SurfacePoint& point, LobeGroup group, Vec3 wi) const {
     return evaluate(point, group, Transport::Radiance, wi).value;
@@ -52,9 +57,14 @@ class LobeSum {
   Vec3 roughUpperBound(float maxCosNs, const MaxCosine& maxCosine) const {
     if (maxCosNs <= 0.0f) return {};
     const Vec3 bound = diffuseValue_ * maxCosNs;
-    // The cosine to a bent normal is not known: at most 1.
-    return diffuseOnly_ ? bound
-                        : bound + glossyBound(bent_ ? 1.0f : maxCosNs, maxCosine(glossyAxis()));
+    if (diffuseOnly_) return bound;
+    Vec3 glossy;
+    for (uint32_t f = 0; f < frameCount_; ++f) {
+      // The cosine to another normal than the point's is not known: at most 1.
+      const bool known = frames_[f].z == frames_[0].ns;
+      glossy += glossyBound(f, known ? maxCosNs : 1.0f, maxCosine(frames_[f].mirrorAxis()));
+    }
+    return bound + glossy;
   }
   bool sample(const SurfacePoint& point, LobeGroup group, Transport transport, float pick,
               Point2 at, BsdfSample& out) const;
@@ -66,34 +76,35 @@ class LobeSum {
     CoatAbove above;
     float coatOut = 1.0f;  // what the coat leaves of the light from wo
     float share = 0.0f;    // of its group's samples
+    uint32_t frame = 0;
     LobeGroup group = LobeGroup::Rough;
-    float coat(float cosine) const {
-      return above.weight > 0.0f ? std::min(coatOut, above.through(std::fabs(cosine))) : 1.0f;
-    }
   };
   struct Evaluated {
     Vec3 value;  // times the cosine of the transport
     float pdf = 0.0f;
   };
-  void setFrame(const SurfacePoint& point);
   void finish();
-  Vec3 glossyBound(float maxCosine, float cosMirror) const;
+  Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
   Evaluated evaluate(const SurfacePoint& point, LobeGroup group, Transport transport,
                      Vec3 wi) const;
+  // What a coat above the lobe leaves of the light between wo and wi.
+  float coat(const Summand& s, Vec3 wi) const;
+  // Whether light comes from the shading normal's side of the surface: radiance from wi, photons
+  // from wo. What VPLs bring must do so for the point's own normal, too, by which they are culled.
+  bool lit(const SurfacePoint& point, const Summand& s, Transport transport, Vec3 wi) const;
   // Of photons, in place of the cosine at wi, which sides with the normal of a lobe.
   float photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) const;
   std::span<const Summand> lobes() const { return {lobes_, count_}; }
-  Vec3 toLocal(Vec3 w) const { return {dot(w, frame_[0]), dot(w, frame_[1]), dot(w, frame_[2])}; }
-  Vec3 toWorld(Vec3 w) const { return w.x * frame_[0] + w.y * frame_[1] + w.z * frame_[2]; }
 
-  Vec3 frame_[3];  // x along the tangent; z the shading normal, bent where wo's mirror image needs
-                   // it
-  Vec3 wo_;        // local, z > 0
-  bool bent_ = false, diffuseOnly_ = true, specularIsDelta_ = true;
+  uint32_t frameCount_ = 1;
+  bool diffuseOnly_ = true, specularIsDelta_ = true;
   float specularProbability_ = 0.0f, reflectance_ = 0.0f;
   Vec3 roughAlbedo_, diffuseValue_;
   uint32_t count_ = 0;
   union {  // not made before it is needed
+    LobeFrame frames_[kMaxFrames];
+  };
+  union {
     Summand lobes_[kMaxLobes];
   };
 };

@@ -145,6 +145,7 @@ constexpr Rule kRules[] = {
     numberRule("materials/*/extensions/KHR_materials_transmission/transmissionFactor", 0, 1),
     numberRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatFactor", 0, 1),
     numberRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", 0, 1),
+    numberRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale"),
     numberRule("materials/*/extensions/KHR_materials_specular/specularFactor", 0, 1),
     numbersRule("materials/*/extensions/KHR_materials_specular/specularColorFactor", 3, 0, 1e3),
     objectRule("materials/*/extensions/KHR_materials_unlit"),

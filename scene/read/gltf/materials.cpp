@@ -81,7 +81,6 @@ class MaterialReader {
                    textures_.data(layer, Channel::Red)};
     m.clearcoatRoughness = {real(gltfNumber(coat, "clearcoatRoughnessFactor", 0.0)),
                             textures_.data(rough, Channel::Green)};
-    if (coat.Has("clearcoatNormalTexture")) warn("clearcoatNormalTexture is ignored");
 
     const tinygltf::Value& through = extensionOf(from_, "KHR_materials_transmission");
     const GltfTextureRef share(through, "transmissionTexture");
@@ -93,6 +92,11 @@ class MaterialReader {
   void addRelief(Material& m) {
     m.relief.normalMap = textures_.data(GltfTextureRef(from_.normalTexture), Channel::Rgb);
     m.relief.strength = real(from_.normalTexture.scale);
+    const tinygltf::Value& coat = extensionOf(from_, "KHR_materials_clearcoat");
+    if (!coat.Has("clearcoatNormalTexture")) return;
+    m.coatRelief.normalMap =
+        textures_.data(GltfTextureRef(coat, "clearcoatNormalTexture"), Channel::Rgb);
+    m.coatRelief.strength = real(gltfNumber(coat.Get("clearcoatNormalTexture"), "scale", 1.0));
   }
 
   // Radiance as it is: Blender writes its emission strength so, in W/(m2 sr).

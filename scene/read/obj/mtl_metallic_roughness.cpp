@@ -50,6 +50,7 @@ MetallicRoughnessModel modelOf(const tinyobj::material_t& in, const MtlKeys& key
   m.clearcoat = clamped(in.clearcoat_thickness);
   m.clearcoatRoughness = clamped(in.clearcoat_roughness);
   m.anisotropy = clamped(in.anisotropy);
+  m.anisotropyTurns = clamped(in.anisotropy_rotation);
   return m;
 }
 
@@ -86,8 +87,6 @@ void readMetallicRoughness(const tinyobj::material_t& in, const MtlKeys& keys, c
                            const std::function<void(const std::string&)>& warn, Material& m) {
   m.model = modelOf(in, keys, maps);
   if (in.sheen > 0.0f) warn("Ps (sheen) is ignored");
-  if (in.anisotropy > 0.0f && in.anisotropy_rotation != 0.0f)
-    warn("anisor is ignored: scratches run along growing u");
   if (keys.has("map_refl") && !keys.has("map_Pm"))
     warn("map_refl is ignored: it is metal throughout");
   if (const float amount = transmissionOf(in, keys); amount > 0.0f)

@@ -117,10 +117,13 @@ std::vector<Target> targetsOf(const fs::path& file, const PlyElement& element, M
   return targets;
 }
 
-void skipList(Body& body, const PlyProperty& p) {
-  const double count = body.next(p.countType);
-  if (count > 0.0) body.skip(p.type, static_cast<size_t>(count));
+// Passes over so many values of a list; a count in words can be any number, and infinite.
+void skipValues(Body& body, const PlyProperty& p, double count) {
+  constexpr double kMost = 1e15;  // more than any file holds
+  if (count > 0.0) body.skip(p.type, static_cast<size_t>(std::min(count, kMost)));
 }
+
+void skipList(Body& body, const PlyProperty& p) { skipValues(body, p, body.next(p.countType)); }
 
 void readVertices(const fs::path& file, Body& body, const PlyElement& element, MeshData& mesh) {
   const std::vector<Target> targets = targetsOf(file, element, mesh);
@@ -141,7 +144,7 @@ bool readFace(Body& body, const PlyProperty& p, std::vector<uint32_t>& corners) 
   const double count = body.next(p.countType);
   corners.clear();
   if (!(count >= 3.0 && count <= double(kMostCorners))) {
-    if (count > 0.0) body.skip(p.type, static_cast<size_t>(count));
+    skipValues(body, p, count);
     return false;
   }
   for (size_t k = 0; k < static_cast<size_t>(count); ++k) {

@@ -156,6 +156,19 @@ TEST(Ply, ClaimsAreCheckedBeforeAnythingIsAllocated) {
   EXPECT_THROW(pbrt::readPly("a.ply", outside), InputError);
 }
 
+// A count in words can be any number; none is taken for a size before it is bounded.
+TEST(Ply, ListsWithoutEndAreCutShort) {
+  for (const char* count : {"inf", "1e300", "18446744073709551616"}) {
+    for (const char* list : {"vertex_indices", "other"}) {
+      const std::string bytes =
+          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+          "property float z\nelement face 1\nproperty list uchar int " +
+          std::string(list) + "\nend_header\n0 0 0\n" + count + " 0 0 0\n";
+      EXPECT_THROW(pbrt::readPly("a.ply", bytes), InputError) << list << " " << count;
+    }
+  }
+}
+
 TEST_F(PbrtShapes, PlyMeshes) {
   write("models/a.ply", plySquare("ascii"));
   const Scene scene = shape("Shape \"plymesh\" \"string filename\" [ \"models/a.ply\" ]");

@@ -72,21 +72,28 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
   const float normal = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   const Vec3 f0 =
       min(Vec3(1), max(Vec3(), inputs.raw(model.specularColour)) * (normal * normal)) * specular;
+  uint32_t brushed = 0;  // frame of the facets
   Ggx ggx = ggxOf(Roughness(model.roughness, Roughness::Alpha::Square), inputs);
   if (const float anisotropy = inputs.share(model.anisotropy); anisotropy > 0.0f && !ggx.smooth()) {
     const float aspect = std::sqrt(1.0f - 0.9f * anisotropy);
     ggx = {std::min(1.0f, ggx.alongX / aspect), std::max(kSmoothAlpha, ggx.alongY * aspect)};
+    const float turns = inputs.raw(model.anisotropyTurns);
+    const SurfacePoint& p = inputs.point();
+    if (std::isfinite(turns)) brushed = out.frame(p, p.ns, p.front ? turns : -turns);
   }
 
   const float clearcoat = inputs.share(model.clearcoat);
   const Ggx coat = ggxOf(Roughness(model.clearcoatRoughness, Roughness::Alpha::Square), inputs);
-  const CoatAbove above{clearcoat, coat.smooth() ? 0.0f : coat.meanAlpha()};
+  const Vec3 coatNormal = inputs.point().coat;
+  const uint32_t coatFrame =
+      clearcoat > 0.0f && !isBlack(coatNormal) ? out.frame(inputs.point(), coatNormal) : 0;
+  const CoatAbove above{clearcoat, coat.smooth() ? 0.0f : coat.meanAlpha(), coatFrame};
   // Facets of metal and non-metal are the same: so are their lobes, but for the reflectance.
   out.add(weight,
           GgxReflection{ggx,
                         {FacetFresnel::Kind::Schlick, mixed(f0, base, metallic),
                          Vec3(mixed(specular, 1.0f, metallic))}},
-          above);
+          above, brushed);
   const float transmission = inputs.share(model.transmission);
   const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();
   LayeredBase lower{base * ((1.0f - metallic) * (1.0f - transmission)), maxComponent(f0), specular,
@@ -96,7 +103,8 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
   lower.transmitted = true;
   out.add(weight, lower, above);
   out.add(weight * clearcoat,
-          GgxReflection{coat, {FacetFresnel::Kind::Schlick, Vec3(kCoatF0), Vec3(1)}});
+          GgxReflection{coat, {FacetFresnel::Kind::Schlick, Vec3(kCoatF0), Vec3(1)}}, {},
+          coatFrame);
 }
 
 }  // namespace bnvpl

@@ -135,5 +135,78 @@ TEST(MetallicRoughness, ThinWallLetsStraightThrough) {
   EXPECT_FALSE(Bsdf(scene, p).hasRough());
 }
 
+// A clearcoat keeps its own normal: its mirror image is not the base's, and light stays accounted
+// for.
+TEST(MetallicRoughness, CoatReflectsAboutItsOwnNormal) {
+  MetallicRoughnessModel m = gltf(0, 1, Vec3(0.5f));
+  m.clearcoat = 1.0f;
+  const Scene scene = sceneOf(materialOf(m));
+  SurfacePoint p = seenFrom(views()[1], normalize({0.3f, 0, 1}));
+  BsdfSample s;
+  const auto mirrored = [&] {
+    EXPECT_TRUE(
+        Bsdf(scene, p).sample(LobeGroup::Specular, Transport::Radiance, 0.5f, {0.2f, 0.3f}, s));
+    return s.wi;
+  };
+  EXPECT_LT(length(mirrored() - reflect(p.wo, p.ns)), 1e-4f);
+  for (const Vec3 coat : {Vec3{0, 0, 1}, normalize({-0.2f, 0.1f, 1})}) {
+    p.coat = coat;
+    EXPECT_LT(length(mirrored() - reflect(p.wo, coat)), 1e-4f);
+  }
+}
+
+TEST(MetallicRoughness, CoatWithItsOwnNormalKeepsToWhatEveryModelDoes) {
+  for (const float roughness : {0.3f, 0.7f}) {  // the second is of the rough group
+    MetallicRoughnessModel m = gltf(0.3f, 0.7f, Vec3(1));
+    m.clearcoat = 1.0f;
+    m.clearcoatRoughness = roughness;
+    const Scene scene = sceneOf(materialOf(m));
+    for (const Vec3 wo : views()) {
+      SurfacePoint p = seenFrom(wo, normalize({0.1f, 0.1f, 1}));
+      p.coat = normalize({-0.1f, 0.05f, 1});
+      const Bsdf bsdf(scene, p);
+      Vec3 sum;
+      for (const LobeGroup group : kGroups) {
+        checkDensity(bsdf, group, "coat");
+        sum += meanWeight(bsdf, group);
+        forEachSample(bsdf, group, Transport::Radiance, 400, [&](const BsdfSample& s) {
+          expectClose(s.weight * s.pdf, bsdf.eval(group, s.wi), 2e-3f, "coat");
+        });
+        forEachSample(bsdf, group, Transport::Photons, 400, [&](const BsdfSample& s) {
+          if (std::fabs(s.wi.z) < 0.15f || dot(s.wi, p.ns) < 0.15f || dot(s.wi, p.coat) < 0.15f)
+            return;
+          SurfacePoint there = seenFrom(s.wi, p.ns);
+          there.coat = p.coat;
+          expectClose(s.weight * s.pdf * (wo.z / s.wi.z), Bsdf(scene, there).eval(group, wo), 5e-3f,
+                      "coat adjoint");
+        });
+      }
+      checkBound(bsdf, "coat");
+      EXPECT_LE(maxComponent(sum), 1.04f);
+    }
+  }
+}
+
+// An eighth of a turn, seen from both sides, is the tangent turned about the outward normal.
+TEST(MetallicRoughness, ScratchesTurn) {
+  MetallicRoughnessModel straight = gltf(1, 0.6f), turned = straight;
+  straight.anisotropy = turned.anisotropy = 0.8f;
+  turned.anisotropyTurns = 0.125f;
+  const Scene a = sceneOf(materialOf(straight)), b = sceneOf(materialOf(turned));
+  for (const float side : {1.0f, -1.0f}) {
+    SurfacePoint p = seenFrom(normalize({1, 0.4f, side})), along = p;
+    along.tangent = {1, 1, 0};
+    checkDensity(Bsdf(b, p), LobeGroup::Specular, "turned");
+    float most = 0.0f;
+    for (float phi = 0.0f; phi < 6.0f; phi += 0.5f) {
+      const Vec3 wi = normalize({std::cos(phi), std::sin(phi), side});
+      const Vec3 value = Bsdf(b, p).eval(LobeGroup::Specular, wi);
+      expectClose(value, Bsdf(a, along).eval(LobeGroup::Specular, wi), 1e-3f, "turned");
+      most = std::max(most, length(value - Bsdf(a, p).eval(LobeGroup::Specular, wi)));
+    }
+    EXPECT_GT(most, 0.05f);
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl::test

@@ -1,0 +1,42 @@
+#include "transport/bsdf/lobe_frame.h"
+
+namespace bnvpl {
+
+namespace {
+
+// The mirror image of wo lies at least so far above the geometric surface, as a cosine.
+constexpr float kAboveSurface = 0.01f;
+
+constexpr float kLeastCosine = 1e-5f;  // of wo: lobes divide by it
+
+// The shading normal for lobes that look for wo's mirror image: where that lies below the surface,
+// or wo below the shading normal's horizon, the one whose mirror image is just above. It moves
+// continuously.
+Vec3 bentNormal(const SurfacePoint& p, Vec3 ns) {
+  const Vec3 mirror = reflect(p.wo, ns);
+  const float up = dot(mirror, p.ng), least = std::min(kAboveSurface, 0.9f * dot(p.ng, p.wo));
+  if (dot(ns, p.wo) > 0.0f && up >= least) return ns;
+  const Vec3 along = mirror - p.ng * up;
+  const float length2 = lengthSquared(along);
+  if (!(length2 > 1e-12f) || !(least > 0.0f)) return p.ng;
+  const Vec3 raised = along * std::sqrt((1.0f - least * least) / length2) + p.ng * least;
+  return normalize(p.wo + raised);
+}
+
+}  // namespace
+
+LobeFrame::LobeFrame(const SurfacePoint& point, Vec3 shadingNormal, float turned)
+    : z(bentNormal(point, shadingNormal)), ns(shadingNormal), turns(turned) {
+  const Vec3 along = point.tangent - z * dot(z, point.tangent);
+  x = lengthSquared(along) > 1e-8f ? normalize(along) : Basis(z).s;
+  y = cross(z, x);
+  if (turns != 0.0f) {
+    const float angle = 2.0f * kPi * turns;
+    x = normalize(std::cos(angle) * x + std::sin(angle) * y);
+    y = cross(z, x);
+  }
+  wo = toLocal(point.wo);
+  wo.z = std::max(kLeastCosine, wo.z);
+}
+
+}  // namespace bnvpl
