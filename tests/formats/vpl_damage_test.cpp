@@ -81,8 +81,8 @@ TEST_F(VplDamage, EverySingleBitFlipIsRefused) {
 
 TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(0, 'x'), "byte 0: not a .vpl file");
-  EXPECT_SAYS(complaintAbout(8, 2u), "byte 8: version 2, expected 3; rerun vpl-place and every");
-  EXPECT_SAYS(complaintAbout(8, 4u), "byte 8: version 4, expected 3; use the bnvpl that wrote it");
+  EXPECT_SAYS(complaintAbout(8, 3u), "byte 8: version 3, expected 4; rerun vpl-place and every");
+  EXPECT_SAYS(complaintAbout(8, 5u), "byte 8: version 5, expected 4; use the bnvpl that wrote it");
   EXPECT_SAYS(complaintAbout(8, 0u), "byte 8: version 0");
   EXPECT_SAYS(complaintAbout(12, 0u), "byte 12: unknown stage 0");
   EXPECT_SAYS(complaintAbout(12, 4u), "byte 12: unknown stage 4");

@@ -9,10 +9,11 @@ namespace bnvpl {
 
 namespace {
 
-// A point's own number: hits are told apart by where they are.
+// A point's own number: hits are told apart by where they are. Without exponents, so that it is the
+// same in units of another power of two.
 uint64_t nameOf(Vec3 p) {
-  const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
-  return mix64(x << 32 | y) + std::bit_cast<uint32_t>(p.z);
+  const auto bits = [](float v) { return uint64_t{std::bit_cast<uint32_t>(v) & 0x807fffffu}; };
+  return mix64(bits(p.x) << 32 | bits(p.y)) + bits(p.z);
 }
 
 }  // namespace

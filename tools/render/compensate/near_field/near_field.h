@@ -16,8 +16,7 @@ namespace bnvpl {
 class NearField {
  public:
   // Borrows the table and the scene. `clamp` and `kind` as for makeVplLights().
-  NearField(const VplTable& lit, const RayScene& rays, float clamp,
-            LightKind kind = LightKind::Point);
+  NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {});
 
   // `near`: what coverage() finds at the point.
   Missing missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
