@@ -6,7 +6,8 @@ namespace bnvpl {
 
 std::span<const MergeStage> mergeStages() {
   static constexpr std::array kStages{MergeStage{"vpl-place", ".vpl", mergePlaced},
-                                      MergeStage{"vpl-estimate", ".vpl", mergeEstimated}};
+                                      MergeStage{"vpl-estimate", ".vpl", mergeEstimated},
+                                      MergeStage{"vpl-render", ".exr", mergeRendered, true}};
   return kStages;
 }
 

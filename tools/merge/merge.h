@@ -11,9 +11,8 @@
 namespace bnvpl {
 
 struct MergeOutput {
-  fs::path product, png;  // png empty: none
-  std::string exposure;   // of the png; empty: that of the shards
-  bool quiet = false;
+  fs::path product, png;          // png empty: none
+  std::string exposure = "auto";  // of the png
 };
 
 struct MergeStage {
@@ -32,6 +31,8 @@ void requireSameInput(const fs::path& file, uint64_t hash, const Json& run, cons
 
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                   Summary& summary);
+std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output, OutputSet& files,
+                                    Summary& summary);
 std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                      Summary& summary);
 

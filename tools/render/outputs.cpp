@@ -85,14 +85,22 @@ Values optionsMade(const RenderResult& result, const Given& given) {
   return resolveRender(all);
 }
 
-void describe(RenderResult& result, const Values& made) {
+void finishImage(RenderResult& result, const Values& made, const std::string& provenance) {
   auto& attributes = result.image.attributes;
   attributes["bnvpl.samplesPerPixel"] = std::to_string(made.whole("spp"));
-  if (!result.passes) return;
-  attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
-  char error[32];
-  std::snprintf(error, sizeof error, "%.6g", result.passes->error);
-  attributes["bnvpl.relativeError"] = error;
+  if (result.passes) {
+    attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
+    char error[32];
+    std::snprintf(error, sizeof error, "%.6g", result.passes->error);
+    attributes["bnvpl.relativeError"] = error;
+  }
+  attributes["bnvpl.provenance"] = provenance;
+  attributes[kImageHashAttribute] = hashText(hashImage(result.image, pixelTypeOf(made)));
+}
+
+Json withLayers(Json run, const Values& options) {
+  run["layers"] = options.text("layers");
+  return run;
 }
 
 namespace {
