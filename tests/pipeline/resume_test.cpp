@@ -45,6 +45,12 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   succeed("vpl-render", photons + " -o " + path("whole.exr"));
   EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);
   EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
+  for (const auto& [name, work] : {std::pair{"vpl-estimate", estimate}, {"vpl-render", photons}}) {
+    const std::string shard = work + " --shard 2/3";
+    succeed(name, shard + " -o " + path("whole.shard"));
+    EXPECT_GE(runInPieces(name, shard + " -o " + path("pieces.shard")), 1);
+    EXPECT_EQ(readAll(at("pieces.shard")), readAll(at("whole.shard")));
+  }
   EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to go on from
 }
 

@@ -41,6 +41,82 @@ TEST_F(ShardRun, PlaceGivesTheSameBytesInAnyNumber) {
   expectTheSameInParts("vpl-place", scene_ + " -n 3k --method light", "light.vpl", {1, 7});
 }
 
+TEST_F(ShardRun, EstimateGivesTheSameBytesInAnyNumber) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl");
+  expectTheSameInParts("vpl-estimate", estimate + " --photons 200k", "whole.vpl", {1, 7, 64});
+  expectTheSameInParts("vpl-estimate", estimate + " --photons 20k --method even --recentre off",
+                       "even.vpl", {3});
+  expectTheSameInParts("vpl-estimate", estimate + " --method paths --points 8", "paths.vpl",
+                       {1, 7});
+  expectTheSameInParts("vpl-estimate", estimate + " --method both --photons 200k", "both.vpl", {3});
+}
+
+TEST_F(ShardRun, RenderGivesTheSameBytesInAnyNumber) {
+  makeStages(scene_);
+  const std::string render = scene_ + " --size 44x25 --layers all", vpls = " " + path("lit.vpl");
+  expectTheSameInParts("vpl-render", render + vpls + " --spp 4", "whole.exr", {1, 7, 64});
+  expectTheSameInParts("vpl-render", render + vpls + " --integrator guided --spp 2 --pixels half",
+                       "guided.exr", {3});
+  expectTheSameInParts("vpl-render", render + " --integrator path --spp 70", "path.exr", {1, 7});
+  expectTheSameInParts("vpl-render", render + " --integrator light --spp 16", "light.exr",
+                       {1, 7, 64});
+  expectTheSameInParts("vpl-render", render + " --integrator light --only direct", "direct.exr",
+                       {2});
+}
+
+TEST_F(ShardRun, PreviewsComeFromTheMerge) {
+  const std::string render = scene_ + " --integrator path --size 32x24 --spp 2";
+  succeed("vpl-render",
+          render + " --exposure 2 --png " + path("whole.png") + " -o " + path("x.exr"));
+  const std::string shards = makeShards("vpl-render", render, 2);
+  succeed("vpl-merge",
+          shards + "-o " + path("x.exr") + " --exposure 2 --png " + path("merged.png"));
+  EXPECT_EQ(readAll(at("merged.png")), readAll(at("whole.png")));
+  fail("vpl-merge", shards + "-o " + path("x.shard") + " --png " + path("x.png"), kExitUsage,
+       {"--png"});
+  fail("vpl-render", render + " --shard 1/2 --png " + path("x.png") + " -o " + path("x.shard"),
+       kExitUsage, {"--png", "vpl-merge"});
+}
+
+TEST_F(ShardRun, PassesAreRefused) {
+  const std::string render = scene_ + " --integrator path --shard 1/2 -o " + path("x.shard");
+  for (const char* budget : {" --time 2s", " --target-error 0.1", " --passes 4"})
+    fail("vpl-render", render + budget, kExitUsage, {"--shard", "give --spp"});
+}
+
+TEST_F(ShardRun, LayersBelongToTheRun) {
+  const std::string render = scene_ + " --integrator path --size 16x16 --spp 1";
+  succeed("vpl-render", render + " --layers Z --shard 1/2 -o " + path("1.shard"));
+  succeed("vpl-render", render + " --layers N --shard 2/2 -o " + path("2.shard"));
+  fail("vpl-merge", path("1.shard") + " " + path("2.shard") + " -o " + path("x.exr"), kExitInput,
+       {"2.shard: is of another run", "layers was \"Z\" and is now \"N\""});
+}
+
+TEST_F(ShardRun, InputsThatChangedSinceAreRefused) {
+  makeStages(scene_);
+  const std::string shards =
+      makeShards("vpl-estimate", scene_ + " " + path("vpls.vpl") + " --photons 9k", 2);
+  succeed("vpl-eliminate", path("candidates.vpl") + " -o " + path("vpls.vpl") + " -n 61 --quiet");
+  fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"vpls.vpl: has changed since"});
+}
+
+TEST_F(ShardRun, ACheckpointIsOfOneShard) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 200k -o ";
+  const std::string saved = " --checkpoint-every 0 --checkpoint " + path("work.checkpoint");
+  succeed("vpl-estimate", estimate + path("1.shard") + " --shard 1/3 --quiet");
+  succeed("vpl-estimate", estimate + path("saved.shard") + " --shard 1/3 --quiet" + saved);
+  EXPECT_EQ(readAll(at("saved.shard")), readAll(at("1.shard")));
+  const std::string endless = scene_ + " " + path("vpls.vpl") + " --photons 1G -o " +
+                              path("x.shard") + " --checkpoint " + path("c");
+  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + endless +
+        " --shard 1/3 --quiet");
+  ASSERT_TRUE(fs::exists(at("c")));
+  fail("vpl-estimate", endless + " --shard 2/3", kExitInput,
+       {"another run", "shard was \"1/3\" and is now \"2/3\""});
+}
+
 TEST_F(ShardRun, RangesAndMergesOfMergesGiveTheSameBytes) {
   const std::string place = scene_ + " -n 9k --quiet";
   succeed("vpl-place", place + " -o " + path("whole.vpl"));
