@@ -43,7 +43,8 @@ TEST(SplatSums, DoNotDependOnOrderOrParts) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> exponent(-40.0f, 40.0f);
   std::vector<Splat> splats(20000);
-  for (Splat& s : splats) s = {random() % 3, {std::exp(exponent(random)), 1.0f, 0x1p-140f}};
+  for (Splat& s : splats)
+    s = {static_cast<uint32_t>(random() % 3), {std::exp(exponent(random)), 1.0f, 0x1p-140f}};
   const auto integersOf = [&](size_t begin, size_t end) {
     SplatSums sums(3);
     for (size_t i = begin; i < end; ++i) sums.add(splats[i]);
