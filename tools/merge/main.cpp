@@ -12,7 +12,7 @@ namespace bnvpl {
 namespace {
 
 const MergeStage& stageOf(const ShardSet& shards) {
-  const std::string tool = shards.whole().run.value("tool", "");
+  const std::string tool = fieldOf<std::string>(shards.whole().run, "tool");
   const auto stages = mergeStages();
   const auto found = std::ranges::find(stages, tool, &MergeStage::tool);
   if (found == stages.end())

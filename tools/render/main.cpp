@@ -17,12 +17,7 @@
 namespace bnvpl {
 namespace {
 
-// Measured: 190 to 270, by the number of layers; 140, and 670 with the near field.
-constexpr double kBytesPerPixel = 180, kBytesPerVpl = 100;
-// What passes keep besides.
-constexpr double kBytesPerPixelOfPasses = 120;
-// Exact sums of what photons bring.
-constexpr double kBytesPerPixelOfPhotons = 168;
+constexpr double kBytesPerVpl = 100;  // measured: 140, and 670 with the near field
 
 struct Request {
   SceneOptions scene;
@@ -67,15 +62,6 @@ void requireConsistent(const Request& paths, const Values& options) {
   }
 }
 
-// Memory is asked for before any of it is taken.
-void requireMemoryOf(const Film& film, const Values& options) {
-  double each = kBytesPerPixel;
-  if (budgetOf(options)) each += kBytesPerPixelOfPasses;
-  if (integratorOf(options).photons) each += kBytesPerPixelOfPhotons;
-  requireMemory(each * film.width * film.height, "an image of " + sizeText(film) + " pixels",
-                "choose a smaller --size");
-}
-
 int runRender(const Request& request, const ToolOptions& tool) {
   Summary summary("vpl-render");
   const Values options = resolveRender(request.given);
@@ -98,7 +84,8 @@ int runRender(const Request& request, const ToolOptions& tool) {
     requireSameScene(request.lit, lit.sceneHash, scene,
                      "rerun the pipeline from vpl-place on this scene");
   }
-  requireMemoryOf(scene.film, options);
+  requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
+                "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   const RayScene rays(scene);
   const LightSet lights(rays);
 

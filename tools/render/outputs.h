@@ -11,6 +11,9 @@ struct ImagePaths {
   fs::path exr, png;  // png empty: none
 };
 
+// What an image takes in memory.
+double bytesPerPixelOf(const Values& options);
+
 // The image, and its preview at --exposure; with what the summary says of them.
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
                Summary& summary);
