@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "formats/shard_file.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -196,6 +197,51 @@ TEST_F(ShardRun, DamagedShardsAreRefusedByName) {
   }
   write("2.shard", bytes + "x");
   fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"2.shard: "});
+  EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+// Whole, with right checksums, and yet not what a stage writes.
+TEST_F(ShardRun, ForgedShardsAreRefused) {
+  makeShards("vpl-place", scene_ + " -n 2k", 1);
+  const auto forge = [&](const std::string& from, const std::string& to, const auto& change) {
+    ShardReader reader(at("1.shard"));
+    std::string info = reader.info();
+    if (!from.empty()) {
+      const size_t where = info.find(from);
+      ASSERT_NE(where, std::string::npos) << from;
+      info.replace(where, from.size(), to);
+    }
+    AtomicFile file(at("forged.shard"));
+    ShardWriter writer(file);
+    for (size_t b = 0; b < reader.blocks().size(); ++b) {
+      std::string bytes = reader.read(b);
+      change(bytes);
+      writer.record(reader.blocks()[b].name(), reader.blocks()[b].index, bytes);
+    }
+    writer.finish(info);
+    file.commit();
+    fail("vpl-merge", path("forged.shard") + " -o " + path("x.vpl"), kExitInput, {"make", "again"});
+  };
+  const auto keep = [](const std::string&) {};
+  const std::string deep(200, '[');
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"\"run\"", "\"ran\""},
+           {"\"of\":1", "\"of\":0"},
+           {"\"of\":1", "\"of\":-1"},
+           {"[[1,1]]", "[]"},
+           {"[[1,1]]", "[[1,18446744073709551615]]"},
+           {"\"2k\"", "\"3k\""},
+           {"\"2k\"", "\"-1\""},
+           {"\"inputs\":{\"scene\":\"", "\"inputs\":{\"scene\":\"x"},
+           {"\"command\":", "\"command\":" + deep},
+           {"{", ""}}) {
+    forge(from, to, keep);
+  }
+  forge("", "", [](std::string& bytes) { bytes.resize(bytes.size() - 1); });
+  forge("", "", [](std::string& bytes) { bytes.clear(); });
+  forge("", "", [](std::string& bytes) { bytes.replace(56, 4, "\xff\xff\xff\xff"); });  // NaN
+  forge("", "",
+        [](std::string& bytes) { bytes.replace(0, 8, "\xff\xff\xff\xff\xff\xff\xff\x7f"); });
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 

@@ -279,9 +279,14 @@ std::string encode(const PathRows& chunk, uint64_t begin) {
 
 PathRows decodeRows(std::string_view bytes, uint64_t begin) {
   std::array<uint64_t, 7> counts{};
+  const auto requireSize = [](bool right) {
+    if (!right) throw InputError("the rows of a shard have a wrong size; make it again");
+  };
+  requireSize(bytes.size() >= sizeof counts);
   takeArray(bytes, counts);
   const auto [size, flux, rays, escaped, absorbed, complete, nonFinite] = counts;
-  if (size > bytes.size()) throw InputError("the rows of a shard are too short; make it again");
+  requireSize(size <= bytes.size());
+  requireSize(bytes.size() == size * ((flux ? 5 : 3) * sizeof(Vec3) + sizeof(uint16_t)));
   PathRows chunk;
   chunk.rays = rays, chunk.escaped = escaped, chunk.absorbed = absorbed;
   chunk.complete = complete, chunk.nonFinite = nonFinite;
@@ -292,7 +297,6 @@ PathRows decodeRows(std::string_view bytes, uint64_t begin) {
   }
   std::vector<uint16_t> path(size);
   takeArray(bytes, path);
-  requireAllTaken(bytes);
   for (const uint16_t p : path) chunk.path.push_back(begin + p);
   return chunk;
 }
