@@ -234,7 +234,8 @@ TEST_F(ShardRun, ForgedShardsAreRefused) {
            {"\"2k\"", "\"-1\""},
            {"\"inputs\":{\"scene\":\"", "\"inputs\":{\"scene\":\"x"},
            {"\"command\":", "\"command\":" + deep},
-           {"{", ""}}) {
+           {"{", ""},
+           {"{", "{},{"}}) {
     forge(from, to, keep);
   }
   forge("", "", [](std::string& bytes) { bytes.resize(bytes.size() - 1); });

@@ -18,9 +18,12 @@ struct Info {
 };
 
 Info parseInfo(const fs::path& file, const std::string& text) {
-  if (!isProvenance("[" + text + "]"))
+  // One object, as the only one of an array, whose depth and letters isProvenance() judges.
+  const std::string list = "[" + text + "]";
+  const Json all = isProvenance(list) ? Json::parse(list) : Json::array();
+  if (all.size() != 1)
     throw InputError(file, "is damaged (what it says of itself); delete it and make it again");
-  const Json json = Json::parse(text);
+  const Json& json = all.front();
   Info info{
       {fieldOf<Json>(json, "run"), fieldOf<Given>(json, "given"), fieldOf<Json>(json, "sources"),
        fieldOf<std::string>(json, "command"), fieldOf<std::string>(json, "history")},
