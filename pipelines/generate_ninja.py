@@ -23,7 +23,6 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 MOST_SHARDS = 1500  # their names stand in one command, which Linux limits
 OUTPUT, PREVIEW = object(), object()  # in the words of a stage: where its -o and --png go
-RESUMED = ("estimate", "render")  # have --checkpoint
 DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
 
 # Stages take all cores, so one runs at a time whatever -j says. So do shards, unless they are launched elsewhere.
@@ -147,7 +146,7 @@ def build_in_parts(stage, options, outputs, inputs, words):
     for part in range(1, of + 1):
         name = f"{stage}-{part}-of-{of}"
         parts.append(f"{folder}/{name}.shard")
-        saved = ["--checkpoint", f"{folder}/{name}.checkpoint"] if stage in RESUMED else []
+        saved = ["--checkpoint", f"{folder}/{name}.checkpoint"]
         rows += build(name, [parts[-1]], inputs, [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}", *saved],
                       True, "shard", shlex.split(options.launcher))
     merge = f"{options.bin}/vpl-merge"

@@ -31,6 +31,10 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 3M";
   const std::string render =
       scene_ + " " + path("lit.vpl") + " --size 64x48 --spp 160 --layers all";
+  const std::string place = scene_ + " -n 400k";
+  succeed("vpl-place", place + " -o " + path("whole.vpl"));
+  EXPECT_GE(runInPieces("vpl-place", place + " -o " + path("pieces.vpl")), 1);
+  EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
   succeed("vpl-estimate", estimate + " -o " + path("whole.vpl"));
   EXPECT_GE(runInPieces("vpl-estimate", estimate + " -o " + path("pieces.vpl")), 1);
   EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));

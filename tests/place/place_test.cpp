@@ -33,8 +33,12 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   sink.record = [&](std::string_view, uint64_t unit, std::string_view bytes) {
     EXPECT_TRUE(records.emplace(unit, bytes).second) << "twice: " << unit;
   };
-  for (uint64_t i = 0; i < 5; ++i)
-    placeShard(world.rays, world.lights, options, {i, i + 1, 5}, 0.0, sink);
+  for (uint64_t i = 0; i < 5; ++i) {
+    Resume resume;
+    resume.shard = {i, i + 1, 5};
+    resume.sink = &sink;
+    placeShard(world.rays, world.lights, options, 0.0, resume);
+  }
   ShardSource source;
   source.record = [&](std::string_view, uint64_t unit) -> std::optional<std::string> {
     const auto found = records.find(unit);

@@ -25,12 +25,12 @@ SMALL_FILM = ["--size", "160x120", "--layers", "all"]
 
 
 class Stage:
-    def __init__(self, name, tool, arguments, product, resumes=True):
-        self.name, self.tool, self.arguments, self.product, self.resumes = name, tool, arguments, product, resumes
+    def __init__(self, name, tool, arguments, product):
+        self.name, self.tool, self.arguments, self.product = name, tool, arguments, product
 
 
 STAGES = [
-    Stage("place", "vpl-place", [SCENE, "-n", "800k"], "candidates.vpl", resumes=False),
+    Stage("place", "vpl-place", [SCENE, "-n", "800k"], "candidates.vpl"),
     Stage("estimate", "vpl-estimate", [SCENE, "vpls.vpl", "--photons", "8M"], "lit.vpl"),
     Stage("estimate by paths", "vpl-estimate", [SCENE, "vpls.vpl", "--method", "paths", "--points", "16"], "paths.vpl"),
     Stage("render", "vpl-render", [SCENE, "lit.vpl", *SMALL_FILM, "--spp", "8"], "image.exr"),
@@ -81,7 +81,7 @@ class Runner:
             parts.append(f"{part}.shard")
             arguments = [*stage.arguments, "--shard", f"{part}/{shards}", "-o", parts[-1]]
             if part in struck:
-                saved = ["--checkpoint", "work", "--checkpoint-every", "0"] if stage.resumes else []
+                saved = ["--checkpoint", "work", "--checkpoint-every", "0"]
                 each = (time.monotonic() - began) / (part - 1) if part > 1 else 0.1
                 spent += self.run_and_kill(stage.tool, arguments + saved, self.random.uniform(0, each))
             else:

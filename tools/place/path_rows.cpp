@@ -217,41 +217,86 @@ PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
   return joined.finish(scene + ": ");
 }
 
-PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Shard& shard,
-                       const ShardSink& sink, const ProgressFn& progress,
-                       const TracePaths& tracePaths) {
-  PlaceResult result;
-  const double part = static_cast<double>(count) * static_cast<double>(shard.parts()) /
-                      static_cast<double>(shard.of);
-  uint64_t chunks = 0, found = 0;
-  double squares = 0.0;
-  const auto left = [&] {
-    const double wanted = part * (1.0 + spare) + kDeviations * std::sqrt(squares);
-    const double all = static_cast<double>(count);  // more never count
-    return std::min(wanted, all) - static_cast<double>(found);
-  };
-  Wave wave;
-  while (left() > 0.0) {
-    if (chunks / shard.parts() * shard.of * kPathsPerChunk >= effortFor(count))
-      failTooFew(scene, result, found, static_cast<uint64_t>(std::ceil(part)));
-    const double each =
-        found > 0 ? static_cast<double>(found) / static_cast<double>(chunks) : kPathsPerChunk;
-    const auto size = static_cast<size_t>(
-        std::clamp(std::ceil(left() / each), 1.0, static_cast<double>(kChunksPerWave)));
-    traceWave(
-        wave, size, [&](size_t k) { return shard.unit(chunks + k); }, tracePaths);
-    const uint64_t before = found, first = chunks;
-    for (size_t k = 0; k < size && left() > 0.0; ++k, ++chunks) {
-      const uint64_t unit = shard.unit(first + k);
-      sink.record(kWork, unit, encode(wave[k], unit * kPathsPerChunk));
-      addCounts(wave[k], result);
-      found += wave[k].rows.size();
-      squares += squaresOf(wave[k]);
+namespace {
+
+// The chunks of a shard, in their order.
+class ShardTrace {
+ public:
+  ShardTrace(uint64_t count, double spare, const Resume& resume)
+      : resume_(resume),
+        part_(static_cast<double>(count) * static_cast<double>(shard().parts()) /
+              static_cast<double>(shard().of)),
+        wanted_(part_ * (1.0 + spare)),
+        most_(static_cast<double>(count)) {
+    for (std::string_view bytes = resume.state; !bytes.empty();) {
+      std::array<uint64_t, 1> size{};
+      takeArray(bytes, size);
+      std::string record(std::min<size_t>(size[0], bytes.size()), '\0');
+      takeArray(bytes, record);
+      take(decodeRows(record, unit() * kPathsPerChunk), record);
     }
-    if (progress) progress(found - before);
   }
-  result.rows = found;
-  return result;
+  const Shard& shard() const { return resume_.shard; }
+  uint64_t unit(uint64_t ahead = 0) const { return shard().unit(chunks_ + ahead); }
+  uint64_t rowsOfPart() const { return static_cast<uint64_t>(std::ceil(part_)); }
+  // Of the whole, as far as this shard is.
+  uint64_t paths() const { return chunks_ / shard().parts() * shard().of * kPathsPerChunk; }
+  const PlaceResult& soFar() const { return result_; }
+
+  double rowsLeft() const {  // rows beyond the count of the whole never matter
+    return std::min(wanted_ + kDeviations * std::sqrt(squares_), most_) -
+           static_cast<double>(result_.rows);
+  }
+  size_t chunksLeft() const {
+    const double each = result_.rows > 0
+                            ? static_cast<double>(result_.rows) / static_cast<double>(chunks_)
+                            : static_cast<double>(kPathsPerChunk);
+    return static_cast<size_t>(
+        std::clamp(std::ceil(rowsLeft() / each), 1.0, static_cast<double>(kChunksPerWave)));
+  }
+  void take(const PathRows& chunk) { take(chunk, encode(chunk, unit() * kPathsPerChunk)); }
+  void pause() const {
+    if (rowsLeft() > 0.0 && resume_.pause && resume_.pause()) resume_.save(state_);
+  }
+
+ private:
+  void take(const PathRows& chunk, const std::string& record) {
+    resume_.sink->record(kWork, unit(), record);
+    if (resume_.pause) {
+      appendArray(state_, std::array<uint64_t, 1>{record.size()});
+      state_ += record;
+    }
+    addCounts(chunk, result_);
+    result_.rows += chunk.rows.size();
+    squares_ += squaresOf(chunk);
+    ++chunks_;
+  }
+
+  const Resume& resume_;
+  double part_, wanted_, most_, squares_ = 0.0;
+  uint64_t chunks_ = 0;
+  PlaceResult result_;
+  std::string state_;
+};
+
+}  // namespace
+
+PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
+                       const ProgressFn& progress, const TracePaths& tracePaths) {
+  ShardTrace trace(count, spare, resume);
+  if (progress) progress(trace.soFar().rows);
+  Wave wave;
+  while (trace.rowsLeft() > 0.0) {
+    if (trace.paths() >= effortFor(count))
+      failTooFew(scene, trace.soFar(), trace.soFar().rows, trace.rowsOfPart());
+    traceWave(
+        wave, trace.chunksLeft(), [&](size_t k) { return trace.unit(k); }, tracePaths);
+    const uint64_t before = trace.soFar().rows;
+    for (size_t k = 0; k < wave.size() && trace.rowsLeft() > 0.0; ++k) trace.take(wave[k]);
+    if (progress) progress(trace.soFar().rows - before);
+    trace.pause();
+  }
+  return trace.soFar();
 }
 
 PlaceResult joinShards(uint64_t count, LastPath last, const ShardSource& source,
