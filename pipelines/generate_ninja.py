@@ -4,6 +4,12 @@
   pipelines/generate_ninja.py scenes/u-shape/scene.toml --quality draft
   ninja -f out/build.ninja
 
+With --shards N place, estimate and render are N edges each and a vpl-merge, with the same files in the end;
+--launcher starts the shards elsewhere:
+
+  pipelines/generate_ninja.py scenes/u-shape/scene.toml --shards 64 --launcher 'srun -n1 -c8'
+  ninja -j 64 -f out/build.ninja
+
 Ninja remembers each stage's command and reads its depfile, so a stage runs again when an input,
 its executable or its own options have changed. Paths are relative to the folder in which both run.
 """
@@ -15,9 +21,11 @@ import shlex
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
+MOST_SHARDS = 1500  # their names stand in one command, which Linux limits
+OUTPUT, PREVIEW = object(), object()  # in the words of a stage: where its -o and --png go
 DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
 
-# Stages take all cores, so one runs at a time whatever -j says.
+# Stages take all cores, so one runs at a time whatever -j says. So do shards, unless they are launched elsewhere.
 HEADER = """\
 # Made by generate_ninja.py; run that again to change it.
 ninja_required_version = 1.7
@@ -33,6 +41,11 @@ rule read_scene
   depfile = $dep
   description = $out
   pool = stage
+rule shard
+  command = $cmd
+  depfile = $dep
+  description = $out
+  pool = {shard_pool}
 """
 
 
@@ -60,10 +73,17 @@ def arguments():
     p.add_argument("--spp", help="samples per pixel; default: the quality's; '' for none, as with --render-flags='--time 2m'")
     p.add_argument("--seed", help="for place, estimate and render")
     p.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
+    p.add_argument("--shards", type=int, default=1, metavar="N", help="parts of place, estimate and render (default 1)")
+    p.add_argument("--launcher", default="", metavar="COMMAND",
+                   help="goes before the command of each shard, such as 'srun -n1 -c8'; ninja -j says how many at once")
     for stage in ("place", "eliminate", "estimate", "render"):
         p.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
                        help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'")
     options = p.parse_args()
+    if not 1 <= options.shards <= MOST_SHARDS:
+        p.error(f"--shards {options.shards} is not 1 to {MOST_SHARDS}")
+    if options.launcher and options.shards == 1:
+        p.error("--launcher starts shards; add --shards N")
     preset = qualities[options.quality]
     for name in ("candidates", "vpls", "photons", "spp"):
         if getattr(options, name) is None:
@@ -99,16 +119,38 @@ def refuse_lit_placement(options):
                  "vpl-estimate; run these stages by hand, as pipelines/README.md shows")
 
 
-def build(stage, outputs, inputs, words, scene_read):
+def build(stage, outputs, inputs, words, scene_read, rule=None, launcher=()):
     """One build statement. The first input is the executable and does not repeat in `words`."""
     folder = outputs[0].rsplit("/", 1)[0]
-    command = [inputs[0], *words, "--stats", f"{folder}/{stage}.json"]
-    rows = [f"build {' | '.join(outputs)}: {'read_scene' if scene_read else 'run'} {' '.join(inputs)}"]
+    command = [*launcher, inputs[0], *words, "--stats", f"{folder}/{stage}.json"]
+    rule = rule or ("read_scene" if scene_read else "run")
+    rows = [f"build {' | '.join(outputs)}: {rule} {' '.join(inputs)}"]
     if scene_read:
         command += ["--depfile", f"{folder}/{stage}.d"]
         rows.append(f"  dep = {folder}/{stage}.d")
     rows.append("  cmd = " + shlex.join(command).replace("$", "$$"))
     return rows
+
+
+def build_in_parts(stage, options, outputs, inputs, words):
+    """A stage that reads the scene: one statement, or one for each shard and one that merges them."""
+    product, preview = ["-o", outputs[0]], ["--png", outputs[-1]] if PREVIEW in words else []
+
+    def filled(output, png):
+        return [w for word in words for w in (output if word is OUTPUT else png if word is PREVIEW else [word])]
+
+    if options.shards == 1:
+        return build(stage, outputs, inputs, filled(product, preview), True)
+    folder, of = outputs[0].rsplit("/", 1)[0] + "/shards", options.shards
+    rows, parts = [], []
+    for part in range(1, of + 1):
+        name = f"{stage}-{part}-of-{of}"
+        parts.append(f"{folder}/{name}.shard")
+        saved = ["--checkpoint", f"{folder}/{name}.checkpoint"]
+        rows += build(name, [parts[-1]], inputs, [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}", *saved],
+                      True, "shard", shlex.split(options.launcher))
+    merge = f"{options.bin}/vpl-merge"
+    return rows + build(stage, outputs, [merge, *parts], [*parts, *product, *preview], True)
 
 
 def scene_rules(scene, options):
@@ -127,15 +169,15 @@ def scene_rules(scene, options):
 
     return [
         "",
-        *build("place", [candidates], [tool("place"), scene],
-               [scene, "-o", candidates, "-n", options.candidates, *seed, *defines, *flags("place")], True),
+        *build_in_parts("place", options, [candidates], [tool("place"), scene],
+                        [scene, OUTPUT, "-n", options.candidates, *seed, *defines, *flags("place")]),
         *build("eliminate", [vpls], [tool("eliminate"), candidates],
                [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")], False),
-        *build("estimate", [lit], [tool("estimate"), scene, vpls],
-               [scene, vpls, "-o", lit, "--photons", options.photons, *seed, *defines, *flags("estimate")], True),
-        *build("render", [image, preview], [tool("render"), scene, lit],
-               [scene, lit, "-o", image, *spp, "--png", preview, *seed, *defines,
-                *shlex.split(options.render_preset), *flags("render")], True),
+        *build_in_parts("estimate", options, [lit], [tool("estimate"), scene, vpls],
+                        [scene, vpls, OUTPUT, "--photons", options.photons, *seed, *defines, *flags("estimate")]),
+        *build_in_parts("render", options, [image, preview], [tool("render"), scene, lit],
+                        [scene, lit, OUTPUT, *spp, PREVIEW, *seed, *defines,
+                         *shlex.split(options.render_preset), *flags("render")]),
         f"build {name_of(scene)}: phony {image}",
     ]
 
@@ -151,7 +193,7 @@ def main():
     names = [name_of(scene) for scene in options.scenes]
     if len(set(names)) < len(names):
         sys.exit("generate_ninja.py: two scenes would share a folder; give them to two runs with different --out")
-    rows = [HEADER.format(out=options.out)]
+    rows = [HEADER.format(out=options.out, shard_pool="" if options.launcher else "stage")]
     for scene in options.scenes:
         rows += scene_rules(scene, options)
     target = pathlib.Path(options.out) / "build.ninja"

@@ -15,6 +15,9 @@ RESUMED = [
     Command("estimate", "vpl-estimate",
             "{scene} {made}/v.vpl --photons 120k -o {out}/l.vpl --depfile {out}/l.d --stats {out}/l.json" + SAVE,
             ("l.vpl", "l.d", "l.json")),
+    Command("shard", "vpl-estimate",
+            "{scene} {made}/v.vpl --photons 240k --shard 2/2 -o {out}/s.shard --depfile {out}/s.d --stats {out}/s.json"
+            + SAVE, ("s.shard", "s.d", "s.json")),
     Command("render", "vpl-render",
             "{scene} {made}/l.vpl --size 40x24 --spp 96 -o {out}/i.exr --png {out}/i.png --depfile {out}/i.d"
             " --stats {out}/i.json" + SAVE,

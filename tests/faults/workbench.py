@@ -63,6 +63,12 @@ COMMANDS = [
     Command("path", "vpl-render",
             "{scene} --integrator path --spp 8 -o {out}/p.exr --png {out}/p.png --depfile {out}/p.d",
             ("p.exr", "p.png", "p.d")),
+    Command("shard", "vpl-estimate",
+            "{scene} {made}/v.vpl --photons 50k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d --stats {out}/s.json",
+            ("s.shard", "s.d", "s.json")),
+    Command("merge", "vpl-merge",
+            "{made}/2.shard {made}/1.shard -o {out}/m.exr --png {out}/m.png --depfile {out}/m.d --stats {out}/m.json",
+            ("m.exr", "m.png", "m.d", "m.json")),
     Command("export", "vpl-inspect",
             "export {made}/c.vpl -o {out}/c.csv --stats {out}/e.json", ("c.csv", "e.json")),
     Command("plot", "vpl-inspect",
@@ -97,6 +103,9 @@ class Workbench(unittest.TestCase):
         run("vpl-place", [SCENE, "-o", c, "-n", "10k"])
         run("vpl-eliminate", [c, "-o", v, "-n", "500"])
         run("vpl-estimate", [SCENE, v, "-o", l, "--photons", "20k"])
+        for part in ("1", "2"):
+            run("vpl-render", [SCENE, l, "--spp", "1", "--shard", f"{part}/2",
+                               "-o", Workbench.made / f"{part}.shard"])
 
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="bnvpl-faults-")

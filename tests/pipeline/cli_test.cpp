@@ -33,18 +33,19 @@ class Options : public PipelineTest {
 
 TEST_F(Options, HelpListsEveryOption) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> own{
-      {"vpl-place", {"scene", "--output", "--define", "--depfile"}},
+      {"vpl-place", {"scene", "--output", "--define", "--depfile", "--shard I/N", "--shard-spare"}},
       {"vpl-eliminate", {"candidates", "--output", "--scene", "--define", "--depfile"}},
       {"vpl-estimate",
        {"scene", "vpls", "--output", "--define", "--depfile", "--checkpoint-every"}},
       {"vpl-render",
        {"scene", "lit", "--output", "--png", "--define", "--depfile", "--checkpoint-every"}},
+      {"vpl-merge", {"shards", "--output", "--png", "--exposure", "--depfile"}},
       {"vpl-inspect", {"info", "check", "export", "plot", "compare"}}};
   for (auto [name, texts] : own) {
     const Outcome help = tool(name, "--help");
     EXPECT_EQ(help.code, kExitOk) << name;
     EXPECT_EQ(help.err, "") << name;
-    if (name != "vpl-inspect") {
+    if (name != "vpl-inspect" && name != "vpl-merge") {
       for (const std::string& text : toldByJson(name)) texts.push_back(text);
     }
     for (const std::string& text : texts)
@@ -86,7 +87,7 @@ TEST_F(Options, HelpShowsDefaults) {
 
 TEST_F(Options, Version) {
   for (const std::string name :
-       {"vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render", "vpl-inspect"}) {
+       {"vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render", "vpl-merge", "vpl-inspect"}) {
     const Outcome r = tool(name, "--version");
     EXPECT_EQ(r.code, kExitOk);
     EXPECT_TRUE(r.out.starts_with(name + " " BNVPL_VERSION "+")) << r.out;
@@ -101,6 +102,7 @@ TEST_F(Options, UnknownAndMissingOptions) {
     fail(name, "-o", kExitUsage);
   }
   fail("vpl-inspect", "", kExitUsage);
+  fail("vpl-merge", "", kExitUsage, {"required"});
   fail("vpl-place", scene_, kExitUsage, {"-o"});
   fail("vpl-eliminate", "a.vpl -o b.vpl", kExitUsage, {"--count"});
 }

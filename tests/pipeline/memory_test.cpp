@@ -52,5 +52,20 @@ TEST_F(Memory, SamplesLeaveNothingBehind) {
   }
 }
 
+TEST_F(Memory, ShardsLeaveNothingBehindInTheMerge) {
+  const auto shards = [&](int of) {
+    std::string all;
+    for (int i = 1; i <= of; ++i) {
+      const std::string part = std::to_string(i) + "/" + std::to_string(of);
+      const std::string file = path(std::to_string(i) + "-" + std::to_string(of) + ".shard");
+      succeed("vpl-render", scene_ + " --integrator light --size 64x48 --spp 4 --quiet --shard " +
+                                part + " -o " + file);
+      all += file + " ";
+    }
+    return all + "-o " + path("i.exr");
+  };
+  expectSamePeak("vpl-merge", shards(2), shards(60));
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -202,5 +202,26 @@ TEST_F(Rerun, MakeAndNinjaAgree) {
   EXPECT_TRUE(readAll(at("out/image.exr")) == readAll(at("n/veach-door/image.exr")));
 }
 
+// In shards, by a launcher: the same files, and shards go on from where they were stopped.
+TEST_F(Rerun, ShardsMakeTheSameFilesAndRunAgainWhereSomethingChanged) {
+  if (!haveNinja()) GTEST_SKIP() << "ninja is not installed";
+  generate("20k");
+  built();
+  const std::string whole = readAll(at("n/veach-door/image.exr"));
+  const std::string preview = readAll(at("n/veach-door/image.png"));
+  generate("20k --shards 3 --launcher 'env LAUNCHED=1'");
+  const Outcome first = shell("ninja -v -j 2 -f " + path("n/build.ninja"));
+  EXPECT_EQ(first.code, 0) << first.out << first.err;
+  EXPECT_TRUE(contains(first.out, "env LAUNCHED=1"));
+  EXPECT_TRUE(readAll(at("n/veach-door/image.exr")) == whole);
+  EXPECT_TRUE(readAll(at("n/veach-door/image.png")) == preview);
+  EXPECT_TRUE(contains(shell("ninja -f " + path("n/build.ninja")).out, "no work to do"));
+  fs::remove(at("n/veach-door/shards/render-2-of-3.shard"));
+  const Outcome again = shell("ninja -v -f " + path("n/build.ninja"));
+  EXPECT_EQ(stagesIn(again.out, "/vpl-", " "), "render") << again.out;
+  EXPECT_FALSE(contains(again.out, "--shard 1/3"));
+  EXPECT_TRUE(readAll(at("n/veach-door/image.exr")) == whole);
+}
+
 }  // namespace
 }  // namespace bnvpl

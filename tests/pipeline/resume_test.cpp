@@ -31,6 +31,10 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 3M";
   const std::string render =
       scene_ + " " + path("lit.vpl") + " --size 64x48 --spp 160 --layers all";
+  const std::string place = scene_ + " -n 400k";
+  succeed("vpl-place", place + " -o " + path("whole.vpl"));
+  EXPECT_GE(runInPieces("vpl-place", place + " -o " + path("pieces.vpl")), 1);
+  EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
   succeed("vpl-estimate", estimate + " -o " + path("whole.vpl"));
   EXPECT_GE(runInPieces("vpl-estimate", estimate + " -o " + path("pieces.vpl")), 1);
   EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
@@ -45,6 +49,12 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   succeed("vpl-render", photons + " -o " + path("whole.exr"));
   EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);
   EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
+  for (const auto& [name, work] : {std::pair{"vpl-estimate", estimate}, {"vpl-render", photons}}) {
+    const std::string shard = work + " --shard 2/3";
+    succeed(name, shard + " -o " + path("whole.shard"));
+    EXPECT_GE(runInPieces(name, shard + " -o " + path("pieces.shard")), 1);
+    EXPECT_EQ(readAll(at("pieces.shard")), readAll(at("whole.shard")));
+  }
   EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to go on from
 }
 

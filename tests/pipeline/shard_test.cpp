@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "formats/shard_file.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -39,6 +40,82 @@ TEST_F(ShardRun, PlaceGivesTheSameBytesInAnyNumber) {
   expectTheSameInParts("vpl-place", scene_ + " -n 20k --seed 5", "whole.vpl", {1, 7, 64});
   expectTheSameInParts("vpl-place", scene_ + " -n 3k --depth 5", "deep.vpl", {3});
   expectTheSameInParts("vpl-place", scene_ + " -n 3k --method light", "light.vpl", {1, 7});
+}
+
+TEST_F(ShardRun, EstimateGivesTheSameBytesInAnyNumber) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl");
+  expectTheSameInParts("vpl-estimate", estimate + " --photons 200k", "whole.vpl", {1, 7, 64});
+  expectTheSameInParts("vpl-estimate", estimate + " --photons 20k --method even --recentre off",
+                       "even.vpl", {3});
+  expectTheSameInParts("vpl-estimate", estimate + " --method paths --points 8", "paths.vpl",
+                       {1, 7});
+  expectTheSameInParts("vpl-estimate", estimate + " --method both --photons 200k", "both.vpl", {3});
+}
+
+TEST_F(ShardRun, RenderGivesTheSameBytesInAnyNumber) {
+  makeStages(scene_);
+  const std::string render = scene_ + " --size 44x25 --layers all", vpls = " " + path("lit.vpl");
+  expectTheSameInParts("vpl-render", render + vpls + " --spp 4", "whole.exr", {1, 7, 64});
+  expectTheSameInParts("vpl-render", render + vpls + " --integrator guided --spp 2 --pixels half",
+                       "guided.exr", {3});
+  expectTheSameInParts("vpl-render", render + " --integrator path --spp 70", "path.exr", {1, 7});
+  expectTheSameInParts("vpl-render", render + " --integrator light --spp 16", "light.exr",
+                       {1, 7, 64});
+  expectTheSameInParts("vpl-render", render + " --integrator light --only direct", "direct.exr",
+                       {2});
+}
+
+TEST_F(ShardRun, PreviewsComeFromTheMerge) {
+  const std::string render = scene_ + " --integrator path --size 32x24 --spp 2";
+  succeed("vpl-render",
+          render + " --exposure 2 --png " + path("whole.png") + " -o " + path("x.exr"));
+  const std::string shards = makeShards("vpl-render", render, 2);
+  succeed("vpl-merge",
+          shards + "-o " + path("x.exr") + " --exposure 2 --png " + path("merged.png"));
+  EXPECT_EQ(readAll(at("merged.png")), readAll(at("whole.png")));
+  fail("vpl-merge", shards + "-o " + path("x.shard") + " --png " + path("x.png"), kExitUsage,
+       {"--png"});
+  fail("vpl-render", render + " --shard 1/2 --png " + path("x.png") + " -o " + path("x.shard"),
+       kExitUsage, {"--png", "vpl-merge"});
+}
+
+TEST_F(ShardRun, PassesAreRefused) {
+  const std::string render = scene_ + " --integrator path --shard 1/2 -o " + path("x.shard");
+  for (const char* budget : {" --time 2s", " --target-error 0.1", " --passes 4"})
+    fail("vpl-render", render + budget, kExitUsage, {"--shard", "give --spp"});
+}
+
+TEST_F(ShardRun, LayersBelongToTheRun) {
+  const std::string render = scene_ + " --integrator path --size 16x16 --spp 1";
+  succeed("vpl-render", render + " --layers Z --shard 1/2 -o " + path("1.shard"));
+  succeed("vpl-render", render + " --layers N --shard 2/2 -o " + path("2.shard"));
+  fail("vpl-merge", path("1.shard") + " " + path("2.shard") + " -o " + path("x.exr"), kExitInput,
+       {"2.shard: is of another run", "layers was \"Z\" and is now \"N\""});
+}
+
+TEST_F(ShardRun, InputsThatChangedSinceAreRefused) {
+  makeStages(scene_);
+  const std::string shards =
+      makeShards("vpl-estimate", scene_ + " " + path("vpls.vpl") + " --photons 9k", 2);
+  succeed("vpl-eliminate", path("candidates.vpl") + " -o " + path("vpls.vpl") + " -n 61 --quiet");
+  fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"vpls.vpl: has changed since"});
+}
+
+TEST_F(ShardRun, ACheckpointIsOfOneShard) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 200k -o ";
+  const std::string saved = " --checkpoint-every 0 --checkpoint " + path("work.checkpoint");
+  succeed("vpl-estimate", estimate + path("1.shard") + " --shard 1/3 --quiet");
+  succeed("vpl-estimate", estimate + path("saved.shard") + " --shard 1/3 --quiet" + saved);
+  EXPECT_EQ(readAll(at("saved.shard")), readAll(at("1.shard")));
+  const std::string endless = scene_ + " " + path("vpls.vpl") + " --photons 1G -o " +
+                              path("x.shard") + " --checkpoint " + path("c");
+  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + endless +
+        " --shard 1/3 --quiet");
+  ASSERT_TRUE(fs::exists(at("c")));
+  fail("vpl-estimate", endless + " --shard 2/3", kExitInput,
+       {"another run", "shard was \"1/3\" and is now \"2/3\""});
 }
 
 TEST_F(ShardRun, RangesAndMergesOfMergesGiveTheSameBytes) {
@@ -120,6 +197,52 @@ TEST_F(ShardRun, DamagedShardsAreRefusedByName) {
   }
   write("2.shard", bytes + "x");
   fail("vpl-merge", shards + "-o " + path("x.vpl"), kExitInput, {"2.shard: "});
+  EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+// Whole, with right checksums, and yet not what a stage writes.
+TEST_F(ShardRun, ForgedShardsAreRefused) {
+  makeShards("vpl-place", scene_ + " -n 2k", 1);
+  const auto forge = [&](const std::string& from, const std::string& to, const auto& change) {
+    ShardReader reader(at("1.shard"));
+    std::string info = reader.info();
+    if (!from.empty()) {
+      const size_t where = info.find(from);
+      ASSERT_NE(where, std::string::npos) << from;
+      info.replace(where, from.size(), to);
+    }
+    AtomicFile file(at("forged.shard"));
+    ShardWriter writer(file);
+    for (size_t b = 0; b < reader.blocks().size(); ++b) {
+      std::string bytes = reader.read(b);
+      change(bytes);
+      writer.record(reader.blocks()[b].name(), reader.blocks()[b].index, bytes);
+    }
+    writer.finish(info);
+    file.commit();
+    fail("vpl-merge", path("forged.shard") + " -o " + path("x.vpl"), kExitInput, {"make", "again"});
+  };
+  const auto keep = [](const std::string&) {};
+  const std::string deep(200, '[');
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"\"run\"", "\"ran\""},
+           {"\"of\":1", "\"of\":0"},
+           {"\"of\":1", "\"of\":-1"},
+           {"[[1,1]]", "[]"},
+           {"[[1,1]]", "[[1,18446744073709551615]]"},
+           {"\"2k\"", "\"3k\""},
+           {"\"2k\"", "\"-1\""},
+           {"\"inputs\":{\"scene\":\"", "\"inputs\":{\"scene\":\"x"},
+           {"\"command\":", "\"command\":" + deep},
+           {"{", ""},
+           {"{", "{},{"}}) {
+    forge(from, to, keep);
+  }
+  forge("", "", [](std::string& bytes) { bytes.resize(bytes.size() - 1); });
+  forge("", "", [](std::string& bytes) { bytes.clear(); });
+  forge("", "", [](std::string& bytes) { bytes.replace(56, 4, "\xff\xff\xff\xff"); });  // NaN
+  forge("", "",
+        [](std::string& bytes) { bytes.replace(0, 8, "\xff\xff\xff\xff\xff\xff\xff\x7f"); });
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 

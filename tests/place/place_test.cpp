@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "tests/support/pipeline.h"
 
 namespace bnvpl::test {
@@ -19,6 +21,43 @@ TEST(Place, GivesExactlyTheCountInPathOrder) {
   for (size_t i = 0; i < few.size(); ++i) {
     ASSERT_EQ(few.position[i], more.position[i]);
     ASSERT_EQ(few.id[i], i);
+  }
+}
+
+// The rows of shards: what a merge lacks is asked for by its unit.
+TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
+  const World world("u-shape/scene.toml");
+  const Values options = resolve(placeSpec(), count(60000));
+  std::map<uint64_t, std::string> records;
+  ShardSink sink;
+  sink.record = [&](std::string_view, uint64_t unit, std::string_view bytes) {
+    EXPECT_TRUE(records.emplace(unit, bytes).second) << "twice: " << unit;
+  };
+  for (uint64_t i = 0; i < 5; ++i) {
+    Resume resume;
+    resume.shard = {i, i + 1, 5};
+    resume.sink = &sink;
+    placeShard(world.rays, world.lights, options, 0.0, resume);
+  }
+  ShardSource source;
+  source.record = [&](std::string_view, uint64_t unit) -> std::optional<std::string> {
+    const auto found = records.find(unit);
+    if (found == records.end()) return {};
+    return found->second;
+  };
+  const uint64_t hash = world.scene.contentHash;
+  const auto never = [](uint64_t) { FAIL(); };
+  EXPECT_EQ(joinPlaced(options, hash, source, never).table.position,
+            placeVpls(world, count(60000)).table.position);
+  struct Early {
+    uint64_t unit;
+  };
+  records.erase(7);
+  try {
+    joinPlaced(options, hash, source, [](uint64_t unit) { throw Early{unit}; });
+    FAIL();
+  } catch (const Early& early) {
+    EXPECT_EQ(early.unit, 7u);
   }
 }
 

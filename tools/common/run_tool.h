@@ -47,6 +47,17 @@ const std::string& runningTool();
 // Tries to write beside each output; see also run_files.h. Empty paths are not asked for.
 void requireWritable(const std::vector<fs::path>& outputs);
 
+// What a file from elsewhere says under a key. Throws InputError where it does not, in that type.
+template <typename T>
+T fieldOf(const Json& json, const char* key) {
+  try {
+    return json.at(key).get<T>();
+  } catch (const Json::exception&) {
+    throw InputError("'" + std::string(key) +
+                     "' of a record is missing or of another type; make the file again");
+  }
+}
+
 // What a stage did, and that record behind those of its input (empty for the first stage).
 //   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":
 //   "<hash>"}}

@@ -47,10 +47,10 @@ Json toJson(const SceneOptions& options) {
 
 SceneOptions sceneOptionsOf(const Json& json) {
   SceneOptions options;
-  options.file = json.at("file").get<std::string>();
-  options.defines = json.at("defines").get<std::vector<std::string>>();
-  options.camera = json.at("camera").get<std::string>();
-  options.view = json.at("view").get<std::string>();
+  options.file = fieldOf<std::string>(json, "file");
+  options.defines = fieldOf<std::vector<std::string>>(json, "defines");
+  options.camera = fieldOf<std::string>(json, "camera");
+  options.view = fieldOf<std::string>(json, "view");
   return options;
 }
 

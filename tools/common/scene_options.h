@@ -23,9 +23,9 @@ CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::strin
 Json toJson(const SceneOptions& options);
 SceneOptions sceneOptionsOf(const Json& json);
 
-// Loads the scene, chooses the camera, and prints its warnings in the tool's name, once for all tools: silent is a tool
-// that reads a file made from this scene, as whoever made that has said them, and one that prints
-// them later.
+// Loads the scene, chooses the camera, and prints its warnings in the tool's name, once for all
+// tools: silent is a tool that reads a file made from this scene, as whoever made that has said
+// them, and one that prints them later.
 enum class Warnings { Print, Silent };
 Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings);
 

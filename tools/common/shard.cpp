@@ -8,8 +8,6 @@
 namespace bnvpl {
 namespace {
 
-constexpr uint64_t kMostShards = 1000000;
-
 // What does not decide the result, or is said anew of each shard.
 constexpr std::array<std::string_view, 9> kOwn{
     "--output", "--shard", "--checkpoint", "--checkpoint-every", "--threads",

@@ -11,6 +11,8 @@
 namespace bnvpl {
 
 inline constexpr const char* kShardExtension = ".shard";
+// Sums of a light tracer's shards have room for three times as many.
+inline constexpr uint64_t kMostShards = 10000;
 
 // --shard, with `units`, "photons", in its help.
 CLI::Option* addShardOption(CLI::App& cli, std::optional<Shard>& shard, const std::string& units);

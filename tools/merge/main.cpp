@@ -4,6 +4,7 @@
 
 #include "core/files.h"
 #include "tools/common/exit_codes.h"
+#include "tools/common/exposure.h"
 #include "tools/common/run_files.h"
 #include "tools/merge/merge.h"
 
@@ -11,7 +12,7 @@ namespace bnvpl {
 namespace {
 
 const MergeStage& stageOf(const ShardSet& shards) {
-  const std::string tool = shards.whole().run.value("tool", "");
+  const std::string tool = fieldOf<std::string>(shards.whole().run, "tool");
   const auto stages = mergeStages();
   const auto found = std::ranges::find(stages, tool, &MergeStage::tool);
   if (found == stages.end())
@@ -63,12 +64,15 @@ int main(int argc, char** argv) {
   addFile(cli, "-o,--output", output.product,
           "what the stage writes (.vpl, .exr); or a shard of some of its parts (.shard)")
       ->required();
-  addFile(cli, "--png", output.png, "of an image, also write a preview");
+  CLI::Option* png = addFile(cli, "--png", output.png, "of an image, also write a preview");
+  addOption(cli,
+            textOption("exposure", "auto", "EV|auto", "of the PNG, in stops; auto: middle grey"),
+            [&output](const Value& value) {
+              output.exposure = std::get<std::string>(value);
+              parseExposure(output.exposure);
+            })
+      ->needs(png);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] {
-    MergeOutput asked = output;
-    asked.quiet = tool.quiet;
-    return runMerge(inputs, asked, tool);
-  });
+  return runTool(cli, tool, argc, argv, [&] { return runMerge(inputs, output, tool); });
 }

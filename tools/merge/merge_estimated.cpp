@@ -9,14 +9,15 @@ namespace bnvpl {
 std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                      Summary& summary) {
   const ShardRun& whole = shards.whole();
-  const Values options = resolve(estimateSpec(), whole.given);
-  const fs::path input = whole.sources.at("vpls").get<std::string>();
+  const Values options = optionsOf(
+      whole, estimateSpec(), [](const Given& given) { return resolve(estimateSpec(), given); });
+  const fs::path input = fieldOf<std::string>(whole.sources, "vpls");
   requireMemoryFor(input, kBytesPerEstimated, "keep fewer with vpl-eliminate -n");
   const VplTable vpls = readVpl(input, VplStage::Eliminated);
-  const Scene scene =
-      loadSceneFor("vpl-merge", sceneOptionsOf(whole.sources.at("scene")), Warnings::Silent);
-  requireSameInput(input, vpls.checksum, whole.run, "vpls");
-  requireSameInput(scene.name(), scene.contentHash, whole.run, "scene");
+  const Scene scene = loadSceneFor(
+      "vpl-merge", sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Silent);
+  requireSameInput(input, vpls.checksum, whole, "vpls");
+  requireSameInput(scene.name(), scene.contentHash, whole, "scene");
   const RayScene rays(scene);
   const LightSet lights(rays);
   const ShardSource source = shards.source();
@@ -24,6 +25,7 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
   resume.source = &source;
   EstimateResult result = estimate(vpls, rays, lights, options, {}, resume);
   result.table.provenance = extendProvenance(vpls.provenance, whole.run);
+  requireSound(result.table);
   writeVpl(files.add(output.product), result.table);
   reportEstimate(result, summary);
   std::vector<fs::path> read = scene.files;

@@ -19,16 +19,17 @@ namespace {
 
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                   Summary& summary) {
-  const Values options = resolve(placeSpec(), shards.whole().given);
+  const Values options = optionsOf(shards.whole(), placeSpec(),
+                                   [](const Given& given) { return resolve(placeSpec(), given); });
   const uint64_t count = options.whole("count");
   requireMemory(kBytesPerPlaced * static_cast<double>(count), std::to_string(count) + " VPLs",
                 "place fewer with -n");
   const Json& record = shards.whole().run;
-  const uint64_t sceneHash =
-      std::stoull(record.at("inputs").at("scene").get<std::string>(), nullptr, 16);
+  const uint64_t sceneHash = inputHash(shards.whole(), "scene");
   PlaceResult placed = joinPlaced(options, sceneHash, shards.source(),
                                   [&](uint64_t unit) { refuseTooFew(shards, unit); });
   placed.table.provenance = extendProvenance("", record);
+  requireSound(placed.table);
   writeVpl(files.add(output.product), placed.table);
   reportPlaced(placed, summary);
   return {};

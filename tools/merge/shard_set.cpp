@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "formats/provenance.h"
 #include "tools/common/build_id.h"
 #include "tools/common/checkpoint.h"
 #include "tools/common/shell_text.h"
@@ -17,16 +18,21 @@ struct Info {
 };
 
 Info parseInfo(const fs::path& file, const std::string& text) {
-  try {
-    const Json json = Json::parse(text);
-    Info info{{json.at("run"), json.at("given").get<Given>(), json.at("sources"),
-               json.at("command").get<std::string>(), json.at("history").get<std::string>()},
-              json.at("parts").get<ShardParts>(),
-              json.at("of").get<uint64_t>()};
-    return info;
-  } catch (const Json::exception&) {
+  // One object, as the only one of an array, whose depth and letters isProvenance() judges.
+  const std::string list = "[" + text + "]";
+  const Json all = isProvenance(list) ? Json::parse(list) : Json::array();
+  if (all.size() != 1)
     throw InputError(file, "is damaged (what it says of itself); delete it and make it again");
-  }
+  const Json& json = all.front();
+  Info info{
+      {fieldOf<Json>(json, "run"), fieldOf<Given>(json, "given"), fieldOf<Json>(json, "sources"),
+       fieldOf<std::string>(json, "command"), fieldOf<std::string>(json, "history")},
+      fieldOf<ShardParts>(json, "parts"),
+      fieldOf<uint64_t>(json, "of")};
+  const bool history = info.run.history.empty() || isProvenance(info.run.history);
+  if (!history || info.parts.empty() || info.of < 1 || info.of > kMostShards)
+    throw InputError(file, "is damaged (its parts or history); delete it and make it again");
+  return info;
 }
 
 std::string textOf(const ShardParts& parts) {
@@ -68,7 +74,7 @@ void ShardSet::takeInfo(size_t index, const std::string& text, std::vector<Holde
   if (holders.empty()) {
     whole_ = std::move(info.run);
     of_ = info.of;
-    const std::string build = whole_.run.value("version", "");
+    const std::string build = fieldOf<std::string>(whole_.run, "version");
     if (build != buildId()) {
       throw InputError(file, "was made by another build (" + build + ", this is " + buildId() +
                                  "); use its vpl-merge, or make all shards again");
@@ -77,7 +83,6 @@ void ShardSet::takeInfo(size_t index, const std::string& text, std::vector<Holde
     requireSameRun(file, info.run, info.of);
   }
   for (const auto& [first, last] : info.parts) holders.push_back({first, last, index});
-  if (info.parts.empty()) throw InputError(file, "holds no part; make it again");
 }
 
 void ShardSet::requireSameRun(const fs::path& file, const ShardRun& run, uint64_t of) const {
@@ -85,7 +90,8 @@ void ShardSet::requireSameRun(const fs::path& file, const ShardRun& run, uint64_
     throw InputError(file, what + "; leave it out, or make all shards by one command");
   };
   if (run.run != whole_.run) {
-    const bool build = run.run.value("version", "") != whole_.run.value("version", "");
+    const bool build =
+        fieldOf<std::string>(run.run, "version") != fieldOf<std::string>(whole_.run, "version");
     refuse(std::string("is of another ") + (build ? "build" : "run") + " than " +
            files_.front().string() + " (" + differenceOf(whole_.run, run.run) + ")");
   }

@@ -2,6 +2,7 @@
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include "core/memory.h"
 #include "formats/vpl_io.h"
+#include "tools/common/checkpoint.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/progress_meter.h"
 #include "tools/common/run_files.h"
@@ -20,6 +21,7 @@ constexpr Option kSpareOption =
 struct Request {
   SceneOptions scene;
   fs::path output;
+  CheckpointOptions checkpoint;
   std::optional<Shard> shard;
   double shardSpare = 0.0;
   Given given;
@@ -37,7 +39,8 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   const uint64_t count = options.whole("count");
   RunFiles used;
   used.reads("scene", request.scene.file);
-  used.writes("-o", output, {request.shard ? kShardExtension : ".vpl"}).writes(tool).check();
+  used.writes("-o", output, {request.shard ? kShardExtension : ".vpl"});
+  used.writes("--checkpoint", request.checkpoint.file).writes(tool).check();
   requireMemory(memoryFor(request, count), std::to_string(count) + " VPLs",
                 "ask for fewer with -n");
   const Scene scene = loadSceneFor("vpl-place", request.scene, Warnings::Silent);
@@ -50,23 +53,25 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   Json record = stageRecord("vpl-place", recordOf(placeSpec(), options),
                             {{"scene", hashText(scene.contentHash)}});
   if (placeMethod(options).forView) record["view"] = viewRecord(scene);
+  Checkpoint checkpoint(request.checkpoint, withShard(record, request.shard));
   OutputSet files;
   if (request.shard) {
     ProgressMeter meter("VPLs", request.shard->shareOf(count), tool.quiet);
     ShardOutput shard(files.add(output), *request.shard);
-    reportPlaced(placeShard(rays, lights, options, *request.shard, request.shardSpare, shard.sink(),
-                            meter.callback()),
+    reportPlaced(placeShard(rays, lights, options, request.shardSpare,
+                            shard.only(checkpoint.resume()), meter.callback()),
                  summary);
     shard.finish({record, request.given, Json::object(), request.command, ""}, summary);
   } else {
     ProgressMeter meter("VPLs", count, tool.quiet);
-    PlaceResult placed = place(rays, lights, options, meter.callback());
+    PlaceResult placed = place(rays, lights, options, meter.callback(), checkpoint.resume());
     placed.table.provenance = extendProvenance("", record);
     writeVpl(files.add(output), placed.table);
     reportPlaced(placed, summary);
   }
   addDepfile(files, tool.depfile, output, scene.files);
   summary.finish(tool, files);
+  checkpoint.remove();
   return kExitOk;
 }
 
@@ -82,6 +87,7 @@ int main(int argc, char** argv) {
   addSceneOptions(cli, request.scene);
   addFile(cli, "-o,--output", request.output, "candidates (.vpl)")->required();
   addStageOptions(cli, placeSpec(), request.given);
+  addCheckpointOptions(cli, request.checkpoint);
   addReal(cli, kSpareOption, request.shardSpare)
       ->needs(addShardOption(cli, request.shard, "paths"));
   addToolOptions(cli, tool);

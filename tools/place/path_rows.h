@@ -30,9 +30,8 @@ inline constexpr uint64_t kPathsPerChunk = 1024;
 PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
                         const ProgressFn& progress, const TracePaths& tracePaths);
 // The same in shards, whose units are chunks: place.h.
-PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Shard& shard,
-                       const ShardSink& sink, const ProgressFn& progress,
-                       const TracePaths& tracePaths);
+PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
+                       const ProgressFn& progress, const TracePaths& tracePaths);
 PlaceResult joinShards(uint64_t count, LastPath last, const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly);
 

@@ -1,6 +1,7 @@
 #include "tools/place/place.h"
 
 #include <array>
+#include <stdexcept>
 
 #include "tools/place/path_rows.h"
 
@@ -30,8 +31,30 @@ const PlaceMethod& placeMethod(const Values& options) {
   return methodNamed(placeMethods(), options.text("method"));
 }
 
+namespace {
+
+// What can be interrupted is traced as the only shard of all, whose rows are kept.
+PlaceResult placeInPieces(const RayScene& rays, const LightSet& lights, const Values& options,
+                          const ProgressFn& progress, Resume resume) {
+  std::vector<std::string> records;
+  const ShardSink sink{
+      [&](std::string_view, uint64_t, std::string_view bytes) { records.emplace_back(bytes); }, {}};
+  resume.sink = &sink;
+  placeShard(rays, lights, options, 0.0, resume, progress);
+  const ShardSource source{[&](std::string_view, uint64_t unit) -> std::optional<std::string> {
+                             if (unit >= records.size()) return {};
+                             return std::move(records[unit]);
+                           },
+                           {}};
+  return joinPlaced(options, rays.scene().contentHash, source,
+                    [](uint64_t) { throw std::logic_error("the paths of a whole ended early"); });
+}
+
+}  // namespace
+
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
-                  const ProgressFn& progress) {
+                  const ProgressFn& progress, const Resume& resume) {
+  if (resume.pause) return placeInPieces(rays, lights, options, progress, resume);
   const PlaceMethod& method = placeMethod(options);
   PlaceResult result = collectRows(rays.scene().name(), options.whole("count"), method.last,
                                    progress, method.make({rays, lights}, options));
@@ -41,9 +64,8 @@ PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& op
 }
 
 PlaceResult placeShard(const RayScene& rays, const LightSet& lights, const Values& options,
-                       const Shard& shard, double spare, const ShardSink& sink,
-                       const ProgressFn& progress) {
-  return traceShard(rays.scene().name(), options.whole("count"), spare, shard, sink, progress,
+                       double spare, const Resume& resume, const ProgressFn& progress) {
+  return traceShard(rays.scene().name(), options.whole("count"), spare, resume, progress,
                     placeMethod(options).make({rays, lights}, options));
 }
 

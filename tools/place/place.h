@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/progress.h"
-#include "core/shard.h"
+#include "core/resume.h"
 #include "formats/vpl_table.h"
 #include "tools/common/method.h"
 #include "transport/lights.h"
@@ -52,17 +52,17 @@ std::span<const PlaceMethod* const> placeMethods();  // one for each folder besi
 const StageSpec& placeSpec();
 const PlaceMethod& placeMethod(const Values& options);
 
-// A pure function of the scene and the options: any number of threads gives the same bytes. Throws
-// InputError when the scene yields too few within a bounded effort. `progress` counts VPLs.
+// A pure function of the scene and the options: any number of threads, and any interruption that
+// `resume` mends, gives the same bytes. Throws InputError when the scene yields too few within a
+// bounded effort. `progress` counts VPLs.
 PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
-                  const ProgressFn& progress = {});
+                  const ProgressFn& progress = {}, const Resume& resume = {});
 
-// The paths of a shard, whose rows go to the sink; the result has none. Nobody knows before how
-// many paths give the count: a shard ends with its part of the rows and six standard deviations
+// The paths of resume's shard, whose rows go to the sink; the result has none. Nobody knows before
+// how many paths give the count: a shard ends with its part of the rows and six standard deviations
 // more, for those that find fewer, and with `spare` of its part besides.
 PlaceResult placeShard(const RayScene& rays, const LightSet& lights, const Values& options,
-                       const Shard& shard, double spare, const ShardSink& sink,
-                       const ProgressFn& progress = {});
+                       double spare, const Resume& resume, const ProgressFn& progress = {});
 // What place() gives, from the rows of all shards. `endedEarly` is called with the first unit that
 // is missing where they do not suffice, and throws.
 PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ShardSource& source,

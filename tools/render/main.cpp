@@ -10,22 +10,23 @@
 #include "tools/common/progress_meter.h"
 #include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
+#include "tools/common/shard.h"
 #include "tools/render/outputs.h"
 #include "tools/render/render.h"
 
 namespace bnvpl {
 namespace {
 
-// Measured: 190 to 270, by the number of layers; 140, and 670 with the near field.
-constexpr double kBytesPerPixel = 180, kBytesPerVpl = 100;
-// What passes keep besides.
-constexpr double kBytesPerPixelOfPasses = 120;
+constexpr double kBytesPerVpl = 100;  // measured: 140, and 670 with the near field
 
-struct Paths {
+struct Request {
   SceneOptions scene;
   fs::path lit;
   ImagePaths images;
   CheckpointOptions checkpoint;
+  std::optional<Shard> shard;
+  Given given;
+  std::string command;  // without --shard and -o
 };
 
 // "--integrator light or path".
@@ -38,12 +39,19 @@ std::string withoutVpls() {
 }
 
 // Before any work: what the paths and the options say together.
-void requireConsistent(const Paths& paths, const Given& given, const Values& options) {
+void requireConsistent(const Request& paths, const Values& options) {
   const IntegratorMethod& integrator = integratorOf(options);
   layersOf(options);
   parseExposure(options.text("exposure"));
+  if (paths.shard && budgetOf(options)) {
+    throw UsageError(
+        "--shard has no passes over the whole film, by which --time, --target-error and --passes "
+        "go; leave them out and give --spp");
+  }
+  if (paths.shard && !paths.images.png.empty())
+    throw UsageError("--png is of a whole image; leave it out and give it to vpl-merge");
   const bool exposure =
-      std::ranges::any_of(given, [](const auto& g) { return g.first == "exposure"; });
+      std::ranges::any_of(paths.given, [](const auto& g) { return g.first == "exposure"; });
   if (exposure && paths.images.png.empty())
     throw UsageError("--exposure has no effect without --png; it is the preview's");
   if (integrator.needsVpls && paths.lit.empty())
@@ -54,29 +62,29 @@ void requireConsistent(const Paths& paths, const Given& given, const Values& opt
   }
 }
 
-int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
+int runRender(const Request& request, const ToolOptions& tool) {
   Summary summary("vpl-render");
-  const Values options = resolveRender(given);
-  requireConsistent(paths, given, options);
-  const bool vpl = !paths.lit.empty();
+  const Values options = resolveRender(request.given);
+  requireConsistent(request, options);
+  const bool vpl = !request.lit.empty();
+  const auto& shard = request.shard;
   RunFiles used;
-  used.reads("scene", paths.scene.file).reads("lit", paths.lit);
-  used.writes("-o", paths.images.exr, {".exr"}).writes("--png", paths.images.png, {".png"});
-  used.writes("--checkpoint", paths.checkpoint.file).writes(tool).check();
+  used.reads("scene", request.scene.file).reads("lit", request.lit);
+  used.writes("-o", request.images.exr, {shard ? kShardExtension : ".exr"});
+  used.writes("--png", request.images.png, {".png"});
+  used.writes("--checkpoint", request.checkpoint.file).writes(tool).check();
 
-  if (vpl) requireMemoryFor(paths.lit, kBytesPerVpl, "keep fewer VPLs with vpl-eliminate -n");
+  if (vpl) requireMemoryFor(request.lit, kBytesPerVpl, "keep fewer VPLs with vpl-eliminate -n");
   VplTable lit;
-  if (vpl) lit = readVpl(paths.lit, VplStage::Lit);
-  Scene scene = loadSceneFor("vpl-render", paths.scene, vpl ? Warnings::Silent : Warnings::Print);
+  if (vpl) lit = readVpl(request.lit, VplStage::Lit);
+  Scene scene = loadSceneFor("vpl-render", request.scene, vpl ? Warnings::Silent : Warnings::Print);
   used.ready(scene.files);
   if (!options.text("size").empty()) scene.film = parseSize(options.text("size"));
   if (vpl) {
-    requireSameScene(paths.lit, lit.sceneHash, scene,
+    requireSameScene(request.lit, lit.sceneHash, scene,
                      "rerun the pipeline from vpl-place on this scene");
   }
-  const bool passes = budgetOf(options).has_value();
-  requireMemory((kBytesPerPixel + (passes ? kBytesPerPixelOfPasses : 0.0)) * scene.film.width *
-                    scene.film.height,
+  requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
                 "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   const RayScene rays(scene);
   const LightSet lights(rays);
@@ -88,23 +96,35 @@ int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
     json["view"] = viewRecord(scene);
     return json;
   };
-  Checkpoint checkpoint(paths.checkpoint, record(resumableOptions(options)));
-  ProgressMeter meter("samples", renderWork(scene, options), tool.quiet);
-  RenderResult result = render(rays, lights, lit, options, meter.callback(), checkpoint.resume(),
-                               previewTo(paths.images, options));
-
-  Image& image = result.image;
-  const Values made = optionsMade(result, given);
-  describe(result, made);
-  image.attributes["bnvpl.provenance"] =
-      extendProvenance(lit.provenance, record(recordOf(renderSpec(), made)));
-  image.attributes[kImageHashAttribute] = hashText(hashImage(image, pixelTypeOf(options)));
+  Checkpoint checkpoint(request.checkpoint, withShard(record(resumableOptions(options)), shard));
+  const uint64_t work = renderWork(scene, options);
+  ProgressMeter meter("samples", shard ? shard->shareOf(work) : work, tool.quiet);
+  const auto result = [&](const Resume& resume) {
+    return render(rays, lights, lit, options, meter.callback(), resume,
+                  previewTo(request.images, options));
+  };
   OutputSet files;
-  reportRender(result, made, summary);
-  addImages(files, paths.images, image, options, summary);
+  if (shard) {
+    const Json made = record(recordOf(renderSpec(), options));
+    ShardOutput part(files.add(request.images.exr), *shard);
+    const RenderResult partial = result(part.only(checkpoint.resume()));
+    part.finish({withLayers(made, options),
+                 request.given,
+                 {{"vpls", partial.vpls}},
+                 request.command,
+                 extendProvenance(lit.provenance, made)},
+                summary);
+  } else {
+    RenderResult whole = result(checkpoint.resume());
+    const Values made = optionsMade(whole, request.given);
+    finishImage(whole, made,
+                extendProvenance(lit.provenance, record(recordOf(renderSpec(), made))));
+    reportRender(whole, made, summary);
+    addImages(files, request.images, whole.image, options, summary);
+  }
   std::vector<fs::path> read = scene.files;
-  if (vpl) read.push_back(paths.lit);
-  addDepfile(files, tool.depfile, paths.images.exr, read);
+  if (vpl) read.push_back(request.lit);
+  addDepfile(files, tool.depfile, request.images.exr, read);
   summary.finish(tool, files);
   checkpoint.remove();
   return kExitOk;
@@ -117,16 +137,19 @@ int runRender(const Paths& paths, const Given& given, const ToolOptions& tool) {
 int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Render the scene, lit by its lights and the VPLs.", "vpl-render"};
-  Given given;
   ToolOptions tool;
-  Paths paths;
-  addSceneOptions(cli, paths.scene);
-  addFile(cli, "lit", paths.lit, "lit VPLs (.vpl), for integrators that take them");
-  addFile(cli, "-o,--output", paths.images.exr, "image (.exr)")->required();
-  addFile(cli, "--png", paths.images.png, "also write a preview");
-  addStageOptions(cli, renderSpec(), given);
-  addCheckpointOptions(cli, paths.checkpoint);
+  Request request;
+  addSceneOptions(cli, request.scene);
+  addFile(cli, "lit", request.lit, "lit VPLs (.vpl), for integrators that take them");
+  addFile(cli, "-o,--output", request.images.exr, "image (.exr)")->required();
+  addFile(cli, "--png", request.images.png, "also write a preview");
+  addStageOptions(cli, renderSpec(), request.given);
+  addCheckpointOptions(cli, request.checkpoint);
+  addShardOption(cli, request.shard, "tiles and photons");
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] { return runRender(paths, given, tool); });
+  return runTool(cli, tool, argc, argv, [&] {
+    request.command = commandOf(cli);
+    return runRender(request, tool);
+  });
 }

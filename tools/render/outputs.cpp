@@ -37,6 +37,13 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 
 }  // namespace
 
+double bytesPerPixelOf(const Values& options) {
+  double bytes = 180;                               // measured: 190 to 270, by layers
+  if (budgetOf(options)) bytes += 120;              // what passes keep besides
+  if (integratorOf(options).photons) bytes += 168;  // exact sums of what photons bring
+  return bytes;
+}
+
 ExrPixelType pixelTypeOf(const Values& options) {
   return options.text("pixels") == "half" ? ExrPixelType::Half : ExrPixelType::Float;
 }
@@ -85,14 +92,22 @@ Values optionsMade(const RenderResult& result, const Given& given) {
   return resolveRender(all);
 }
 
-void describe(RenderResult& result, const Values& made) {
+void finishImage(RenderResult& result, const Values& made, const std::string& provenance) {
   auto& attributes = result.image.attributes;
   attributes["bnvpl.samplesPerPixel"] = std::to_string(made.whole("spp"));
-  if (!result.passes) return;
-  attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
-  char error[32];
-  std::snprintf(error, sizeof error, "%.6g", result.passes->error);
-  attributes["bnvpl.relativeError"] = error;
+  if (result.passes) {
+    attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
+    char error[32];
+    std::snprintf(error, sizeof error, "%.6g", result.passes->error);
+    attributes["bnvpl.relativeError"] = error;
+  }
+  attributes["bnvpl.provenance"] = provenance;
+  attributes[kImageHashAttribute] = hashText(hashImage(result.image, pixelTypeOf(made)));
+}
+
+Json withLayers(Json run, const Values& options) {
+  run["layers"] = options.text("layers");
+  return run;
 }
 
 namespace {

@@ -11,6 +11,9 @@ struct ImagePaths {
   fs::path exr, png;  // png empty: none
 };
 
+// What an image takes in memory.
+double bytesPerPixelOf(const Values& options);
+
 // The image, and its preview at --exposure; with what the summary says of them.
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
                Summary& summary);
@@ -22,8 +25,10 @@ ExrPixelType pixelTypeOf(const Values& options);
 Json resumableOptions(const Values& options);
 // The options that make this image again: with passes, as many of them as there were.
 Values optionsMade(const RenderResult& result, const Given& given);
-// Attributes that tell of samples and passes.
-void describe(RenderResult& result, const Values& made);
+// Attributes: samples and passes, the history, and the hash of all.
+void finishImage(RenderResult& result, const Values& made, const std::string& provenance);
+// Of shards, which are of one run only where they are to show the same layers.
+Json withLayers(Json run, const Values& options);
 void reportRender(const RenderResult& result, const Values& options, Summary& summary);
 
 }  // namespace bnvpl

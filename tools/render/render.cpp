@@ -51,6 +51,16 @@ Only onlyOf(const Values& options) {
   return name == "direct" ? Only::Direct : name == "indirect" ? Only::Indirect : Only::Everything;
 }
 
+FilmOptions filmOptionsOf(const Values& options) {
+  return {static_cast<uint32_t>(options.whole("spp")), options.whole("seed"), onlyOf(options),
+          layersOf(options)};
+}
+
+// Whether the integrator sends photons for this image.
+bool sendsPhotons(const Values& options) {
+  return integratorOf(options).photons && onlyOf(options) != Only::Direct;
+}
+
 // The integrators in whose images VPLs shine.
 std::string gathering() {
   std::string names;
@@ -117,15 +127,20 @@ uint64_t renderWork(const Scene& scene, const Values& options) {
     spp = budget->passes * kPassSpp;
   }
   const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * spp;
-  const bool photons = integratorOf(options).photons && onlyOf(options) != Only::Direct;
-  return photons ? 2 * samples : samples;
+  return sendsPhotons(options) ? 2 * samples : samples;
+}
+
+RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source) {
+  RenderResult result;
+  result.image =
+      joinFilm(film, filmOptionsOf(options), sendsPhotons(options), result.stats, source);
+  return result;
 }
 
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress, const Resume& resume,
                     const PreviewFn& preview) {
-  const FilmOptions film{static_cast<uint32_t>(options.whole("spp")), options.whole("seed"),
-                         onlyOf(options), layersOf(options)};
+  const FilmOptions film = filmOptionsOf(options);
   const Integrator integrator =
       integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress}, options);
   RenderResult result;

@@ -33,6 +33,9 @@ struct RenderResult {
   std::optional<PassesDone> passes;  // of a budget
 };
 
+// The image that shards have made together, `film` being theirs; the summary's `vpls` stays 0.
+RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source);
+
 // Of the film in the scene. `lit`: of stage Lit; without rows where the integrator needs none. A
 // pure function: any number of threads, and any interruption that `resume` mends, gives the same
 // bytes; with a budget for the same number of passes. `preview` is for budgets.

@@ -5,6 +5,7 @@
 #include "tools/common/streams.h"
 #include "tools/render/film/develop.h"
 #include "tools/render/film/samples.h"
+#include "tools/render/film/splat_sums.h"
 #include "tools/render/film/splats.h"
 
 namespace bnvpl {
@@ -13,31 +14,112 @@ namespace {
 
 constexpr uint32_t kSlotsPerPass = 64;  // over the whole image; work stops between tiles of a pass
 
-// What is done, for a checkpoint: passes and the tiles of one, then photons; the sums of all
-// pixels.
-struct Progress {
-  uint64_t pass = 0;
-  SplatProgress splats;
+constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons";
+
+// What samples and photons have brought, and of a checkpoint how far they are: passes, the tiles of
+// one, then photons.
+struct State {
+  struct Progress {
+    uint64_t pass = 0;
+    SplatProgress splats;
+  };
+  State(const Film& film, bool photons, const Shard& of)
+      : tiles(film),
+        pixels(size_t{film.width} * film.height),
+        counts(pixels.size()),
+        splats(photons ? pixels.size() : 0),
+        shard(of) {
+    beginPass();
+  }
+  void beginPass() { done = unitsToDo(tiles.count(), shard); }
+
+  std::string encode() const {
+    std::string bytes;
+    appendArray(bytes, std::array{at});
+    appendArray(bytes, done);
+    appendArray(bytes, pixels);
+    appendArray(bytes, counts);
+    appendArray(bytes, splats.integers());
+    return bytes;
+  }
+  void decode(std::string_view bytes) {
+    std::array<Progress, 1> progress{};
+    takeArray(bytes, progress);
+    takeArray(bytes, done);
+    takeArray(bytes, pixels);
+    takeArray(bytes, counts);
+    std::vector<int64_t> integers(SplatSums::integersFor(splats.pixels()));
+    takeArray(bytes, integers);
+    requireAllTaken(bytes);
+    at = progress[0];
+    splats.setIntegers(integers);
+  }
+
+  void giveTo(const ShardSink& sink) const {
+    std::vector<TilePixel> record;
+    for (size_t t = 0; t < tiles.count(); ++t) {
+      if (!shard.has(t)) continue;
+      const Tile tile = tiles.at(t);
+      record.resize(tile.pixels());
+      for (uint32_t p = 0; p < tile.pixels(); ++p) {
+        const size_t i = tiles.pixelIndex(tile, p);
+        record[p] = {pixels[i], counts[i]};
+      }
+      giveRecord(sink, kTileWork, t, record);
+    }
+    if (splats.pixels() > 0) sink.sums(kPhotonWork, splats.integers());
+  }
+  void takeFrom(const ShardSource& source) {
+    std::vector<TilePixel> record;
+    for (size_t t = 0; t < tiles.count(); ++t) {
+      const Tile tile = tiles.at(t);
+      record.resize(tile.pixels());
+      takeRecord(source, kTileWork, t, record);
+      for (uint32_t p = 0; p < tile.pixels(); ++p) {
+        const size_t i = tiles.pixelIndex(tile, p);
+        pixels[i] = record[p].sums;
+        counts[i] = record[p].counts;
+      }
+    }
+    if (splats.pixels() > 0) {
+      splats.setIntegers(source.sums(kPhotonWork, SplatSums::integersFor(splats.pixels())));
+    }
+  }
+
+  struct TilePixel {  // without padding: it is handed over as it lies
+    PixelSums sums;
+    PixelCounts counts;
+  };
+  Tiles tiles;
+  Progress at;
+  std::vector<uint8_t> done;  // tiles of this pass
+  std::vector<PixelSums> pixels;
+  std::vector<PixelCounts> counts;
+  SplatSums splats;
+  Shard shard;
 };
-std::string encode(const Progress& progress, const std::vector<uint8_t>& done,
-                   const std::vector<PixelSums>& pixels, const std::vector<PixelCounts>& counts) {
-  std::string bytes;
-  appendArray(bytes, std::array{progress});
-  appendArray(bytes, done);
-  appendArray(bytes, pixels);
-  appendArray(bytes, counts);
-  return bytes;
+
+Image blankImage(const Film& film) {
+  Image image;
+  image.width = static_cast<int>(film.width);
+  image.height = static_cast<int>(film.height);
+  return image;
 }
 
-Progress decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<PixelSums>& pixels,
-                std::vector<PixelCounts>& counts) {
-  std::array<Progress, 1> progress{};
-  takeArray(bytes, progress);
-  takeArray(bytes, done);
-  takeArray(bytes, pixels);
-  takeArray(bytes, counts);
-  requireAllTaken(bytes);
-  return progress[0];
+Image develop(const Film& size, const FilmOptions& options, State& state, FilmStats& stats) {
+  Image image = blankImage(size);
+  if (state.splats.pixels() > 0) {
+    for (size_t i = 0; i < state.pixels.size(); ++i) {
+      for (size_t c = 0; c < 3; ++c)
+        state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
+    }
+  }
+  const Exposed film{state.pixels, state.counts, 1.0 / options.spp};
+  addShown(film, options.only, image);
+  for (const Layer* layer : options.layers) addLayer(*layer, film, image);
+  stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
+  stats.nonFinite += state.splats.nonFinite();
+  return image;
 }
 
 }  // namespace
@@ -45,39 +127,33 @@ Progress decode(std::string_view bytes, std::vector<uint8_t>& done, std::vector<
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
-  Image image;
-  image.width = static_cast<int>(scene.film.width);
-  image.height = static_cast<int>(scene.film.height);
-  std::vector<PixelSums> pixels(image.pixelCount());
-  std::vector<PixelCounts> counts(image.pixelCount());
-
-  const Tiles tiles(scene.film);
-  std::vector<uint8_t> done(tiles.count());
-  Progress at;
-  if (!resume.state.empty()) at = decode(resume.state, done, pixels, counts);
+  State film(scene.film, static_cast<bool>(integrator.photons), resume.shard);
+  const Tiles& tiles = film.tiles;
+  if (!resume.state.empty()) film.decode(resume.state);
   const uint64_t perPass = integrator.wholePixels ? options.spp : kSlotsPerPass;
   const uint64_t passes = (options.spp + perPass - 1) / perPass;
   const auto slotsBefore = [&](uint64_t p) {
     return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * perPass));
   };
-  const auto state = [&] { return encode(at, done, pixels, counts); };
-  if (progress) progress(image.pixelCount() * slotsBefore(at.pass) + at.splats.photons);
-  for (; at.pass < passes; ++at.pass, std::fill(done.begin(), done.end(), 0)) {
-    const uint32_t begin = slotsBefore(at.pass), end = slotsBefore(at.pass + 1);
+  const auto state = [&] { return film.encode(); };
+  const uint64_t own = resume.shard.shareOf(film.pixels.size());
+  if (progress) progress(own * slotsBefore(film.at.pass) + film.at.splats.traced);
+  for (; film.at.pass < passes; ++film.at.pass, film.beginPass()) {
+    const uint32_t begin = slotsBefore(film.at.pass), end = slotsBefore(film.at.pass + 1);
     const auto report = [&](const Tile& tile) {
       if (progress) progress(uint64_t{tile.pixels()} * (end - begin));
     };
-    for (size_t index = 0; index < done.size(); ++index) {
-      if (done[index]) report(tiles.at(index));
+    for (size_t index = 0; index < film.done.size(); ++index) {
+      if (film.done[index] == 1) report(tiles.at(index));
     }
     forUnitsLeft(
-        done, resume,
+        film.done, resume,
         [&](size_t index) {
           const Tile tile = tiles.at(index);
           sampleTile(scene, integrator, key, tile, {begin, end, options.spp, options.spp},
                      [&](uint32_t p, const RadianceSample& sample) {
                        const size_t i = tiles.pixelIndex(tile, p);
-                       addSample(sample, pixels[i], counts[i]);
+                       addSample(sample, film.pixels[i], film.counts[i]);
                      });
           report(tile);
         },
@@ -85,17 +161,20 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   }
   if (integrator.photons) {
     addSplats(
-        integrator.photons, uint64_t{options.spp} * image.pixelCount(), at.splats,
-        [&](const Splat& splat) { addSplat(splat, 1.0f, pixels, counts); }, progress, resume,
-        state);
+        integrator.photons, uint64_t{options.spp} * film.pixels.size(), film.at.splats,
+        [&](const Splat& splat) { film.splats.add(splat); }, progress, resume, state);
+    film.splats.addNonFinite(film.at.splats.nonFinite);
   }
+  if (!resume.sink) return develop(scene.film, options, film, stats);
+  film.giveTo(*resume.sink);
+  return blankImage(scene.film);
+}
 
-  const Exposed film{pixels, counts, 1.0 / options.spp};
-  addShown(film, options.only, image);
-  for (const Layer* layer : options.layers) addLayer(*layer, film, image);
-  stats = statsOf(film, uint64_t{options.spp} * pixels.size());
-  stats.nonFinite += at.splats.nonFinite;
-  return image;
+Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
+               const ShardSource& source) {
+  State state(film, photons, {});
+  state.takeFrom(source);
+  return develop(film, options, state, stats);
 }
 
 }  // namespace bnvpl

@@ -34,8 +34,13 @@ inline double shownOf(const PixelSums& p, Only only, size_t c) {
 
 // Box filter, samples stratified in each pixel. A tile depends on the seed and its place only.
 // Progress counts samples and photons; `resume` mends interruptions, and its state holds every
-// pixel's sums.
+// pixel's sums. The image of a shard is blank: what it brought goes to the sink, the sums of each
+// of its tiles, and of all that its photons bring.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
+
+// The image from the sums of all shards. `photons`: whether the integrator sends any.
+Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
+               const ShardSource& source);
 
 }  // namespace bnvpl

@@ -1,0 +1,27 @@
+#include "core/memory.h"
+#include "tools/common/film_size.h"
+#include "tools/merge/merge.h"
+#include "tools/render/outputs.h"
+
+namespace bnvpl {
+
+std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output, OutputSet& files,
+                                    Summary& summary) {
+  const ShardRun& whole = shards.whole();
+  Values options = optionsOf(whole, renderSpec(), resolveRender);
+  if (budgetOf(options)) throw InputError("shards of passes cannot be merged; make them again");
+  options.set("exposure", output.exposure);
+  const Film film = parseSize(fieldOf<std::string>(fieldOf<Json>(whole.run, "view"), "size"));
+  requireMemory(bytesPerPixelOf(options) * film.width * film.height,
+                "an image of " + sizeText(film) + " pixels", "choose a smaller --size");
+  RenderResult result = joinRendered(film, options, shards.source());
+  result.vpls = fieldOf<size_t>(whole.sources, "vpls");
+  finishImage(result, options, whole.history);
+  reportRender(result, options, summary);
+  if (findNonFinite(result.image))
+    throw InputError("the shards hold values that are not finite; make them again");
+  addImages(files, {output.product, output.png}, result.image, options, summary);
+  return {};
+}
+
+}  // namespace bnvpl

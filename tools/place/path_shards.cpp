@@ -1,0 +1,154 @@
+// The paths of vpl-place in shards, whose units are chunks.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/resume.h"
+#include "tools/place/row_join.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Of its number of rows, that a shard has more than its part.
+constexpr double kDeviations = 6.0;
+constexpr std::string_view kWork = "paths";
+
+// The sum over paths of their rows, squared: no less than the variance of the rows' number.
+double squaresOf(const PathRows& chunk) {
+  double sum = 0.0;
+  for (size_t i = 0, end = 0; i < chunk.path.size(); i = end) {
+    while (end < chunk.path.size() && chunk.path[end] == chunk.path[i]) ++end;
+    sum += static_cast<double>(end - i) * static_cast<double>(end - i);
+  }
+  return sum;
+}
+
+// The chunks of a shard, in their order.
+class ShardTrace {
+ public:
+  ShardTrace(uint64_t count, double spare, const Resume& resume)
+      : resume_(resume),
+        part_(static_cast<double>(count) * static_cast<double>(shard().parts()) /
+              static_cast<double>(shard().of)),
+        wanted_(part_ * (1.0 + spare)),
+        most_(static_cast<double>(count)) {
+    for (std::string_view bytes = resume.state; !bytes.empty();) {
+      std::array<uint64_t, 1> size{};
+      takeArray(bytes, size);
+      std::string record(std::min<size_t>(size[0], bytes.size()), '\0');
+      takeArray(bytes, record);
+      take(decodeRows(record, unit() * kPathsPerChunk), record);
+    }
+  }
+  const Shard& shard() const { return resume_.shard; }
+  uint64_t unit(uint64_t ahead = 0) const { return shard().unit(chunks_ + ahead); }
+  uint64_t rowsOfPart() const { return static_cast<uint64_t>(std::ceil(part_)); }
+  // Of the whole, as far as this shard is.
+  uint64_t paths() const { return chunks_ / shard().parts() * shard().of * kPathsPerChunk; }
+  const PlaceResult& soFar() const { return result_; }
+
+  double rowsLeft() const {  // rows beyond the count of the whole never matter
+    return std::min(wanted_ + kDeviations * std::sqrt(squares_), most_) -
+           static_cast<double>(result_.rows);
+  }
+  size_t chunksLeft() const {
+    const double each = result_.rows > 0
+                            ? static_cast<double>(result_.rows) / static_cast<double>(chunks_)
+                            : static_cast<double>(kPathsPerChunk);
+    return static_cast<size_t>(
+        std::clamp(std::ceil(rowsLeft() / each), 1.0, static_cast<double>(kChunksPerWave)));
+  }
+  void take(const PathRows& chunk) { take(chunk, encode(chunk, unit() * kPathsPerChunk)); }
+  void pause() const {
+    if (rowsLeft() > 0.0 && resume_.pause && resume_.pause()) resume_.save(state_);
+  }
+
+ private:
+  void take(const PathRows& chunk, const std::string& record) {
+    resume_.sink->record(kWork, unit(), record);
+    if (resume_.pause) {
+      appendArray(state_, std::array<uint64_t, 1>{record.size()});
+      state_ += record;
+    }
+    addCounts(chunk, result_);
+    result_.rows += chunk.rows.size();
+    squares_ += squaresOf(chunk);
+    ++chunks_;
+  }
+
+  const Resume& resume_;
+  double part_, wanted_, most_, squares_ = 0.0;
+  uint64_t chunks_ = 0;
+  PlaceResult result_;
+  std::string state_;
+};
+
+}  // namespace
+
+PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
+                       const ProgressFn& progress, const TracePaths& tracePaths) {
+  ShardTrace trace(count, spare, resume);
+  if (progress) progress(trace.soFar().rows);
+  Wave wave;
+  while (trace.rowsLeft() > 0.0) {
+    if (trace.paths() >= effortFor(count))
+      failTooFew(scene, trace.soFar(), trace.soFar().rows, trace.rowsOfPart());
+    traceWave(
+        wave, trace.chunksLeft(), [&](size_t k) { return trace.unit(k); }, tracePaths);
+    const uint64_t before = trace.soFar().rows;
+    for (size_t k = 0; k < wave.size() && trace.rowsLeft() > 0.0; ++k) trace.take(wave[k]);
+    if (progress) progress(trace.soFar().rows - before);
+    trace.pause();
+  }
+  return trace.soFar();
+}
+
+PlaceResult joinShards(uint64_t count, LastPath last, const ShardSource& source,
+                       const std::function<void(uint64_t unit)>& endedEarly) {
+  RowJoin joined(count, last);
+  for (uint64_t unit = 0; !joined.full(); ++unit) {
+    const auto bytes = source.record(kWork, unit);
+    if (!bytes) endedEarly(unit);
+    joined.join(decodeRows(*bytes, unit * kPathsPerChunk));
+  }
+  return joined.finish("");
+}
+
+std::string encode(const PathRows& chunk, uint64_t begin) {
+  const bool flux = !chunk.rows.flux.empty();
+  std::vector<uint16_t> path(chunk.path.size());
+  for (size_t i = 0; i < path.size(); ++i) path[i] = static_cast<uint16_t>(chunk.path[i] - begin);
+  std::string bytes;
+  appendArray(bytes, std::array<uint64_t, 7>{path.size(), flux, chunk.rays, chunk.escaped,
+                                             chunk.absorbed, chunk.complete, chunk.nonFinite});
+  for (const std::vector<Vec3>* column : columns(chunk.rows)) appendArray(bytes, *column);
+  appendArray(bytes, path);
+  return bytes;
+}
+
+PathRows decodeRows(std::string_view bytes, uint64_t begin) {
+  std::array<uint64_t, 7> counts{};
+  const auto requireSize = [](bool right) {
+    if (!right) throw InputError("the rows of a shard have a wrong size; make it again");
+  };
+  requireSize(bytes.size() >= sizeof counts);
+  takeArray(bytes, counts);
+  const auto [size, flux, rays, escaped, absorbed, complete, nonFinite] = counts;
+  requireSize(size <= bytes.size());
+  requireSize(bytes.size() == size * ((flux ? 5 : 3) * sizeof(Vec3) + sizeof(uint16_t)));
+  PathRows chunk;
+  chunk.rays = rays, chunk.escaped = escaped, chunk.absorbed = absorbed;
+  chunk.complete = complete, chunk.nonFinite = nonFinite;
+  for (std::vector<Vec3>* column : columns(chunk.rows)) {
+    const bool ofLight = column == &chunk.rows.flux || column == &chunk.rows.firstBounceFlux;
+    column->resize(ofLight && !flux ? 0 : size);
+    takeArray(bytes, *column);
+  }
+  std::vector<uint16_t> path(size);
+  takeArray(bytes, path);
+  for (const uint16_t p : path) chunk.path.push_back(begin + p);
+  return chunk;
+}
+
+}  // namespace bnvpl
