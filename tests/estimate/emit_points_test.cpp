@@ -18,10 +18,20 @@ SurfacePoint hitAt(float x) {
   return hit;
 }
 
+const VplTable& manyVpls() {
+  static const VplTable vpls = [] {
+    VplTable table;
+    table.position.resize(kDraws);
+    table.radius.resize(kDraws, 0.5f);
+    return table;
+  }();
+  return vpls;
+}
+
 // One race for each of many VPLs, all of the same four hits, those with index from `begin` to
 // `end`.
 EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7) {
-  EmitPoints points(kDraws, 1, key);
+  EmitPoints points(manyVpls(), 1, key);
   for (size_t vpl = 0; vpl < kDraws; ++vpl) {
     for (size_t h = begin; h < end; ++h) points.offer(vpl, kWeights[h], hitAt(float(h)));
   }
@@ -65,7 +75,8 @@ TEST(EmitPoints, WithoutLightAreThePlaceOfTheVpl) {
   VplTable lit;
   lit.position = {{1, 2, 3}, {4, 5, 6}};
   lit.normal = {{0, 0, 1}, {1, 0, 0}};
-  EmitPoints points(2, 3, 7);
+  lit.radius = {1, 1};
+  EmitPoints points(lit, 3, 7);
   points.offer(0, 1.0, hitAt(8.0f));
   points.fill(lit);
   ASSERT_EQ(lit.emitPoints, 3u);

@@ -73,7 +73,7 @@ class Blender(unittest.TestCase):
             strongest = np.sort(flux.max(axis=1))
             strongest = strongest[strongest > 0]
             return flux / strongest[round(0.99 * (len(strongest) - 1))]
-        self.check("l", "emit_position", "emit_normal", colour)
+        self.check("l", "emit_position_0", "emit_normal_0", colour)
 
     def test_candidates_show_their_albedo(self):
         self.check("c", "position", "normal", lambda columns: columns("albedo", "rgb"))

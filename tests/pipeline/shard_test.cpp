@@ -46,7 +46,7 @@ TEST_F(ShardRun, EstimateGivesTheSameBytesInAnyNumber) {
   makeStages(scene_);
   const std::string estimate = scene_ + " " + path("vpls.vpl");
   expectTheSameInParts("vpl-estimate", estimate + " --photons 200k", "whole.vpl", {1, 7, 64});
-  expectTheSameInParts("vpl-estimate", estimate + " --photons 20k --method even --recentre off",
+  expectTheSameInParts("vpl-estimate", estimate + " --photons 20k --method even --emit-points 0",
                        "even.vpl", {3});
   expectTheSameInParts("vpl-estimate", estimate + " --method paths --points 8", "paths.vpl",
                        {1, 7});

@@ -9,18 +9,19 @@ namespace bnvpl {
 
 namespace {
 
-// A point's own number: hits are told apart by where they are. Without exponents, so that it is the
-// same in units of another power of two.
+// A hit's own number: hits are told apart by where they are, seen from the VPL, in units of its
+// radius.
 uint64_t nameOf(Vec3 p) {
-  const auto bits = [](float v) { return uint64_t{std::bit_cast<uint32_t>(v) & 0x807fffffu}; };
-  return mix64(bits(p.x) << 32 | bits(p.y)) + bits(p.z);
+  const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
+  return mix64(x << 32 | y) + std::bit_cast<uint32_t>(p.z);
 }
 
 }  // namespace
 
 void EmitPoints::offer(size_t vpl, double weight, const SurfacePoint& hit) {
   if (perVpl_ == 0 || !(weight > 0.0)) return;
-  const uint64_t key = random64(key_, vpl, 0) ^ nameOf(hit.position);
+  const uint64_t key =
+      random64(key_, vpl, 0) ^ nameOf((hit.position - position_[vpl]) / radius_[vpl]);
   for (size_t k = 0; k < perVpl_; ++k) {
     EmitPoint& winner = winners_[vpl * perVpl_ + k];
     const double u = (static_cast<double>(random64(key, k, 0) >> 12) + 0.5) * 0x1p-52;  // in (0, 1)

@@ -33,8 +33,13 @@ static_assert(sizeof(EmitPoint) == 32);
 class EmitPoints {
  public:
   EmitPoints() = default;
-  EmitPoints(size_t vpls, size_t perVpl, uint64_t key)
-      : perVpl_(perVpl), key_(key), winners_(vpls * perVpl) {}
+  // Borrows the table's columns.
+  EmitPoints(const VplTable& vpls, size_t perVpl, uint64_t key)
+      : position_(vpls.position),
+        radius_(vpls.radius),
+        perVpl_(perVpl),
+        key_(key),
+        winners_(vpls.size() * perVpl) {}
 
   // A hit whose light, of weight 0 or more, the VPL gets. Threads may do different VPLs.
   void offer(size_t vpl, double weight, const SurfacePoint& hit);
@@ -49,6 +54,8 @@ class EmitPoints {
   std::span<const EmitPoint> winners() const { return winners_; }
 
  private:
+  std::span<const Vec3> position_;
+  std::span<const float> radius_;
   size_t perVpl_ = 0;
   uint64_t key_ = 0;
   std::vector<EmitPoint> winners_;

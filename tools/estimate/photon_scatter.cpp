@@ -159,13 +159,14 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   if (resume.source) {
     const size_t vpls = in.vpls.size();
     PhotonSums sums = sumsOf(resume.source->sums(kWork, integersFor(vpls)), vpls);
-    sums.points = pointsOfShards(*resume.source, EmitPoints(vpls, run.emitPoints, mix64(run.key)));
+    sums.points =
+        pointsOfShards(*resume.source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
     return sums;
   }
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());
-    s.points = EmitPoints(in.vpls.size(), run.emitPoints, mix64(run.key));
+    s.points = EmitPoints(in.vpls, run.emitPoints, mix64(run.key));
     return s;
   };
   tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);

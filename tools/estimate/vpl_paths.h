@@ -44,9 +44,7 @@ class VplPaths {
 
   // Of one VPL, by so many points of its disk, which run for `ends`, too.
   PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const;
-  EmitPoints noEmitPoints() const {
-    return {in_.vpls.size(), settings_.emitPoints, mix64(settings_.key)};
-  }
+  EmitPoints noEmitPoints() const { return {in_.vpls, settings_.emitPoints, mix64(settings_.key)}; }
   uint64_t pathsOf(uint64_t points) const { return points * settings_.paths; }
 
  private:
