@@ -247,6 +247,31 @@ TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
   }
 }
 
+// Walls whose normals stand askew, so that eyes bend them in every corner (LobeFrame): photons
+// leave as they are seen, be it from below the shading normal's horizon.
+TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {16, 16};
+  scene.uvs.clear();
+  for (const Vec3 p : scene.positions) scene.uvs.push_back({p.x + 0.31f * p.z, p.y + 0.47f * p.z});
+  for (Triangle& t : scene.triangles) t.uv = t.position;
+  scene.expressions = {constantExpression(0.5f * normalize(Vec3{0.8f, 0.4f, 0.4f}) + Vec3(0.5f))};
+  ConductorModel metal;
+  metal.roughness = Roughness(Scalar(0.5f), Scalar(0.5f), Roughness::Alpha::Same);
+  MetallicRoughnessModel gltf;
+  gltf.baseColour = Vec3(0.7f);
+  gltf.clearcoat = 0.5f;
+  for (Material& m : scene.materials) {
+    if (m.name == "Lamp") continue;
+    m.model = m.name == "Red" ? MaterialModel(metal) : MaterialModel(gltf);
+    m.relief.normalMap = 0;
+  }
+  const World world(std::move(scene));
+  const Given indirect{{"only", "indirect"}};
+  EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
+                              photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}));
+}
+
 // The two estimators of direct light: one lamp picked and one ray, and each lamp with rays besides.
 TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");

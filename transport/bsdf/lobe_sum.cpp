@@ -14,6 +14,17 @@ namespace {
 
 bool isLambert(const Lobe& lobe) { return std::holds_alternative<LambertLobe>(lobe); }
 
+// Share of the photons that leave by the surface's own cosine, where relief hides some directions
+// from lobes that eyes see there, for they bend towards each eye.
+constexpr float kAboutSurface = 0.25f;
+
+// The point as it is seen from wi, on the same side.
+SurfacePoint seenFrom(const SurfacePoint& point, Vec3 wi) {
+  SurfacePoint p = point;
+  p.wo = wi;
+  return p;
+}
+
 // The mean over directions of a diffuse base, cosine-weighted.
 float meanThrough(const CoatAbove& above, float most) {
   constexpr int kSteps = 8;
@@ -129,8 +140,37 @@ bool LobeSum::lit(const SurfacePoint& point, const Summand& s, Transport transpo
          (s.frame == 0 || s.group == LobeGroup::Specular || on(point.ns));
 }
 
+float LobeSum::aboutSurface(const SurfacePoint& point, const Summand& s) const {
+  if (frames_[s.frame].ns == point.ng) return 0.0f;
+  return std::visit(
+      [](const auto& l) {
+        using L = std::decay_t<decltype(l)>;
+        if constexpr (std::is_same_v<L, LayeredBase>)
+          if (l.transmitted) return 0.0f;
+        return l.smooth() || std::is_same_v<L, LambertLobe> ? 0.0f : kAboutSurface;
+      },
+      s.lobe);
+}
+
+Vec3 LobeSum::seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const {
+  const auto frameOf = [&](const LobeFrame& f) {
+    return f.ns == point.ng ? f : LobeFrame(seenFrom(point, wi), f.ns, f.turns);
+  };
+  const LobeFrame frame = frameOf(frames_[s.frame]);
+  const Vec3 light = frame.toLocal(point.wo);
+  if (!(light.z > 0.0f)) return {};
+  float kept = 1.0f;
+  if (s.above.weight > 0.0f) {
+    const LobeFrame coat = s.above.frame == s.frame ? frame : frameOf(frames_[s.above.frame]);
+    kept = std::min(s.above.through(coat.wo.z), s.above.through(std::fabs(dot(coat.z, point.wo))));
+  }
+  return std::visit([&](const auto& l) { return l.value(frame.wo, light, Transport::Radiance); },
+                    s.lobe) *
+         (kept * photonCosine(point, frame.z, wi));
+}
+
 // Lobes have their own side at the end that light does not come from, but for Lambert's, which
-// leave by the geometric one.
+// leave by the geometric one. An eye bends them (LobeFrame), and of photons' two ends it is at wi.
 LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
                                      Transport transport, Vec3 wi) const {
   Evaluated sum;
@@ -151,12 +191,21 @@ LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
       continue;
     }
     const Vec3 local = locals[s.frame];
-    if (local.z * ng <= 0.0f) continue;
-    const float cosine = photons ? photonCosine(point, frame.z, wi) : std::fabs(local.z);
+    const bool within = local.z * ng > 0.0f;
+    const bool byEye = photons && ng > 0.0f && frame.ns != point.ng;
+    if (byEye) {
+      sum.value += s.weight * seenValue(point, s, wi);
+      sum.pdf += s.share * aboutSurface(point, s) * pdfCosineHemisphere(ng);
+    }
+    if (!within) continue;
     std::visit(
         [&](const auto& l) {
-          sum.value += s.weight * l.value(frame.wo, local, transport) * (cosine * coat(s, wi));
-          sum.pdf += s.share * l.pdf(frame.wo, local);
+          if (!byEye) {
+            const float cosine = photons ? photonCosine(point, frame.z, wi) : std::fabs(local.z);
+            sum.value += s.weight * l.value(frame.wo, local, transport) * (cosine * coat(s, wi));
+          }
+          const float rest = photons ? 1.0f - aboutSurface(point, s) : 1.0f;
+          sum.pdf += s.share * rest * l.pdf(frame.wo, local);
         },
         s.lobe);
   }
@@ -177,12 +226,19 @@ bool LobeSum::sample(const SurfacePoint& point, LobeGroup group, Transport trans
   if (!chosen) return false;
   const LobeFrame& frame = frames_[chosen->frame];
   LobeSample drawn;
-  const float within = std::clamp(rest / chosen->share, 0.0f, 0x1.fffffep-1f);
-  if (!std::visit([&](const auto& l) { return l.sample(frame.wo, within, at, drawn); },
-                  chosen->lobe))
-    return false;
-  out.wi = isLambert(chosen->lobe) ? Basis(photons ? point.ng : point.ns).toWorld(drawn.wi)
-                                   : frame.toWorld(drawn.wi);
+  float within = std::clamp(rest / chosen->share, 0.0f, 0x1.fffffep-1f);
+  const float surface = photons ? aboutSurface(point, *chosen) : 0.0f;
+  if (within < surface) {
+    drawn.wi = sampleCosineHemisphere(at.x, at.y);
+    out.wi = Basis(point.ng).toWorld(drawn.wi);
+  } else {
+    within = std::min((within - surface) / (1.0f - surface), 0x1.fffffep-1f);
+    if (!std::visit([&](const auto& l) { return l.sample(frame.wo, within, at, drawn); },
+                    chosen->lobe))
+      return false;
+    out.wi = isLambert(chosen->lobe) ? Basis(photons ? point.ng : point.ns).toWorld(drawn.wi)
+                                     : frame.toWorld(drawn.wi);
+  }
   const float ng = dot(point.ng, out.wi);
   const bool crosses = drawn.wi.z < 0.0f;
   if (crosses ? ng >= 0.0f : ng <= 0.0f) return false;

@@ -92,6 +92,11 @@ class LobeSum {
   // Whether light comes from the shading normal's side of the surface: radiance from wi, photons
   // from wo. What VPLs bring must do so for the point's own normal, too, by which they are culled.
   bool lit(const SurfacePoint& point, const Summand& s, Transport transport, Vec3 wi) const;
+  // What a lobe sends of photons from wo to an eye at wi, on the same side, in the frames that the
+  // eye bends; with the cosine.
+  Vec3 seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const;
+  // Share of the lobe's photons that are drawn about the geometric normal.
+  float aboutSurface(const SurfacePoint& point, const Summand& s) const;
   // Of photons, in place of the cosine at wi, which sides with the normal of a lobe.
   float photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) const;
   std::span<const Summand> lobes() const { return {lobes_, count_}; }
