@@ -49,12 +49,13 @@ COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
 @dataclass
 class Rooms:
     runner: Runner
+    references: Runner  # their tools may be those of an earlier build
     width: int
     reference_spp: int
 
-    def render(self, scene: gallery.Scene, options: list, lit: Path | None = None) -> Run:
+    def render(self, scene: gallery.Scene, options: list, lit: Path | None = None, by: Runner | None = None) -> Run:
         inputs = {"scene": scene.path} | ({"lit": lit} if lit else {})
-        return self.runner.run("vpl-render", ["{scene}", *(["{lit}"] if lit else []), *scene.options, "--size",
+        return (by or self.runner).run("vpl-render", ["{scene}", *(["{lit}"] if lit else []), *scene.options, "--size",
                                               scene.film(self.width), *options, "--layers", "direct,indirect", "-o",
                                               "@image.exr", "--quiet"], inputs, ["image.exr"])
 
@@ -79,9 +80,12 @@ class Rooms:
         spp = max(1, round((seconds - max(0.0, few - 4 * per_sample)) / per_sample))
         return of(spp)["image.exr"], spp
 
+    def halves(self, scene: gallery.Scene) -> list[Path]:
+        return [self.render(scene, ["--integrator", "path", "--spp", self.reference_spp, "--seed", seed],
+                            by=self.references)["image.exr"] for seed in (101, 102)]
+
     def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray:
-        halves = [self.render(scene, ["--integrator", "path", "--spp", self.reference_spp, "--seed", seed])["image.exr"]
-                  for seed in (101, 102)]
+        halves = self.halves(scene)
         run = self.runner.run("vpl-inspect", ["compare", "{image}", "{a}", "--second-half", "{b}", "--json",
                                               *(["--layer", layer] if layer else [])],
                               {"image": image, "a": halves[0], "b": halves[1]}, [])
@@ -125,10 +129,13 @@ def main() -> int:
     parser.add_argument("--width", type=int, default=320, help="pixels")
     parser.add_argument("--reference-spp", type=int, default=2048, help="of each half")
     parser.add_argument("--also", nargs="*", default=[], metavar="INTEGRATOR", help="light, guided")
+    parser.add_argument("--reference-bin", type=Path, metavar="FOLDER", help="tools that render the references; --bin unless given")
+    parser.add_argument("--references-only", action="store_true", help="render the references, and stop")
     parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
     arguments = parser.parse_args()
-    rooms = Rooms(Runner(arguments.bin.resolve(), arguments.cache.resolve(), quiet=True), arguments.width,
-                  arguments.reference_spp)
+    runner, references = (Runner(folder.resolve(), arguments.cache.resolve(), quiet=True)
+                          for folder in (arguments.bin, arguments.reference_bin or arguments.bin))
+    rooms = Rooms(runner, references, arguments.width, arguments.reference_spp)
     rows = []
     for scene in SCENES:
         if arguments.rooms and scene.id not in arguments.rooms:
@@ -136,10 +143,13 @@ def main() -> int:
         if not scene.path.is_file():
             print(f"rooms: {scene.title} is left out: {scene.path} is not there", file=sys.stderr)
             continue
+        if arguments.references_only:
+            rooms.halves(scene)
+            continue
         for row in rooms.rows(scene, arguments.also):
             rows.append(row)
             print(row, flush=True)
-    if not arguments.no_table:
+    if not (arguments.no_table or arguments.references_only):
         write_table(rows, arguments)
     return 0
 

@@ -105,7 +105,10 @@ TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   vpls.id = {1};
   vpls.radius = {0.25f};
   const VplTable lit =
-      lightVpls(world, vpls, {{"photons", "400k"}, {"radius", "2"}, {"emit-points", "64"}}).table;
+      lightVpls(
+          world, vpls,
+          {{"method", "guarded"}, {"photons", "400k"}, {"radius", "2"}, {"emit-points", "64"}})
+          .table;
 
   const double reach = 0.5, area = 0.5 * double{kPi} * reach * reach;
   const auto photons = double(lit.photons[0]);

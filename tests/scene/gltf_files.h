@@ -1,7 +1,13 @@
 // What the tests of glTF share: buffers as data URIs, small files around a triangle.
 #pragma once
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <regex>
+#include <set>
 
 #include "tests/scene/scene_files.h"
 
@@ -29,6 +35,25 @@ std::string bytesOf(const std::vector<T>& values) {
 }
 inline std::string floats(const std::vector<float>& values) { return bytesOf(values); }
 
+// The members that positions must have, of triples of floats.
+inline std::string bounds(const std::string& bytes) {
+  std::vector<float> v(bytes.size() / sizeof(float));
+  std::memcpy(v.data(), bytes.data(), v.size() * sizeof(float));
+  std::string least, most;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    float low = INFINITY, high = -INFINITY;
+    for (size_t i = axis; i < v.size(); i += 3)
+      low = std::min(low, v[i]), high = std::max(high, v[i]);
+    const auto text = [](float x) {  // the shortest that reads back
+      char digits[32];
+      return std::string(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+    };
+    least += (axis > 0 ? "," : "") + text(low);
+    most += (axis > 0 ? "," : "") + text(high);
+  }
+  return ",\"min\":[" + least + "],\"max\":[" + most + "]";
+}
+
 // A glTF in the making: parts by their JSON, bytes by buffer views of one buffer.
 class Gltf {
  public:
@@ -40,19 +65,20 @@ class Gltf {
   }
   size_t addView(const std::string& bytes, const std::string& members = "") {
     bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    const size_t view = add("bufferViews", "{\"buffer\":0,\"byteOffset\":" +
-                                               std::to_string(bytes_.size()) + ",\"byteLength\":" +
-                                               std::to_string(bytes.size()) + members + "}");
+    const size_t view =
+        add("bufferViews", "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes_.size()) +
+                               ",\"byteLength\":" + std::to_string(bytes.size()) + members + "}");
     bytes_ += bytes;
     return view;
   }
   // `type` is VEC3 or the like, `componentType` 5126 for floats.
   size_t addAccessor(const std::string& bytes, size_t count, const std::string& type,
                      int componentType = 5126, const std::string& members = "") {
-    return add("accessors", "{\"bufferView\":" + std::to_string(addView(bytes)) +
-                                ",\"componentType\":" + std::to_string(componentType) +
-                                ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type +
-                                "\"" + members + "}");
+    return add("accessors",
+               "{\"bufferView\":" + std::to_string(addView(bytes)) +
+                   ",\"componentType\":" + std::to_string(componentType) +
+                   ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"" + members +
+                   (type == "VEC3" && componentType == 5126 ? bounds(bytes) : "") + "}");
   }
   size_t addMesh(const std::string& primitives) {
     return add("meshes", "{\"primitives\":[" + primitives + "]}");
@@ -83,6 +109,16 @@ class Gltf {
   bool withScenes = true;  // else the file has none, or those in `more`
 
  private:
+  // The list of all extensions that the text names.
+  static std::string used(const std::string& text) {
+    static const std::regex name("\"(KHR|EXT)_\\w+\"");
+    std::set<std::string> names;
+    for (std::sregex_iterator i(text.begin(), text.end(), name), end; i != end; ++i)
+      names.insert(i->str());
+    std::string list;
+    for (const std::string& n : names) list += (list.empty() ? "" : ",") + n;
+    return list.empty() ? "" : ",\"extensionsUsed\":[" + list + "]";
+  }
   static std::string padded(std::string bytes, char with) {
     bytes.resize((bytes.size() + 3) / 4 * 4, with);
     return bytes;
@@ -104,7 +140,9 @@ class Gltf {
       for (size_t i = 0; i < list.size(); ++i) out += (i > 0 ? "," : "") + list[i];
       out += "]";
     }
-    if (withScenes) out += ",\"scenes\":[{\"nodes\":[" + roots + "]}]";
+    if (withScenes)
+      out += ",\"scenes\":[{" + (roots.empty() ? "" : "\"nodes\":[" + roots + "]") + "}]";
+    if (more.find("extensionsUsed") == std::string::npos) out += used(out + more);
     return out + more + "}";
   }
 
@@ -114,6 +152,8 @@ class Gltf {
 
 // A right angle at the origin in the plane z = 0 that faces +z, legs of length 1.
 inline const std::vector<float> kCorner{0, 0, 0, 1, 0, 0, 0, 1, 0};
+
+inline const std::string kCornerBounds = bounds(floats(kCorner));
 
 // With one accessor, 0: the positions of kCorner.
 inline Gltf cornerGltf() {
@@ -129,11 +169,14 @@ inline Gltf triangleGltf(const std::string& members = "") {
   return g;
 }
 
+// BNVPL_KEEP_GLTF=FOLDER keeps all files that load, for scripts/validate_gltf.sh.
 class GltfFiles : public SceneFiles {
  protected:
   Scene load(const std::string& bytes, const std::string& name = "room.gltf") const {
     write(name, bytes);
-    return loadScene(at(name));
+    Scene scene = loadScene(at(name));
+    if (const char* folder = std::getenv("BNVPL_KEEP_GLTF")) keep(folder);
+    return scene;
   }
   Scene load(const Gltf& gltf) const { return load(gltf.text()); }
   std::string loadError(const std::string& bytes, const std::string& name = "room.gltf") const {
@@ -145,6 +188,14 @@ class GltfFiles : public SceneFiles {
     return "";
   }
   std::string loadError(const Gltf& gltf) const { return loadError(gltf.text()); }
+
+ private:
+  void keep(const fs::path& folder) const {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    fs::copy(at(""), folder / (std::string(test->name()) + "-" + std::to_string(kept_++)),
+             fs::copy_options::recursive);
+  }
+  mutable int kept_ = 0;
 };
 
 }  // namespace bnvpl

@@ -51,7 +51,8 @@ TEST_F(GltfGeometry, ReadsIndicesOfAllTypesAndStrides) {
   Gltf g;  // positions that lie 16 bytes apart, behind an offset
   const size_t view = g.addView(floats({9, 0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0}), ",\"byteStride\":16");
   g.add("accessors", "{\"bufferView\":" + std::to_string(view) +
-                         ",\"byteOffset\":4,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
+                         ",\"byteOffset\":4,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" +
+                         kCornerBounds + "}");
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
   g.show("{\"mesh\":0}");
   expectCorners(load(g), 0, kAsWritten);
@@ -113,7 +114,7 @@ TEST_F(GltfGeometry, ReadsQuantizedAttributes) {
                 ",\"byteStride\":8");
   h.add("accessors", "{\"bufferView\":" + std::to_string(view) +
                          ",\"componentType\":5122,\"normalized\":true,\"count\":3,"
-                         "\"type\":\"VEC3\"}");
+                         "\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[32767,32767,0]}");
   h.addMesh("{\"attributes\":{\"POSITION\":0}}");
   h.show("{\"mesh\":0}");
   h.more =
@@ -128,6 +129,7 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
   const size_t places = g.addView(bytesOf(std::vector<uint16_t>{1}));
   const size_t values = g.addView(floats({1, 0, 0}));
   const std::string sparse =
+      kCornerBounds +
       ",\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{"
       "\"bufferView\":" +
       std::to_string(places) +
@@ -142,8 +144,9 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
   zeros.addView(floats({1, 0, 0, 0, 1, 0}));
   zeros.add(
       "accessors",
-      "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"
-      "\"indices\":{\"bufferView\":0,\"componentType\":5121},\"values\":{\"bufferView\":1}}}");
+      "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" + kCornerBounds +
+          ",\"sparse\":{\"count\":2,"
+          "\"indices\":{\"bufferView\":0,\"componentType\":5121},\"values\":{\"bufferView\":1}}}");
   zeros.addMesh("{\"attributes\":{\"POSITION\":0}}");
   zeros.show("{\"mesh\":0}");
   expectCorners(load(zeros), 0, kAsWritten);
@@ -216,8 +219,9 @@ TEST_F(GltfGeometry, JointsPlaceASkinnedMesh) {
             ",\"WEIGHTS_0\":" + std::to_string(weights) + "}}");
   g.add("skins", "{\"joints\":[1,2],\"inverseBindMatrices\":" + std::to_string(inverses) + "}");
   g.show("{\"mesh\":0,\"skin\":0,\"translation\":[9,9,9]}");
-  g.show("{\"translation\":[0,0,3]}");
-  g.show("{\"translation\":[0,0,0]}");
+  g.add("nodes", "{\"translation\":[0,0,3]}");
+  g.add("nodes", "{\"translation\":[0,0,0]}");
+  g.show("{\"children\":[1,2]}");
   expectCorners(load(g), 0, {Vec3{0, 0, 2}, Vec3{1, 0, 2}, Vec3{0, 1, 1}});
 }
 
@@ -256,7 +260,8 @@ TEST_F(GltfGeometry, DecodesMeshopt) {
   };
   compressed(vertices, 12, "ATTRIBUTES");
   compressed(triangles, 2, "TRIANGLES");
-  g.add("accessors", "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
+  g.add("accessors", "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" +
+                         kCornerBounds + "}");
   g.add("accessors", "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}");
   g.addMesh("{\"attributes\":{\"POSITION\":0},\"indices\":1}");
   g.show("{\"mesh\":0}");
@@ -284,7 +289,8 @@ TEST_F(GltfGeometry, DecodesDraco) {
   const auto file = [&](const std::string& bytes) {
     Gltf g;
     const size_t view = g.addView(bytes);
-    g.add("accessors", "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
+    g.add("accessors",
+          "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" + kCornerBounds + "}");
     g.add("accessors", "{\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}");
     g.addMesh(
         "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{"

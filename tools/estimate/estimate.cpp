@@ -14,7 +14,7 @@ const StageSpec& estimateSpec() {
   static const StageSpec spec{
       "vpl-estimate",
       kOptions,
-      {{"method", "guarded", "how VPLs get their flux", entriesOf(estimateMethods())}}};
+      {{"method", "both", "how VPLs get their flux", entriesOf(estimateMethods())}}};
   return spec;
 }
 
