@@ -287,6 +287,11 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
                                                                  {"compensate", "near-field"},
                                                                  {"near-field-rays", "2"}};
   EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, byVpls)));
+  // Without VPLs all light is direct; its own camera samples, by noise and cost or three.
+  for (const char* count : {"0", "3"}) {
+    const Given own{{"spp", "8"}, {"compensate", "none"}, {"direct-samples", count}};
+    EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;
+  }
 }
 
 TEST(SameExpectation, TileCutsAndAllVpls) {

@@ -38,7 +38,7 @@ SeenLight::SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoi
   });
 }
 
-Vec3 SeenLight::withMoreRays(Vec3 seen, const TileSlots& tile, uint32_t pixel,
+Vec3 SeenLight::withMoreRays(Vec3 seen, unsigned count, const TileSlots& tile, uint32_t pixel,
                              uint32_t slot) const {
   const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
   const unsigned more = more_[size_t{y} * width_ + x];
@@ -55,7 +55,7 @@ Vec3 SeenLight::withMoreRays(Vec3 seen, const TileSlots& tile, uint32_t pixel,
             rng, sample);
     seen += sample.direct;
   }
-  return more == 0 ? seen : seen * (1.0f / static_cast<float>(1 + more));
+  return seen * (1.0f / static_cast<float>(count + more));
 }
 
 }  // namespace bnvpl

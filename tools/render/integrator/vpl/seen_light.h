@@ -17,9 +17,11 @@ class SeenLight {
   // The more the light seen varies around a pixel, the more rays it gets. Borrows rays and lights.
   SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoints& film);
 
-  // The mean of `seen`, what the ray of one sample saw, and of what the pixel's further rays see.
+  // The mean of what `count` rays of a sample saw, whose sum is `seen`, and of what the pixel's
+  // further rays see.
   // The film's points alone, not the sample, say how many these are: the mean stays unbiased.
-  Vec3 withMoreRays(Vec3 seen, const TileSlots& tile, uint32_t pixel, uint32_t slot) const;
+  Vec3 withMoreRays(Vec3 seen, unsigned count, const TileSlots& tile, uint32_t pixel,
+                    uint32_t slot) const;
 
  private:
   const RayScene& rays_;

@@ -28,7 +28,10 @@ constexpr std::array kOptions{
                                    "shadow rays to what each tile of the film has learned to see, "
                                    "or one to each light")),
     neededBy("direct=learned",
-             wholeOption("light-rays", "8", 1, 4096, "", "shadow rays from each shaded point"))};
+             wholeOption("light-rays", "8", 1, 4096, "", "shadow rays from each shaded point")),
+    neededBy("only=all", wholeOption("direct-samples", "0", 0, 4096, "",
+                                     "camera samples of direct light to each sample; 0: by noise "
+                                     "and cost; 1: the sample itself"))};
 
 FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t seed) {
   const Scene& scene = rays.scene();
@@ -101,10 +104,15 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                                     in.progress);
     seenLight = std::make_unique<const SeenLight>(in.rays, in.lights, film);
   }
+  std::optional<DirectSamples> directSamples;
+  if (in.only == Only::Everything && options.whole("direct-samples") != 1) {
+    directSamples.emplace(in.rays, in.lights, seenLight.get(),
+                          static_cast<unsigned>(options.whole("direct-samples")));
+  }
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(compensation),
       static_cast<unsigned>(options.whole("near-field-rays")), std::move(tileLights), lightRays,
-      std::move(seenLight), in.only);
+      std::move(seenLight), directSamples, in.only);
   return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
           {},
           wholePixels,

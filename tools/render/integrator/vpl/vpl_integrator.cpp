@@ -44,9 +44,9 @@ void VplIntegrator::render(const TileSamples& tile) const {
     CameraSample& s = tile.samples[i];
     s.radiance = {};
     seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance);
-    if (seenLight_) {
+    if (seenLight_ && !directSamples_) {
       s.radiance.direct = seenLight_->withMoreRays(
-          s.radiance.direct, tile, static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i));
+          s.radiance.direct, 1, tile, static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i));
     }
     if (!seen[i].rough) continue;
     bsdf[i] = &made.emplace_back(rays_.scene(), seen[i].hit);
@@ -62,9 +62,13 @@ void VplIntegrator::render(const TileSamples& tile) const {
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
     const Points points{slotOf(tile, i), random64(tile.key, pixel, kDrawDirection),
                         random64(tile.key, pixel, kDrawLight)};
-    if (only_ != Only::Indirect)
+    if (only_ != Only::Indirect && !directSamples_)
       s.radiance.direct += throughput * directAt(*bsdf[i], learned, points, s.rng);
     extendAll(*bsdf[i], throughput, learned, points, s.rng, s.radiance);
+  }
+  if (directSamples_) {
+    constexpr unsigned kRaysOfExtension = 4;  // itself, and what it finds is lit
+    directSamples_->render(tile, learned.strata, kRaysOfExtension * extensions_);
   }
 }
 

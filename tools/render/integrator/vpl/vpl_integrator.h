@@ -2,11 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/integrator/integrator.h"
-#include "tools/render/integrator/vpl/seen_light.h"
+#include "tools/render/integrator/vpl/direct_samples.h"
 #include "tools/render/integrator/vpl/tile_lights.h"
 #include "transport/specular_path.h"
 
@@ -18,11 +19,12 @@ class VplIntegrator {
  public:
   // `gather` with a point function; empty for direct light alone. `tileLights`: where direct light
   // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`:
-  // may be null.
+  // may be null. `directSamples`: where direct light has camera samples of its own.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather,
                 Compensation compensation, unsigned nearFieldRays,
                 std::unique_ptr<const TileLights> tileLights, unsigned lightRays,
-                std::unique_ptr<const SeenLight> seenLight, Only only)
+                std::unique_ptr<const SeenLight> seenLight,
+                std::optional<DirectSamples> directSamples, Only only)
       : rays_(rays),
         lights_(lights),
         gather_(std::move(gather)),
@@ -31,6 +33,7 @@ class VplIntegrator {
         tileLights_(std::move(tileLights)),
         lightRays_(lightRays),
         seenLight_(std::move(seenLight)),
+        directSamples_(directSamples),
         only_(only) {}
   void render(const TileSamples& tile) const;
 
@@ -54,6 +57,7 @@ class VplIntegrator {
   std::unique_ptr<const TileLights> tileLights_;
   unsigned lightRays_;
   std::unique_ptr<const SeenLight> seenLight_;
+  std::optional<DirectSamples> directSamples_;
   Only only_;
 };
 

@@ -1,0 +1,41 @@
+// Camera samples for direct light alone. Where indirect light costs hundreds of rays a sample and
+// direct light, through windows or a shade, has most of the noise, a sample of both is a bad deal.
+#pragma once
+
+#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/vpl/seen_light.h"
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+class DirectSamples {
+ public:
+  // `count`: camera samples of direct light for each sample; 0: by what noise and cost of a tile's
+  // indirect light and of pilots are, which play no other part, so that the mean stays unbiased.
+  // `seenLight` may be null.
+  DirectSamples(const RayScene& rays, const LightSet& lights, const SeenLight* seenLight,
+                unsigned count)
+      : rays_(rays), lights_(lights), seenLight_(seenLight), count_(count) {}
+
+  // Sets the direct light of the tile's samples, whose indirect light is known and took `rays` each
+  // besides those that it counts. `strata`: what the tile has learned to see; null: nothing.
+  void render(const TileSamples& tile, const LearnedStrata* strata, unsigned rays) const;
+
+ private:
+  struct Light {
+    Vec3 seen,
+        scattered;  // by the camera, at most over mirrors and gloss; by the first rough vertex
+    Vec3 all() const { return seen + scattered; }
+  };
+  struct Stream;  // of a pixel
+  Light one(uint32_t x, uint32_t y, const LearnedLight& learned, const Stream& stream,
+            uint32_t index) const;
+  unsigned countFor(const TileSamples& tile, const LearnedLight& learned, unsigned rays) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  const SeenLight* seenLight_;
+  unsigned count_;
+};
+
+}  // namespace bnvpl
