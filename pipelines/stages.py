@@ -83,7 +83,7 @@ def refuse_lit_placement(options):
 def relative(path):
     """From here when it is below here: shorter to read, and the project may move."""
     here = pathlib.Path.cwd()
-    return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)
+    return f"{'./' if path.parent == here else ''}{path.relative_to(here)}" if path.is_relative_to(here) else str(path)
 
 
 def check_path(path):
