@@ -162,7 +162,7 @@ class Submission:
         words.append(f"--output={self.run}/{log}.log")
         note = f"{len(wanted)} of {len(tasks)} tasks" if len(wanted) < len(tasks) else \
             f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
-        program = [str(HERE / "task.py"), f"{self.run}/{name}.job.json"]
+        program = [sys.executable, str(HERE / "task.py"), f"{self.run}/{name}.job.json"]
         self.submit(name, kind, words, program, note)
 
     def submit_summary(self):
