@@ -18,6 +18,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import record  # noqa: E402
 import stages  # noqa: E402
 import task as task_program  # noqa: E402
 
@@ -115,6 +116,14 @@ class Submission:
         if queued:
             stages.refuse(f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end them with scancel")
 
+    def put_aside(self, names):
+        """Records of tasks that this run does not have, such as those of another number of shards."""
+        earlier = self.run / "earlier"
+        for file in self.run.glob(f"*{record.SUFFIX}"):
+            if file.name.removesuffix(record.SUFFIX).rpartition(".")[0] not in names:
+                earlier.mkdir(exist_ok=True)
+                file.replace(earlier / file.name)
+
     def slurm(self, *command):
         try:
             done = subprocess.run(command, text=True, stdout=subprocess.PIPE)
@@ -171,10 +180,12 @@ class Submission:
         self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
 
     def submit_all(self):
+        jobs = jobs_of(self.scene, self.options)
         if not self.options.dry_run:
             self.refuse_while_queued()
             self.run.mkdir(parents=True, exist_ok=True)
-        for name, tasks in jobs_of(self.scene, self.options):
+            self.put_aside({task.name for _, tasks in jobs for task in tasks})
+        for name, tasks in jobs:
             self.submit_stage(name, tasks)
         if not self.submitted:
             print(f"{self.run.parent} is up to date")
