@@ -40,12 +40,16 @@ def say(text):
 
 
 class Killer:
-    """Strikes at random moments as long as the run goes on; a task twice at most, so that all stages get their share."""
+    """Strikes at random moments as long as the run goes on.
+
+    A task is struck twice at most, and a third of the kills is left for estimate, and one for render."""
+
+    THIRDS = (r"place|candidates|vpls", r"estimate|lit", r"render|image")
 
     def __init__(self, cluster, chance, most):
         self.cluster, self.chance, self.most = cluster, chance, most
         self.struck = {"tool": 0, "node": 0}
-        self.next = time.monotonic() + chance.uniform(1, 6)
+        self.next = time.monotonic() + chance.uniform(0.5, 5)
         self.returns = {}  # node: when
         self.victims = {}  # task: how often
 
@@ -60,13 +64,14 @@ class Killer:
         if now < self.next or self.count() >= self.most:
             return
         if self.strike():
-            self.next = now + self.chance.uniform(1, 6)
+            self.next = now + self.chance.uniform(0.5, 5)
 
     def strike(self):
         """Whether there was something to kill."""
         steps, running = self.cluster.steps(), processes()
         tools = {pid: self.task_of(running, pid) for pid in sorted(steps) if pid in running}
-        tools = [pid for pid, task in tools.items() if task and self.victims.get(task, 0) < 2]
+        tools = [pid for pid, task in tools.items()
+                 if task and self.victims.get(task, 0) < 2 and self.count() < self.most * self.third(task) / 3]
         if not tools:
             return False
         pid = self.chance.choice(tools)
@@ -84,6 +89,9 @@ class Killer:
             self.struck["node"] += 1
             say(f"kill {self.count()}: {node} with {what}, back in {away:.1f} s")
         return True
+
+    def third(self, task):
+        return next((i for i, names in enumerate(self.THIRDS, 1) if re.match(names, task)), 3)
 
     @staticmethod
     def task_of(running, pid):
