@@ -176,7 +176,8 @@ class Submission:
 
     def submit_summary(self):
         command = [f"{self.options.bin}/vpl-inspect", "run", str(self.run), "--svg", f"{self.run}/timeline.svg"]
-        words = [f"--dependency=afterany:{':'.join(self.submitted.values())}", f"--output={self.run}/summary.log"]
+        words = [f"--dependency=afterany:{':'.join(self.submitted.values())}", "--open-mode=truncate",
+                 f"--output={self.run}/summary.log"]
         self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
 
     def submit_all(self):
