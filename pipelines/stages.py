@@ -12,6 +12,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
+MOST_SHARDS = 1500  # their names stand in one command, which Linux limits
 OUTPUT, PREVIEW = object(), object()  # in the words of a stage: where its -o and --png go
 
 
@@ -57,6 +58,8 @@ def add_arguments(parser):
 
 def complete(options):
     """Fills in what add_arguments() leaves to the quality, and refuses what these pipelines cannot do."""
+    if not 1 <= options.shards <= MOST_SHARDS:
+        refuse(f"--shards {options.shards} is not 1 to {MOST_SHARDS}")
     preset = presets()[options.quality]
     for name in ("candidates", "vpls", "photons", "spp"):
         if getattr(options, name) is None:
@@ -113,7 +116,7 @@ def shard_name(stage, part, of):
 
 
 def task(name, stage, after, outputs, inputs, words, stats, scene_read=True, checkpoint=""):
-    """The first input is the executable and does not repeat in `words`; `stats` begins the names of what goes beside."""
+    """The first input is the executable, which `words` do not repeat; `stats` begins the names of what goes beside."""
     command = [inputs[0], *words, "--stats", f"{stats}.json"]
     depfile = f"{stats}.d" if scene_read else ""
     return Task(name, stage, after, command + (["--depfile", depfile] if depfile else []), inputs, outputs, depfile,

@@ -24,7 +24,6 @@ import task as task_program  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
 SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
-MOST_SHARDS = 1500  # their names stand in one command, which Linux limits
 
 
 class PerStage(argparse.Action):
@@ -70,8 +69,6 @@ def arguments():
     p.add_argument("--sbatch", default="", metavar="OPTIONS", help="for every job: --sbatch='--partition=long --account=x'")
     p.add_argument("--dry-run", action="store_true", help="print what would be submitted")
     options = p.parse_args()
-    if not 1 <= options.shards <= MOST_SHARDS:
-        p.error(f"--shards {options.shards} is not 1 to {MOST_SHARDS}")
     if options.at_once is not None and options.at_once < 1:
         p.error(f"--at-once {options.at_once} is not 1 or more")
     if options.retries < 0:

@@ -90,8 +90,11 @@ class Job:
     def shall_run_again(self, code):
         if self.attempt.stopped or "SLURM_JOB_ID" not in os.environ:
             return False
-        if self.out_of_time:  # and something is done
-            return os.path.exists(self.task["checkpoint"])
+        if self.out_of_time:
+            begun = os.path.exists(self.task["checkpoint"])
+            if not begun:
+                print(f"task.py: {self.task['name']} saved nothing before its time limit; give it more --time", flush=True)
+            return begun
         return code > 128 and code not in ASKED_TO_STOP and self.killed_before() < self.retries
 
     def killed_before(self):

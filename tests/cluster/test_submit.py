@@ -52,6 +52,7 @@ sys.exit(1)
 # A tool that is killed, or that saves a checkpoint when it is asked to stop.
 KILLED = "#!/bin/sh\nkill -9 $$\n"
 SAVES = "#!/bin/sh\ntrap 'echo saved > $2; trap - TERM; kill -TERM $$' TERM\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
+SLOW = "#!/bin/sh\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
 
 
 class SubmitTest(unittest.TestCase):
@@ -141,6 +142,21 @@ class SubmitTest(unittest.TestCase):
         self.assertTrue(all(job["well"] for job in jobs.values()), self.logs())
         self.assertNotIn("not done", self.at("run/summary.log").read_text().rpartition("tasks in")[2])
 
+    def test_ninja_records_what_its_tasks_take(self):
+        self.call("pipelines/generate_ninja.py", "scenes/u-shape/scene.toml", "--out", str(self.folder / "out"), "--bin",
+                  str(BIN), "--shards", "2", "--record", *SIZES)
+        ninja = ["ninja", "-f", str(self.folder / "out/build.ninja")]
+        subprocess.run(ninja, cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
+        inspected = subprocess.run([SOURCE / BIN / "vpl-inspect", "run", self.at("run"), "--json"], text=True,
+                                   stdout=subprocess.PIPE)
+        run = json.loads(inspected.stdout)
+        self.assertEqual([(stage["stage"], stage["tasks"]) for stage in run["stages"]],
+                         [("place", 2), ("merge-place", 1), ("eliminate", 1), ("estimate", 2), ("merge-estimate", 1),
+                          ("render", 2), ("merge-render", 1)])
+        self.assertEqual(len(run["critical_path"]["tasks"]), 7)
+        again = subprocess.run(ninja, cwd=SOURCE, text=True, stdout=subprocess.PIPE)
+        self.assertIn("no work to do", again.stdout)
+
     def test_records_of_other_shards_are_put_aside(self):
         self.submit("--shards", "2")
         self.submit("--shards", "3")
@@ -189,6 +205,10 @@ class SubmitTest(unittest.TestCase):
         return subprocess.Popen([sys.executable, SOURCE / "pipelines/slurm/task.py", self.folder / "run/s.job.json"],
                                 env=self.environment | {"SLURM_JOB_ID": "9"}, stdout=subprocess.DEVNULL, **more)
 
+    def wait_until_ready(self):
+        while not (self.folder / "saved.ready").exists():
+            time.sleep(0.05)
+
     def requeued(self):
         file = self.folder / "requeued"
         return file.read_text().splitlines() if file.exists() else []
@@ -208,18 +228,24 @@ class SubmitTest(unittest.TestCase):
         for attempt in (1, 2):
             (self.folder / "saved.ready").unlink(missing_ok=True)
             task = self.start_task(tool)
-            while not (self.folder / "saved.ready").exists():
-                time.sleep(0.05)
+            self.wait_until_ready()
             task.send_signal(10)  # SIGUSR1
             self.assertEqual(task.wait(), 128 + 15)
             self.assertEqual(self.requeued(), ["requeue 9"] * attempt)
             self.assertEqual(self.record(attempt)["resumed"], attempt == 2)
 
+    def test_a_task_that_saves_nothing_before_its_time_limit_fails(self):
+        tool = self.program("slow", SLOW)
+        task = self.start_task(tool)
+        self.wait_until_ready()
+        task.send_signal(10)
+        self.assertEqual(task.wait(), 128 + 15)
+        self.assertEqual(self.requeued(), [])
+
     def test_a_task_that_is_ended_is_not_queued_again(self):
         tool = self.program("saves", SAVES)
         task = self.start_task(tool, start_new_session=True)
-        while not (self.folder / "saved.ready").exists():
-            time.sleep(0.05)
+        self.wait_until_ready()
         os.killpg(task.pid, 15)
         self.assertEqual(task.wait(), 128 + 15)
         self.assertEqual(self.requeued(), [])
@@ -227,8 +253,7 @@ class SubmitTest(unittest.TestCase):
     def test_a_tool_ends_with_its_task(self):
         tool = self.program("saves", SAVES)
         task = self.start_task(tool)
-        while not (self.folder / "saved.ready").exists():
-            time.sleep(0.05)
+        self.wait_until_ready()
         child = int(subprocess.run(["pgrep", "-P", str(task.pid)], text=True, stdout=subprocess.PIPE).stdout)
         task.kill()
         task.wait()

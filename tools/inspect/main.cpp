@@ -68,7 +68,7 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
 CLI::App* addRun(CLI::App& cli, RunCommand& c) {
   CLI::App* sub = cli.add_subcommand(
       "run",
-      "What the tasks of a pipeline took: stages, hosts, CPU hours and the critical path, from the "
+      "What the tasks of a pipeline took: stages, hosts, CPU time and the critical path, from the "
       "records of pipelines/slurm/submit.py or generate_ninja.py --record.");
   sub->add_option("folder", c.folder, "of the records: OUT/SCENE/run")
       ->required()

@@ -26,6 +26,8 @@ std::string duration(double s) {
   return text;
 }
 
+std::string cpuTime(const Json& json) { return duration(3600.0 * number(json, "cpu_h")); }
+
 std::string dateOf(double s) {
   const auto seconds = static_cast<std::time_t>(s);
   std::tm parts{};
@@ -43,23 +45,23 @@ int widest(const Json& rows, const char* key, size_t width) {
 void appendStages(std::string& text, const Json& stages) {
   const int width = widest(stages, "stage", 5);
   append(text, "%-*s %7s %8s %7s %10s %12s %10s %11s\n", width, "stage", "tasks", "attempts",
-         "resumed", "wall", "longest task", "CPU hours", "peak memory");
+         "resumed", "wall", "longest task", "CPU time", "peak memory");
   for (const Json& s : stages) {
-    append(text, "%-*s %7zu %8zu %7zu %10s %12s %10.4f %7.0f MiB\n", width,
+    append(text, "%-*s %7zu %8zu %7zu %10s %12s %10s %7.0f MiB\n", width,
            textOf(s, "stage").c_str(), count(s, "tasks"), count(s, "attempts"), count(s, "resumed"),
            duration(number(s, "wall_s")).c_str(), duration(number(s, "longest_s")).c_str(),
-           number(s, "cpu_h"), number(s, "peak_memory_MiB"));
+           cpuTime(s).c_str(), number(s, "peak_memory_MiB"));
   }
 }
 
 void appendHosts(std::string& text, const Json& hosts) {
   const int width = widest(hosts, "host", 5);
   append(text, "%-*s %8s %7s %10s %10s %11s\n", width, "host", "attempts", "no end", "busy",
-         "CPU hours", "peak memory");
+         "CPU time", "peak memory");
   for (const Json& h : hosts) {
-    append(text, "%-*s %8zu %7zu %10s %10.4f %7.0f MiB\n", width, textOf(h, "host").c_str(),
+    append(text, "%-*s %8zu %7zu %10s %10s %7.0f MiB\n", width, textOf(h, "host").c_str(),
            count(h, "attempts"), count(h, "without_end"), duration(number(h, "busy_s")).c_str(),
-           number(h, "cpu_h"), number(h, "peak_memory_MiB"));
+           cpuTime(h).c_str(), number(h, "peak_memory_MiB"));
   }
 }
 
@@ -93,8 +95,8 @@ std::string runText(const Json& d) {
   std::string text;
   append(text, "%zu tasks in %zu attempts, %zu of them resumed and %zu without an end\n",
          count(d, "tasks"), count(d, "attempts"), count(d, "resumed"), count(d, "without_end"));
-  append(text, "from %s on: %s, %.4f CPU hours\n", dateOf(number(d, "start_s")).c_str(),
-         duration(number(d, "wall_s")).c_str(), number(d, "cpu_h"));
+  append(text, "from %s on: %s, CPU time %s\n", dateOf(number(d, "start_s")).c_str(),
+         duration(number(d, "wall_s")).c_str(), cpuTime(d).c_str());
   text += "\n";
   appendStages(text, d["stages"]);
   text += "\n";
