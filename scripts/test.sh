@@ -34,8 +34,9 @@ if (($# > 0)); then
   step "tests: $*" ctest --preset release "$@"
   exit
 fi
-step "tests of the parts" ctest --preset release -LE 'pipeline|faults|eval'
+step "tests of the parts" ctest --preset release -LE 'pipeline|faults|eval|cluster'
 step "the tools, through files" ctest --preset release -L pipeline
 step "the tools, through faults" ctest --preset release -L faults
 step "hostile files (scripts/fuzz.sh)" scripts/fuzz.sh
+step "the pipeline on Slurm, if it is here" ctest --preset release -L cluster
 step "evaluation at its quick size" ctest --preset release -L eval

@@ -36,6 +36,7 @@ std::string contentOf(const std::string& extension) {
   static const std::map<std::string, std::string> contents{{".vpl", "VPLs"},
                                                            {".exr", "an OpenEXR image"},
                                                            {".png", "a PNG picture"},
+                                                           {".svg", "an SVG picture"},
                                                            {".ply", "a PLY point cloud"},
                                                            {".csv", "a CSV table"},
                                                            {".shard", "a shard"}};

@@ -12,6 +12,8 @@
 #include "tools/inspect/check.h"
 #include "tools/inspect/export_table.h"
 #include "tools/inspect/info.h"
+#include "tools/inspect/run_report.h"
+#include "tools/inspect/run_timeline.h"
 #include "tools/inspect/scene_report.h"
 #include "tools/inspect/write_scene.h"
 
@@ -121,6 +123,20 @@ int runScene(const SceneCommand& command, const ToolOptions& tool) {
   }
   const std::string text = command.json ? description.dump(2) + "\n" : sceneText(description);
   summary.add("scene", std::move(description));
+  summary.save(tool, files);
+  print(text);
+  return kExitOk;
+}
+
+int runRun(const RunCommand& command, const ToolOptions& tool) {
+  Summary summary("vpl-inspect");
+  RunFiles().writes("--svg", command.svg, {".svg"}).writes(tool).ready();
+  const RunRecords run = readRunRecords(command.folder);
+  const Json description = describeRun(run);
+  OutputSet files;
+  if (!command.svg.empty()) files.add(command.svg).write(timelineSvg(run));
+  const std::string text = command.json ? description.dump(2) + "\n" : runText(description);
+  summary.add("run", description);
   summary.save(tool, files);
   print(text);
   return kExitOk;

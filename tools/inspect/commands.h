@@ -32,6 +32,10 @@ struct SceneCommand {
   bool json = false;
   fs::path toml;  // a folder for the scene in our own format; empty: none
 };
+struct RunCommand {
+  fs::path folder, svg;
+  bool json = false;
+};
 struct CompareCommand {
   fs::path imageA, imageB, secondB, mask, diff;
   std::string layer, layerA, layerB;  // layerA and layerB go first
@@ -50,6 +54,7 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool);
 int runExport(const ExportCommand& command, const ToolOptions& tool);
 int runPlot(const PlotCommand& command, const ToolOptions& tool);
 int runScene(const SceneCommand& command, const ToolOptions& tool);
+int runRun(const RunCommand& command, const ToolOptions& tool);
 int runCompare(const CompareCommand& command, const ToolOptions& tool);
 
 // The options of `compare`.

@@ -1,24 +1,12 @@
 #include <algorithm>
-#include <cstdarg>
 #include <cstdio>
 
+#include "tools/inspect/append_text.h"
 #include "tools/inspect/info.h"
 #include "tools/inspect/provenance.h"
 
 namespace bnvpl {
 namespace {
-
-#if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
-#endif
-void append(std::string& text, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-}
 
 std::string number(const Json& value) {
   if (!value.is_number()) return "-";

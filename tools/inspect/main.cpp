@@ -65,6 +65,19 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   return sub;
 }
 
+CLI::App* addRun(CLI::App& cli, RunCommand& c) {
+  CLI::App* sub = cli.add_subcommand(
+      "run",
+      "What the tasks of a pipeline took: stages, hosts, CPU time and the critical path, from the "
+      "records of pipelines/slurm/submit.py or generate_ninja.py --record.");
+  sub->add_option("folder", c.folder, "of the records: OUT/SCENE/run")
+      ->required()
+      ->type_name("FOLDER");
+  addFile(*sub, "--svg", c.svg, "picture (.svg): hosts downwards, time to the right");
+  sub->add_flag("--json", c.json, "the same as JSON, with every attempt");
+  return sub;
+}
+
 }  // namespace
 }  // namespace bnvpl
 
@@ -81,6 +94,7 @@ int main(int argc, char** argv) {
   ExportCommand exported;
   PlotCommand plot;
   SceneCommand scene;
+  RunCommand run;
   CompareCommand compare;
   const CLI::App* infoCli = addInfo(cli, info);
   const CLI::App* checkCli = addCheck(cli, check);
@@ -88,6 +102,7 @@ int main(int argc, char** argv) {
   const CLI::App* sceneCli = addScene(cli, scene);
   CLI::App* plotCli = addPlot(cli, plot);
   addDepfileOption(*plotCli, tool);
+  const CLI::App* runCli = addRun(cli, run);
   addCompare(cli, compare);
   return runTool(cli, tool, argc, argv, [&] {
     plot.colourGiven = plotCli->count("--color") > 0;
@@ -96,6 +111,7 @@ int main(int argc, char** argv) {
     if (exportCli->parsed()) return runExport(exported, tool);
     if (sceneCli->parsed()) return runScene(scene, tool);
     if (plotCli->parsed()) return runPlot(plot, tool);
+    if (runCli->parsed()) return runRun(run, tool);
     return runCompare(compare, tool);
   });
 }

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""Renders a scene on a Slurm cluster: place, estimate and render as arrays of shards, each with a merge after it.
+
+  pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 64 --memory 8G --memory eliminate=32G --time 2:00:00
+
+Run it in a folder that all nodes see at the same path; paths are relative to it. The images are those of one run,
+byte for byte. Logs, records and a summary go to OUT/SCENE/run. The same command again submits what is missing.
+"""
+
+import argparse
+import dataclasses
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+import record  # noqa: E402
+import stages  # noqa: E402
+import task as task_program  # noqa: E402
+
+KINDS = ("place", "eliminate", "estimate", "render", "merge")
+SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
+
+
+class PerStage(argparse.Action):
+    """VALUE for all stages, or STAGE=VALUE for one; may be repeated."""
+
+    def __init__(self, option_strings, dest, pattern, what, **more):
+        self.pattern, self.what = re.compile(pattern), what
+        super().__init__(option_strings, dest, metavar="[STAGE=]VALUE", **more)
+
+    def __call__(self, parser, namespace, text, option_string=None):
+        kind, equals, value = text.rpartition("=")
+        if equals and kind not in KINDS:
+            parser.error(f"{option_string} {text}: '{kind}' is no stage; use one of {', '.join(KINDS)}")
+        if not self.pattern.fullmatch(value):
+            parser.error(f"{option_string} {text}: '{value}' is not {self.what}")
+        chosen = dict(getattr(namespace, self.dest))
+        chosen |= {kind: value} if equals else dict.fromkeys(KINDS, value)
+        setattr(namespace, self.dest, chosen)
+
+
+def per_stage(value, **others):
+    return dict.fromkeys(KINDS, value) | others
+
+
+def arguments():
+    p = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=f"STAGE is one of {', '.join(KINDS)}.")
+    p.add_argument("scene", metavar="SCENE", help="scene.toml")
+    stages.add_arguments(p)
+    p.add_argument("--shards", type=int, default=16, metavar="N", help="tasks of place, estimate and render (default 16)")
+    p.add_argument("--cpus", action=PerStage, pattern=r"[1-9]\d*", what="a count from 1",
+                   default=per_stage("4", merge="1"), help="of a task; default 4, and merge=1")
+    p.add_argument("--memory", action=PerStage, pattern=r"\d+[KMGT]?", what="a size such as 4G",
+                   default=per_stage("4G"), help="of a task; default 4G")
+    p.add_argument("--time", action=PerStage, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}",
+                   what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)", default=per_stage("1:00:00"),
+                   help="limit of a task, as sbatch has it; default 1:00:00; shards that reach it are queued again and go on")
+    p.add_argument("--at-once", type=int, metavar="N", help="most tasks of an array that run together; default: all")
+    p.add_argument("--retries", type=int, default=3, metavar="N",
+                   help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count")
+    p.add_argument("--sbatch", default="", metavar="OPTIONS", help="for every job: --sbatch='--partition=long --account=x'")
+    p.add_argument("--dry-run", action="store_true", help="print what would be submitted")
+    options = p.parse_args()
+    if options.at_once is not None and options.at_once < 1:
+        p.error(f"--at-once {options.at_once} is not 1 or more")
+    if options.retries < 0:
+        p.error(f"--retries {options.retries} is not 0 or more")
+    stages.complete(options)
+    stages.check_scene(options.scene)
+    return options
+
+
+def jobs_of(scene, options):
+    """[(stage, its tasks)] in the order in which they run."""
+    jobs = {}
+    for task in stages.tasks_of(scene, options):
+        jobs.setdefault(task.stage, []).append(task)
+    return list(jobs.items())
+
+
+def ranges(numbers):
+    """1-3,7 for 1, 2, 3, 7."""
+    parts = []
+    for n in numbers:
+        if parts and parts[-1][1] == n - 1:
+            parts[-1][1] = n
+        else:
+            parts.append([n, n])
+    return ",".join(str(a) if a == b else f"{a}-{b}" for a, b in parts)
+
+
+class Submission:
+    def __init__(self, scene, options):
+        self.options, self.scene = options, scene
+        self.run = pathlib.Path(stages.folder_of(scene, options)) / "run"
+        self.submitted = {}  # stage: id
+        self.ids = self.run / "jobs.json"
+
+    def refuse_while_queued(self):
+        """Two runs of one scene would do the same work twice."""
+        if not self.ids.exists():
+            return
+        known = set(json.loads(self.ids.read_text()).values())
+        queued = {line for line in self.slurm("squeue", "--noheader", "--format=%A %F", "--me").split()} & known
+        if queued:
+            stages.refuse(f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end them with scancel")
+
+    def put_aside(self, names):
+        """Records of tasks that this run does not have, such as those of another number of shards."""
+        earlier = self.run / "earlier"
+        for file in self.run.glob(f"*{record.SUFFIX}"):
+            if file.name.removesuffix(record.SUFFIX).rpartition(".")[0] not in names:
+                earlier.mkdir(exist_ok=True)
+                file.replace(earlier / file.name)
+
+    def slurm(self, *command):
+        try:
+            done = subprocess.run(command, text=True, stdout=subprocess.PIPE)
+        except FileNotFoundError:
+            stages.refuse(f"there is no {command[0]} here; run this where Slurm's commands are")
+        if done.returncode:
+            self.undo()
+            stages.refuse(f"{command[0]} failed, as it says above; no job of this run is left")
+        return done.stdout
+
+    def undo(self):
+        if self.submitted:
+            subprocess.run(["scancel", *self.submitted.values()])
+
+    def submit(self, name, kind, words, command, note):
+        chosen = self.options
+        full = ["sbatch", "--parsable", f"--job-name={stages.name_of(self.scene)}-{name}",
+                f"--cpus-per-task={chosen.cpus[kind]}", f"--mem={chosen.memory[kind]}", f"--time={chosen.time[kind]}",
+                "--requeue", "--open-mode=append", *words, *shlex.split(chosen.sbatch),
+                f"--wrap=exec {shlex.join(command)}"]
+        if chosen.dry_run:
+            print(shlex.join(full))
+            self.submitted[name] = f"ID_OF_{name}"
+            return
+        self.submitted[name] = self.slurm(*full).strip().split(";")[0]
+        print(f"{self.submitted[name]}  {name}: {note}", flush=True)
+
+    def submit_stage(self, name, tasks):
+        before = [self.submitted[stage] for stage in tasks[0].after if stage in self.submitted]
+        described = [dataclasses.asdict(task) for task in tasks]
+        wanted = [i for i, task in enumerate(described, 1) if before or not task_program.up_to_date(self.run, task)]
+        if not wanted:
+            return
+        kind = "merge" if name.startswith("merge-") else name
+        if not self.options.dry_run:
+            (self.run / f"{name}.job.json").write_text(json.dumps(
+                {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}, indent=1))
+        words = [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"] if before else []
+        if tasks[0].checkpoint:
+            at_once = f"%{self.options.at_once}" if self.options.at_once else ""
+            log = stages.shard_name(name, "%a", len(tasks))
+            words += [f"--array={ranges(wanted)}{at_once}", f"--signal=B:USR1@{SECONDS_TO_SAVE}"]
+        else:
+            log = name
+        words.append(f"--output={self.run}/{log}.log")
+        note = f"{len(wanted)} of {len(tasks)} tasks" if len(wanted) < len(tasks) else \
+            f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
+        program = [sys.executable, str(HERE / "task.py"), f"{self.run}/{name}.job.json"]
+        self.submit(name, kind, words, program, note)
+
+    def submit_summary(self):
+        command = [f"{self.options.bin}/vpl-inspect", "run", str(self.run), "--svg", f"{self.run}/timeline.svg"]
+        words = [f"--dependency=afterany:{':'.join(self.submitted.values())}", "--open-mode=truncate",
+                 f"--output={self.run}/summary.log"]
+        self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
+
+    def submit_all(self):
+        jobs = jobs_of(self.scene, self.options)
+        if not self.options.dry_run:
+            self.refuse_while_queued()
+            self.run.mkdir(parents=True, exist_ok=True)
+            self.put_aside({task.name for _, tasks in jobs for task in tasks})
+        for name, tasks in jobs:
+            self.submit_stage(name, tasks)
+        if not self.submitted:
+            print(f"{self.run.parent} is up to date")
+            return
+        self.submit_summary()
+        if not self.options.dry_run:
+            self.ids.write_text(json.dumps(self.submitted) + "\n")
+
+
+def main():
+    options = arguments()
+    Submission(options.scene, options).submit_all()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,177 @@
+"""The commands that render a scene, whole or in shards: what generate_ninja.py and slurm/submit.py write down.
+
+A stage in N shards is N tasks and one of vpl-merge. Every task names its files, so whoever runs them may keep
+what is up to date. Paths are relative to the folder in which the tasks run.
+"""
+
+import dataclasses
+import pathlib
+import re
+import shlex
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
+MOST_SHARDS = 1500  # their names stand in one command, which Linux limits
+OUTPUT, PREVIEW = object(), object()  # in the words of a stage: where its -o and --png go
+
+
+@dataclasses.dataclass
+class Task:
+    name: str  # place, place-3-of-64, merge-place
+    stage: str  # place, merge-place
+    after: list  # the stages whose files it reads
+    command: list
+    inputs: list  # the executable, and the files that the command names
+    outputs: list
+    depfile: str = ""  # the command writes it: further files that it read
+    checkpoint: str = ""  # the command goes on from it
+
+
+def presets():
+    """{"draft": {"VPLS": "1500", ...}, ...} of quality.mk."""
+    found = {}
+    for line in (HERE / "quality.mk").read_text().splitlines():
+        if assignment := re.fullmatch(r"(\w+)\.(\w+)\s*:=\s*(.*)", line):
+            name, quality, value = assignment.groups()
+            found.setdefault(quality, {})[name] = value
+    return found
+
+
+def add_arguments(parser):
+    """What decides the images."""
+    parser.add_argument("--out", default="out", help="folder; each scene gets one below it (default out)")
+    parser.add_argument("--bin", default=relative(DEFAULT_BIN), help="folder of the executables (default %(default)s)")
+    parser.add_argument("--quality", default="default", choices=sorted(presets()),
+                        help="counts and options of quality.mk (default %(default)s)")
+    parser.add_argument("--candidates", help="default: the quality's")
+    parser.add_argument("--vpls", help="default: the quality's")
+    parser.add_argument("--photons", help="default: the quality's")
+    parser.add_argument("--spp", help="samples per pixel; default: the quality's; "
+                                      "'' for none, as with --render-flags='--time 2m'")
+    parser.add_argument("--seed", help="for place, estimate and render")
+    parser.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
+    for stage in ("place", "eliminate", "estimate", "render"):
+        parser.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
+                            help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'")
+
+
+def complete(options):
+    """Fills in what add_arguments() leaves to the quality, and refuses what these pipelines cannot do."""
+    if not 1 <= options.shards <= MOST_SHARDS:
+        refuse(f"--shards {options.shards} is not 1 to {MOST_SHARDS}")
+    preset = presets()[options.quality]
+    for name in ("candidates", "vpls", "photons", "spp"):
+        if getattr(options, name) is None:
+            setattr(options, name, preset[name.upper()])
+    options.render_preset = preset["RENDER"]
+    refuse_lit_placement(options)
+    for path in (options.out, options.bin):
+        check_path(path)
+
+
+def refuse(problem):
+    sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {problem}")
+
+
+def refuse_lit_placement(options):
+    """VPLs from the lights have their flux, and rejection reads the scene: other files, other stages."""
+    words = {"light", "--method=light"} & set(shlex.split(options.place_flags)) or \
+            {"rejection", "--method=rejection"} & set(shlex.split(options.eliminate_flags))
+    if words:
+        refuse("vpl-place --method light and vpl-eliminate --method rejection leave no work to vpl-estimate; "
+               "run these stages by hand, as pipelines/README.md shows")
+
+
+def relative(path):
+    """From here when it is below here: shorter to read, and the project may move."""
+    here = pathlib.Path.cwd()
+    return f"{'./' if path.parent == here else ''}{path.relative_to(here)}" if path.is_relative_to(here) else str(path)
+
+
+def check_path(path):
+    if re.search(r"[\s$:|'\"]", path):
+        refuse(f"'{path}' contains a space or one of $ : | ' \"; choose another path")
+    return path
+
+
+def check_scene(scene):
+    check_path(scene)
+    if not pathlib.Path(scene).is_file():
+        refuse(f"there is no scene '{scene}'")
+
+
+def name_of(scene):
+    """u-shape for u-shape/scene.toml, sponza-gallery for sponza/gallery.toml."""
+    path = pathlib.Path(scene).resolve()
+    return path.parent.name + ("" if path.stem == "scene" else f"-{path.stem}")
+
+
+def folder_of(scene, options):
+    return check_path(f"{options.out}/{name_of(scene)}")
+
+
+def shard_name(stage, part, of):
+    return f"{stage}-{part}-of-{of}"
+
+
+def task(name, stage, after, outputs, inputs, words, stats, scene_read=True, checkpoint=""):
+    """The first input is the executable, which `words` do not repeat; `stats` begins the names of what goes beside."""
+    command = [inputs[0], *words, "--stats", f"{stats}.json"]
+    depfile = f"{stats}.d" if scene_read else ""
+    return Task(name, stage, after, command + (["--depfile", depfile] if depfile else []), inputs, outputs, depfile,
+                checkpoint)
+
+
+def tasks_in_parts(stage, after, options, outputs, inputs, words):
+    """A stage that reads the scene: one task, or one for each shard and one that merges them."""
+    product, preview = ["-o", outputs[0]], ["--png", outputs[-1]] if PREVIEW in words else []
+
+    def filled(output, png):
+        return [w for word in words for w in (output if word is OUTPUT else png if word is PREVIEW else [word])]
+
+    folder, of = outputs[0].rsplit("/", 1)[0], options.shards
+    if of == 1:
+        return [task(stage, stage, after, outputs, inputs, filled(product, preview), f"{folder}/{stage}")]
+    tasks, parts = [], []
+    for part in range(1, of + 1):
+        name = shard_name(stage, part, of)
+        beside = f"{folder}/shards/{name}"
+        parts.append(f"{beside}.shard")
+        words_here = [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}", "--checkpoint", f"{beside}.checkpoint"]
+        tasks.append(task(name, stage, after, [parts[-1]], inputs, words_here, beside,
+                          checkpoint=f"{beside}.checkpoint"))
+    merge = f"merge-{stage}"
+    return tasks + [task(merge, merge, [stage], outputs, [f"{options.bin}/vpl-merge", *parts],
+                         [*parts, *product, *preview], f"{folder}/{stage}")]
+
+
+def tasks_of(scene, options):
+    """All tasks of a scene, each after those whose files it reads."""
+    out = folder_of(scene, options)
+    seed = ["--seed", options.seed] if options.seed else []
+    spp = ["--spp", options.spp] if options.spp else []
+    defines = [word for define in options.define for word in ("--define", define)]
+    candidates, vpls, lit = f"{out}/candidates.vpl", f"{out}/vpls.vpl", f"{out}/lit.vpl"
+    image, preview = f"{out}/image.exr", f"{out}/image.png"
+
+    def tool(stage):
+        return f"{options.bin}/vpl-{stage}"
+
+    def flags(stage):
+        return shlex.split(getattr(options, f"{stage}_flags"))
+
+    def done(stage):
+        return [stage if options.shards == 1 else f"merge-{stage}"]
+
+    return [
+        *tasks_in_parts("place", [], options, [candidates], [tool("place"), scene],
+                        [scene, OUTPUT, "-n", options.candidates, *seed, *defines, *flags("place")]),
+        task("eliminate", "eliminate", done("place"), [vpls], [tool("eliminate"), candidates],
+             [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")], f"{out}/eliminate", scene_read=False),
+        *tasks_in_parts("estimate", ["eliminate"], options, [lit], [tool("estimate"), scene, vpls],
+                        [scene, vpls, OUTPUT, "--photons", options.photons, *seed, *defines, *flags("estimate")]),
+        *tasks_in_parts("render", done("estimate"), options, [image, preview], [tool("render"), scene, lit],
+                        [scene, lit, OUTPUT, *spp, PREVIEW, *seed, *defines,
+                         *shlex.split(options.render_preset), *flags("render")]),
+    ]
