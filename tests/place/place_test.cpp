@@ -28,6 +28,7 @@ TEST(Place, GivesExactlyTheCountInPathOrder) {
 TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   const World world("u-shape/scene.toml");
   const Values options = resolve(placeSpec(), count(60000));
+  const PlaceViews views(world.scene);
   std::map<uint64_t, std::string> records;
   ShardSink sink;
   sink.record = [&](std::string_view, uint64_t unit, std::string_view bytes) {
@@ -37,7 +38,7 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
     Resume resume;
     resume.shard = {i, i + 1, 5};
     resume.sink = &sink;
-    placeShard(world.rays, world.lights, options, 0.0, resume);
+    placeShard({world.rays, world.lights, views}, options, 0.0, resume);
   }
   ShardSource source;
   source.record = [&](std::string_view, uint64_t unit) -> std::optional<std::string> {
@@ -47,14 +48,14 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   };
   const uint64_t hash = world.scene.contentHash;
   const auto never = [](uint64_t) { FAIL(); };
-  EXPECT_EQ(joinPlaced(options, hash, source, never).table.position,
+  EXPECT_EQ(joinPlaced(options, hash, views.turns, source, never).table.position,
             placeVpls(world, count(60000)).table.position);
   struct Early {
     uint64_t unit;
   };
   records.erase(7);
   try {
-    joinPlaced(options, hash, source, [](uint64_t unit) { throw Early{unit}; });
+    joinPlaced(options, hash, views.turns, source, [](uint64_t unit) { throw Early{unit}; });
     FAIL();
   } catch (const Early& early) {
     EXPECT_EQ(early.unit, 7u);

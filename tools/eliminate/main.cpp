@@ -1,8 +1,10 @@
 // vpl-eliminate: keep the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
+#include <cmath>
 #include <optional>
 
 #include "formats/vpl_io.h"
+#include "tools/common/cost.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
@@ -41,7 +43,24 @@ void report(const EliminateResult& kept, size_t candidates, Summary& summary) {
               "area " + formatSi(kept.area) + ", r_max " + formatSi(kept.rMax) + " (scene units)");
 }
 
-int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool) {
+// Evenly spaced candidates, of which the same share is kept.
+Cost costOfEliminating(const VplTable& candidates, const Values& options, const World* world) {
+  const auto part = [&](uint64_t count) {
+    std::vector<uint32_t> rows(count);
+    for (uint64_t i = 0; i < count; ++i)
+      rows[i] = static_cast<uint32_t>(i * candidates.size() / count);
+    Values some = options;
+    some.set("count", std::max<uint64_t>(1, options.whole("count") * count / candidates.size()));
+    eliminate(keepRows(candidates, rows), some, world ? &world->rays : nullptr,
+              world ? &world->lights : nullptr);
+  };
+  return costOfRows(candidates.size(), part, [](uint64_t rows) {
+    return static_cast<double>(rows) * std::log2(static_cast<double>(rows) + 1.0);
+  });
+}
+
+int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost,
+                 const ToolOptions& tool) {
   Summary summary("vpl-eliminate");
   const Values options = resolve(eliminateSpec(), given);
   const EliminateMethod& method = eliminateMethod(options);
@@ -53,11 +72,18 @@ int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool
   }
   RunFiles used;
   used.reads("candidates", paths.input).reads("--scene", paths.scene.file);
-  used.writes("-o", paths.output, {".vpl"}).writes(tool).check();
-  requireMemoryFor(paths.input, kBytesPerCandidate, "place fewer with vpl-place -n");
+  used.writes("-o", paths.output, {".vpl"}).writes(tool);
+  if (!cost.estimate) {
+    used.check();
+    requireMemoryFor(paths.input, kBytesPerCandidate, "place fewer with vpl-place -n");
+  }
   const VplTable candidates = readVpl(paths.input, method.takes);
   std::optional<World> world;
   if (sceneGiven) world.emplace(paths.scene, paths.input, candidates.sceneHash);
+  if (cost.estimate) {
+    printCost(costOfEliminating(candidates, options, world ? &*world : nullptr), cost);
+    return kExitOk;
+  }
   used.ready(world ? world->scene.files : std::vector<fs::path>{});
 
   ProgressMeter meter("candidates", candidates.size(), tool.quiet);
@@ -87,13 +113,15 @@ int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Keep the candidates that are spread best over the surfaces.", "vpl-eliminate"};
   Given given;
+  CostOptions cost;
   ToolOptions tool;
   Paths paths;
   addFile(cli, "candidates", paths.input, "from vpl-place (.vpl)")->required();
   addFile(cli, "-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
   addSceneFlag(cli, paths.scene, "the scene, for methods that ask for it");
   addStageOptions(cli, eliminateSpec(), given);
+  addCostOptions(cli, cost);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] { return runEliminate(paths, given, tool); });
+  return runTool(cli, tool, argc, argv, [&] { return runEliminate(paths, given, cost, tool); });
 }
