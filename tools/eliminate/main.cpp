@@ -1,6 +1,5 @@
 // vpl-eliminate: keep the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
-#include <cmath>
 #include <optional>
 
 #include "formats/vpl_io.h"
@@ -16,6 +15,7 @@ namespace bnvpl {
 namespace {
 
 constexpr double kBytesPerCandidate = 120;  // measured: 140 to 150
+constexpr double kBytesPerRow = 3 * sizeof(Vec3) + sizeof(uint32_t);
 
 struct Paths {
   fs::path input, output;
@@ -43,20 +43,24 @@ void report(const EliminateResult& kept, size_t candidates, Summary& summary) {
               "area " + formatSi(kept.area) + ", r_max " + formatSi(kept.rMax) + " (scene units)");
 }
 
-// Evenly spaced candidates, of which the same share is kept.
+// Evenly spaced candidates, of which the same share is kept: elimination takes time in proportion.
 Cost costOfEliminating(const VplTable& candidates, const Values& options, const World* world) {
+  const RayScene* rays = world ? &world->rays : nullptr;
+  const LightSet* lights = world ? &world->lights : nullptr;
+  if (candidates.size() < options.whole("count"))
+    eliminate(candidates, options, rays, lights);  // refuses
   const auto part = [&](uint64_t count) {
     std::vector<uint32_t> rows(count);
     for (uint64_t i = 0; i < count; ++i)
       rows[i] = static_cast<uint32_t>(i * candidates.size() / count);
     Values some = options;
     some.set("count", std::max<uint64_t>(1, options.whole("count") * count / candidates.size()));
-    eliminate(keepRows(candidates, rows), some, world ? &world->rays : nullptr,
-              world ? &world->lights : nullptr);
+    eliminate(keepRows(candidates, rows), some, rays, lights);
   };
-  return costOfRows(candidates.size(), part, [](uint64_t rows) {
-    return static_cast<double>(rows) * std::log2(static_cast<double>(rows) + 1.0);
-  });
+  Cost cost =
+      costOfRows(candidates.size(), part, [](uint64_t rows) { return static_cast<double>(rows); });
+  cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the probe's copy
+  return cost;
 }
 
 int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost,

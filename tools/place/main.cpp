@@ -94,19 +94,20 @@ double memoryFor(const Request& request, uint64_t count) {
 
 // Paths are traced in waves, of which the last is traced to its end.
 Cost costOfPlacing(const PlaceInputs& inputs, const Values& options) {
-  double paths = 0.0, memory = 0.0;
+  double paths = 0.0, besideRows = 0.0;
   const auto part = [&](uint64_t count) {
     Values some = options;
     some.set("count", count);
+    const MemoryWatch memory;
     const PlaceResult placed = place(inputs, some);
     paths = static_cast<double>(placed.paths) / static_cast<double>(count);
-    memory = kBytesPerPlaced * static_cast<double>(count);
+    besideRows = memory.peak() - kBytesPerPlaced * static_cast<double>(count);
   };
   Cost cost = costOfRows(options.whole("count"), part, [&](uint64_t count) {
     const auto wave = static_cast<double>(kChunksPerWave * kPathsPerChunk);
     return std::ceil(paths * static_cast<double>(count) / wave);
   });
-  cost.memoryBytes = MemoryWatch().peak() - memory;
+  cost.memoryBytes = besideRows;
   return cost;
 }
 
