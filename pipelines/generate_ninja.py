@@ -88,7 +88,7 @@ def main():
     for scene in options.scenes:
         tasks, out = stages.tasks_of(scene, options), stages.folder_of(scene, options)
         rows += ["", *(row for task in tasks for row in build(task, out, options)),
-                 f"build {stages.name_of(scene)}: phony {tasks[-1].outputs[0]}"]
+                 f"build {stages.name_of(scene)}: phony {' '.join(image for image, _ in stages.images_in(scene, options))}"]
     target = pathlib.Path(options.out) / "build.ninja"
     text = "\n".join(rows) + "\n"
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -50,6 +50,12 @@ def add_arguments(parser):
     parser.add_argument("--spp", help="samples per pixel; default: the quality's; "
                                       "'' for none, as with --render-flags='--time 2m'")
     parser.add_argument("--seed", help="for place, estimate and render")
+    parser.add_argument("--views", type=view_list, default=[], metavar="FILE,...",
+                        help="a .toml of [film] and [camera] for each image, in place of the scene's own: "
+                             "one set of VPLs serves all of them; images go to OUT/SCENE/views")
+    parser.add_argument("--place-views", type=view_list, default=[], metavar="FILE,...",
+                        help="the views that VPLs are placed for (default all of --views): more images may be added "
+                             "later without other VPLs")
     parser.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
     for stage in ("place", "eliminate", "estimate", "render"):
         parser.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
@@ -68,6 +74,22 @@ def complete(options):
     refuse_lit_placement(options)
     for path in (options.out, options.bin):
         check_path(path)
+
+
+def view_list(text):
+    return [check_path(view) for view in text.split(",") if view]
+
+
+def views_of(options):
+    """[(name, file)] of the views; the scene's own has neither."""
+    for view in options.views + options.place_views:
+        if not pathlib.Path(view).is_file():
+            refuse(f"there is no view '{view}'")
+    named = [(pathlib.Path(view).stem, view) for view in options.views]
+    for name, _ in named:
+        if [other for other, _ in named].count(name) > 1:
+            refuse(f"two views would be images of one name, '{name}'; give their files different names")
+    return named or [("", "")]
 
 
 def refuse(problem):
@@ -115,6 +137,10 @@ def shard_name(stage, part, of):
     return f"{stage}-{part}-of-{of}"
 
 
+def images_of(view, out):
+    return [f"{out}/views/{view}.exr", f"{out}/views/{view}.png"] if view else [f"{out}/image.exr", f"{out}/image.png"]
+
+
 def task(name, stage, after, outputs, inputs, words, stats, scene_read=True, checkpoint=""):
     """The first input is the executable, which `words` do not repeat; `stats` begins the names of what goes beside."""
     command = [inputs[0], *words, "--stats", f"{stats}.json"]
@@ -123,27 +149,28 @@ def task(name, stage, after, outputs, inputs, words, stats, scene_read=True, che
                 checkpoint)
 
 
-def tasks_in_parts(stage, after, options, outputs, inputs, words):
-    """A stage that reads the scene: one task, or one for each shard and one that merges them."""
+def tasks_in_parts(stage, after, options, outputs, inputs, words, view=""):
+    """A stage that reads the scene: one task, or one for each shard and one that merges them; or those of one view."""
+    whole = f"{stage}-{view}" if view else stage
     product, preview = ["-o", outputs[0]], ["--png", outputs[-1]] if PREVIEW in words else []
 
     def filled(output, png):
         return [w for word in words for w in (output if word is OUTPUT else png if word is PREVIEW else [word])]
 
     folder, of = outputs[0].rsplit("/", 1)[0], options.shards
+    stats = f"{folder}/{view or stage}"
     if of == 1:
-        return [task(stage, stage, after, outputs, inputs, filled(product, preview), f"{folder}/{stage}")]
+        return [task(whole, stage, after, outputs, inputs, filled(product, preview), stats)]
     tasks, parts = [], []
     for part in range(1, of + 1):
-        name = shard_name(stage, part, of)
+        name = shard_name(whole, part, of)
         beside = f"{folder}/shards/{name}"
         parts.append(f"{beside}.shard")
         words_here = [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}", "--checkpoint", f"{beside}.checkpoint"]
         tasks.append(task(name, stage, after, [parts[-1]], inputs, words_here, beside,
                           checkpoint=f"{beside}.checkpoint"))
-    merge = f"merge-{stage}"
-    return tasks + [task(merge, merge, [stage], outputs, [f"{options.bin}/vpl-merge", *parts],
-                         [*parts, *product, *preview], f"{folder}/{stage}")]
+    return tasks + [task(f"merge-{whole}", f"merge-{stage}", [stage], outputs, [f"{options.bin}/vpl-merge", *parts],
+                         [*parts, *product, *preview], stats)]
 
 
 def tasks_of(scene, options):
@@ -153,7 +180,7 @@ def tasks_of(scene, options):
     spp = ["--spp", options.spp] if options.spp else []
     defines = [word for define in options.define for word in ("--define", define)]
     candidates, vpls, lit = f"{out}/candidates.vpl", f"{out}/vpls.vpl", f"{out}/lit.vpl"
-    image, preview = f"{out}/image.exr", f"{out}/image.png"
+    views = views_of(options)
 
     def tool(stage):
         return f"{options.bin}/vpl-{stage}"
@@ -164,14 +191,27 @@ def tasks_of(scene, options):
     def done(stage):
         return [stage if options.shards == 1 else f"merge-{stage}"]
 
-    return [
-        *tasks_in_parts("place", [], options, [candidates], [tool("place"), scene],
-                        [scene, OUTPUT, "-n", options.candidates, *seed, *defines, *flags("place")]),
+    def looking(view):
+        return ["--view", view] if view else []
+
+    placed = options.place_views or options.views
+    before = [
+        *tasks_in_parts("place", [], options, [candidates], [tool("place"), scene, *placed],
+                        [scene, *(word for view in placed for word in looking(view)), OUTPUT,
+                         "-n", options.candidates, *seed, *defines, *flags("place")]),
         task("eliminate", "eliminate", done("place"), [vpls], [tool("eliminate"), candidates],
              [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")], f"{out}/eliminate", scene_read=False),
         *tasks_in_parts("estimate", ["eliminate"], options, [lit], [tool("estimate"), scene, vpls],
                         [scene, vpls, OUTPUT, "--photons", options.photons, *seed, *defines, *flags("estimate")]),
-        *tasks_in_parts("render", done("estimate"), options, [image, preview], [tool("render"), scene, lit],
-                        [scene, lit, OUTPUT, *spp, PREVIEW, *seed, *defines,
-                         *shlex.split(options.render_preset), *flags("render")]),
     ]
+    images = [tasks_in_parts("render", done("estimate"), options, images_of(name, out),
+                             [tool("render"), scene, lit, *([view] if view else [])],
+                             [scene, *looking(view), lit, OUTPUT, *spp, PREVIEW, *seed, *defines,
+                              *shlex.split(options.render_preset), *flags("render")], name)
+              for name, view in views]
+    return before + [task for tasks in images for task in tasks]
+
+
+def images_in(scene, options):
+    """[[image, preview]] of a scene, one for each view."""
+    return [images_of(name, folder_of(scene, options)) for name, _ in views_of(options)]

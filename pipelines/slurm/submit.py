@@ -159,10 +159,11 @@ class Submission:
             (self.run / f"{name}.job.json").write_text(json.dumps(
                 {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}, indent=1))
         words = [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"] if before else []
-        if tasks[0].checkpoint:
+        if tasks[0].checkpoint or len(tasks) > 1:  # shards, and images of several views
             at_once = f"%{self.options.at_once}" if self.options.at_once else ""
             log = stages.shard_name(name, "%a", len(tasks))
-            words += [f"--array={ranges(wanted)}{at_once}", f"--signal=B:USR1@{SECONDS_TO_SAVE}"]
+            words.append(f"--array={ranges(wanted)}{at_once}")
+            words += [f"--signal=B:USR1@{SECONDS_TO_SAVE}"] if tasks[0].checkpoint else []
         else:
             log = name
         words.append(f"--output={self.run}/{log}.log")

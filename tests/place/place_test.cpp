@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "tests/support/pipeline.h"
@@ -28,6 +29,7 @@ TEST(Place, GivesExactlyTheCountInPathOrder) {
 TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   const World world("u-shape/scene.toml");
   const Values options = resolve(placeSpec(), count(60000));
+  const PlaceViews views(world.scene);
   std::map<uint64_t, std::string> records;
   ShardSink sink;
   sink.record = [&](std::string_view, uint64_t unit, std::string_view bytes) {
@@ -37,7 +39,7 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
     Resume resume;
     resume.shard = {i, i + 1, 5};
     resume.sink = &sink;
-    placeShard(world.rays, world.lights, options, 0.0, resume);
+    placeShard({world.rays, world.lights, views}, options, 0.0, resume);
   }
   ShardSource source;
   source.record = [&](std::string_view, uint64_t unit) -> std::optional<std::string> {
@@ -47,17 +49,89 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   };
   const uint64_t hash = world.scene.contentHash;
   const auto never = [](uint64_t) { FAIL(); };
-  EXPECT_EQ(joinPlaced(options, hash, source, never).table.position,
+  EXPECT_EQ(joinPlaced(options, hash, views.turns, source, never).table.position,
             placeVpls(world, count(60000)).table.position);
   struct Early {
     uint64_t unit;
   };
   records.erase(7);
   try {
-    joinPlaced(options, hash, source, [](uint64_t unit) { throw Early{unit}; });
+    joinPlaced(options, hash, views.turns, source, [](uint64_t unit) { throw Early{unit}; });
     FAIL();
   } catch (const Early& early) {
     EXPECT_EQ(early.unit, 7u);
+  }
+}
+
+// Of any paths in a row, a view has its share, to within one; its own paths are counted on.
+TEST(Place, ViewsTakeTurnsByTheirShares) {
+  const std::vector<uint64_t> shares{5, 1, 3};
+  const ViewTurns turns(shares);
+  std::vector<uint64_t> paths(shares.size());
+  for (uint64_t path = 0; path < 1000; ++path) {
+    const ViewTurns::Turn turn = turns.of(path);
+    ASSERT_EQ(turn.path, paths[turn.view]++);
+    for (size_t v = 0; v < shares.size(); ++v) {
+      ASSERT_NEAR(double(paths[v]), double(shares[v] * (path + 1)) / 9.0, 1.0) << path;
+    }
+  }
+}
+
+// A camera in each room of the U-shape, and the VPLs of both by their shares: the density is the
+// mean of theirs, which tells the rooms apart.
+class TwoRooms : public ::testing::Test {
+ protected:
+  const World world{"u-shape/scene.toml"};
+  View left() const { return {"", world.scene.camera, {48, 36}}; }
+  View right() const {
+    View view = left();
+    view.camera.position.x = -view.camera.position.x;
+    return view;
+  }
+  VplTable placed(const std::vector<View>& views, const std::vector<uint64_t>& shares,
+                  const Given& options) const {
+    return place({world.rays, world.lights, PlaceViews(views, shares)},
+                 resolve(placeSpec(), options))
+        .table;
+  }
+  static double inTheRight(const VplTable& table) {
+    return double(std::ranges::count_if(table.position, [](Vec3 p) { return p.x > 0; })) /
+           double(table.size());
+  }
+};
+
+TEST_F(TwoRooms, CandidatesHaveTheDensityOfTheViewsByTheirShares) {
+  const double ofLeft = inTheRight(placed({left()}, {1}, count(20000))),
+               ofRight = inTheRight(placed({right()}, {1}, count(20000)));
+  ASSERT_GT(ofRight, ofLeft + 0.5);
+  const PlaceViews views({left(), right()}, {3, 1});
+  const PlaceResult both =
+      place({world.rays, world.lights, views}, resolve(placeSpec(), count(20000)));
+  ASSERT_EQ(both.rowsOfView.size(), 2u);
+  EXPECT_EQ(both.rowsOfView[0] + both.rowsOfView[1], 20000u);
+  const double share = double(both.rowsOfView[1]) / 20000.0;
+  EXPECT_NEAR(share, 0.25, 0.02);
+  EXPECT_NEAR(inTheRight(both.table), (1.0 - share) * ofLeft + share * ofRight, 0.02);
+}
+
+// The VPLs of both views light each as the paths do. VPLs alone, without compensation: a region
+// that stood for one view only would leave the other dark. Between 3 % and 5 % is what clamping
+// takes and a set of VPLs differs by.
+TEST_F(TwoRooms, OneSetOfVplsLightsEachView) {
+  World seen{"u-shape/scene.toml"};
+  const VplTable vpls = keepVpls(placed({left(), right()}, {1, 1}, kFewCandidates),
+                                 with(kFewVpls, {{"count", "2000"}}));
+  const VplTable lit = lightVpls(seen, vpls, {{"photons", "1M"}}).table;
+  for (const View& view : {left(), right()}) {
+    seen.scene.camera = view.camera;
+    seen.scene.film = view.film;
+    const Given indirect{{"only", "indirect"}, {"spp", "8"}};
+    const double compensated = renderVpls(seen, lit, indirect).stats.indirect,
+                 alone = indirectByVpls(seen, lit, {{"spp", "8"}, {"clamp", "0.1"}});
+    VplTable own = lightVpls(seen, keptVpls(seen, {{"count", "2000"}}), {{"photons", "1M"}}).table;
+    const double byOwn = indirectByVpls(seen, own, {{"spp", "8"}, {"clamp", "0.1"}});
+    EXPECT_NEAR(alone / byOwn, 1.0, 0.08);
+    EXPECT_NEAR(compensated / renderVpls(seen, own, indirect).stats.indirect, 1.0, 0.05);
   }
 }
 

@@ -36,7 +36,7 @@ std::string typed(Number number) {
 }
 
 inline PlaceResult placeVpls(const World& world, const Given& options) {
-  return place(world.rays, world.lights, resolve(placeSpec(), options));
+  return place({world.rays, world.lights, PlaceViews(world.scene)}, resolve(placeSpec(), options));
 }
 inline VplTable keepVpls(const VplTable& candidates, const Given& options) {
   return eliminate(candidates, resolve(eliminateSpec(), options)).table;

@@ -9,6 +9,16 @@ namespace {
 
 // Of what stands at `path` in the two.
 std::string difference(const Json& before, const Json& now, const std::string& path) {
+  if (before.is_array() && now.is_array()) {
+    if (before.size() != now.size()) {
+      return path + " had " + std::to_string(before.size()) + " entries and has now " +
+             std::to_string(now.size());
+    }
+    for (size_t i = 0; i < now.size(); ++i) {
+      if (before[i] != now[i])
+        return difference(before[i], now[i], path + " " + std::to_string(i + 1));
+    }
+  }
   if (!before.is_object() || !now.is_object())
     return path + " was " + before.dump() + " and is now " + now.dump();
   const auto differing = [&](const std::string& key) {

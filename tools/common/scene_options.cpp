@@ -9,48 +9,57 @@ namespace bnvpl {
 namespace {
 
 // What follows the scene's name, all of which needs `scene`.
-void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene) {
+void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene, ViewCount views) {
+  const bool several = views == ViewCount::Several;
+  const std::string more = several ? "; repeat it for VPLs that serve several" : "";
   cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
       ->take_all()
       ->allow_extra_args(false)  // or it would swallow what follows
       ->needs(scene);
-  CLI::Option* camera = cli.add_option("--camera", options.camera,
-                                       "camera of the scene's file; the first unless given")
+  CLI::Option* camera = cli.add_option("--camera", options.cameras,
+                                       "camera of the scene's file; the first unless given" + more)
                             ->type_name("NAME|NUMBER")
+                            ->allow_extra_args(false)
                             ->needs(scene);
-  addFile(cli, "--view", options.view, "a .toml of [film] and [camera] in place of the scene's own")
-      ->needs(scene)
-      ->excludes(camera);
+  CLI::Option* view = addFile(cli, "--view", options.views,
+                              "a .toml of [film] and [camera] in place of the scene's own" + more)
+                          ->allow_extra_args(false)
+                          ->needs(scene)
+                          ->excludes(camera);
+  for (CLI::Option* option : {camera, view})
+    option->expected(1, several ? CLI::detail::expected_max_vector_size : 1);
 }
 
 }  // namespace
 
-void addSceneOptions(CLI::App& cli, SceneOptions& options) {
+void addSceneOptions(CLI::App& cli, SceneOptions& options, ViewCount views) {
   addOptions(
       cli, options,
-      addFile(cli, "scene", options.file, "the scene (.toml, .pbrt, .gltf, .glb)")->required());
+      addFile(cli, "scene", options.file, "the scene (.toml, .pbrt, .gltf, .glb)")->required(),
+      views);
 }
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {
   CLI::Option* option = addFile(cli, "--scene", options.file, help);
-  addOptions(cli, options, option);
+  addOptions(cli, options, option, ViewCount::One);
   return option;
 }
 
 Json toJson(const SceneOptions& options) {
   return {{"file", options.file.string()},
           {"defines", options.defines},
-          {"camera", options.camera},
-          {"view", options.view.string()}};
+          {"cameras", options.cameras},
+          {"views", std::vector<std::string>(options.views.begin(), options.views.end())}};
 }
 
 SceneOptions sceneOptionsOf(const Json& json) {
   SceneOptions options;
   options.file = fieldOf<std::string>(json, "file");
   options.defines = fieldOf<std::vector<std::string>>(json, "defines");
-  options.camera = fieldOf<std::string>(json, "camera");
-  options.view = fieldOf<std::string>(json, "view");
+  options.cameras = fieldOf<std::vector<std::string>>(json, "cameras");
+  for (const auto& view : fieldOf<std::vector<std::string>>(json, "views"))
+    options.views.emplace_back(view);
   return options;
 }
 
@@ -68,10 +77,10 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
     throw UsageError("--define " + name + " has no effect: " + scene.name() +
                      " names no file by ${" + name + "}; leave it out");
   }
-  if (!options.view.empty()) {
-    useViewFile(options.view, scene);
-  } else if (!options.camera.empty()) {
-    chooseCamera(options.camera, scene);
+  if (!options.views.empty()) {
+    useViewFile(options.views.front(), scene);
+  } else if (!options.cameras.empty()) {
+    chooseCamera(options.cameras.front(), scene);
   } else if (scene.views.size() > 1) {
     scene.warnings.push_back(scene.name() + ": has several cameras, " + cameraList(scene) +
                              "; the first is taken, another by --camera");
@@ -80,9 +89,25 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
   return scene;
 }
 
-Json viewRecord(const Scene& scene) {
-  return {{"size", sizeText(scene.film)}, {"hash", hashText(hashView(scene.camera, scene.film))}};
+std::vector<View> viewsOf(const SceneOptions& options, Scene& scene) {
+  std::vector<View> views{{"", scene.camera, scene.film}};
+  const auto add = [&](const auto& names, const auto& use) {
+    for (size_t i = 1; i < names.size(); ++i) {
+      use(names[i], scene);
+      views.push_back({"", scene.camera, scene.film});
+    }
+  };
+  add(options.views, useViewFile);
+  add(options.cameras, chooseCamera);
+  scene.camera = views.front().camera;
+  scene.film = views.front().film;
+  return views;
 }
+
+Json viewRecord(const Camera& camera, const Film& film) {
+  return {{"size", sizeText(film)}, {"hash", hashText(hashView(camera, film))}};
+}
+Json viewRecord(const Scene& scene) { return viewRecord(scene.camera, scene.film); }
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,
                       const std::string& cure) {

@@ -10,12 +10,15 @@ namespace bnvpl {
 struct SceneOptions {
   fs::path file;
   std::vector<std::string> defines;  // NAME=VALUE
-  std::string camera;                // of the file, by name or number; empty: its first
-  fs::path view;                     // instead of any of its cameras; empty: none
+  std::vector<std::string> cameras;  // of the file, by name or number; none: its first
+  std::vector<fs::path> views;       // instead of any of its cameras
 };
 
+// How many cameras, or views, a tool takes.
+enum class ViewCount { One, Several };
+
 // The positional argument SCENE, --define, --camera and --view.
-void addSceneOptions(CLI::App& cli, SceneOptions& options);
+void addSceneOptions(CLI::App& cli, SceneOptions& options, ViewCount views = ViewCount::One);
 // The same for tools that need a scene at times: --scene SCENE in place of the argument.
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);
 
@@ -27,9 +30,14 @@ SceneOptions sceneOptionsOf(const Json& json);
 // tools: silent is a tool that reads a file made from this scene, as whoever made that has said
 // them, and one that prints them later.
 enum class Warnings { Print, Silent };
+// Of several views the first is the scene's.
 Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings);
 
+// All views that the options name, or else the scene's own. Their files become the scene's.
+std::vector<View> viewsOf(const SceneOptions& options, Scene& scene);
+
 // What a view is, for records: its size in pixels, and a hash of camera and film.
+Json viewRecord(const Camera& camera, const Film& film);
 Json viewRecord(const Scene& scene);
 
 // Refuses rows that lie on another scene. `cure` says what to rerun.

@@ -9,9 +9,9 @@ namespace bnvpl {
 namespace {
 
 // What does not decide the result, or is said anew of each shard.
-constexpr std::array<std::string_view, 9> kOwn{
-    "--output", "--shard", "--checkpoint", "--checkpoint-every", "--threads",
-    "--quiet",  "--stats", "--depfile",    "--shard-spare"};
+constexpr std::array<std::string_view, 11> kOwn{
+    "--output", "--shard",   "--checkpoint",  "--checkpoint-every", "--threads", "--quiet",
+    "--stats",  "--depfile", "--shard-spare", "--estimate",         "--json"};
 
 // Digits only, from 1 to kMostShards; 0 for anything else.
 uint64_t numberOf(const std::string& text) {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "formats/vpl_io.h"
+#include "tools/common/cost.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
@@ -14,6 +15,7 @@ namespace bnvpl {
 namespace {
 
 constexpr double kBytesPerCandidate = 120;  // measured: 140 to 150
+constexpr double kBytesPerRow = 3 * sizeof(Vec3) + sizeof(uint32_t);
 
 struct Paths {
   fs::path input, output;
@@ -41,7 +43,28 @@ void report(const EliminateResult& kept, size_t candidates, Summary& summary) {
               "area " + formatSi(kept.area) + ", r_max " + formatSi(kept.rMax) + " (scene units)");
 }
 
-int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool) {
+// Evenly spaced candidates, of which the same share is kept: elimination takes time in proportion.
+Cost costOfEliminating(const VplTable& candidates, const Values& options, const World* world) {
+  const RayScene* rays = world ? &world->rays : nullptr;
+  const LightSet* lights = world ? &world->lights : nullptr;
+  if (candidates.size() < options.whole("count"))
+    eliminate(candidates, options, rays, lights);  // refuses
+  const auto part = [&](uint64_t count) {
+    std::vector<uint32_t> rows(count);
+    for (uint64_t i = 0; i < count; ++i)
+      rows[i] = static_cast<uint32_t>(i * candidates.size() / count);
+    Values some = options;
+    some.set("count", std::max<uint64_t>(1, options.whole("count") * count / candidates.size()));
+    eliminate(keepRows(candidates, rows), some, rays, lights);
+  };
+  Cost cost =
+      costOfRows(candidates.size(), part, [](uint64_t rows) { return static_cast<double>(rows); });
+  cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the probe's copy
+  return cost;
+}
+
+int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost,
+                 const ToolOptions& tool) {
   Summary summary("vpl-eliminate");
   const Values options = resolve(eliminateSpec(), given);
   const EliminateMethod& method = eliminateMethod(options);
@@ -53,11 +76,18 @@ int runEliminate(const Paths& paths, const Given& given, const ToolOptions& tool
   }
   RunFiles used;
   used.reads("candidates", paths.input).reads("--scene", paths.scene.file);
-  used.writes("-o", paths.output, {".vpl"}).writes(tool).check();
-  requireMemoryFor(paths.input, kBytesPerCandidate, "place fewer with vpl-place -n");
+  used.writes("-o", paths.output, {".vpl"}).writes(tool);
+  if (!cost.estimate) {
+    used.check();
+    requireMemoryFor(paths.input, kBytesPerCandidate, "place fewer with vpl-place -n");
+  }
   const VplTable candidates = readVpl(paths.input, method.takes);
   std::optional<World> world;
   if (sceneGiven) world.emplace(paths.scene, paths.input, candidates.sceneHash);
+  if (cost.estimate) {
+    printCost(costOfEliminating(candidates, options, world ? &*world : nullptr), cost);
+    return kExitOk;
+  }
   used.ready(world ? world->scene.files : std::vector<fs::path>{});
 
   ProgressMeter meter("candidates", candidates.size(), tool.quiet);
@@ -87,13 +117,15 @@ int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Keep the candidates that are spread best over the surfaces.", "vpl-eliminate"};
   Given given;
+  CostOptions cost;
   ToolOptions tool;
   Paths paths;
   addFile(cli, "candidates", paths.input, "from vpl-place (.vpl)")->required();
   addFile(cli, "-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
   addSceneFlag(cli, paths.scene, "the scene, for methods that ask for it");
   addStageOptions(cli, eliminateSpec(), given);
+  addCostOptions(cli, cost);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
-  return runTool(cli, tool, argc, argv, [&] { return runEliminate(paths, given, tool); });
+  return runTool(cli, tool, argc, argv, [&] { return runEliminate(paths, given, cost, tool); });
 }

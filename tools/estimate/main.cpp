@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"
+#include "tools/common/cost.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"
@@ -22,6 +23,7 @@ struct Request {
   fs::path input, output;
   CheckpointOptions checkpoint;
   std::optional<Shard> shard;
+  CostOptions cost;
   Given given;
   std::string command;  // without --shard and -o
 };
@@ -34,17 +36,27 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
   used.reads("scene", request.scene.file).reads("vpls", request.input);
   used.writes("-o", request.output, {shard ? kShardExtension : ".vpl"});
   used.writes("--checkpoint", request.checkpoint.file);
-  used.writes(tool).check();
-  requireMemoryFor(request.input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),
-                   "keep fewer with vpl-eliminate -n, or lower --threads");
+  used.writes(tool);
+  if (!request.cost.estimate) {
+    used.check();
+    requireMemoryFor(request.input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),
+                     "keep fewer with vpl-eliminate -n, or lower --threads");
+  }
   const VplTable vpls = readVpl(request.input, VplStage::Eliminated);
   const Scene scene = loadSceneFor("vpl-estimate", request.scene, Warnings::Silent);
   scene.requireLight();
-  used.ready(scene.files);
+  if (!request.cost.estimate) used.ready(scene.files);
   requireSameScene(request.input, vpls.sceneHash, scene,
                    "rerun vpl-place and vpl-eliminate on this scene");
   const RayScene rays(scene);
   const LightSet lights(rays);
+  if (request.cost.estimate) {
+    printCost(costOfUnits([&](const Resume& resume) {
+                estimate(vpls, rays, lights, options, {}, resume);
+              }).ofShard(shard),
+              request.cost);
+    return kExitOk;
+  }
 
   const Json record =
       stageRecord("vpl-estimate", recordOf(estimateSpec(), options),
@@ -96,6 +108,7 @@ int main(int argc, char** argv) {
   addStageOptions(cli, estimateSpec(), request.given);
   addCheckpointOptions(cli, request.checkpoint);
   addShardOption(cli, request.shard, "photons, or of the VPLs for paths");
+  addCostOptions(cli, request.cost);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] {

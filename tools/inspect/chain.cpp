@@ -14,7 +14,7 @@ using Links = std::vector<const CheckedFile*>;  // by length of history
 
 bool sameRecord(const StageRecord& a, const StageRecord& b) {
   return a.tool == b.tool && a.version == b.version && a.options == b.options &&
-         a.inputs == b.inputs && a.viewHash == b.viewHash;
+         a.inputs == b.inputs && a.views == b.views;
 }
 
 std::string optionText(const Json& value) {

@@ -134,10 +134,12 @@ void requireOneScene(std::span<const CheckedFile> files) {
 // What it makes is of use to any view.
 bool isPlacing(const StageRecord& record) { return record.tool == "vpl-place"; }
 
-// An image may have a size of its own.
+// Than any that the stage looked at. An image may have a size of its own.
 bool isOfAnotherView(const CheckedFile& file, const StageRecord& record, const Scene& scene) {
   const Film& film = file.film && &record == &file.chain.back() ? *file.film : scene.film;
-  return !record.viewHash.empty() && record.viewHash != hashText(hashView(scene.camera, film));
+  const std::string hash = hashText(hashView(scene.camera, film));
+  return !record.views.empty() &&
+         std::ranges::find(record.views, hash, &StageRecord::View::hash) == record.views.end();
 }
 
 }  // namespace
@@ -175,11 +177,12 @@ std::string brokenView(const CheckedFile& file, const StageRecord& record, const
   return record.tool + " looked at another view than that of " + scene.name() + " as it is now";
 }
 
-bool placedForAnotherView(std::span<const CheckedFile> files, const Scene& scene) {
-  return std::ranges::any_of(files, [&](const CheckedFile& f) {
+std::string placedForAnotherView(std::span<const CheckedFile> files, const Scene& scene) {
+  const auto found = std::ranges::find_if(files, [&](const CheckedFile& f) {
     return !f.chain.empty() && isPlacing(f.chain.front()) &&
            isOfAnotherView(f, f.chain.front(), scene);
   });
+  return found == files.end() ? std::string() : describeViews(found->chain.front());
 }
 
 void checkScene(std::span<const CheckedFile> files, const Scene& scene) {

@@ -37,7 +37,8 @@ void checkScene(std::span<const CheckedFile> files, const Scene& scene);
 
 // What is wrong with the view that the stage of this record looked at, or empty.
 std::string brokenView(const CheckedFile& file, const StageRecord& record, const Scene& scene);
-// Whether VPLs of these files were placed for another view, which is no error.
-bool placedForAnotherView(std::span<const CheckedFile> files, const Scene& scene);
+// Which views VPLs of these files were placed for, where the scene's is none of them, which is no
+// error; else empty.
+std::string placedForAnotherView(std::span<const CheckedFile> files, const Scene& scene);
 
 }  // namespace bnvpl

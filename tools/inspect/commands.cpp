@@ -84,8 +84,11 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   else if (checked.size() > 1)
     say("no contradiction between the files");
   if (withScene) say("made from " + scene.name() + " as it is now");
-  if (withScene && placedForAnotherView(checked, scene))
-    say("the VPLs were placed for another view, which is no error: they light any");
+  const std::string placedFor = withScene ? placedForAnotherView(checked, scene) : "";
+  if (!placedFor.empty()) {
+    say("the VPLs were placed for another view, which is no error: they light any (theirs: " +
+        placedFor + ")");
+  }
   return kExitOk;
 }
 

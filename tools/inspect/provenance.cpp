@@ -1,6 +1,8 @@
 #include "tools/inspect/provenance.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include "formats/provenance.h"
 
@@ -43,10 +45,12 @@ std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string
     if (const auto it = entry.find("inputs"); it != entry.end() && it->is_object()) {
       for (const auto& [name, value] : it->items()) record.inputs[name] = plain(value);
     }
-    if (const auto it = entry.find("view"); it != entry.end() && it->is_object()) {
-      record.viewSize = textAt(*it, "size");
-      record.viewHash = textAt(*it, "hash");
-    }
+    const auto addView = [&](const Json& view) {
+      if (view.is_object()) record.views.push_back({textAt(view, "size"), textAt(view, "hash")});
+    };
+    if (const auto it = entry.find("view"); it != entry.end()) addView(*it);
+    if (const auto it = entry.find("views"); it != entry.end() && it->is_array())
+      std::ranges::for_each(*it, addView);
     chain.push_back(std::move(record));
   }
   return chain;
@@ -69,8 +73,21 @@ std::string describeRecord(const StageRecord& record) {
     line.append(separator).append(name).append(" ").append(value);
     separator = ", ";
   }
-  if (!record.viewHash.empty()) line += "; view " + record.viewSize + " " + record.viewHash;
+  if (!record.views.empty()) line += "; " + describeViews(record);
   return line;
+}
+
+std::string describeViews(const StageRecord& record) {
+  constexpr size_t kNamed = 4;
+  std::string text = record.views.size() > 1 ? "views" : "view", separator = " ";
+  for (const StageRecord::View& view :
+       std::span(record.views).first(std::min(record.views.size(), kNamed))) {
+    text.append(separator).append(view.size).append(" ").append(view.hash);
+    separator = ", ";
+  }
+  if (record.views.size() > kNamed)
+    text += " and " + std::to_string(record.views.size() - kNamed) + " more";
+  return text;
 }
 
 }  // namespace bnvpl

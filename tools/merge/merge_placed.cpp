@@ -15,6 +15,22 @@ namespace {
                    shards.commandFor({part, part + 1, shards.of()}, " --shard-spare 0.1"));
 }
 
+// As vpl-place records its views; one has no share.
+ViewTurns turnsOf(const Json& record) {
+  std::vector<uint64_t> shares;
+  if (!record.contains("views")) return ViewTurns();
+  uint64_t left = kMostViewTurns;
+  for (const Json& view : fieldOf<std::vector<Json>>(record, "views")) {
+    const auto share = fieldOf<uint64_t>(view, "share");
+    if (share == 0 || share > left)
+      throw InputError("the shards have views of strange shares; make them again");
+    left -= share;
+    shares.push_back(share);
+  }
+  if (shares.empty()) throw InputError("the shards have no views; make them again");
+  return ViewTurns(std::move(shares));
+}
+
 }  // namespace
 
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
@@ -26,7 +42,8 @@ std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, O
                 "place fewer with -n");
   const Json& record = shards.whole().run;
   const uint64_t sceneHash = inputHash(shards.whole(), "scene");
-  PlaceResult placed = joinPlaced(options, sceneHash, shards.source(),
+  const ViewTurns turns = turnsOf(record);
+  PlaceResult placed = joinPlaced(options, sceneHash, turns, shards.source(),
                                   [&](uint64_t unit) { refuseTooFew(shards, unit); });
   placed.table.provenance = extendProvenance("", record);
   requireSound(placed.table);

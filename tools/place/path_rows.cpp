@@ -49,9 +49,10 @@ void PathRows::sortByPath(size_t first) {
 
 // Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
 // A wave is joined while the next one is traced, for there is but one thread's work in it.
-PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
+PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths) {
-  RowJoin joined(count, last);
+  const uint64_t count = whole.count;
+  RowJoin joined(whole);
   uint64_t chunks = 0, found = 0;
   const auto trace = [&](Wave& wave) {
     traceWave(

@@ -25,14 +25,21 @@ struct PathRows {
 
 inline constexpr uint64_t kPathsPerChunk = 1024;
 
+// What chunks are joined to.
+struct JoinedRows {
+  uint64_t count;
+  LastPath last;
+  const ViewTurns& turns;
+};
+
 // Traces chunk after chunk until there are `count` rows, and joins them. Throws InputError when the
 // effort has no end.
-PlaceResult collectRows(const std::string& scene, uint64_t count, LastPath last,
+PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths);
 // The same in shards, whose units are chunks: place.h.
 PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
                        const ProgressFn& progress, const TracePaths& tracePaths);
-PlaceResult joinShards(uint64_t count, LastPath last, const ShardSource& source,
+PlaceResult joinShards(const JoinedRows& whole, const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly);
 
 // A chunk as bytes. decode() throws InputError for what are not those of a chunk.

@@ -104,9 +104,9 @@ PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, c
   return trace.soFar();
 }
 
-PlaceResult joinShards(uint64_t count, LastPath last, const ShardSource& source,
+PlaceResult joinShards(const JoinedRows& whole, const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly) {
-  RowJoin joined(count, last);
+  RowJoin joined(whole);
   for (uint64_t unit = 0; !joined.full(); ++unit) {
     const auto bytes = source.record(kWork, unit);
     if (!bytes) endedEarly(unit);

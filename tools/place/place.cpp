@@ -34,45 +34,47 @@ const PlaceMethod& placeMethod(const Values& options) {
 namespace {
 
 // What can be interrupted is traced as the only shard of all, whose rows are kept.
-PlaceResult placeInPieces(const RayScene& rays, const LightSet& lights, const Values& options,
-                          const ProgressFn& progress, Resume resume) {
+PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
+                          Resume resume) {
   std::vector<std::string> records;
   const ShardSink sink{
       [&](std::string_view, uint64_t, std::string_view bytes) { records.emplace_back(bytes); }, {}};
   resume.sink = &sink;
-  placeShard(rays, lights, options, 0.0, resume, progress);
+  placeShard(in, options, 0.0, resume, progress);
   const ShardSource source{[&](std::string_view, uint64_t unit) -> std::optional<std::string> {
                              if (unit >= records.size()) return {};
                              return std::move(records[unit]);
                            },
                            {}};
-  return joinPlaced(options, rays.scene().contentHash, source,
+  return joinPlaced(options, in.rays.scene().contentHash, in.views.turns, source,
                     [](uint64_t) { throw std::logic_error("the paths of a whole ended early"); });
 }
 
 }  // namespace
 
-PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
-                  const ProgressFn& progress, const Resume& resume) {
-  if (resume.pause) return placeInPieces(rays, lights, options, progress, resume);
+PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
+                  const Resume& resume) {
+  if (resume.pause) return placeInPieces(in, options, progress, resume);
   const PlaceMethod& method = placeMethod(options);
-  PlaceResult result = collectRows(rays.scene().name(), options.whole("count"), method.last,
-                                   progress, method.make({rays, lights}, options));
+  PlaceResult result =
+      collectRows(in.rays.scene().name(), {options.whole("count"), method.last, in.views.turns},
+                  progress, method.make(in, options));
   method.finish(result);
-  result.table.sceneHash = rays.scene().contentHash;
+  result.table.sceneHash = in.rays.scene().contentHash;
   return result;
 }
 
-PlaceResult placeShard(const RayScene& rays, const LightSet& lights, const Values& options,
-                       double spare, const Resume& resume, const ProgressFn& progress) {
-  return traceShard(rays.scene().name(), options.whole("count"), spare, resume, progress,
-                    placeMethod(options).make({rays, lights}, options));
+PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
+                       const Resume& resume, const ProgressFn& progress) {
+  return traceShard(in.rays.scene().name(), options.whole("count"), spare, resume, progress,
+                    placeMethod(options).make(in, options));
 }
 
-PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ShardSource& source,
+PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ViewTurns& turns,
+                       const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly) {
   const PlaceMethod& method = placeMethod(options);
-  PlaceResult result = joinShards(options.whole("count"), method.last, source, endedEarly);
+  PlaceResult result = joinShards({options.whole("count"), method.last, turns}, source, endedEarly);
   method.finish(result);
   result.table.sceneHash = sceneHash;
   return result;

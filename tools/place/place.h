@@ -6,7 +6,9 @@
 #include "core/progress.h"
 #include "core/resume.h"
 #include "formats/vpl_table.h"
+#include "scene/scene.h"
 #include "tools/common/method.h"
+#include "tools/place/view_turns.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 
@@ -20,11 +22,22 @@ struct PlaceResult {
   uint64_t nonFinite = 0;  // vertices or photons left out because a value was NaN or infinite
   // How the traced paths ended: in the void, on a surface that reflects nothing, or at full depth.
   uint64_t escaped = 0, absorbed = 0, complete = 0;
+  std::vector<uint64_t> rowsOfView;  // of the table; empty where there is one view
+};
+
+// Whose surroundings VPLs are placed for; all of one scene.
+struct PlaceViews {
+  explicit PlaceViews(const Scene& scene) : views{{"", scene.camera, scene.film}} {}
+  PlaceViews(std::vector<View> of, std::vector<uint64_t> shares)
+      : views(std::move(of)), turns(std::move(shares)) {}
+  std::vector<View> views;
+  ViewTurns turns;
 };
 
 struct PlaceInputs {
   const RayScene& rays;
   const LightSet& lights;
+  const PlaceViews& views;
 };
 
 // Traces the paths [begin, begin + kPathsPerChunk) into a chunk without rows: path_rows.h. Called
@@ -52,20 +65,21 @@ std::span<const PlaceMethod* const> placeMethods();  // one for each folder besi
 const StageSpec& placeSpec();
 const PlaceMethod& placeMethod(const Values& options);
 
-// A pure function of the scene and the options: any number of threads, and any interruption that
-// `resume` mends, gives the same bytes. Throws InputError when the scene yields too few within a
-// bounded effort. `progress` counts VPLs.
-PlaceResult place(const RayScene& rays, const LightSet& lights, const Values& options,
-                  const ProgressFn& progress = {}, const Resume& resume = {});
+// A pure function of the scene, its views and the options: any number of threads, and any
+// interruption that `resume` mends, gives the same bytes. Throws InputError when the scene yields
+// too few within a bounded effort. `progress` counts VPLs.
+PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress = {},
+                  const Resume& resume = {});
 
 // The paths of resume's shard, whose rows go to the sink; the result has none. Nobody knows before
 // how many paths give the count: a shard ends with its part of the rows and six standard deviations
 // more, for those that find fewer, and with `spare` of its part besides.
-PlaceResult placeShard(const RayScene& rays, const LightSet& lights, const Values& options,
-                       double spare, const Resume& resume, const ProgressFn& progress = {});
+PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
+                       const Resume& resume, const ProgressFn& progress = {});
 // What place() gives, from the rows of all shards. `endedEarly` is called with the first unit that
 // is missing where they do not suffice, and throws.
-PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ShardSource& source,
+PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ViewTurns& turns,
+                       const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly);
 
 }  // namespace bnvpl

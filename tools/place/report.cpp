@@ -1,11 +1,28 @@
 #include "tools/place/report.h"
 
+#include <algorithm>
+
 namespace bnvpl {
+namespace {
+
+// "3 views, of each 1800 (view 2) to 2200 (view 1)"
+std::string textOf(const std::vector<uint64_t>& rowsOfView) {
+  const auto [least, most] = std::ranges::minmax_element(rowsOfView);
+  const auto named = [&](auto at) {
+    return std::to_string(*at) + " (view " + std::to_string(at - rowsOfView.begin() + 1) + ")";
+  };
+  return std::to_string(rowsOfView.size()) + " views, of each " + named(least) + " to " +
+         named(most);
+}
+
+}  // namespace
 
 void reportPlaced(const PlaceResult& placed, Summary& summary) {
   summary.add(
       "placed", placed.rows,
       "placed " + std::to_string(placed.rows) + " on " + std::to_string(placed.paths) + " paths");
+  if (!placed.rowsOfView.empty())
+    summary.add("placed_of_views", placed.rowsOfView, textOf(placed.rowsOfView));
   summary.add("paths", placed.paths);
   summary.add("rays", placed.rays);
   summary.addNonFinite(placed.nonFinite, "vertices of paths");

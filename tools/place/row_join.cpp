@@ -64,26 +64,33 @@ void addCounts(const PathRows& chunk, PlaceResult& result) {
   result.paths += kPathsPerChunk;
 }
 
-RowJoin::RowJoin(uint64_t count, LastPath last) : count_(count), last_(last) {
+RowJoin::RowJoin(const JoinedRows& whole) : whole_(whole) {
+  if (whole.turns.views() > 1) result_.rowsOfView.resize(whole.turns.views());
   VplTable& rows = result_.table;
-  for (auto* column : {&rows.position, &rows.normal, &rows.albedo}) column->reserve(count);
+  for (auto* column : {&rows.position, &rows.normal, &rows.albedo}) column->reserve(whole.count);
 }
 
 void RowJoin::join(const PathRows& chunk) {
   VplTable& rows = result_.table;
-  const size_t take = std::min(count_ - rows.size(), chunk.rows.size());
+  const size_t take = std::min(whole_.count - rows.size(), chunk.rows.size());
   append(chunk.rows, take, rows);
   addCounts(chunk, result_);
-  if (rows.size() < count_) return;
+  countViews(chunk, take);
+  if (rows.size() < whole_.count) return;
   full_ = true;
   if (take > 0) result_.paths = chunk.path[take - 1] + 1;
-  if (last_ == LastPath::Whole) dropCutPath(chunk, take, result_);
+  if (whole_.last == LastPath::Whole) dropCutPath(chunk, take, result_);
+}
+
+void RowJoin::countViews(const PathRows& chunk, size_t rows) {
+  if (result_.rowsOfView.empty()) return;
+  for (size_t i = 0; i < rows; ++i) ++result_.rowsOfView[whole_.turns.of(chunk.path[i]).view];
 }
 
 PlaceResult RowJoin::finish(const std::string& scene) {
   VplTable& rows = result_.table;
   if (rows.size() == 0) {
-    throw InputError(scene + "one photon has more hits than -n " + std::to_string(count_) +
+    throw InputError(scene + "one photon has more hits than -n " + std::to_string(whole_.count) +
                      "; ask for more VPLs");
   }
   rows.id.resize(rows.size());

@@ -42,8 +42,8 @@ void addCounts(const PathRows& chunk, PlaceResult& result);
 // Chunks in path order, until there are `count` rows.
 class RowJoin {
  public:
-  RowJoin(uint64_t count, LastPath last);
-  bool full() const { return result_.table.size() == count_ || full_; }
+  explicit RowJoin(const JoinedRows& whole);
+  bool full() const { return result_.table.size() == whole_.count || full_; }
   uint64_t rows() const { return result_.table.size(); }
   const PlaceResult& soFar() const { return result_; }
   void join(const PathRows& chunk);
@@ -51,8 +51,9 @@ class RowJoin {
   PlaceResult finish(const std::string& scene);
 
  private:
-  uint64_t count_;
-  LastPath last_;
+  void countViews(const PathRows& chunk, size_t rows);
+
+  JoinedRows whole_;
   PlaceResult result_;
   bool full_ = false;  // though the last path was dropped
 };

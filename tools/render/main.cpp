@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"
+#include "tools/common/cost.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/exposure.h"
 #include "tools/common/film_size.h"
@@ -25,6 +26,7 @@ struct Request {
   ImagePaths images;
   CheckpointOptions checkpoint;
   std::optional<Shard> shard;
+  CostOptions cost;
   Given given;
   std::string command;  // without --shard and -o
 };
@@ -62,6 +64,35 @@ void requireConsistent(const Request& paths, const Values& options) {
   }
 }
 
+// The options of so many samples without passes, which have no units: passes take turns over the
+// same film. What they end by is not known before.
+Given withoutPasses(const Given& given, const Values& options) {
+  const auto budget = budgetOf(options);
+  if (!budget) return given;
+  if (!options.has("passes")) {
+    throw UsageError(
+        "--estimate cannot know how many passes --time and --target-error take; give --passes");
+  }
+  Given plain;
+  for (const auto& [name, text] : given) {
+    if (name != "passes" && name != "time" && name != "target-error" && name != "adaptive" &&
+        name != "spp")
+      plain.emplace_back(name, text);
+  }
+  plain.emplace_back("spp", std::to_string(budget->passes * kPassSpp));
+  return plain;
+}
+
+Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+                     const Request& request, const Values& options) {
+  const Values plain = resolveRender(withoutPasses(request.given, options));
+  Cost cost =
+      costOfUnits([&](const Resume& resume) { render(rays, lights, lit, plain, {}, resume); });
+  const Film& film = rays.scene().film;
+  cost.memoryBytes += (budgetOf(options) ? 160.0 : 40.0) * film.width * film.height;  // the image
+  return cost.ofShard(request.shard);
+}
+
 int runRender(const Request& request, const ToolOptions& tool) {
   Summary summary("vpl-render");
   const Values options = resolveRender(request.given);
@@ -72,22 +103,31 @@ int runRender(const Request& request, const ToolOptions& tool) {
   used.reads("scene", request.scene.file).reads("lit", request.lit);
   used.writes("-o", request.images.exr, {shard ? kShardExtension : ".exr"});
   used.writes("--png", request.images.png, {".png"});
-  used.writes("--checkpoint", request.checkpoint.file).writes(tool).check();
+  used.writes("--checkpoint", request.checkpoint.file).writes(tool);
+  const bool estimating = request.cost.estimate;
+  if (!estimating) used.check();
 
-  if (vpl) requireMemoryFor(request.lit, kBytesPerVpl, "keep fewer VPLs with vpl-eliminate -n");
+  if (vpl && !estimating)
+    requireMemoryFor(request.lit, kBytesPerVpl, "keep fewer VPLs with vpl-eliminate -n");
   VplTable lit;
   if (vpl) lit = readVpl(request.lit, VplStage::Lit);
   Scene scene = loadSceneFor("vpl-render", request.scene, vpl ? Warnings::Silent : Warnings::Print);
-  used.ready(scene.files);
+  if (!estimating) used.ready(scene.files);
   if (!options.text("size").empty()) scene.film = parseSize(options.text("size"));
   if (vpl) {
     requireSameScene(request.lit, lit.sceneHash, scene,
                      "rerun the pipeline from vpl-place on this scene");
   }
-  requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
-                "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
+  if (!estimating) {
+    requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
+                  "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
+  }
   const RayScene rays(scene);
   const LightSet lights(rays);
+  if (estimating) {
+    printCost(costOfRendering(rays, lights, lit, request, options), request.cost);
+    return kExitOk;
+  }
 
   Json inputs{{"scene", hashText(scene.contentHash)}};
   if (vpl) inputs["lit"] = hashText(lit.checksum);
@@ -146,6 +186,7 @@ int main(int argc, char** argv) {
   addStageOptions(cli, renderSpec(), request.given);
   addCheckpointOptions(cli, request.checkpoint);
   addShardOption(cli, request.shard, "tiles and photons");
+  addCostOptions(cli, request.cost);
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] {

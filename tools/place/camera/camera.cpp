@@ -20,10 +20,13 @@ constexpr std::array kOptions{
 class CameraPath {
  public:
   CameraPath() = default;
-  CameraPath(const Scene& scene, uint64_t key, uint64_t path) : path_(path), rng_(key, path + 1) {
-    const Point2 film = r2Sequence(path, double{toUnitFloat(random64(key, 0, 0))},
-                                   double{toUnitFloat(random64(key, 0, 1))});
-    next_ = {scene.camera.position, cameraDirection(scene.camera, scene.film, film.x, film.y)};
+  CameraPath(const PlaceViews& views, uint64_t key, uint64_t path)
+      : path_(path), rng_(key, path + 1) {
+    const ViewTurns::Turn turn = views.turns.of(path);
+    const View& view = views.views[turn.view];
+    const Point2 film = r2Sequence(turn.path, double{toUnitFloat(random64(key, 0, 2 * turn.view))},
+                                   double{toUnitFloat(random64(key, 0, 2 * turn.view + 1))});
+    next_ = {view.camera.position, cameraDirection(view.camera, view.film, film.x, film.y)};
   }
   const Ray& next() const { return next_; }
   // Takes what next() has hit. False: the path has ended.
@@ -59,8 +62,8 @@ class CameraPath {
 };
 
 // The paths of a chunk, a batch of them together, round by round.
-void traceCameraPaths(const RayScene& rays, unsigned depth, uint64_t begin, uint64_t key,
-                      PathRows& chunk) {
+void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned depth, uint64_t begin,
+                      uint64_t key, PathRows& chunk) {
   std::array<CameraPath, RayScene::kBatch> paths;
   std::array<Ray, RayScene::kBatch> next;
   std::array<SurfacePoint, RayScene::kBatch> hits;
@@ -68,7 +71,7 @@ void traceCameraPaths(const RayScene& rays, unsigned depth, uint64_t begin, uint
   for (uint64_t path = begin; path < end;) {
     const size_t firstRow = chunk.path.size();
     size_t size = 0;
-    while (size < paths.size() && path < end) paths[size++] = {rays.scene(), key, path++};
+    while (size < paths.size() && path < end) paths[size++] = {views, key, path++};
     while (size > 0) {
       for (size_t i = 0; i < size; ++i) next[i] = paths[i].next();
       rays.closestHits({next.data(), size}, hits);
@@ -82,14 +85,14 @@ void traceCameraPaths(const RayScene& rays, unsigned depth, uint64_t begin, uint
   }
 }
 
-// Camera paths over the whole film, stratified so that every prefix covers it evenly. Specular
-// vertices are passed through; each diffuse vertex after the first becomes a candidate that faces
-// the side it was seen from, up to `depth`.
+// Camera paths over the whole film of each view, stratified so that every prefix covers it evenly.
+// Specular vertices are passed through; each diffuse vertex after the first becomes a candidate
+// that faces the side it was seen from, up to `depth`.
 TracePaths make(const PlaceInputs& in, const Values& options) {
   const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceCamera);
   const auto depth = static_cast<unsigned>(options.whole("depth"));
-  return [&rays = in.rays, key, depth](uint64_t begin, PathRows& chunk) {
-    traceCameraPaths(rays, depth, begin, key, chunk);
+  return [&rays = in.rays, &views = in.views, key, depth](uint64_t begin, PathRows& chunk) {
+    traceCameraPaths(rays, views, depth, begin, key, chunk);
   };
 }
 

@@ -1,0 +1,98 @@
+// --estimate: what a stage will need, told before it is run, against what it then takes.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/pipeline/tool_runner.h"
+#include "tools/common/exit_codes.h"
+
+namespace bnvpl {
+namespace {
+
+using Json = nlohmann::json;
+
+class CostRun : public PipelineTest {
+ protected:
+  struct Need {
+    double cpuS, memoryMiB;
+  };
+  Need estimated(const std::string& name, const std::string& arguments) const {
+    const std::vector<std::string> files = listing();
+    const Outcome r = tool(name, arguments + " --estimate --json");
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    EXPECT_EQ(listing(), files) << name << " wrote a file";
+    const Json json = Json::parse(r.out, nullptr, false);
+    if (!json.is_object()) return {0, 0};
+    EXPECT_EQ(json["tool"], name);
+    EXPECT_LE(json["setup_cpu_s"], json["cpu_s"]);
+    return {json["cpu_s"], json["memory_MiB"]};
+  }
+  // CPU time of all threads, as the kernel counts it: load of the machine hardly matters.
+  Need taken(const std::string& name, const std::string& arguments) const {
+    const Outcome r = shell(
+        "python3 -c 'import resource, subprocess, sys; code = subprocess.call(sys.argv[1:]); "
+        "use = resource.getrusage(resource.RUSAGE_CHILDREN); "
+        "print(use.ru_utime + use.ru_stime, use.ru_maxrss / 1024); sys.exit(code)' '" BNVPL_BIN
+        "/" +
+        name + "' " + arguments + " --quiet");
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    std::istringstream text(r.out);
+    Need need{};
+    text >> need.cpuS >> need.memoryMiB;
+    return need;
+  }
+  void expectPredicted(const std::string& name, const std::string& arguments) const {
+    const Need told = estimated(name, arguments), took = taken(name, arguments);
+    const std::string what = name + ": told " + std::to_string(told.cpuS) + " s, " +
+                             std::to_string(told.memoryMiB) + " MiB; took " +
+                             std::to_string(took.cpuS) + " s, " + std::to_string(took.memoryMiB) +
+                             " MiB";
+    RecordProperty(name, what);
+    EXPECT_LT(told.cpuS, 2.0 * took.cpuS) << what;
+    EXPECT_GT(told.cpuS, 0.5 * took.cpuS) << what;
+    EXPECT_LT(told.memoryMiB, 1.5 * took.memoryMiB) << what;
+    EXPECT_GT(told.memoryMiB, took.memoryMiB / 1.5) << what;
+  }
+  // Each so long that its probe is a part of it.
+  void expectAllPredicted(const std::string& scene) const {
+    expectPredicted("vpl-place", scene + " -n 1M -o " + path("candidates.vpl"));
+    expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 30k -o " + path("vpls.vpl"));
+    expectPredicted("vpl-estimate",
+                    scene + " " + path("vpls.vpl") + " --photons 2M -o " + path("lit.vpl"));
+    expectPredicted("vpl-render",
+                    scene + " " + path("lit.vpl") + " --size 192x144 --spp 4 -o " + path("i.exr"));
+  }
+};
+
+TEST_F(CostRun, StagesTakeWhatTheyToldInTheUShape) {
+  expectAllPredicted("'" BNVPL_SOURCE "/scenes/u-shape/scene.toml'");
+}
+
+TEST_F(CostRun, StagesTakeWhatTheyToldInACornellBox) {
+  expectAllPredicted("'" BNVPL_SOURCE "/scenes/cornell/scene.toml'");
+}
+
+TEST_F(CostRun, ShardsTakeTheirPart) {
+  const std::string render = scene_ + " --integrator path --size 192x144 --spp 64 -o ";
+  const Need whole = estimated("vpl-render", render + path("x.exr"));
+  const Need tenth = estimated("vpl-render", render + path("x.shard") + " --shard 3/10");
+  EXPECT_LT(tenth.cpuS, 0.3 * whole.cpuS);
+  EXPECT_GT(tenth.cpuS, 0.03 * whole.cpuS);
+}
+
+TEST_F(CostRun, OneLineTellsIt) {
+  const Outcome r = tool("vpl-place", scene_ + " -n 2k --estimate -o " + path("x.vpl"));
+  EXPECT_EQ(r.code, kExitOk) << r.err;
+  EXPECT_EQ(r.out.rfind("vpl-place: about ", 0), 0u) << r.out;
+  EXPECT_TRUE(contains(r.out, " MiB of memory and ") && contains(r.out, " CPU seconds")) << r.out;
+  EXPECT_EQ(std::count(r.out.begin(), r.out.end(), '\n'), 1);
+  fail("vpl-place", scene_ + " --json -o " + path("x.vpl"), kExitUsage, {"--json", "--estimate"});
+  const std::string render =
+      scene_ + " --integrator path --size 32x24 --estimate -o " + path("x.exr");
+  fail("vpl-render", render + " --time 2s", kExitUsage, {"--estimate", "give --passes"});
+  EXPECT_EQ(tool("vpl-render", render + " --passes 3").code, kExitOk);
+  EXPECT_FALSE(fs::exists(at("x.vpl")) || fs::exists(at("x.exr")));
+}
+
+}  // namespace
+}  // namespace bnvpl
