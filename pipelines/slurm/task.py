@@ -106,6 +106,7 @@ class Job:
 
     def queue_again(self):
         print(f"task.py: {self.task['name']} is queued again, to go on", flush=True)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the work is saved: nothing to wait for
         if subprocess.run(["scontrol", "requeue", os.environ["SLURM_JOB_ID"]]).returncode == 0:
             time.sleep(600)  # until Slurm ends this attempt
 

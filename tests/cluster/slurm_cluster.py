@@ -4,9 +4,9 @@ Needs Debian's slurmctld, slurmd, slurm-client and munge; no root, no service, n
 """
 
 import ctypes
-import getpass
 import os
 import pathlib
+import pwd
 import shutil
 import signal
 import socket
@@ -135,7 +135,7 @@ class Cluster:
         key.write_bytes(os.urandom(1024))
         key.chmod(0o400)
         port, *ports = free_ports(1 + len(NODES))
-        rows = CONF.format(folder=self.folder, host=socket.gethostname().split(".")[0], port=port, user=getpass.getuser())
+        rows = CONF.format(folder=self.folder, host=socket.gethostname().split(".")[0], port=port, user=pwd.getpwuid(os.getuid()).pw_name)
         for node, node_port in zip(NODES, ports):
             rows += f"NodeName={node} NodeAddr=127.0.0.1 Port={node_port} CPUs=1 RealMemory=2000 State=UNKNOWN\n"
         rows += f"PartitionName=all Nodes={','.join(NODES)} Default=YES MaxTime=INFINITE State=UP\n"
