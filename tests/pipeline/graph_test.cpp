@@ -6,6 +6,7 @@ namespace {
 
 class Graph : public PipelineTest {
  protected:
+  static constexpr const char* kScene = "scenes/test/one-bounce.toml";  // from the project's root
   static constexpr const char* kProducts[] = {"candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr",
                                               "image.png"};
   bool have(const std::string& program) const { return shell(program + " --version").code == 0; }
@@ -15,7 +16,7 @@ class Graph : public PipelineTest {
   }
   // What make printed.
   std::string made(const std::string& out, const std::string& more) const {
-    const Outcome r = shell("make -f pipelines/Makefile SCENE=" + scene_ + " OUT=" + path(out) +
+    const Outcome r = shell("make -f pipelines/Makefile SCENE=" + kScene + " OUT=" + path(out) +
                             " BIN=" BNVPL_BIN_FROM_SOURCE
                             " CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=1 RUN_FLAGS=--quiet " +
                             more);
@@ -23,7 +24,7 @@ class Graph : public PipelineTest {
     return r.out;
   }
   void generate(const std::string& out, const std::string& more) const {
-    run("pipelines/generate_ninja.py " + scene_ + " --out " + path(out) +
+    run(std::string("pipelines/generate_ninja.py ") + kScene + " --out " + path(out) +
         " --bin " BNVPL_BIN_FROM_SOURCE " --candidates 2k --vpls 200 --photons 20k --spp 1 " +
         more);
   }
@@ -80,10 +81,14 @@ TEST_F(Graph, NinjaMakesTheSameShardsAsMake) {
 TEST_F(Graph, SnakemakeMakesTheSameFiles) {
   if (!have("snakemake")) GTEST_SKIP() << "snakemake is not installed";
   made("m", "");
-  const std::string snakemake =
-      "snakemake -s pipelines/Snakefile -d " + path("work") +
-      " --cores 1 --nolock --config candidates=2k vpls=200 photons=20k spp=1 shards=2 scenes=" +
-      scene_ + " out=" + path("s") + " bin='" BNVPL_BIN "' ";
+  // In a folder of its own, where Snakemake keeps its notes, and whose paths hold no space.
+  fs::create_directory(at("work"));
+  fs::create_directory_symlink(BNVPL_SOURCE "/scenes", at("work/scenes"));
+  fs::create_directory_symlink(BNVPL_BIN, at("work/bin"));
+  const std::string snakemake = "snakemake -s pipelines/Snakefile -d " + path("work") +
+                                " --cores 1 --config candidates=2k vpls=200 photons=20k spp=1 "
+                                "shards=2 bin=bin scenes=" +
+                                kScene + " out=" + path("s") + " ";
   run(snakemake);
   for (const char* product : kProducts)
     expectTheSame(std::string("s/test-one-bounce/") + product, std::string("m/") + product);
@@ -116,8 +121,8 @@ TEST_F(Graph, ViewsShareTheirVpls) {
   EXPECT_EQ(countOf(more, "/vpl-place "), 0u) << more;
   EXPECT_EQ(countOf(more, "/vpl-render "), 1u) << more;
   EXPECT_TRUE(fs::exists(at(dir + "views/three.exr")));
-  const Outcome r =
-      shell("pipelines/generate_ninja.py " + scene_ + " --views x.toml --out " + path("x"));
+  const Outcome r = shell(std::string("pipelines/generate_ninja.py ") + kScene +
+                          " --views x.toml --out " + path("x"));
   EXPECT_TRUE(r.code != 0 && contains(r.err, "there is no view 'x.toml'")) << r.err;
 }
 

@@ -64,8 +64,8 @@ TEST_F(Views, GiveTheSameBytesInShardsWithThreadsAndCheckpoints) {
 }
 
 TEST_F(Views, ACheckpointOfOthersIsRefused) {
-  const std::string place = scene_ + " -n 900M -o " + path("x.vpl") + " --checkpoint " + path("c");
-  shell("timeout --foreground -s INT 1 '" BNVPL_BIN "/vpl-place' " + place + by("ab") + " --quiet");
+  const std::string place = scene_ + " -n 100M -o " + path("x.vpl") + " --checkpoint " + path("c");
+  shell("timeout --foreground -s INT 2 '" BNVPL_BIN "/vpl-place' " + place + by("ab") + " --quiet");
   ASSERT_TRUE(fs::exists(at("c")));
   fail("vpl-place", place + by("ac"), kExitInput, {"another run", "views 2 hash was"});
   fail("vpl-place", place + by("ab") + " --view-shares 2,1", kExitInput, {"views 1 share was 1"});

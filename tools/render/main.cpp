@@ -76,7 +76,7 @@ Given withoutPasses(const Given& given, const Values& options) {
   Given plain;
   for (const auto& [name, text] : given) {
     if (name != "passes" && name != "time" && name != "target-error" && name != "adaptive" &&
-        name != "spp")
+        name != "spp" && name != "layers")
       plain.emplace_back(name, text);
   }
   plain.emplace_back("spp", std::to_string(budget->passes * kPassSpp));
