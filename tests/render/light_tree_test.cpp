@@ -10,7 +10,8 @@ namespace bnvpl::test {
 namespace {
 
 const GatherCase& lit() {
-  static const GatherCase c("cornell/scene.toml", {40, 40}, {{"count", "2000"}});
+  static const GatherCase c("cornell/scene.toml", {40, 40}, {{"count", "2000"}},
+                            {{"method", "guarded"}});
   return c;
 }
 
