@@ -16,10 +16,11 @@ class Graph : public PipelineTest {
   }
   // What make printed.
   std::string made(const std::string& out, const std::string& more) const {
-    const Outcome r = shell("make -f pipelines/Makefile SCENE=" + kScene + " OUT=" + path(out) +
-                            " BIN=" BNVPL_BIN_FROM_SOURCE
-                            " CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=1 RUN_FLAGS=--quiet " +
-                            more);
+    const Outcome r =
+        shell(std::string("make -f pipelines/Makefile SCENE=") + kScene + " OUT=" + path(out) +
+              " BIN=" BNVPL_BIN_FROM_SOURCE
+              " CANDIDATES=2k VPLS=200 PHOTONS=20k SPP=1 RUN_FLAGS=--quiet " +
+              more);
     EXPECT_EQ(r.code, 0) << r.out << r.err;
     return r.out;
   }
