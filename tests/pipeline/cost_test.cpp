@@ -55,12 +55,12 @@ class CostRun : public PipelineTest {
   }
   // Each so long that its probe is a part of it.
   void expectAllPredicted(const std::string& scene) const {
-    expectPredicted("vpl-place", scene + " -n 1M -o " + path("candidates.vpl"));
-    expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 30k -o " + path("vpls.vpl"));
+    expectPredicted("vpl-place", scene + " -n 200k -o " + path("candidates.vpl"));
+    expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 20k -o " + path("vpls.vpl"));
     expectPredicted("vpl-estimate",
-                    scene + " " + path("vpls.vpl") + " --photons 2M -o " + path("lit.vpl"));
+                    scene + " " + path("vpls.vpl") + " --photons 1M -o " + path("lit.vpl"));
     expectPredicted("vpl-render",
-                    scene + " " + path("lit.vpl") + " --size 192x144 --spp 4 -o " + path("i.exr"));
+                    scene + " " + path("lit.vpl") + " --size 128x96 --spp 4 -o " + path("i.exr"));
   }
 };
 
@@ -73,7 +73,7 @@ TEST_F(CostRun, StagesTakeWhatTheyToldInACornellBox) {
 }
 
 TEST_F(CostRun, ShardsTakeTheirPart) {
-  const std::string render = scene_ + " --integrator path --size 192x144 --spp 64 -o ";
+  const std::string render = scene_ + " --integrator path --size 96x72 --spp 64 -o ";
   const Need whole = estimated("vpl-render", render + path("x.exr"));
   const Need tenth = estimated("vpl-render", render + path("x.shard") + " --shard 3/10");
   EXPECT_LT(tenth.cpuS, 0.3 * whole.cpuS);

@@ -90,16 +90,26 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part) {
   constexpr uint64_t kNone = uint64_t{1} << 40;  // no work has so many units
   const double startS = cpuSecondsSoFar();
   const double setupS = probe(part, {kNone - 1, kNone, kNone}).cpuS;
+  // The first units may prepare what is not of the units: their cost is the slope between two
+  // probes that had any.
+  Probe fewer{setupS, 0.0};
+  double fewerShare = 0.0;
   for (double parts = 4096.0;;) {
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
     const Probe some = probe(part, shard);
+    const double share = 1.0 / static_cast<double>(shard.of);
     const double cpuS = some.cpuS - setupS, enoughS = std::max(kLeastCpuS, setupS);
     if (shard.whole() || (some.units >= kFewestUnits && cpuS >= enoughS)) {
-      const auto of = static_cast<double>(shard.of);
-      return {bytesIn("VmHWM"), startS + setupS, std::max(0.0, cpuS) * of, 1.0 / of};
+      const double workS = std::max(0.0, some.cpuS - fewer.cpuS) / (share - fewerShare);
+      const double beforeS = std::max(setupS, some.cpuS - workS * share);
+      return {bytesIn("VmHWM"), startS + beforeS, workS, share};
     }
     const double more = std::max(kFewestUnits / std::max(some.units, 0.5),
                                  enoughS / std::max(cpuS, 0.01 * enoughS));
+    if (some.units > 0.0) {
+      fewer = some;
+      fewerShare = share;
+    }
     parts /= std::clamp(1.3 * more, 2.0, 64.0);
     if (parts < 3.0) parts = 1.0;
   }
