@@ -1,6 +1,7 @@
 // Numbers of the command line: counts, sizes, exposures, and what CLI11 reads into options.
 //
 // Each line of the input is an argument.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <sstream>

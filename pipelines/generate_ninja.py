@@ -5,9 +5,9 @@
   ninja -f out/build.ninja
 
 With --shards N place, estimate and render are N edges each and a vpl-merge, with the same files in the end;
---launcher starts the shards elsewhere:
+--shards place=4,estimate=16,render=64 gives each its own N. --launcher starts the shards elsewhere:
 
-  pipelines/generate_ninja.py scenes/u-shape/scene.toml --shards 64 --launcher 'srun -n1 -c8'
+  pipelines/generate_ninja.py scenes/u-shape/scene.toml --shards 16,render=64 --launcher 'srun -n1 -c8'
   ninja -j 64 -f out/build.ninja
 
 Ninja remembers each stage's command and reads its depfile, so a stage runs again when an input,
@@ -48,15 +48,14 @@ def arguments():
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
     p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
     stages.add_arguments(p)
-    p.add_argument("--shards", type=int, default=1, metavar="N", help="parts of place, estimate and render (default 1)")
     p.add_argument("--launcher", default="", metavar="COMMAND",
                    help="goes before the command of each shard, such as 'srun -n1 -c8'; ninja -j says how many at once")
     p.add_argument("--record", action="store_true",
                    help="each task writes what it took to OUT/SCENE/run, for vpl-inspect run")
     options = p.parse_args()
-    if options.launcher and options.shards == 1:
-        p.error("--launcher starts shards; add --shards N")
     stages.complete(options)
+    if options.launcher and max(options.shards.values()) == 1:
+        p.error("--launcher starts shards; add --shards N")
     return options
 
 
@@ -67,9 +66,9 @@ def build(task, out, options):
         after = [word for stage in task.after for word in ("--after", stage)]
         command = [stages.relative(stages.HERE / "record.py"), f"{out}/run", task.name, "--stage", task.stage, *after,
                    *(["--checkpoint", task.checkpoint] if task.checkpoint else []), "--", *command]
-    if task.checkpoint:
+    if task.shard:
         command = [*shlex.split(options.launcher), *command]
-    rule = "shard" if task.checkpoint else "read_scene" if task.depfile else "run"
+    rule = "shard" if task.shard else "read_scene" if task.depfile else "run"
     rows = [f"build {' | '.join(task.outputs)}: {rule} {' '.join(task.inputs)}"]
     if task.depfile:
         rows.append(f"  dep = {task.depfile}")

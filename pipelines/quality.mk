@@ -1,4 +1,4 @@
-# What draft, default and final are: counts of all stages, and options of the render. Makefile
+# What draft, default and final are: counts of all stages, and options of two. Makefile
 # includes this file, generate_ninja.py reads it; docs/guide.md, "Presets", has the errors.
 #   VARIABLE.quality := value
 
@@ -6,6 +6,7 @@ CANDIDATES.draft := 15k
 VPLS.draft       := 1500
 PHOTONS.draft    := 1M
 SPP.draft        := 16
+ESTIMATE.draft   := --irradiance-error 0.02
 RENDER.draft     := --near-field-rays 2 --error 0.2
 
 # Those of the tools, but for VPLS, which vpl-eliminate wants to be told.
@@ -13,10 +14,12 @@ CANDIDATES.default := 120k
 VPLS.default       := 3k
 PHOTONS.default    := 10M
 SPP.default        := 8
+ESTIMATE.default   :=
 RENDER.default     :=
 
 CANDIDATES.final := 240k
 VPLS.final       := 12k
 PHOTONS.final    := 20M
 SPP.final        := 256
+ESTIMATE.final   := --irradiance-error 0.003
 RENDER.final     := --near-field-rays 4 --error 0.05

@@ -4,6 +4,7 @@ A stage in N shards is N tasks and one of vpl-merge. Every task names its files,
 what is up to date. Paths are relative to the folder in which the tasks run.
 """
 
+import argparse
 import dataclasses
 import pathlib
 import re
@@ -12,6 +13,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
+DIVIDED = ("place", "estimate", "render")  # into shards
 MOST_SHARDS = 1500  # their names stand in one command, which Linux limits
 OUTPUT, PREVIEW = object(), object()  # in the words of a stage: where its -o and --png go
 
@@ -26,6 +28,7 @@ class Task:
     outputs: list
     depfile: str = ""  # the command writes it: further files that it read
     checkpoint: str = ""  # the command goes on from it
+    shard: bool = False
 
 
 def presets():
@@ -38,8 +41,27 @@ def presets():
     return found
 
 
-def add_arguments(parser):
-    """What decides the images."""
+class PerStage(argparse.Action):
+    """VALUE for all stages, STAGE=VALUE for one, and several of these with commas; may be repeated."""
+
+    def __init__(self, option_strings, dest, stages, pattern, what, **more):
+        self.stages, self.pattern, self.what = stages, re.compile(pattern), what
+        super().__init__(option_strings, dest, metavar="[STAGE=]VALUE,...", **more)
+
+    def __call__(self, parser, namespace, text, option_string=None):
+        chosen = dict(getattr(namespace, self.dest))
+        for word in text.split(","):
+            stage, equals, value = word.rpartition("=")
+            if equals and stage not in self.stages:
+                parser.error(f"{option_string} {text}: '{stage}' is none of {', '.join(self.stages)}")
+            if not self.pattern.fullmatch(value):
+                parser.error(f"{option_string} {text}: '{value}' is not {self.what}")
+            chosen |= {stage: value} if equals else dict.fromkeys(self.stages, value)
+        setattr(namespace, self.dest, chosen)
+
+
+def add_arguments(parser, shards="1"):
+    """What decides the graph and the images; `shards` is the default of --shards."""
     parser.add_argument("--out", default="out", help="folder; each scene gets one below it (default out)")
     parser.add_argument("--bin", default=relative(DEFAULT_BIN), help="folder of the executables (default %(default)s)")
     parser.add_argument("--quality", default="default", choices=sorted(presets()),
@@ -57,6 +79,10 @@ def add_arguments(parser):
                         help="the views that VPLs are placed for (default all of --views): more images may be added "
                              "later without other VPLs")
     parser.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
+    parser.add_argument("--shards", action=PerStage, stages=DIVIDED, pattern=r"[1-9]\d*", what="a count from 1",
+                        default=dict.fromkeys(DIVIDED, shards),
+                        help=f"parts of {', '.join(DIVIDED)}, each a task: one count for all, or 4,render=64 "
+                             f"(default {shards})")
     for stage in ("place", "eliminate", "estimate", "render"):
         parser.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
                             help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'")
@@ -64,13 +90,15 @@ def add_arguments(parser):
 
 def complete(options):
     """Fills in what add_arguments() leaves to the quality, and refuses what these pipelines cannot do."""
-    if not 1 <= options.shards <= MOST_SHARDS:
-        refuse(f"--shards {options.shards} is not 1 to {MOST_SHARDS}")
+    options.shards = {stage: int(count) for stage, count in options.shards.items()}
+    for stage, count in options.shards.items():
+        if count > MOST_SHARDS:
+            refuse(f"--shards {stage}={count} is more than {MOST_SHARDS}")
     preset = presets()[options.quality]
     for name in ("candidates", "vpls", "photons", "spp"):
         if getattr(options, name) is None:
             setattr(options, name, preset[name.upper()])
-    options.render_preset = preset["RENDER"]
+    options.presets = {stage: shlex.split(preset[stage.upper()]) for stage in ("estimate", "render")}
     refuse_lit_placement(options)
     for path in (options.out, options.bin):
         check_path(path)
@@ -141,12 +169,13 @@ def images_of(view, out):
     return [f"{out}/views/{view}.exr", f"{out}/views/{view}.png"] if view else [f"{out}/image.exr", f"{out}/image.png"]
 
 
-def task(name, stage, after, outputs, inputs, words, stats, scene_read=True, checkpoint=""):
-    """The first input is the executable, which `words` do not repeat; `stats` begins the names of what goes beside."""
-    command = [inputs[0], *words, "--stats", f"{stats}.json"]
-    depfile = f"{stats}.d" if scene_read else ""
-    return Task(name, stage, after, command + (["--depfile", depfile] if depfile else []), inputs, outputs, depfile,
-                checkpoint)
+def task(name, stage, after, outputs, inputs, words, beside, scene_read=True, saves=False, shard=False):
+    """The first input is the executable, which `words` do not repeat; `beside` begins the names of its other files."""
+    command = [inputs[0], *words, "--stats", f"{beside}.json"]
+    depfile, checkpoint = f"{beside}.d" if scene_read else "", f"{beside}.checkpoint" if saves else ""
+    command += ["--depfile", depfile] if depfile else []
+    command += ["--checkpoint", checkpoint, "--checkpoint-replace"] if checkpoint else []
+    return Task(name, stage, after, command, inputs, outputs, depfile, checkpoint, shard)
 
 
 def tasks_in_parts(stage, after, options, outputs, inputs, words, view=""):
@@ -157,20 +186,19 @@ def tasks_in_parts(stage, after, options, outputs, inputs, words, view=""):
     def filled(output, png):
         return [w for word in words for w in (output if word is OUTPUT else png if word is PREVIEW else [word])]
 
-    folder, of = outputs[0].rsplit("/", 1)[0], options.shards
-    stats = f"{folder}/{view or stage}"
+    folder, of = outputs[0].rsplit("/", 1)[0], options.shards[stage]
+    beside = f"{folder}/{view or stage}"
     if of == 1:
-        return [task(whole, stage, after, outputs, inputs, filled(product, preview), stats)]
+        return [task(whole, stage, after, outputs, inputs, filled(product, preview), beside, saves=True)]
     tasks, parts = [], []
     for part in range(1, of + 1):
         name = shard_name(whole, part, of)
-        beside = f"{folder}/shards/{name}"
-        parts.append(f"{beside}.shard")
-        words_here = [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}", "--checkpoint", f"{beside}.checkpoint"]
-        tasks.append(task(name, stage, after, [parts[-1]], inputs, words_here, beside,
-                          checkpoint=f"{beside}.checkpoint"))
+        parts.append(f"{folder}/shards/{name}.shard")
+        tasks.append(task(name, stage, after, [parts[-1]], inputs,
+                          [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}"], f"{folder}/shards/{name}",
+                          saves=True, shard=True))
     return tasks + [task(f"merge-{whole}", f"merge-{stage}", [stage], outputs, [f"{options.bin}/vpl-merge", *parts],
-                         [*parts, *product, *preview], stats)]
+                         [*parts, *product, *preview], beside)]
 
 
 def tasks_of(scene, options):
@@ -189,7 +217,7 @@ def tasks_of(scene, options):
         return shlex.split(getattr(options, f"{stage}_flags"))
 
     def done(stage):
-        return [stage if options.shards == 1 else f"merge-{stage}"]
+        return [stage if options.shards.get(stage, 1) == 1 else f"merge-{stage}"]
 
     def looking(view):
         return ["--view", view] if view else []
@@ -202,12 +230,13 @@ def tasks_of(scene, options):
         task("eliminate", "eliminate", done("place"), [vpls], [tool("eliminate"), candidates],
              [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")], f"{out}/eliminate", scene_read=False),
         *tasks_in_parts("estimate", ["eliminate"], options, [lit], [tool("estimate"), scene, vpls],
-                        [scene, vpls, OUTPUT, "--photons", options.photons, *seed, *defines, *flags("estimate")]),
+                        [scene, vpls, OUTPUT, "--photons", options.photons, *seed, *defines,
+                         *options.presets["estimate"], *flags("estimate")]),
     ]
     images = [tasks_in_parts("render", done("estimate"), options, images_of(name, out),
                              [tool("render"), scene, lit, *([view] if view else [])],
                              [scene, *looking(view), lit, OUTPUT, *spp, PREVIEW, *seed, *defines,
-                              *shlex.split(options.render_preset), *flags("render")], name)
+                              *options.presets["render"], *flags("render")], name)
               for name, view in views]
     return before + [task for tasks in images for task in tasks]
 

@@ -44,6 +44,34 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
   return reflected * ((mis ? powerHeuristic(s.pdf * count, rayPdf(s.wi)) : 1.0f) / count);
 }
 
+// One of the rays by what was learned, by a point of the unit square.
+template <typename RayPdf>
+Vec3 sampleStratum(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                   const LearnedLight& learned, Point2 at, bool shared, const RayPdf& rayPdf) {
+  const LearnedStrata& strata = *learned.strata;
+  const uint32_t stratum = strata.pick(at.x);
+  const LightPlace place = strata.all->place(stratum, at);
+  const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
+                      strata.all->share(stratum) * strata.all->lightShare(place.light);
+  return sampleLight(rays, lights, bsdf, group, place, count, shared, rayPdf);
+}
+
+template <typename RayPdf>
+Vec3 sampleOne(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+               const LearnedStrata& strata, bool shared, const RayPdf& rayPdf, Rng& rng) {
+  if (strata.all) {
+    const float u = rng.next(), v = rng.next();
+    return sampleStratum(rays, lights, bsdf, group, {&strata, 1}, {u, v}, shared, rayPdf);
+  }
+  if (lights.size() == 0) return {};
+  float probability = 1.0f;
+  const size_t light = lights.pick(rng.next(), probability);
+  if (!(probability > 0.0f)) return {};
+  const float u = rng.next(), v = rng.next();
+  return sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}}, probability,
+                     shared, rayPdf);
+}
+
 }  // namespace
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
@@ -66,18 +94,24 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint,
                  uint64_t key) {
-  const LearnedStrata& strata = *learned.strata;
   const auto rayPdf = raysByBsdf(bsdf, group, bsdfRays);
   Vec3 sum;
   for (unsigned k = 0; k < learned.rays; ++k) {
-    Point2 at = owenSobol(firstPoint + k, key);
-    const uint32_t stratum = strata.pick(at.x);
-    const LightPlace place = strata.all->place(stratum, at);
-    const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
-                        strata.all->share(stratum) * strata.all->lightShare(place.light);
-    sum += sampleLight(rays, lights, bsdf, group, place, count, bsdfRays > 0, rayPdf);
+    sum += sampleStratum(rays, lights, bsdf, group, learned, owenSobol(firstPoint + k, key),
+                         bsdfRays > 0, rayPdf);
   }
   return sum;
+}
+
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng) {
+  return sampleOne(rays, lights, bsdf, group, strata, bsdfRays > 0,
+                   raysByBsdf(bsdf, group, bsdfRays), rng);
+}
+
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedStrata& strata, const std::function<float(Vec3)>& rayPdf, Rng& rng) {
+  return sampleOne(rays, lights, bsdf, group, strata, true, rayPdf, rng);
 }
 
 bool unoccludedLight(const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
@@ -92,17 +126,6 @@ bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& 
   const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
   const Vec3 from = rays.offsetOrigin(at.position, side);
   return s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target);
-}
-
-Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const std::function<float(Vec3)>& rayPdf, Rng& rng) {
-  if (lights.size() == 0) return {};
-  float probability = 1.0f;
-  const size_t light = lights.pick(rng.next(), probability);
-  if (!(probability > 0.0f)) return {};
-  const float u = rng.next(), v = rng.next();
-  return sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}}, probability,
-                     true, rayPdf);
 }
 
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {

@@ -21,19 +21,26 @@ inline constexpr size_t kMaxLightsEach = 32;
 // sampling is alone.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, unsigned bsdfRays, Rng& rng);
-// The same for one light and one ray whose direction the caller does not draw by the BSDF alone:
-// `rayPdf` is the density of all that it may draw by, 1/sr.
-Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const std::function<float(Vec3 wi)>& rayPdf, Rng& rng);
-
 // Light sampling by what was learned about the place: shadow rays to strata of all lights.
 struct LearnedLight {
   const LearnedStrata* strata = nullptr;
   unsigned rays = 0;
 };
+// One ray by it; none where there is nothing to choose.
+inline LearnedLight learnedBy(const LearnedStrata& strata) {
+  return strata.all ? LearnedLight{&strata, 1} : LearnedLight{};
+}
 // The same by it; its rays are the points of a sequence (owenSobol) from `firstPoint` on.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint, uint64_t key);
+// One ray: by what was learned, or where that is nothing to a light picked in proportion to power.
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng);
+// The same beside a ray whose direction the caller does not draw by the BSDF alone: `rayPdf` is the
+// density of all that it may draw by, 1/sr.
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedStrata& strata, const std::function<float(Vec3 wi)>& rayPdf,
+                 Rng& rng);
 
 // How the ray that found a light was chosen, for the other half of MIS.
 struct Arrival {

@@ -7,13 +7,16 @@
 namespace bnvpl {
 
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
-                         Vec3 throughput, PathLength length, Rng& rng, Vec3& first, Vec3& later) {
+                         Vec3 throughput, PathLength length, const SurfaceLights* where, Rng& rng,
+                         Vec3& first, Vec3& later) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
+  LearnedStrata strata;
   for (unsigned bounce = 0;; ++bounce) {
     const Bsdf& bsdf = bounce == 0 ? at : scattering.emplace(rays.scene(), vertex.hit);
     Vec3& sum = bounce == 0 ? first : later;
-    sum += throughput * directLight(rays, lights, bsdf, LobeGroup::Rough, LightChoice::One, 1, rng);
+    if (where) strata = where->at(bsdf.point().position, bsdf.point().ng);
+    sum += throughput * directLight(rays, lights, bsdf, LobeGroup::Rough, strata, 1, rng);
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
     if (rng.next() >= survive) return bounce + 1;
@@ -22,7 +25,8 @@ unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsd
     if (!scatter(rays, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next))
       return bounce + 1;
     throughput *= scattered.weight * (1.0f / survive);
-    const Arrival arrival{scattered.pdf, bsdf.point().position};
+    const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
+                          learnedBy(strata)};
     vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng);
     sum += throughput * vertex.metFirst;
     if (length.firstBounce) return bounce + 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transport/specular_path.h"
+#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
@@ -13,9 +14,11 @@ struct PathLength {
 // Adds throughput * radiance towards where the vertex is seen from, by light sampling and
 // scattering with multiple importance sampling (Veach 1997, section 10): to `first` what comes to
 // the vertex with nothing between it and a light, to `later` the rest. `at` is the vertex's own
-// reflection, Bsdf(scene, vertex) or what stands for it. Returns how many rough vertices the path
+// reflection, Bsdf(scene, vertex) or what stands for it. `where`: where light sampling looks for
+// lights; null: everywhere, by power. Returns how many rough vertices the path
 // had, this one included; each took about two rays.
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
-                         Vec3 throughput, PathLength length, Rng& rng, Vec3& first, Vec3& later);
+                         Vec3 throughput, PathLength length, const SurfaceLights* where, Rng& rng,
+                         Vec3& first, Vec3& later);
 
 }  // namespace bnvpl

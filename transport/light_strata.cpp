@@ -7,6 +7,12 @@
 
 namespace bnvpl {
 
+namespace {
+
+constexpr double kLeast = 0.1;  // of an even share
+
+}  // namespace
+
 LightStrata::LightStrata(const LightSet& lights, size_t most) : cells_(lights.size()) {
   for (uint32_t i = 0; i < lights.size(); ++i) {
     cells_[i].share = lights.pickProbability(i);
@@ -120,6 +126,29 @@ float SeenStrata::probability(uint32_t stratum) const {
   return it != strata.end() && *it == stratum
              ? cdfShare(cdf, static_cast<size_t>(it - strata.begin()))
              : 0.0f;
+}
+
+StrataValues distributionOf(std::span<const float> values) {
+  double total = 0.0, kept = 0.0, running = 0.0;
+  for (const float v : values) total += double{v};
+  const double least = total * kLeast / static_cast<double>(values.size());
+  for (const float v : values) kept += double{v} > least ? double{v} : 0.0;
+  StrataValues out;
+  for (uint32_t s = 0; s < values.size(); ++s) {
+    if (!(double{values[s]} > least)) continue;
+    running += double{values[s]};
+    out.strata.push_back(s);
+    out.values.push_back(static_cast<float>(running / kept));
+  }
+  if (!out.values.empty()) out.values.back() = 1.0f;
+  return out;
+}
+
+StrataValues meanOf(std::span<const StrataValues> distributions, size_t strata) {
+  std::vector<float> sum(strata);
+  for (const StrataValues& d : distributions)
+    for (size_t k = 0; k < d.strata.size(); ++k) sum[d.strata[k]] += cdfShare<float>(d.values, k);
+  return distributionOf(sum);
 }
 
 uint32_t LearnedStrata::pick(float& u) const {

@@ -66,6 +66,19 @@ struct SeenStrata {
   float probability(uint32_t stratum) const;
 };
 
+// Strata in ascending order with a value each.
+struct StrataValues {
+  std::vector<uint32_t> strata;
+  std::vector<float> values;
+  SeenStrata seen() const { return {strata, values}; }  // where the values are running sums
+};
+
+// Running sums over the strata in proportion to `values`, one for each stratum of all; those that
+// would get less than a tenth of an even share are left to what all places get.
+StrataValues distributionOf(std::span<const float> values);
+// The mean of such distributions.
+StrataValues meanOf(std::span<const StrataValues> distributions, size_t strata);
+
 // The probability of each stratum at a place: mostly by what was seen there; in part by what was
 // seen from everywhere, and the same for all, so that what the place has missed is not missed for
 // good, and no weight is large.

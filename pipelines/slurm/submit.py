@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders a scene on a Slurm cluster: place, estimate and render as arrays of shards, each with a merge after it.
 
-  pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 64 --memory 8G --memory eliminate=32G --time 2:00:00
+  pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 16,render=64 --memory 8G,eliminate=32G --time 2:00:00
 
 Run it in a folder that all nodes see at the same path; paths are relative to it. The images are those of one run,
 byte for byte. Logs, records and a summary go to OUT/SCENE/run. The same command again submits what is missing.
@@ -11,7 +11,6 @@ import argparse
 import dataclasses
 import json
 import pathlib
-import re
 import shlex
 import subprocess
 import sys
@@ -26,24 +25,6 @@ KINDS = ("place", "eliminate", "estimate", "render", "merge")
 SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
 
 
-class PerStage(argparse.Action):
-    """VALUE for all stages, or STAGE=VALUE for one; may be repeated."""
-
-    def __init__(self, option_strings, dest, pattern, what, **more):
-        self.pattern, self.what = re.compile(pattern), what
-        super().__init__(option_strings, dest, metavar="[STAGE=]VALUE", **more)
-
-    def __call__(self, parser, namespace, text, option_string=None):
-        kind, equals, value = text.rpartition("=")
-        if equals and kind not in KINDS:
-            parser.error(f"{option_string} {text}: '{kind}' is no stage; use one of {', '.join(KINDS)}")
-        if not self.pattern.fullmatch(value):
-            parser.error(f"{option_string} {text}: '{value}' is not {self.what}")
-        chosen = dict(getattr(namespace, self.dest))
-        chosen |= {kind: value} if equals else dict.fromkeys(KINDS, value)
-        setattr(namespace, self.dest, chosen)
-
-
 def per_stage(value, **others):
     return dict.fromkeys(KINDS, value) | others
 
@@ -52,17 +33,16 @@ def arguments():
     p = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"STAGE is one of {', '.join(KINDS)}.")
+        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.")
     p.add_argument("scene", metavar="SCENE", help="scene.toml")
-    stages.add_arguments(p)
-    p.add_argument("--shards", type=int, default=16, metavar="N", help="tasks of place, estimate and render (default 16)")
-    p.add_argument("--cpus", action=PerStage, pattern=r"[1-9]\d*", what="a count from 1",
+    stages.add_arguments(p, shards="16")
+    p.add_argument("--cpus", action=stages.PerStage, stages=KINDS, pattern=r"[1-9]\d*", what="a count from 1",
                    default=per_stage("4", merge="1"), help="of a task; default 4, and merge=1")
-    p.add_argument("--memory", action=PerStage, pattern=r"\d+[KMGT]?", what="a size such as 4G",
+    p.add_argument("--memory", action=stages.PerStage, stages=KINDS, pattern=r"\d+[KMGT]?", what="a size such as 4G",
                    default=per_stage("4G"), help="of a task; default 4G")
-    p.add_argument("--time", action=PerStage, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}",
+    p.add_argument("--time", action=stages.PerStage, stages=KINDS, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}",
                    what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)", default=per_stage("1:00:00"),
-                   help="limit of a task, as sbatch has it; default 1:00:00; shards that reach it are queued again and go on")
+                   help="limit of a task, as sbatch has it; default 1:00:00; place, estimate and render are queued again when they reach it, and go on")
     p.add_argument("--at-once", type=int, metavar="N", help="most tasks of an array that run together; default: all")
     p.add_argument("--retries", type=int, default=3, metavar="N",
                    help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count")
@@ -159,13 +139,13 @@ class Submission:
             (self.run / f"{name}.job.json").write_text(json.dumps(
                 {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}, indent=1))
         words = [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"] if before else []
-        if tasks[0].checkpoint or len(tasks) > 1:  # shards, and images of several views
+        if len(tasks) > 1:  # shards, and images of several views
             at_once = f"%{self.options.at_once}" if self.options.at_once else ""
             log = stages.shard_name(name, "%a", len(tasks))
             words.append(f"--array={ranges(wanted)}{at_once}")
-            words += [f"--signal=B:USR1@{SECONDS_TO_SAVE}"] if tasks[0].checkpoint else []
         else:
             log = name
+        words += [f"--signal=B:USR1@{SECONDS_TO_SAVE}"] if tasks[0].checkpoint else []
         words.append(f"--output={self.run}/{log}.log")
         note = f"{len(wanted)} of {len(tasks)} tasks" if len(wanted) < len(tasks) else \
             f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"

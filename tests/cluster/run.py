@@ -30,8 +30,9 @@ SKIPPED = 77
 SCENE = "scenes/u-shape/scene.toml"
 PRODUCTS = ("candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr", "image.png")
 RENDER = "--render-flags=--size 240x180 --layers all"
+ESTIMATE = "--estimate-flags=--irradiance-error 0"  # all photons
 SIZES = ["--candidates", "200k", "--vpls", "1500"]
-SAVE_OFTEN = ["--place-flags=--checkpoint-every 0", "--estimate-flags=--checkpoint-every 0.2",
+SAVE_OFTEN = ["--place-flags=--checkpoint-every 0", f"{ESTIMATE} --checkpoint-every 0.2",
               f"{RENDER} --checkpoint-every 0.2"]
 
 
@@ -117,7 +118,7 @@ class Test:
 
     def arguments(self, out, seed):
         return [SCENE, "--out", str(self.folder / out), "--bin", str(self.bin), "--seed", str(seed), *SIZES,
-                "--photons", self.options.photons, "--spp", self.options.spp, RENDER]
+                "--photons", self.options.photons, "--spp", self.options.spp, ESTIMATE, RENDER]
 
     def run_here(self, seed):
         """All of it in one process a stage."""

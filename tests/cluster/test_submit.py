@@ -165,8 +165,21 @@ class SubmitTest(unittest.TestCase):
         self.assertNotIn("place-1-of-2", names)
         self.assertTrue(self.at("run/earlier/place-1-of-2.1.task.json").exists())
 
+    def test_shards_of_each_stage(self):
+        done = self.submit("--dry-run", "--shards", "place=2,render=5")
+        rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
+        self.assertIn("--array=1-2 ", rows["place"])
+        self.assertIn("--array=1-16 ", rows["estimate"])
+        self.assertIn("--array=1-5 ", rows["render"])
+        done = self.submit("--shards", "1", "--shards", "render=2")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        jobs = self.jobs()
+        self.assertEqual(list(jobs), ["place", "eliminate", "estimate", "render", "merge-render", "summary"])
+        self.assertTrue(all(job["well"] for job in jobs.values()), self.logs())
+        self.assertEqual(jobs["render"]["tasks"], [1, 2])
+
     def test_limits_of_each_stage(self):
-        done = self.submit("--dry-run", "--memory", "2G", "--memory", "eliminate=9G", "--time", "render=2:00:00", "--cpus",
+        done = self.submit("--dry-run", "--memory", "2G,eliminate=9G", "--time", "render=2:00:00", "--cpus",
                            "8", "--sbatch=--partition=long --nice", "--at-once", "5")
         rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
         self.assertIn("--mem=9G --time=1:00:00", rows["eliminate"])
@@ -177,8 +190,9 @@ class SubmitTest(unittest.TestCase):
         self.assertFalse(self.at("run").exists())
 
     def test_errors_name_what_is_wrong(self):
-        for more, problem in ((["--memory", "much"], "'much' is not a size"), (["--time", "paint=3"], "'paint' is no stage"),
+        for more, problem in ((["--memory", "much"], "'much' is not a size"), (["--time", "paint=3"], "'paint' is none of"),
                               (["--cpus", "0"], "'0' is not a count"), (["--shards", "0"], "--shards 0"),
+                              (["--shards", "merge=2"], "'merge' is none of place, estimate, render"),
                               (["--place-flags=--method light"], "no work to vpl-estimate"), (["--at-once", "0"], "--at-once 0"),
                               (["--out", "a b"], "'a b' contains a space"), (["--retries", "-1"], "--retries -1")):
             done = self.submit(*more)
@@ -233,6 +247,31 @@ class SubmitTest(unittest.TestCase):
             self.assertEqual(task.wait(), 128 + 15)
             self.assertEqual(self.requeued(), ["requeue 9"] * attempt)
             self.assertEqual(self.record(attempt)["resumed"], attempt == 2)
+
+    def test_whole_tasks_go_on_from_their_checkpoints(self):
+        """A render that nears its time limit, as one task of the pipeline."""
+        arguments = ["--shards", "1", "--spp", "32", "--render-flags=--size 64x48 --checkpoint-every 0"]
+        rows = {row.split("--job-name=u-shape-")[1].split()[0]: row
+                for row in self.submit(*arguments, "--dry-run").stdout.splitlines()}
+        for stage in ("place", "estimate", "render"):
+            self.assertIn("--signal=B:USR1@60", rows[stage])
+        self.assertNotIn("--signal", rows["eliminate"])
+        self.submit(*arguments)
+        whole = self.at("image.exr").read_bytes()
+        self.at("image.exr").unlink()
+        task = [sys.executable, SOURCE / "pipelines/slurm/task.py", self.at("run/render.job.json")]
+        begun = subprocess.Popen(task, cwd=SOURCE, env=self.environment | {"SLURM_JOB_ID": "9"}, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+        while begun.poll() is None and not self.at("render.checkpoint").exists():
+            time.sleep(0.005)
+        begun.send_signal(10)
+        self.assertEqual(begun.wait(), 128 + 15)
+        self.assertEqual(self.requeued(), ["requeue 9"])
+        self.assertFalse(self.at("image.exr").exists())
+        self.assertEqual(subprocess.run(task, cwd=SOURCE, env=self.environment, stdout=subprocess.DEVNULL).returncode, 0)
+        self.assertTrue(json.loads(self.at("run/render.3.task.json").read_text())["resumed"])
+        self.assertEqual(self.at("image.exr").read_bytes(), whole)
+        self.assertFalse(self.at("render.checkpoint").exists())
 
     def test_a_task_that_saves_nothing_before_its_time_limit_fails(self):
         tool = self.program("slow", SLOW)

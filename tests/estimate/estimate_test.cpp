@@ -14,12 +14,14 @@ namespace {
 
 TEST(Estimate, EnergyAccountCloses) {
   const World world("u-shape/scene.toml");
-  const auto [lit, a, paths] = lightVpls(
-      world, keptVpls(world, {{"count", "1000"}}, {{"count", "10k"}}), {{"photons", "100k"}});
+  const EstimateResult result =
+      lightVpls(world, keptVpls(world, {{"count", "1000"}}, {{"count", "10k"}}),
+                {{"method", "guarded"}, {"photons", "100k"}});
+  const EnergyAccount& a = result.energy;
   EXPECT_NEAR(a.emitted, double{mean(world.lights.totalPower())}, 1e-4 * a.emitted);
   EXPECT_NEAR(a.escaped + a.absorbed, a.emitted, 1e-4 * a.emitted);
   EXPECT_NEAR(a.deposited + a.outside + a.gap + a.hidden, a.reflected, 1e-6 * a.reflected);
-  EXPECT_NEAR(totalFlux(lit), a.deposited, 1e-5 * a.deposited);
+  EXPECT_NEAR(totalFlux(result.table), a.deposited, 1e-5 * a.deposited);
   EXPECT_GT(a.deposited, 0.0);
 }
 

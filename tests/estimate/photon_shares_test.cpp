@@ -93,12 +93,13 @@ TEST(PhotonShares, ManyLightsOfAnyPower) {
 TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
   const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4000"}});
-  const auto [lit, account, paths] =
+  const EstimateResult result =
       lightVpls(world, vpls, {{"photons", "104k"}, {"radius", "3"}});  // 100000 and 4000
+  const EnergyAccount& account = result.energy;
   EXPECT_NEAR(account.emitted, double{mean(world.lights.totalPower())}, 1e-6 * account.emitted);
   ASSERT_GT(account.deposited, 0.999 * account.reflected);
   std::array<double, 3> flux{};
-  for (const Vec3 f : lit.flux) {
+  for (const Vec3 f : result.table.flux) {
     for (size_t c = 0; c < 3; ++c) flux[c] += double{f[c]};
   }
   const auto expectPower = [&](double got, double intensity, double photons) {

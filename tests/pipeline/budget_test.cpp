@@ -55,7 +55,7 @@ TEST_F(BudgetRun, ATimeIsKeptAndItsImageRepeated) {
   EXPECT_TRUE(readAll(at("a.exr")) == readAll(at("b.exr")));
   const Outcome info = tool("vpl-inspect", "info " + path("a.exr"));
   for (const std::string& part : {"bnvpl.passes = " + passesDone(), std::string("error.G"),
-                                 std::string("samples"), "passes " + passesDone()}) {
+                                  std::string("samples"), "passes " + passesDone()}) {
     EXPECT_TRUE(contains(info.out, part)) << part << info.out;
   }
 }

@@ -52,7 +52,8 @@ TEST_F(Graph, MakeInShardsGivesTheSameFilesAndRunsWhatChanged) {
   EXPECT_EQ(countOf(log, "vpl-merge "), 3u) << log;
   for (const char* product : kProducts)
     expectTheSame(std::string("parts/") + product, std::string("whole/") + product);
-  EXPECT_TRUE(contains(made("parts", three), "Nothing to be done"));
+  const std::string again = made("parts", three);
+  EXPECT_TRUE(contains(again, "Nothing to be done")) << again;
   const std::string photons = made("parts", three + " PHOTONS=30k");
   EXPECT_EQ(countOf(photons, "vpl-place "), 0u) << photons;
   EXPECT_EQ(countOf(photons, "/vpl-estimate "), 3u) << photons;
@@ -62,7 +63,8 @@ TEST_F(Graph, MakeInShardsGivesTheSameFilesAndRunsWhatChanged) {
   EXPECT_EQ(countOf(missing, "/vpl-render "), 1u) << missing;
   EXPECT_EQ(countOf(missing, "/vpl-merge "), 1u) << missing;
   EXPECT_EQ(countOf(made("parts", "SHARDS=2 PHOTONS=30k"), "/vpl-place "), 2u);
-  for (const char* wrong : {"SHARDS=0", "SHARDS=x", "SHARDS=1.5"}) {
+  for (const char* wrong :
+       {"SHARDS=0", "SHARDS=x", "SHARDS=1.5", "SHARDS=eliminate=2", "SHARDS=2,place=0"}) {
     const Outcome r = shell("make -n -f pipelines/Makefile OUT=" + path("x") + " " + wrong);
     EXPECT_TRUE(r.code != 0 && contains(r.err, "not a whole number from 1")) << r.err;
   }
@@ -70,13 +72,27 @@ TEST_F(Graph, MakeInShardsGivesTheSameFilesAndRunsWhatChanged) {
 
 TEST_F(Graph, NinjaMakesTheSameShardsAsMake) {
   if (!have("ninja")) GTEST_SKIP() << "ninja is not installed";
-  made("m", "SHARDS=2");
-  generate("n", "--shards 2");
-  built("n");
+  const std::string log = made("m", "SHARDS=2,estimate=1,render=3");
+  generate("n", "--shards 2,estimate=1,render=3");
+  const std::string ninja = built("n");
   for (const char* product : kProducts)
     expectTheSame(std::string("n/test-one-bounce/") + product, std::string("m/") + product);
-  EXPECT_TRUE(fs::exists(at("m/shards/place-2-of-2.shard")) &&
-              fs::exists(at("n/test-one-bounce/shards/place-2-of-2.shard")));
+  for (const auto& [tool, runs] : {std::pair{"/vpl-place ", 2u}, std::pair{"/vpl-estimate ", 1u},
+                                   std::pair{"/vpl-render ", 3u}, std::pair{"/vpl-merge ", 2u}}) {
+    EXPECT_EQ(countOf(log, tool), runs) << log;
+    EXPECT_EQ(countOf(ninja, tool), runs) << ninja;
+  }
+  for (const std::string shard : {"shards/place-2-of-2.shard", "shards/render-3-of-3.shard"})
+    EXPECT_TRUE(fs::exists(at("m/" + shard)) && fs::exists(at("n/test-one-bounce/" + shard)));
+  for (const auto& [wrong, problem] :
+       {std::pair{"--shards eliminate=2", "'eliminate' is none of place, estimate, render"},
+        std::pair{"--shards render=0", "'0' is not a count from 1"},
+        std::pair{"--shards place=1501", "more than 1500"},
+        std::pair{"--launcher srun --shards 1", "add --shards N"}}) {
+    const Outcome r = shell(std::string("pipelines/generate_ninja.py ") + kScene + " --out " +
+                            path("x") + " " + wrong);
+    EXPECT_TRUE(r.code != 0 && contains(r.err, problem)) << r.err;
+  }
 }
 
 TEST_F(Graph, SnakemakeMakesTheSameFiles) {
@@ -88,7 +104,7 @@ TEST_F(Graph, SnakemakeMakesTheSameFiles) {
   fs::create_directory_symlink(BNVPL_BIN, at("work/bin"));
   const std::string snakemake = "snakemake -s pipelines/Snakefile -d " + path("work") +
                                 " --cores 1 --config candidates=2k vpls=200 photons=20k spp=1 "
-                                "shards=2 bin=bin scenes=" +
+                                "shards=2,estimate=1 bin=bin scenes=" +
                                 kScene + " out=" + path("s") + " ";
   run(snakemake);
   for (const char* product : kProducts)

@@ -18,7 +18,7 @@ std::vector<std::pair<std::string, std::string>> allStages(const std::string& sc
   return {
       {"vpl-place", scene + " -o '" + folder + "/c.vpl' -n 300"},
       {"vpl-eliminate", "'" + folder + "/c.vpl' -o '" + folder + "/v.vpl' -n 60"},
-      {"vpl-estimate", scene + " '" + folder + "/v.vpl' -o '" + folder + "/l.vpl' --photons 2k"},
+      {"vpl-estimate", scene + " '" + folder + "/v.vpl' -o '" + folder + "/l.vpl' --photons 20k"},
       {"vpl-render", scene + " '" + folder + "/l.vpl' -o '" + folder + "/i.exr' --spp 1"}};
 }
 

@@ -178,12 +178,12 @@ TEST_F(Rerun, QualitiesAreThoseOfOneFile) {
         shell("pipelines/generate_ninja.py " + path("veach-door/scene.toml") + " --out " +
               path("q") + " --bin " BNVPL_BIN_FROM_SOURCE " --quality " + quality);
     EXPECT_EQ(make.code + ninja.code, 0) << make.err << ninja.err;
-    const std::string render = of["RENDER"].empty() ? "" : " " + of["RENDER"];
+    const auto behind = [&](const char* stage) { return of[stage].empty() ? "" : " " + of[stage]; };
     for (const std::string& text : {make.out, readAll(at("q/build.ninja"))}) {
       for (const std::string& part :
            {"candidates.vpl -n " + of["CANDIDATES"] + " ", "vpls.vpl -n " + of["VPLS"] + " ",
             " --photons " + of["PHOTONS"] + " ", " --spp " + of["SPP"] + " ",
-            "image.png" + render + " --"}) {
+            of["PHOTONS"] + behind("ESTIMATE") + " --", "image.png" + behind("RENDER") + " --"}) {
         EXPECT_TRUE(contains(text, part)) << quality << ": " << part << "\n" << text;
       }
     }

@@ -1,4 +1,5 @@
 // --checkpoint: stages that are stopped and continued.
+#include "formats/checkpoint.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -28,7 +29,8 @@ class ResumeRun : public PipelineTest {
 
 TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   makeStages(scene_);
-  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons 3M";
+  const std::string estimate =
+      scene_ + " " + path("vpls.vpl") + " --photons 3M --irradiance-error 0";
   const std::string render =
       scene_ + " " + path("lit.vpl") + " --size 64x48 --spp 160 --layers all";
   const std::string place = scene_ + " -n 400k";
@@ -50,7 +52,7 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);
   EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
   // Enough for a third to take longer than the first stop.
-  const std::string more = scene_ + " " + path("vpls.vpl") + " --photons 9M",
+  const std::string more = scene_ + " " + path("vpls.vpl") + " --photons 9M --irradiance-error 0",
                     morePhotons = scene_ + " --integrator light --size 64x48 --spp 4096";
   for (const auto& [name, work] : {std::pair{"vpl-estimate", more}, {"vpl-render", morePhotons}}) {
     const std::string shard = work + " --shard 2/3";
@@ -98,6 +100,43 @@ TEST_F(ResumeRun, CheckpointsOfOtherRunsAndDamagedOnesAreRefused) {
     fail("vpl-estimate", estimate + " --photons 1G", kExitInput, {"/c:", "delete it"});
   }
   EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+TEST_F(ResumeRun, UselessCheckpointsAreReplacedWhereThatIsAsked) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons ",
+                    replaced = " --checkpoint-replace --checkpoint " + path("c");
+  succeed("vpl-estimate", estimate + "20k -o " + path("a.vpl"));
+  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate + "1G -o " +
+        path("b.vpl") + " --quiet --checkpoint " + path("c"));
+  ASSERT_TRUE(fs::exists(at("c")));
+  const std::string bytes = readAll(at("c"));
+  for (const std::string& useless : {bytes, bytes.substr(0, bytes.size() - 1)}) {
+    write("c", useless);
+    const Outcome r = tool("vpl-estimate", estimate + "20k -o " + path("b.vpl") + replaced);
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    EXPECT_TRUE(contains(r.err, "/c:") && contains(r.err, "begins anew")) << r.err;
+    EXPECT_EQ(readAll(at("a.vpl")), readAll(at("b.vpl")));
+    EXPECT_FALSE(fs::exists(at("c")));
+  }
+  write("c", "mine");
+  fail("vpl-estimate", estimate + "20k -o " + path("b.vpl") + replaced, kExitInput, {"/c:"});
+  EXPECT_EQ(readAll(at("c")), "mine");
+}
+
+TEST_F(ResumeRun, AnotherProcessorIsAnotherRun) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl") +
+                               " --photons 1G --checkpoint " + path("c");
+  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate + " --quiet");
+  ASSERT_TRUE(fs::exists(at("c")));
+  CheckpointFile saved = readCheckpoint(at("c"));
+  const std::string key = "\"processor_id\":\"";
+  const size_t id = saved.run.find(key);
+  ASSERT_NE(id, std::string::npos) << saved.run;
+  saved.run.insert(id + key.size(), "0");
+  writeCheckpoint(at("c"), saved);
+  fail("vpl-estimate", estimate, kExitInput, {"another run", "processor_id was \"0"});
 }
 
 TEST_F(ResumeRun, AnotherViewIsAnotherRun) {

@@ -1,5 +1,6 @@
 // --shard and vpl-merge: stages whose work is done in parts.
 #include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include "formats/shard_file.h"
@@ -33,6 +34,24 @@ class ShardRun : public PipelineTest {
                             const std::string& whole, const std::vector<int>& counts) const {
     succeed(name, arguments + " --quiet -o " + path(whole));
     for (const int of : counts) expectTheSame(name, arguments, of, whole);
+  }
+  // A copy whose text has `to` for `from` and whose records are changed, with right checksums.
+  void forge(const std::string& source, const std::string& copy, const std::string& from,
+             const std::string& to, const std::function<void(std::string&)>& change = {}) const {
+    ShardReader reader(at(source));
+    std::string info = reader.info();
+    const size_t where = info.find(from);
+    ASSERT_NE(where, std::string::npos) << from;
+    info.replace(where, from.size(), to);
+    AtomicFile file(at(copy));
+    ShardWriter writer(file);
+    for (size_t b = 0; b < reader.blocks().size(); ++b) {
+      std::string bytes = reader.read(b);
+      if (change) change(bytes);
+      writer.record(reader.blocks()[b].name(), reader.blocks()[b].index, bytes);
+    }
+    writer.finish(info);
+    file.commit();
   }
 };
 
@@ -203,29 +222,16 @@ TEST_F(ShardRun, DamagedShardsAreRefusedByName) {
 // Whole, with right checksums, and yet not what a stage writes.
 TEST_F(ShardRun, ForgedShardsAreRefused) {
   makeShards("vpl-place", scene_ + " -n 2k", 1);
-  const auto forge = [&](const std::string& from, const std::string& to, const auto& change) {
-    ShardReader reader(at("1.shard"));
-    std::string info = reader.info();
-    if (!from.empty()) {
-      const size_t where = info.find(from);
-      ASSERT_NE(where, std::string::npos) << from;
-      info.replace(where, from.size(), to);
-    }
-    AtomicFile file(at("forged.shard"));
-    ShardWriter writer(file);
-    for (size_t b = 0; b < reader.blocks().size(); ++b) {
-      std::string bytes = reader.read(b);
-      change(bytes);
-      writer.record(reader.blocks()[b].name(), reader.blocks()[b].index, bytes);
-    }
-    writer.finish(info);
-    file.commit();
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::function<void(std::string&)>& change = {}) {
+    forge("1.shard", "forged.shard", from, to, change);
     fail("vpl-merge", path("forged.shard") + " -o " + path("x.vpl"), kExitInput, {"make", "again"});
   };
-  const auto keep = [](const std::string&) {};
   const std::string deep(200, '[');
   for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
            {"\"run\"", "\"ran\""},
+           {"\"processor\":\"", "\"processor\":\"x"},
+           {"\"processor\":", "\"place\":"},
            {"\"of\":1", "\"of\":0"},
            {"\"of\":1", "\"of\":-1"},
            {"[[1,1]]", "[]"},
@@ -236,14 +242,50 @@ TEST_F(ShardRun, ForgedShardsAreRefused) {
            {"\"command\":", "\"command\":" + deep},
            {"{", ""},
            {"{", "{},{"}}) {
-    forge(from, to, keep);
+    refused(from, to);
   }
-  forge("", "", [](std::string& bytes) { bytes.resize(bytes.size() - 1); });
-  forge("", "", [](std::string& bytes) { bytes.clear(); });
-  forge("", "", [](std::string& bytes) { bytes.replace(56, 4, "\xff\xff\xff\xff"); });  // NaN
-  forge("", "",
-        [](std::string& bytes) { bytes.replace(0, 8, "\xff\xff\xff\xff\xff\xff\xff\x7f"); });
+  refused("", "", [](std::string& bytes) { bytes.resize(bytes.size() - 1); });
+  refused("", "", [](std::string& bytes) { bytes.clear(); });
+  refused("", "", [](std::string& bytes) { bytes.replace(56, 4, "\xff\xff\xff\xff"); });  // NaN
+  refused("", "",
+          [](std::string& bytes) { bytes.replace(0, 8, "\xff\xff\xff\xff\xff\xff\xff\x7f"); });
   EXPECT_FALSE(fs::exists(at("x.vpl")));
+}
+
+// Their bits are not those that one processor would have computed.
+TEST_F(ShardRun, ShardsOfAnotherProcessorAreRefusedByName) {
+  makeShards("vpl-place", scene_ + " -n 2k", 2);
+  forge("2.shard", "other.shard", "\"processor\":\"", "\"processor\":\"0");
+  const std::string merge = " -o " + path("x.vpl");
+  fail("vpl-merge", path("1.shard") + " " + path("other.shard") + merge, kExitInput,
+       {"other.shard: was made on a processor that rounds otherwise than that of", "1.shard"});
+  fail("vpl-merge", path("other.shard") + " " + path("1.shard") + merge, kExitInput,
+       {"other.shard: was made on a processor that rounds otherwise than this one"});
+  EXPECT_FALSE(fs::exists(at("x.vpl")));
+  succeed("vpl-merge", path("1.shard") + " " + path("2.shard") + " --quiet" + merge);
+}
+
+TEST_F(ShardRun, InfoTellsWhatAShardHolds) {
+  makeStages(scene_);
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --method both --photons 50k";
+  makeShards("vpl-estimate", estimate, 3);
+  succeed("vpl-merge",
+          path("1.shard") + " " + path("3.shard") + " --quiet -o " + path("two.shard"));
+  const Outcome text = tool("vpl-inspect", "info " + path("two.shard"));
+  EXPECT_EQ(text.code, kExitOk) << text.err;
+  for (const char* part : {"two.shard: part 1, 3 of 3 of vpl-estimate, ", "processor ", "build ",
+                           "all checksums right", "photons", "command vpl-estimate "})
+    EXPECT_TRUE(contains(text.out, part)) << part << text.out;
+  const Outcome json = tool("vpl-inspect", "info --json " + path("two.shard"));
+  EXPECT_TRUE(contains(json.out, "\"parts\": \"1, 3\"")) << json.out;
+  std::string bytes = readAll(at("two.shard"));
+  bytes[100] = static_cast<char>(bytes[100] ^ 4);
+  write("two.shard", bytes);
+  fail("vpl-inspect", "info " + path("two.shard"), kExitInput, {"two.shard: is damaged"});
+  for (const char* command : {"check ", "compare "}) {
+    fail("vpl-inspect", command + path("1.shard") + " " + path("1.shard"), kExitInput,
+         {"1.shard: is a part of a result", "vpl-merge"});
+  }
 }
 
 TEST_F(ShardRun, PartsAndNamesThatMeanNothingAreRefused) {

@@ -20,9 +20,10 @@ class Furnace : public testing::TestWithParam<FurnaceCase> {};
 TEST_P(Furnace, IndirectLightIsTheGeometricSeries) {
   const FurnaceCase c = GetParam();
   const World world(c.scene);
-  const VplTable lit = litVpls(world, {{"count", typed(c.vpls)}, {"density", c.density}},
-                               {{"radius", typed(c.radius)}, {"max-bounces", "64"}},
-                               {{"count", typed(20 * c.vpls)}});
+  const VplTable lit =
+      litVpls(world, {{"count", typed(c.vpls)}, {"density", c.density}},
+              {{"radius", typed(c.radius)}, {"max-bounces", "64"}, {"irradiance-error", "0"}},
+              {{"count", typed(20 * c.vpls)}});
   const double expected = c.rho * c.rho / (1.0 - c.rho);
   const Given plain = with(kPlainRender, {{"layers", "direct,indirect"}});
   const Given nearField = with(plain, {{"compensate", "near-field"}, {"clamp", "2"}});

@@ -9,6 +9,7 @@
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
 #include "spatial/reach_grid.h"
+#include "spatial/region_grid.h"
 #include "tests/eliminate/clouds.h"
 #include "tools/common/streams.h"
 
@@ -184,6 +185,20 @@ TEST(Spatial, MortonOrderIsAPermutation) {
   std::sort(order.begin(), order.end());
   for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
   EXPECT_TRUE(mortonOrder({}).empty());
+}
+
+TEST(RegionGrid, NamesTheDiskOnThePointsOwnSurface) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 0, 0.001f}, {40, 0, 0}};
+  const std::vector<Vec3> normals{{0, 0, -1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}};
+  const std::vector<float> radii{0.5f, 0.5f, 0.5f, 6.0f};
+  const RegionGrid grid(points, normals, radii);
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, -1}), 0u);
+  EXPECT_EQ(grid.at({1.1f, 0.1f, 0.0f}, {0, 0, -1}), 1u);
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, 1}), 2u);  // the wall's other side
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 1, 0}), UINT32_MAX);
+  EXPECT_EQ(grid.at({40, 3, -3}, {1, 0, 0}), 3u);
+  EXPECT_EQ(grid.at({0, 0, 9}, {0, 0, -1}), UINT32_MAX);
+  EXPECT_EQ(RegionGrid().at({}, {0, 0, 1}), UINT32_MAX);
 }
 
 }  // namespace

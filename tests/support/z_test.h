@@ -45,4 +45,7 @@ ZResult zTest(const Render& a, const Render& b, const ZTest& options = {});
 testing::AssertionResult sameExpectation(const Render& a, const Render& b,
                                          const ZTest& options = {});
 
+// The difference of the images with seeds 1 and 2: the root of its squares over pixels and R, G, B.
+double noiseOf(const Render& render);
+
 }  // namespace bnvpl::test

@@ -1,8 +1,11 @@
 #include "tools/common/checkpoint.h"
 
+#include <CLI/CLI.hpp>
+
 #include "formats/checkpoint.h"
 #include "formats/output_target.h"
 #include "tools/common/clock.h"
+#include "tools/common/processor_id.h"
 
 namespace bnvpl {
 namespace {
@@ -37,6 +40,18 @@ std::string difference(const Json& before, const Json& now, const std::string& p
   return path;
 }
 
+// The state in `file`, which must be of that run.
+std::string stateIn(const fs::path& file, const Json& run) {
+  CheckpointFile found = readCheckpoint(file);
+  const Json theirs = Json::parse(found.run, nullptr, /*allow_exceptions=*/false);
+  if (theirs != run) {
+    throw InputError(file, "is the checkpoint of another run (" + differenceOf(theirs, run) +
+                               "); repeat that run's command, name another file, or add "
+                               "--checkpoint-replace");
+  }
+  return std::move(found.state);
+}
+
 }  // namespace
 
 std::string differenceOf(const Json& before, const Json& now) {
@@ -51,21 +66,23 @@ void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
   addReal(cli, realOption("checkpoint-every", "", 0, 1e6, "", "seconds between two savings"),
           options.everyS)
       ->needs(file);
+  cli.add_flag("--checkpoint-replace", options.replace,
+               "begin anew where that file is the checkpoint of another run, or damaged")
+      ->needs(file);
 }
 
 Checkpoint::Checkpoint(CheckpointOptions options, Json run)
     : options_(std::move(options)), run_(std::move(run)), nextS_(nowS() + options_.everyS) {
   if (options_.file.empty()) return;
   requireWritable({options_.file});
+  run_["processor_id"] = processorId();
   if (!fs::exists(options_.file)) return;
-  CheckpointFile found = readCheckpoint(options_.file);
-  const Json theirs = Json::parse(found.run, nullptr, /*allow_exceptions=*/false);
-  if (theirs != run_) {
-    throw InputError(options_.file, "is the checkpoint of another run (" +
-                                        differenceOf(theirs, run_) +
-                                        "); repeat that run's command, or name another file");
+  try {
+    earlier_ = stateIn(options_.file, run_);
+  } catch (const InputError& unusable) {
+    if (!options_.replace || !beginsAsCheckpoint(options_.file).value_or(false)) throw;
+    printWarnings(runningTool(), {std::string(unusable.what()) + "; the work begins anew"});
   }
-  earlier_ = std::move(found.state);
 }
 
 Resume Checkpoint::resume() {

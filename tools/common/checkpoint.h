@@ -15,16 +15,18 @@ std::string differenceOf(const Json& before, const Json& now);
 struct CheckpointOptions {
   fs::path file;  // empty: none
   double everyS = 60.0;
+  bool replace = false;  // one that is damaged or of another run counts as none
 };
 
-// --checkpoint and --checkpoint-every. They do not change what is computed.
+// --checkpoint, --checkpoint-every and --checkpoint-replace. They do not change what is computed.
 void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options);
 
 class Checkpoint {
  public:
-  // `run` names everything that decides the result: tool, version, options, inputs. Reads the file
-  // where there is one. Throws InputError when it is damaged or belongs to another run, OutputError
-  // when it could not be written later.
+  // `run` names everything that decides the result: tool, version, options, inputs; processorId()
+  // joins it. Reads the file where there is one. Throws InputError when it is damaged or belongs to
+  // another run, unless such checkpoints are to be replaced; OutputError when it could not be
+  // written later.
   Checkpoint(CheckpointOptions options, Json run);
 
   // For the stage: what was done before; pauses every so often, and when the user interrupts, which

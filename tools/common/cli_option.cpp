@@ -1,5 +1,6 @@
 #include "tools/common/cli_option.h"
 
+#include <CLI/CLI.hpp>
 #include <sstream>
 
 namespace bnvpl {

@@ -1,12 +1,12 @@
 // Options on a command line: how --help shows them, and those that stand outside a stage's table.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "core/errors.h"
+#include "tools/common/cli_types.h"
 #include "tools/common/option.h"
 
 namespace bnvpl {

@@ -1,5 +1,6 @@
 #include "tools/common/cost.h"
 
+#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 #include <unistd.h>
 

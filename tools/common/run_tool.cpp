@@ -1,5 +1,6 @@
 #include "tools/common/run_tool.h"
 
+#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <unistd.h>

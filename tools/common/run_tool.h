@@ -1,7 +1,6 @@
 // What every stage's main shares: options of all tools, exit codes, summary, provenance records.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>

@@ -1,5 +1,7 @@
 #include "tools/common/scene_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "scene/choose_view.h"
 #include "scene/scene_hash.h"
 #include "tools/common/film_size.h"

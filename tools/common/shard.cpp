@@ -1,8 +1,10 @@
 #include "tools/common/shard.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 
+#include "tools/common/processor_id.h"
 #include "tools/common/shell_text.h"
 
 namespace bnvpl {
@@ -88,19 +90,9 @@ Resume ShardOutput::only(Resume whole) const {
 }
 
 void ShardOutput::finish(const ShardRun& run, Summary& summary) {
-  writer_.finish(shardInfo(run, {{shard_.first + 1, shard_.end}}, shard_.of));
+  writer_.finish(
+      textOf(ShardInfo{run, processorId(), {{shard_.first + 1, shard_.end}}, shard_.of}));
   summary.add("shard", textOf(shard_), "shard " + textOf(shard_) + ", for vpl-merge");
-}
-
-std::string shardInfo(const ShardRun& run, const ShardParts& parts, uint64_t of) {
-  return Json{{"run", run.run},
-              {"given", run.given},
-              {"sources", run.sources},
-              {"command", run.command},
-              {"history", run.history},
-              {"parts", parts},
-              {"of", of}}
-      .dump();
 }
 
 }  // namespace bnvpl

@@ -1,5 +1,6 @@
 #include "tools/common/stage_cli.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 

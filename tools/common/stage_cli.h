@@ -1,10 +1,10 @@
 // A stage's options on its command line, in its record and in its machine-readable help.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/common/cli_types.h"
 #include "tools/common/option.h"
 
 namespace bnvpl {

@@ -19,6 +19,8 @@ enum class Stream : uint32_t {
   FilmPoints,
   VplPaths,
   TileLights,
+  SurfaceLights,  // in a render
+  PathLights,     // in vpl-estimate
   Guide = 16,
   PilotPhotons = 30,  // of vpl-estimate --method both
   PilotPaths

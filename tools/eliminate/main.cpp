@@ -1,5 +1,6 @@
 // vpl-eliminate: keep the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
+#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "formats/vpl_io.h"

@@ -29,6 +29,7 @@ struct EstimateResult {
   VplTable table;             // of stage Lit
   EnergyAccount energy = {};  // of photons, but for nonFinite, which counts paths as well
   uint64_t paths = 0;
+  double workShare = 1.0;  // done of what was asked for: less where that was enough
 };
 
 struct EstimateInputs {

@@ -1,5 +1,7 @@
 // vpl-estimate: photons from the real lights give the VPLs their flux.
 //   vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 10M
+#include <CLI/CLI.hpp>
+
 #include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"

@@ -22,7 +22,7 @@ float medianError(const VplTable& vpls) {
 
 // Some VPLs in dark corners are to be expected; more than this share says that light is sought
 // elsewhere.
-constexpr double kManyDark = 0.5;
+constexpr double kManyDark = 1.0 / 3.0;
 
 // With fewer hits for each VPL than this, many get none wherever the light goes: e^-2 is 14 %.
 constexpr double kFewHits = 2.0;
@@ -32,9 +32,9 @@ constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
 // Why VPLs are dark, and the cure.
 std::string causeOfDark(const EstimateResult& result) {
   if (result.paths > 0 && result.energy.photons > 0)
-    return "neither photons nor paths brought light there; raise --photons, or keep fewer VPLs "
-           "with "
-           "vpl-eliminate -n";
+    return std::string("neither photons nor paths brought light there; ") +
+           (result.workShare < 1.0 ? "lower --irradiance-error" : "raise --photons") +
+           ", or keep fewer VPLs with vpl-eliminate -n";
   if (result.paths > 0)
     return "no path found a light from there; raise --points or --paths, or use --method guarded";
   const EnergyAccount& a = result.energy;
@@ -95,6 +95,16 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
                            {"dropped_hidden", a.hidden}});
 }
 
+void reportWork(double share, Summary& summary) {
+  char line[128] = "";
+  if (share < 0.995) {
+    std::snprintf(line, sizeof line,
+                  "%.0f %% of the work of --photons was enough for --irradiance-error",
+                  100.0 * share);
+  }
+  summary.add("work_share", share, line);
+}
+
 }  // namespace
 
 void reportShard(const EstimateResult& result, Summary& summary) {
@@ -106,6 +116,7 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
   const bool photons = result.paths == 0;
   if (result.energy.photons > 0) reportPhotons(result.energy, summary);
   if (!photons) summary.add("paths", result.paths, formatSi(double(result.paths)) + " paths");
+  reportWork(result.workShare, summary);
   const auto dark = static_cast<uint64_t>(
       photons ? std::ranges::count(vpls.photons, 0u)
               : std::ranges::count_if(vpls.flux, [](Vec3 f) { return !(mean(f) > 0.0f); }));

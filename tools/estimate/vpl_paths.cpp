@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/resume.h"
+#include "tools/common/streams.h"
 
 namespace bnvpl {
 
@@ -53,7 +54,8 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
   for (uint64_t j = 0; j < settings_.paths; ++j)
-    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, matt, weight, length_, rng, first, later);
+    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, matt, weight, length_, settings_.where, rng,
+                                  first, later);
   r.paths += settings_.paths;
   const Vec3 all = first + later;
   if (!isFinite(all)) {
@@ -65,6 +67,13 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
     r.firstBounce[c] += double{first[c]};
   }
   return double{mean(all)};
+}
+
+std::unique_ptr<const SurfaceLights> lightsOfPaths(const EstimateInputs& in, uint64_t seed) {
+  if (in.resume.source) return nullptr;
+  return std::make_unique<const SurfaceLights>(in.rays, in.lights, in.vpls.position, in.vpls.normal,
+                                               in.vpls.radius, streamKey(seed, Stream::PathLights),
+                                               ProgressFn{});
 }
 
 PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,

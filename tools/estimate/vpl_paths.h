@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,10 +32,11 @@ struct PathSums {  // without padding: it is saved as it lies
 class VplPaths {
  public:
   struct Settings {
-    uint64_t key, paths;  // from each point
-    unsigned maxBounces;  // at least 1: that at the VPL
-    float radius;         // how far a VPL reaches, r_max
-    size_t emitPoints;    // of each VPL
+    uint64_t key, paths;                   // from each point
+    unsigned maxBounces;                   // at least 1: that at the VPL
+    float radius;                          // how far a VPL reaches, r_max
+    size_t emitPoints;                     // of each VPL
+    const SurfaceLights* where = nullptr;  // where light sampling looks for lights
   };
   VplPaths(const EstimateInputs& in, const Settings& settings)
       : in_(in),
@@ -55,6 +57,10 @@ class VplPaths {
   Coverage coverage_;
   PathLength length_;
 };
+
+// Where paths from the surfaces that VPLs stand for look for lights; null for a merge, which traces
+// none.
+std::unique_ptr<const SurfaceLights> lightsOfPaths(const EstimateInputs& in, uint64_t seed);
 
 struct PathResult {
   std::vector<PathSums> sums;  // of each VPL

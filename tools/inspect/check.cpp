@@ -145,7 +145,7 @@ bool isOfAnotherView(const CheckedFile& file, const StageRecord& record, const S
 }  // namespace
 
 CheckedFile checkFile(const fs::path& file) {
-  CheckedFile checked = fileKind(file) == FileKind::Vpl ? checkVpl(file) : checkExr(file);
+  CheckedFile checked = wholeFileKind(file) == FileKind::Vpl ? checkVpl(file) : checkExr(file);
   settleScene(checked);
   return checked;
 }

@@ -1,4 +1,5 @@
 // `vpl-inspect compare`: its options, and from files to figures and pictures.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -32,7 +33,7 @@ struct Sides {
 };
 
 Image readImage(const fs::path& file) {
-  if (fileKind(file) == FileKind::Vpl)
+  if (wholeFileKind(file) == FileKind::Vpl)
     throw InputError(file, "is a .vpl file, not an image; name an .exr of vpl-render");
   return readExr(file);
 }

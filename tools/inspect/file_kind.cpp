@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/files.h"
+#include "formats/shard_file.h"
 #include "formats/vpl_format.h"
 
 namespace bnvpl {
@@ -25,11 +26,23 @@ FileKind fileKind(const fs::path& file) {
   in.read(start.data(), start.size());
   constexpr std::array<char, 4> kExrMagic{'\x76', '\x2f', '\x31', '\x01'};
   if (start == kVplMagic) return FileKind::Vpl;
+  if (start == ShardHeader{}.magic) return FileKind::Shard;
   if (std::memcmp(start.data(), kExrMagic.data(), kExrMagic.size()) == 0) return FileKind::Exr;
   const std::string extension = lowerExtension(file);
   if (extension == ".vpl") return FileKind::Vpl;
   if (extension == ".exr") return FileKind::Exr;
-  throw InputError(file, "is neither a .vpl file nor an OpenEXR image");
+  if (extension == ".shard") return FileKind::Shard;
+  throw InputError(file, "is neither a .vpl file nor an OpenEXR image nor a .shard");
+}
+
+FileKind wholeFileKind(const fs::path& file) {
+  const FileKind kind = fileKind(file);
+  if (kind == FileKind::Shard) {
+    throw InputError(file,
+                     "is a part of a result; put all parts together with vpl-merge, or see what it "
+                     "holds with vpl-inspect info");
+  }
+  return kind;
 }
 
 }  // namespace bnvpl

@@ -8,6 +8,7 @@
 #include "tools/inspect/column_names.h"
 #include "tools/inspect/file_kind.h"
 #include "tools/inspect/provenance.h"
+#include "tools/inspect/shard_report.h"
 #include "tools/inspect/spacing.h"
 
 namespace bnvpl {
@@ -138,10 +139,13 @@ Json describeImage(const Image& image) {
 
 Json describeFile(const fs::path& file) {
   Json json{{"file", file.string()}, {"bytes", nullptr}};
-  if (fileKind(file) == FileKind::Vpl) {
+  const FileKind kind = fileKind(file);
+  if (kind == FileKind::Vpl) {
     const VplTable table = readVpl(file);
     json["version"] = readVplHeader(file).version;
     json.update(describeTable(table));
+  } else if (kind == FileKind::Shard) {
+    json.update(describeShard(file));
   } else {
     const Image image = readExr(file);
     parseProvenance(file, provenanceOf(image));  // throws when it is damaged

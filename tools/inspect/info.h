@@ -7,8 +7,8 @@
 
 namespace bnvpl {
 
-// Reads and verifies a .vpl file or an OpenEXR image and describes it. Keys carry their units.
-// Throws InputError.
+// Reads and verifies a .vpl file, an OpenEXR image or a .shard and describes it. Keys carry their
+// units. Throws InputError.
 Json describeFile(const fs::path& file);
 
 Json describeTable(const VplTable& table);

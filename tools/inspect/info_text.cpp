@@ -4,6 +4,7 @@
 #include "tools/inspect/append_text.h"
 #include "tools/inspect/info.h"
 #include "tools/inspect/provenance.h"
+#include "tools/inspect/shard_report.h"
 
 namespace bnvpl {
 namespace {
@@ -94,6 +95,7 @@ void appendSpacing(std::string& text, const Json& s) {
 }  // namespace
 
 std::string infoText(const Json& description) {
+  if (description["format"] == "shard") return shardText(description);
   std::string text;
   appendHead(text, description);
   appendProvenance(text, description);

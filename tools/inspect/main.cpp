@@ -1,6 +1,8 @@
 // vpl-inspect: look into, check, export, draw and compare what the stages make.
 //   vpl-inspect info lit.vpl
 //   vpl-inspect compare image.exr reference.exr --layer indirect --max-relmse 0.01 --diff diff.png
+#include <CLI/CLI.hpp>
+
 #include "tools/common/choice.h"
 #include "tools/inspect/commands.h"
 
@@ -12,9 +14,9 @@ const Choices<DotColour> kDotColours{
 
 CLI::App* addInfo(CLI::App& cli, InfoCommand& c) {
   CLI::App* sub = cli.add_subcommand("info",
-                                     "Header, history, columns and spacing of a .vpl file, or "
-                                     "channels of an .exr image.");
-  addFile(*sub, "file", c.file, ".vpl or .exr")->required();
+                                     "Header, history, columns and spacing of a .vpl file, "
+                                     "channels of an .exr image, or what a .shard holds.");
+  addFile(*sub, "file", c.file, ".vpl, .exr or .shard")->required();
   sub->add_flag("--json", c.json, "the same as JSON");
   return sub;
 }

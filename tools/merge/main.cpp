@@ -1,5 +1,6 @@
 // vpl-merge: from the shards of a stage to the very bytes that the stage writes without --shard.
 //   vpl-merge parts/*.shard -o candidates.vpl
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "core/files.h"

@@ -3,48 +3,12 @@
 #include <algorithm>
 #include <tuple>
 
-#include "formats/provenance.h"
 #include "tools/common/build_id.h"
 #include "tools/common/checkpoint.h"
+#include "tools/common/processor_id.h"
 #include "tools/common/shell_text.h"
 
 namespace bnvpl {
-namespace {
-
-struct Info {
-  ShardRun run;
-  ShardParts parts;
-  uint64_t of;
-};
-
-Info parseInfo(const fs::path& file, const std::string& text) {
-  // One object, as the only one of an array, whose depth and letters isProvenance() judges.
-  const std::string list = "[" + text + "]";
-  const Json all = isProvenance(list) ? Json::parse(list) : Json::array();
-  if (all.size() != 1)
-    throw InputError(file, "is damaged (what it says of itself); delete it and make it again");
-  const Json& json = all.front();
-  Info info{
-      {fieldOf<Json>(json, "run"), fieldOf<Given>(json, "given"), fieldOf<Json>(json, "sources"),
-       fieldOf<std::string>(json, "command"), fieldOf<std::string>(json, "history")},
-      fieldOf<ShardParts>(json, "parts"),
-      fieldOf<uint64_t>(json, "of")};
-  const bool history = info.run.history.empty() || isProvenance(info.run.history);
-  if (!history || info.parts.empty() || info.of < 1 || info.of > kMostShards)
-    throw InputError(file, "is damaged (its parts or history); delete it and make it again");
-  return info;
-}
-
-std::string textOf(const ShardParts& parts) {
-  std::string text;
-  for (const auto& [first, last] : parts) {
-    text += (text.empty() ? "" : ", ") + std::to_string(first) +
-            (last > first ? "-" + std::to_string(last) : "");
-  }
-  return text;
-}
-
-}  // namespace
 
 ShardSet::ShardSet(const std::vector<fs::path>& files) : files_(files) {
   std::vector<Holder> holders;
@@ -70,34 +34,51 @@ size_t ShardSet::workNamed(std::string_view name) {
 
 void ShardSet::takeInfo(size_t index, const std::string& text, std::vector<Holder>& holders) {
   const fs::path& file = files_[index];
-  Info info = parseInfo(file, text);
+  ShardInfo info = parseShardInfo(file, text);
   if (holders.empty()) {
     whole_ = std::move(info.run);
+    processor_ = info.processor;
     of_ = info.of;
-    const std::string build = fieldOf<std::string>(whole_.run, "version");
-    if (build != buildId()) {
-      throw InputError(file, "was made by another build (" + build + ", this is " + buildId() +
-                                 "); use its vpl-merge, or make all shards again");
-    }
+    requireThisPlace(file);
   } else {
-    requireSameRun(file, info.run, info.of);
+    requireSameRun(file, info);
   }
   for (const auto& [first, last] : info.parts) holders.push_back({first, last, index});
 }
 
-void ShardSet::requireSameRun(const fs::path& file, const ShardRun& run, uint64_t of) const {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError(file, what + "; leave it out, or make all shards by one command");
-  };
-  if (run.run != whole_.run) {
-    const bool build =
-        fieldOf<std::string>(run.run, "version") != fieldOf<std::string>(whole_.run, "version");
-    refuse(std::string("is of another ") + (build ? "build" : "run") + " than " +
-           files_.front().string() + " (" + differenceOf(whole_.run, run.run) + ")");
+void ShardSet::requireThisPlace(const fs::path& file) const {
+  const std::string build = fieldOf<std::string>(whole_.run, "version");
+  if (build != buildId()) {
+    throw InputError(file, "was made by another build (" + build + ", this is " + buildId() +
+                               "); use its vpl-merge, or make all shards again");
   }
-  if (of != of_) {
-    refuse("is one of " + std::to_string(of) + " shards, " + files_.front().string() + " one of " +
-           std::to_string(of_));
+  if (const std::string here = processorId(); processor_ != here) {
+    throw InputError(file, "was made on a processor that rounds otherwise than this one (" +
+                               processor_ + ", this is " + here +
+                               "); merge on one of its kind, or make all shards again here");
+  }
+}
+
+void ShardSet::requireSameRun(const fs::path& file, const ShardInfo& info) const {
+  const auto refuse = [&](const std::string& what,
+                          const std::string& cure = "make all shards by one command") {
+    throw InputError(file, what + "; leave it out, or " + cure);
+  };
+  const Json& run = info.run.run;
+  if (run != whole_.run) {
+    const bool build =
+        fieldOf<std::string>(run, "version") != fieldOf<std::string>(whole_.run, "version");
+    refuse(std::string("is of another ") + (build ? "build" : "run") + " than " +
+           files_.front().string() + " (" + differenceOf(whole_.run, run) + ")");
+  }
+  if (info.processor != processor_) {
+    refuse("was made on a processor that rounds otherwise than that of " + files_.front().string() +
+               " (" + info.processor + ", not " + processor_ + ")",
+           "make all shards on processors of one kind");
+  }
+  if (info.of != of_) {
+    refuse("is one of " + std::to_string(info.of) + " shards, " + files_.front().string() +
+           " one of " + std::to_string(of_));
   }
 }
 
@@ -215,7 +196,7 @@ void ShardSet::writeTo(AtomicFile& output) {
       if (reader.blocks()[b].kind == kShardRecord) writer.copy(reader.blocks()[b], reader.read(b));
     }
   }
-  writer.finish(shardInfo(whole_, parts_, of_));
+  writer.finish(textOf(ShardInfo{whole_, processor_, parts_, of_}));
 }
 
 }  // namespace bnvpl

@@ -12,7 +12,8 @@ namespace bnvpl {
 class ShardSet {
  public:
   // Reads what the files say of themselves. Throws InputError, which names file and cure, for
-  // files that are damaged, of another run, build or number of parts, and for parts that two hold.
+  // files that are damaged, of another run, build, processor or number of parts, and for parts that
+  // two hold.
   explicit ShardSet(const std::vector<fs::path>& files);
   ShardSet(const ShardSet&) = delete;
   ShardSet& operator=(const ShardSet&) = delete;
@@ -47,7 +48,8 @@ class ShardSet {
   size_t workNamed(std::string_view name);
   void takeInfo(size_t file, const std::string& text, std::vector<Holder>& holders);
   void takeRecords(size_t file, const ShardReader& reader);
-  void requireSameRun(const fs::path& file, const ShardRun& run, uint64_t of) const;
+  void requireThisPlace(const fs::path& file) const;
+  void requireSameRun(const fs::path& file, const ShardInfo& info) const;
   void joinParts(std::vector<Holder>& holders);
   std::optional<std::string> record(std::string_view work, uint64_t unit);
   std::string read(Record& record);
@@ -55,6 +57,7 @@ class ShardSet {
 
   std::vector<fs::path> files_;
   ShardRun whole_;
+  std::string processor_;
   uint64_t of_ = 0;
   ShardParts parts_;
   std::vector<std::string> works_;

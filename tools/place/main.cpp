@@ -1,5 +1,6 @@
 // vpl-place: drop candidate VPLs where camera paths hit after their first diffuse bounce.
 //   vpl-place scene.toml -o candidates.vpl -n 60k
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "core/memory.h"

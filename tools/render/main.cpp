@@ -1,5 +1,7 @@
 // vpl-render: direct light plus all VPLs, or a reference, traced from the camera or the lights.
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
+#include <CLI/CLI.hpp>
+
 #include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"

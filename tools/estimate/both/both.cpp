@@ -18,7 +18,12 @@ namespace {
 constexpr std::array kOptions{
     countOption("photons", "10M", 0x1p36, "",
                 "work, as that of so many photons; paths take their part of it"),
-    kPathsOption, kRadiusOption,
+    realOption(
+        "irradiance-error", "0.01", 0, 1, "",
+        "relative error of the light that VPLs bring to a surface, in the mean, that is good "
+        "enough: by the pilots, less work is done; 0: all of it"),
+    kPathsOption,
+    kRadiusOption,
     wholeOption("max-bounces", "32", 1, 1000, "",
                 "diffuse bounces between a light and the view, that at the VPL included"),
     kEmitPointsOption};
@@ -33,7 +38,8 @@ constexpr double kDearPilot = 0.25;
 // The phases that shards divide; those before are pilots.
 constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
 // Of the split, in shards.
-constexpr std::string_view kCount = "split.count", kPoints = "split.points", kShare = "split.share";
+constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
+                           kPoints = "split.points", kShare = "split.share";
 
 // Photons of a stream, and what they bring.
 struct PhotonWork {
@@ -104,10 +110,11 @@ class Estimator {
     work.scatter.setShare(share);
     const PhotonRun run{streamKey(options_.whole("seed"), stream), emitPointsOf(phase),
                         maxBounces(), work.shares, work.scatter};
+    const auto worth = static_cast<uint64_t>(scale_ * static_cast<double>(count));
     work.sums = phases_.run(
         phase,
         [&](const Resume& resume) {
-          return told(count, work.shares.total(), [&](const ProgressFn& progress) {
+          return told(worth, work.shares.total(), [&](const ProgressFn& progress) {
             return tracePhotons({in_.vpls, in_.rays, in_.lights, progress, resume}, run,
                                 scatterToOneInSight);
           });
@@ -117,9 +124,10 @@ class Estimator {
   }
 
   PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points, uint64_t worth) {
+    if (!where_) where_ = lightsOfPaths(in_, options_.whole("seed"));
     const VplPaths gatherer(
         in_, {streamKey(options_.whole("seed"), stream), options_.whole("paths"), maxBounces(),
-              options_.real32("radius"), emitPointsOf(phase)});
+              options_.real32("radius"), emitPointsOf(phase), where_.get()});
     return phases_.run(
         phase,
         [&](const Resume& resume) {
@@ -162,7 +170,11 @@ class Estimator {
       pilots.pointCost.push_back(cost / pilots.points);
       spent += cost;
     }
-    return splitWork(in_.vpls, pilots, std::max(whole - spent, 0.5 * whole));
+    const Split split =
+        splitWork(in_.vpls, in_.rays, pilots,
+                  {std::max(whole - spent, 0.5 * whole), options_.real("irradiance-error")});
+    scale_ = static_cast<double>(work_ - told_) * pilots.photonCost / split.cost;
+    return split;
   }
 
   Split photonsAlone(uint64_t photons) const {
@@ -174,17 +186,21 @@ class Estimator {
   void give(const Split& split) const {
     const ShardSink& sink = *in_.resume.sink;
     giveRecord(sink, kCount, 0, std::array{split.photons});
+    giveRecord(sink, kCostShare, 0, std::array{split.costShare});
     giveRecord(sink, kPoints, 0, split.points);
     giveRecord(sink, kShare, 0, split.share);
   }
   Split splitOfShards() const {
     const ShardSource& source = *in_.resume.source;
     std::array<uint64_t, 1> photons{};
+    std::array<double, 1> costShare{};
     Split split{0, std::vector<uint64_t>(in_.vpls.size()), std::vector<double>(in_.vpls.size())};
     takeRecord(source, kCount, 0, photons);
     takeRecord(source, kPoints, 0, split.points);
     takeRecord(source, kShare, 0, split.share);
+    takeRecord(source, kCostShare, 0, costShare);
     split.photons = photons[0];
+    split.costShare = costShare[0];
     return split;
   }
 
@@ -217,6 +233,7 @@ class Estimator {
       result.paths += r.paths;
       result.energy.nonFinite += r.nonFinite;
     }
+    result.workShare = split.costShare;
     EmitPoints points = photons.sums.points;
     points.add(paths.points, pathShare);
     points.fill(lit);
@@ -226,7 +243,9 @@ class Estimator {
   const EstimateInputs& in_;
   const Values& options_;
   Phases<4, kPhotonPhase> phases_;
+  std::unique_ptr<const SurfaceLights> where_;
   uint64_t work_, told_ = 0;  // photons' worth: all, and what progress knows of
+  double scale_ = 1.0;        // of what is left, where less is done than was asked for
 };
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {

@@ -5,9 +5,12 @@
 
 #include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
+#include "tools/estimate/both/receivers.h"
 
 namespace bnvpl::test {
 namespace {
+
+using methods::estimate::both::Receivers;
 
 // The Cornell box, lit by its lamp and by a sky whose photons hardly ever find it: they cover a box
 // that is much larger.
@@ -113,7 +116,8 @@ TEST(Both, KeepsLightThatOnlyPhotonsFind) {
   const double photons = totalFlux(lit(world, vpls, "guarded", "2", {{"photons", "400k"}}));
   const double paths = totalFlux(lit(world, vpls, "paths", "1"));
   EXPECT_LT(paths, 0.9 * photons);
-  const EstimateResult both = lightVpls(world, vpls, {{"method", "both"}, {"photons", "400k"}});
+  const EstimateResult both =
+      lightVpls(world, vpls, {{"method", "both"}, {"photons", "400k"}, {"irradiance-error", "0"}});
   EXPECT_GT(both.paths, 0u);
   EXPECT_NEAR(totalFlux(both.table) / photons, 1.0, 0.01);
 }
@@ -166,12 +170,71 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
 TEST(Both, TellsProgressOnceForAllItsWork) {
   const World world = lampAndSky();
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
-  const Values options = resolve(estimateSpec(), {{"method", "both"}, {"photons", "100k"}});
-  std::atomic<uint64_t> told{0};
-  const EstimateResult result =
-      estimate(vpls, world.rays, world.lights, options, [&](uint64_t n) { told += n; });
-  EXPECT_EQ(told, estimateWork(vpls, options).count);
-  EXPECT_GT(result.paths, 0u);
+  for (const char* error : {"0", "0.02"}) {
+    const Values options = resolve(
+        estimateSpec(), {{"method", "both"}, {"photons", "300k"}, {"irradiance-error", error}});
+    std::atomic<uint64_t> told{0};
+    const EstimateResult result =
+        estimate(vpls, world.rays, world.lights, options, [&](uint64_t n) { told += n; });
+    EXPECT_EQ(told, estimateWork(vpls, options).count) << error;
+    EXPECT_GT(result.paths, 0u);
+  }
+}
+
+// As much work as is asked for, and no more: the error stated at the end is the one wanted.
+TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
+  const World world("cornell/scene.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+  const auto run = [&](const char* error) {
+    return lightVpls(world, vpls, {{"photons", "3M"}, {"irradiance-error", error}});
+  };
+  const Receivers receivers(vpls, world.rays);
+  const auto errorOf = [&](const VplTable& lit) {
+    std::vector<double> flux, variance;
+    for (size_t i = 0; i < lit.size(); ++i) {
+      flux.push_back(double{mean(lit.flux[i])});
+      variance.push_back(std::pow(double{lit.relativeError[i]} * flux.back(), 2));
+    }
+    return receivers.relativeError(flux, variance);
+  };
+  const EstimateResult all = run("0"), some = run("0.004"), few = run("0.008");
+  const double best = errorOf(all.table);
+  EXPECT_LT(best, 0.003);
+  EXPECT_NEAR(errorOf(some.table), 0.004, 0.0015);
+  EXPECT_NEAR(errorOf(few.table), 0.008, 0.003);
+  EXPECT_LT(some.energy.photons + some.paths, (all.energy.photons + all.paths) / 2);
+  EXPECT_LT(few.energy.photons + few.paths, (some.energy.photons + some.paths) / 2);
+  EXPECT_NEAR(totalFlux(few.table) / totalFlux(all.table), 1.0, 0.02);
+}
+
+// What the receivers promise is what repeated runs show: the deviation of irradiances between
+// seeds.
+TEST(Both, ReceiversStateTheErrorOfIrradiance) {
+  const World world("cornell/scene.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+  const Receivers receivers(vpls, world.rays);
+  constexpr int kRuns = 12;
+  std::vector<VplTable> runs;
+  for (int run = 1; run <= kRuns; ++run)
+    runs.push_back(lit(world, vpls, "guarded", typed(run).c_str(), {{"photons", "30k"}}));
+  std::vector<double> flux(vpls.size()), stated(vpls.size());
+  for (const VplTable& r : runs) {
+    for (size_t i = 0; i < vpls.size(); ++i) {
+      flux[i] += double{mean(r.flux[i])} / kRuns;
+      stated[i] += std::pow(double{r.relativeError[i]} * double{mean(r.flux[i])}, 2) / kRuns;
+    }
+  }
+  std::vector<double> found(vpls.size());
+  for (const VplTable& r : runs)
+    for (size_t i = 0; i < vpls.size(); ++i)
+      found[i] += std::pow(double{mean(r.flux[i])} - flux[i], 2) / (kRuns - 1);
+  const double error = receivers.relativeError(flux, stated);
+  EXPECT_GT(error, 0.005);
+  EXPECT_LT(error, 0.2);
+  EXPECT_NEAR(receivers.relativeError(flux, found) / error, 1.0, 0.15);
+  // A hundred times the variance is ten times the error.
+  for (double& v : stated) v *= 100.0;
+  EXPECT_NEAR(receivers.relativeError(flux, stated) / error, 10.0, 1.5);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/kd_tree.h"
+#include "tools/estimate/both/receivers.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -19,8 +20,12 @@ constexpr size_t kPool = 16, kWidePool = 96, kNearest = 160;
 constexpr double kSurprise = 2.0;
 // Photons always get at least one of so many parts: no path finds what only they bring.
 constexpr int kParts = 16;
-// The flux that errors of a VPL are judged by is at least this share of the mean VPL's.
-constexpr double kLeastFlux = 0.1;
+// The flux that errors of a VPL are judged by is at least this share of the mean VPL's: when work
+// is shared out, and when it is enough.
+constexpr double kLeastFlux = 0.1, kLeastFluxOfError = 0.01;
+// Work that might be enough: all, and so many times less in steps of a fourth of an octave.
+constexpr int kSteps = 24;
+constexpr double kStep = 0.8408964152537145;  // 2^(-1/4)
 
 // Of the VPLs around one, for one way to find their flux.
 struct Pool {
@@ -148,12 +153,16 @@ class Points {
   }
   double errorAt(double photons, double price) const {
     double sum = 0.0;
-    for (size_t i = 0; i < judged_.size(); ++i) {
-      const Judged& j = judged_[i];
-      const double known = photons / j.photon;
-      sum += weight_[i] / (j.point > 0.0 ? known + at(i, photons, price) / j.point : known);
-    }
+    for (size_t i = 0; i < judged_.size(); ++i) sum += weight_[i] * variance(i, photons, price);
     return sum;
+  }
+  double relativeErrorAt(double photons, double price, const Receivers& receivers) const {
+    std::vector<double> flux, variances;
+    for (size_t i = 0; i < judged_.size(); ++i) {
+      flux.push_back(judged_[i].flux);
+      variances.push_back(variance(i, photons, price));
+    }
+    return receivers.relativeError(flux, variances);
   }
   double share(size_t i, double photons, double points) const {
     const Judged& j = judged_[i];
@@ -162,28 +171,63 @@ class Points {
   }
 
  private:
+  double variance(size_t i, double photons, double price) const {
+    const Judged& j = judged_[i];
+    const double known = photons / j.photon;
+    return 1.0 / (j.point > 0.0 ? known + at(i, photons, price) / j.point : known);
+  }
+
   std::vector<Judged> judged_;
   std::vector<double> weight_;
 };
 
-}  // namespace
+// The number of photons, and the price of points beside them.
+struct Shares {
+  double photons = 0.0, price = INFINITY, error = INFINITY;
+};
 
-Split splitWork(const VplTable& vpls, const Pilots& pilots, double cost) {
-  const Points points(judgeAll(vpls, pilots));
-  double best = INFINITY, bestPhotons = 0.0, bestPrice = INFINITY;
+Shares bestShares(const Points& points, double photonCost, double cost) {
+  Shares best;
   for (int part = 1; part <= kParts; ++part) {
-    const double ofPhotons = cost * part / kParts, photons = ofPhotons / pilots.photonCost;
+    const double ofPhotons = cost * part / kParts, photons = ofPhotons / photonCost;
     const double price = part == kParts ? INFINITY : points.priceFor(photons, cost - ofPhotons);
     const double error = points.errorAt(photons, price);
-    if (error < best) best = error, bestPhotons = photons, bestPrice = price;
+    if (error < best.error) best = {photons, price, error};
   }
+  return best;
+}
+
+// From all of the work down, as long as the rest is enough.
+Shares sharesWithin(const Points& points, const VplTable& vpls, const RayScene& rays,
+                    double photonCost, const Budget& budget) {
+  Shares best = bestShares(points, photonCost, budget.cost);
+  if (!(budget.error > 0.0)) return best;
+  const Receivers receivers(vpls, rays);
+  double cost = budget.cost;
+  for (int step = 0; step < kSteps; ++step) {
+    cost *= kStep;
+    const Shares less = bestShares(points, photonCost, cost);
+    if (!(points.relativeErrorAt(less.photons, less.price, receivers) <= budget.error)) break;
+    best = less;
+  }
+  return best;
+}
+
+}  // namespace
+
+Split splitWork(const VplTable& vpls, const RayScene& rays, const Pilots& pilots,
+                const Budget& budget) {
+  const Points points(judgeAll(vpls, pilots));
+  const Shares best = sharesWithin(points, vpls, rays, pilots.photonCost, budget);
   Split split;
-  split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(bestPhotons)));
+  split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(best.photons)));
   split.points.resize(vpls.size());
   split.share.resize(vpls.size());
   const auto photons = static_cast<double>(split.photons);
+  split.cost = photons * pilots.photonCost + points.costAt(photons, best.price);
+  split.costShare = std::min(1.0, split.cost / budget.cost);
   for (size_t i = 0; i < vpls.size(); ++i) {
-    split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, bestPrice)));
+    split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.price)));
     split.share[i] = points.share(i, photons, static_cast<double>(split.points[i]));
   }
   return split;

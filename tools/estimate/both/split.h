@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/vpl_table.h"
+#include "transport/rays.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -27,10 +28,18 @@ struct Split {
   uint64_t photons = 0;
   std::vector<uint64_t> points;  // of each VPL
   std::vector<double> share;     // of each VPL: how much of its flux photons decide, 0 to 1
+  double cost = 0.0;             // of both
+  double costShare = 1.0;        // of the budget
 };
 
-// Spends `cost` so that the sum of the VPLs' squared errors, each over the flux around it, is
+struct Budget {
+  double cost = 0.0;   // at most
+  double error = 0.0;  // enough, as Receivers state it; 0: spend it all
+};
+
+// Spends the budget so that the sum of the VPLs' squared errors, each over the flux around it, is
 // least.
-Split splitWork(const VplTable& vpls, const Pilots& pilots, double cost);
+Split splitWork(const VplTable& vpls, const RayScene& rays, const Pilots& pilots,
+                const Budget& budget);
 
 }  // namespace bnvpl::methods::estimate::both

@@ -21,10 +21,11 @@ constexpr std::array kOptions{
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
+  const auto where = lightsOfPaths(in, options.whole("seed"));
   const VplPaths gatherer(
       in, {streamKey(options.whole("seed"), Stream::VplPaths), options.whole("paths"),
            static_cast<unsigned>(options.whole("max-bounces")), options.real32("radius"),
-           options.whole("emit-points")});
+           options.whole("emit-points"), where.get()});
   const std::vector<uint64_t> points(in.vpls.size(), options.whole("points"));
   const PathResult received = gatherAll(in, gatherer, points);
   EstimateResult result{in.vpls, {}, 0};

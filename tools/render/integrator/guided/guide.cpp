@@ -4,7 +4,6 @@
 
 #include "core/cdf.h"
 #include "core/parallel.h"
-#include "spatial/compatible_surface.h"
 #include "tools/common/streams.h"
 #include "transport/specular_path.h"
 
@@ -16,10 +15,8 @@ namespace {
 constexpr uint32_t kMinSide = 4, kMaxSide = 32;
 // The grid is finer than the rays of one VPL, since those of its neighbours fill it too.
 constexpr uint32_t kFiner = 2;
-// What VPLs learnt is averaged over those this near, in units of the radius: about six.
+// What VPLs learnt is averaged over those this near, in units of the radius.
 constexpr float kSmooth = 2.5f;
-// Normals of these differ by at most 25 degrees.
-constexpr float kSmoothNormalDot = 0.9f;
 // Points of a VPL's region that its rays start from.
 constexpr uint32_t kOrigins = 8;
 // What a darker VPL tells of the light that it receives is mostly noise.
@@ -42,9 +39,7 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
       strata_{sideOf(raysEach)},
       grid_{kFiner * strata_.side} {
   if (lit.size() == 0 || strata_.side == 0) return;
-  std::vector<float> reach = lit.radius;
-  for (float& r : reach) r *= kSmooth;
-  const ReachGrid near(position_, normal_, reach);
+  const NearSurfaces near(position_, normal_, lit.radius, kSmooth);
   findRadiance(lit, near);
   regions_ = RegionGrid(position_, normal_, lit.radius);
   const ProgressFn::Phase phase = progress.before("guide", lit.size());
@@ -56,28 +51,17 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
           std::span(learnt).subspan(i * each, each));
     if (progress) progress(1);
   });
-  fillCdfs(smooth(near, lit.radius, learnt));
-}
-
-template <typename Fn>
-void Guide::forEachNear(const ReachGrid& near, std::span<const float> radius, size_t i,
-                        const Fn& fn) const {
-  ReachGrid::forEachReaching(near.lookUp(position_[i]), [&](const ReachGrid::Disk& d) {
-    if (compatibleSurfaces(position_[i], normal_[i], d.centre, d.normal,
-                           kPlaneFactor * kSmooth * radius[i], kSmoothNormalDot)) {
-      fn(d.index);
-    }
-  });
+  fillCdfs(smooth(near, learnt));
 }
 
 // Flux over area, of each VPL and those near it: one alone may have met few photons.
-void Guide::findRadiance(const VplTable& lit, const ReachGrid& near) {
+void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
   radiance_.resize(lit.size());
   total_.resize(lit.size());
   parallelFor(lit.size(), 64, [&](size_t i) {
     Vec3 flux;
     float area = 0.0f, albedo = 0.0f;
-    forEachNear(near, lit.radius, i, [&](uint32_t k) {
+    near.forEach(i, [&](uint32_t k) {
       const float share = 2.0f * std::sqrt(3.0f) * lit.radius[k] * lit.radius[k];
       flux += lit.flux[k];
       area += share;
@@ -126,8 +110,7 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
 
 // Means over what neighbouring regions learnt, cell by cell, each with the mean of its stratum as
 // one ray more.
-std::vector<float> Guide::smooth(const ReachGrid& near, std::span<const float> radius,
-                                 std::span<const Learnt> learnt) const {
+std::vector<float> Guide::smooth(const NearSurfaces& near, std::span<const Learnt> learnt) const {
   const uint32_t cells = grid_.cells(), each = strata_.cells();
   struct Mean {
     float sum = 0.0f, count = 0.0f;
@@ -138,7 +121,7 @@ std::vector<float> Guide::smooth(const ReachGrid& near, std::span<const float> r
   parallelFor(position_.size(), 16, [&](size_t i) {
     std::vector<Mean> means(cells), strata(each);
     const Basis frame(normal_[i]);
-    forEachNear(near, radius, i, [&](uint32_t k) {
+    near.forEach(i, [&](uint32_t k) {
       const Basis other(normal_[k]);
       for (const Learnt& l : learnt.subspan(size_t{k} * each, each)) {
         uint32_t cell = l.cell;

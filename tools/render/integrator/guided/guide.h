@@ -6,9 +6,9 @@
 
 #include "core/progress.h"
 #include "formats/vpl_table.h"
-#include "spatial/reach_grid.h"
+#include "spatial/near_surfaces.h"
+#include "spatial/region_grid.h"
 #include "tools/render/integrator/guided/direction_grid.h"
-#include "tools/render/integrator/guided/region_grid.h"
 #include "transport/lights.h"
 
 namespace bnvpl {
@@ -35,11 +35,7 @@ class Guide {
   float onward(uint32_t region) const { return onward_[region]; }
 
  private:
-  // VPLs near to each, which learn together.
-  template <typename Fn>
-  void forEachNear(const ReachGrid& near, std::span<const float> radius, size_t i,
-                   const Fn& fn) const;
-  void findRadiance(const VplTable& lit, const ReachGrid& near);
+  void findRadiance(const VplTable& lit, const NearSurfaces& near);
   // What a ray found.
   struct Learnt {
     float radiance;
@@ -47,8 +43,7 @@ class Guide {
   };
   void learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
              float radius, std::span<Learnt> learnt) const;
-  std::vector<float> smooth(const ReachGrid& near, std::span<const float> radius,
-                            std::span<const Learnt> learnt) const;
+  std::vector<float> smooth(const NearSurfaces& near, std::span<const Learnt> learnt) const;
   void fillCdfs(const std::vector<float>& radiance);
   std::span<const float> cdf(uint32_t region) const {
     return std::span(cdf_).subspan(size_t{region} * grid_.cells(), grid_.cells());

@@ -2,6 +2,7 @@
 #include <array>
 #include <memory>
 
+#include "tools/common/streams.h"
 #include "tools/render/integrator/guided/guided_tracer.h"
 #include "tools/render/integrator/path_tracer.h"
 
@@ -30,6 +31,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const auto tracer = std::make_shared<const GuidedTracer>(
       in.rays, in.lights,
       Guide(in.lit, in.rays, in.lights, in.seed, raysEach(in, options), in.progress),
+      SurfaceLights(in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+                    streamKey(in.seed, Stream::SurfaceLights), in.progress),
       options.real32("guide-share"), maxBouncesOf(options), in.only);
   return {[tracer](const TileSamples& tile) { tracer->render(tile); }};
 }

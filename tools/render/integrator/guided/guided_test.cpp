@@ -46,20 +46,6 @@ TEST(DirectionGrid, FindsTheCellThatADirectionWasDrawnIn) {
   }
 }
 
-TEST(RegionGrid, NamesTheDiskOnThePointsOwnSurface) {
-  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 0, 0.001f}, {40, 0, 0}};
-  const std::vector<Vec3> normals{{0, 0, -1}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}};
-  const std::vector<float> radii{0.5f, 0.5f, 0.5f, 6.0f};
-  const RegionGrid grid(points, normals, radii);
-  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, -1}), 0u);
-  EXPECT_EQ(grid.at({1.1f, 0.1f, 0.0f}, {0, 0, -1}), 1u);
-  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, 1}), 2u);  // the wall's other side
-  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 1, 0}), kNone);
-  EXPECT_EQ(grid.at({40, 3, -3}, {1, 0, 0}), 3u);
-  EXPECT_EQ(grid.at({0, 0, 9}, {0, 0, -1}), kNone);
-  EXPECT_EQ(RegionGrid().at({}, {0, 0, 1}), kNone);
-}
-
 // The density over the sphere is that of the draws: its integral is 1, and half of the sphere gets
 // as many draws as it says.
 TEST(Guide, DensitiesAreThoseOfTheDraws) {
@@ -148,17 +134,6 @@ TEST(Guided, HasThePathTracersImageByWrongVpls) {
   EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, options)));
   const Given bold = with(options, {{"guide-share", "0.9"}});
   EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, bold)));
-}
-
-// RMS difference of two images with different seeds.
-double noiseOf(const Render& render) {
-  const Image a = render(1), b = render(2);
-  double sum = 0.0;
-  for (const char* channel : {"R", "G", "B"}) {
-    const std::vector<float>&p = *a.find(channel), &q = *b.find(channel);
-    for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
-  }
-  return std::sqrt(sum);
 }
 
 // Light comes round a bend, which few paths find.

@@ -9,8 +9,8 @@ namespace bnvpl {
 
 namespace {
 
-// Paths go on for sure where they will bring half of what the first vertex shows. Ending more of them
-// takes less time and adds more noise.
+// Paths go on for sure where they will bring half of what the first vertex shows. Ending more of
+// them takes less time and adds more noise.
 constexpr float kEager = 2.0f;
 // What the guide calls dark may not be: what is found there counts at most three times.
 constexpr float kLeastSurvival = 0.3f;
@@ -90,14 +90,15 @@ void GuidedTracer::addLeaving(const Bsdf& at, Vec3 throughput, PathLength length
   float shown = 0.0f;  // by the first vertex
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
+  LearnedStrata strata;
   for (unsigned bounce = 0;; ++bounce) {
     const Bsdf& bsdf = bounce == 0 ? at : scattering.emplace(rays_.scene(), vertex.hit);
     const Mixture mixture(guide_, share_, bsdf);
     Vec3& sum = bounce == 0 ? first : later;
+    strata = where_.at(bsdf.point().position, bsdf.point().ng);
     sum += throughput * directLight(
-                            rays_, lights_, bsdf, LobeGroup::Rough,
+                            rays_, lights_, bsdf, LobeGroup::Rough, strata,
                             [&](Vec3 wi) { return mixture.pdf(wi); }, rng);
-
     if (bounce == 0 && mixture.known()) shown = mean(throughput) * mixture.total();
     const float survive = bounce == 0 ? 1.0f : survival(mixture, bsdf, mean(throughput), shown);
     if (rng.next() >= survive) return;
@@ -105,7 +106,8 @@ void GuidedTracer::addLeaving(const Bsdf& at, Vec3 throughput, PathLength length
     if (!mixture.sample(rng, scattered)) return;
     const Ray next = rayOn(rays_, bsdf.point(), scattered);
     throughput *= scattered.weight * (1.0f / survive);
-    const Arrival arrival{scattered.pdf, bsdf.point().position};
+    const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
+                          learnedBy(strata)};
     vertex = followSpecularPath(rays_, lights_, next.origin, next.direction, arrival, rng);
     sum += throughput * vertex.metFirst;
     if (length.firstBounce) return;

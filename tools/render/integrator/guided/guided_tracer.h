@@ -5,17 +5,20 @@
 #include "tools/render/integrator/integrator.h"
 #include "transport/bsdf.h"
 #include "transport/leaving_light.h"
+#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
 class GuidedTracer {
  public:
   // `share`: of the directions that the guide chooses, where it knows the region; below 1.
-  GuidedTracer(const RayScene& rays, const LightSet& lights, Guide guide, float share,
-               unsigned maxBounces, Only only)
+  // `where`: where light sampling looks for lights.
+  GuidedTracer(const RayScene& rays, const LightSet& lights, Guide guide, SurfaceLights where,
+               float share, unsigned maxBounces, Only only)
       : rays_(rays),
         lights_(lights),
         guide_(std::move(guide)),
+        where_(std::move(where)),
         share_(share),
         maxBounces_(maxBounces),
         only_(only) {}
@@ -28,6 +31,7 @@ class GuidedTracer {
   const RayScene& rays_;
   const LightSet& lights_;
   Guide guide_;
+  SurfaceLights where_;
   float share_;
   unsigned maxBounces_;
   Only only_;

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
 
 namespace bnvpl::test {
 namespace {
@@ -115,17 +115,6 @@ TEST(LightTracer, AgreesOnShadingNormals) {
     scene.normals.push_back(normalize(normalize(cross(b - a, c - a)) + Vec3{0.35f, 0.25f, -0.3f}));
   }
   expectTheSameImage(World(std::move(scene)), 8, 0.06, 0.01);
-}
-
-// RMS difference of two images with different seeds.
-double noiseOf(const std::function<Image(uint64_t seed)>& render) {
-  const Image a = render(1), b = render(2);
-  double sum = 0.0;
-  for (const char* channel : {"R", "G", "B"}) {
-    const std::vector<float>&p = *a.find(channel), &q = *b.find(channel);
-    for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
-  }
-  return std::sqrt(sum);
 }
 
 // Light comes round a bend, which few paths find; its photons branch behind it.

@@ -36,7 +36,8 @@ TEST(PathTracer, TwoPatchFormFactor) {
     ++covered;
   }
   ASSERT_GT(covered, 100u);
-  const double expected = double{emitter->emission.x} * double{receiver->phong().diffuse.x} * 0.012404;
+  const double expected =
+      double{emitter->emission.x} * double{receiver->phong().diffuse.x} * 0.012404;
   EXPECT_NEAR(sum / double(covered), expected, 0.02 * expected);
 }
 

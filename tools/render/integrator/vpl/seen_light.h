@@ -3,31 +3,29 @@
 // there the noise of a pixel is that of where its camera rays go, which are cheap.
 #pragma once
 
-#include <vector>
-
-#include "core/random.h"
-#include "tools/render/gather/gather.h"
-#include "tools/render/tile.h"
-#include "transport/lights.h"
+#include "tools/render/integrator/vpl/pixel_rays.h"
 
 namespace bnvpl {
 
 class SeenLight {
  public:
-  // The more the light seen varies around a pixel, the more rays it gets. Borrows rays and lights.
-  SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoints& film);
+  // Borrows rays and lights.
+  SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoints& film)
+      : pixels_(rays, lights, film, film.seen, 0.0, kDrawRays) {}
 
   // The mean of what `count` rays of a sample saw, whose sum is `seen`, and of what the pixel's
-  // further rays see.
-  // The film's points alone, not the sample, say how many these are: the mean stays unbiased.
+  // further rays see. The film's points alone, not the sample, say how many these are: the mean
+  // stays unbiased.
   Vec3 withMoreRays(Vec3 seen, unsigned count, const TileSlots& tile, uint32_t pixel,
-                    uint32_t slot) const;
+                    uint32_t slot) const {
+    pixels_.forEach(tile, pixel, slot,
+                    [&](const SpecularPath&, const RadianceSample& s) { seen += s.direct; });
+    return seen * (1.0f / static_cast<float>(count + pixels_.count(tile, pixel)));
+  }
 
  private:
-  const RayScene& rays_;
-  const LightSet& lights_;
-  uint32_t width_;
-  std::vector<uint8_t> more_;  // rays of each pixel, for each sample
+  static constexpr uint32_t kDrawRays = 1u << 31;
+  PixelRays pixels_;
 };
 
 }  // namespace bnvpl

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/render/gather/gather.h"
-#include "transport/direct_light.h"
+#include "transport/light_probes.h"
 
 namespace bnvpl {
 
@@ -20,23 +20,16 @@ class TileLights {
   LearnedStrata at(uint32_t x, uint32_t y) const;
 
  private:
-  // Strata in ascending order with a value each: what the probes of a tile found, which is the mean
-  // square of what each stratum would bring if all rays went there; in the end, running sums.
-  struct Found {
-    std::vector<uint32_t> strata;
-    std::vector<float> values;
-  };
-  Found probe(const FilmPoints& film, size_t tile, uint64_t key) const;
-  std::vector<float> pooled(const std::vector<Found>& found, size_t tile) const;
-  static Found distribution(const std::vector<float>& values);
+  StrataValues probe(const FilmPoints& film, size_t tile, uint64_t key) const;
+  StrataValues pooled(std::span<const StrataValues> found, size_t tile) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
   LightStrata strata_;
   size_t probes_;  // of a stratum
   size_t tilesX_, tilesY_;
-  std::vector<Found> tiles_;
-  Found everywhere_;
+  std::vector<StrataValues> tiles_;  // running sums
+  StrataValues everywhere_;
 };
 
 }  // namespace bnvpl

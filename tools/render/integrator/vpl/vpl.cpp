@@ -24,6 +24,9 @@ constexpr std::array kOptions{
     wholeOption("near-field-rays", "8", 1, 4096, "",
                 "rays by the BSDF from each shaded point: for --compensate, for light over "
                 "specular surfaces, and for half of the direct light"),
+    neededBy(kIndirect, choiceOption("control", "vpls", "vpls|none",
+                                     "control variate of indirect light within a pixel: what the "
+                                     "VPLs know of it, along more camera rays, or none")),
     neededBy(kDirect, choiceOption("direct", "learned", "learned|each",
                                    "shadow rays to what each tile of the film has learned to see, "
                                    "or one to each light")),
@@ -97,8 +100,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const auto lightRays = learned ? static_cast<unsigned>(options.whole("light-rays")) : 0;
   std::unique_ptr<const TileLights> tileLights;
   std::unique_ptr<const SeenLight> seenLight;
+  std::unique_ptr<const PixelControl> pixelControl;
+  const FilmPoints film = tracePoints(in.rays, in.lights, in.seed);
+  if (indirect && options.text("control") == "vpls") {
+    pixelControl = std::make_unique<const PixelControl>(in.rays, in.lights, film, in.lit);
+  }
   if (learned) {
-    const FilmPoints film = tracePoints(in.rays, in.lights, in.seed);
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options.whole("spp") * lightRays;
     tileLights = std::make_unique<const TileLights>(in.rays, in.lights, film, raysOfTile, in.seed,
                                                     in.progress);
@@ -109,10 +116,19 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     directSamples.emplace(in.rays, in.lights, seenLight.get(),
                           static_cast<unsigned>(options.whole("direct-samples")));
   }
+  const unsigned nearFieldRays = compensation || hasSpecularLobes(in.rays.scene())
+                                     ? static_cast<unsigned>(options.whole("near-field-rays"))
+                                     : 0;
+  std::unique_ptr<const SurfaceLights> surfaceLights;
+  if (indirect && nearFieldRays > 0) {
+    surfaceLights = std::make_unique<const SurfaceLights>(
+        in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+        streamKey(in.seed, Stream::SurfaceLights), in.progress);
+  }
   parts->integrator = std::make_unique<VplIntegrator>(
-      in.rays, in.lights, std::move(gather), std::move(compensation),
-      static_cast<unsigned>(options.whole("near-field-rays")), std::move(tileLights), lightRays,
-      std::move(seenLight), directSamples, in.only);
+      in.rays, in.lights, std::move(gather), std::move(compensation), nearFieldRays,
+      std::move(surfaceLights), std::move(tileLights), lightRays, std::move(seenLight),
+      std::move(pixelControl), directSamples, in.only);
   return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
           {},
           wholePixels,

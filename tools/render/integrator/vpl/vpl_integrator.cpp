@@ -66,6 +66,7 @@ void VplIntegrator::render(const TileSamples& tile) const {
       s.radiance.direct += throughput * directAt(*bsdf[i], learned, points, s.rng);
     extendAll(*bsdf[i], throughput, learned, points, s.rng, s.radiance);
   }
+  if (pixelControl_) pixelControl_->apply(tile, seen);
   if (directSamples_) {
     constexpr unsigned kRaysOfExtension = 4;  // itself, and what it finds is lit
     directSamples_->render(tile, learned.strata, kRaysOfExtension * extensions_);
@@ -144,6 +145,7 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, const LearnedLi
 // that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
 void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out) const {
   Vec3 throughput = start.throughput;
+  LearnedStrata strata;
   SpecularPath end =
       followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
   for (unsigned links = 1;; ++links) {
@@ -163,8 +165,9 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
       return;
     }
     const Bsdf found(rays_.scene(), end.hit);
+    if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
     const Vec3 leaving =
-        directLight(rays_, lights_, found, LobeGroup::Rough, LightChoice::One, known ? 0 : 1, rng);
+        directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
     if (known) {
       light += throughput * (leaving + *missing.scattered) * missing.share;
     } else {
@@ -183,7 +186,8 @@ void VplIntegrator::extend(const Extension& start, Rng& rng, RadianceSample& out
     }
     throughput *= sample.weight;
     end = followSpecularPath(rays_, lights_, next.origin, next.direction,
-                             {sample.pdf, end.hit.position}, rng);
+                             {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata)},
+                             rng);
   }
 }
 

@@ -8,8 +8,10 @@
 #include "tools/render/gather/gather.h"
 #include "tools/render/integrator/integrator.h"
 #include "tools/render/integrator/vpl/direct_samples.h"
+#include "tools/render/integrator/vpl/pixel_control.h"
 #include "tools/render/integrator/vpl/tile_lights.h"
 #include "transport/specular_path.h"
+#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
@@ -18,21 +20,27 @@ namespace bnvpl {
 class VplIntegrator {
  public:
   // `gather` with a point function; empty for direct light alone. `tileLights`: where direct light
-  // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`:
-  // may be null. `directSamples`: where direct light has camera samples of its own.
+  // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`,
+  // `pixelControl`: may be null. `surfaceLights`: where near-field rays look for the lights of what
+  // they found; null: by power. `nearFieldRays`: from each shaded point. `directSamples`: where
+  // direct light has camera samples of its own.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather,
                 Compensation compensation, unsigned nearFieldRays,
+                std::unique_ptr<const SurfaceLights> surfaceLights,
                 std::unique_ptr<const TileLights> tileLights, unsigned lightRays,
                 std::unique_ptr<const SeenLight> seenLight,
+                std::unique_ptr<const PixelControl> pixelControl,
                 std::optional<DirectSamples> directSamples, Only only)
       : rays_(rays),
         lights_(lights),
         gather_(std::move(gather)),
         compensation_(std::move(compensation)),
-        extensions_(compensation_ || hasSpecularLobes(rays.scene()) ? nearFieldRays : 0),
+        extensions_(nearFieldRays),
+        surfaceLights_(std::move(surfaceLights)),
         tileLights_(std::move(tileLights)),
         lightRays_(lightRays),
         seenLight_(std::move(seenLight)),
+        pixelControl_(std::move(pixelControl)),
         directSamples_(directSamples),
         only_(only) {}
   void render(const TileSamples& tile) const;
@@ -54,9 +62,11 @@ class VplIntegrator {
   Gather gather_;
   Compensation compensation_;
   unsigned extensions_;  // rays from each shaded point
+  std::unique_ptr<const SurfaceLights> surfaceLights_;
   std::unique_ptr<const TileLights> tileLights_;
   unsigned lightRays_;
   std::unique_ptr<const SeenLight> seenLight_;
+  std::unique_ptr<const PixelControl> pixelControl_;
   std::optional<DirectSamples> directSamples_;
   Only only_;
 };

@@ -1,4 +1,4 @@
-#include "tools/render/integrator/guided/region_grid.h"
+#include "spatial/region_grid.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/random.h"
-#include "scene/scene.h"
 #include "spatial/compatible_surface.h"
+#include "spatial/facing.h"
 
 namespace bnvpl {
 
@@ -18,21 +18,9 @@ namespace {
 // A disk speaks this far, in units of its radius, where none is nearer: twice as far as its
 // neighbours are.
 constexpr float kReach = 3.0f;
-constexpr uint32_t kFacings = 6;
 
 int levelOf(float radius) {  // cells of one to two radii
   return std::clamp(std::ilogb(2.0f * radius), -100, 100);
-}
-
-Vec3 axisOf(uint32_t facing) {
-  Vec3 axis;
-  axis[facing / 2] = facing % 2 == 0 ? 1.0f : -1.0f;
-  return axis;
-}
-uint32_t facingOf(Vec3 n) {
-  const float x = std::fabs(n.x), y = std::fabs(n.y), z = std::fabs(n.z);
-  const uint32_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-  return 2 * axis + (n[axis] < 0.0f ? 1 : 0);
 }
 
 uint64_t hashOf(int64_t x, int64_t y, int64_t z, int level, uint32_t facing) {
@@ -131,7 +119,7 @@ uint32_t RegionGrid::at(Vec3 position, Vec3 normal) const {
       if (slots_[slot].key == key) return slots_[slot].index;
     }
   }
-  return kNone;
+  return UINT32_MAX;
 }
 
 }  // namespace bnvpl

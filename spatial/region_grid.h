@@ -17,8 +17,8 @@ class RegionGrid {
   RegionGrid(std::span<const Vec3> points, std::span<const Vec3> normals,
              std::span<const float> radii);
 
-  // The index of a disk near the point, on a surface like its own; kNone: there is none. A choice
-  // that a cell makes for all its points.
+  // The index of a disk near the point, on a surface like its own; UINT32_MAX: there is none. A
+  // choice that a cell makes for all its points.
   uint32_t at(Vec3 position, Vec3 normal) const;
 
  private:

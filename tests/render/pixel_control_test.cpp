@@ -1,0 +1,46 @@
+// The control variate of pixels: it changes no mean, and takes the noise of edges.
+#include <gtest/gtest.h>
+
+#include "tests/render/lit_rooms.h"
+#include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
+#include "tools/render/irradiance_field.h"
+
+namespace bnvpl::test {
+namespace {
+
+// A matt surface under even light reflects albedo times irradiance over pi.
+TEST(IrradianceField, KnowsTheLightOfAFurnace) {
+  const World world("furnace/scene.toml");
+  const VplTable lit =
+      litVpls(world, {{"count", "300"}}, {{"max-bounces", "64"}, {"irradiance-error", "0"}});
+  const IrradianceField field(lit);
+  double sum = 0.0;
+  for (size_t i = 0; i < lit.size(); ++i)
+    sum += double{mean(field.indirectAt(lit.position[i], lit.normal[i]))};
+  // Radiance 1 leaves the walls by emission, 1 by reflection of all: the first bounce is half.
+  EXPECT_NEAR(sum / double(lit.size()), 1.0, 0.2);
+  EXPECT_EQ(mean(field.indirectAt(world.scene.bounds.upper * 50.0f, {0, 1, 0})), 0.0f);
+}
+
+// Edges of boxes and walls in every pixel.
+TEST(PixelControl, TakesNoiseAndNoLight) {
+  const World world(room(16, 16));
+  const VplTable lit = litVpls(world, {{"count", "400"}}, {}, {{"count", "8k"}});
+  const auto by = [&](const char* control, const char* spp) -> Render {
+    return [&world, &lit, control, spp](uint64_t seed) {
+      return renderVpls(world, lit,
+                        {{"only", "indirect"},
+                         {"gather", "all"},
+                         {"spp", spp},
+                         {"control", control},
+                         {"seed", typed(seed)}})
+          .image;
+    };
+  };
+  EXPECT_TRUE(sameExpectation(by("vpls", "1"), by("none", "2")));
+  EXPECT_LT(noiseOf(by("vpls", "2")), 0.92 * noiseOf(by("none", "2")));
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,116 @@
+// Where vertices far from the camera look for lights: what the VPLs around them see.
+#include "transport/surface_lights.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/render/lit_rooms.h"
+#include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
+
+namespace bnvpl::test {
+namespace {
+
+constexpr uint32_t kHidden = 1200;  // bulbs above the ceiling
+
+VplTable litBy(const World& world) {
+  return litVpls(world, {{"count", "150"}}, {{"photons", "100k"}}, {{"count", "3k"}});
+}
+
+SurfaceLights learned(const World& world, const VplTable& vpls) {
+  return {world.rays, world.lights, vpls.position, vpls.normal, vpls.radius, 7, {}};
+}
+
+TEST(SurfaceLights, FewOfTheRaysGoToLightsThatNobodySees) {
+  const World world(bulbs(kHidden));
+  const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
+  const SurfaceLights lights = learned(world, vpls);
+  Rng rng(1, 0);
+  size_t seen = 0;
+  constexpr size_t kDraws = 4000;
+  for (size_t k = 0; k < kDraws; ++k) {
+    const size_t i = k % vpls.size();
+    const LearnedStrata strata = lights.at(vpls.position[i], vpls.normal[i]);
+    ASSERT_NE(strata.all, nullptr);
+    float u = rng.next();
+    const LightPlace place = strata.all->place(strata.pick(u), {u, rng.next()});
+    seen += place.light < 3;
+    ASSERT_GT(strata.density(place), 0.0f);
+  }
+  EXPECT_GT(double(seen), 0.5 * kDraws);
+}
+
+TEST(SurfaceLights, ProbabilitiesOfAPlaceSumToOne) {
+  const World world(manyLights());
+  const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
+  const SurfaceLights lights = learned(world, vpls);
+  for (size_t i = 0; i <= vpls.size(); ++i) {  // the last lies far from all of them
+    const LearnedStrata strata = i < vpls.size()
+                                     ? lights.at(vpls.position[i], vpls.normal[i])
+                                     : lights.at(world.scene.bounds.upper * 9.0f, {0, 1, 0});
+    ASSERT_NE(strata.all, nullptr);
+    double sum = 0.0;
+    for (uint32_t s = 0; s < strata.all->size(); ++s) sum += double{strata.probability(s)};
+    EXPECT_NEAR(sum, 1.0, 1e-4) << i;
+  }
+}
+
+TEST(SurfaceLights, OneLightLeavesNothingToChoose) {
+  Scene scene = bulbs(0);
+  scene.lights.resize(1);
+  const World world(std::move(scene));
+  const VplTable vpls = keptVpls(world, {{"count", "50"}}, {{"count", "1k"}});
+  EXPECT_EQ(learned(world, vpls).at(vpls.position[0], vpls.normal[0]).all, nullptr);
+}
+
+// Bulbs that no surface in sight receives from change nothing, and hardly the noise.
+TEST(SurfaceLights, NearFieldRaysFindTheFewLightsThatAreSeen) {
+  const World few(bulbs(0)), many(bulbs(kHidden));
+  const VplTable lit = litBy(few);
+  const auto by = [&](const World& world) -> Render {
+    return [&](uint64_t seed) {
+      return renderVpls(
+                 world, lit,
+                 {{"only", "indirect"}, {"spp", "4"}, {"gather", "all"}, {"seed", typed(seed)}})
+          .image;
+    };
+  };
+  EXPECT_TRUE(sameExpectation(by(many), by(few)));
+  EXPECT_LT(noiseOf(by(many)), 2.0 * noiseOf(by(few)));  // 7 times where lights are drawn by power
+}
+
+TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
+  const World world(manyLights());
+  const VplTable lit = litBy(world);
+  const auto of = [&](const char* integrator, uint64_t first) -> Render {
+    return [&world, &lit, integrator, first](uint64_t seed) {
+      return renderVpls(world, integrator == std::string("path") ? VplTable{} : lit,
+                        {{"integrator", integrator}, {"spp", "32"}, {"seed", typed(first + seed)}})
+          .image;
+    };
+  };
+  EXPECT_TRUE(sameExpectation(of("path", 0), of("guided", 100)));
+}
+
+TEST(SurfaceLights, PathsFromVplsFindTheFewLightsThatAreSeen) {
+  const World few(bulbs(0)), many(bulbs(kHidden));
+  const VplTable vpls = keptVpls(few, {{"count", "150"}}, {{"count", "3k"}});
+  const auto fluxes = [&](const World& world, const char* seed) {
+    return lightVpls(world, vpls,
+                     {{"method", "paths"}, {"points", "64"}, {"emit-points", "0"}, {"seed", seed}})
+        .table;
+  };
+  const VplTable a = fluxes(few, "1"), b = fluxes(many, "2"), c = fluxes(many, "3");
+  double right = 0.0, found = 0.0, squares = 0.0, all = 0.0;
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    // On top of the lamp, whose disk reaches the outside of the ceiling.
+    if (vpls.normal[i].y > 0.9f && vpls.position[i].y > few.scene.bounds.upper.y * 0.9f) continue;
+    right += double{mean(a.flux[i])}, found += double{mean(b.flux[i])};
+    squares += std::pow(double{mean(b.flux[i])} - double{mean(c.flux[i])}, 2);
+    all += std::pow(double{mean(a.flux[i])}, 2);
+  }
+  EXPECT_NEAR(found / right, 1.0, 0.05);
+  EXPECT_LT(std::sqrt(squares / all), 0.25);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

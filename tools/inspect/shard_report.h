@@ -1,0 +1,15 @@
+// What a .shard holds: `vpl-inspect info`.
+#pragma once
+
+#include <string>
+
+#include "core/errors.h"
+#include "tools/common/stage_cli.h"
+
+namespace bnvpl {
+
+// Reads and verifies all of it. Throws InputError.
+Json describeShard(const fs::path& file);
+std::string shardText(const Json& description);
+
+}  // namespace bnvpl

@@ -1,0 +1,46 @@
+#include "transport/light_probes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+StrataValues probeStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
+                         std::span<const Bsdf> vertices, size_t probes, Rng& rng) {
+  StrataValues out;
+  if (vertices.empty()) return out;
+  for (uint32_t s = 0; s < strata.size(); ++s) {
+    float sum = 0.0f;
+    for (size_t k = 0; k < probes; ++k) {
+      const auto which = static_cast<size_t>(rng.next() * static_cast<float>(vertices.size()));
+      const Bsdf& bsdf = vertices[std::min(which, vertices.size() - 1)];
+      const float u = rng.next(), v = rng.next();
+      const LightPlace place = strata.place(s, {u, v});
+      DirectSample sample;
+      Vec3 reflected;
+      if (!unoccludedLight(lights, bsdf, LobeGroup::Rough, place, sample, reflected) ||
+          isHidden(rays, bsdf.point(), sample))
+        continue;
+      const float brought = mean(reflected) * strata.share(s) / strata.lightShare(place.light);
+      sum += brought * brought;
+    }
+    if (!(sum > 0.0f) || !std::isfinite(sum)) continue;
+    out.strata.push_back(s);
+    out.values.push_back(sum / static_cast<float>(probes));
+  }
+  return out;
+}
+
+void PooledProbes::add(const StrataValues& found) {
+  for (size_t k = 0; k < found.strata.size(); ++k) sum_[found.strata[k]] += found.values[k];
+}
+
+StrataValues PooledProbes::distribution() const {
+  std::vector<float> roots = sum_;
+  for (float& v : roots) v = std::sqrt(v);
+  return distributionOf(roots);
+}
+
+}  // namespace bnvpl
