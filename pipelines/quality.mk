@@ -21,5 +21,5 @@ CANDIDATES.final := 240k
 VPLS.final       := 12k
 PHOTONS.final    := 20M
 SPP.final        := 256
-ESTIMATE.final   := --irradiance-error 0.003
+ESTIMATE.final   := --irradiance-error 0.002
 RENDER.final     := --near-field-rays 4 --error 0.05

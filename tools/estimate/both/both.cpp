@@ -19,7 +19,7 @@ constexpr std::array kOptions{
     countOption("photons", "10M", 0x1p36, "",
                 "work, as that of so many photons; paths take their part of it"),
     realOption(
-        "irradiance-error", "0.01", 0, 1, "",
+        "irradiance-error", "0.005", 0, 1, "",
         "relative error of the light that VPLs bring to a surface, in the mean, that is good "
         "enough: by the pilots, less work is done; 0: all of it"),
     kPathsOption,
