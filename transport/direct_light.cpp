@@ -35,13 +35,15 @@ auto raysByBsdf(const Bsdf& bsdf, LobeGroup group, unsigned rays) {
 // rays are sent besides with density rayPdf(wi), or none where `shared` is false.
 template <typename RayPdf>
 Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LightPlace& place, float count, bool shared, const RayPdf& rayPdf) {
+                 const LightPlace& place, float count, bool shared, const RayPdf& rayPdf,
+                 const SharedWithPhotons& photons = {}) {
   DirectSample s;
   Vec3 reflected;
   if (!unoccludedLight(lights, bsdf, group, place, s, reflected)) return {};
   if (isHidden(rays, bsdf.point(), s)) return {};
   const bool mis = shared && s.pdf > 0.0f;
-  return reflected * ((mis ? powerHeuristic(s.pdf * count, rayPdf(s.wi)) : 1.0f) / count);
+  return reflected * ((mis ? powerHeuristic(s.pdf * count, rayPdf(s.wi)) : 1.0f) *
+                      photons.ofRays(place.light, s.wi) / count);
 }
 
 // One of the rays by what was learned, by a point of the unit square.
@@ -74,8 +76,15 @@ Vec3 sampleOne(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, L
 
 }  // namespace
 
+float SharedWithPhotons::ofRays(size_t light, Vec3 towards) const {
+  const float sent = lights ? photons * lights->pickProbability(light) : 0.0f;
+  if (!(sent > 0.0f)) return 1.0f;
+  if (!lights->hittable(light)) return 0.0f;
+  return powerHeuristic(rays, sent * lights->photonDensity(light, towards));
+}
+
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 LightChoice choice, unsigned bsdfRays, Rng& rng) {
+                 LightChoice choice, unsigned bsdfRays, Rng& rng, const SharedWithPhotons& shared) {
   Vec3 sum;
   const auto rayPdf = raysByBsdf(bsdf, group, bsdfRays);
   const bool all = choice == LightChoice::Each && lights.size() <= kMaxLightsEach;
@@ -86,7 +95,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
     if (!(probability > 0.0f)) continue;
     const float u = rng.next(), v = rng.next();
     sum += sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}},
-                       raysTo(lights, light, choice), bsdfRays > 0, rayPdf);
+                       raysTo(lights, light, choice), bsdfRays > 0, rayPdf, shared);
   }
   return sum;
 }
@@ -132,14 +141,15 @@ Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  return emitted * hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival,
-                             [&] { return lights.drawnBy(light, hit); });
+  return emitted * arrival.shared.ofRays(light, {}) *
+         hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival,
+                   [&] { return lights.drawnBy(light, hit); });
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
-    sum += radiance *
+    sum += radiance * arrival.shared.ofRays(light, direction) *
            hitWeight(lights, light, pdf, arrival, [&] { return lights.drawnBy(light, direction); });
   });
   return sum;

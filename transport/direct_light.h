@@ -16,11 +16,23 @@ enum class LightChoice {
 };
 inline constexpr size_t kMaxLightsEach = 32;
 
+// Light behind specular vertices that photons bring as well: MIS by the power heuristic, of rays
+// per area of the surface that they leave from and photons per area of emitter. That is the ratio
+// of both ways where the specular surfaces between are flat; elsewhere, weights that sum up to one.
+struct SharedWithPhotons {
+  const LightSet* lights = nullptr;  // null: there are no photons
+  float rays = 0.0f;                 // 1/unit^2, by the BSDF
+  float photons = 0.0f;              // in all
+  // Share of what rays find. `towards`: the light, if it is at infinity.
+  float ofRays(size_t light, Vec3 towards) const;
+};
+
 // Light sampling's part of the light at a vertex: multi-sample MIS by the power heuristic (Veach
 // 1997, section 9.2) against `bsdfRays` rays that the caller sends from there by the BSDF; 0: light
 // sampling is alone.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 LightChoice choice, unsigned bsdfRays, Rng& rng);
+                 LightChoice choice, unsigned bsdfRays, Rng& rng,
+                 const SharedWithPhotons& shared = {});
 // Light sampling by what was learned about the place: shadow rays to strata of all lights.
 struct LearnedLight {
   const LearnedStrata* strata = nullptr;
@@ -49,6 +61,7 @@ struct Arrival {
   Vec3 from;             // where the ray started
   LightChoice choice = LightChoice::One;  // there, unless learned.strata is given
   LearnedLight learned = {};
+  SharedWithPhotons shared = {};  // light behind specular vertices
 };
 // Emission met by a ray, with its MIS weight: of the surface that it hit, and of what lies at
 // infinity where it hit nothing.

@@ -180,17 +180,26 @@ LightSet::Extent LightSet::extent(size_t index) const {
 
 // Photons from infinity start on the faces of the scene's box that look towards the light,
 // uniformly in projected area: no photon is spent on empty space beside a long scene.
+namespace {
+
+// Areas of a box's faces, as light in direction d sees them.
+Vec3 facesAcross(Vec3 extent, Vec3 d) {
+  return {std::fabs(d.x) * extent.y * extent.z, std::fabs(d.y) * extent.x * extent.z,
+          std::fabs(d.z) * extent.x * extent.y};
+}
+
+}  // namespace
+
 PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
   const float u = rng.next(), v = rng.next();
   Vec3 radiance;
   float pdf = 0.0f;
   const Vec3 towards = sampleDirection(light, u, v, radiance, pdf);
   const Vec3 d = -towards, e = scene_.bounds.extent();
-  const float face[3] = {std::fabs(d.x) * e.y * e.z, std::fabs(d.y) * e.x * e.z,
-                         std::fabs(d.z) * e.x * e.y};
-  const float total = face[0] + face[1] + face[2];
+  const Vec3 face = facesAcross(e, d);
+  const float total = face.x + face.y + face.z;
   const float pick = rng.next() * total;
-  const size_t axis = pick < face[0] ? 0 : pick < face[0] + face[1] ? 1 : 2;
+  const size_t axis = pick < face.x ? 0 : pick < face.x + face.y ? 1 : 2;
   Vec3 p = scene_.bounds.lower + e * Vec3{rng.next(), rng.next(), rng.next()};
   p[axis] = d[axis] > 0.0f ? scene_.bounds.lower[axis] : scene_.bounds.upper[axis];
   PhotonStart start;
@@ -200,6 +209,16 @@ PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
   start.origin = p - d * (0x1p-10f * scene_.bounds.diagonal());
   start.flux = radiance * (pdf > 0.0f ? total / pdf : total);
   return start;
+}
+
+float LightSet::photonDensity(size_t index, Vec3 towards) const {
+  const Light& light = lights_[index];
+  if (light.area) return 1.0f / (light.areaTotal * (light.twoSided ? 2.0f : 1.0f));
+  if (!hittable(index)) return 0.0f;
+  float pdf = 0.0f;
+  radianceAtInfinity(index, towards, pdf);
+  const Vec3 face = facesAcross(scene_.bounds.extent(), towards);
+  return kPi * pdf / (face.x + face.y + face.z);
 }
 
 PhotonStart LightSet::emit(size_t index, Rng& rng) const {

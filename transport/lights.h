@@ -82,6 +82,10 @@ class LightSet {
   }
 
   PhotonStart emit(size_t light, Rng& rng) const;
+  // Of one such photon: its density per area of the emitter; of a light at infinity, pi times that
+  // per area across the direction towards it and per solid angle (as cosine emission has 1/pi).
+  // 1/unit^2; 0: no ray can hit this light. `towards` counts at infinity alone.
+  float photonDensity(size_t light, Vec3 towards) const;
 
   // Whether any light has power. Scene::hasLight() asks the files alone: a sun along a flat scene,
   // or a lamp too weak for floats, shines there and has no power here.

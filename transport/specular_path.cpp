@@ -28,6 +28,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
   end.hit = first;
   end.throughput = Vec3{1.0f};
   Arrival arrival = start;
+  arrival.shared = {};
   while (true) {
     Vec3& met = end.links == 0 ? end.metFirst : end.metLater;
     if (end.hit.triangle == kNone) {
@@ -53,14 +54,14 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     if (++end.links > kMaxSpecular) return end;
     if (!bsdf.specularIsDelta()) {
       end.metLater += end.throughput * directLight(rays, lights, bsdf, LobeGroup::Specular,
-                                                   LightChoice::One, 1, rng);
+                                                   LightChoice::One, 1, rng, start.shared);
     }
     BsdfSample sample;
     Ray next;
     if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
       return end;
     end.throughput *= sample.weight;
-    arrival = {sample.pdf, end.hit.position};
+    arrival = {sample.pdf, end.hit.position, LightChoice::One, {}, start.shared};
     direction = next.direction;
     rays.closestHit(next.origin, direction, end.hit);
   }

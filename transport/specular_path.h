@@ -16,6 +16,7 @@ struct SpecularPath {
   float firstDistance = INFINITY;  // of the first hit, along the ray
 };
 
+// `arrival`: at the first hit; its `shared` is for all that is met behind specular vertices.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng);
 // The same where it is known what the ray hits; first.triangle is kNone where that is nothing.

@@ -22,6 +22,7 @@ enum class Stream : uint32_t {
   SurfaceLights,  // in a render
   PathLights,     // in vpl-estimate
   Guide = 16,
+  Caustics,
   PilotPhotons = 30,  // of vpl-estimate --method both
   PilotPaths
 };

@@ -6,7 +6,7 @@
 #include "tools/render/film/develop.h"
 #include "tools/render/film/samples.h"
 #include "tools/render/film/splat_sums.h"
-#include "tools/render/film/splats.h"
+#include "tools/render/integrator/add_splats.h"
 
 namespace bnvpl {
 

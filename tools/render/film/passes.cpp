@@ -6,7 +6,7 @@
 #include "tools/common/clock.h"
 #include "tools/common/streams.h"
 #include "tools/render/film/pass_error.h"
-#include "tools/render/film/splats.h"
+#include "tools/render/integrator/add_splats.h"
 
 namespace bnvpl {
 

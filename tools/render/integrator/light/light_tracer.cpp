@@ -1,9 +1,7 @@
 #include "tools/render/integrator/light/light_tracer.h"
 
-#include <algorithm>
-
 #include "tools/common/streams.h"
-#include "transport/camera.h"
+#include "tools/render/integrator/film_connection.h"
 
 namespace bnvpl {
 
@@ -69,36 +67,9 @@ bool LightTracer::inSight(const SurfacePoint& vertex) const {
                          rays_.scene().camera.position);
 }
 
-// Radiance of the pixel = 1 / A times the integral of radiance * |cos| / (d^2 cos^3 theta) over the
-// surfaces that it sees, with A the pixel's area on the plane at depth 1 and theta the angle to the
-// viewing axis, so that d cos theta is the depth.
 void LightTracer::connect(const SurfacePoint& vertex, Vec3 flux, Splats& out) const {
-  const Scene& scene = rays_.scene();
-  const Film& film = scene.film;
-  const FilmPoint at = projectToFilm(scene.camera, film, vertex.position);
-  if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return;
-  const Vec3 way = vertex.position - scene.camera.position;
-  if (dot(vertex.ng, way) >= 0.0f) return;  // the photon came to the other side
-  const float distance = length(way);
-  // The camera's own ray, so that light scatters as it does where a path from there arrives. What
-  // it meets is the vertex where it is the same triangle, or, at an edge, within the rounding of a
-  // offset origin.
-  SurfacePoint seen;
-  if (!rays_.closestHit(scene.camera.position, way / distance, seen)) return;
-  const Vec3 tolerance = rays_.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
-  if (seen.triangle != vertex.triangle &&
-      lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
-    return;
-  }
-  const float cosShading = dot(seen.ns, vertex.wo);
-  if (!(cosShading > 0.0f)) return;
-  const Vec3 value = Bsdf(scene, seen).eval(LobeGroup::Rough, vertex.wo) / cosShading;
-  if (isBlack(value)) return;
-  const float weight = dot(seen.ng, seen.wo) * distance /
-                       (at.depth * at.depth * at.depth * pixelAreaAtUnitDepth(scene.camera, film));
-  const auto x = std::min(film.width - 1, static_cast<uint32_t>(at.x * float(film.width)));
-  const auto y = std::min(film.height - 1, static_cast<uint32_t>(at.y * float(film.height)));
-  out.list.push_back({y * film.width + x, flux * value * weight});
+  if (const auto c = connectToFilm(rays_, vertex))
+    out.list.push_back({c->pixel, flux * c->value * c->perArea});
 }
 
 }  // namespace bnvpl

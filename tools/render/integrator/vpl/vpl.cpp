@@ -24,6 +24,9 @@ constexpr std::array kOptions{
     wholeOption("near-field-rays", "8", 1, 4096, "",
                 "rays by the BSDF from each shaded point: for --compensate, for light over "
                 "specular surfaces, and for half of the direct light"),
+    neededBy(kIndirect, wholeOption("caustic-photons", "64", 0, 4096, "",
+                                    "photons a pixel, at most 16M in all, that look for light over "
+                                    "mirrors, glass and sharp lobes; 0: near-field rays alone do")),
     neededBy(kIndirect, choiceOption("control", "vpls", "vpls|none",
                                      "control variate of indirect light within a pixel: what the "
                                      "VPLs know of it, along more camera rays, or none")),
@@ -125,10 +128,21 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
         streamKey(in.seed, Stream::SurfaceLights), in.progress);
   }
+  std::unique_ptr<const Caustics> caustics;
+  const uint64_t photonsOfPixel = indirect ? options.whole("caustic-photons") : 0;
+  if (photonsOfPixel > 0 && hasSpecularLobes(in.rays.scene()) && in.lights.hasPower()) {
+    constexpr uint64_t kMostSpp = 256;           // a budget names no number
+    constexpr uint64_t kMostPhotons = 16000000;  // seconds, for each shard
+    const uint64_t photons = std::min(kMostPhotons, photonsOfPixel * film.points.size());
+    const auto raysOfPixel =
+        static_cast<float>(nearFieldRays * std::min(options.whole("spp"), kMostSpp));
+    caustics = std::make_unique<const Caustics>(in.rays, in.lights, photons, raysOfPixel, in.seed,
+                                                in.progress);
+  }
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(compensation), nearFieldRays,
       std::move(surfaceLights), std::move(tileLights), lightRays, std::move(seenLight),
-      std::move(pixelControl), directSamples, in.only);
+      std::move(pixelControl), std::move(caustics), directSamples, in.only);
   return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
           {},
           wholePixels,

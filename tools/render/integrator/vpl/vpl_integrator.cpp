@@ -64,9 +64,16 @@ void VplIntegrator::render(const TileSamples& tile) const {
                         random64(tile.key, pixel, kDrawLight)};
     if (only_ != Only::Indirect && !directSamples_)
       s.radiance.direct += throughput * directAt(*bsdf[i], learned, points, s.rng);
-    extendAll(*bsdf[i], throughput, learned, points, s.rng, s.radiance);
+    const SharedWithPhotons shared =
+        caustics_ && seen[i].links == 0 ? caustics_->shared(seen[i].hit) : SharedWithPhotons{};
+    extendAll(*bsdf[i], throughput, learned, shared, points, s.rng, s.radiance);
   }
   if (pixelControl_) pixelControl_->apply(tile, seen);
+  for (size_t i = 0; caustics_ && i < count; ++i) {
+    const auto pixel = static_cast<uint32_t>(i % tile.pixels);
+    tile.samples[i].radiance.indirect +=
+        caustics_->at(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+  }
   if (directSamples_) {
     constexpr unsigned kRaysOfExtension = 4;  // itself, and what it finds is lit
     directSamples_->render(tile, learned.strata, kRaysOfExtension * extensions_);
@@ -105,7 +112,8 @@ struct VplIntegrator::Extension {
 
 // Rays from a sample's point wait for memory together.
 void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, const LearnedLight& learned,
-                              const Points& points, Rng& rng, RadianceSample& out) const {
+                              const SharedWithPhotons& shared, const Points& points, Rng& rng,
+                              RadianceSample& out) const {
   constexpr size_t kBatch = RayScene::kBatch;
   std::array<Ray, kBatch> rays;
   std::array<SurfacePoint, kBatch> hits;
@@ -126,7 +134,7 @@ void VplIntegrator::extendAll(const Bsdf& from, Vec3 throughput, const LearnedLi
       rays[count] = rayOn(rays_, from.point(), next);
       made[count] = {next.wi,
                      throughput * next.weight * (1.0f / all),
-                     {next.pdf * all, position, LightChoice::Each, learned},
+                     {next.pdf * all, position, LightChoice::Each, learned, shared},
                      &hits[count],
                      &near[count]};
       ++count;

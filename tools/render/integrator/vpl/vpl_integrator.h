@@ -7,6 +7,7 @@
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/vpl/caustics.h"
 #include "tools/render/integrator/vpl/direct_samples.h"
 #include "tools/render/integrator/vpl/pixel_control.h"
 #include "tools/render/integrator/vpl/tile_lights.h"
@@ -21,15 +22,16 @@ class VplIntegrator {
  public:
   // `gather` with a point function; empty for direct light alone. `tileLights`: where direct light
   // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`,
-  // `pixelControl`: may be null. `surfaceLights`: where near-field rays look for the lights of what
-  // they found; null: by power. `nearFieldRays`: from each shaded point. `directSamples`: where
-  // direct light has camera samples of its own.
+  // `pixelControl`, `caustics`: may be null. `surfaceLights`: where near-field rays look for the
+  // lights of what they found; null: by power. `nearFieldRays`: from each shaded point.
+  // `directSamples`: where direct light has camera samples of its own.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather,
                 Compensation compensation, unsigned nearFieldRays,
                 std::unique_ptr<const SurfaceLights> surfaceLights,
                 std::unique_ptr<const TileLights> tileLights, unsigned lightRays,
                 std::unique_ptr<const SeenLight> seenLight,
                 std::unique_ptr<const PixelControl> pixelControl,
+                std::unique_ptr<const Caustics> caustics,
                 std::optional<DirectSamples> directSamples, Only only)
       : rays_(rays),
         lights_(lights),
@@ -41,6 +43,7 @@ class VplIntegrator {
         lightRays_(lightRays),
         seenLight_(std::move(seenLight)),
         pixelControl_(std::move(pixelControl)),
+        caustics_(std::move(caustics)),
         directSamples_(directSamples),
         only_(only) {}
   void render(const TileSamples& tile) const;
@@ -51,7 +54,8 @@ class VplIntegrator {
   Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, const Points& points,
                 Rng& rng) const;
   void extendAll(const Bsdf& from, Vec3 throughput, const LearnedLight& learned,
-                 const Points& points, Rng& rng, RadianceSample& out) const;
+                 const SharedWithPhotons& shared, const Points& points, Rng& rng,
+                 RadianceSample& out) const;
   void extend(const Extension& first, Rng& rng, RadianceSample& out) const;
   Missing missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near, Rng& rng) const;
   void gatherTile(const TileSamples& tile, std::span<const SpecularPath> seen,
@@ -67,6 +71,7 @@ class VplIntegrator {
   unsigned lightRays_;
   std::unique_ptr<const SeenLight> seenLight_;
   std::unique_ptr<const PixelControl> pixelControl_;
+  std::unique_ptr<const Caustics> caustics_;
   std::optional<DirectSamples> directSamples_;
   Only only_;
 };

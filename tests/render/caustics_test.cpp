@@ -1,0 +1,74 @@
+// Light over mirrors and sharp lobes, by photons and near-field rays together.
+#include <gtest/gtest.h>
+
+#include "tests/render/lit_rooms.h"
+#include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
+
+namespace bnvpl::test {
+namespace {
+
+// The walls to the left and right, one of which is a perfect mirror if so wanted, the other sharp.
+World shiny(Scene scene, bool mirror) {
+  for (Material& m : scene.materials) {
+    PhongModel& phong = m.phong();
+    if (m.name == "Red") {
+      phong.diffuse = Vec3(0.3f);
+      phong.glossy = Vec3(0.6f);
+      phong.exponent = 400.0f;
+    } else if (mirror && m.name == "Green") {
+      phong.diffuse = Vec3(0.1f);
+      phong.mirror = Vec3(0.8f);
+    }
+  }
+  return World(std::move(scene));
+}
+
+VplTable fewVpls(const World& world) {
+  return litVpls(world, {{"count", "300"}}, {}, {{"count", "6k"}});
+}
+
+Render by(const World& world, const VplTable& lit, const char* photons, const char* spp) {
+  return [&world, &lit, photons, spp](uint64_t seed) {
+    return renderVpls(world, lit,
+                      {{"only", "indirect"},
+                       {"gather", "all"},
+                       {"spp", spp},
+                       {"caustic-photons", photons},
+                       {"seed", typed(seed)}})
+        .image;
+  };
+}
+
+// Lamp, sky, sun and bulb over a sharp lobe; and the lamp over a mirror besides, where rays find no
+// bulb.
+TEST(Caustics, PhotonsAndRaysShareTheLight) {
+  const World sharp = shiny(manyLights(), false), mirror = shiny(room(16, 16), true);
+  for (const World* world : {&sharp, &mirror}) {
+    const VplTable lit = fewVpls(*world);
+    EXPECT_TRUE(sameExpectation(by(*world, lit, "16", "1"), by(*world, lit, "0", "4")));
+  }
+}
+
+TEST(Caustics, PhotonsTakeTheSpecksOfSmallLamps) {
+  const World world = shiny(bulbs(0), false);
+  const VplTable lit = fewVpls(world);
+  EXPECT_LT(noiseOf(by(world, lit, "16", "4")), 0.6 * noiseOf(by(world, lit, "0", "4")));
+}
+
+// No ray meets a point over a mirror.
+TEST(Caustics, PhotonsBringWhatNoRayCanHit) {
+  const World world = shiny(bulbs(0), true);
+  const VplTable lit = fewVpls(world);
+  const auto indirect = [&](const char* photons) {
+    return renderVpls(world, lit, {{"only", "indirect"}, {"caustic-photons", photons}})
+        .stats.indirect;
+  };
+  const double light =
+      renderWithout(world, "light", {{"only", "indirect"}, {"spp", "64"}}).stats.indirect;
+  EXPECT_NEAR(indirect("64") / light, 1.0, 0.03);
+  EXPECT_LT(indirect("0") / light, 0.97);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,41 @@
+// Light over mirrors, glass and sharp lobes on what the camera sees directly: rays from there meet
+// a small lamp by that way once in thousands of times, and shine in the image as a white speck.
+// Photons find it always.
+#pragma once
+
+#include <vector>
+
+#include "core/progress.h"
+#include "tools/render/integrator/splats.h"
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+// Photons that go over specular vertices alone, at least one, and are connected with the camera
+// where they come to a rough one. They share the light of lamps and sky with the near-field rays by
+// MIS, and bring all of what no ray can hit. Thread-safe and immutable once made.
+class Caustics {
+ public:
+  // So many photons, > 0, and rays from each pixel that look for the same light.
+  Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
+           uint64_t seed, const ProgressFn& progress);
+
+  // What photons bring to a pixel, W/(m^2 sr).
+  Vec3 at(uint32_t x, uint32_t y) const { return radiance_[size_t{y} * width_ + x]; }
+  // How rays share with them that leave a point which the camera sees directly.
+  SharedWithPhotons shared(const SurfacePoint& seen) const;
+
+ private:
+  void follow(uint64_t index, Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
+               Splats& out) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  uint64_t photons_, key_;
+  float raysOfPixel_;
+  uint32_t width_;
+  std::vector<Vec3> radiance_;
+};
+
+}  // namespace bnvpl
