@@ -75,7 +75,7 @@ Checkpoint::Checkpoint(CheckpointOptions options, Json run)
     : options_(std::move(options)), run_(std::move(run)), nextS_(nowS() + options_.everyS) {
   if (options_.file.empty()) return;
   requireWritable({options_.file});
-  run_["processor_id"] = processorId();
+  run_["processor_id"] = processorId(processorOf(run_));
   if (!fs::exists(options_.file)) return;
   try {
     earlier_ = stateIn(options_.file, run_);
