@@ -37,10 +37,10 @@ TEST_F(ProcessorRun, ShardsForAnyAndForThisAreNotMixed) {
   const std::string output = " -o " + path("x.vpl");
   fail(
       "vpl-merge", path("this.shard") + " " + path("any.shard") + output, kExitInput,
-      {"any.shard: is of another run than", "this.shard", "processor was null and is now \"any\""});
+      {"any.shard: is of another run than", "this.shard", "processor was absent and is now \"any\""});
   fail(
       "vpl-merge", path("any.shard") + " " + path("this.shard") + output, kExitInput,
-      {"this.shard: is of another run than", "any.shard", "processor was \"any\" and is now null"});
+      {"this.shard: is of another run than", "any.shard", "processor was \"any\" and is now absent"});
 }
 
 TEST_F(ProcessorRun, AnyIsAnotherRunForACheckpoint) {

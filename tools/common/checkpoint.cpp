@@ -22,8 +22,9 @@ std::string difference(const Json& before, const Json& now, const std::string& p
         return difference(before[i], now[i], path + " " + std::to_string(i + 1));
     }
   }
+  const auto named = [](const Json& value) { return value.is_null() ? "absent" : value.dump(); };
   if (!before.is_object() || !now.is_object())
-    return path + " was " + before.dump() + " and is now " + now.dump();
+    return path + " was " + named(before) + " and is now " + named(now);
   const auto differing = [&](const std::string& key) {
     return before.value(key, Json()) != now.value(key, Json());
   };
