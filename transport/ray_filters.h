@@ -11,6 +11,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <cassert>
 #include <cmath>
 #include <tuple>
 
@@ -87,9 +88,11 @@ inline ExactHit exactHit(const RTCFilterFunctionNArguments* args, unsigned i) {
   const float b1 = product(cross(p2 - p0, p2 + p0), direction),
               b2 = product(cross(p0 - p1, p0 + p1), direction),
               b0 = product(cross(p1 - p2, p1 + p2), direction);
-  const float all = b1 + b2 + b0;
-  return {RTCHitN_instID(args->hit, n, i, 0), triangle,
-          product(p0, normal) / product(normal, direction),
+  const float all = b1 + b2 + b0, distance = product(p0, normal) / product(normal, direction);
+  // What beyond() relies on.
+  [[maybe_unused]] const float estimated = RTCRayN_tfar(args->ray, n, i);
+  assert(!(std::fabs(estimated - distance) > 0x1p-20f * std::fabs(distance)));
+  return {RTCHitN_instID(args->hit, n, i, 0), triangle, distance,
           all == 0.0f ? 0.0f : std::min(b1 / all, 1.0f),
           all == 0.0f ? 0.0f : std::min(b2 / all, 1.0f)};
 }
