@@ -34,6 +34,7 @@ class Processor:
         self.name, self.mode, self.options = name, mode, options
         self.folder = folder / f"{name}-{mode}".replace(" ", "-")
         self.folder.mkdir()
+        self.part = 1 if name == HERE else 2  # of two shards
         self.prefix = [] if name == HERE else [QEMU, "-cpu", name]
         self.environment = {k: v for k, v in os.environ.items() if k != "GLIBC_TUNABLES"}
         if mode == "any" and name != HERE:
@@ -66,11 +67,13 @@ class Processor:
         for product, tool, arguments in self.stages(inputs):
             self.run(tool, *arguments, "-o", self.folder / product)
             if product != "vpls.vpl":
-                for part in (1, 2):
-                    self.run(tool, *arguments, "--shard", f"{part}/2", "-o", self.folder / f"{product}.{part}.shard")
+                self.run(tool, *arguments, "--shard", f"{self.part}/2", "-o", self.shard(product))
+
+    def shard(self, product):
+        return self.folder / f"{product}.{self.part}.shard"
 
     def id(self):
-        shard = self.folder / "candidates.vpl.1.shard"
+        shard = self.shard("candidates.vpl")
         info = subprocess.run([self.options.bin / "vpl-inspect", "info", "--json", shard], capture_output=True, text=True,
                               check=True)
         return json.loads(info.stdout)["processor"]
@@ -100,7 +103,7 @@ def compare(check, home, other):
         check.require(not differ, f"{other.name}: other bytes than {home.name}")
     check.require(not differ or home.id() != other.id(), f"{other.name}: other bytes under the same id")
     for product in products:
-        first, second = (p.folder / f"{product}.{i + 1}.shard" for i, p in enumerate((home, other)))
+        first, second = home.shard(product), other.shard(product)
         if product == "vpls.vpl":
             continue
         merged = other.folder / f"merged-{product}"
