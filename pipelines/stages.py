@@ -72,6 +72,8 @@ def add_arguments(parser, shards="1"):
     parser.add_argument("--spp", help="samples per pixel; default: the quality's; "
                                       "'' for none, as with --render-flags='--time 2m'")
     parser.add_argument("--seed", help="for place, estimate and render")
+    parser.add_argument("--processor", default="this", choices=("this", "any"),
+                        help="any: the same bytes on processors of all kinds, slower (default %(default)s)")
     parser.add_argument("--views", type=view_list, default=[], metavar="FILE,...",
                         help="a .toml of [film] and [camera] for each image, in place of the scene's own: "
                              "one set of VPLs serves all of them; images go to OUT/SCENE/views")
@@ -207,6 +209,7 @@ def tasks_of(scene, options):
     seed = ["--seed", options.seed] if options.seed else []
     spp = ["--spp", options.spp] if options.spp else []
     defines = [word for define in options.define for word in ("--define", define)]
+    processor = ["--processor", options.processor] if options.processor != "this" else []
     candidates, vpls, lit = f"{out}/candidates.vpl", f"{out}/vpls.vpl", f"{out}/lit.vpl"
     views = views_of(options)
 
@@ -214,7 +217,7 @@ def tasks_of(scene, options):
         return f"{options.bin}/vpl-{stage}"
 
     def flags(stage):
-        return shlex.split(getattr(options, f"{stage}_flags"))
+        return [*processor, *shlex.split(getattr(options, f"{stage}_flags"))]
 
     def done(stage):
         return [stage if options.shards.get(stage, 1) == 1 else f"merge-{stage}"]

@@ -1,8 +1,7 @@
 #include "transport/rays.h"
 
-#include <embree3/rtcore.h>
-
 #include "core/prefetch.h"
+#include "transport/ray_filters.h"
 #include "transport/shading_frame.h"
 
 #if defined(__SANITIZE_THREAD__)
@@ -21,38 +20,6 @@
 namespace bnvpl {
 
 namespace {
-
-// Alpha test: whether the surface is there.
-bool isThere(const Scene& scene, uint32_t triangle, float b1, float b2) {
-  const Triangle& t = scene.triangles[triangle];
-  const Material& m = scene.materials[t.material];
-  float opacity = m.opacity;
-  if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
-    const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
-    const float b0 = 1.0f - b1 - b2, u = b0 * a[0] + b1 * b[0] + b2 * c[0],
-                v = b0 * a[1] + b1 * b[1] + b2 * c[1];
-    if (m.opacityMap != kNone) opacity *= scene.textures[m.opacityMap].lookupAlpha(u, v);
-    if (m.opacityTexture != kNone) opacity *= scene.expressionAt(m.opacityTexture, u, v).x;
-  }
-  return !(opacity < m.opacityCutoff);
-}
-
-// The masked triangles of the world, or of a prototype.
-struct Masked {
-  const Scene* scene;
-  uint32_t begin;
-};
-
-void rejectCutAway(const RTCFilterFunctionNArguments* args) {
-  const Masked& masked = *static_cast<const Masked*>(args->geometryUserPtr);
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] == 0) continue;
-    const uint32_t triangle = masked.begin + RTCHitN_primID(args->hit, args->N, i);
-    if (!isThere(*masked.scene, triangle, RTCHitN_u(args->hit, args->N, i),
-                 RTCHitN_v(args->hit, args->N, i)))
-      args->valid[i] = 0;
-  }
-}
 
 RTCRay makeRay(Vec3 origin, Vec3 direction, float tfar) {
   RTCRay ray{};
@@ -73,7 +40,8 @@ struct RayScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;  // the world: opaque, masked, and instances from kFirstInstance on
   std::vector<RTCScene> prototypes;
-  std::vector<std::unique_ptr<Masked>> masked;  // where filters find them
+  std::vector<std::unique_ptr<FilteredTriangles>> filtered;  // where filters find them
+  bool exact = false;                                        // Processor::Any
   // What the device reported first. From any thread, and perhaps for want of memory: no allocation.
   std::atomic<RTCError> error{RTC_ERROR_NONE};
   std::array<char, 256> errorText{};
@@ -111,11 +79,13 @@ struct RayScene::Impl {
                                s.positions.data(), 0, sizeof(Vec3), s.positions.size() - 1);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                s.triangles.data() + begin, 0, sizeof(Triangle), end - begin);
-    if (id == kMasked) {
-      masked.push_back(std::make_unique<Masked>(Masked{&s, begin}));
-      rtcSetGeometryUserData(geometry, masked.back().get());
-      rtcSetGeometryIntersectFilterFunction(geometry, rejectCutAway);
-      rtcSetGeometryOccludedFilterFunction(geometry, rejectCutAway);
+    if (exact || id == kMasked) {
+      filtered.push_back(std::make_unique<FilteredTriangles>(FilteredTriangles{&s, begin}));
+      rtcSetGeometryUserData(geometry, filtered.back().get());
+      const RTCFilterFunctionN met = id == kMasked ? keepExact<true> : keepExact<false>,
+                               hidden = id == kMasked ? hideExact<true> : hideExact<false>;
+      rtcSetGeometryIntersectFilterFunction(geometry, exact ? met : rejectCutAway);
+      rtcSetGeometryOccludedFilterFunction(geometry, exact ? hidden : rejectCutAway);
     }
     attach(to, geometry, id);
   }
@@ -151,17 +121,21 @@ struct RayScene::Impl {
   }
 
   bool closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const;
+  bool closestExactHit(const Ray& ray, SurfacePoint& hit) const;
   bool occluded(const RTCRay& from) const {
     RTCRay ray = from;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene, &context, &ray);
+    ExactQuery query{{}, from.tfar};
+    rtcInitIntersectContext(&query.context);
+    if (exact) ray.tfar = beyond(ray.tfar);
+    rtcOccluded1(scene, &query.context, &ray);
     return ray.tfar < 0.0f;
   }
 };
 
-RayScene::RayScene(const Scene& scene) : scene_(scene), impl_(std::make_unique<Impl>()) {
-  impl_->device = rtcNewDevice(nullptr);
+RayScene::RayScene(const Scene& scene, Processor processor)
+    : scene_(scene), impl_(std::make_unique<Impl>()) {
+  impl_->exact = processor == Processor::Any;
+  impl_->device = rtcNewDevice(impl_->exact ? "isa=sse2,ignore_config_files=1" : nullptr);
   if (!impl_->device) {
     if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     throw std::runtime_error("Embree cannot start on this machine");
@@ -179,6 +153,7 @@ RayScene::~RayScene() = default;
 
 // Sets triangle, instance, distance, and u and v to the barycentric coordinates.
 bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const {
+  if (exact) return closestExactHit(ray, hit);
   RTCRayHit rh{};
   rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
   rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -201,6 +176,21 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
   hit.distance = rh.ray.tfar;
   hit.u = rh.hit.u, hit.v = rh.hit.v;
   return true;
+}
+
+// The same, for Processor::Any.
+bool RayScene::Impl::closestExactHit(const Ray& ray, SurfacePoint& hit) const {
+  RTCRayHit rh{};
+  ExactQuery query{{}, std::numeric_limits<float>::infinity()};
+  rh.ray = makeRay(ray.origin, ray.direction, query.reach);
+  rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcInitIntersectContext(&query.context);
+  rtcIntersect1(scene, &query.context, &rh);
+  hit.triangle = query.triangle;
+  hit.instance = query.instance == kNone ? kNone : query.instance - kFirstInstance;
+  hit.distance = query.reach;
+  hit.u = query.u, hit.v = query.v;
+  return hit.triangle != kNone;
 }
 
 // The rest of a hit, from its triangle, its distance and the barycentric coordinates in u and v.
@@ -291,14 +281,14 @@ void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hi
       rays.dir_y[k] = s.to.y - s.from.y;
       rays.dir_z[k] = s.to.z - s.from.z;
       rays.tnear[k] = 0.0f;
-      rays.tfar[k] = 1.0f;
+      rays.tfar[k] = impl_->exact ? beyond(1.0f) : 1.0f;
       rays.time[k] = 0.0f;
       rays.mask[k] = ~0u;
       rays.id[k] = rays.flags[k] = 0;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded8(valid.data(), impl_->scene, &context, &rays);
+    ExactQuery query{{}, 1.0f};
+    rtcInitIntersectContext(&query.context);
+    rtcOccluded8(valid.data(), impl_->scene, &query.context, &rays);
     for (size_t k = 0; k < count; ++k) hidden[begin + k] = rays.tfar[k] < 0.0f;
   }
 }

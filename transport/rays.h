@@ -1,10 +1,11 @@
-// Ray queries against a Scene. The only file behind it that knows Embree is ray_scene.cpp.
+// Ray queries against a Scene. Behind it only rays.cpp, with its ray_filters.h, knows Embree.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
 
+#include "core/processor.h"
 #include "scene/scene.h"
 
 namespace bnvpl {
@@ -38,7 +39,8 @@ struct Segment {
 // Alpha masks are honoured by every query.
 class RayScene {
  public:
-  explicit RayScene(const Scene& scene);  // throws std::runtime_error when Embree cannot build
+  // Throws std::runtime_error when Embree cannot build.
+  explicit RayScene(const Scene& scene, Processor processor = Processor::This);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;

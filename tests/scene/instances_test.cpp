@@ -72,8 +72,9 @@ Scene tents(bool shared, double away = 0.0) {
   return builder.finish();
 }
 
-void expectSameHits(const Scene& one, const Scene& other, float tolerance) {
-  const RayScene a(one), b(other);
+void expectSameHits(const Scene& one, const Scene& other, float tolerance,
+                    Processor processor = Processor::This) {
+  const RayScene a(one, processor), b(other);
   Rng rng(streamKey(8, 1u), 0);
   int hits = 0, occluded = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -104,6 +105,10 @@ void expectSameHits(const Scene& one, const Scene& other, float tolerance) {
 }
 
 TEST(Instances, AreMetAsIfEachWereStored) { expectSameHits(tents(true), tents(false), 1e-4f); }
+
+TEST(Instances, AreMetForAnyProcessorToo) {
+  expectSameHits(tents(true), tents(false), 1e-4f, Processor::Any);
+}
 
 TEST(Instances, FarFromTheOriginToo) {
   const Scene shared = tents(true, 1e6);

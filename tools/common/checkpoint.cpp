@@ -22,8 +22,9 @@ std::string difference(const Json& before, const Json& now, const std::string& p
         return difference(before[i], now[i], path + " " + std::to_string(i + 1));
     }
   }
+  const auto named = [](const Json& value) { return value.is_null() ? "absent" : value.dump(); };
   if (!before.is_object() || !now.is_object())
-    return path + " was " + before.dump() + " and is now " + now.dump();
+    return path + " was " + named(before) + " and is now " + named(now);
   const auto differing = [&](const std::string& key) {
     return before.value(key, Json()) != now.value(key, Json());
   };
@@ -75,7 +76,7 @@ Checkpoint::Checkpoint(CheckpointOptions options, Json run)
     : options_(std::move(options)), run_(std::move(run)), nextS_(nowS() + options_.everyS) {
   if (options_.file.empty()) return;
   requireWritable({options_.file});
-  run_["processor_id"] = processorId();
+  run_["processor_id"] = processorId(processorOf(run_));
   if (!fs::exists(options_.file)) return;
   try {
     earlier_ = stateIn(options_.file, run_);

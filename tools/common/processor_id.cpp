@@ -39,10 +39,10 @@ Scene field() {
 }
 
 // Rays from above, half of them through corners, where neighbours share the hit.
-void addHits(std::vector<float>& bits) {
+void addHits(Processor processor, std::vector<float>& bits) {
   constexpr uint32_t kRays = 1024;
   const Scene scene = field();
-  const RayScene rays(scene);
+  const RayScene rays(scene, processor);
   Rng rng(2, 0);
   const auto above = [&](float height) {
     const float x = rng.next(), y = rng.next();
@@ -75,10 +75,10 @@ void addFunctions(std::vector<Real>& bits) {
 
 }  // namespace
 
-std::string processorId() {
+std::string processorId(Processor processor) {
   std::vector<float> floats;
   std::vector<double> doubles;
-  addHits(floats);
+  addHits(processor, floats);
   addFunctions(floats);
   addFunctions(doubles);
   return hashText(

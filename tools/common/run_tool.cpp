@@ -1,10 +1,10 @@
 #include "tools/common/run_tool.h"
 
-#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +17,7 @@
 #include "tools/common/clock.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
+#include "tools/common/pin_functions.h"
 #include "tools/common/standard_streams.h"
 
 namespace bnvpl {
@@ -30,6 +31,7 @@ double peakMemoryMiB() {
 }
 
 std::string toolName;  // before each line on stderr
+char** arguments = nullptr;
 
 // Formats nothing in memory, of which there may be none left.
 int fail(int code, const char* what, const char* more = "") {
@@ -144,14 +146,27 @@ void addDepfileOption(CLI::App& cli, ToolOptions& options) {
           "write the files that were read, in Make syntax, for make and ninja");
 }
 
+void addProcessorOption(CLI::App& cli, ToolOptions& options) {
+  addOption(cli,
+            choiceOption("processor", "this", "this|any",
+                         "whose last digits to compute: those of the processor at hand, or, "
+                         "slower, those that any other computes, too"),
+            [&options](const Value& value) {
+              const bool any = std::get<std::string>(value) == "any";
+              options.processor = any ? Processor::Any : Processor::This;
+            });
+}
+
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work) {
   toolName = cli.get_name();
+  arguments = argv;
   occupyClosedStreams();
   catchInterrupts(toolName);
   std::set_terminate(onTerminate);
   try {
     if (!parse(cli, argc, argv)) return kExitOk;
+    computeFor(options.processor);
     // Never destroyed: at its end oneTBB would start the threads that were held back, and it ends
     // the process if it cannot, with all outputs already in place.
     alignas(tbb::global_control) static std::byte forever[sizeof(tbb::global_control)];
@@ -172,6 +187,7 @@ unsigned threadsInUse() {
   return static_cast<unsigned>(
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
+void computeFor(Processor processor) { pinFunctions(processor, arguments); }
 const std::string& runningTool() { return toolName; }
 
 void requireWritable(const std::vector<fs::path>& outputs) {
@@ -186,8 +202,16 @@ std::string hashText(uint64_t hash) {
   return text;
 }
 
-Json stageRecord(const std::string& tool, const Json& options, const Json& inputs) {
-  return {{"tool", tool}, {"version", buildId()}, {"options", options}, {"inputs", inputs}};
+Json stageRecord(const std::string& tool, const Json& options, const Json& inputs,
+                 Processor processor) {
+  Json record{{"tool", tool}, {"version", buildId()}, {"options", options}, {"inputs", inputs}};
+  if (processor == Processor::Any) record["processor"] = "any";
+  return record;
+}
+
+Processor processorOf(const Json& record) {
+  const auto named = record.find("processor");
+  return named != record.end() && *named == "any" ? Processor::Any : Processor::This;
 }
 
 std::string extendProvenance(const std::string& earlier, const Json& record) {

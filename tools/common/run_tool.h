@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "core/processor.h"
 #include "formats/atomic_file.h"
 #include "tools/common/cli_option.h"
 #include "tools/common/stage_cli.h"
 
 namespace bnvpl {
 
-// Options that do not change what is computed, and therefore never enter a provenance record.
+// Options that do not change what is computed, and therefore never enter a provenance record; and
+// --processor, which does.
 struct ToolOptions {
+  Processor processor = Processor::This;
   unsigned threads = 0;  // 0: all cores
   bool quiet = false;
   fs::path stats;    // JSON summary, empty: none
@@ -31,14 +34,21 @@ CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::pat
 // --threads --quiet --stats --version, and --depfile where the stage reads more than it is named.
 void addToolOptions(CLI::App& cli, ToolOptions& options);
 void addDepfileOption(CLI::App& cli, ToolOptions& options);
+// --processor, of tools that compute.
+void addProcessorOption(CLI::App& cli, ToolOptions& options);
 
-// Parses argv, limits oneTBB to --threads, calls `work`, and turns exceptions into one line on
-// stderr and the documented exit code. The only try/catch of a tool. Signals: interrupt.h.
+// Parses argv, starts the tool anew where --processor asks for it (pin_functions.h), limits oneTBB
+// to --threads, calls `work`, and turns exceptions into one line on stderr and the documented exit
+// code. The only try/catch of a tool. Signals: interrupt.h.
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
 
 // Worker threads that the work of runTool() may take.
 unsigned threadsInUse();
+
+// For a tool that finds out whose bits to compute by what it reads: what runTool() does for
+// --processor. Before there is any thread or output.
+void computeFor(Processor processor);
 
 // The name of the tool that runTool() runs, which begins each line on stderr.
 const std::string& runningTool();
@@ -60,7 +70,10 @@ T fieldOf(const Json& json, const char* key) {
 // What a stage did, and that record behind those of its input (empty for the first stage).
 //   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":
 //   "<hash>"}}
-Json stageRecord(const std::string& tool, const Json& options, const Json& inputs);
+// and "processor": "any" in it where that was asked for.
+Json stageRecord(const std::string& tool, const Json& options, const Json& inputs,
+                 Processor processor = Processor::This);
+Processor processorOf(const Json& record);
 std::string extendProvenance(const std::string& earlier, const Json& record);
 std::string hashText(uint64_t hash);  // 16 hexadecimal digits
 

@@ -90,8 +90,8 @@ Resume ShardOutput::only(Resume whole) const {
 }
 
 void ShardOutput::finish(const ShardRun& run, Summary& summary) {
-  writer_.finish(
-      textOf(ShardInfo{run, processorId(), {{shard_.first + 1, shard_.end}}, shard_.of}));
+  writer_.finish(textOf(ShardInfo{
+      run, processorId(processorOf(run.run)), {{shard_.first + 1, shard_.end}}, shard_.of}));
   summary.add("shard", textOf(shard_), "shard " + textOf(shard_) + ", for vpl-merge");
 }
 

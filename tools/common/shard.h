@@ -34,7 +34,7 @@ class ShardOutput {
   const ShardSink& sink() const { return sink_; }
   // The same work, for this shard alone. Must not outlive this.
   Resume only(Resume whole) const;
-  // Ends the file, which the caller commits, and tells the summary. Asks for processorId().
+  // Ends the file, which the caller commits, and tells the summary. Asks for its processorId().
   void finish(const ShardRun& run, Summary& summary);
 
  private:

@@ -25,8 +25,10 @@ struct Paths {
 
 // The scene, for methods that ask for it.
 struct World {
-  World(const SceneOptions& options, const fs::path& input, uint64_t hash)
-      : scene(loadSceneFor("vpl-eliminate", options, Warnings::Silent)), rays(scene), lights(rays) {
+  World(const SceneOptions& options, Processor processor, const fs::path& input, uint64_t hash)
+      : scene(loadSceneFor("vpl-eliminate", options, Warnings::Silent)),
+        rays(scene, processor),
+        lights(rays) {
     requireSameScene(input, hash, scene, "name the scene that it was placed in");
   }
   Scene scene;
@@ -84,7 +86,7 @@ int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost
   }
   const VplTable candidates = readVpl(paths.input, method.takes);
   std::optional<World> world;
-  if (sceneGiven) world.emplace(paths.scene, paths.input, candidates.sceneHash);
+  if (sceneGiven) world.emplace(paths.scene, tool.processor, paths.input, candidates.sceneHash);
   if (cost.estimate) {
     printCost(costOfEliminating(candidates, options, world ? &*world : nullptr), cost);
     return kExitOk;
@@ -97,7 +99,8 @@ int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost
 
   Json inputs{{"candidates", hashText(candidates.checksum)}};
   if (world) inputs["scene"] = hashText(world->scene.contentHash);
-  Json record = stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs);
+  Json record =
+      stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs, tool.processor);
   if (world) record["view"] = viewRecord(world->scene);
   kept.table.provenance = extendProvenance(candidates.provenance, record);
   OutputSet files;
@@ -127,6 +130,7 @@ int main(int argc, char** argv) {
   addStageOptions(cli, eliminateSpec(), given);
   addCostOptions(cli, cost);
   addToolOptions(cli, tool);
+  addProcessorOption(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] { return runEliminate(paths, given, cost, tool); });
 }

@@ -50,7 +50,7 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
   if (!request.cost.estimate) used.ready(scene.files);
   requireSameScene(request.input, vpls.sceneHash, scene,
                    "rerun vpl-place and vpl-eliminate on this scene");
-  const RayScene rays(scene);
+  const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
   if (request.cost.estimate) {
     printCost(costOfUnits([&](const Resume& resume) {
@@ -60,9 +60,9 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
     return kExitOk;
   }
 
-  const Json record =
-      stageRecord("vpl-estimate", recordOf(estimateSpec(), options),
-                  {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}});
+  const Json record = stageRecord(
+      "vpl-estimate", recordOf(estimateSpec(), options),
+      {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}}, tool.processor);
   Checkpoint checkpoint(request.checkpoint, withShard(record, shard));
   const Work work = estimateWork(vpls, options);
   ProgressMeter meter(std::string(work.unit), shard ? shard->shareOf(work.count) : work.count,
@@ -112,6 +112,7 @@ int main(int argc, char** argv) {
   addShardOption(cli, request.shard, "photons, or of the VPLs for paths");
   addCostOptions(cli, request.cost);
   addToolOptions(cli, tool);
+  addProcessorOption(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);

@@ -14,7 +14,7 @@ using Links = std::vector<const CheckedFile*>;  // by length of history
 
 bool sameRecord(const StageRecord& a, const StageRecord& b) {
   return a.tool == b.tool && a.version == b.version && a.options == b.options &&
-         a.inputs == b.inputs && a.views == b.views;
+         a.inputs == b.inputs && a.views == b.views && a.processor == b.processor;
 }
 
 std::string optionText(const Json& value) {
@@ -145,6 +145,7 @@ std::string commandOf(const StageRecord& record, const std::vector<std::string>&
   for (const auto& [name, value] : record.options.items()) {
     command += " --" + name + " " + optionText(value);
   }
+  if (!record.processor.empty()) command += " --processor " + shellWord(record.processor);
   return command;
 }
 

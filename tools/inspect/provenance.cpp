@@ -40,6 +40,7 @@ std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string
     StageRecord record;
     record.tool = textAt(entry, "tool");
     record.version = textAt(entry, "version");
+    record.processor = textAt(entry, "processor");
     if (const auto it = entry.find("options"); it != entry.end() && it->is_object())
       record.options = *it;
     if (const auto it = entry.find("inputs"); it != entry.end() && it->is_object()) {
@@ -73,6 +74,7 @@ std::string describeRecord(const StageRecord& record) {
     line.append(separator).append(name).append(" ").append(value);
     separator = ", ";
   }
+  if (!record.processor.empty()) line += "; for " + record.processor + " processor";
   if (!record.views.empty()) line += "; " + describeViews(record);
   return line;
 }

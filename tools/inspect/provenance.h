@@ -22,6 +22,7 @@ struct StageRecord {
     bool operator==(const View&) const = default;
   };
   std::vector<View> views;  // that the stage looked at
+  std::string processor;    // "any"; empty: the one at hand
 };
 
 // Oldest first; keys that are absent stay empty. `file` is for the message.

@@ -24,6 +24,7 @@ const MergeStage& stageOf(const ShardSet& shards) {
 int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
              const ToolOptions& tool) {
   Summary summary("vpl-merge");
+  computeFor(processorOfShard(inputs.front()));
   ShardSet shards(inputs);
   const MergeStage& stage = stageOf(shards);
   RunFiles used;

@@ -18,7 +18,7 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
       "vpl-merge", sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Silent);
   requireSameInput(input, vpls.checksum, whole, "vpls");
   requireSameInput(scene.name(), scene.contentHash, whole, "scene");
-  const RayScene rays(scene);
+  const RayScene rays(scene, processorOf(whole.run));
   const LightSet lights(rays);
   const ShardSource source = shards.source();
   Resume resume;

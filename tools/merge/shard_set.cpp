@@ -10,6 +10,10 @@
 
 namespace bnvpl {
 
+Processor processorOfShard(const fs::path& file) {
+  return processorOf(parseShardInfo(file, ShardReader(file).info()).run.run);
+}
+
 ShardSet::ShardSet(const std::vector<fs::path>& files) : files_(files) {
   std::vector<Holder> holders;
   for (size_t f = 0; f < files_.size(); ++f) {
@@ -52,7 +56,8 @@ void ShardSet::requireThisPlace(const fs::path& file) const {
     throw InputError(file, "was made by another build (" + build + ", this is " + buildId() +
                                "); use its vpl-merge, or make all shards again");
   }
-  if (const std::string here = processorId(); processor_ != here) {
+  const std::string here = processorId(processorOf(whole_.run));
+  if (processor_ != here) {
     throw InputError(file, "was made on a processor that rounds otherwise than this one (" +
                                processor_ + ", this is " + here +
                                "); merge on one of its kind, or make all shards again here");

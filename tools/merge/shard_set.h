@@ -9,6 +9,9 @@
 
 namespace bnvpl {
 
+// Whose bits a shard holds, by its record. Throws what the constructor of ShardSet throws.
+Processor processorOfShard(const fs::path& file);
+
 class ShardSet {
  public:
   // Reads what the files say of themselves. Throws InputError, which names file and cure, for

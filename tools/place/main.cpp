@@ -132,7 +132,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   if (method.needsLight) scene.requireLight();
   printWarnings("vpl-place", scene.warnings);
   if (!request.cost.estimate) used.ready(scene.files);
-  const RayScene rays(scene);
+  const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
   const PlaceInputs inputs{rays, lights, views};
   if (request.cost.estimate) {
@@ -143,7 +143,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   }
 
   Json record = stageRecord("vpl-place", recordOf(placeSpec(), options),
-                            {{"scene", hashText(scene.contentHash)}});
+                            {{"scene", hashText(scene.contentHash)}}, tool.processor);
   if (method.forView) recordViews(views, record);
   Checkpoint checkpoint(request.checkpoint, withShard(record, request.shard));
   OutputSet files;
@@ -187,6 +187,7 @@ int main(int argc, char** argv) {
       ->needs(addShardOption(cli, request.shard, "paths"));
   addCostOptions(cli, request.cost);
   addToolOptions(cli, tool);
+  addProcessorOption(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);

@@ -124,7 +124,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
     requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
                   "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   }
-  const RayScene rays(scene);
+  const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
   if (estimating) {
     printCost(costOfRendering(rays, lights, lit, request, options), request.cost);
@@ -134,7 +134,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
   Json inputs{{"scene", hashText(scene.contentHash)}};
   if (vpl) inputs["lit"] = hashText(lit.checksum);
   const auto record = [&](const Json& recorded) {
-    Json json = stageRecord("vpl-render", recorded, inputs);
+    Json json = stageRecord("vpl-render", recorded, inputs, tool.processor);
     json["view"] = viewRecord(scene);
     return json;
   };
@@ -190,6 +190,7 @@ int main(int argc, char** argv) {
   addShardOption(cli, request.shard, "tiles and photons");
   addCostOptions(cli, request.cost);
   addToolOptions(cli, tool);
+  addProcessorOption(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);

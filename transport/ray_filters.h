@@ -1,0 +1,136 @@
+// What Embree calls for each triangle that a ray may hit. For rays.cpp alone.
+//
+// Embree divides by estimating a reciprocal, as precisely as the processor cares to, and takes
+// other code, which contracts products and sums, where there are other instructions. Of its code
+// for SSE2 all else is plain IEEE arithmetic: building, the boxes of robust scenes, the tests of
+// edges, and the normals of hits. Processor::Any takes that code, for rays that reach further than
+// asked by more than an estimate is wrong, and lets these filters divide, compare and decide. Among
+// hits at one distance the lowest instance and triangle is the nearest, in whatever order they
+// come.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <cassert>
+#include <cmath>
+#include <tuple>
+
+#include "scene/scene.h"
+
+namespace bnvpl {
+
+// The triangles of a geometry, as filters find them.
+struct FilteredTriangles {
+  const Scene* scene;
+  uint32_t begin;
+};
+
+// What a query is about to find; Embree hands its first member on to the filters.
+struct ExactQuery {
+  RTCIntersectContext context;
+  float reach;  // of the ray
+  uint32_t instance = kNone, triangle = kNone;
+  float u = 0, v = 0;
+};
+
+// An Embree reciprocal is wrong by less than 2^-21 of itself.
+inline float beyond(float distance) { return distance * (1.0f + 0x1p-18f); }
+
+// Alpha test: whether the surface is there.
+inline bool isThere(const Scene& scene, uint32_t triangle, float b1, float b2) {
+  const Triangle& t = scene.triangles[triangle];
+  const Material& m = scene.materials[t.material];
+  float opacity = m.opacity;
+  if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
+    const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
+    const float b0 = 1.0f - b1 - b2, u = b0 * a[0] + b1 * b[0] + b2 * c[0],
+                v = b0 * a[1] + b1 * b[1] + b2 * c[1];
+    if (m.opacityMap != kNone) opacity *= scene.textures[m.opacityMap].lookupAlpha(u, v);
+    if (m.opacityTexture != kNone) opacity *= scene.expressionAt(m.opacityTexture, u, v).x;
+  }
+  return !(opacity < m.opacityCutoff);
+}
+
+inline void rejectCutAway(const RTCFilterFunctionNArguments* args) {
+  const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const uint32_t triangle = of.begin + RTCHitN_primID(args->hit, args->N, i);
+    if (!isThere(*of.scene, triangle, RTCHitN_u(args->hit, args->N, i),
+                 RTCHitN_v(args->hit, args->N, i)))
+      args->valid[i] = 0;
+  }
+}
+
+struct ExactHit {
+  uint32_t instance, triangle;
+  float distance, u, v;
+};
+
+// Of the i-th ray, where Embree has found that it passes between the edges. Distances are those of
+// Embree but for the division: terms are added in its order.
+inline ExactHit exactHit(const RTCFilterFunctionNArguments* args, unsigned i) {
+  const unsigned n = args->N;
+  const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
+  const uint32_t triangle = of.begin + RTCHitN_primID(args->hit, n, i);
+  const auto& corners = of.scene->triangles[triangle].position;
+  const Vec3 origin{RTCRayN_org_x(args->ray, n, i), RTCRayN_org_y(args->ray, n, i),
+                    RTCRayN_org_z(args->ray, n, i)};
+  const Vec3 direction{RTCRayN_dir_x(args->ray, n, i), RTCRayN_dir_y(args->ray, n, i),
+                       RTCRayN_dir_z(args->ray, n, i)};
+  const Vec3 normal{RTCHitN_Ng_x(args->hit, n, i), RTCHitN_Ng_y(args->hit, n, i),
+                    RTCHitN_Ng_z(args->hit, n, i)};
+  const Vec3 p0 = of.scene->positions[corners[0]] - origin,
+             p1 = of.scene->positions[corners[1]] - origin,
+             p2 = of.scene->positions[corners[2]] - origin;
+  const auto product = [](Vec3 a, Vec3 b) { return a.x * b.x + (a.y * b.y + a.z * b.z); };
+  // Twice the volumes between the ray and each edge: Plücker coordinates.
+  const float b1 = product(cross(p2 - p0, p2 + p0), direction),
+              b2 = product(cross(p0 - p1, p0 + p1), direction),
+              b0 = product(cross(p1 - p2, p1 + p2), direction);
+  const float all = b1 + b2 + b0, distance = product(p0, normal) / product(normal, direction);
+  // What beyond() relies on.
+  [[maybe_unused]] const float estimated = RTCRayN_tfar(args->ray, n, i);
+  assert(!(std::fabs(estimated - distance) > 0x1p-20f * std::fabs(distance)));
+  return {RTCHitN_instID(args->hit, n, i, 0), triangle, distance,
+          all == 0.0f ? 0.0f : std::min(b1 / all, 1.0f),
+          all == 0.0f ? 0.0f : std::min(b2 / all, 1.0f)};
+}
+
+// Of rtcIntersect1: the nearest hit is kept in the ExactQuery.
+template <bool kMasked>
+void keepExact(const RTCFilterFunctionNArguments* args) {
+  auto& query = *reinterpret_cast<ExactQuery*>(args->context);
+  const ExactHit hit = exactHit(args, 0);
+  const auto place = [](const auto& of, float distance) {
+    return std::tuple(distance, of.instance, of.triangle);
+  };
+  // Unordered distances, which are no hits, compare as false.
+  const bool nearer = hit.distance >= 0.0f && hit.distance <= query.reach &&
+                      place(hit, hit.distance) < place(query, query.reach);
+  const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
+  if (!nearer || (kMasked && !isThere(*of.scene, hit.triangle, hit.u, hit.v))) {
+    args->valid[0] = 0;
+    return;
+  }
+  query.instance = hit.instance, query.triangle = hit.triangle;
+  query.u = hit.u, query.v = hit.v;
+  query.reach = hit.distance;
+  RTCRayN_tfar(args->ray, args->N, 0) = beyond(hit.distance);
+}
+
+// Of rtcOccluded1 and rtcOccluded8: whether the hit is within reach.
+template <bool kMasked>
+void hideExact(const RTCFilterFunctionNArguments* args) {
+  const auto& query = *reinterpret_cast<const ExactQuery*>(args->context);
+  const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const ExactHit hit = exactHit(args, i);
+    const bool met = hit.distance >= 0.0f && hit.distance <= query.reach &&
+                     (!kMasked || isThere(*of.scene, hit.triangle, hit.u, hit.v));
+    if (!met) args->valid[i] = 0;
+  }
+}
+
+}  // namespace bnvpl
