@@ -39,7 +39,7 @@ def make_scene(name, triangles, folder):
     here = folder / f"{name}-{triangles}"
     if name == "size":  # the room of size.py: no walls, a point light
         here.mkdir()
-        file = size.Size(argparse.Namespace(bin=None, most=1.0), here).room(triangles, 0, 1)
+        file = size.Size(argparse.Namespace(bin=None, most=1.0, cpu=True), here).room(triangles, 0, 1)
         made = sum(line.startswith("f ") for line in open(here / "size.obj"))
     else:
         file, made = scenes.cut_scene(ROOT / f"scenes/{name}/scene.toml", here, triangles)

@@ -33,6 +33,15 @@ def depth(n):
     return math.log2(max(2, n))
 
 
+def pairs(c):
+    """Candidates times competitors of each, in the steps of stepsFor() (tools/eliminate/elimination)."""
+    steps = [max(1.0, c.vpls)]
+    while (each := c.candidates / steps[-1]) > 60 and each * c.candidates > 2**22:
+        steps.append(30 * steps[-1])
+    left = [c.candidates, *reversed(steps[1:])]
+    return sum(before**2 / kept for before, kept in zip(left, reversed(steps)))
+
+
 # {stage: {figure: {term: function of counts}}}. What is multiplied by the share is divided among shards; the rest is
 # what every shard does again.
 TERMS = {
@@ -56,7 +65,7 @@ TERMS = {
             "start": lambda c: 1,
             "candidates": lambda c: c.candidates,
             "candidates log2(candidates)": lambda c: c.candidates * depth(c.candidates),
-            "candidates^2 / VPLs": lambda c: c.candidates**2 / max(1, c.vpls),
+            "pairs": pairs,
             "VPLs": lambda c: c.vpls,
         },
         "memory_MiB": {"start": lambda c: 1, "candidates": lambda c: c.candidates, "VPLs": lambda c: c.vpls},

@@ -59,7 +59,8 @@ FITTED = [
 
 CHECKED = [
     ("u-shape", FEW, [
-        place(4 * M), eliminate(400 * K, 10 * K), eliminate(1600 * K, 40 * K), estimate(2 * K, 6 * M), estimate(40 * K, 16 * M),
+        place(4 * M), eliminate(400 * K, 10 * K), eliminate(1600 * K, 40 * K),
+        eliminate(600 * K, 5 * K), estimate(2 * K, 6 * M), estimate(40 * K, 16 * M),
         render(2 * K, 320, 8), render(100 * K, 200, 4),
         merge("place", 16, candidates=2 * M), merge("estimate", 8, vpls=4 * K, photons=800 * K),
         merge("render", 16, pixels=film(320), spp=1, vpls=1 * K),

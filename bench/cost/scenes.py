@@ -31,22 +31,23 @@ def mixed(corners, a, b, c):
     return tuple(a * x + b * y + c * z for x, y, z in zip(*corners))
 
 
+def area(vertices, corners):
+    a, b, c = (vertices[v] for v, _ in corners)
+    u, w = [y - x for x, y in zip(a, b)], [y - x for x, y in zip(a, c)]
+    return 0.5 * math.hypot(u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
+
+
 def write_cut(obj, target, triangles):
     """About so many triangles, shared out by area; lamps stay whole. Returns their number."""
     vertices, normals, faces = faces_of(obj)
     whole = [(material, [face[0], face[i], face[i + 1]]) for material, face in faces for i in range(1, len(face) - 1)]
 
-    def area(corners):
-        a, b, c = (vertices[v] for v, _ in corners)
-        u, w = [y - x for x, y in zip(a, b)], [y - x for x, y in zip(a, c)]
-        return 0.5 * math.hypot(u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
-
-    per_area = triangles / sum(area(corners) for _, corners in whole)
+    per_area = triangles / sum(area(vertices, corners) for _, corners in whole)
     made, first_v, first_n = 0, 1, 1
     with open(target, "w") as out:
         out.write(f"mtllib {obj.stem}.mtl\n")
         for material, corners in whole:
-            n = 1 if material == "Lamp" else max(1, round(math.sqrt(area(corners) * per_area)))
+            n = 1 if material == "Lamp" else max(1, round(math.sqrt(area(vertices, corners) * per_area)))
             grid = [(i, j) for i in range(n + 1) for j in range(n + 1 - i)]
             row = [sum(n + 1 - k for k in range(i)) for i in range(n + 2)]
             places = [vertices[v] for v, _ in corners]

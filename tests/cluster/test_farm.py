@@ -16,6 +16,7 @@ import cost  # noqa: E402
 import farm  # noqa: E402
 import farm_graph  # noqa: E402
 import fit  # noqa: E402
+import scenes  # noqa: E402
 from farm_graph import Job  # noqa: E402
 from farm_schedule import Farm, Simulation, simulate  # noqa: E402
 
@@ -217,6 +218,19 @@ class ModelTest(unittest.TestCase):
             setup = model.setup_s(stage, whole)
             self.assertAlmostEqual(model.predict(stage, "cpu_s", part) - setup,
                                    (model.predict(stage, "cpu_s", whole) - setup) / 100, places=6)
+
+    def test_scenes_are_cut_and_not_changed(self):
+        def area(obj):
+            vertices, _, faces = scenes.faces_of(obj)
+            return sum(scenes.area(vertices, [face[0], face[i], face[i + 1]])
+                       for _, face in faces for i in range(1, len(face) - 1))
+
+        with tempfile.TemporaryDirectory() as folder:
+            file, made = scenes.cut_scene(SOURCE / "scenes/cornell/scene.toml", Path(folder), 5000)
+            cut = file.parent / "cornell.obj"
+            self.assertEqual(len(scenes.faces_of(cut)[2]), made)
+            self.assertAlmostEqual(made / 5000, 1, delta=0.1)
+            self.assertAlmostEqual(area(cut) / area(SOURCE / "scenes/cornell/cornell.obj"), 1, 5)
 
     def test_the_stored_model_has_all_stages_and_checks(self):
         stored = json.loads(cost.MODEL.read_text())
