@@ -80,6 +80,8 @@ def arguments(words):
         p.error(f"--frames {options.frames} is not 1 or more")
     if options.views or options.place_views:
         p.error("--views and --place-views are files; --frames says how many there are")
+    if options.quality != "default" or any(getattr(options, f"{stage}_flags") for stage in KINDS[:4]):
+        p.error("the cost model is of the tools' default options; leave out --quality and flags, and give counts and --scale")
     widest = max(map(int, options.cpus.values()))
     if widest > options.cores:
         p.error(f"--cpus: a task of {widest} cores does not fit on a node of {options.cores}; raise --cores")
@@ -187,5 +189,4 @@ def main(words):
 
 
 if __name__ == "__main__":
-    sys.dont_write_bytecode = True
     main(sys.argv[1:])

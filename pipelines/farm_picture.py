@@ -25,8 +25,8 @@ class Plot:
 
     def line(self, points, colour, dash="", width=2):
         path = " ".join("%.1f,%.1f" % self.place(*p) for p in points)
-        self.rows.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width}"'
-                         f'{f" stroke-dasharray={chr(34)}{dash}{chr(34)}" if dash else ""}/>')
+        dashes = f' stroke-dasharray="{dash}"' if dash else ""
+        self.rows.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width}"{dashes}/>')
 
     def area(self, points, colour):
         path = " ".join("%.1f,%.1f" % self.place(*p) for p in points)

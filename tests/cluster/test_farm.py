@@ -189,7 +189,7 @@ class Command(unittest.TestCase):
         self.assertGreaterEqual(sum(row.tag.endswith("polygon") for row in rows), 4)
 
     def test_wrong_options_are_refused(self):
-        for words in (["--nodes", "0"], ["--size", "640"], ["--cpus", "64"], ["--frames", "0"]):
+        for words in (["--nodes", "0"], ["--quality", "final"], ["--render-flags=--gather all"], ["--size", "640"], ["--cpus", "64"], ["--frames", "0"]):
             with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
                 farm.arguments([*FILM, *words])
 
