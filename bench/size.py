@@ -4,6 +4,8 @@
   bench/size.py                          all, about four minutes and 3 GiB
   bench/size.py --parts lights,vpls      some
   bench/size.py --most 0.01              a hundredth of each size, to see that it works
+  bench/size.py --parts instances,many_vpls,shard,file,hundredth   the largest: fifteen minutes, 14 GiB, 5 GB of disk
+  bench/size.py --cpu ...                CPU seconds of all threads in place of seconds, on a machine that is not quiet
 
 Prints Markdown; docs/lab has former figures.
 """
@@ -11,6 +13,7 @@ Prints Markdown; docs/lab has former figures.
 import argparse
 import json
 import math
+import resource
 import subprocess
 import sys
 import tempfile
@@ -18,6 +21,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 U_SHAPE = ROOT / "scenes/u-shape/scene.toml"
+CORE_PARTS = ("triangles", "candidates", "vpls", "lights")
+LARGE_PARTS = ("instances", "many_vpls", "shard", "file", "hundredth")
+BUMPY = 224  # squares along the side of a mesh that is instanced: 100k triangles
 MTL = "newmtl grey\nKd 0.6 0.6 0.6\nnewmtl lamp\nKd 0 0 0\nKe 20 20 20\n"
 CAMERA = """[film]
 width = 64
@@ -32,19 +38,24 @@ file = "size.obj"
 """
 
 
+def cpu_of_children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class Size:
     def __init__(self, options: argparse.Namespace, folder: Path):
-        self.bin, self.most, self.folder = options.bin, options.most, folder
+        self.bin, self.most, self.cpu, self.folder = options.bin, options.most, options.cpu, folder
 
     def run(self, tool: str, *words) -> tuple[float, float]:
         """Seconds and MiB."""
-        stats = self.folder / "stats.json"
+        stats, before = self.folder / "stats.json", cpu_of_children()
         done = subprocess.run([str(w) for w in (self.bin / tool, *words, "--quiet", "--stats", stats)],
                               capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"size.py: {done.stderr.strip()}")
         found = json.loads(stats.read_text())
-        return found["time_s"], found["peak_memory_MiB"]
+        return cpu_of_children() - before if self.cpu else found["time_s"], found["peak_memory_MiB"]
 
     def sizes(self, *full: int) -> list[int]:
         return [max(1, round(n * self.most)) for n in full]
@@ -122,17 +133,79 @@ class Size:
                 path, mib = self.run("vpl-render", scene, "-o", self.folder / "i.exr", "--integrator", "path", "--spp", "16")
                 print(f"| {n} {kind} | {estimate:.2f} | {path:.2f} | {mib:.0f} |", flush=True)
 
+    def instances(self) -> None:
+        """A bumpy sheet, many times on a floor, in pbrt's form."""
+        n = BUMPY
+        points = " ".join(f"{i / n:.6g} {0.05 * math.sin(40 * i / n) * math.cos(40 * j / n):.6g} {j / n:.6g}"
+                          for j in range(n + 1) for i in range(n + 1))
+        corners = ((j * (n + 1) + i, (j + 1) * (n + 1) + i) for j in range(n) for i in range(n))
+        indices = " ".join(f"{a} {b} {a + 1} {a + 1} {b} {b + 1}" for a, b in corners)
+        print("\n| triangles, of 100k stored | vpl-place -n 10k: s | MiB | path tracer, 64x48, 1 spp: s | MiB |\n|---|---|---|---|---|")
+        for copies in self.sizes(1, 20, 500, 5000):
+            side = math.ceil(math.sqrt(copies))
+            placed = "".join(f"AttributeBegin Translate {k % side} {0.2 * (k % 5)} {k // side} ObjectInstance \"sheet\" AttributeEnd\n"
+                             for k in range(copies))
+            scene = self.folder / "instances.pbrt"
+            scene.write_text(
+                f"LookAt {side / 2} 3 {-1} {side / 2} 0 {side / 2} 0 1 0\nCamera \"perspective\" \"float fov\" 60\n"
+                "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 48\nWorldBegin\n"
+                f"LightSource \"point\" \"point3 from\" [{side / 2} 5 {side / 2}] \"rgb I\" [{side**2} {side**2} {side**2}]\n"
+                "Material \"diffuse\" \"rgb reflectance\" [.6 .6 .6]\nObjectBegin \"sheet\"\n"
+                f"Shape \"trianglemesh\" \"point3 P\" [{points}] \"integer indices\" [{indices}]\nObjectEnd\n{placed}")
+            place = self.run("vpl-place", scene, "-o", self.folder / "c.vpl", "-n", "10k")
+            path = self.run("vpl-render", scene, "-o", self.folder / "i.exr", "--integrator", "path", "--spp", "1")
+            print(f"| {2 * n * n * copies / 1e6:.1f}M | " + " | ".join(f"{x:.4g}" for x in (*place, *path)) + " |", flush=True)
+
+    def many_vpls(self) -> None:
+        """VPLs that vpl-place --method light makes lit, so that their number is free."""
+        print("\n| VPLs from the lamp | vpl-place: s | MiB | vpl-render, 64x48, 1 spp, no near field: s | MiB |\n|---|---|---|---|---|")
+        for n in self.sizes(100_000, 1_000_000, 10_000_000):
+            lit = self.folder / "l.vpl"
+            place = self.run("vpl-place", U_SHAPE, "--method", "light", "-o", lit, "-n", n)
+            render = self.run("vpl-render", U_SHAPE, lit, "-o", self.folder / "i.exr", "--size", "64x48", "--spp", "1",
+                              "--compensate", "none")
+            print(f"| {n} | " + " | ".join(f"{x:.4g}" for x in (*place, *render)) + " |", flush=True)
+
+    def shard(self) -> None:
+        """A hundredth of 10^10 photons: more than 2^32."""
+        c, v, part = (self.folder / f"{x}" for x in ("c.vpl", "v.vpl", "1.shard"))
+        self.run("vpl-place", U_SHAPE, "-o", c, "-n", "100k")
+        self.run("vpl-eliminate", c, "-o", v, "-n", "3k")
+        print("\n| photons, one of 100 shards, guarded | s | MiB | all shards, s, were each like it |\n|---|---|---|---|")
+        for photons in self.sizes(10**9, 10**10):
+            s, mib = self.run("vpl-estimate", U_SHAPE, v, "-o", part, "--method", "guarded", "--photons", photons, "--shard", "37/100")
+            print(f"| {photons} | {s:.2f} | {mib:.0f} | {100 * s:.0f} |", flush=True)
+
+    def file(self) -> None:
+        """A file above 4 GiB, written and read."""
+        c = self.folder / "c.vpl"
+        print("\n| candidates | file, bytes | vpl-place: s | MiB | vpl-inspect check: s | MiB |\n|---|---|---|---|---|---|")
+        for n in self.sizes(110_000_000):
+            place = self.run("vpl-place", U_SHAPE, "-o", c, "-n", n)
+            read = self.run("vpl-inspect", "check", c)
+            print(f"| {n} | {c.stat().st_size} | " + " | ".join(f"{x:.4g}" for x in (*place, *read)) + " |", flush=True)
+
+    def hundredth(self) -> None:
+        """Few VPLs of many candidates, the way to the best spacing."""
+        print("\n| candidates | VPLs | vpl-eliminate: s | MiB |\n|---|---|---|---|")
+        for n in self.sizes(1_000_000, 10_000_000):
+            c = self.folder / "c.vpl"
+            self.run("vpl-place", U_SHAPE, "-o", c, "-n", n)
+            s, mib = self.run("vpl-eliminate", c, "-o", self.folder / "v.vpl", "-n", max(1, n // 100))
+            print(f"| {n} | {max(1, n // 100)} | {s:.4g} | {mib:.0f} |", flush=True)
+
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--parts", default="triangles,candidates,vpls,lights")
+    parser.add_argument("--parts", default=",".join(CORE_PARTS))
     parser.add_argument("--most", type=float, default=1.0, help="share of the full sizes")
+    parser.add_argument("--cpu", action="store_true", help="CPU seconds of all threads, user and system")
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="bnvpl-size-") as folder:
         size = Size(options, Path(folder))
         for part in options.parts.split(","):
-            if part not in ("triangles", "candidates", "vpls", "lights"):
+            if part not in CORE_PARTS + LARGE_PARTS:
                 sys.exit(f"size.py: no part '{part}'")
             getattr(size, part)()
 

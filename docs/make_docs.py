@@ -31,6 +31,8 @@ from pathlib import Path
 import make_guide_pictures
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / 'bench/cost'))
+import cost_tables  # noqa: E402
 STAGES = ('vpl-place', 'vpl-eliminate', 'vpl-estimate', 'vpl-render')
 
 # What the blocks' commands find. Small, so that a test can run it.
@@ -78,7 +80,13 @@ def methods_block(bench):
     return ''.join(f'{row}\n' for row in rows)
 
 
-BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block}
+def cost_block(part):
+    """A table of pipelines/cost_model.json, which bench/cost_model.py has measured."""
+    return ''.join(f'{row}\n' for row in part(json.loads((ROOT / 'pipelines/cost_model.json').read_text())))
+
+
+BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block,
+          'cost_rates': lambda _: cost_block(cost_tables.rates), 'cost_checks': lambda _: cost_block(cost_tables.checks)}
 
 
 def normal(text):

@@ -1,0 +1,134 @@
+#!/usr/bin/python3
+"""Fits pipelines/cost_model.json, what each stage takes by counts, to runs, and predicts other runs by it.
+
+  bench/cost_model.py              measure, fit, check; about ten minutes of one core
+  bench/cost_model.py --keep F     keep the measurements in F, and do not repeat those that it has
+  bench/cost_model.py --table      print the tables of docs/scaling.md from cost_model.json
+
+CPU seconds are those of one thread, user and system: the least of two to eight runs, until two agree within 4 %.
+cost/design.py lists the runs.
+"""
+
+import argparse
+import dataclasses
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench/cost"), str(ROOT / "pipelines")]
+import cost  # noqa: E402
+import cost_tables  # noqa: E402
+import design  # noqa: E402
+import fit  # noqa: E402
+import measure  # noqa: E402
+import scenes  # noqa: E402
+import size  # noqa: E402
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    name: str
+    file: Path
+    triangles: int
+
+
+def make_scene(name, triangles, folder):
+    here = folder / f"{name}-{triangles}"
+    if name == "size":  # the room of size.py: no walls, a point light
+        here.mkdir()
+        file = size.Size(argparse.Namespace(bin=None, most=1.0, cpu=True), here).room(triangles, 0, 1)
+        made = sum(line.startswith("f ") for line in open(here / "size.obj"))
+    else:
+        file, made = scenes.cut_scene(ROOT / f"scenes/{name}/scene.toml", here, triangles)
+    return Scene(here.name, file, made)
+
+
+def same_run(a, b):
+    return all(a[key] == b[key] for key in ("role", "scene", "triangles", "stage", "counts"))
+
+
+def measure_all(bin_folder, had):
+    """[{role, scene, stage, counts, figures}]. Repeats of a run lie apart in time; each round takes those still wanted."""
+    with tempfile.TemporaryDirectory(prefix="bnvpl-cost-") as name:
+        bench, known, runs, rows = measure.Bench(bin_folder, Path(name)), {}, [], []
+        groups = [("fit", design.FITTED), ("check", design.CHECKED),
+                  ("scale", [(*scene, design.SCALED_BY) for scene in design.OTHERS]),
+                  ("other", [(*scene, design.OTHER_RUNS) for scene in design.OTHERS])]
+        for role, (scene, triangles, chosen) in [(role, group) for role, members in groups for group in members]:
+            if (key := (scene, triangles)) not in known:
+                known[key] = make_scene(scene, triangles, Path(name))
+            for stage, given in chosen:
+                row = {"role": role, "scene": scene, "triangles": known[key].triangles, "stage": stage, "counts": given}
+                if found := [each for each in had if same_run(each, row)]:
+                    rows += found
+                else:
+                    runs.append((known[key], measure.Repeated(row)))
+        while wanted := [(scene, run) for scene, run in runs if run.wanted()]:
+            for scene, run in wanted:
+                run.taken.append(bench.measure(scene, run.row["stage"], counts_of(run.row)))
+            print(f"{len(wanted)} runs of {len(runs)}, {bench.spent_s:.0f} CPU s so far", file=sys.stderr, flush=True)
+        return rows + [run.result() for _, run in runs]
+
+
+def counts_of(row):
+    return design.counts(row["triangles"], row["counts"])
+
+
+def fitted(rows):
+    """{stage: {figure: {term: rate}}}"""
+    chosen = [row for row in rows if row["role"] == "fit"]
+    return {stage: {figure: fit.rates(terms, [(counts_of(row), row[figure]) for row in chosen if row["stage"] == stage])
+                    for figure, terms in figures.items()}
+            for stage, figures in cost.TERMS.items()}
+
+
+def scales(model, rows):
+    """{scene: {stage: measured over predicted, both less loading}}"""
+    found = {}
+    for row in rows:
+        if row["role"] == "scale":
+            loading = model.loading_s(row["stage"], counts_of(row))
+            work = model.predict(row["stage"], "cpu_s", counts_of(row)) - loading
+            found.setdefault(row["scene"], {})[row["stage"]] = float(f"{max(0.0, row['cpu_s'] - loading) / work:.3g}")
+    return found
+
+
+def checks(model, rows):
+    """What each run took, and what the model says, of runs that it was not fitted to."""
+    scale, found = scales(model, rows), []
+    for row in rows:
+        if row["role"] in ("check", "other"):
+            stage, counts = row["stage"], counts_of(row)
+            said = {figure: model.predict(stage, figure, counts) for figure in cost.TERMS[stage]}
+            check = {key: row[key] for key in ("scene", "triangles", "stage", "counts")}
+            check["figures"] = {figure: [row[figure], float(f"{value:.4g}")] for figure, value in said.items()}
+            if row["role"] == "other":
+                loading = model.loading_s(stage, counts)
+                check["scaled_cpu_s"] = float(f"{loading + scale[row['scene']][stage] * (said['cpu_s'] - loading):.4g}")
+            found.append(check)
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
+    parser.add_argument("--keep", type=Path, metavar="F")
+    parser.add_argument("--table", action="store_true")
+    options = parser.parse_args()
+    if not options.table:
+        had = json.loads(options.keep.read_text()) if options.keep and options.keep.exists() else []
+        rows = measure_all(options.bin.resolve(), had)
+        if options.keep:
+            options.keep.write_text(json.dumps(rows, indent=1) + "\n")
+        rates = fitted(rows)
+        model = cost.Model(rates)
+        cost.MODEL.write_text(json.dumps({"rates": rates, "scales": scales(model, rows), "checks": checks(model, rows)},
+                                         indent=1) + "\n")
+    print(cost_tables.tables(json.loads(cost.MODEL.read_text())), end="")
+
+
+if __name__ == "__main__":
+    main()
