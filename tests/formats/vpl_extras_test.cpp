@@ -15,8 +15,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class VplExtras : public TestFolder {
  protected:
-  VplExtras() {
-    table_ = smallTable(VplStage::Eliminated);
+  VplExtras() : table_(smallTable(VplStage::Eliminated)) {
     table_.extras = someExtras(2);
     writeVpl(at("good.vpl"), table_);
     good_ = readAll(at("good.vpl"));

@@ -29,7 +29,6 @@ TEST_F(GltfErrors, NameThePlaceInTheFile) {
   range.add("materials", "{\"pbrMetallicRoughness\":{\"metallicFactor\":1.5}}");
   expectError(range, "/materials/0/pbrMetallicRoughness/metallicFactor", "is 1.5, outside 0 to 1");
 
-  Gltf old = triangleGltf();
   EXPECT_NE(loadError("{\"asset\":{\"version\":\"1.0\"}}").find("/asset/version"),
             std::string::npos);
   EXPECT_NE(loadError("{\"meshes\":[]}").find("needs 'asset'"), std::string::npos);

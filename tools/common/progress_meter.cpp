@@ -37,7 +37,7 @@ std::string durationText(double seconds) {
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS) {
   if (total == 0)
     return what + " " + formatSi(static_cast<double>(done)) + " in " + durationText(elapsedS);
-  const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+  const double share = static_cast<double>(done) / static_cast<double>(total);
   char percent[32];
   std::snprintf(percent, sizeof percent, " (%.0f %%)", 100.0 * share);
   std::string text = what + " " + formatSi(static_cast<double>(done)) + " of " +

@@ -43,7 +43,7 @@ class ProgressMeter {
   void print(double elapsedS, uint64_t done) const;
 
   Work work_;
-  Work main_;  // what goes on after the phase
+  Work main_{};  // what goes on after the phase
   uint64_t mainDone_ = 0;
   bool quiet_, terminal_;
   std::atomic<uint64_t> done_{0};
