@@ -42,5 +42,16 @@ TEST(PixelControl, TakesNoiseAndNoLight) {
   EXPECT_LT(noiseOf(by("vpls", "2")), 0.92 * noiseOf(by("none", "2")));
 }
 
+// Where a VPL's surface lies half in the dark, what it says is not taken from samples that saw less.
+TEST(PixelControl, TakesNoMoreThanThereIs) {
+  World world("veach-door/scene.toml");
+  world.scene.film = {80, 45};
+  const VplTable lit = litVpls(world, {{"count", "1000"}});
+  for (const char* seed : {"1", "2"}) {
+    const RenderResult r = renderVpls(world, lit, {{"layers", "indirect"}, {"seed", seed}});
+    for (const float v : *r.image.find("indirect.G")) EXPECT_GT(v, -0.1 * r.stats.indirect);
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl::test

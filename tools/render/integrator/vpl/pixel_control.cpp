@@ -11,8 +11,11 @@ namespace {
 constexpr double kLeast = 0.2;
 // Pixels differ from those around: all that these would allow could take more light than there is.
 constexpr double kCaution = 0.5;
-constexpr uint32_t kAround =
-    2;  // pixels of the tile on each side that tell how far light follows it
+// Pixels of the tile on each side that tell how far light follows it.
+constexpr uint32_t kAround = 2;
+// Of the mean light there, the most that counts of what VPLs say. They stand for surfaces, of which
+// a part may lie in the dark: what is not there cannot be taken away.
+constexpr double kMost = 2.0;
 
 }  // namespace
 
@@ -43,9 +46,10 @@ namespace {
 // Samples by their light l and by what VPLs say v: sums, and products of deviations from the means
 // of the pixels.
 struct Follows {
-  double l = 0.0, v = 0.0, lv = 0.0, vv = 0.0;
+  double n = 0.0, l = 0.0, v = 0.0, lv = 0.0, vv = 0.0;
 
-  void add(const Follows& o) { l += o.l, v += o.v, lv += o.lv, vv += o.vv; }
+  void add(const Follows& o) { n += o.n, l += o.l, v += o.v, lv += o.lv, vv += o.vv; }
+  double most() const { return n > 0.0 ? kMost * l / n : 0.0; }
   // What share of v is to be found again in l: neither more than varies with it, nor more than
   // there is.
   double share() const {
@@ -54,11 +58,20 @@ struct Follows {
   }
 };
 
+// How a pixel is controlled.
+struct Control {
+  float share = 0.0f, most = 0.0f;
+  Vec3 of(Vec3 said) const {
+    const float m = mean(said);
+    return said * (m > most ? share * most / m : share);
+  }
+};
+
 class Deviations {
  public:
   void add(double l, double v) { n_ += 1.0, l_ += l, v_ += v, lv_ += l * v, vv_ += v * v; }
   Follows of() const {
-    return n_ > 0.0 ? Follows{l_, v_, lv_ - l_ * v_ / n_, vv_ - v_ * v_ / n_} : Follows{};
+    return n_ > 0.0 ? Follows{n_, l_, v_, lv_ - l_ * v_ / n_, vv_ - v_ * v_ / n_} : Follows{};
   }
 
  private:
@@ -81,7 +94,7 @@ void PixelControl::apply(const TileSamples& tile, std::span<const SpecularPath> 
     groups[i % tile.pixels / side].add(double{mean(tile.samples[i].radiance.indirect)},
                                        double{mean(saids[i])});
   }
-  const auto shareAt = [&](uint32_t pixel) {
+  const auto controlOf = [&](uint32_t pixel) {
     const uint32_t x = pixel % tile.width, y = pixel / tile.width,
                    height = tile.pixels / tile.width;
     Follows around;
@@ -91,19 +104,22 @@ void PixelControl::apply(const TileSamples& tile, std::span<const SpecularPath> 
         if (group != pixel / side) around.add(groups[group].of());
       }
     }
-    return static_cast<float>(around.share());
+    return Control{static_cast<float>(around.share()), static_cast<float>(around.most())};
   };
-  std::vector<float> shares(tile.pixels);
-  for (uint32_t p = 0; p < tile.pixels; ++p)
-    shares[p] = pixels_.count(tile, p) > 0 ? shareAt(p) : 0;
+  std::vector<Control> controls(tile.pixels);
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    if (pixels_.count(tile, p) > 0) controls[p] = controlOf(p);
+  }
   for (size_t i = 0; i < count; ++i) {
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
-    if (!(shares[pixel] > 0.0f)) continue;
+    const Control& control = controls[pixel];
+    if (!(control.share > 0.0f)) continue;
     Vec3 sum;
-    pixels_.forEach(tile, pixel, tile.firstSlot + static_cast<uint32_t>(i / tile.pixels),
-                    [&](const SpecularPath& path, const RadianceSample&) { sum += said(path); });
+    pixels_.forEach(
+        tile, pixel, tile.firstSlot + static_cast<uint32_t>(i / tile.pixels),
+        [&](const SpecularPath& path, const RadianceSample&) { sum += control.of(said(path)); });
     tile.samples[i].radiance.indirect +=
-        (sum * (1.0f / static_cast<float>(pixels_.count(tile, pixel))) - saids[i]) * shares[pixel];
+        sum * (1.0f / static_cast<float>(pixels_.count(tile, pixel))) - control.of(saids[i]);
   }
 }
 
