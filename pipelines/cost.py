@@ -8,6 +8,7 @@ import dataclasses
 import json
 import math
 import pathlib
+import re
 
 MODEL = pathlib.Path(__file__).resolve().parent / "cost_model.json"
 DIVIDED = ("place", "estimate", "render")
@@ -26,6 +27,19 @@ class Counts:
     @property
     def share(self):
         return 1 / self.shards
+
+
+def count(text):
+    """Of 3k, 10M or 1G. Raises ValueError."""
+    match = re.fullmatch(r"(\d+(?:\.\d+)?)([kMG]?)", text)
+    if not match:
+        raise ValueError(f"'{text}' is no count such as 3k, 10M or 1G")
+    return float(match[1]) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[match[2]]
+
+
+def with_shards(whole, stage, shards):
+    """Counts of one task of a stage, or of its merge, where {stage: count} shards are wanted."""
+    return dataclasses.replace(whole, shards=shards.get(stage.removeprefix("merge-"), 1))
 
 
 def depth(n):

@@ -21,14 +21,13 @@ import farm_schedule
 import stages
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
-UNITS = {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}
 
 
 def count(text):
-    match = re.fullmatch(r"(\d+(?:\.\d+)?)([kMG]?)", text)
-    if not match:
-        raise argparse.ArgumentTypeError(f"'{text}' is no count such as 3k, 10M or 1G")
-    return float(match[1]) * UNITS[match[2]]
+    try:
+        return cost.count(text)
+    except ValueError as problem:
+        raise argparse.ArgumentTypeError(str(problem)) from None
 
 
 def positive(text):

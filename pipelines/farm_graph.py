@@ -54,7 +54,7 @@ def with_stages(tasks):
 def counts_of(task, whole, shards):
     kind = task.stage.removeprefix("merge-")
     divided = task.shard or task.stage != kind
-    return dataclasses.replace(whole, shards=shards.get(kind, 1) if divided else 1)
+    return cost.with_shards(whole, task.stage, shards if divided else {})
 
 
 def job_of(task, needs, model, whole, shards, conditions):

@@ -17,6 +17,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+import needs  # noqa: E402
 import record  # noqa: E402
 import stages  # noqa: E402
 import task as task_program  # noqa: E402
@@ -38,11 +39,11 @@ def arguments():
     stages.add_arguments(p, shards="16")
     p.add_argument("--cpus", action=stages.PerStage, stages=KINDS, pattern=r"[1-9]\d*", what="a count from 1",
                    default=per_stage("4", merge="1"), help="of a task; default 4, and merge=1")
-    p.add_argument("--memory", action=stages.PerStage, stages=KINDS, pattern=r"\d+[KMGT]?", what="a size such as 4G",
-                   default=per_stage("4G"), help="of a task; default 4G")
-    p.add_argument("--time", action=stages.PerStage, stages=KINDS, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}",
-                   what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)", default=per_stage("1:00:00"),
-                   help="limit of a task, as sbatch has it; default 1:00:00; place, estimate and render are queued again when they reach it, and go on")
+    p.add_argument("--memory", action=stages.PerStage, stages=KINDS, pattern=r"\d+[KMGT]?|auto", what="a size such as 4G",
+                   default=per_stage("auto"), help="of a task; default auto: by what is known of the tools (docs/scaling.md)")
+    p.add_argument("--time", action=stages.PerStage, stages=KINDS, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
+                   what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)", default=per_stage("auto"),
+                   help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and render are queued again when they reach it, and go on")
     p.add_argument("--at-once", type=int, metavar="N", help="most tasks of an array that run together; default: all")
     p.add_argument("--retries", type=int, default=3, metavar="N",
                    help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count")
@@ -82,6 +83,7 @@ class Submission:
         self.options, self.scene = options, scene
         self.run = pathlib.Path(stages.folder_of(scene, options)) / "run"
         self.submitted = {}  # stage: id
+        self.needs = needs.Needs(options)
         self.ids = self.run / "jobs.json"
 
     def refuse_while_queued(self):
@@ -117,8 +119,11 @@ class Submission:
 
     def submit(self, name, kind, words, command, note):
         chosen = self.options
+        memory, time, cores = (each[kind] for each in (chosen.memory, chosen.time, chosen.cpus))
+        memory = self.needs.memory(name) if memory == "auto" else memory
+        time = self.needs.time(name, int(cores)) if time == "auto" else time
         full = ["sbatch", "--parsable", f"--job-name={stages.name_of(self.scene)}-{name}",
-                f"--cpus-per-task={chosen.cpus[kind]}", f"--mem={chosen.memory[kind]}", f"--time={chosen.time[kind]}",
+                f"--cpus-per-task={cores}", f"--mem={memory}", f"--time={time}",
                 "--requeue", "--open-mode=append", *words, *shlex.split(chosen.sbatch),
                 f"--wrap=exec {shlex.join(command)}"]
         if chosen.dry_run:

@@ -7,6 +7,7 @@
 import filecmp
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -182,12 +183,32 @@ class SubmitTest(unittest.TestCase):
         done = self.submit("--dry-run", "--memory", "2G,eliminate=9G", "--time", "render=2:00:00", "--cpus",
                            "8", "--sbatch=--partition=long --nice", "--at-once", "5")
         rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
-        self.assertIn("--mem=9G --time=1:00:00", rows["eliminate"])
+        self.assertIn("--mem=9G --time=11 ", rows["eliminate"])
         self.assertIn("--mem=2G --time=2:00:00", rows["render"])
         self.assertIn("--cpus-per-task=8", rows["merge-place"])
         self.assertIn("--array=1-16%5", rows["place"])
         self.assertTrue(all("--partition=long --nice" in row for row in rows.values()))
         self.assertFalse(self.at("run").exists())
+
+    def test_memory_and_time_follow_the_counts(self):
+        def asked(*more):
+            done = self.submit("--dry-run", *more)
+            self.assertEqual(done.returncode, 0, done.stdout)
+            rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
+            return {name: [int(re.search(f"--{what}=(\\d+)", row)[1]) for what in ("mem", "time")]
+                    for name, row in rows.items()}
+        small = asked()
+        self.assertTrue(all(memory <= 384 and time <= 11 for memory, time in small.values()), small)
+        large = asked("--candidates", "100M", "--vpls", "1M", "--photons", "10G", "--render-flags=--size 3840x2160",
+                      "--shards", "estimate=4,render=4")
+        for stage in ("place", "eliminate", "estimate", "render", "merge-render"):
+            self.assertGreater(large[stage][0], small[stage][0], stage)
+        self.assertGreater(large["eliminate"][0], 15000)  # 100M candidates take 15 GiB
+        for stage in ("eliminate", "estimate", "render"):
+            self.assertGreater(large[stage][1], small[stage][1] + 5, stage)
+        done = self.submit("--dry-run", "--bin", "nowhere")
+        self.assertIn("nowhere/vpl-inspect", done.stdout)
+        self.assertIn("--memory and --time", done.stdout)
 
     def test_errors_name_what_is_wrong(self):
         for more, problem in ((["--memory", "much"], "'much' is not a size"), (["--time", "paint=3"], "'paint' is none of"),
