@@ -53,6 +53,7 @@ def film(text):
 def arguments(words):
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     stages.add_arguments(p)
+    p.set_defaults(bin="bin")  # of no tool: nothing is run
     p.add_argument("--frames", type=int, default=1, help="images of the one scene (default 1)")
     p.add_argument("--size", type=film, default="1920x1080", metavar="WxH", help="of an image (default %(default)s)")
     p.add_argument("--triangles", type=count, default="1M", help="default %(default)s")

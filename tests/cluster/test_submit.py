@@ -334,5 +334,5 @@ class SubmitTest(unittest.TestCase):
 
 if __name__ == "__main__":
     if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        BIN = Path(sys.argv.pop(1)).resolve()
+        BIN = Path(os.path.relpath(Path(sys.argv.pop(1)).resolve(), SOURCE))  # the pipelines take no space in it
     unittest.main()
