@@ -10,11 +10,13 @@ cppcheck --quiet --std=c++20 --language=c++ --library=googletest \
   --enable=warning,style,performance,portability --suppressions-list=scripts/cppcheck.supp \
   --error-exitcode=1 -I . core formats images scene spatial transport tools tests bench
 
-cmake --preset release -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON >/dev/null  # for compile_commands.json
+# For compile_commands.json; Clang cannot read the headers that GCC has parsed.
+cmake --preset release -B build/analyse -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON \
+  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
 files=("$@")
 ((${#files[@]})) || mapfile -t files < <(git ls-files '*.cpp')
 echo "clang-tidy: ${#files[@]} files"
 # The flags are GCC's, some of which Clang does not know.
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "${JOBS:-2}" \
-  clang-tidy --quiet -p build/release --extra-arg=-Wno-unknown-warning-option 2>/dev/null
+  clang-tidy --quiet -p build/analyse --extra-arg=-Wno-unknown-warning-option 2>/dev/null
 echo "clean"
