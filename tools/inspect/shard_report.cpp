@@ -17,7 +17,8 @@ Json describeWorks(ShardReader& reader) {
   for (size_t b = 0; b < reader.blocks().size(); ++b) {
     const ShardBlock& block = reader.blocks()[b];
     reader.read(b);
-    auto work = std::ranges::find(works, Json(block.name()), [](Json& w) { return w["name"]; });
+    auto work =
+        std::ranges::find(works, Json(block.name()), [](const Json& w) { return w.at("name"); });
     if (work == works.end()) {
       works.push_back({{"name", block.name()}, {"units", 0}, {"sums", 0}, {"bytes", 0}});
       work = std::prev(works.end());
