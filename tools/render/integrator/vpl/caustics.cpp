@@ -24,7 +24,7 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
   const auto phase = progress.before("caustics", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
-        for (uint64_t i = begin; i < end && lights_.size() > 0; ++i) follow(i, out);
+        for (uint64_t i = begin; i < end; ++i) follow(i, out);
       },
       photons, done,
       [&](const Splat& splat) {
@@ -37,8 +37,11 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
 }
 
 SharedWithPhotons Caustics::shared(const SurfacePoint& seen) const {
-  return {&lights_, raysOfPixel_ * samplesPerArea(rays_.scene(), seen),
-          static_cast<float>(photons_)};
+  return sharedBy(samplesPerArea(rays_.scene(), seen));
+}
+
+SharedWithPhotons Caustics::sharedBy(float samples) const {
+  return {&lights_, raysOfPixel_ * samples, static_cast<float>(photons_)};
 }
 
 // Where there is a choice, photons take the specular lobes: what they leave to the others is not
@@ -73,10 +76,8 @@ void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3
                        Splats& out) const {
   const auto film = connectToFilm(rays_, vertex);
   if (!film) return;
-  const SharedWithPhotons shared{&lights_, raysOfPixel_ * film->perArea,
-                                 static_cast<float>(photons_)};
-  const Vec3 radiance =
-      flux * film->value * (film->perArea * (1.0f - shared.ofRays(light, towards)));
+  const float share = 1.0f - sharedBy(film->perArea).ofRays(light, towards);
+  const Vec3 radiance = flux * film->value * (film->perArea * share);
   if (isFinite(radiance)) out.list.push_back({film->pixel, radiance});
 }
 

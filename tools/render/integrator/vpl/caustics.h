@@ -16,7 +16,8 @@ namespace bnvpl {
 // MIS, and bring all of what no ray can hit. Thread-safe and immutable once made.
 class Caustics {
  public:
-  // So many photons, > 0, and rays from each pixel that look for the same light.
+  // So many photons, > 0, from lights with power, and rays from each pixel that look for the same
+  // light. Borrows rays and lights.
   Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
            uint64_t seed, const ProgressFn& progress);
 
@@ -26,6 +27,7 @@ class Caustics {
   SharedWithPhotons shared(const SurfacePoint& seen) const;
 
  private:
+  SharedWithPhotons sharedBy(float samples) const;  // of a pixel, per area
   void follow(uint64_t index, Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
                Splats& out) const;

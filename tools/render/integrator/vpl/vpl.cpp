@@ -88,6 +88,21 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, Parts& part
   return gather;
 }
 
+// Null where there is nothing for their photons to find.
+std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, const Values& options,
+                                             unsigned nearFieldRays) {
+  constexpr uint64_t kMostSpp = 256;           // a budget names no number
+  constexpr uint64_t kMostPhotons = 16000000;  // seconds, for each shard
+  const Scene& scene = in.rays.scene();
+  if (in.only == Only::Direct || !hasSpecularLobes(scene) || !in.lights.hasPower()) return {};
+  const uint64_t pixels = uint64_t{scene.film.width} * scene.film.height;
+  const uint64_t photons = std::min(kMostPhotons, pixels * options.whole("caustic-photons"));
+  if (photons == 0) return {};
+  const uint64_t raysOfPixel = nearFieldRays * std::min(options.whole("spp"), kMostSpp);
+  return std::make_unique<const Caustics>(in.rays, in.lights, photons,
+                                          static_cast<float>(raysOfPixel), in.seed, in.progress);
+}
+
 Integrator make(const IntegratorInputs& in, const Values& options) {
   // Of direct light alone no VPL is asked, whatever it were.
   const bool indirect = in.only != Only::Direct;
@@ -104,8 +119,10 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   std::unique_ptr<const TileLights> tileLights;
   std::unique_ptr<const SeenLight> seenLight;
   std::unique_ptr<const PixelControl> pixelControl;
-  const FilmPoints film = tracePoints(in.rays, in.lights, in.seed);
-  if (indirect && options.text("control") == "vpls") {
+  const bool controlled = indirect && options.text("control") == "vpls";
+  const FilmPoints film =
+      controlled || learned ? tracePoints(in.rays, in.lights, in.seed) : FilmPoints{};
+  if (controlled) {
     pixelControl = std::make_unique<const PixelControl>(in.rays, in.lights, film, in.lit);
   }
   if (learned) {
@@ -128,21 +145,10 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
         streamKey(in.seed, Stream::SurfaceLights), in.progress);
   }
-  std::unique_ptr<const Caustics> caustics;
-  const uint64_t photonsOfPixel = indirect ? options.whole("caustic-photons") : 0;
-  if (photonsOfPixel > 0 && hasSpecularLobes(in.rays.scene()) && in.lights.hasPower()) {
-    constexpr uint64_t kMostSpp = 256;           // a budget names no number
-    constexpr uint64_t kMostPhotons = 16000000;  // seconds, for each shard
-    const uint64_t photons = std::min(kMostPhotons, photonsOfPixel * film.points.size());
-    const auto raysOfPixel =
-        static_cast<float>(nearFieldRays * std::min(options.whole("spp"), kMostSpp));
-    caustics = std::make_unique<const Caustics>(in.rays, in.lights, photons, raysOfPixel, in.seed,
-                                                in.progress);
-  }
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(compensation), nearFieldRays,
       std::move(surfaceLights), std::move(tileLights), lightRays, std::move(seenLight),
-      std::move(pixelControl), std::move(caustics), directSamples, in.only);
+      std::move(pixelControl), makeCaustics(in, options, nearFieldRays), directSamples, in.only);
   return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
           {},
           wholePixels,
