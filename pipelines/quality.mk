@@ -13,7 +13,7 @@ RENDER.draft     := --near-field-rays 2 --error 0.2
 CANDIDATES.default := 120k
 VPLS.default       := 3k
 PHOTONS.default    := 10M
-SPP.default        := 8
+SPP.default        := 16
 ESTIMATE.default   :=
 RENDER.default     :=
 

@@ -67,7 +67,7 @@ inline const Given kFewCandidates{{"count", "20k"}};
 inline const Given kFewVpls{{"count", "1000"}};
 inline const Given kFewPhotons{{"photons", "300k"}};
 inline const Given kPlainRender{
-    {"gather", "all"}, {"compensate", "none"}, {"clamp", "1"}, {"spp", "4"}};
+    {"gather", "all"}, {"compensate", "none"}, {"clamp", "1"}, {"spp", "4"}, {"balance", "off"}};
 // The same without what only indirect light takes.
 inline const Given kPlainDirect{{"compensate", "none"}, {"spp", "4"}, {"only", "direct"}};
 

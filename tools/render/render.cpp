@@ -19,7 +19,7 @@ constexpr double kMostSpp = 0x1p32 - 1;
 
 std::span<const Option> stageOptions() {
   static const std::array options{
-      countOption("spp", "8", kMostSpp, "",
+      countOption("spp", "16", kMostSpp, "",
                   "samples a pixel; with --time, --target-error or --passes the most, and without "
                   "being given no limit"),
       unrecorded(optional(durationOption(

@@ -26,6 +26,10 @@ struct Gathered {
 // The points of a tile's samples; null: nothing to light.
 struct TileReceivers : TileSlots {
   std::span<const Bsdf* const> bsdf;
+  // What a shadow ray of a sample has to be worth, for gathers that can do with fewer: by so much
+  // should it lower the variance, over the tile's light squared. 0: nothing is asked.
+  double price = 0.0;
+  float otherLight = 0.0f;  // of the tile besides the VPLs', channels added up, W/(m2 sr)
 };
 
 // One result for each receiver.

@@ -19,6 +19,9 @@ using Probes = std::array<const Bsdf*, kProbes>;
 constexpr float kBlockedShare = 0.01f;
 // A probe that is darker than this share of the tile's mean counts as if it were not.
 constexpr float kDarkest = 0.2f;
+// Of the variance that the model foresees, where a price asks what it is worth. A sixteenth of it is
+// measured (theory.md); but sixteen pixels share the error, which a person sees as grain.
+constexpr double kWorth = 0.5;
 // Roulette on small contributions may add this share to the variance that is allowed.
 constexpr float kRouletteShare = 0.5f;
 
@@ -122,14 +125,14 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
       return variance != o.variance ? variance < o.variance : node < o.node;
     }
   };
-  const std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
+  std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
+  for (float& l : light) l += tile.otherLight;
   const ProbeLanes all(probes, light);
   TileCut cut;
-  cut.allowed = options.error * std::sqrt(static_cast<float>(tile.allSlots));
-  const double most = double{cut.allowed} * double{cut.allowed} * double{kProbes};
-  const float darkest = *std::min_element(light.begin(), light.end());
-  cut.negligible = kRouletteShare * cut.allowed * cut.allowed * darkest;
-  cut.allowed *= darkest;
+  const double most =
+      double{options.error} * double{options.error} * double(tile.allSlots) * double{kProbes};
+  // Opening a cluster leaves about half of its variance and costs a ray.
+  const double least = 2.0 * tile.price * double{kProbes} / kWorth;
   double sum = 0.0;
   std::vector<Open> heap;
   const auto insert = [&](uint32_t node) {
@@ -139,7 +142,7 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
     std::push_heap(heap.begin(), heap.end());
   };
   for (const uint32_t node : tree.startCut) insert(node);
-  while (sum > most && heap.size() < options.maxCut && heap.front().variance > 0.0f) {
+  while (sum > most && heap.size() < options.maxCut && double{heap.front().variance} > least) {
     const Open widest = heap.front();
     std::pop_heap(heap.begin(), heap.end());
     heap.pop_back();
@@ -147,6 +150,10 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
     insert(tree.nodes[widest.node].left);
     insert(tree.nodes[widest.node].right);
   }
+  const auto allowed = static_cast<float>(std::max(most, sum) / double{kProbes});
+  const float darkest = *std::min_element(light.begin(), light.end());
+  cut.negligible = kRouletteShare * allowed * darkest;
+  cut.allowed = std::sqrt(allowed) * darkest;
   for (const Open& open : heap) cut.nodes.push_back(open.node);
   std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
   return cut;

@@ -15,10 +15,8 @@ namespace {
 // sample's see another point, too.
 constexpr unsigned kLightRays = 2, kBsdfRays = 1;
 constexpr unsigned kMost = 64;
-constexpr uint32_t kDrawPilots = 3u << 29,
-                   kDrawSamples = 7u << 28;  // dimensions of a tile's numbers
-
-double squared(Vec3 v) { return double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z; }
+constexpr uint32_t kDrawPilots = 3u << 29, kDrawSamples = 7u << 28,
+                   kDrawMore = 9u << 28;  // dimensions of a tile's numbers
 
 }  // namespace
 
@@ -66,62 +64,141 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
   return light;
 }
 
-// A sample with K of direct light has variance V + D / K and cost C + K c: V and C of indirect
-// light, D and c of direct light. Their product is least for K = sqrt(D C / (V c)). Costs are rays.
-unsigned DirectSamples::countFor(const TileSamples& tile, const LearnedLight& learned,
-                                 unsigned rays) const {
-  const size_t count = tile.samples.size(), slots = count / tile.pixels;
-  double direct = 0.0, indirect = 0.0, cost = 0.0;
-  for (const CameraSample& s : tile.samples) cost += double(s.radiance.shadowRays + rays);
-  cost /= double(count);
+double DirectSamples::costOf(const LearnedLight& learned) const {
+  const double rays =
+      learned.strata ? double(learned.rays) : double(std::min(lights_.size(), kMaxLightsEach));
+  return cost::kCameraRay + cost::kLightRay * rays + cost::kBsdfRay * kBsdfRays;
+}
+
+DirectSamples::Pilot DirectSamples::pilot(const TileSlots& tile,
+                                          const LearnedStrata* strata) const {
+  Pilot out;
+  if (count_ > 0) return out;
+  const LearnedLight learned{strata, strata ? kLightRays : 0};
+  double pixels = 0.0;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     const uint32_t x = p % tile.width, y = p / tile.width;
     if ((x + y) % 2 != 0) continue;
     const Stream stream(random64(tile.key, uint64_t{p} << 32 | tile.firstSlot, kDrawPilots));
-    direct += 0.5 * squared(one(tile.x + x, tile.y + y, learned, stream, 0).all() -
-                            one(tile.x + x, tile.y + y, learned, stream, 1).all());
+    const Vec3 a = one(tile.x + x, tile.y + y, learned, stream, 0).all(),
+               b = one(tile.x + x, tile.y + y, learned, stream, 1).all();
+    out.variance += 0.5 * squared(a - b);
+    out.light += 0.5f * (a + b);
+    pixels += 1.0;
+  }
+  out.variance /= pixels;
+  out.light *= static_cast<float>(1.0 / pixels);
+  return out;
+}
+
+namespace {
+
+struct Indirect {
+  double variance = 0.0;
+  Vec3 light;
+};
+
+// Of one sample, mean of the tile.
+Indirect indirectOf(const TileSamples& tile) {
+  const size_t slots = tile.samples.size() / tile.pixels;
+  Indirect out;
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
     Vec3 sum;
     double squares = 0.0;
     for (size_t s = 0; s < slots; ++s) {
       const Vec3 v = tile.samples[s * tile.pixels + p].radiance.indirect;
       sum += v, squares += squared(v);
     }
+    out.light += sum * (1.0f / static_cast<float>(tile.samples.size()));
     if (slots > 1) {
-      indirect += (squares - squared(sum) / double(slots)) / double(slots - 1);
+      out.variance += (squares - squared(sum) / double(slots)) / double(slots - 1);
     } else {  // of the pixel and the next one in its row
-      const uint32_t other = x + 1 < tile.width ? p + 1 : p - std::min(x, 1u);
-      indirect += 0.5 * squared(sum - tile.samples[other].radiance.indirect);
+      const uint32_t x = p % tile.width, other = x + 1 < tile.width ? p + 1 : p - std::min(x, 1u);
+      out.variance += 0.5 * squared(sum - tile.samples[other].radiance.indirect);
     }
   }
-  if (!(direct > 0.0)) return 1;
-  const double each =
-      2.0 + kBsdfRays +
-      (learned.strata ? double(learned.rays) : double(std::min(lights_.size(), kMaxLightsEach)));
-  const double best = std::sqrt(direct * cost / (std::max(indirect, 1e-9 * direct) * each));
-  const double affordable = std::clamp(cost / each, 1.0, double{kMost});
-  return static_cast<unsigned>(std::lround(std::clamp(best, 1.0, affordable)));
+  out.variance = std::max(0.0, out.variance / tile.pixels);
+  return out;
 }
 
-void DirectSamples::render(const TileSamples& tile, const LearnedStrata* strata,
-                           unsigned rays) const {
-  const LearnedLight learned{strata, strata ? kLightRays : 0};
-  const unsigned count = count_ > 0 ? count_ : countFor(tile, learned, rays);
-  for (uint32_t p = 0; p < tile.pixels; ++p) {
-    const uint32_t x = tile.x + p % tile.width, y = tile.y + p / tile.width;
-    const Stream stream(random64(tile.key, uint64_t{p} << 32 | tile.firstSlot, kDrawSamples));
-    for (size_t i = p, slot = 0; i < tile.samples.size(); i += tile.pixels, ++slot) {
-      Light sum;
-      for (unsigned k = 0; k < count; ++k) {
-        const Light light = one(x, y, learned, stream, uint32_t(slot) * count + k);
-        sum.seen += light.seen, sum.scattered += light.scattered;
-      }
-      const Vec3 seen = seenLight_
-                            ? seenLight_->withMoreRays(sum.seen, count, tile, p,
-                                                       tile.firstSlot + static_cast<uint32_t>(slot))
-                            : sum.seen * (1.0f / float(count));
-      tile.samples[i].radiance.direct = seen + sum.scattered * (1.0f / float(count));
+// Without a price for the film, that of the tile's indirect light.
+unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, double costOfOne,
+                  double cost, const Balance& balance) {
+  if (!(pilot.variance > 0.0)) return 1;
+  const Indirect indirect = indirectOf(tile);
+  if (balance.price > 0.0)
+    return drawsWorth(balance.over(pilot.variance, pilot.light + indirect.light), costOfOne,
+                      balance.price, 1, kMost);
+  const double most = std::clamp(cost / costOfOne, 1.0, double{kMost});
+  return drawsWorth(pilot.variance, costOfOne,
+                    std::max(indirect.variance, 1e-9 * pilot.variance) / cost, 1,
+                    static_cast<unsigned>(most));
+}
+
+}  // namespace
+
+// What the samples of a pixel have found so far.
+struct DirectSamples::Pixel {
+  std::vector<Light> sums;  // of its slots
+  unsigned count = 0;       // samples of each slot
+};
+
+void DirectSamples::add(const TileSlots& tile, uint32_t pixel, const LearnedLight& learned,
+                        unsigned count, uint32_t draw, Pixel& out, PixelDraws& draws) const {
+  const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+  const Stream stream(random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, draw));
+  uint32_t index = 0;
+  for (Light& sum : out.sums) {
+    for (unsigned k = 0; k < count; ++k) {
+      const Light light = one(x, y, learned, stream, index++);
+      sum.seen += light.seen, sum.scattered += light.scattered;
+      draws.add(light.all());
     }
   }
+  out.count += count;
+}
+
+double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strata,
+                             const Pilot& pilot, double cost, const Balance& balance) const {
+  const LearnedLight learned{strata, strata ? kLightRays : 0};
+  const double costOfOne = costOf(learned);
+  const unsigned count = count_ > 0 ? count_ : countFor(tile, pilot, costOfOne, cost, balance);
+  const size_t slots = tile.samples.size() / tile.pixels;
+  const bool priced = count_ == 0 && balance.price > 0.0;
+  std::vector<Pixel> pixels(tile.pixels);
+  std::vector<PixelDraws> draws(tile.pixels);
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    pixels[p].sums.resize(slots);
+    for (size_t s = 0; s < slots; ++s)
+      draws[p].light += tile.samples[s * tile.pixels + p].radiance.indirect *
+                        (1.0f / static_cast<float>(slots));
+    add(tile, p, learned, priced ? (count + 1) / 2 : count, kDrawSamples, pixels[p], draws[p]);
+  }
+  if (priced) {
+    PixelDraws unused;
+    std::vector<unsigned> worth(tile.pixels);
+    for (uint32_t p = 0; p < tile.pixels; ++p)
+      worth[p] = worthAround(draws, tile, p, costOfOne, balance, 1, kMost);
+    for (uint32_t p = 0; p < tile.pixels; ++p) {
+      Pixel& at = pixels[p];
+      if (worth[p] > at.count) add(tile, p, learned, worth[p] - at.count, kDrawMore, at, unused);
+    }
+  }
+  double made = 0.0;
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    const Pixel& at = pixels[p];
+    const float each = 1.0f / static_cast<float>(at.count);
+    made += at.count;
+    for (size_t s = 0; s < slots; ++s) {
+      const Light& sum = at.sums[s];
+      const Vec3 seen = seenLight_
+                            ? seenLight_->withMoreRays(sum.seen, at.count, tile, p,
+                                                       tile.firstSlot + static_cast<uint32_t>(s))
+                            : sum.seen * each;
+      tile.samples[s * tile.pixels + p].radiance.direct = seen + sum.scattered * each;
+    }
+  }
+  return costOfOne * made / tile.pixels;
 }
 
 }  // namespace bnvpl

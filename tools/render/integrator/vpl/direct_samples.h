@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/vpl/balance.h"
 #include "tools/render/integrator/vpl/seen_light.h"
 #include "transport/direct_light.h"
 
@@ -10,16 +11,24 @@ namespace bnvpl {
 
 class DirectSamples {
  public:
-  // `count`: camera samples of direct light for each sample; 0: by what noise and cost of a tile's
-  // indirect light and of pilots are, which play no other part, so that the mean stays unbiased.
+  // `count`: camera samples of direct light for each sample; 0: as many as are worth it, by pilots,
+  // so that the mean stays unbiased.
   // `seenLight` may be null.
   DirectSamples(const RayScene& rays, const LightSet& lights, const SeenLight* seenLight,
                 unsigned count)
       : rays_(rays), lights_(lights), seenLight_(seenLight), count_(count) {}
 
-  // Sets the direct light of the tile's samples, whose indirect light is known and took `rays` each
-  // besides those that it counts. `strata`: what the tile has learned to see; null: nothing.
-  void render(const TileSamples& tile, const LearnedStrata* strata, unsigned rays) const;
+  // What a few samples tell that are used for nothing else.
+  struct Pilot {
+    double variance = 0.0;  // of one, mean of the tile
+    Vec3 light;             // mean
+  };
+  // `strata`: what the tile has learned to see; null: nothing.
+  Pilot pilot(const TileSlots& tile, const LearnedStrata* strata) const;
+  // Sets the direct light of the tile's samples, whose indirect light is known and took `cost`.
+  // Returns what this took of each.
+  double render(const TileSamples& tile, const LearnedStrata* strata, const Pilot& pilot,
+                double cost, const Balance& balance) const;
 
  private:
   struct Light {
@@ -30,7 +39,10 @@ class DirectSamples {
   struct Stream;  // of a pixel
   Light one(uint32_t x, uint32_t y, const LearnedLight& learned, const Stream& stream,
             uint32_t index) const;
-  unsigned countFor(const TileSamples& tile, const LearnedLight& learned, unsigned rays) const;
+  struct Pixel;
+  double costOf(const LearnedLight& learned) const;
+  void add(const TileSlots& tile, uint32_t pixel, const LearnedLight& learned, unsigned count,
+           uint32_t draw, Pixel& out, PixelDraws& draws) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

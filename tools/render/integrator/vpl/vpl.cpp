@@ -22,8 +22,9 @@ constexpr std::array kOptions{
                                    "radius of a VPL: 1/d^2 of a point grows no further inside, a "
                                    "disk is so large")),
     wholeOption("near-field-rays", "8", 1, 4096, "",
-                "rays by the BSDF from each shaded point: for --compensate, for light over "
-                "specular surfaces, and for half of the direct light"),
+                "rays by the BSDF from each shaded point, with --balance on a quarter of them to "
+                "four times as many: for --compensate, for light over specular surfaces, and for "
+                "half of the direct light"),
     neededBy(kIndirect, wholeOption("caustic-photons", "64", 0, 4096, "",
                                     "photons a pixel, at most 16M in all, that look for light over "
                                     "mirrors, glass and sharp lobes; 0: near-field rays alone do")),
@@ -35,6 +36,10 @@ constexpr std::array kOptions{
                                    "or one to each light")),
     neededBy("direct=learned",
              wholeOption("light-rays", "8", 1, 4096, "", "shadow rays from each shaded point")),
+    neededBy(kIndirect,
+             switchOption("balance", "on",
+                          "by pilots, near-field rays, clusters of tile cuts and direct samples "
+                          "where they take most noise from the film")),
     neededBy("only=all", wholeOption("direct-samples", "0", 0, 4096, "",
                                      "camera samples of direct light to each sample; 0: by noise "
                                      "and cost; 1: the sample itself"))};
@@ -67,6 +72,7 @@ struct Parts {
   LightTree tree;
   std::unique_ptr<const PointGather> point;
   std::unique_ptr<const VplIntegrator> integrator;
+  Balance balance = {};
 };
 
 // With a point function.
@@ -145,11 +151,18 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
         streamKey(in.seed, Stream::SurfaceLights), in.progress);
   }
+  NearField nearField(in.rays, in.lights, std::move(compensation), nearFieldRays,
+                      std::move(surfaceLights), in.only);
   parts->integrator = std::make_unique<VplIntegrator>(
-      in.rays, in.lights, std::move(gather), std::move(compensation), nearFieldRays,
-      std::move(surfaceLights), std::move(tileLights), lightRays, std::move(seenLight),
-      std::move(pixelControl), makeCaustics(in, options, nearFieldRays), directSamples, in.only);
-  return {[parts](const TileSamples& tile) { parts->integrator->render(tile); },
+      in.rays, in.lights, std::move(gather), std::move(nearField), nearFieldRays,
+      std::move(tileLights), lightRays, std::move(seenLight), std::move(pixelControl),
+      makeCaustics(in, options, nearFieldRays), directSamples, in.only);
+  if (indirect && options.on("balance")) {
+    parts->balance = findBalance(
+        in.rays.scene(), in.seed, options.whole("spp"), in.progress,
+        [&](const TileSamples& tile) { return parts->integrator->render(tile, Balance{}); });
+  }
+  return {[parts](const TileSamples& tile) { parts->integrator->render(tile, parts->balance); },
           {},
           wholePixels,
           parts->vpls.size()};

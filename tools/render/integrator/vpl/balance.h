@@ -1,0 +1,67 @@
+// How work is shared out among the parts of a sample, so that the film has least noise for its time.
+//
+// A sample has the relative variance V (over its tile's light, squared) and the cost C. With N of
+// them the film's error is V / N, its time N C: what counts is V C. Both are sums over parts: rays
+// of the near field, clusters of a cut, camera samples of direct light. V C is least where a
+// further ray takes away as much of V everywhere:
+//
+//   -dV/dC = V / C =: the price
+//
+// of the whole film, for a ray saved in one tile can be sent in another. K draws of one part, each
+// with variance D and cost c, bring D / K and take K c: worth it are K = sqrt(D / (c price)).
+//
+// V and C here are those of samples whose parts have the numbers that options ask for. They could
+// be found again by the price, and so on; but then samples grow ever poorer and want to be ever
+// more, for the film has no least effort of its own but a camera ray.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "tools/render/integrator/integrator.h"
+
+namespace bnvpl {
+
+// Costs in shadow rays of a tile's gather, which are traced eight at a time (measured:
+// docs/theory.md, "Balance").
+namespace cost {
+inline constexpr double kCluster = 0.07, kCameraRay = 8.0, kBsdfRay = 7.0, kLightRay = 4.0,
+                        kNearFieldRay = 16.0;
+}
+
+inline double squared(Vec3 v) { return double{dot(v, v)}; }
+
+struct Balance {
+  double price = 0.0;  // relative variance to a shadow ray; 0: not known
+  double light = 0.0;  // squared, that is added to a tile's, so that the dark ones do not get all
+
+  double over(double variance, Vec3 tileLight) const {
+    const double all = squared(tileLight) + light;
+    return all > 0.0 ? variance / all : 0.0;
+  }
+};
+
+// `variance`: of one draw. All of them in one unit.
+unsigned drawsWorth(double variance, double cost, double price, unsigned least, unsigned most);
+
+// What draws have found at a pixel of a tile.
+struct PixelDraws {
+  Vec3 sum;              // of them
+  double squares = 0.0;  // likewise, each squared
+  double count = 0.0;
+  Vec3 light;  // mean of all else that the pixel shows
+
+  void add(Vec3 found) { sum += found, squares += squared(found), count += 1.0; }
+};
+
+// Draws that a pixel is worth, each at `cost`, by what was found at those around it in the tile. Not
+// at the pixel itself: so no draw has a say in its own weight, and the mean of all stays unbiased.
+unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, uint32_t pixel,
+                     double cost, const Balance& balance, unsigned least, unsigned most);
+
+// By a few samples of some tiles of the film, every part as options ask. `render` makes a tile's
+// samples and returns the mean cost of one. `spp`: of the image.
+Balance findBalance(const Scene& scene, uint64_t seed, uint64_t spp, const ProgressFn& progress,
+                    const std::function<double(const TileSamples&)>& render);
+
+}  // namespace bnvpl

@@ -1,0 +1,55 @@
+// Work by a price: where it goes, and that the mean stays.
+#include "tools/render/integrator/vpl/balance.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+TEST(Balance, DrawsGoWithTheirDeviationAndTheRootOfTheirCost) {
+  EXPECT_EQ(drawsWorth(4.0, 1.0, 0.01, 1, 1000), 20u);
+  EXPECT_EQ(drawsWorth(16.0, 1.0, 0.01, 1, 1000), 40u);
+  EXPECT_EQ(drawsWorth(4.0, 4.0, 0.01, 1, 1000), 10u);
+  EXPECT_EQ(drawsWorth(4.0, 1.0, 0.01, 1, 7), 7u);
+  EXPECT_EQ(drawsWorth(0.0, 1.0, 0.01, 3, 7), 3u);
+}
+
+// What a pixel has found counts for those around it alone, and not far away.
+TEST(Balance, APixelHasNoSayInItsOwnDraws) {
+  const TileSlots tile{64, 8};
+  const Balance balance{0.01, 0.0};
+  std::vector<PixelDraws> pixels(64);
+  for (PixelDraws& p : pixels) {
+    p.add(Vec3(1.0f)), p.add(Vec3(1.2f));
+  }
+  const auto worthOf = [&](uint32_t pixel) {
+    return worthAround(pixels, tile, pixel, 0.01, balance, 1, 1000);
+  };
+  const unsigned here = worthOf(27), beside = worthOf(28), away = worthOf(63);
+  pixels[27].add(Vec3(40.0f));
+  EXPECT_EQ(worthOf(27), here);
+  EXPECT_GT(worthOf(28), 2 * beside);
+  EXPECT_EQ(worthOf(63), away);
+}
+
+// Light through a door, and direct light of a lamp that is hidden from most of the film.
+TEST(Balance, ImagesKeepTheirMean) {
+  World world("veach-door/scene.toml");
+  world.scene.film = {48, 27};
+  const VplTable lit = litVpls(world, {{"count", "600"}});
+  double off = 0.0, on = 0.0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const Given options{{"spp", "8"}, {"seed", typed(seed)}};
+    const auto meanWith = [&](const char* balance) {
+      const FilmStats s = renderVpls(world, lit, with(options, {{"balance", balance}})).stats;
+      return s.direct + s.indirect;
+    };
+    off += meanWith("off"), on += meanWith("on");
+  }
+  EXPECT_NEAR(on / off, 1.0, 0.01);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,130 @@
+#include "tools/render/integrator/vpl/near_field.h"
+
+#include <algorithm>
+#include <array>
+
+#include "transport/walk.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Vertices beyond the first that a near-field ray may add; each follows with the missing share
+// alone.
+constexpr unsigned kMaxExtensions = 16;
+// VPLs that light what a near-field ray found, which has more noise of its own the further it is
+// down the path (measured: docs/theory.md, "Near field").
+constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
+
+}  // namespace
+
+// The first link of a ray.
+struct NearField::Start {
+  Vec3 direction, throughput;
+  Arrival arrival;
+  const SurfacePoint* hit;
+  const ReachGrid::Lookup* near;  // the VPLs there
+};
+
+// Rays from a sample's point wait for memory together.
+void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsigned count,
+                     uint32_t first, uint64_t key, Rng& rng, RaysBrought& out) const {
+  constexpr size_t kBatch = RayScene::kBatch;
+  std::array<Ray, kBatch> rays;
+  std::array<SurfacePoint, kBatch> hits;
+  std::array<ReachGrid::Lookup, kBatch> near;
+  std::array<Start, kBatch> made;
+  for (unsigned begin = 0, end; begin < count; begin = end) {
+    end = begin + std::min(count - begin, unsigned{kBatch});
+    size_t alive = 0;
+    for (unsigned k = begin; k < end; ++k) {
+      BsdfSample next;
+      const float pick = rng.next();
+      if (!from.bsdf.sample(LobeGroup::Rough, Transport::Radiance, pick, owenSobol(first + k, key),
+                            next)) {
+        continue;
+      }
+      rays[alive] = rayOn(rays_, from.bsdf.point(), next);
+      made[alive] = {next.wi,
+                     from.throughput * next.weight,
+                     {next.pdf * static_cast<float>(shares_), from.bsdf.point().position,
+                      LightChoice::Each, from.learned, from.shared},
+                     &hits[alive],
+                     &near[alive]};
+      ++alive;
+    }
+    rays_.closestHits({rays.data(), alive}, hits);
+    if (compensation_ && only_ != Only::Direct) compensation_.lookUp({hits.data(), alive}, near);
+    for (size_t k = 0; k < alive; ++k) {
+      const Vec3 before = out.indirect;
+      follow(made[k], point, rng, out);
+      const Vec3 brought = out.indirect - before;
+      out.squares += double{dot(brought, brought)};
+    }
+  }
+  out.rays += count;
+}
+
+// One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
+// what Compensation says is missing: from the scattered light that a VPL knows where it speaks for
+// the point that the ray found, else by lighting that point as the first one, and so on. A light
+// that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
+void NearField::follow(const Start& start, const GatherPoint& point, Rng& rng,
+                       RaysBrought& out) const {
+  Vec3 throughput = start.throughput;
+  LearnedStrata strata;
+  SpecularPath end =
+      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
+  for (unsigned links = 1;; ++links) {
+    const bool first = links == 1;
+    if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
+    if (only_ == Only::Direct) return;
+    Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
+    const Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
+    throughput *= end.throughput;
+    // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
+    // with the shadow ray. Else it goes on, by roulette at full weight.
+    const bool known = missing.scattered.has_value();
+    const bool lit = known ? missing.share > 0.0f : rng.next() < missing.share;
+    if (!lit) {
+      out.compensated += light;
+      out.indirect += light;
+      return;
+    }
+    const Bsdf found(rays_.scene(), end.hit);
+    if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
+    const Vec3 leaving =
+        directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
+    if (known) {
+      light += throughput * (leaving + *missing.scattered) * missing.share;
+    } else {
+      const Gathered g = point(found, first ? kFirstDraws : kLaterDraws, rng);
+      light += throughput * (leaving + g.radiance);
+      out.clamped += throughput * g.clamped;
+      out.shadowRays += g.shadowRays;
+    }
+    out.compensated += light;
+    out.indirect += light;
+    BsdfSample sample;
+    Ray next;
+    if (known || links == kMaxExtensions ||
+        !scatter(rays_, found, LobeGroup::Rough, Transport::Radiance, rng, sample, next)) {
+      return;
+    }
+    throughput *= sample.weight;
+    end = followSpecularPath(rays_, lights_, next.origin, next.direction,
+                             {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata)},
+                             rng);
+  }
+}
+
+// `near`: of the hit, where that is the first; null: to be looked up.
+Missing NearField::missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
+                               Rng& rng) const {
+  if (!end.rough) return {};
+  if (end.links > 0) return {1.0f, {}};
+  if (!compensation_) return {};
+  return compensation_.missing(end.hit, end.hit.distance, near, rng);
+}
+
+}  // namespace bnvpl
