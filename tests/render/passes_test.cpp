@@ -240,7 +240,7 @@ TEST(Passes, EndByTimeErrorOrNumber) {
 
 TEST(Passes, SppIsTheMostOfThem) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
-  EXPECT_EQ(resolveRender({}).whole("spp"), 8u);
+  EXPECT_EQ(resolveRender({}).whole("spp"), 16u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->passes, 0xffffffffu / kPassSpp);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}, {"spp", "33"}}))->passes, 32u / kPassSpp);
   EXPECT_EQ(budgetOf(resolveRender({{"spp", "33"}, {"passes", "3"}}))->passes, 3u);

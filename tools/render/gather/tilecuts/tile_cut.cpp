@@ -19,8 +19,8 @@ using Probes = std::array<const Bsdf*, kProbes>;
 constexpr float kBlockedShare = 0.01f;
 // A probe that is darker than this share of the tile's mean counts as if it were not.
 constexpr float kDarkest = 0.2f;
-// Of the variance that the model foresees, where a price asks what it is worth. A sixteenth of it is
-// measured (theory.md); but sixteen pixels share the error, which a person sees as grain.
+// Of the variance that the model foresees, where a price asks what it is worth. A sixteenth of it
+// is measured (theory.md); but sixteen pixels share the error, which a person sees as grain.
 constexpr double kWorth = 0.5;
 // Roulette on small contributions may add this share to the variance that is allowed.
 constexpr float kRouletteShare = 0.5f;
@@ -133,6 +133,13 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
       double{options.error} * double{options.error} * double(tile.allSlots) * double{kProbes};
   // Opening a cluster leaves about half of its variance and costs a ray.
   const double least = 2.0 * tile.price * double{kProbes} / kWorth;
+  const auto allowed = static_cast<float>(std::max(most, least) / double{kProbes});
+  const float darkest = *std::min_element(light.begin(), light.end());
+  cut.allowed = std::sqrt(allowed) * darkest;
+  // A ray that is traced with probability q leaves c^2 (1/q - 1) of what brings c: worth the price
+  // is q = c / sqrt(price).
+  cut.negligible =
+      std::max(kRouletteShare * allowed, static_cast<float>(std::sqrt(tile.price))) * darkest;
   double sum = 0.0;
   std::vector<Open> heap;
   const auto insert = [&](uint32_t node) {
@@ -150,10 +157,6 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
     insert(tree.nodes[widest.node].left);
     insert(tree.nodes[widest.node].right);
   }
-  const auto allowed = static_cast<float>(std::max(most, sum) / double{kProbes});
-  const float darkest = *std::min_element(light.begin(), light.end());
-  cut.negligible = kRouletteShare * allowed * darkest;
-  cut.allowed = std::sqrt(allowed) * darkest;
   for (const Open& open : heap) cut.nodes.push_back(open.node);
   std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
   return cut;

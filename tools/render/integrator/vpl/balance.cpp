@@ -65,8 +65,7 @@ unsigned drawsWorth(double variance, double cost, double price, unsigned least, 
 
 unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, uint32_t pixel,
                      double cost, const Balance& balance, unsigned least, unsigned most) {
-  const uint32_t x = pixel % tile.width, y = pixel / tile.width,
-                 height = tile.pixels / tile.width;
+  const uint32_t x = pixel % tile.width, y = pixel / tile.width, height = tile.pixels / tile.width;
   double variance = 0.0, known = 0.0;
   Vec3 light;
   float around = 0.0f;

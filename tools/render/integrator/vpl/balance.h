@@ -1,4 +1,5 @@
-// How work is shared out among the parts of a sample, so that the film has least noise for its time.
+// How work is shared out among the parts of a sample, so that the film has least noise for its
+// time.
 //
 // A sample has the relative variance V (over its tile's light, squared) and the cost C. With N of
 // them the film's error is V / N, its time N C: what counts is V C. Both are sums over parts: rays
@@ -22,8 +23,7 @@
 
 namespace bnvpl {
 
-// Costs in shadow rays of a tile's gather, which are traced eight at a time (measured:
-// docs/theory.md, "Balance").
+// Costs in shadow rays of a tile's gather, which are traced eight at a time (measured: theory.md).
 namespace cost {
 inline constexpr double kCluster = 0.07, kCameraRay = 8.0, kBsdfRay = 7.0, kLightRay = 4.0,
                         kNearFieldRay = 16.0;
@@ -54,8 +54,9 @@ struct PixelDraws {
   void add(Vec3 found) { sum += found, squares += squared(found), count += 1.0; }
 };
 
-// Draws that a pixel is worth, each at `cost`, by what was found at those around it in the tile. Not
-// at the pixel itself: so no draw has a say in its own weight, and the mean of all stays unbiased.
+// Draws that a pixel is worth, each at `cost`, by what was found at those around it in the tile.
+// Not at the pixel itself: so no draw has a say in its own weight, and the mean of all stays
+// unbiased.
 unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, uint32_t pixel,
                      double cost, const Balance& balance, unsigned least, unsigned most);
 

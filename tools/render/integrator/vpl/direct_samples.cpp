@@ -170,8 +170,8 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     pixels[p].sums.resize(slots);
     for (size_t s = 0; s < slots; ++s)
-      draws[p].light += tile.samples[s * tile.pixels + p].radiance.indirect *
-                        (1.0f / static_cast<float>(slots));
+      draws[p].light +=
+          tile.samples[s * tile.pixels + p].radiance.indirect * (1.0f / static_cast<float>(slots));
     add(tile, p, learned, priced ? (count + 1) / 2 : count, kDrawSamples, pixels[p], draws[p]);
   }
   if (priced) {

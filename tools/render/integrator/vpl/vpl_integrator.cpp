@@ -90,8 +90,8 @@ void VplIntegrator::gatherTile(const TileSamples& tile, const Vertices& at, cons
   TileReceivers receivers{tile, at.bsdf};
   receivers.price = balance.price;
   if (balance.price > 0.0) {
-    receivers.otherLight = direct.x + direct.y + direct.z +
-                           static_cast<float>(std::sqrt(3.0 * balance.light));
+    receivers.otherLight =
+        direct.x + direct.y + direct.z + static_cast<float>(std::sqrt(3.0 * balance.light));
   }
   gather_.tile(receivers, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) {
@@ -112,11 +112,10 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
   const auto send = [&](size_t i, unsigned rays, uint64_t key) {
     if (!at.bsdf[i] || rays == 0) return;
     const SpecularPath& seen = at.seen[i];
-    nearField_.send({*at.bsdf[i], seen.throughput, learned,
-                     caustics_ && seen.links == 0 ? caustics_->shared(seen.hit)
-                                                  : SharedWithPhotons{}},
-                    gather_.point, rays, slotOf(tile, i) * rays, key, tile.samples[i].rng,
-                    brought[i]);
+    nearField_.send(
+        {*at.bsdf[i], seen.throughput, learned,
+         caustics_ && seen.links == 0 ? caustics_->shared(seen.hit) : SharedWithPhotons{}},
+        gather_.point, rays, slotOf(tile, i) * rays, key, tile.samples[i].rng, brought[i]);
   };
   const bool priced = balance.price > 0.0 && only_ != Only::Direct;
   const unsigned first = priced ? (nearFieldRays_ + kFirstPart - 1) / kFirstPart : nearFieldRays_;
