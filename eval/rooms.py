@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Equal time, the full image: how far VPLs at default options are ahead of path tracing, room by room.
 
-  PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder/of/living-room eval/rooms.py
+  export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder
+  eval/rooms.py --also light guided cycles
+  eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom   # as published ratios
 
 For each room: the pipeline with two settings, the path tracer with the samples that take the CPU time of all four
-stages, and others if they are asked for (--also light, guided); against two path-traced halves of a reference. Writes
-the table 'rooms' of docs/results.md: means over the reference's, and relMSE, RMSE, SMAPE and FLIP, ours / the path
-tracer's. Rooms whose files are not there are left out.
+stages, and others if they are asked for; against two halves of a reference: means over its mean, relMSE, RMSE / mean,
+SMAPE and FLIP. Each room's rows go into docs/rooms.csv, in place of those of an earlier run; from them rooms_page.py
+makes table and picture of docs/results.md. Rooms whose files are not there are left out, and for Cycles those that it
+cannot read (eval/cycles).
 """
 
 import argparse
@@ -21,13 +24,21 @@ from pathlib import Path
 import numpy as np
 
 import gallery
-import write_docs
-from bnvpl_eval import images, output, settings
+import rooms_page
+from bnvpl_eval import images, settings
 from bnvpl_eval.runner import Run, Runner
 from evaluate import commit
 
-OURS = tuple(gallery.Scene(name, title, f"scenes/{name}/scene.toml", aspect) for name, title, aspect in (
-    ("cornell", "Cornell box", (1, 1)), ("u-shape", "U-shape", (4, 3)), ("veach-door", "Veach door", (16, 9))))
+OURS = tuple(gallery.Scene(name, title, f"scenes/{file}.toml", aspect) for name, title, file, aspect in (
+    ("cornell", "Cornell box", "cornell/scene", (1, 1)),
+    ("u-shape", "U-shape", "u-shape/scene", (4, 3)),
+    ("u-shape-back", "U-shape, from the far wall", "u-shape/back", (4, 3)),
+    ("veach-door", "Veach door", "veach-door/scene", (16, 9)),
+    ("veach-door-table", "Veach door, across the table", "veach-door/table", (16, 9)),
+    ("sponza", "Sponza", "sponza/scene", (16, 9)),
+    ("sponza-gallery", "Sponza, from the gallery", "sponza/gallery", (16, 9)),
+    ("veach-ajar", "Veach, Ajar, diffuse", "veach-ajar/scene", (16, 9)),
+    ("veach-ajar-table", "Veach, Ajar, diffuse, across the table", "veach-ajar/table", (16, 9))))
 
 
 @dataclass(frozen=True)
@@ -44,6 +55,17 @@ SETTINGS = {  # options of the stages; those that are not named have their defau
 }
 # How far the mean is off, and four measures of error.
 COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
+CYCLES = settings.ROOT / "eval/cycles/render_cycles.py"
+
+
+def missing(scene: gallery.Scene) -> str:
+    """What it needs and has not, or nothing."""
+    if not scene.path.is_file():
+        return f"{scene.path} is not there"
+    if scene.path.suffix != ".toml":
+        return ""
+    unset = [name for name in re.findall(r"\$\{(\w+)\}", scene.path.read_text()) if name not in os.environ]
+    return f"{', '.join(unset)} is not set" if unset else ""
 
 
 @dataclass
@@ -52,6 +74,12 @@ class Rooms:
     references: Runner  # their tools may be those of an earlier build
     width: int
     reference_spp: int
+    truth: str = "vpl"  # who renders the reference
+    path_length: int = 0  # segments from the camera to a light; 0: as long as they get
+
+    def bounces(self) -> list:
+        """Neither the first surface nor the light is one."""
+        return ["--max-bounces", self.path_length - 2] if self.path_length else []
 
     def render(self, scene: gallery.Scene, options: list, lit: Path | None = None, by: Runner | None = None) -> Run:
         inputs = {"scene": scene.path} | ({"lit": lit} if lit else {})
@@ -59,66 +87,93 @@ class Rooms:
                                               scene.film(self.width), *options, "--layers", "direct,indirect", "-o",
                                               "@image.exr", "--quiet"], inputs, ["image.exr"])
 
-    def ours(self, scene: gallery.Scene, name: str, integrator: str = "vpl") -> tuple[Path, float]:
-        """The image, and CPU seconds of all stages."""
-        place, eliminate, estimate, render = SETTINGS[name]
+    def lit(self, scene: gallery.Scene, setting: tuple, by: Runner | None = None) -> tuple[Path, float]:
+        """Lit VPLs, and CPU seconds of the stages before render."""
+        (place, eliminate, estimate, _), tools = setting, by or self.runner
         inputs = {"scene": scene.path}
-        placed = self.runner.run("vpl-place", ["{scene}", *scene.options, *place, "-o", "@candidates.vpl", "--quiet"], inputs,
-                                 ["candidates.vpl"])
-        kept = self.runner.run("vpl-eliminate", ["{candidates}", *eliminate, "-o", "@vpls.vpl", "--quiet"],
-                               {"candidates": placed["candidates.vpl"]}, ["vpls.vpl"])
-        lit = self.runner.run("vpl-estimate", ["{scene}", "{vpls}", *estimate, "-o", "@lit.vpl", "--quiet"],
-                              {**inputs, "vpls": kept["vpls.vpl"]}, ["lit.vpl"])
-        shown = self.render(scene, ["--integrator", integrator, *render], lit["lit.vpl"])
-        return shown["image.exr"], sum(run.cpu_s for run in (placed, kept, lit, shown))
+        placed = tools.run("vpl-place", ["{scene}", *scene.options, *place, "-o", "@candidates.vpl", "--quiet"], inputs,
+                           ["candidates.vpl"])
+        kept = tools.run("vpl-eliminate", ["{candidates}", *eliminate, "-o", "@vpls.vpl", "--quiet"],
+                         {"candidates": placed["candidates.vpl"]}, ["vpls.vpl"])
+        lit = tools.run("vpl-estimate", ["{scene}", "{vpls}", *estimate, *self.bounces(), "-o", "@lit.vpl", "--quiet"],
+                        {**inputs, "vpls": kept["vpls.vpl"]}, ["lit.vpl"])
+        return lit["lit.vpl"], sum(run.cpu_s for run in (placed, kept, lit))
 
-    def timed(self, scene: gallery.Scene, integrator: str, seconds: float) -> tuple[Path, int]:
-        """By an integrator without VPLs, with the samples that take as long."""
-        of = lambda spp: self.render(scene, ["--integrator", integrator, "--spp", spp, "--seed", 2])
-        few, more = of(4).cpu_s, of(20).cpu_s
+    def ours(self, scene: gallery.Scene, setting: str) -> tuple[Path, float]:
+        """The image, and CPU seconds of all stages."""
+        lit, before_s = self.lit(scene, SETTINGS[setting])
+        shown = self.render(scene, SETTINGS[setting][3], lit)
+        return shown["image.exr"], before_s + shown.cpu_s
+
+    def timed(self, scene: gallery.Scene, setting: str, other: str, seconds: float) -> tuple[Path, int]:
+        """By another, with the samples a pixel that take as long."""
+        few, more = (self.by_samples(scene, setting, other, spp)[1] for spp in (4, 20))
         per_sample = max(1e-3, more - few) / 16
         spp = max(1, round((seconds - max(0.0, few - 4 * per_sample)) / per_sample))
-        return of(spp)["image.exr"], spp
+        return self.by_samples(scene, setting, other, spp)[0], spp
+
+    def by_samples(self, scene: gallery.Scene, setting: str, other: str, spp: int) -> tuple[Path, float]:
+        """The image, and CPU seconds of all that it takes."""
+        sampled = ["--spp", spp, "--seed", 2, *self.bounces()]
+        if other == "guided":
+            lit, before_s = self.lit(scene, SETTINGS[setting])
+            run = self.render(scene, ["--integrator", "guided", *sampled], lit)
+            return run["image.exr"], before_s + run.cpu_s
+        if other == "cycles":
+            run = self.by_cycles(scene, spp)
+        else:
+            unlit = ["--light-sampling", "off"] if other == "unlit-path" else []
+            run = self.render(scene, ["--integrator", other.removeprefix("unlit-"), *unlit, *sampled])
+        return run["image.exr"], run.cpu_s
+
+    def by_cycles(self, scene: gallery.Scene, spp: int) -> Run:
+        bounces = self.path_length - 2 if self.path_length else 32
+        blender = Runner(Path("/usr/bin"), self.runner.cache, quiet=True)
+        return blender.run("blender", ["-b", "--factory-startup", "--python-exit-code", 3, "--python", "{script}", "--",
+                                       "{scene}", "--size", scene.film(self.width), "--bounces", bounces, "--spp", spp,
+                                       "--output", "@image.exr"], {"script": CYCLES, "scene": scene.path}, ["image.exr"])
 
     def halves(self, scene: gallery.Scene) -> list[Path]:
-        return [self.render(scene, ["--integrator", "path", "--spp", self.reference_spp, "--seed", seed],
-                            by=self.references)["image.exr"] for seed in (101, 102)]
+        return [self.half(scene, seed) for seed in (101, 102)]
 
-    def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray:
+    def half(self, scene: gallery.Scene, seed: int) -> Path:
+        sampled = ["--spp", self.reference_spp, "--seed", seed]
+        if self.truth == "path":
+            options = ["--integrator", "path", *sampled, *self.bounces()]
+            return self.render(scene, options, by=self.references)["image.exr"]
+        lit, _ = self.lit(scene, (["-n", "240k", "--seed", seed], ["-n", "12k"], ["--seed", seed], []), self.references)
+        return self.render(scene, sampled, lit, self.references)["image.exr"]
+
+    def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray | None:
+        """COLUMNS; none where there is no light."""
         halves = self.halves(scene)
+        truth = np.mean([images.read(half, layer) for half in halves])
+        if not truth > 0:
+            return None
         run = self.runner.run("vpl-inspect", ["compare", "{image}", "{a}", "--second-half", "{b}", "--json",
                                               *(["--layer", layer] if layer else [])],
                               {"image": image, "a": halves[0], "b": halves[1]}, [])
         of = json.loads(run["log.txt"].read_text())
-        truth = np.mean([images.read(half, layer) for half in halves])
         return np.array([images.read(image, layer).mean() / truth, of["relmse"], of["rmse"] / truth, of["smape"], of["flip"]])
 
-    def rows(self, scene: gallery.Scene, also: list[str]) -> list[str]:
+    def rows(self, scene: gallery.Scene, also: list[str]) -> list[dict]:
         rows = []
+        direct, all_light = (np.mean([images.read(half, layer) for half in self.halves(scene)]) for layer in ("direct", ""))
         for name in SETTINGS:
             image, seconds = self.ours(scene, name)
-            others = {"path": self.timed(scene, "path", seconds)[0]}
-            for integrator in also:
-                others[integrator] = (self.ours(scene, name, integrator)[0] if integrator == "guided"
-                                      else self.timed(scene, integrator, seconds)[0])
-            for layer in ("", "indirect"):
+            others = {other: self.timed(scene, name, other, seconds) for other in ("path", *also)
+                      if other != "cycles" or scene.path.suffix == ".toml"}
+            for layer in ("", "direct", "indirect"):
                 ours = self.measures(scene, image, layer)
-                for other, picture in others.items():
-                    theirs = self.measures(scene, picture, layer)
-                    rows.append("| " + " | ".join([scene.title, name, layer or "full", other, f"{seconds:.0f}",
-                                                   f"{ours[0]:.3f}", f"{theirs[0]:.3f}"] +
-                                                  [f"{a:.2g} / {b:.2g}" for a, b in zip(ours[1:], theirs[1:])]) + " |")
+                for other, (picture, spp) in others.items():
+                    # Cycles' image is one layer.
+                    theirs = None if ours is None or other == "cycles" and layer else self.measures(scene, picture, layer)
+                    if theirs is not None:
+                        rows.append({"room": scene.title, "setting": name, "light": layer or "full", "beside": other,
+                                     "cpu_s": f"{seconds:.0f}", "its_spp": spp, "indirect_share": f"{1 - direct / all_light:.2f}",
+                                     **{column: f"{value:.4g}" for column, value in zip(COLUMNS, ours)},
+                                     **{f"its_{column}": f"{value:.4g}" for column, value in zip(COLUMNS, theirs)}})
         return rows
-
-
-def write_table(rows: list[str], arguments) -> None:
-    path = write_docs.DOCS / "results.md"
-    heads = ("| room | setting | light | beside | CPU s | mean | its mean | relMSE | RMSE / mean | SMAPE | FLIP |\n"
-             "|---|---|---|---|---|---|---|---|---|---|---|")
-    made = (f"<!-- tools of {commit()}, {datetime.date.today().isoformat()}, {arguments.width} pixels wide, "
-            f"2 x {arguments.reference_spp} spp -->")
-    text = "\n".join(["<!-- rooms -->", heads, *rows, "", made, "<!-- end of rooms -->"])
-    output.write_text(path, re.sub(r"<!-- rooms -->.*?<!-- end of rooms -->", lambda _: text, path.read_text(), flags=re.S))
 
 
 def main() -> int:
@@ -127,30 +182,38 @@ def main() -> int:
     parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools")
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache")
     parser.add_argument("--width", type=int, default=320, help="pixels")
-    parser.add_argument("--reference-spp", type=int, default=2048, help="of each half")
-    parser.add_argument("--also", nargs="*", default=[], metavar="INTEGRATOR", help="light, guided")
+    parser.add_argument("--truth", choices=("vpl", "path"), default="vpl", help="who renders the reference: VPLs, 12k of them "
+                        "with seeds of their own, which have less noise, or the path tracer, which shares nothing with them")
+    parser.add_argument("--reference-spp", type=int, default=64, help="of each half")
+    parser.add_argument("--also", nargs="*", default=[], choices=("light", "guided", "unlit-path", "cycles"), metavar="OTHER",
+                        help="light, guided, unlit-path (without light sampling), cycles")
+    parser.add_argument("--path-length", type=int, default=0, metavar="L",
+                        help="segments from the camera to a light, those at mirrors and glass not counted")
     parser.add_argument("--reference-bin", type=Path, metavar="FOLDER", help="tools that render the references; --bin unless given")
     parser.add_argument("--references-only", action="store_true", help="render the references, and stop")
     parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
     arguments = parser.parse_args()
     runner, references = (Runner(folder.resolve(), arguments.cache.resolve(), quiet=True)
                           for folder in (arguments.bin, arguments.reference_bin or arguments.bin))
-    rooms = Rooms(runner, references, arguments.width, arguments.reference_spp)
-    rows = []
+    rooms = Rooms(runner, references, arguments.width, arguments.reference_spp, arguments.truth, arguments.path_length)
+    made = {"tools": commit(), "date": datetime.date.today().isoformat(), "width": arguments.width,
+            "reference": f"2 x {arguments.reference_spp} spp, {arguments.truth}", "path_length": arguments.path_length}
     for scene in SCENES:
         if arguments.rooms and scene.id not in arguments.rooms:
             continue
-        if not scene.path.is_file():
-            print(f"rooms: {scene.title} is left out: {scene.path} is not there", file=sys.stderr)
+        if lacks := missing(scene):
+            print(f"rooms: {scene.title} is left out: {lacks}", file=sys.stderr)
             continue
         if arguments.references_only:
             rooms.halves(scene)
             continue
-        for row in rooms.rows(scene, arguments.also):
-            rows.append(row)
-            print(row, flush=True)
+        rows = rooms.rows(scene, arguments.also)
+        for row in rows:
+            print(" ".join(str(value) for value in row.values()), flush=True)
+        if not arguments.no_table:
+            rooms_page.add([{**row, **made} for row in rows])
     if not (arguments.no_table or arguments.references_only):
-        write_table(rows, arguments)
+        rooms_page.write()
     return 0
 
 

@@ -36,7 +36,8 @@ EMITTER_EDGE = 0.1  # scene units
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="render_cycles.py", description=__doc__.split("\n")[0])
     parser.add_argument("scene", type=Path)
-    parser.add_argument("--output", required=True, help="with {bounces} and {seed} in its name")
+    parser.add_argument("--output", required=True, help="{bounces} and {seed} in its name are replaced")
+    parser.add_argument("--size", help="WIDTHxHEIGHT in pixels; the scene's unless given")
     parser.add_argument("--bounces", default="32", help="limits as our --max-bounces: 0,32")
     parser.add_argument("--seeds", default="1")
     parser.add_argument("--spp", type=int, default=64)
@@ -186,6 +187,8 @@ def run() -> None:
         film = model_scenes.SIZE
     else:
         film = build(options)
+    if options.size:
+        film = tuple(int(side) for side in options.size.split("x"))
     set_film(*film, options.threads)
     set_unbiased(options.spp)
     for bounces in options.bounces.split(","):

@@ -9,59 +9,69 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kMostProbes = 16;  // of a stratum: those of the tiles around add to them
+constexpr size_t kMostProbes = 16;    // of a stratum: those of the tiles around add to them
+constexpr size_t kTilesOfFilm = 256;  // that stand for all of it, evenly spread
 
 }  // namespace
 
-TileLights::TileLights(const RayScene& rays, const LightSet& lights, const FilmPoints& film,
-                       uint64_t raysOfTile, uint64_t seed, const ProgressFn& progress)
+TileLights::TileLights(const RayScene& rays, const LightSet& lights,
+                       std::function<SurfacePoint(size_t pixel)> seen, uint64_t raysOfTile,
+                       uint64_t seed)
     : rays_(rays),
       lights_(lights),
+      seen_(std::move(seen)),
       strata_(lights),
       probes_(std::clamp<uint64_t>(raysOfTile / 2 / std::max<size_t>(1, strata_.size()), 1,
                                    kMostProbes)),
-      tilesX_((film.width + kTileSide - 1) / kTileSide),
-      tilesY_((film.height + kTileSide - 1) / kTileSide),
+      key_(streamKey(seed, Stream::TileLights)),
+      tilesX_((rays.scene().film.width + kTileSide - 1) / kTileSide),
+      tilesY_((rays.scene().film.height + kTileSide - 1) / kTileSide),
       tiles_(tilesX_ * tilesY_) {
   if (strata_.size() < 2) return;
-  const auto phase = progress.before("visible lights", tiles_.size());
-  std::vector<StrataValues> found(tiles_.size());
-  parallelFor(tiles_.size(), 1, [&](size_t tile) {
-    found[tile] = probe(film, tile, streamKey(seed, Stream::TileLights));
-    if (progress) progress(1);
-  });
-  parallelFor(tiles_.size(), 16, [&](size_t tile) { tiles_[tile] = pooled(found, tile); });
-  everywhere_ = meanOf(tiles_, strata_.size());
+  std::vector<StrataValues> some(std::min(tiles_.size(), kTilesOfFilm));
+  parallelFor(some.size(), 1, [&](size_t i) { some[i] = learn(i * tiles_.size() / some.size()); });
+  everywhere_ = meanOf(some, strata_.size());
 }
 
-StrataValues TileLights::probe(const FilmPoints& film, size_t tile, uint64_t key) const {
-  const auto x0 = static_cast<uint32_t>(tile % tilesX_) * kTileSide,
-             y0 = static_cast<uint32_t>(tile / tilesX_) * kTileSide;
-  std::vector<Bsdf> seen;
-  seen.reserve(size_t{kTileSide} * kTileSide);
-  for (uint32_t y = y0; y < std::min(film.height, y0 + kTileSide); ++y) {
-    for (uint32_t x = x0; x < std::min(film.width, x0 + kTileSide); ++x) {
-      const SurfacePoint& p = film.points[size_t{y} * film.width + x];
+const StrataValues& TileLights::probe(size_t tile) const {
+  Tile& t = tiles_[tile];
+  std::call_once(t.probed, [&] {
+    const Film& film = rays_.scene().film;
+    const auto x0 = static_cast<uint32_t>(tile % tilesX_) * kTileSide,
+               y0 = static_cast<uint32_t>(tile / tilesX_) * kTileSide;
+    std::vector<SurfacePoint> points;
+    for (uint32_t y = y0; y < std::min(film.height, y0 + kTileSide); ++y) {
+      for (uint32_t x = x0; x < std::min(film.width, x0 + kTileSide); ++x)
+        points.push_back(seen_(size_t{y} * film.width + x));
+    }
+    std::vector<Bsdf> seen;  // borrow the points
+    seen.reserve(points.size());
+    for (const SurfacePoint& p : points) {
       if (p.triangle != kNone) seen.emplace_back(rays_.scene(), p);
     }
-  }
-  Rng rng(key, tile);
-  return probeStrata(rays_, lights_, strata_, seen, probes_, rng);
+    Rng rng(key_, tile);
+    t.found = probeStrata(rays_, lights_, strata_, seen, probes_, rng);
+  });
+  return t.found;
 }
 
-// By the probes of the tile and those around it.
-StrataValues TileLights::pooled(std::span<const StrataValues> found, size_t tile) const {
-  const size_t x = tile % tilesX_, y = tile / tilesX_;
-  PooledProbes sum(strata_.size());
-  for (size_t j = y > 0 ? y - 1 : 0; j < std::min(tilesY_, y + 2); ++j) {
-    for (size_t i = x > 0 ? x - 1 : 0; i < std::min(tilesX_, x + 2); ++i)
-      sum.add(found[j * tilesX_ + i]);
-  }
-  return sum.distribution();
+const StrataValues& TileLights::learn(size_t tile) const {
+  Tile& t = tiles_[tile];
+  std::call_once(t.learned, [&] {
+    const size_t x = tile % tilesX_, y = tile / tilesX_;
+    PooledProbes sum(strata_.size());
+    for (size_t j = y > 0 ? y - 1 : 0; j < std::min(tilesY_, y + 2); ++j) {
+      for (size_t i = x > 0 ? x - 1 : 0; i < std::min(tilesX_, x + 2); ++i)
+        sum.add(probe(j * tilesX_ + i));
+    }
+    t.light = sum.distribution();
+  });
+  return t.light;
 }
 
 LearnedStrata TileLights::at(uint32_t x, uint32_t y) const {
-  return {&strata_, tiles_[y / kTileSide * tilesX_ + x / kTileSide].seen(), everywhere_.seen()};
+  if (strata_.size() < 2) return {&strata_, {}, {}};
+  return {&strata_, learn(y / kTileSide * tilesX_ + x / kTileSide).seen(), everywhere_.seen()};
 }
 
 }  // namespace bnvpl

@@ -44,27 +44,43 @@ constexpr std::array kOptions{
                                      "camera samples of direct light to each sample; 0: by noise "
                                      "and cost; 1: the sample itself"))};
 
-FilmPoints tracePoints(const RayScene& rays, const LightSet& lights, uint64_t seed) {
-  const Scene& scene = rays.scene();
-  FilmPoints film{scene.film.width, scene.film.height, {}, {}};
-  film.points.resize(size_t{film.width} * film.height);
-  film.seen.resize(film.points.size());
-  const uint64_t key = streamKey(seed, Stream::FilmPoints);
-  parallelFor(film.points.size(), 64, [&](size_t i) {
-    Rng rng(key, i);
-    const float x =
-        (static_cast<float>(i % film.width) + rng.next()) / static_cast<float>(film.width);
+// What the film shows, pixel by pixel: a ray of each.
+class FilmRays {
+ public:
+  FilmRays(const RayScene& rays, const LightSet& lights, uint64_t seed)
+      : rays_(rays), lights_(lights), key_(streamKey(seed, Stream::FilmPoints)) {}
+
+  // Without a triangle where nothing rough is seen. `seen`: light without a rough surface between.
+  SurfacePoint point(size_t pixel, float* seen = nullptr) const {
+    const Scene& scene = rays_.scene();
+    const uint32_t width = scene.film.width;
+    Rng rng(key_, pixel);
+    const float x = (static_cast<float>(pixel % width) + rng.next()) / static_cast<float>(width);
     const float y =
-        (static_cast<float>(i / film.width) + rng.next()) / static_cast<float>(film.height);
+        (static_cast<float>(pixel / width) + rng.next()) / static_cast<float>(scene.film.height);
     RadianceSample sample;
-    const SpecularPath path = seeFrom(rays, lights, scene.camera.position,
-                                      cameraDirection(scene.camera, scene.film, x, y), rng, sample);
-    film.points[i] = path.hit;
-    if (!path.rough) film.points[i].triangle = kNone;
-    film.seen[i] = mean(sample.direct);
-  });
-  return film;
-}
+    SpecularPath path = seeFrom(rays_, lights_, scene.camera.position,
+                                cameraDirection(scene.camera, scene.film, x, y), rng, sample);
+    if (!path.rough) path.hit.triangle = kNone;
+    if (seen) *seen = mean(sample.direct);
+    return path.hit;
+  }
+
+  FilmPoints all() const {
+    const Film& size = rays_.scene().film;
+    FilmPoints film{size.width, size.height, {}, {}};
+    film.points.resize(size_t{film.width} * film.height);
+    film.seen.resize(film.points.size());
+    parallelFor(film.points.size(), 64,
+                [&](size_t i) { film.points[i] = point(i, &film.seen[i]); });
+    return film;
+  }
+
+ private:
+  const RayScene& rays_;
+  const LightSet& lights_;
+  uint64_t key_;
+};
 
 // What lives as long as the integrator, in an order in which each may borrow from those before.
 struct Parts {
@@ -76,14 +92,12 @@ struct Parts {
 };
 
 // With a point function.
-Gather makeGather(const IntegratorInputs& in, const Values& options, Parts& parts) {
+Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& film,
+                  Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
   Gather gather = methodNamed(gatherMethods(), options.text("gather"))
                       .make({in.rays, parts.vpls, parts.tree, in.seed,
-                             [&rays = in.rays, &lights = in.lights, seed = in.seed] {
-                               return tracePoints(rays, lights, seed);
-                             },
-                             in.progress},
+                             [film] { return film.all(); }, in.progress},
                             options);
   if (!gather.point) {
     parts.point = std::make_unique<PointGather>(in.rays, parts.vpls, parts.tree);
@@ -118,7 +132,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
                                   .make({in.lit, in.rays, clamp, light}, options);
-  Gather gather = indirect ? makeGather(in, options, *parts) : Gather{};
+  const FilmRays filmRays(in.rays, in.lights, in.seed);
+  Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   const bool wholePixels = gather.wholePixels;
   const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";
   const auto lightRays = learned ? static_cast<unsigned>(options.whole("light-rays")) : 0;
@@ -126,15 +141,15 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   std::unique_ptr<const SeenLight> seenLight;
   std::unique_ptr<const PixelControl> pixelControl;
   const bool controlled = indirect && options.text("control") == "vpls";
-  const FilmPoints film =
-      controlled || learned ? tracePoints(in.rays, in.lights, in.seed) : FilmPoints{};
+  const FilmPoints film = controlled || learned ? filmRays.all() : FilmPoints{};
   if (controlled) {
     pixelControl = std::make_unique<const PixelControl>(in.rays, in.lights, film, in.lit);
   }
   if (learned) {
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options.whole("spp") * lightRays;
-    tileLights = std::make_unique<const TileLights>(in.rays, in.lights, film, raysOfTile, in.seed,
-                                                    in.progress);
+    tileLights = std::make_unique<const TileLights>(
+        in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
+        in.seed);
     seenLight = std::make_unique<const SeenLight>(in.rays, in.lights, film);
   }
   std::optional<DirectSamples> directSamples;

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Table 'rooms' and picture rooms.svg of docs/results.md, from docs/rooms.csv, which rooms.py writes."""
+
+import csv
+import re
+from pathlib import Path
+
+import write_docs
+from bnvpl_eval import output
+from bnvpl_eval.output import plt
+
+RESULTS = write_docs.DOCS / "rooms.csv"
+OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs", "cycles": "Cycles"}
+COLOURS = {"path": "#0b62a3", "light": "#c77700", "guided": "#3a7d34", "cycles": "#8b2f8f"}
+KEY = ("room", "setting", "light", "beside", "path_length")
+
+
+def read() -> list[dict]:
+    return list(csv.DictReader(RESULTS.open(newline=""))) if RESULTS.is_file() else []
+
+
+def add(rows: list[dict]) -> None:
+    """In place of older rows of the same."""
+    of = {tuple(str(row[key]) for key in KEY): row for row in (*read(), *rows)}
+    output.write_csv(RESULTS, list(of.values()))
+
+
+def ratio(row: dict, column: str) -> float:
+    """Theirs over ours."""
+    return float(row[f"its_{column}"]) / max(1e-9, float(row[column]))
+
+
+def table(rows: list[dict]) -> str:
+    """Of the default setting's full images."""
+    shown = {}
+    for row in rows:
+        if row["setting"] == "default" and row["light"] == "full":
+            shown.setdefault(row["room"], {})[row["beside"]] = row
+    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | relMSE: " + ", ".join(OTHERS.values()) +
+             " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|"]
+    for room, of in shown.items():
+        path = of["path"]
+        lines.append("| " + " | ".join([
+            room, f"{float(path['indirect_share']):.0%}", path["cpu_s"], f"{float(path['mean']):.3f}, {float(path['its_mean']):.3f}",
+            ", ".join(f"{ratio(of[other], 'relmse'):.2g}" if other in of else "-" for other in OTHERS),
+            ", ".join(f"{ratio(path, column):.2g}" for column in ("rmse", "smape", "flip"))]) + " |")
+    made = sorted({f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference {row['reference']}" for row in rows})
+    return "\n".join([*lines, "", *(f"<!-- {line} -->" for line in made)])
+
+
+def plot(rows: list[dict], path: Path) -> None:
+    """How many times our relMSE and FLIP the others have: filled at the default, hollow as a draft."""
+    rooms = list(dict.fromkeys(row["room"] for row in rows))
+    figure, axes = plt.subplots(1, 2, figsize=(11, 0.36 * len(rooms) + 1.6), sharey=True, layout="constrained")
+    for ax, column, title in zip(axes, ("relmse", "flip"), ("relMSE", "FLIP")):
+        for row in rows:
+            if row["light"] != "full" or row["beside"] not in OTHERS:
+                continue
+            colour, filled = COLOURS[row["beside"]], row["setting"] == "default"
+            ax.plot(ratio(row, column), rooms.index(row["room"]), "o", color=colour, markersize=7,
+                    markerfacecolor=colour if filled else "none", label=OTHERS[row["beside"]] if filled else None)
+        ax.axvline(1, color="#444444", linewidth=1)
+        ax.set_xscale("log")
+        ax.grid(axis="x", alpha=0.3)
+        ax.set_xlabel(f"{title} of the full image at equal CPU time, theirs / ours")
+    axes[0].set_yticks(range(len(rooms)), rooms)
+    axes[0].invert_yaxis()
+    marks = dict(zip(*reversed(axes[0].get_legend_handles_labels())))
+    axes[0].legend(marks.values(), marks.keys(), loc="lower center", bbox_to_anchor=(0.5, 1), ncols=4, frameon=False)
+    figure.savefig(path, metadata={"Date": None})
+    plt.close(figure)
+
+
+def write() -> None:
+    rows = [row for row in read() if row["path_length"] == "0"]
+    page = write_docs.DOCS / "results.md"
+    text = "\n".join(["<!-- rooms -->", table(rows), "<!-- end of rooms -->"])
+    output.write_text(page, re.sub(r"<!-- rooms -->.*?<!-- end of rooms -->", lambda _: text, page.read_text(), flags=re.S))
+    plot(rows, write_docs.DOCS / "images/rooms.svg")
+
+
+if __name__ == "__main__":
+    write()
