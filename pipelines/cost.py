@@ -56,6 +56,11 @@ def pairs(c):
     return sum(before**2 / kept for before, kept in zip(left, reversed(steps)))
 
 
+def pilots(c):
+    """Samples by which --balance finds its price, the same of any film that has so many tiles."""
+    return 4 * min(c.pixels, 48 * 64)
+
+
 # {stage: {figure: {term: function of counts}}}. What is multiplied by the share is divided among shards; the rest is
 # what every shard does again.
 TERMS = {
@@ -108,7 +113,8 @@ TERMS = {
             "VPLs": lambda c: c.vpls,
             "sqrt(VPLs)": lambda c: math.sqrt(c.vpls),
             "pixels, of the whole film": lambda c: c.pixels,
-            "samples, of the whole film": lambda c: c.pixels * c.spp,
+            "pilots": pilots,
+            "pilots log2(VPLs)": lambda c: pilots(c) * depth(c.vpls),
             "pixels": lambda c: c.pixels * c.share,
             "pixels log2(VPLs)": lambda c: c.pixels * c.share * depth(c.vpls),
             "pixels sqrt(VPLs)": lambda c: c.pixels * c.share * math.sqrt(c.vpls),

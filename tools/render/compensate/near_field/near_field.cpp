@@ -71,11 +71,14 @@ std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
 Missing NearField::missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
                            Rng& rng) const {
   const Coverage::Found found = coverage_.pick(seen.position, seen.ng, near, rng);
-  if (!found.vpl) return {gaps_ ? 1.0f : 0.0f, {}};
+  if (!found.vpl) {
+    return {gaps_ ? 1.0f : 0.0f, {}, {gaps_ ? INFINITY : 0.0f, INFINITY, kind_}};
+  }
   const float relative = distance / clampRadius_[*found.vpl];
   const float share = withKind(kind_, [&](auto k) { return k.removed(relative); });
-  if (distance < kShortRay * lit_.radius[*found.vpl]) return {share, {}};
-  return {share, scatteredBy(*found.vpl)};
+  const float shortest = kShortRay * lit_.radius[*found.vpl];
+  if (distance < shortest) return {share, {}, {shortest, clampRadius_[*found.vpl], kind_}};
+  return {share, scatteredBy(*found.vpl), {}};
 }
 
 namespace methods::compensate::near_field {

@@ -72,10 +72,10 @@ unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, 
   for (uint32_t v = y - std::min(y, kAround); v < std::min(height, y + kAround + 1); ++v) {
     for (uint32_t u = x - std::min(x, kAround); u < std::min(tile.width, x + kAround + 1); ++u) {
       const PixelDraws& p = pixels[v * tile.width + u];
-      if (v * tile.width + u == pixel || !(p.count > 0.0)) continue;
+      if (chequer(u, v) == chequer(x, y) || !(p.count > 0.0)) continue;
       variance += std::max(0.0, p.squares - squared(p.sum) / p.count);
       known += p.count - 1.0;
-      light += p.sum * static_cast<float>(1.0 / p.count) + p.light;
+      light += p.light;
       around += 1.0f;
     }
   }

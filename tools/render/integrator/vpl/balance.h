@@ -26,7 +26,7 @@ namespace bnvpl {
 // Costs in shadow rays of a tile's gather, which are traced eight at a time (measured: theory.md).
 namespace cost {
 inline constexpr double kCluster = 0.07, kCameraRay = 8.0, kBsdfRay = 7.0, kLightRay = 4.0,
-                        kNearFieldRay = 16.0;
+                        kNearFieldRay = 16.0, kSharedHit = 1.5;
 }
 
 inline double squared(Vec3 v) { return double{dot(v, v)}; }
@@ -44,19 +44,23 @@ struct Balance {
 // `variance`: of one draw. All of them in one unit.
 unsigned drawsWorth(double variance, double cost, double price, unsigned least, unsigned most);
 
+// Of the two colours of a chequerboard.
+inline uint32_t chequer(uint32_t x, uint32_t y) { return (x + y) & 1u; }
+
 // What draws have found at a pixel of a tile.
 struct PixelDraws {
   Vec3 sum;              // of them
   double squares = 0.0;  // likewise, each squared
   double count = 0.0;
-  Vec3 light;  // mean of all else that the pixel shows
+  Vec3 light;  // mean of all that the pixel shows
 
   void add(Vec3 found) { sum += found, squares += squared(found), count += 1.0; }
 };
 
 // Draws that a pixel is worth, each at `cost`, by what was found at those around it in the tile.
 // Not at the pixel itself: so no draw has a say in its own weight, and the mean of all stays
-// unbiased.
+// unbiased. Nor at those that may share its draws: of the two colours of a chequerboard pixels
+// share within one, and ask the other.
 unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, uint32_t pixel,
                      double cost, const Balance& balance, unsigned least, unsigned most);
 

@@ -23,6 +23,7 @@ TEST(Balance, APixelHasNoSayInItsOwnDraws) {
   std::vector<PixelDraws> pixels(64);
   for (PixelDraws& p : pixels) {
     p.add(Vec3(1.0f)), p.add(Vec3(1.2f));
+    p.light = Vec3(1.1f);
   }
   const auto worthOf = [&](uint32_t pixel) {
     return worthAround(pixels, tile, pixel, 0.01, balance, 1, 1000);

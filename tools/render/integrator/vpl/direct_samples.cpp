@@ -173,6 +173,7 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
       draws[p].light +=
           tile.samples[s * tile.pixels + p].radiance.indirect * (1.0f / static_cast<float>(slots));
     add(tile, p, learned, priced ? (count + 1) / 2 : count, kDrawSamples, pixels[p], draws[p]);
+    draws[p].light += draws[p].sum * static_cast<float>(1.0 / draws[p].count);
   }
   if (priced) {
     PixelDraws unused;

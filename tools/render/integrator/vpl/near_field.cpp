@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "transport/walk.h"
 
@@ -34,6 +35,7 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
   std::array<SurfacePoint, kBatch> hits;
   std::array<ReachGrid::Lookup, kBatch> near;
   std::array<Start, kBatch> made;
+  const float fewer = 1.0f / std::sqrt(static_cast<float>(from.sharers));
   for (unsigned begin = 0, end; begin < count; begin = end) {
     end = begin + std::min(count - begin, unsigned{kBatch});
     size_t alive = 0;
@@ -56,10 +58,12 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
     rays_.closestHits({rays.data(), alive}, hits);
     if (compensation_ && only_ != Only::Direct) compensation_.lookUp({hits.data(), alive}, near);
     for (size_t k = 0; k < alive; ++k) {
-      const Vec3 before = out.indirect;
-      follow(made[k], point, rng, out);
-      const Vec3 brought = out.indirect - before;
-      out.squares += double{dot(brought, brought)};
+      const Vec3 before = out.indirect, hitsBefore = out.ofHits;
+      follow(made[k], from.sharers > 1, point, rng, out);
+      const Vec3 ofHit = out.ofHits - hitsBefore;
+      const Vec3 noise = out.indirect - before - ofHit * (1.0f - fewer);
+      out.noise += noise;
+      out.squares += double{dot(noise, noise)};
     }
   }
   out.rays += count;
@@ -69,16 +73,31 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
 // what Compensation says is missing: from the scattered light that a VPL knows where it speaks for
 // the point that the ray found, else by lighting that point as the first one, and so on. A light
 // that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
-void NearField::follow(const Start& start, const GatherPoint& point, Rng& rng,
+void NearField::follow(const Start& start, bool share, const GatherPoint& point, Rng& rng,
                        RaysBrought& out) const {
   Vec3 throughput = start.throughput;
+  // From a hit that others share `throughput` is counted anew.
+  SharedHit hit;
+  bool shared = false;
+  const auto add = [&](Vec3 light) {
+    if (shared) {
+      hit.radiance += light;
+      light = start.throughput * light;
+      out.ofHits += light;
+    }
+    out.compensated += light;
+    out.indirect += light;
+  };
+  const auto done = [&] {
+    if (shared) out.hits.push_back(hit);
+  };
   LearnedStrata strata;
   SpecularPath end =
       followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
-    if (only_ == Only::Direct) return;
+    if (only_ == Only::Direct) return done();
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
     const Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
     throughput *= end.throughput;
@@ -87,11 +106,17 @@ void NearField::follow(const Start& start, const GatherPoint& point, Rng& rng,
     const bool known = missing.scattered.has_value();
     const bool lit = known ? missing.share > 0.0f : rng.next() < missing.share;
     if (!lit) {
-      out.compensated += light;
-      out.indirect += light;
-      return;
+      add(light);
+      return done();
     }
     const Bsdf found(rays_.scene(), end.hit);
+    if (share && first && missing.own.within > 0.0f && end.links == 0 && found.diffuseOnly() &&
+        !(found.specularProbability() > 0.0f)) {
+      add(light);
+      hit = {end.hit.position, end.hit.ng, {}, missing.own};
+      shared = true;
+      light = {}, throughput = Vec3(1.0f);
+    }
     if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
     const Vec3 leaving =
         directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
@@ -100,16 +125,15 @@ void NearField::follow(const Start& start, const GatherPoint& point, Rng& rng,
     } else {
       const Gathered g = point(found, first ? kFirstDraws : kLaterDraws, rng);
       light += throughput * (leaving + g.radiance);
-      out.clamped += throughput * g.clamped;
+      out.clamped += shared ? start.throughput * throughput * g.clamped : throughput * g.clamped;
       out.shadowRays += g.shadowRays;
     }
-    out.compensated += light;
-    out.indirect += light;
+    add(light);
     BsdfSample sample;
     Ray next;
     if (known || links == kMaxExtensions ||
         !scatter(rays_, found, LobeGroup::Rough, Transport::Radiance, rng, sample, next)) {
-      return;
+      return done();
     }
     throughput *= sample.weight;
     end = followSpecularPath(rays_, lights_, next.origin, next.direction,

@@ -7,24 +7,31 @@
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/vpl/shared_hits.h"
 #include "transport/specular_path.h"
 #include "transport/surface_lights.h"
 
 namespace bnvpl {
 
-// What many rays brought, added up, and the squares of what each of them did.
+// What many rays brought, added up.
 struct RaysBrought {
   Vec3 direct, indirect, clamped, compensated;
-  double squares = 0.0;  // of `indirect`, channels added up
+  Vec3 ofHits;  // part of `indirect` and `compensated`: by `hits`
+  std::vector<SharedHit> hits;
+  // What a ray weighs in the noise of those that share it, and its square, channels added up.
+  Vec3 noise;
+  double squares = 0.0;
   uint32_t rays = 0, shadowRays = 0;
 
-  void addMeanTo(RadianceSample& out) const {
+  // `shared`: what these bring instead, by the rays of many.
+  void addMeanTo(RadianceSample& out, Vec3 shared) const {
     if (rays == 0) return;
     const float each = 1.0f / static_cast<float>(rays);
+    const Vec3 instead = shared - ofHits * each;
     out.direct += direct * each;
-    out.indirect += indirect * each;
+    out.indirect += indirect * each + instead;
     out.clamped += clamped * each;
-    out.compensated += compensated * each;
+    out.compensated += compensated * each + instead;
     out.shadowRays += shadowRays;
   }
 };
@@ -35,6 +42,7 @@ struct NearFieldVertex {
   Vec3 throughput;              // from there to the camera
   const LearnedLight& learned;  // direct light of the vertex is shared with its shadow rays
   SharedWithPhotons shared;
+  unsigned sharers = 1;  // samples that share what rays find
 };
 
 class NearField {
@@ -57,7 +65,8 @@ class NearField {
 
  private:
   struct Start;
-  void follow(const Start& start, const GatherPoint& point, Rng& rng, RaysBrought& out) const;
+  void follow(const Start& start, bool share, const GatherPoint& point, Rng& rng,
+              RaysBrought& out) const;
   Missing missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near, Rng& rng) const;
 
   const RayScene& rays_;

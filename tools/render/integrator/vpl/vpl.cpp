@@ -25,6 +25,9 @@ constexpr std::array kOptions{
                 "rays by the BSDF from each shaded point, with --balance on a quarter of them to "
                 "four times as many: for --compensate, for light over specular surfaces, and for "
                 "half of the direct light"),
+    neededBy(kIndirect, wholeOption("sharers", "8", 1, 32, "",
+                                    "samples of a tile that share what their near-field rays find "
+                                    "close by and in gaps between VPLs on matt surfaces; 1: none")),
     neededBy(kIndirect, wholeOption("caustic-photons", "64", 0, 4096, "",
                                     "photons a pixel, at most 16M in all, that look for light over "
                                     "mirrors, glass and sharp lobes; 0: near-field rays alone do")),
@@ -170,7 +173,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                       std::move(surfaceLights), in.only);
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(nearField), nearFieldRays,
-      std::move(tileLights), lightRays, std::move(seenLight), std::move(pixelControl),
+      indirect ? static_cast<unsigned>(options.whole("sharers")) : 1, std::move(tileLights),
+      lightRays, std::move(seenLight), std::move(pixelControl),
       makeCaustics(in, options, nearFieldRays), directSamples, in.only);
   if (indirect && options.on("balance")) {
     parts->balance = findBalance(

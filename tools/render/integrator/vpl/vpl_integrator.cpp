@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "tools/render/integrator/camera_vertex.h"
 
@@ -15,6 +16,8 @@ namespace {
 constexpr uint32_t kDrawDirection = 16, kDrawLight = 1u << 30, kDrawMore = 5u << 28;
 // With a price: rays that tell how many are worth it, and the most, over those asked for.
 constexpr unsigned kFirstPart = 4, kMostTimes = 4;
+// Pixels on a side: those of a block, which see much the same, share hits first.
+constexpr uint32_t kBlock = 4;
 
 // Of sample i.
 uint32_t slotOf(const TileSlots& tile, size_t i) {
@@ -61,8 +64,7 @@ double VplIntegrator::render(const TileSamples& tile, const Balance& balance) co
     s.radiance.direct +=
         at.seen[i].throughput * directAt(*at.bsdf[i], learned, slotOf(tile, i), key, s.rng);
   }
-  if (nearFieldRays_ > 0)
-    cost += cost::kNearFieldRay * addNearField(tile, at, learned, balance, pilot.light);
+  if (nearFieldRays_ > 0) cost += addNearField(tile, at, learned, balance, pilot.light);
   if (pixelControl_) pixelControl_->apply(tile, at.seen);
   for (size_t i = 0; caustics_ && i < count; ++i) {
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
@@ -103,7 +105,7 @@ void VplIntegrator::gatherTile(const TileSamples& tile, const Vertices& at, cons
   }
 }
 
-// Returns how many rays it sent.
+// Returns its cost.
 double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
                                    const LearnedLight& learned, const Balance& balance,
                                    Vec3 direct) const {
@@ -114,7 +116,8 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
     const SpecularPath& seen = at.seen[i];
     nearField_.send(
         {*at.bsdf[i], seen.throughput, learned,
-         caustics_ && seen.links == 0 ? caustics_->shared(seen.hit) : SharedWithPhotons{}},
+         caustics_ && seen.links == 0 ? caustics_->shared(seen.hit) : SharedWithPhotons{},
+         sharers_},
         gather_.point, rays, slotOf(tile, i) * rays, key, tile.samples[i].rng, brought[i]);
   };
   const bool priced = balance.price > 0.0 && only_ != Only::Direct;
@@ -122,29 +125,68 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
   for (size_t i = 0; i < count; ++i)
     send(i, first, random64(tile.key, i % tile.pixels, kDrawDirection));
   if (priced) {
+    const float each = static_cast<float>(tile.pixels) / static_cast<float>(count);
     std::vector<PixelDraws> draws(tile.pixels);
     for (size_t i = 0; i < count; ++i) {
       PixelDraws& pixel = draws[i % tile.pixels];
+      const RaysBrought& b = brought[i];
       if (i < tile.pixels) pixel.light = direct;
-      pixel.light += tile.samples[i].radiance.indirect *
-                     (static_cast<float>(tile.pixels) / static_cast<float>(count));
-      pixel.sum += brought[i].indirect, pixel.squares += brought[i].squares;
-      pixel.count += brought[i].rays;
+      pixel.light += tile.samples[i].radiance.indirect * each;
+      if (b.rays > 0) pixel.light += b.indirect * (each / static_cast<float>(b.rays));
+      pixel.sum += b.noise, pixel.squares += b.squares;
+      pixel.count += b.rays;
     }
+    const double costOfOne = cost::kNearFieldRay + cost::kSharedHit * (sharers_ - 1);
     std::vector<unsigned> worth(tile.pixels);
     for (uint32_t p = 0; p < tile.pixels; ++p)
-      worth[p] = worthAround(draws, tile, p, cost::kNearFieldRay, balance, first,
-                             kMostTimes * nearFieldRays_);
+      worth[p] =
+          worthAround(draws, tile, p, costOfOne, balance, first, kMostTimes * nearFieldRays_);
     for (size_t i = 0; i < count; ++i) {
       const size_t pixel = i % tile.pixels;
       send(i, worth[pixel] - first,
            random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDrawMore));
     }
   }
-  double rays = 0.0;
+  std::vector<Vec3> shared(count);
+  double spent = cost::kSharedHit * static_cast<double>(share(tile, at, brought, shared));
   for (size_t i = 0; i < count; ++i) {
-    brought[i].addMeanTo(tile.samples[i].radiance);
-    rays += brought[i].rays;
+    brought[i].addMeanTo(tile.samples[i].radiance, shared[i]);
+    spent += cost::kNearFieldRay * brought[i].rays;
+  }
+  return spent;
+}
+
+// The light of shared hits, for each sample by the rays of its group: those of its slot whose
+// pixels lie together and have one colour. What decides on their rays is the other colour's
+// (worthAround). Returns the number of shadow rays.
+size_t VplIntegrator::share(const TileSamples& tile, const Vertices& at,
+                            std::span<const RaysBrought> brought, std::span<Vec3> out) const {
+  if (sharers_ < 2) return 0;
+  size_t rays = 0;
+  std::vector<size_t> members;
+  std::vector<HitSharer> group;
+  std::vector<uint32_t> byBlocks(tile.pixels);
+  std::iota(byBlocks.begin(), byBlocks.end(), 0u);
+  std::ranges::stable_sort(byBlocks, {}, [&](uint32_t p) {
+    return p / tile.width / kBlock * kTileSide + p % tile.width / kBlock;
+  });
+  for (size_t slot = 0; slot < brought.size(); slot += tile.pixels) {
+    for (const uint32_t colour : {0u, 1u}) {
+      members.clear();
+      for (const uint32_t p : byBlocks) {
+        if (at.bsdf[slot + p] && chequer(p % tile.width, p / tile.width) == colour)
+          members.push_back(slot + p);
+      }
+      for (size_t begin = 0; begin < members.size(); begin += sharers_) {
+        const std::span<const size_t> some =
+            std::span(members).subspan(begin, std::min<size_t>(sharers_, members.size() - begin));
+        group.clear();
+        for (const size_t i : some) group.push_back({at.bsdf[i], brought[i].rays, brought[i].hits});
+        rays += shareHits(rays_, group);
+        for (size_t k = 0; k < some.size(); ++k)
+          out[some[k]] = at.seen[some[k]].throughput * group[k].brought;
+      }
+    }
   }
   return rays;
 }

@@ -21,12 +21,14 @@ namespace bnvpl {
 class VplIntegrator {
  public:
   // `gather` with a point function; empty for direct light alone. `nearFieldRays`: from each shaded
-  // point. `tileLights`: where direct light comes from, which `lightRays` look for; null: one ray
-  // to each light. `seenLight`, `pixelControl`, `caustics`: may be null. `directSamples`: where
-  // direct light has camera samples of its own.
+  // point. `sharers`: samples that share what these find. `tileLights`: where direct light
+  // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`,
+  // `pixelControl`, `caustics`: may be null. `directSamples`: where direct light has camera samples
+  // of its own.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather, NearField nearField,
-                unsigned nearFieldRays, std::unique_ptr<const TileLights> tileLights,
-                unsigned lightRays, std::unique_ptr<const SeenLight> seenLight,
+                unsigned nearFieldRays, unsigned sharers,
+                std::unique_ptr<const TileLights> tileLights, unsigned lightRays,
+                std::unique_ptr<const SeenLight> seenLight,
                 std::unique_ptr<const PixelControl> pixelControl,
                 std::unique_ptr<const Caustics> caustics,
                 std::optional<DirectSamples> directSamples, Only only)
@@ -35,6 +37,7 @@ class VplIntegrator {
         gather_(std::move(gather)),
         nearField_(std::move(nearField)),
         nearFieldRays_(nearFieldRays),
+        sharers_(sharers),
         tileLights_(std::move(tileLights)),
         lightRays_(lightRays),
         seenLight_(std::move(seenLight)),
@@ -53,12 +56,14 @@ class VplIntegrator {
                   Vec3 direct) const;
   double addNearField(const TileSamples& tile, const Vertices& at, const LearnedLight& learned,
                       const Balance& balance, Vec3 direct) const;
+  size_t share(const TileSamples& tile, const Vertices& at, std::span<const RaysBrought> brought,
+               std::span<Vec3> out) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
   Gather gather_;
   NearField nearField_;
-  unsigned nearFieldRays_;
+  unsigned nearFieldRays_, sharers_;
   std::unique_ptr<const TileLights> tileLights_;
   unsigned lightRays_;
   std::unique_ptr<const SeenLight> seenLight_;
