@@ -3,19 +3,57 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace bnvpl {
 
-// Index by a running sum that ends at 1, and the share of u inside that entry, to be used again.
+// The first entry whose running sum is above u; the last where none is.
 template <typename T>
-size_t sampleCdf(std::span<const T> cdf, float& u) {
-  const auto it = std::upper_bound(cdf.begin(), cdf.end() - 1, static_cast<T>(u));
-  const auto i = static_cast<size_t>(it - cdf.begin());
+size_t findInCdf(std::span<const T> cdf, size_t begin, size_t end, float u) {
+  const auto from = cdf.begin();
+  return static_cast<size_t>(std::upper_bound(from + std::ptrdiff_t(begin),
+                                              from + std::ptrdiff_t(end), static_cast<T>(u)) -
+                             from);
+}
+
+// The share of u inside entry i, in [0, 1), to be used again.
+template <typename T>
+void shareInCdf(std::span<const T> cdf, size_t i, float& u) {
   const T low = i > 0 ? cdf[i - 1] : T{0}, width = cdf[i] - low;
   u = width > T{0} ? std::min(static_cast<float>((static_cast<T>(u) - low) / width), 0x1.fffffep-1f)
                    : 0.0f;
+}
+
+// Index by a running sum that ends at 1.
+template <typename T>
+size_t sampleCdf(std::span<const T> cdf, float& u) {
+  const size_t i = findInCdf(cdf, 0, cdf.size() - 1, u);
+  shareInCdf(cdf, i, u);
+  return i;
+}
+
+// The same found sooner, by where the running sum passes so many even steps: a long one lies in
+// many lines of memory, of which a search would wait for one after another.
+inline constexpr size_t kGuideSteps = 128;
+
+template <typename T>
+void appendGuide(std::span<const T> cdf, std::vector<uint32_t>& guide) {
+  for (size_t step = 0; step < kGuideSteps; ++step) {
+    const float u = static_cast<float>(step) / static_cast<float>(kGuideSteps);
+    guide.push_back(static_cast<uint32_t>(findInCdf(cdf, 0, cdf.size() - 1, u)));
+  }
+}
+
+// `guide`: kGuideSteps entries.
+template <typename T>
+size_t sampleCdf(std::span<const T> cdf, std::span<const uint32_t> guide, float& u) {
+  const size_t step =
+      std::min(static_cast<size_t>(u * static_cast<float>(kGuideSteps)), kGuideSteps - 1);
+  const size_t end = step + 1 < kGuideSteps ? guide[step + 1] : cdf.size() - 1;
+  const size_t i = findInCdf(cdf, guide[step], end, u);
+  shareInCdf(cdf, i, u);
   return i;
 }
 

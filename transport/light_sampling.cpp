@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/cdf.h"
+#include "core/prefetch.h"
 #include "transport/light_shape.h"
 #include "transport/lights.h"
 
@@ -75,15 +76,18 @@ Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radia
     return sampleSphere(u, v);
   }
   const EnvironmentImage& image = scene_.environments[s.image];
-  const auto y = static_cast<uint32_t>(sampleCdf<double>(light.rowCdf, v));
-  const size_t x = sampleCdf(light.cdfOfRow(y, image.width), u);
+  const auto y = static_cast<uint32_t>(sampleCdf<double>(light.rowCdf, light.rowGuide, v));
+  const size_t x = sampleCdf(light.cdfOfRow(y, image.width), light.guideOfRow(y), u);
+  const Vec3& texel = image.radiance[size_t{y} * image.width + x];
+  prefetch(&texel);  // comes while the direction is worked out
   // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar
   // angle.
   const float top = std::cos(kPi * float(y) / float(image.height));
   const float row = std::acos(std::clamp(top - v * bandHeight(y, image.height), -1.0f, 1.0f)) / kPi;
+  const Vec3 direction = directionOf(s, (float(x) + u) / float(image.width), row);
   pdf = texelPdf(light, x, y);
-  radiance = image.radiance[size_t{y} * image.width + x] * s.scale;
-  return directionOf(s, (float(x) + u) / float(image.width), row);
+  radiance = texel * s.scale;
+  return direction;
 }
 
 Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) const {

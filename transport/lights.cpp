@@ -136,8 +136,10 @@ void LightSet::addSpecLights() {
           }
           const std::vector<float> cdf = makeCdf<float>(row);
           l.cdf.insert(l.cdf.end(), cdf.begin(), cdf.end());
+          appendGuide<float>(cdf, l.guide);
         }
         l.rowCdf = makeCdf<double>(rows);
+        appendGuide<double>(l.rowCdf, l.rowGuide);
         for (size_t c = 0; c < 3; ++c) l.power[c] = static_cast<float>(power[c]);
         break;
       }

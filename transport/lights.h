@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/cdf.h"
 #include "core/random.h"
 #include "core/sampling.h"
 #include "transport/rays.h"
@@ -100,7 +101,11 @@ class LightSet {
     uint32_t material = kNone;
     std::vector<uint32_t> triangles;
     std::vector<float> cdf;  // over area, or over the texels of each row of an environment image
-    std::vector<double> rowCdf;  // over those rows
+    std::vector<double> rowCdf;             // over those rows
+    std::vector<uint32_t> guide, rowGuide;  // of each row of `cdf`, and of rowCdf
+    std::span<const uint32_t> guideOfRow(size_t row) const {
+      return std::span(guide).subspan(row * kGuideSteps, kGuideSteps);
+    }
     std::span<const float> cdfOfRow(size_t row, size_t width) const {
       return std::span(cdf).subspan(row * width, width);
     }

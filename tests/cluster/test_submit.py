@@ -199,7 +199,7 @@ class SubmitTest(unittest.TestCase):
                     for name, row in rows.items()}
         small = asked()
         self.assertTrue(all(memory <= 384 and time <= 11 for memory, time in small.values()), small)
-        large = asked("--candidates", "100M", "--vpls", "1M", "--photons", "10G", "--render-flags=--size 3840x2160",
+        large = asked("--candidates", "100M", "--vpls", "1M", "--photons", "10G", "--spp", "64", "--render-flags=--size 3840x2160",
                       "--shards", "estimate=4,render=4")
         for stage in ("place", "eliminate", "estimate", "render", "merge-render"):
             self.assertGreater(large[stage][0], small[stage][0], stage)

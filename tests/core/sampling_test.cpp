@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
+#include "core/cdf.h"
 #include "core/random.h"
 #include "tools/common/streams.h"
 
@@ -138,6 +141,30 @@ TEST(Sampling, PowerHeuristicSharesSumToOne) {
   }
   EXPECT_GT(powerHeuristic(2.0f, 1.0f), 0.79f);  // squares: 4 / 5
   EXPECT_EQ(powerHeuristic(INFINITY, 1.0f), 1.0f);
+}
+
+// What a guide finds is what a search of all finds, to the last bit: steep rows, rows with nothing
+// at their ends, rows of one entry, and black ones.
+TEST(Cdf, AGuideFindsTheSame) {
+  Rng rng(1, 0);
+  for (const size_t size : {1u, 2u, 100u, 2048u}) {
+    for (const float steepness : {0.0f, 1.0f, 30.0f}) {
+      std::vector<double> weights(size);
+      for (size_t i = size / 4; i < size - size / 4; ++i)
+        weights[i] = std::exp(double{steepness * rng.next()});
+      if (steepness == 0.0f) std::ranges::fill(weights, 0.0);
+      const std::vector<float> cdf = makeCdf<float>(weights);
+      std::vector<uint32_t> guide;
+      appendGuide<float>(cdf, guide);
+      ASSERT_EQ(guide.size(), kGuideSteps);
+      for (int k = 0; k < 20000; ++k) {
+        const float u = k < 129 ? std::min(float(k) / 128.0f, 0x1.fffffep-1f) : rng.next();
+        float a = u, b = u;
+        ASSERT_EQ(sampleCdf<float>(cdf, a), sampleCdf<float>(cdf, guide, b)) << u;
+        ASSERT_EQ(a, b);
+      }
+    }
+  }
 }
 
 }  // namespace
