@@ -16,6 +16,8 @@
 // more, for the film has no least effort of its own but a camera ray.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <span>
 
@@ -36,7 +38,7 @@ struct Balance {
   double light = 0.0;  // squared, that is added to a tile's, so that the dark ones do not get all
 
   double over(double variance, Vec3 tileLight) const {
-    const double all = squared(tileLight) + light;
+    const double tile = squared(tileLight), all = std::sqrt(tile * std::min(tile, light * 400.0)) + light;
     return all > 0.0 ? variance / all : 0.0;
   }
 };

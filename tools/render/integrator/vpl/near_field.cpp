@@ -35,7 +35,6 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
   std::array<SurfacePoint, kBatch> hits;
   std::array<ReachGrid::Lookup, kBatch> near;
   std::array<Start, kBatch> made;
-  const float fewer = 1.0f / std::sqrt(static_cast<float>(from.sharers));
   for (unsigned begin = 0, end; begin < count; begin = end) {
     end = begin + std::min(count - begin, unsigned{kBatch});
     size_t alive = 0;
@@ -59,11 +58,9 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
     if (compensation_ && only_ != Only::Direct) compensation_.lookUp({hits.data(), alive}, near);
     for (size_t k = 0; k < alive; ++k) {
       const Vec3 before = out.indirect, hitsBefore = out.ofHits;
-      follow(made[k], from.sharers > 1, point, rng, out);
-      const Vec3 ofHit = out.ofHits - hitsBefore;
-      const Vec3 noise = out.indirect - before - ofHit * (1.0f - fewer);
-      out.noise += noise;
-      out.squares += double{dot(noise, noise)};
+      follow(made[k], from.shares, point, rng, out);
+      const Vec3 alone = (out.indirect - before) - (out.ofHits - hitsBefore);
+      out.squares += double{dot(alone, alone)};
     }
   }
   out.rays += count;

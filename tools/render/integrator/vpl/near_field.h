@@ -18,8 +18,7 @@ struct RaysBrought {
   Vec3 direct, indirect, clamped, compensated;
   Vec3 ofHits;  // part of `indirect` and `compensated`: by `hits`
   std::vector<SharedHit> hits;
-  // What a ray weighs in the noise of those that share it, and its square, channels added up.
-  Vec3 noise;
+  // Of the indirect light that hits do not bring: each ray's squared, channels added up.
   double squares = 0.0;
   uint32_t rays = 0, shadowRays = 0;
 
@@ -42,7 +41,7 @@ struct NearFieldVertex {
   Vec3 throughput;              // from there to the camera
   const LearnedLight& learned;  // direct light of the vertex is shared with its shadow rays
   SharedWithPhotons shared;
-  unsigned sharers = 1;  // samples that share what rays find
+  bool shares = false;  // whether other samples share what rays find
 };
 
 class NearField {

@@ -68,8 +68,11 @@ size_t shareHits(const RayScene& rays, std::span<HitSharer> group) {
       if (of[k].seen) density += static_cast<float>(group[k].rays) * of[k].density;
     if (!(density > 0.0f)) continue;
     const Vec3 each = hits[h]->radiance * (1.0f / density);
-    for (size_t k = 0; k < members; ++k)
-      if (of[k].seen) group[k].brought += of[k].value * each;
+    for (size_t k = 0; k < members; ++k) {
+      if (!of[k].seen) continue;
+      const Vec3 light = of[k].value * each;
+      group[k].brought += light, group[k].squares += light * light;
+    }
   }
   return segments.size();
 }

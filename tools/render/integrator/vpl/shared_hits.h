@@ -40,6 +40,7 @@ struct HitSharer {
   unsigned rays;                    // that it sent, all of them
   std::span<const SharedHit> hits;  // of these
   Vec3 brought = {};                // by the hits of all, W/(m2 sr)
+  Vec3 squares = {};                // by each of them, squared: the variance, as they are few
 };
 
 // Fills in what each of them gets. Returns the number of shadow rays.

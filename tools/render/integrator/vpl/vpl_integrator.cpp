@@ -16,6 +16,8 @@ namespace {
 constexpr uint32_t kDrawDirection = 16, kDrawLight = 1u << 30, kDrawMore = 5u << 28;
 // With a price: rays that tell how many are worth it, and the most, over those asked for.
 constexpr unsigned kFirstPart = 4, kMostTimes = 4;
+// Of so many slots one tells how much noise shared hits leave.
+constexpr size_t kSlotsForOne = 4;
 // Pixels on a side: those of a block, which see much the same, share hits first.
 constexpr uint32_t kBlock = 4;
 
@@ -31,6 +33,12 @@ struct VplIntegrator::Vertices {
   std::vector<SpecularPath> seen;
   std::vector<Bsdf> made;
   std::vector<const Bsdf*> bsdf;  // null: nothing to light
+};
+
+// What a sample gets of shared hits, and what each brings, squared, channels added up.
+struct VplIntegrator::SharedLight {
+  Vec3 radiance;
+  double squares = 0.0;
 };
 
 double VplIntegrator::render(const TileSamples& tile, const Balance& balance) const {
@@ -117,15 +125,21 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
     nearField_.send(
         {*at.bsdf[i], seen.throughput, learned,
          caustics_ && seen.links == 0 ? caustics_->shared(seen.hit) : SharedWithPhotons{},
-         sharers_},
+         sharers_ > 1},
         gather_.point, rays, slotOf(tile, i) * rays, key, tile.samples[i].rng, brought[i]);
   };
   const bool priced = balance.price > 0.0 && only_ != Only::Direct;
   const unsigned first = priced ? (nearFieldRays_ + kFirstPart - 1) / kFirstPart : nearFieldRays_;
   for (size_t i = 0; i < count; ++i)
     send(i, first, random64(tile.key, i % tile.pixels, kDrawDirection));
+  std::vector<SharedLight> shared(count);
+  double spent = 0.0;
   if (priced) {
     const float each = static_cast<float>(tile.pixels) / static_cast<float>(count);
+    const size_t slots = count / tile.pixels;
+    spent += cost::kSharedHit * double(share(tile, at, brought, kSlotsForOne, shared));
+    const double ofSlots =
+        double(slots) / double((slots + kSlotsForOne - 1) / kSlotsForOne) * first * first;
     std::vector<PixelDraws> draws(tile.pixels);
     for (size_t i = 0; i < count; ++i) {
       PixelDraws& pixel = draws[i % tile.pixels];
@@ -133,7 +147,7 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
       if (i < tile.pixels) pixel.light = direct;
       pixel.light += tile.samples[i].radiance.indirect * each;
       if (b.rays > 0) pixel.light += b.indirect * (each / static_cast<float>(b.rays));
-      pixel.sum += b.noise, pixel.squares += b.squares;
+      pixel.squares += b.squares + ofSlots * shared[i].squares;
       pixel.count += b.rays;
     }
     const double costOfOne = cost::kNearFieldRay + cost::kSharedHit * (sharers_ - 1);
@@ -147,20 +161,20 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
            random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDrawMore));
     }
   }
-  std::vector<Vec3> shared(count);
-  double spent = cost::kSharedHit * static_cast<double>(share(tile, at, brought, shared));
+  spent += cost::kSharedHit * double(share(tile, at, brought, 1, shared));
   for (size_t i = 0; i < count; ++i) {
-    brought[i].addMeanTo(tile.samples[i].radiance, shared[i]);
+    brought[i].addMeanTo(tile.samples[i].radiance, shared[i].radiance);
     spent += cost::kNearFieldRay * brought[i].rays;
   }
   return spent;
 }
 
-// The light of shared hits, for each sample by the rays of its group: those of its slot whose
-// pixels lie together and have one colour. What decides on their rays is the other colour's
-// (worthAround). Returns the number of shadow rays.
+// The light of shared hits, for each sample of every so manieth slot by the rays of its group:
+// those of its slot whose pixels lie together and have one colour. What decides on their rays is
+// the other colour's (worthAround). Returns the number of shadow rays.
 size_t VplIntegrator::share(const TileSamples& tile, const Vertices& at,
-                            std::span<const RaysBrought> brought, std::span<Vec3> out) const {
+                            std::span<const RaysBrought> brought, size_t everySlot,
+                            std::span<SharedLight> out) const {
   if (sharers_ < 2) return 0;
   size_t rays = 0;
   std::vector<size_t> members;
@@ -170,7 +184,7 @@ size_t VplIntegrator::share(const TileSamples& tile, const Vertices& at,
   std::ranges::stable_sort(byBlocks, {}, [&](uint32_t p) {
     return p / tile.width / kBlock * kTileSide + p % tile.width / kBlock;
   });
-  for (size_t slot = 0; slot < brought.size(); slot += tile.pixels) {
+  for (size_t slot = 0; slot < brought.size(); slot += everySlot * tile.pixels) {
     for (const uint32_t colour : {0u, 1u}) {
       members.clear();
       for (const uint32_t p : byBlocks) {
@@ -183,8 +197,11 @@ size_t VplIntegrator::share(const TileSamples& tile, const Vertices& at,
         group.clear();
         for (const size_t i : some) group.push_back({at.bsdf[i], brought[i].rays, brought[i].hits});
         rays += shareHits(rays_, group);
-        for (size_t k = 0; k < some.size(); ++k)
-          out[some[k]] = at.seen[some[k]].throughput * group[k].brought;
+        for (size_t k = 0; k < some.size(); ++k) {
+          const Vec3 throughput = at.seen[some[k]].throughput;
+          out[some[k]] = {throughput * group[k].brought,
+                          double{dot(throughput * throughput, group[k].squares)}};
+        }
       }
     }
   }

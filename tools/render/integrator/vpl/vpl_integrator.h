@@ -56,8 +56,9 @@ class VplIntegrator {
                   Vec3 direct) const;
   double addNearField(const TileSamples& tile, const Vertices& at, const LearnedLight& learned,
                       const Balance& balance, Vec3 direct) const;
+  struct SharedLight;
   size_t share(const TileSamples& tile, const Vertices& at, std::span<const RaysBrought> brought,
-               std::span<Vec3> out) const;
+               size_t everySlot, std::span<SharedLight> out) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
