@@ -13,6 +13,7 @@
 // LobeSum adds up.
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include "transport/bsdf/lobe_sum.h"
@@ -45,6 +46,10 @@ class Bsdf {
   }
   bool diffuseOnly() const {
     return ask([](const auto& b) { return b.diffuseOnly(); });
+  }
+  // Nothing where gloss of the rough group looks different from everywhere.
+  std::optional<RoughLeaving> roughLeaving() const {
+    return ask([&](const auto& b) { return b.roughLeaving(point_); });
   }
   // Probability with which a path should take the specular group; 0 or 1 where there is but one.
   float specularProbability() const {

@@ -9,13 +9,15 @@ constexpr float kAboveSurface = 0.01f;
 
 constexpr float kLeastCosine = 1e-5f;  // of wo: lobes divide by it
 
+float leastAbove(Vec3 ng, Vec3 wo) { return std::min(kAboveSurface, 0.9f * dot(ng, wo)); }
+
 // The shading normal for lobes that look for wo's mirror image: where that lies below the surface,
 // or wo below the shading normal's horizon, the one whose mirror image is just above. It moves
 // continuously.
 Vec3 bentNormal(const SurfacePoint& p, Vec3 ns) {
+  if (keepsNormal(p.ng, ns, p.wo)) return ns;
   const Vec3 mirror = reflect(p.wo, ns);
-  const float up = dot(mirror, p.ng), least = std::min(kAboveSurface, 0.9f * dot(p.ng, p.wo));
-  if (dot(ns, p.wo) > 0.0f && up >= least) return ns;
+  const float up = dot(mirror, p.ng), least = leastAbove(p.ng, p.wo);
   const Vec3 along = mirror - p.ng * up;
   const float length2 = lengthSquared(along);
   if (!(length2 > 1e-12f) || !(least > 0.0f)) return p.ng;
@@ -24,6 +26,10 @@ Vec3 bentNormal(const SurfacePoint& p, Vec3 ns) {
 }
 
 }  // namespace
+
+bool keepsNormal(Vec3 ng, Vec3 ns, Vec3 wo) {
+  return dot(ns, wo) > 0.0f && dot(reflect(wo, ns), ng) >= leastAbove(ng, wo);
+}
 
 LobeFrame::LobeFrame(const SurfacePoint& point, Vec3 shadingNormal, float turned)
     : z(bentNormal(point, shadingNormal)), ns(shadingNormal), turns(turned) {

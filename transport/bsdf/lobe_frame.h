@@ -5,6 +5,10 @@
 
 namespace bnvpl {
 
+// Whether the shading normal serves lobes seen from wo as it is: that and its mirror image lie above
+// the surface.
+bool keepsNormal(Vec3 ng, Vec3 ns, Vec3 wo);
+
 struct LobeFrame {
   Vec3 x, y, z;  // z: the shading normal, bent where wo's mirror image needs it
   Vec3 wo;       // local, z > 0

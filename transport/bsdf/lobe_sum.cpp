@@ -122,6 +122,19 @@ Vec3 LobeSum::glossyBound(uint32_t frame, float maxCosine, float cosMirror) cons
   return sum;
 }
 
+std::optional<RoughLeaving> LobeSum::roughLeaving(const SurfacePoint& point) const {
+  if (diffuseOnly_) return RoughLeaving{point.ng, point.ns};
+  const Summand* rough = nullptr;
+  for (const Summand& s : lobes()) {
+    if (s.group != LobeGroup::Rough) continue;
+    if (rough) return {};
+    rough = &s;
+  }
+  const auto* coated = std::get_if<CoatedBase>(&rough->lobe);
+  if (!coated || rough->frame != 0 || rough->above.weight > 0.0f) return {};
+  return RoughLeaving{point.ng, point.ns, coated->ior, coated->alpha};
+}
+
 float LobeSum::photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) const {
   return shadingFactor(point, normal) * std::fabs(dot(point.ng, wi));
 }

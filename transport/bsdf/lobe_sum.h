@@ -2,6 +2,7 @@
 // add lobes; all that is asked of the sum is here, without a case by model.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -12,6 +13,7 @@
 #include "transport/bsdf/diffuse/diffuse.h"
 #include "transport/bsdf/lobe_frame.h"
 #include "transport/bsdf/metallic_roughness/metallic_roughness.h"
+#include "transport/bsdf/rough_leaving.h"
 
 namespace bnvpl {
 
@@ -42,6 +44,7 @@ class LobeSum {
   Vec3 roughAlbedo() const { return roughAlbedo_; }
   Vec3 diffuseValue() const { return diffuseValue_; }
   bool diffuseOnly() const { return diffuseOnly_; }
+  std::optional<RoughLeaving> roughLeaving(const SurfacePoint& point) const;
   float specularProbability() const { return specularProbability_; }
   bool specularIsDelta() const { return specularIsDelta_; }
   float reflectance() const { return reflectance_; }

@@ -1,6 +1,9 @@
 // MTL's model: Lambert plus a Phong lobe or a mirror; or smooth glass. theory.md beside this file.
 #pragma once
 
+#include <optional>
+
+#include "transport/bsdf/rough_leaving.h"
 #include "transport/bsdf/scatter.h"
 
 namespace bnvpl {
@@ -16,6 +19,9 @@ class PhongBsdf {
   Vec3 roughAlbedo() const { return diffuse_ + roughGlossy(); }
   Vec3 diffuseValue() const { return diffuse_ * (1.0f / kPi); }
   bool diffuseOnly() const { return isBlack(roughGlossy()); }
+  std::optional<RoughLeaving> roughLeaving(const SurfacePoint& point) const {
+    return diffuseOnly() ? std::optional(RoughLeaving{point.ng, point.ns}) : std::nullopt;
+  }
   float specularProbability() const { return specularProbability_; }
   bool specularIsDelta() const { return !sharp_; }
   float reflectance() const;

@@ -76,6 +76,7 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
   // From a hit that others share `throughput` is counted anew.
   SharedHit hit;
   bool shared = false;
+  float factor = 0.0f;  // of its RoughLeaving, towards this ray
   const auto add = [&](Vec3 light) {
     if (shared) {
       hit.radiance += light;
@@ -86,7 +87,9 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
     out.indirect += light;
   };
   const auto done = [&] {
-    if (shared) out.hits.push_back(hit);
+    if (!shared) return;
+    hit.radiance *= 1.0f / factor;
+    out.hits.push_back(hit);
   };
   LearnedStrata strata;
   SpecularPath end =
@@ -107,12 +110,15 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
       return done();
     }
     const Bsdf found(rays_.scene(), end.hit);
-    if (share && first && missing.own.within > 0.0f && end.links == 0 && found.diffuseOnly() &&
-        !(found.specularProbability() > 0.0f)) {
-      add(light);
-      hit = {end.hit.position, end.hit.ng, {}, missing.own};
-      shared = true;
-      light = {}, throughput = Vec3(1.0f);
+    if (share && first && missing.own.within > 0.0f && end.links == 0) {
+      const std::optional<RoughLeaving> matt = found.roughLeaving();
+      factor = matt ? matt->towards(end.hit.wo) : 0.0f;
+      if (factor > 0.0f) {
+        add(light);
+        hit = {end.hit.position, end.hit.ng, *matt, {}, missing.own};
+        shared = true;
+        light = {}, throughput = end.throughput;
+      }
     }
     if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
     const Vec3 leaving =

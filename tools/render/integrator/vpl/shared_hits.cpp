@@ -20,8 +20,11 @@ Link linkOf(const Bsdf& bsdf, const SharedHit& hit) {
   const Vec3 wi = way * (1.0f / distance);
   const float cosine = -dot(hit.normal, wi);
   if (!(cosine > 0.0f)) return {};
+  const float leaving = hit.leaving.towards(-wi);
+  if (!(leaving > 0.0f)) return {};
   const float perArea = share * cosine / squared;
-  Link link{bsdf.pdf(LobeGroup::Rough, wi) * perArea, bsdf.eval(LobeGroup::Rough, wi) * perArea};
+  Link link{bsdf.pdf(LobeGroup::Rough, wi) * perArea,
+            bsdf.eval(LobeGroup::Rough, wi) * (perArea * leaving)};
   link.seen = link.density > 0.0f || !isBlack(link.value);
   return link;
 }

@@ -1,7 +1,8 @@
 // What near-field rays of one sample find lights the other samples of its group as well (local
 // virtual lights): points whose own light had to be found out, in gaps between VPLs or too close
-// for what a VPL knows. Where such a surface is matt, the light that leaves it is the same in all
-// directions, and finding it out costs far more than asking who sees it.
+// for what a VPL knows. Where such a surface is matt, bare or below a sharp coat, the light that
+// leaves it is known in all directions once it is in one (RoughLeaving), and finding it out costs
+// far more than asking who sees it.
 //
 // A group's rays are techniques of one multi-sample MIS (Veach 1997, section 9.2.2). Sample k sends
 // n_k rays by its BSDF; seen from the hit y their density is
@@ -14,6 +15,8 @@
 //   sum over y:  f_j(x_j -> y) s_y(|x_j - y|) |cos_y| / |x_j - y|^2 V(x_j, y) L(y) / sum_k n_k
 //   p_k(y).
 //
+// Below a coat L depends on the direction to x_j by a factor alone; and over one, where the ray may
+// be taken by the gloss instead, L is over the chance that it was not, as p_k leaves that out.
 // No hit weighs more than it would with the rays of j alone. The mean is right as long as no n_k
 // depends on what the group's rays have found.
 #pragma once
@@ -27,11 +30,12 @@
 
 namespace bnvpl {
 
-// A point of a matt surface.
+// A point of a surface that is matt below whatever coat it has.
 struct SharedHit {
   Vec3 position, normal;  // towards where it was seen from, unit
-  Vec3 radiance;          // that leaves there, W/(m2 sr)
-  OwnLight own;           // how much of it is missing elsewhere
+  RoughLeaving leaving;
+  Vec3 radiance;  // that leaves there, over the factor of `leaving`, W/(m2 sr)
+  OwnLight own;   // how much of it is missing elsewhere
 };
 
 // A sample of the group.
