@@ -49,21 +49,23 @@ Vec3 sampleLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 // One of the rays by what was learned, by a point of the unit square.
 template <typename RayPdf>
 Vec3 sampleStratum(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                   const LearnedLight& learned, Point2 at, bool shared, const RayPdf& rayPdf) {
+                   const LearnedLight& learned, Point2 at, bool shared, const RayPdf& rayPdf,
+                   const SharedWithPhotons& photons = {}) {
   const LearnedStrata& strata = *learned.strata;
   const uint32_t stratum = strata.pick(at.x);
   const LightPlace place = strata.all->place(stratum, at);
   const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
                       strata.all->share(stratum) * strata.all->lightShare(place.light);
-  return sampleLight(rays, lights, bsdf, group, place, count, shared, rayPdf);
+  return sampleLight(rays, lights, bsdf, group, place, count, shared, rayPdf, photons);
 }
 
 template <typename RayPdf>
 Vec3 sampleOne(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-               const LearnedStrata& strata, bool shared, const RayPdf& rayPdf, Rng& rng) {
+               const LearnedStrata& strata, bool shared, const RayPdf& rayPdf, Rng& rng,
+               const SharedWithPhotons& photons = {}) {
   if (strata.all) {
     const float u = rng.next(), v = rng.next();
-    return sampleStratum(rays, lights, bsdf, group, {&strata, 1}, {u, v}, shared, rayPdf);
+    return sampleStratum(rays, lights, bsdf, group, {&strata, 1}, {u, v}, shared, rayPdf, photons);
   }
   if (lights.size() == 0) return {};
   float probability = 1.0f;
@@ -71,7 +73,7 @@ Vec3 sampleOne(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, L
   if (!(probability > 0.0f)) return {};
   const float u = rng.next(), v = rng.next();
   return sampleLight(rays, lights, bsdf, group, {static_cast<uint32_t>(light), {u, v}}, probability,
-                     shared, rayPdf);
+                     shared, rayPdf, photons);
 }
 
 }  // namespace
@@ -113,9 +115,10 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 }
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng) {
+                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,
+                 const SharedWithPhotons& shared) {
   return sampleOne(rays, lights, bsdf, group, strata, bsdfRays > 0,
-                   raysByBsdf(bsdf, group, bsdfRays), rng);
+                   raysByBsdf(bsdf, group, bsdfRays), rng, shared);
 }
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,

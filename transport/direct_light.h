@@ -47,7 +47,8 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
                  const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint, uint64_t key);
 // One ray: by what was learned, or where that is nothing to a light picked in proportion to power.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng);
+                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,
+                 const SharedWithPhotons& shared = {});
 // The same beside a ray whose direction the caller does not draw by the BSDF alone: `rayPdf` is the
 // density of all that it may draw by, 1/sr.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,

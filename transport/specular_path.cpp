@@ -1,5 +1,6 @@
 #include "transport/specular_path.h"
 
+#include "transport/surface_lights.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -15,16 +16,18 @@ bool isPlain(const Material& material) {
 }  // namespace
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
-                                Vec3 direction, const Arrival& start, Rng& rng) {
+                                Vec3 direction, const Arrival& start, Rng& rng,
+                                const LightsBehind& behind) {
   SurfacePoint first;
   rays.closestHit(origin, direction, first);
-  return followSpecularPath(rays, lights, first, direction, start, rng);
+  return followSpecularPath(rays, lights, first, direction, start, rng, behind);
 }
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
-                                Rng& rng) {
+                                Rng& rng, const LightsBehind& behind) {
   SpecularPath end;
+  LearnedStrata strata;  // of the last specular vertex
   end.hit = first;
   end.throughput = Vec3{1.0f};
   Arrival arrival = start;
@@ -53,15 +56,18 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     }
     if (++end.links > kMaxSpecular) return end;
     if (!bsdf.specularIsDelta()) {
-      end.metLater += end.throughput * directLight(rays, lights, bsdf, LobeGroup::Specular,
-                                                   LightChoice::One, 1, rng, start.shared);
+      strata = end.links == 1 && behind.first ? *behind.first
+               : behind.others ? behind.others->at(end.hit.position, end.hit.ng)
+                               : LearnedStrata{};
+      end.metLater += end.throughput * directLight(rays, lights, bsdf, LobeGroup::Specular, strata,
+                                                   1, rng, start.shared);
     }
     BsdfSample sample;
     Ray next;
     if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
       return end;
     end.throughput *= sample.weight;
-    arrival = {sample.pdf, end.hit.position, LightChoice::One, {}, start.shared};
+    arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), start.shared};
     direction = next.direction;
     rays.closestHit(next.origin, direction, end.hit);
   }

@@ -6,6 +6,14 @@
 
 namespace bnvpl {
 
+class SurfaceLights;
+
+// Where sharp lobes look for lights; null: to one in proportion to its power.
+struct LightsBehind {
+  const LearnedStrata* first = nullptr;   // from the first specular vertex
+  const SurfaceLights* others = nullptr;  // from all where `first` is not given
+};
+
 struct SpecularPath {
   bool rough = false;  // `hit` is a vertex where the rough lobes were taken
   SurfacePoint hit;
@@ -18,10 +26,11 @@ struct SpecularPath {
 
 // `arrival`: at the first hit; its `shared` is for all that is met behind specular vertices.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
-                                Vec3 direction, const Arrival& arrival, Rng& rng);
+                                Vec3 direction, const Arrival& arrival, Rng& rng,
+                                const LightsBehind& behind = {});
 // The same where it is known what the ray hits; first.triangle is kNone where that is nothing.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
-                                Rng& rng);
+                                Rng& rng, const LightsBehind& behind = {});
 
 }  // namespace bnvpl

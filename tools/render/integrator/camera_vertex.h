@@ -8,8 +8,10 @@ namespace bnvpl {
 
 // From the camera to the first rough vertex; what is met on the way is direct light.
 inline SpecularPath seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin,
-                            Vec3 direction, Rng& rng, RadianceSample& out) {
-  const SpecularPath end = followSpecularPath(rays, lights, origin, direction, Arrival{}, rng);
+                            Vec3 direction, Rng& rng, RadianceSample& out,
+                            const LightsBehind& behind = {}) {
+  const SpecularPath end =
+      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
   out.direct = end.metFirst + end.metLater;
   if (end.firstDistance < INFINITY) {
     out.depth = end.firstDistance * dot(direction, rays.scene().camera.forward);

@@ -40,7 +40,7 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
       seeFrom(rays_, lights_, scene.camera.position,
               cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                               (float(y) + at.y) / float(scene.film.height)),
-              rng, sample);
+              rng, sample, {learned.strata, surfaceLights_});
   Light light{sample.direct, {}};
   if (!path.rough) return light;
   const Bsdf bsdf(scene, path.hit);
@@ -194,7 +194,8 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
       const Light& sum = at.sums[s];
       const Vec3 seen = seenLight_
                             ? seenLight_->withMoreRays(sum.seen, at.count, tile, p,
-                                                       tile.firstSlot + static_cast<uint32_t>(s))
+                                                       tile.firstSlot + static_cast<uint32_t>(s),
+                                                       {strata, surfaceLights_})
                             : sum.seen * each;
       tile.samples[s * tile.pixels + p].radiance.direct = seen + sum.scattered * each;
     }

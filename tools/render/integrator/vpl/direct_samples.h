@@ -13,10 +13,14 @@ class DirectSamples {
  public:
   // `count`: camera samples of direct light for each sample; 0: as many as are worth it, by pilots,
   // so that the mean stays unbiased.
-  // `seenLight` may be null.
+  // `seenLight` and `surfaceLights` may be null.
   DirectSamples(const RayScene& rays, const LightSet& lights, const SeenLight* seenLight,
-                unsigned count)
-      : rays_(rays), lights_(lights), seenLight_(seenLight), count_(count) {}
+                const SurfaceLights* surfaceLights, unsigned count)
+      : rays_(rays),
+        lights_(lights),
+        seenLight_(seenLight),
+        surfaceLights_(surfaceLights),
+        count_(count) {}
 
   // What a few samples tell that are used for nothing else.
   struct Pilot {
@@ -47,6 +51,7 @@ class DirectSamples {
   const RayScene& rays_;
   const LightSet& lights_;
   const SeenLight* seenLight_;
+  const SurfaceLights* surfaceLights_;
   unsigned count_;
 };
 

@@ -93,7 +93,8 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
   };
   LearnedStrata strata;
   SpecularPath end =
-      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng);
+      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng,
+                         {nullptr, surfaceLights_});
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
@@ -141,7 +142,7 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
     throughput *= sample.weight;
     end = followSpecularPath(rays_, lights_, next.origin, next.direction,
                              {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata)},
-                             rng);
+                             rng, {nullptr, surfaceLights_});
   }
 }
 

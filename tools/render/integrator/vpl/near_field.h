@@ -1,7 +1,6 @@
 // Rays by the BSDF from what the camera sees: for the light that VPLs do not bring.
 #pragma once
 
-#include <memory>
 #include <span>
 
 #include "tools/render/compensate/compensate.h"
@@ -50,12 +49,12 @@ class NearField {
   // shared with shadow rays and photons; others are right on average, too. `surfaceLights`: where
   // to look for the lights of what rays found; null: by power.
   NearField(const RayScene& rays, const LightSet& lights, Compensation compensation,
-            unsigned shares, std::unique_ptr<const SurfaceLights> surfaceLights, Only only)
+            unsigned shares, const SurfaceLights* surfaceLights, Only only)
       : rays_(rays),
         lights_(lights),
         compensation_(std::move(compensation)),
         shares_(shares),
-        surfaceLights_(std::move(surfaceLights)),
+        surfaceLights_(surfaceLights),
         only_(only) {}
 
   // Adds `count` rays, whose directions are points `first` and on of a sequence with that key.
@@ -72,7 +71,7 @@ class NearField {
   const LightSet& lights_;
   Compensation compensation_;
   unsigned shares_;
-  std::unique_ptr<const SurfaceLights> surfaceLights_;
+  const SurfaceLights* surfaceLights_;
   Only only_;
 };
 

@@ -116,7 +116,7 @@ void PixelControl::apply(const TileSamples& tile, std::span<const SpecularPath> 
     if (!(control.share > 0.0f)) continue;
     Vec3 sum;
     pixels_.forEach(
-        tile, pixel, tile.firstSlot + static_cast<uint32_t>(i / tile.pixels),
+        tile, pixel, tile.firstSlot + static_cast<uint32_t>(i / tile.pixels), {},
         [&](const SpecularPath& path, const RadianceSample&) { sum += control.of(said(path)); });
     tile.samples[i].radiance.indirect +=
         sum * (1.0f / static_cast<float>(pixels_.count(tile, pixel))) - control.of(saids[i]);

@@ -29,7 +29,8 @@ class PixelRays {
   }
   // Calls fn(path, sample) for each of them. What they see is independent of the sample.
   template <typename Fn>
-  void forEach(const TileSlots& tile, uint32_t pixel, uint32_t slot, const Fn& fn) const {
+  void forEach(const TileSlots& tile, uint32_t pixel, uint32_t slot, const LightsBehind& behind,
+               const Fn& fn) const {
     const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
     const unsigned more = count(tile, pixel);
     const Scene& scene = rays_.scene();
@@ -43,7 +44,7 @@ class PixelRays {
           rays_, lights_, scene.camera.position,
           cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                           (float(y) + at.y) / float(scene.film.height)),
-          rng, sample);
+          rng, sample, behind);
       fn(path, sample);
     }
   }

@@ -16,9 +16,9 @@ class SeenLight {
   // The mean of what `count` rays of a sample saw, whose sum is `seen`, and of what the pixel's
   // further rays see. The film's points alone, not the sample, say how many these are: the mean
   // stays unbiased.
-  Vec3 withMoreRays(Vec3 seen, unsigned count, const TileSlots& tile, uint32_t pixel,
-                    uint32_t slot) const {
-    pixels_.forEach(tile, pixel, slot,
+  Vec3 withMoreRays(Vec3 seen, unsigned count, const TileSlots& tile, uint32_t pixel, uint32_t slot,
+                    const LightsBehind& behind) const {
+    pixels_.forEach(tile, pixel, slot, behind,
                     [&](const SpecularPath&, const RadianceSample& s) { seen += s.direct; });
     return seen * (1.0f / static_cast<float>(count + pixels_.count(tile, pixel)));
   }

@@ -50,8 +50,13 @@ constexpr std::array kOptions{
 // What the film shows, pixel by pixel: a ray of each.
 class FilmRays {
  public:
-  FilmRays(const RayScene& rays, const LightSet& lights, uint64_t seed)
-      : rays_(rays), lights_(lights), key_(streamKey(seed, Stream::FilmPoints)) {}
+  // `surfaceLights` may be null.
+  FilmRays(const RayScene& rays, const LightSet& lights, const SurfaceLights* surfaceLights,
+           uint64_t seed)
+      : rays_(rays),
+        lights_(lights),
+        surfaceLights_(surfaceLights),
+        key_(streamKey(seed, Stream::FilmPoints)) {}
 
   // Without a triangle where nothing rough is seen. `seen`: light without a rough surface between.
   SurfacePoint point(size_t pixel, float* seen = nullptr) const {
@@ -63,7 +68,8 @@ class FilmRays {
         (static_cast<float>(pixel / width) + rng.next()) / static_cast<float>(scene.film.height);
     RadianceSample sample;
     SpecularPath path = seeFrom(rays_, lights_, scene.camera.position,
-                                cameraDirection(scene.camera, scene.film, x, y), rng, sample);
+                                cameraDirection(scene.camera, scene.film, x, y), rng, sample,
+                                {nullptr, surfaceLights_});
     if (!path.rough) path.hit.triangle = kNone;
     if (seen) *seen = mean(sample.direct);
     return path.hit;
@@ -82,6 +88,7 @@ class FilmRays {
  private:
   const RayScene& rays_;
   const LightSet& lights_;
+  const SurfaceLights* surfaceLights_;
   uint64_t key_;
 };
 
@@ -89,6 +96,7 @@ class FilmRays {
 struct Parts {
   VplLights vpls;
   LightTree tree;
+  std::unique_ptr<const SurfaceLights> surfaceLights;
   std::unique_ptr<const PointGather> point;
   std::unique_ptr<const VplIntegrator> integrator;
   Balance balance = {};
@@ -135,7 +143,16 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
                                   .make({in.lit, in.rays, clamp, light}, options);
-  const FilmRays filmRays(in.rays, in.lights, in.seed);
+  const unsigned nearFieldRays = compensation || hasSpecularLobes(in.rays.scene())
+                                     ? static_cast<unsigned>(options.whole("near-field-rays"))
+                                     : 0;
+  if (indirect && nearFieldRays > 0) {
+    parts->surfaceLights = std::make_unique<const SurfaceLights>(
+        in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+        streamKey(in.seed, Stream::SurfaceLights), in.progress);
+  }
+  const SurfaceLights* surfaceLights = parts->surfaceLights.get();
+  const FilmRays filmRays(in.rays, in.lights, surfaceLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   const bool wholePixels = gather.wholePixels;
   const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";
@@ -157,25 +174,16 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   }
   std::optional<DirectSamples> directSamples;
   if (in.only == Only::Everything && options.whole("direct-samples") != 1) {
-    directSamples.emplace(in.rays, in.lights, seenLight.get(),
+    directSamples.emplace(in.rays, in.lights, seenLight.get(), surfaceLights,
                           static_cast<unsigned>(options.whole("direct-samples")));
   }
-  const unsigned nearFieldRays = compensation || hasSpecularLobes(in.rays.scene())
-                                     ? static_cast<unsigned>(options.whole("near-field-rays"))
-                                     : 0;
-  std::unique_ptr<const SurfaceLights> surfaceLights;
-  if (indirect && nearFieldRays > 0) {
-    surfaceLights = std::make_unique<const SurfaceLights>(
-        in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-        streamKey(in.seed, Stream::SurfaceLights), in.progress);
-  }
-  NearField nearField(in.rays, in.lights, std::move(compensation), nearFieldRays,
-                      std::move(surfaceLights), in.only);
+  NearField nearField(in.rays, in.lights, std::move(compensation), nearFieldRays, surfaceLights,
+                      in.only);
   parts->integrator = std::make_unique<VplIntegrator>(
       in.rays, in.lights, std::move(gather), std::move(nearField), nearFieldRays,
       indirect ? static_cast<unsigned>(options.whole("sharers")) : 1, std::move(tileLights),
       lightRays, std::move(seenLight), std::move(pixelControl),
-      makeCaustics(in, options, nearFieldRays), directSamples, in.only);
+      makeCaustics(in, options, nearFieldRays), surfaceLights, directSamples, in.only);
   if (indirect && options.on("balance")) {
     parts->balance = findBalance(
         in.rays.scene(), in.seed, options.whole("spp"), in.progress,

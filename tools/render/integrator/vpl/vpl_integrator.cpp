@@ -46,20 +46,21 @@ double VplIntegrator::render(const TileSamples& tile, const Balance& balance) co
   const size_t count = tile.samples.size();
   Vertices at{std::vector<SpecularPath>(count), {}, std::vector<const Bsdf*>(count, nullptr)};
   at.made.reserve(count);
+  const LearnedStrata strata = tileLights_ ? tileLights_->at(tile.x, tile.y) : LearnedStrata{};
+  const LearnedLight learned{tileLights_ ? &strata : nullptr, lightRays_};
+  const LightsBehind behind{learned.strata, surfaceLights_};
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     s.radiance = {};
-    at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance);
+    at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance, behind);
     if (seenLight_ && !directSamples_) {
       s.radiance.direct = seenLight_->withMoreRays(
-          s.radiance.direct, 1, tile, static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i));
+          s.radiance.direct, 1, tile, static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i), behind);
     }
     if (!at.seen[i].rough) continue;
     at.bsdf[i] = &at.made.emplace_back(rays_.scene(), at.seen[i].hit);
     describeVertex(*at.bsdf[i], s.radiance);
   }
-  const LearnedStrata strata = tileLights_ ? tileLights_->at(tile.x, tile.y) : LearnedStrata{};
-  const LearnedLight learned{tileLights_ ? &strata : nullptr, lightRays_};
   DirectSamples::Pilot pilot;
   if (directSamples_) pilot = directSamples_->pilot(tile, learned.strata);
   double cost = double(count) * cost::kCameraRay;

@@ -13,6 +13,7 @@
 #include "tools/render/integrator/vpl/pixel_control.h"
 #include "tools/render/integrator/vpl/tile_lights.h"
 #include "transport/specular_path.h"
+#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
@@ -23,14 +24,16 @@ class VplIntegrator {
   // `gather` with a point function; empty for direct light alone. `nearFieldRays`: from each shaded
   // point. `sharers`: samples that share what these find. `tileLights`: where direct light
   // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`,
-  // `pixelControl`, `caustics`: may be null. `directSamples`: where direct light has camera samples
+  // `pixelControl`, `caustics`, `surfaceLights`: may be null. The last is where
+  // sharp lobes look for light.
+  // `directSamples`: where direct light has camera samples
   // of its own.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather, NearField nearField,
                 unsigned nearFieldRays, unsigned sharers,
                 std::unique_ptr<const TileLights> tileLights, unsigned lightRays,
                 std::unique_ptr<const SeenLight> seenLight,
                 std::unique_ptr<const PixelControl> pixelControl,
-                std::unique_ptr<const Caustics> caustics,
+                std::unique_ptr<const Caustics> caustics, const SurfaceLights* surfaceLights,
                 std::optional<DirectSamples> directSamples, Only only)
       : rays_(rays),
         lights_(lights),
@@ -43,6 +46,7 @@ class VplIntegrator {
         seenLight_(std::move(seenLight)),
         pixelControl_(std::move(pixelControl)),
         caustics_(std::move(caustics)),
+        surfaceLights_(surfaceLights),
         directSamples_(directSamples),
         only_(only) {}
   // Without a price: every part as its options say. Returns the mean cost of a sample.
@@ -70,6 +74,7 @@ class VplIntegrator {
   std::unique_ptr<const SeenLight> seenLight_;
   std::unique_ptr<const PixelControl> pixelControl_;
   std::unique_ptr<const Caustics> caustics_;
+  const SurfaceLights* surfaceLights_;
   std::optional<DirectSamples> directSamples_;
   Only only_;
 };
