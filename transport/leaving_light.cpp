@@ -27,7 +27,8 @@ unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsd
     throughput *= scattered.weight * (1.0f / survive);
     const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
                           learnedBy(strata)};
-    vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng);
+    vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng,
+                                {nullptr, where});
     sum += throughput * vertex.metFirst;
     if (length.firstBounce) return bounce + 1;
     later += throughput * vertex.metLater;

@@ -30,9 +30,11 @@ inline void describeVertex(const Bsdf& bsdf, RadianceSample& out) {
 // light. `indirect`: whether also the indirect light of points that the camera sees directly.
 template <typename Leaving>
 RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
-                         Only only, bool indirect, Rng& rng, const Leaving& leaving) {
+                         Only only, bool indirect, Rng& rng, const Leaving& leaving,
+                         const LightsBehind& behind = {}) {
   RadianceSample out;
-  const SpecularPath vertex = seeFrom(rays, lights, sample.origin, sample.direction, rng, out);
+  const SpecularPath vertex =
+      seeFrom(rays, lights, sample.origin, sample.direction, rng, out, behind);
   const bool directOnly = only == Only::Direct || (!indirect && vertex.links == 0);
   if (!vertex.rough) return out;
   const Bsdf bsdf(rays.scene(), vertex.hit);

@@ -80,7 +80,8 @@ void GuidedTracer::render(const TileSamples& tile) const {
         rays_, lights_, s, only_, true, s.rng,
         [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
           addLeaving(bsdf, throughput, {maxBounces_, directOnly}, s.rng, out.direct, out.indirect);
-        });
+        },
+        {nullptr, &where_});
   }
 }
 
@@ -108,7 +109,8 @@ void GuidedTracer::addLeaving(const Bsdf& at, Vec3 throughput, PathLength length
     throughput *= scattered.weight * (1.0f / survive);
     const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
                           learnedBy(strata)};
-    vertex = followSpecularPath(rays_, lights_, next.origin, next.direction, arrival, rng);
+    vertex = followSpecularPath(rays_, lights_, next.origin, next.direction, arrival, rng,
+                                {nullptr, &where_});
     sum += throughput * vertex.metFirst;
     if (length.firstBounce) return;
     later += throughput * vertex.metLater;
