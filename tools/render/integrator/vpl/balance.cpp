@@ -103,7 +103,8 @@ Balance findBalance(const Scene& scene, uint64_t seed, uint64_t spp, const Progr
   double deviation = 0.0, cost = 0.0;
   Vec3 light;
   for (const Looked& l : looked) light += l.light * (1.0f / static_cast<float>(count));
-  out.light = kDark * kDark * squared(light);
+  out.film = squared(light);
+  out.light = kDark * kDark * out.film;
   for (const Looked& l : looked)
     deviation += std::sqrt(out.over(l.variance, l.light)), cost += l.cost;
   if (!(deviation > 0.0 && cost > 0.0) || !std::isfinite(deviation)) return {};

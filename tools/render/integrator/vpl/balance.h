@@ -35,10 +35,14 @@ inline double squared(Vec3 v) { return double{dot(v, v)}; }
 
 struct Balance {
   double price = 0.0;  // relative variance to a shadow ray; 0: not known
-  double light = 0.0;  // squared, that is added to a tile's, so that the dark ones do not get all
+  double light = 0.0;  // that is added to a tile's, so that the dark ones do not get all; squared
+  double film = 0.0;   // the film's light, squared
 
+  // Relative to the tile's light, and half way to the film's where the tile is brighter: what is
+  // left of the error of the brightest few is not to hide that of all others.
   double over(double variance, Vec3 tileLight) const {
-    const double tile = squared(tileLight), all = std::sqrt(tile * std::min(tile, light * 400.0)) + light;
+    const double tile = squared(tileLight);
+    const double all = std::sqrt(tile * std::min(tile, film)) + light;
     return all > 0.0 ? variance / all : 0.0;
   }
 };

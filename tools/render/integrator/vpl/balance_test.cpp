@@ -19,7 +19,7 @@ TEST(Balance, DrawsGoWithTheirDeviationAndTheRootOfTheirCost) {
 // What a pixel has found counts for those around it alone, and not far away.
 TEST(Balance, APixelHasNoSayInItsOwnDraws) {
   const TileSlots tile{64, 8};
-  const Balance balance{0.01, 0.0};
+  const Balance balance{0.01, 0.0, 1e6};
   std::vector<PixelDraws> pixels(64);
   for (PixelDraws& p : pixels) {
     p.add(Vec3(1.0f)), p.add(Vec3(1.2f));
@@ -33,6 +33,14 @@ TEST(Balance, APixelHasNoSayInItsOwnDraws) {
   EXPECT_EQ(worthOf(27), here);
   EXPECT_GT(worthOf(28), 2 * beside);
   EXPECT_EQ(worthOf(63), away);
+}
+
+// Twice the light of a dark tile takes a quarter of the variance, and half where it is bright.
+TEST(Balance, VarianceIsRelativeAndHalfWayToAbsoluteInBrightTiles) {
+  const Balance balance{0.01, 0.0, 3.0};
+  EXPECT_DOUBLE_EQ(balance.over(1.0, Vec3(0.25f)), 4.0 * balance.over(1.0, Vec3(0.5f)));
+  EXPECT_DOUBLE_EQ(balance.over(1.0, Vec3(2.0f)), 2.0 * balance.over(1.0, Vec3(4.0f)));
+  EXPECT_EQ(Balance{}.over(1.0, Vec3{}), 0.0);
 }
 
 // Light through a door, and direct light of a lamp that is hidden from most of the film.
