@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kTiles = 48;   // that are looked at
 constexpr uint32_t kSlots = 4;  // samples of their pixels
-// Light that counts besides a tile's own, over the film's mean.
+// Light that counts besides a tile's own, over the film's median.
 constexpr double kDark = 0.05;
 
 // Pixels of the tile on each side that tell how much a pixel is worth.
@@ -101,9 +101,11 @@ Balance findBalance(const Scene& scene, uint64_t seed, uint64_t spp, const Progr
   // others be noisy.
   Balance out;
   double deviation = 0.0, cost = 0.0;
-  Vec3 light;
-  for (const Looked& l : looked) light += l.light * (1.0f / static_cast<float>(count));
-  out.film = squared(light);
+  // The median of the tiles, which a window in sight does not move.
+  std::vector<double> lights;
+  for (const Looked& l : looked) lights.push_back(squared(l.light));
+  std::ranges::nth_element(lights, lights.begin() + static_cast<ptrdiff_t>(count / 2));
+  out.film = lights[count / 2];
   out.light = kDark * kDark * out.film;
   for (const Looked& l : looked)
     deviation += std::sqrt(out.over(l.variance, l.light)), cost += l.cost;

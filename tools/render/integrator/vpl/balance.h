@@ -36,7 +36,7 @@ inline double squared(Vec3 v) { return double{dot(v, v)}; }
 struct Balance {
   double price = 0.0;  // relative variance to a shadow ray; 0: not known
   double light = 0.0;  // that is added to a tile's, so that the dark ones do not get all; squared
-  double film = 0.0;   // the film's light, squared
+  double film = 0.0;   // the median of the film's tiles, squared
 
   // Relative to the tile's light, and half way to the film's where the tile is brighter: what is
   // left of the error of the brightest few is not to hide that of all others.
