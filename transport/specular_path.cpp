@@ -57,8 +57,8 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     if (++end.links > kMaxSpecular) return end;
     if (!bsdf.specularIsDelta()) {
       strata = end.links == 1 && behind.first ? *behind.first
-               : behind.others ? behind.others->at(end.hit.position, end.hit.ng)
-                               : LearnedStrata{};
+               : behind.others                ? behind.others->at(end.hit.position, end.hit.ng)
+                                              : LearnedStrata{};
       end.metLater += end.throughput * directLight(rays, lights, bsdf, LobeGroup::Specular, strata,
                                                    1, rng, start.shared);
     }

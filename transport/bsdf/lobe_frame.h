@@ -5,8 +5,8 @@
 
 namespace bnvpl {
 
-// Whether the shading normal serves lobes seen from wo as it is: that and its mirror image lie above
-// the surface.
+// Whether the shading normal serves lobes seen from wo as it is: that and its mirror image lie
+// above the surface.
 bool keepsNormal(Vec3 ng, Vec3 ns, Vec3 wo);
 
 struct LobeFrame {

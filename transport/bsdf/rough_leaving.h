@@ -1,5 +1,5 @@
-// Where the rough group's value is a product, of what goes in by wi and what comes out by wo: how it
-// depends on wo. So light that was found out for one eye is known for others.
+// Where the rough group's value is a product, of what goes in by wi and what comes out by wo: how
+// it depends on wo. So light that was found out for one eye is known for others.
 #pragma once
 
 #include "transport/bsdf/coated_diffuse/coated_diffuse.h"

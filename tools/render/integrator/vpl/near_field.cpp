@@ -16,6 +16,8 @@ constexpr unsigned kMaxExtensions = 16;
 // VPLs that light what a near-field ray found, which has more noise of its own the further it is
 // down the path (measured: docs/theory.md, "Near field").
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
+// Shadow rays to lights from the first such point.
+constexpr unsigned kFirstLightRays = 4;
 
 }  // namespace
 
@@ -92,9 +94,8 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
     out.hits.push_back(hit);
   };
   LearnedStrata strata;
-  SpecularPath end =
-      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng,
-                         {nullptr, surfaceLights_});
+  SpecularPath end = followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival,
+                                        rng, {nullptr, surfaceLights_});
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
@@ -122,8 +123,13 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
       }
     }
     if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
+    const LearnedLight lights{strata.all ? &strata : nullptr,
+                              first && !known ? kFirstLightRays : 1};
     const Vec3 leaving =
-        directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
+        lights.strata && lights.rays > 1
+            ? directLight(rays_, lights_, found, LobeGroup::Rough, lights, 1, 0,
+                          mix64(static_cast<uint64_t>(rng.next() * 0x1p24f)))
+            : directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
     if (known) {
       light += throughput * (leaving + *missing.scattered) * missing.share;
     } else {
@@ -141,8 +147,8 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
     }
     throughput *= sample.weight;
     end = followSpecularPath(rays_, lights_, next.origin, next.direction,
-                             {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata)},
-                             rng, {nullptr, surfaceLights_});
+                             {sample.pdf, end.hit.position, LightChoice::One, lights}, rng,
+                             {nullptr, surfaceLights_});
   }
 }
 

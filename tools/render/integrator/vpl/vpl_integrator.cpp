@@ -54,8 +54,9 @@ double VplIntegrator::render(const TileSamples& tile, const Balance& balance) co
     s.radiance = {};
     at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance, behind);
     if (seenLight_ && !directSamples_) {
-      s.radiance.direct = seenLight_->withMoreRays(
-          s.radiance.direct, 1, tile, static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i), behind);
+      s.radiance.direct =
+          seenLight_->withMoreRays(s.radiance.direct, 1, tile,
+                                   static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i), behind);
     }
     if (!at.seen[i].rough) continue;
     at.bsdf[i] = &at.made.emplace_back(rays_.scene(), at.seen[i].hit);
@@ -114,6 +115,30 @@ void VplIntegrator::gatherTile(const TileSamples& tile, const Vertices& at, cons
   }
 }
 
+// What the first `rays` near-field rays of each sample tell of the noise of one: what they brought,
+// and in place of their hits, what these bring when they are shared, of the slots that were asked.
+std::vector<PixelDraws> VplIntegrator::drawsOf(const TileSamples& tile,
+                                               std::span<const RaysBrought> brought,
+                                               std::span<const SharedLight> shared, unsigned rays,
+                                               Vec3 direct) {
+  const size_t count = brought.size(), slots = count / tile.pixels;
+  const float each = 1.0f / static_cast<float>(slots);
+  const size_t asked = (slots + kSlotsForOne - 1) / kSlotsForOne;
+  // A sample's light is the mean of its rays'.
+  const double ofHits = double(slots) / double(asked) * rays * rays;
+  std::vector<PixelDraws> draws(tile.pixels);
+  for (size_t i = 0; i < count; ++i) {
+    PixelDraws& pixel = draws[i % tile.pixels];
+    const RaysBrought& b = brought[i];
+    if (i < tile.pixels) pixel.light = direct;
+    pixel.light += tile.samples[i].radiance.indirect * each;
+    if (b.rays > 0) pixel.light += b.indirect * (each / static_cast<float>(b.rays));
+    pixel.squares += b.squares + ofHits * shared[i].squares;
+    pixel.count += b.rays;
+  }
+  return draws;
+}
+
 // Returns its cost.
 double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
                                    const LearnedLight& learned, const Balance& balance,
@@ -136,21 +161,8 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
   std::vector<SharedLight> shared(count);
   double spent = 0.0;
   if (priced) {
-    const float each = static_cast<float>(tile.pixels) / static_cast<float>(count);
-    const size_t slots = count / tile.pixels;
     spent += cost::kSharedHit * double(share(tile, at, brought, kSlotsForOne, shared));
-    const double ofSlots =
-        double(slots) / double((slots + kSlotsForOne - 1) / kSlotsForOne) * first * first;
-    std::vector<PixelDraws> draws(tile.pixels);
-    for (size_t i = 0; i < count; ++i) {
-      PixelDraws& pixel = draws[i % tile.pixels];
-      const RaysBrought& b = brought[i];
-      if (i < tile.pixels) pixel.light = direct;
-      pixel.light += tile.samples[i].radiance.indirect * each;
-      if (b.rays > 0) pixel.light += b.indirect * (each / static_cast<float>(b.rays));
-      pixel.squares += b.squares + ofSlots * shared[i].squares;
-      pixel.count += b.rays;
-    }
+    const std::vector<PixelDraws> draws = drawsOf(tile, brought, shared, first, direct);
     const double costOfOne = cost::kNearFieldRay + cost::kSharedHit * (sharers_ - 1);
     std::vector<unsigned> worth(tile.pixels);
     for (uint32_t p = 0; p < tile.pixels; ++p)
@@ -170,7 +182,7 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
   return spent;
 }
 
-// The light of shared hits, for each sample of every so manieth slot by the rays of its group:
+// The light of shared hits, for each sample of one slot in `everySlot` by the rays of its group:
 // those of its slot whose pixels lie together and have one colour. What decides on their rays is
 // the other colour's (worthAround). Returns the number of shadow rays.
 size_t VplIntegrator::share(const TileSamples& tile, const Vertices& at,

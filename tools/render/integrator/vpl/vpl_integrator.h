@@ -61,6 +61,10 @@ class VplIntegrator {
   double addNearField(const TileSamples& tile, const Vertices& at, const LearnedLight& learned,
                       const Balance& balance, Vec3 direct) const;
   struct SharedLight;
+  static std::vector<PixelDraws> drawsOf(const TileSamples& tile,
+                                         std::span<const RaysBrought> brought,
+                                         std::span<const SharedLight> shared, unsigned rays,
+                                         Vec3 direct);
   size_t share(const TileSamples& tile, const Vertices& at, std::span<const RaysBrought> brought,
                size_t everySlot, std::span<SharedLight> out) const;
 
