@@ -30,20 +30,26 @@ def ratio(row: dict, column: str) -> float:
     return float(row[f"its_{column}"]) / max(1e-9, float(row[column]))
 
 
+def two(value: float) -> str:
+    """Two digits, never as a power of ten."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def table(rows: list[dict]) -> str:
     """Of the default setting's full images."""
     shown = {}
     for row in rows:
         if row["setting"] == "default" and row["light"] == "full":
             shown.setdefault(row["room"], {})[row["beside"]] = row
-    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | relMSE: " + ", ".join(OTHERS.values()) +
+    others = [other for other in OTHERS if any(other in of for of in shown.values())]
+    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | relMSE: " + ", ".join(OTHERS[other] for other in others) +
              " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|"]
     for room, of in shown.items():
         path = of["path"]
         lines.append("| " + " | ".join([
             room, f"{float(path['indirect_share']):.0%}", path["cpu_s"], f"{float(path['mean']):.3f}, {float(path['its_mean']):.3f}",
-            ", ".join(f"{ratio(of[other], 'relmse'):.2g}" if other in of else "-" for other in OTHERS),
-            ", ".join(f"{ratio(path, column):.2g}" for column in ("rmse", "smape", "flip"))]) + " |")
+            ", ".join(two(ratio(of[other], 'relmse')) if other in of else "-" for other in others),
+            ", ".join(two(ratio(path, column)) for column in ("rmse", "smape", "flip"))]) + " |")
     made = sorted({f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference {row['reference']}" for row in rows})
     return "\n".join([*lines, "", *(f"<!-- {line} -->" for line in made)])
 

@@ -162,7 +162,9 @@ uint32_t LearnedStrata::pick(float& u) const {
     u = below((u - first) / second);
     return everywhere.strata[sampleCdf(everywhere.cdf, u)];
   }
-  const float x = (u - first - second) / (1.0f - first - second) * static_cast<float>(all->size());
+  // Rounded, the difference may fall short of 0.
+  const float rest = std::max(0.0f, u - first - second);
+  const float x = rest / (1.0f - first - second) * static_cast<float>(all->size());
   const auto i = std::min(static_cast<uint32_t>(all->size() - 1), static_cast<uint32_t>(x));
   u = below(x - static_cast<float>(i));
   return i;

@@ -133,5 +133,25 @@ TEST(LightStrata, AreDrawnWithTheirProbabilities) {
   }
 }
 
+// Next to where one share of the probability ends and another begins, rounding must not lead out of
+// the unit square: there, a sun has no directions.
+TEST(LightStrata, WhatIsLeftOfANumberStaysInTheUnitInterval) {
+  const Lit lit(manyLights());
+  const LightStrata strata(lit.lights);
+  const std::vector<uint32_t> some{0, 2};
+  const std::vector<float> cdf{0.25f, 1.0f};
+  const LearnedStrata learned{&strata, {some, cdf}, {some, cdf}};
+  for (const float border : {0.0f, 0.1f, 0.175f, 0.7f, 0.75f, 0.9f, 1.0f}) {
+    float u = border;
+    for (int k = 0; k < 200; ++k) u = std::nextafter(u, 0.0f);
+    for (int k = 0; k < 400 && u < 1.0f; ++k, u = std::nextafter(u, 2.0f)) {
+      float left = u;
+      EXPECT_LT(learned.pick(left), strata.size());
+      EXPECT_GE(left, 0.0f) << u;
+      EXPECT_LT(left, 1.0f) << u;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl
