@@ -108,6 +108,7 @@ class Test:
     def __init__(self, options, folder):
         self.options, self.folder = options, Path(folder)
         self.bin = Path(options.bin).resolve()
+        self.named_bin = os.path.relpath(self.bin, SOURCE)  # the pipelines take no space in it
         self.failures = []
         self.environment = os.environ | {"PATH": f"/usr/bin:/bin:{os.environ.get('PATH', '')}"}
 
@@ -117,7 +118,7 @@ class Test:
             say(f"FAILED: {problem}")
 
     def arguments(self, out, seed):
-        return [SCENE, "--out", str(self.folder / out), "--bin", str(self.bin), "--seed", str(seed), *SIZES,
+        return [SCENE, "--out", str(self.folder / out), "--bin", self.named_bin, "--seed", str(seed), *SIZES,
                 "--photons", self.options.photons, "--spp", self.options.spp, ESTIMATE, RENDER]
 
     def run_here(self, seed):
