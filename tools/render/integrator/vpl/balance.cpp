@@ -17,9 +17,6 @@ constexpr uint32_t kSlots = 4;  // samples of their pixels
 // Light that counts besides a tile's own, over the film's median.
 constexpr double kDark = 0.05;
 
-// Pixels of the tile on each side that tell how much a pixel is worth.
-constexpr uint32_t kAround = 2;
-
 struct Looked {
   double variance = 0.0, cost = 0.0;
   Vec3 light;
@@ -63,25 +60,28 @@ unsigned drawsWorth(double variance, double cost, double price, unsigned least, 
   return static_cast<unsigned>(std::lround(std::min(worth, double(most))));
 }
 
-unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, uint32_t pixel,
-                     double cost, const Balance& balance, unsigned least, unsigned most) {
-  const uint32_t x = pixel % tile.width, y = pixel / tile.width, height = tile.pixels / tile.width;
-  double variance = 0.0, known = 0.0;
-  Vec3 light;
-  float around = 0.0f;
-  for (uint32_t v = y - std::min(y, kAround); v < std::min(height, y + kAround + 1); ++v) {
-    for (uint32_t u = x - std::min(x, kAround); u < std::min(tile.width, x + kAround + 1); ++u) {
-      const PixelDraws& p = pixels[v * tile.width + u];
-      if (chequer(u, v) == chequer(x, y) || !(p.count > 0.0)) continue;
+std::array<unsigned, 2> worthByColour(std::span<const PixelDraws> pixels, const TileSlots& tile,
+                                      double cost, const Balance& balance, unsigned least,
+                                      unsigned most) {
+  std::array<unsigned, 2> worth{};
+  for (const uint32_t colour : {0u, 1u}) {
+    double variance = 0.0, known = 0.0;
+    Vec3 light;
+    float others = 0.0f;
+    for (uint32_t i = 0; i < tile.pixels; ++i) {
+      const PixelDraws& p = pixels[i];
+      if (chequer(i % tile.width, i / tile.width) == colour || !(p.count > 0.0)) continue;
       variance += std::max(0.0, p.squares - squared(p.sum) / p.count);
       known += p.count - 1.0;
       light += p.light;
-      around += 1.0f;
+      others += 1.0f;
     }
+    worth[colour] = known > 0.0
+                        ? drawsWorth(balance.over(variance / known, light * (1.0f / others)), cost,
+                                     balance.price, least, most)
+                        : least;
   }
-  if (!(known > 0.0)) return least;
-  return drawsWorth(balance.over(variance / known, light * (1.0f / around)), cost, balance.price,
-                    least, most);
+  return worth;
 }
 
 Balance findBalance(const Scene& scene, uint64_t seed, uint64_t spp, const ProgressFn& progress,

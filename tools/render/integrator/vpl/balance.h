@@ -17,6 +17,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <span>
@@ -63,12 +64,13 @@ struct PixelDraws {
   void add(Vec3 found) { sum += found, squares += squared(found), count += 1.0; }
 };
 
-// Draws that a pixel is worth, each at `cost`, by what was found at those around it in the tile.
-// Not at the pixel itself: so no draw has a say in its own weight, and the mean of all stays
-// unbiased. Nor at those that may share its draws: of the two colours of a chequerboard pixels
-// share within one, and ask the other.
-unsigned worthAround(std::span<const PixelDraws> pixels, const TileSlots& tile, uint32_t pixel,
-                     double cost, const Balance& balance, unsigned least, unsigned most);
+// Draws that the pixels of each colour are worth, each at `cost`, by what was found at those of the
+// other colour in the tile. Not at their own: so no draw has a say in its own weight, nor in that
+// of those that may share it, which are of one colour, and the mean of all stays unbiased. By the
+// whole tile, as most noise is that of rare finds, of which few pixels know.
+std::array<unsigned, 2> worthByColour(std::span<const PixelDraws> pixels, const TileSlots& tile,
+                                      double cost, const Balance& balance, unsigned least,
+                                      unsigned most);
 
 // By a few samples of some tiles of the film, every part as options ask. `render` makes a tile's
 // samples and returns the mean cost of one. `spp`: of the image.

@@ -16,7 +16,7 @@ TEST(Balance, DrawsGoWithTheirDeviationAndTheRootOfTheirCost) {
   EXPECT_EQ(drawsWorth(0.0, 1.0, 0.01, 3, 7), 3u);
 }
 
-// What a pixel has found counts for those around it alone, and not far away.
+// What a pixel has found counts for those of the other colour alone.
 TEST(Balance, APixelHasNoSayInItsOwnDraws) {
   const TileSlots tile{64, 8};
   const Balance balance{0.01, 0.0, 1e6};
@@ -25,14 +25,11 @@ TEST(Balance, APixelHasNoSayInItsOwnDraws) {
     p.add(Vec3(1.0f)), p.add(Vec3(1.2f));
     p.light = Vec3(1.1f);
   }
-  const auto worthOf = [&](uint32_t pixel) {
-    return worthAround(pixels, tile, pixel, 0.01, balance, 1, 1000);
-  };
-  const unsigned here = worthOf(27), beside = worthOf(28), away = worthOf(63);
-  pixels[27].add(Vec3(40.0f));
-  EXPECT_EQ(worthOf(27), here);
-  EXPECT_GT(worthOf(28), 2 * beside);
-  EXPECT_EQ(worthOf(63), away);
+  const auto worth = [&] { return worthByColour(pixels, tile, 0.01, balance, 1, 1000); };
+  const auto before = worth();
+  pixels[27].add(Vec3(40.0f));  // of colour 0
+  EXPECT_EQ(worth()[0], before[0]);
+  EXPECT_GT(worth()[1], 2 * before[1]);
 }
 
 // Twice the light of a dark tile takes a quarter of the variance, and half where it is bright.

@@ -177,12 +177,11 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
   }
   if (priced) {
     PixelDraws unused;
-    std::vector<unsigned> worth(tile.pixels);
-    for (uint32_t p = 0; p < tile.pixels; ++p)
-      worth[p] = worthAround(draws, tile, p, costOfOne, balance, 1, kMost);
+    const auto worth = worthByColour(draws, tile, costOfOne, balance, 1, kMost);
     for (uint32_t p = 0; p < tile.pixels; ++p) {
       Pixel& at = pixels[p];
-      if (worth[p] > at.count) add(tile, p, learned, worth[p] - at.count, kDrawMore, at, unused);
+      const unsigned all = worth[chequer(p % tile.width, p / tile.width)];
+      if (all > at.count) add(tile, p, learned, all - at.count, kDrawMore, at, unused);
     }
   }
   double made = 0.0;

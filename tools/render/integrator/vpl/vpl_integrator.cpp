@@ -164,13 +164,11 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
     spent += cost::kSharedHit * double(share(tile, at, brought, kSlotsForOne, shared));
     const std::vector<PixelDraws> draws = drawsOf(tile, brought, shared, first, direct);
     const double costOfOne = cost::kNearFieldRay + cost::kSharedHit * (sharers_ - 1);
-    std::vector<unsigned> worth(tile.pixels);
-    for (uint32_t p = 0; p < tile.pixels; ++p)
-      worth[p] =
-          worthAround(draws, tile, p, costOfOne, balance, first, kMostTimes * nearFieldRays_);
+    const auto worth =
+        worthByColour(draws, tile, costOfOne, balance, first, kMostTimes * nearFieldRays_);
     for (size_t i = 0; i < count; ++i) {
-      const size_t pixel = i % tile.pixels;
-      send(i, worth[pixel] - first,
+      const auto pixel = static_cast<uint32_t>(i % tile.pixels);
+      send(i, worth[chequer(pixel % tile.width, pixel / tile.width)] - first,
            random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDrawMore));
     }
   }
@@ -184,7 +182,7 @@ double VplIntegrator::addNearField(const TileSamples& tile, const Vertices& at,
 
 // The light of shared hits, for each sample of one slot in `everySlot` by the rays of its group:
 // those of its slot whose pixels lie together and have one colour. What decides on their rays is
-// the other colour's (worthAround). Returns the number of shadow rays.
+// the other colour's (worthByColour). Returns the number of shadow rays.
 size_t VplIntegrator::share(const TileSamples& tile, const Vertices& at,
                             std::span<const RaysBrought> brought, size_t everySlot,
                             std::span<SharedLight> out) const {
