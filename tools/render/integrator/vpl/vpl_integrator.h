@@ -24,8 +24,8 @@ class VplIntegrator {
   // `gather` with a point function; empty for direct light alone. `nearFieldRays`: from each shaded
   // point. `sharers`: samples that share what these find. `tileLights`: where direct light
   // comes from, which `lightRays` look for; null: one ray to each light. `seenLight`,
-  // `pixelControl`, `caustics`, `surfaceLights`: may be null. The last is where
-  // sharp lobes look for light.
+  // `pixelControl`, `caustics`, `surfaceLights`: may be null. The last tells sharp
+  // lobes where to look for lights.
   // `directSamples`: where direct light has camera samples
   // of its own.
   VplIntegrator(const RayScene& rays, const LightSet& lights, Gather gather, NearField nearField,
