@@ -2,7 +2,7 @@
 """Equal time, the full image: how far VPLs at default options are ahead of path tracing, room by room.
 
   export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder
-  eval/rooms.py --also light guided cycles
+  eval/rooms.py --also light guided spread-path cycles
   eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom   # as published ratios
 
 For each room: the pipeline with two settings, the path tracer with the samples that take the CPU time of all four
@@ -23,8 +23,10 @@ from pathlib import Path
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "pipelines"))
 import gallery
 import rooms_page
+import stages
 from bnvpl_eval import images, settings
 from bnvpl_eval.runner import Run, Runner
 from evaluate import commit
@@ -49,10 +51,17 @@ class LivingRoom(gallery.Scene):
 
 
 SCENES = (*OURS, LivingRoom("living-room-diffuse", "Living room, diffuse", "scene.toml"), *gallery.SCENES)
-SETTINGS = {  # options of the stages; those that are not named have their defaults
-    "draft": (["-n", "15k"], ["-n", "1500"], ["--photons", "1M"], ["--spp", 4]),
-    "default": ([], ["-n", "3k"], [], []),
-}
+
+
+def options_of(counts: dict) -> tuple[list, list, list, list]:
+    """Of the stages, for one of the presets that pipelines read."""
+    return (["-n", counts["CANDIDATES"]], ["-n", counts["VPLS"]], ["--photons", counts["PHOTONS"], *counts["ESTIMATE"].split()],
+            ["--spp", counts["SPP"], *counts["RENDER"].split()])
+
+
+SETTINGS = {name: options_of(counts) for name, counts in stages.presets().items() if name != "final"}
+# Integrators that are not a method's name alone.
+VARIANTS = {"unlit-path": ["path", "--light-sampling", "off"], "spread-path": ["path", "--specks", "spread"]}
 # How far the mean is off, and four measures of error.
 COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
 CYCLES = settings.ROOT / "eval/cycles/render_cycles.py"
@@ -122,8 +131,7 @@ class Rooms:
         if other == "cycles":
             run = self.by_cycles(scene, spp)
         else:
-            unlit = ["--light-sampling", "off"] if other == "unlit-path" else []
-            run = self.render(scene, ["--integrator", other.removeprefix("unlit-"), *unlit, *sampled])
+            run = self.render(scene, ["--integrator", *VARIANTS.get(other, [other]), *sampled])
         return run["image.exr"], run.cpu_s
 
     def by_cycles(self, scene: gallery.Scene, spp: int) -> Run:
@@ -142,7 +150,7 @@ class Rooms:
             options = ["--integrator", "path", *sampled, *self.bounces()]
             return self.render(scene, options, by=self.references)["image.exr"]
         lit, _ = self.lit(scene, (["-n", "240k", "--seed", seed], ["-n", "12k"], ["--seed", seed], []), self.references)
-        return self.render(scene, sampled, lit, self.references)["image.exr"]
+        return self.render(scene, [*sampled, "--specks", "keep"], lit, self.references)["image.exr"]
 
     def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray | None:
         """COLUMNS; none where there is no light."""
@@ -185,8 +193,8 @@ def main() -> int:
     parser.add_argument("--truth", choices=("vpl", "path"), default="vpl", help="who renders the reference: VPLs, 12k of them "
                         "with seeds of their own, which have less noise, or the path tracer, which shares nothing with them")
     parser.add_argument("--reference-spp", type=int, default=64, help="of each half")
-    parser.add_argument("--also", nargs="*", default=[], choices=("light", "guided", "unlit-path", "cycles"), metavar="OTHER",
-                        help="light, guided, unlit-path (without light sampling), cycles")
+    parser.add_argument("--also", nargs="*", default=[], choices=("light", "guided", *VARIANTS, "cycles"), metavar="OTHER",
+                        help="light, guided, unlit-path (without light sampling), spread-path (its specks spread), cycles")
     parser.add_argument("--path-length", type=int, default=0, metavar="L",
                         help="segments from the camera to a light, those at mirrors and glass not counted")
     parser.add_argument("--reference-bin", type=Path, metavar="FOLDER", help="tools that render the references; --bin unless given")

@@ -35,6 +35,7 @@ Render by(const World& world, const VplTable& lit, const char* photons, const ch
                        {"gather", "all"},
                        {"spp", spp},
                        {"caustic-photons", photons},
+                       {"specks", "keep"},
                        {"balance", "off"},  // few rays are noisier than a z-test bears
                        {"seed", typed(seed)}})
         .image;

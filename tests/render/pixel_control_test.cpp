@@ -34,6 +34,7 @@ TEST(PixelControl, TakesNoiseAndNoLight) {
                          {"gather", "all"},
                          {"spp", spp},
                          {"control", control},
+                         {"specks", "keep"},
                          {"seed", typed(seed)}})
           .image;
     };
@@ -42,7 +43,8 @@ TEST(PixelControl, TakesNoiseAndNoLight) {
   EXPECT_LT(noiseOf(by("vpls", "2")), 0.92 * noiseOf(by("none", "2")));
 }
 
-// Where a VPL's surface lies half in the dark, what it says is not taken from samples that saw less.
+// Where a VPL's surface lies half in the dark, what it says is not taken from samples that saw
+// less.
 TEST(PixelControl, TakesNoMoreThanThereIs) {
   World world("veach-door/scene.toml");
   world.scene.film = {80, 45};

@@ -68,9 +68,12 @@ TEST(SurfaceLights, NearFieldRaysFindTheFewLightsThatAreSeen) {
   const VplTable lit = litBy(few);
   const auto by = [&](const World& world) -> Render {
     return [&](uint64_t seed) {
-      return renderVpls(
-                 world, lit,
-                 {{"only", "indirect"}, {"spp", "4"}, {"gather", "all"}, {"seed", typed(seed)}})
+      return renderVpls(world, lit,
+                        {{"only", "indirect"},
+                         {"spp", "4"},
+                         {"gather", "all"},
+                         {"specks", "keep"},
+                         {"seed", typed(seed)}})
           .image;
     };
   };

@@ -294,6 +294,9 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
   for (const char* count : {"0", "3"}) {
     const Given own{{"spp", "8"}, {"compensate", "none"}, {"direct-samples", count}};
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;
+    // And where no other is shown.
+    const Given alone{{"spp", "4"}, {"only", "direct"}, {"direct-samples", count}};
+    EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, alone))) << count;
   }
 }
 

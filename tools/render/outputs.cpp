@@ -38,7 +38,7 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 }  // namespace
 
 double bytesPerPixelOf(const Values& options) {
-  double bytes = 180;                               // measured: 190 to 270, by layers
+  double bytes = 290;                               // measured: 290, with all layers 320
   if (budgetOf(options)) bytes += 120;              // what passes keep besides
   if (integratorOf(options).photons) bytes += 168;  // exact sums of what photons bring
   return bytes;

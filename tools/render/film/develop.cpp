@@ -8,7 +8,9 @@ void addShown(const Exposed& film, Only only, Image& image) {
   for (size_t c = 0; c < 3; ++c) {
     std::vector<float>& data = image.add(std::string(1, "RGB"[c]));
     for (size_t i = 0; i < data.size(); ++i) {
-      data[i] = static_cast<float>(shownOf(film.sums[i], only, c) * film.perSample);
+      const auto spread = film.spreadOf(i);
+      data[i] = static_cast<float>(shownOf(film.sums[i], only, c) * film.perSample +
+                                   double{spread[0][c]} + double{spread[1][c]});
     }
   }
 }
@@ -20,7 +22,8 @@ void addLayer(const Layer& layer, const Exposed& film, Image& image) {
       const PixelPasses passes = film.passes.empty() ? PixelPasses{} : film.passes[i];
       data[i] = static_cast<float>(
           layer.value({film.sums[i], film.counts[i], film.perSample,
-                       film.passes.empty() ? film.perSample : 1.0 / double(passes.samples), passes},
+                       film.passes.empty() ? film.perSample : 1.0 / double(passes.samples), passes,
+                       film.spreadOf(i)},
                       c));
     }
   }

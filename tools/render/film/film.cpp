@@ -5,6 +5,7 @@
 #include "tools/common/streams.h"
 #include "tools/render/film/develop.h"
 #include "tools/render/film/samples.h"
+#include "tools/render/film/specks.h"
 #include "tools/render/film/splat_sums.h"
 #include "tools/render/integrator/add_splats.h"
 
@@ -114,7 +115,9 @@ Image develop(const Film& size, const FilmOptions& options, State& state, FilmSt
         state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
     }
   }
-  const Exposed film{state.pixels, state.counts, 1.0 / options.spp};
+  Exposed film{state.pixels, state.counts, 1.0 / options.spp};
+  std::vector<std::array<Vec3, 2>> spread;
+  if (options.spreadSpecks) film.spread = spread = spreadSpecks(film, options.only, size.width);
   addShown(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());

@@ -15,6 +15,11 @@ double meanOf(const LayerPixel& p, size_t channel) {
   return p.sums.sum[kSlot + channel] * p.perSample;
 }
 
+template <PixelSums::Slot kSlot, size_t kKind>
+double lightOf(const LayerPixel& p, size_t channel) {
+  return meanOf<kSlot>(p, channel) + double{p.spread[kKind][channel]};
+}
+
 // Over the samples that hit something; the void is infinitely far.
 double depthOf(const LayerPixel& p, size_t) {
   const double hits = p.sums.sum[PixelSums::kHits];
@@ -33,8 +38,9 @@ double errorOf(const LayerPixel& p, size_t channel) {
 double samplesOf(const LayerPixel& p, size_t) { return static_cast<double>(p.passes.samples); }
 
 constexpr std::array kLayers{
-    Layer{"direct", "RGB", "light straight from the lights, W/(m2 sr)", meanOf<PixelSums::kDirect>},
-    Layer{"indirect", "RGB", "all other light, W/(m2 sr)", meanOf<PixelSums::kIndirect>},
+    Layer{"direct", "RGB", "light straight from the lights, W/(m2 sr)",
+          lightOf<PixelSums::kDirect, 0>},
+    Layer{"indirect", "RGB", "all other light, W/(m2 sr)", lightOf<PixelSums::kIndirect, 1>},
     Layer{"clamped", "RGB", "indirect light that the clamp took from VPLs, W/(m2 sr)",
           meanOf<PixelSums::kClamped>, true},
     Layer{"albedo", "RGB", "reflectance of the first rough vertex", meanOf<PixelSums::kAlbedo>},

@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "core/vec3.h"
+
 namespace bnvpl {
 
-// Sums over a pixel's samples, of the values of RadianceSample; each slot is the first of its
-// channels.
+// Sums over a pixel's samples, of the values of RadianceSample, each slot being the first of its
+// channels; and of the brightest sample what it adds to them.
 struct PixelSums {
   enum Slot {
     kDirect = 0,
@@ -24,6 +26,14 @@ struct PixelSums {
     kCompensated = 17
   };
   std::array<double, 20> sum{};
+  // Of direct light but what the camera ray itself meets, and of indirect light; by the mean of
+  // the channels.
+  std::array<std::array<double, 3>, 2> brightest{};
+
+  void keepBrightest(size_t kind, const std::array<double, 3>& brought) {
+    const auto total = [](const auto& c) { return c[0] + c[1] + c[2]; };
+    if (total(brought) > total(brightest[kind])) brightest[kind] = brought;
+  }
 };
 struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
@@ -42,6 +52,7 @@ struct LayerPixel {
   double perSample;  // of the sums: one over the samples of a pixel, or the passes
   double perCount;   // of the counts: one over the samples
   const PixelPasses& passes;
+  std::array<Vec3, 2> spread;  // what spreadSpecks() adds to direct and to indirect light
 };
 
 struct Layer {

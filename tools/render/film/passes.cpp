@@ -6,6 +6,7 @@
 #include "tools/common/clock.h"
 #include "tools/common/streams.h"
 #include "tools/render/film/pass_error.h"
+#include "tools/render/film/specks.h"
 #include "tools/render/integrator/add_splats.h"
 
 namespace bnvpl {
@@ -88,7 +89,8 @@ class Passes {
       closePass();
       if (preview && nowS() >= previewS) {
         Image image = blank();
-        addShown(exposed(), options_.only, image);
+        const auto spread = specks();
+        addShown(exposed(spread), options_.only, image);
         preview(image);
         previewS = nowS() + kPreviewEveryS;
       }
@@ -97,8 +99,9 @@ class Passes {
 
   Image image(FilmStats& stats, PassesDone& done) const {
     Image image = blank();
-    addShown(exposed(), options_.only, image);
-    for (const Layer* layer : options_.layers) addLayer(*layer, exposed(), image);
+    const auto spread = specks();
+    addShown(exposed(spread), options_.only, image);
+    for (const Layer* layer : options_.layers) addLayer(*layer, exposed(spread), image);
     stats = statsOf(exposed(), samplesSoFar());
     stats.nonFinite += state_.at.splats.nonFinite;
     done = {state_.at.pass, error_, nowS() - startS_, endedBy_};
@@ -112,8 +115,12 @@ class Passes {
     image.height = static_cast<int>(scene_.film.height);
     return image;
   }
-  Exposed exposed() const {
-    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_};
+  Exposed exposed(std::span<const std::array<Vec3, 2>> spread = {}) const {
+    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, spread};
+  }
+  std::vector<std::array<Vec3, 2>> specks() const {
+    if (!options_.spreadSpecks) return {};
+    return spreadSpecks(exposed(), options_.only, scene_.film.width);
   }
   // Of the passes that are done, and of the tiles of the one under way.
   uint64_t samplesSoFar() const {
@@ -185,6 +192,10 @@ class Passes {
     for (uint32_t p = 0; p < tile.pixels(); ++p) {
       const size_t i = tiles_.pixelIndex(tile, p);
       for (double& sum : sums[p].sum) sum /= slots;
+      for (size_t kind = 0; kind < 2; ++kind) {
+        for (double& brought : sums[p].brightest[kind]) brought /= slots;
+        state_.sums[i].keepBrightest(kind, sums[p].brightest[kind]);
+      }
       for (size_t k = 0; k < sums[p].sum.size(); ++k) state_.sums[i].sum[k] += sums[p].sum[k];
       for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownOf(sums[p], options_.only, c);
     }

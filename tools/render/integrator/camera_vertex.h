@@ -12,6 +12,7 @@ inline SpecularPath seeFrom(const RayScene& rays, const LightSet& lights, Vec3 o
                             const LightsBehind& behind = {}) {
   const SpecularPath end =
       followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
+  out.seen = end.metFirst;
   out.direct = end.metFirst + end.metLater;
   if (end.firstDistance < INFINITY) {
     out.depth = end.firstDistance * dot(direction, rays.scene().camera.forward);

@@ -19,6 +19,7 @@ namespace bnvpl {
 struct RadianceSample {
   Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough
                   // vertex, and nothing between that and a light
+  Vec3 seen;      // of a light that the camera ray itself meets; part of `direct`
   Vec3 indirect;  // everything else
   Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
   Vec3 compensated;     // indirect light that sampled rays brought instead; part of `indirect`
@@ -59,6 +60,13 @@ struct IntegratorInputs {
   Only only;
   const ProgressFn& progress;  // of preparations
 };
+
+// Of integrators that bring light by samples.
+constexpr Option specksOption(std::string_view fallback) {
+  return choiceOption("specks", fallback, "spread|keep",
+                      "light that a single sample finds far above all around it: spread over its "
+                      "surroundings, the energy as it was, or kept");
+}
 
 struct IntegratorMethod {
   std::string_view name, summary;

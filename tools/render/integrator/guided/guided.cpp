@@ -15,7 +15,8 @@ constexpr std::array kOptions{
     realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
                "chosen by the guide, the others by the BSDF"),
     wholeOption("guide-rays", "256", 0, 1024, "",
-                "rays from each VPL that learn from where light comes; fewer in a short render")};
+                "rays from each VPL that learn from where light comes; fewer in a short render"),
+    specksOption("keep")};
 
 // Rays that learn are to cost little beside the samples, of which each has several.
 constexpr uint64_t kSamplesPerRay = 2;

@@ -12,7 +12,8 @@ constexpr std::array kOptions{
     kMaxBouncesOption,
     switchOption("light-sampling", "on",
                  "shadow rays to lamps and sky; off: rays of the BSDF alone find them, but for "
-                 "lights that no ray can hit")};
+                 "lights that no ray can hit"),
+    specksOption("keep")};
 
 struct Parts {
   LightSet lights;

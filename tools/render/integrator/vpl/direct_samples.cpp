@@ -15,6 +15,8 @@ namespace {
 // sample's see another point, too.
 constexpr unsigned kLightRays = 2, kBsdfRays = 1;
 constexpr unsigned kMost = 64;
+// Of each sample where there is no other light and no price.
+constexpr unsigned kAlone = 4;
 constexpr uint32_t kDrawPilots = 3u << 29, kDrawSamples = 7u << 28,
                    kDrawMore = 9u << 28;  // dimensions of a tile's numbers
 
@@ -41,7 +43,7 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
               cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                               (float(y) + at.y) / float(scene.film.height)),
               rng, sample, {learned.strata, surfaceLights_});
-  Light light{sample.direct, {}};
+  Light light{sample.seen, sample.direct, {}};
   if (!path.rough) return light;
   const Bsdf bsdf(scene, path.hit);
   light.scattered = learned.strata ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned,
@@ -126,6 +128,7 @@ unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, do
                   double cost, const Balance& balance) {
   if (!(pilot.variance > 0.0)) return 1;
   const Indirect indirect = indirectOf(tile);
+  if (!(balance.price > 0.0) && !(indirect.variance > 0.0)) return kAlone;
   if (balance.price > 0.0)
     return drawsWorth(balance.over(pilot.variance, pilot.light + indirect.light), costOfOne,
                       balance.price, 1, kMost);
@@ -151,7 +154,7 @@ void DirectSamples::add(const TileSlots& tile, uint32_t pixel, const LearnedLigh
   for (Light& sum : out.sums) {
     for (unsigned k = 0; k < count; ++k) {
       const Light light = one(x, y, learned, stream, index++);
-      sum.seen += light.seen, sum.scattered += light.scattered;
+      sum.seen += light.seen, sum.met += light.met, sum.scattered += light.scattered;
       draws.add(light.all());
     }
   }
@@ -191,12 +194,15 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
     made += at.count;
     for (size_t s = 0; s < slots; ++s) {
       const Light& sum = at.sums[s];
-      const Vec3 seen = seenLight_
-                            ? seenLight_->withMoreRays(sum.seen, at.count, tile, p,
-                                                       tile.firstSlot + static_cast<uint32_t>(s),
-                                                       {strata, surfaceLights_})
-                            : sum.seen * each;
-      tile.samples[s * tile.pixels + p].radiance.direct = seen + sum.scattered * each;
+      RadianceSample& out = tile.samples[s * tile.pixels + p].radiance;
+      out.direct = sum.met, out.seen = sum.seen;
+      if (seenLight_) {
+        seenLight_->withMoreRays(out, at.count, tile, p, tile.firstSlot + static_cast<uint32_t>(s),
+                                 {strata, surfaceLights_});
+      } else {
+        out.direct *= each, out.seen *= each;
+      }
+      out.direct += sum.scattered * each;
     }
   }
   return costOfOne * made / tile.pixels;

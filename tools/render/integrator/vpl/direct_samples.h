@@ -36,9 +36,10 @@ class DirectSamples {
 
  private:
   struct Light {
-    Vec3 seen,
-        scattered;  // by the camera, at most over mirrors and gloss; by the first rough vertex
-    Vec3 all() const { return seen + scattered; }
+    Vec3 seen;       // straight
+    Vec3 met;        // with `seen`, at most over mirrors and gloss
+    Vec3 scattered;  // by the first rough vertex
+    Vec3 all() const { return met + scattered; }
   };
   struct Stream;  // of a pixel
   Light one(uint32_t x, uint32_t y, const LearnedLight& learned, const Stream& stream,

@@ -13,14 +13,16 @@ class SeenLight {
   SeenLight(const RayScene& rays, const LightSet& lights, const FilmPoints& film)
       : pixels_(rays, lights, film, film.seen, 0.0, kDrawRays) {}
 
-  // The mean of what `count` rays of a sample saw, whose sum is `seen`, and of what the pixel's
-  // further rays see. The film's points alone, not the sample, say how many these are: the mean
-  // stays unbiased.
-  Vec3 withMoreRays(Vec3 seen, unsigned count, const TileSlots& tile, uint32_t pixel, uint32_t slot,
-                    const LightsBehind& behind) const {
-    pixels_.forEach(tile, pixel, slot, behind,
-                    [&](const SpecularPath&, const RadianceSample& s) { seen += s.direct; });
-    return seen * (1.0f / static_cast<float>(count + pixels_.count(tile, pixel)));
+  // `sum`: direct and seen light of `count` rays of a sample. Becomes their mean with what the
+  // pixel's further rays see. The film's points alone, not the sample, say how many these are: the
+  // mean stays unbiased.
+  void withMoreRays(RadianceSample& sum, unsigned count, const TileSlots& tile, uint32_t pixel,
+                    uint32_t slot, const LightsBehind& behind) const {
+    pixels_.forEach(tile, pixel, slot, behind, [&](const SpecularPath&, const RadianceSample& s) {
+      sum.direct += s.direct, sum.seen += s.seen;
+    });
+    const float each = 1.0f / static_cast<float>(count + pixels_.count(tile, pixel));
+    sum.direct *= each, sum.seen *= each;
   }
 
  private:

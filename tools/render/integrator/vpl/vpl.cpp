@@ -21,10 +21,14 @@ constexpr std::array kOptions{
     neededBy(kIndirect, realOption("clamp", "2", 0, 1000, "r_max",
                                    "radius of a VPL: 1/d^2 of a point grows no further inside, a "
                                    "disk is so large")),
-    wholeOption("near-field-rays", "8", 1, 4096, "",
-                "rays by the BSDF from each shaded point, with --balance on a quarter of them to "
-                "four times as many: for --compensate, for light over specular surfaces, and for "
-                "half of the direct light"),
+    neededBy(kDirect, wholeOption("direct-samples", "0", 0, 4096, "",
+                                  "camera samples of direct light to each sample; 0: by noise and "
+                                  "cost; 1: the sample itself")),
+    neededBy("only=all|indirect;direct-samples=1",
+             wholeOption("near-field-rays", "8", 1, 4096, "",
+                         "rays by the BSDF from each shaded point, with --balance on a quarter of "
+                         "them to four times as many: for --compensate, for light over specular "
+                         "surfaces, and with --direct-samples 1 for half of the direct light")),
     neededBy(kIndirect, wholeOption("sharers", "8", 1, 32, "",
                                     "samples of a tile that share what their near-field rays find "
                                     "close by and in gaps between VPLs on matt surfaces; 1: none")),
@@ -39,13 +43,10 @@ constexpr std::array kOptions{
                                    "or one to each light")),
     neededBy("direct=learned",
              wholeOption("light-rays", "8", 1, 4096, "", "shadow rays from each shaded point")),
-    neededBy(kIndirect,
-             switchOption("balance", "on",
-                          "by pilots, near-field rays, clusters of tile cuts and direct samples "
-                          "where they take most noise from the film")),
-    neededBy("only=all", wholeOption("direct-samples", "0", 0, 4096, "",
-                                     "camera samples of direct light to each sample; 0: by noise "
-                                     "and cost; 1: the sample itself"))};
+    switchOption("balance", "on",
+                 "by pilots, near-field rays, clusters of tile cuts and direct samples where they "
+                 "take most noise from the film"),
+    specksOption("spread")};
 
 // What the film shows, pixel by pixel: a ray of each.
 class FilmRays {
@@ -143,9 +144,11 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
   Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
                                   .make({in.lit, in.rays, clamp, light}, options);
-  const unsigned nearFieldRays = compensation || hasSpecularLobes(in.rays.scene())
-                                     ? static_cast<unsigned>(options.whole("near-field-rays"))
-                                     : 0;
+  // Alone, direct samples send rays of their own to lights.
+  const unsigned nearFieldRays =
+      options.has("near-field-rays") && (compensation || hasSpecularLobes(in.rays.scene()))
+          ? static_cast<unsigned>(options.whole("near-field-rays"))
+          : 0;
   if (indirect && nearFieldRays > 0) {
     parts->surfaceLights = std::make_unique<const SurfaceLights>(
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
@@ -173,7 +176,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     seenLight = std::make_unique<const SeenLight>(in.rays, in.lights, film);
   }
   std::optional<DirectSamples> directSamples;
-  if (in.only == Only::Everything && options.whole("direct-samples") != 1) {
+  if (in.only != Only::Indirect && options.whole("direct-samples") != 1) {
     directSamples.emplace(in.rays, in.lights, seenLight.get(), surfaceLights,
                           static_cast<unsigned>(options.whole("direct-samples")));
   }
@@ -184,7 +187,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
       indirect ? static_cast<unsigned>(options.whole("sharers")) : 1, std::move(tileLights),
       lightRays, std::move(seenLight), std::move(pixelControl),
       makeCaustics(in, options, nearFieldRays), surfaceLights, directSamples, in.only);
-  if (indirect && options.on("balance")) {
+  if (options.on("balance")) {
     parts->balance = findBalance(
         in.rays.scene(), in.seed, options.whole("spp"), in.progress,
         [&](const TileSamples& tile) { return parts->integrator->render(tile, Balance{}); });

@@ -54,9 +54,8 @@ double VplIntegrator::render(const TileSamples& tile, const Balance& balance) co
     s.radiance = {};
     at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance, behind);
     if (seenLight_ && !directSamples_) {
-      s.radiance.direct =
-          seenLight_->withMoreRays(s.radiance.direct, 1, tile,
-                                   static_cast<uint32_t>(i % tile.pixels), slotOf(tile, i), behind);
+      seenLight_->withMoreRays(s.radiance, 1, tile, static_cast<uint32_t>(i % tile.pixels),
+                               slotOf(tile, i), behind);
     }
     if (!at.seen[i].rough) continue;
     at.bsdf[i] = &at.made.emplace_back(rays_.scene(), at.seen[i].hit);

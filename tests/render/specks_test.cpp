@@ -1,0 +1,178 @@
+// Specks are spread: the energy stays, what many samples agree on stays where it is, and more
+// samples need less of it.
+#include "tools/render/film/specks.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <atomic>
+#include <memory>
+#include <numeric>
+
+#include "core/random.h"
+#include "tools/render/film/passes.h"
+
+namespace bnvpl {
+namespace {
+
+// What a sample brings at a pixel of the film.
+using Brought = std::function<void(uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out)>;
+
+struct Shown {
+  uint32_t width = 64, height = 48;
+  Image operator()(const Brought& brought, uint32_t spp, bool spread) const {
+    Scene scene;
+    scene.film = {width, height};
+    const FilmOptions options{
+        .spp = spp, .layers = parseLayers("direct,indirect"), .spreadSpecks = spread};
+    const Integrator integrator{[&](const TileSamples& tile) {
+      for (size_t k = 0; k < tile.samples.size(); ++k) {
+        const auto p = static_cast<uint32_t>(k % tile.pixels);
+        brought(tile.x + p % tile.width, tile.y + p / tile.width,
+                tile.firstSlot + static_cast<uint32_t>(k / tile.pixels), tile.samples[k].radiance);
+      }
+    }};
+    FilmStats stats;
+    if (passes == 0) return renderFilm(scene, integrator, options, stats);
+    PassesDone done;
+    return renderPasses(scene, integrator, options, {.passes = passes}, stats, done);
+  }
+  uint64_t passes = 0;
+};
+
+double sumOf(const Image& image, const char* channel) {
+  const std::vector<float>& values = *image.find(channel);
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+constexpr uint32_t kX = 20, kY = 30;  // where one sample finds something
+bool there(uint32_t x, uint32_t y, uint32_t slot) { return x == kX && y == kY && slot == 3; }
+size_t index(const Shown& film) { return size_t{kY} * film.width + kX; }
+
+// A grey room, where one sample, of the first pass, finds light of another colour.
+Brought speck(Vec3 light) {
+  return [light, found = std::make_shared<std::atomic<bool>>()](
+             uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    out.direct = Vec3(0.5f);
+    out.indirect = Vec3(0.5f) + (there(x, y, slot) && !found->exchange(true) ? light : Vec3());
+  };
+}
+
+TEST(Specks, GoWhereNobodySeesThemAndKeepTheirEnergy) {
+  const Vec3 light(300, 100, 50);
+  for (const uint64_t passes : {0u, 6u}) {
+    const Shown film{.passes = passes};
+    const Image kept = film(speck(light), 16, false);
+    const Image spread = film(speck(light), 16, true);
+    for (const char* channel : {"R", "G", "B", "indirect.R", "indirect.G", "indirect.B"}) {
+      const double before = sumOf(kept, channel);
+      EXPECT_GT((*kept.find(channel))[index(film)], 2.0f) << channel;
+      EXPECT_NEAR(sumOf(spread, channel) / before, 1.0, 1e-5) << channel << ' ' << passes;
+      for (const float v : *spread.find(channel)) {
+        // A quarter of what is around, twice as much in red, and what is visible besides.
+        ASSERT_LE(v, 1.0f + 2.0f * 0.25f + 0.05f) << channel;
+        ASSERT_GE(v, 0.45f);
+      }
+    }
+    EXPECT_EQ(*spread.find("direct.G"), *kept.find("direct.G"));
+  }
+}
+
+// But the pixel itself none becomes brighter by more than the contrast that one sees.
+TEST(Specks, AreSpreadAsWidelyAsTheyAreBright) {
+  const Shown film;
+  for (const float light : {20.0f, 200.0f}) {
+    const Image image = film(speck(Vec3(light)), 16, true);
+    size_t brighter = 0;
+    for (size_t i = 0; i < image.pixelCount(); ++i) {
+      const float v = (*image.find("G"))[i];
+      if (i != index(film)) {
+        ASSERT_LE(v, 1.0201f);
+      }
+      brighter += v > 1.00001f;
+    }
+    const double excess = double{light} / 16.0 - 0.25;
+    EXPECT_GE(double(brighter), excess / 0.02);
+    EXPECT_LE(double(brighter), 5.0 * excess / 0.02 + 25.0);
+  }
+}
+
+TEST(Specks, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
+  const Shown film;
+  for (const bool seen : {false, true}) {
+    const Brought brought = [seen](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+      out.direct = out.indirect = Vec3(0.5f);
+      if (!there(x, y, slot)) return;
+      out.direct += Vec3(800.0f);
+      if (seen) out.seen = Vec3(800.0f);
+    };
+    const Image image = film(brought, 16, true);
+    if (seen) {
+      EXPECT_FLOAT_EQ((*image.find("G"))[index(film)], 51.0f);
+    } else {
+      EXPECT_LT((*image.find("G"))[index(film)], 1.3f);
+    }
+    EXPECT_NEAR(sumOf(image, "direct.G"), 0.5 * 64 * 48 + 50.0, 1e-3);
+    EXPECT_FLOAT_EQ((*image.find("indirect.G"))[index(film)], 0.5f);
+  }
+}
+
+// A bright half, whose edge lies in a pixel.
+TEST(Specks, AreNotEdgesNorNoiseThatAllPixelsShare) {
+  const Shown film;
+  const Brought edge = [](uint32_t x, uint32_t, uint32_t slot, RadianceSample& out) {
+    out.indirect = Vec3(x > 30 || (x == 30 && slot == 5) ? 100.0f : 1.0f);
+  };
+  const Brought noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    out.indirect = Vec3(random64(x, y, slot) % 4 == 0 ? 1.0f : 0.0f);
+  };
+  for (const Brought& brought : {edge, noise}) {
+    const Image kept = film(brought, 64, false), spread = film(brought, 64, true);
+    EXPECT_EQ(*spread.find("G"), *kept.find("G"));
+  }
+}
+
+TEST(Specks, MoreSamplesLeaveThemWhereTheyAre) {
+  const Shown film;
+  const Brought found = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    out.indirect = Vec3(x == kX && y == kY && slot % 16 == 3 ? 160.0f : 1.0f);
+  };
+  const auto at = [&](uint32_t spp, bool spread) {
+    return (*film(found, spp, spread).find("G"))[index(film)];
+  };
+  EXPECT_LT(at(16, true), 0.2f * at(16, false));
+  EXPECT_EQ(at(128, true), at(128, false));
+}
+
+// Nothing hides a light in the dark, and half a film less than one needs.
+TEST(Specks, StayWhereAFilmCannotHideThem) {
+  const Shown film;
+  const Brought dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    if (there(x, y, slot)) out.indirect = Vec3(16.0f);
+  };
+  const Image black = film(dark, 16, true);
+  EXPECT_FLOAT_EQ((*black.find("G"))[index(film)], 1.0f);
+  EXPECT_DOUBLE_EQ(sumOf(black, "G"), 1.0);
+  const Image bright = film(speck(Vec3(1e6f)), 16, true);
+  EXPECT_NEAR(sumOf(bright, "G"), 64 * 48 + 1e6 / 16.0, 1.0);
+  EXPECT_NEAR((*bright.find("G"))[0], 1.02, 1e-4);
+}
+
+TEST(Specks, SameBytesForAnyThreads) {
+  const Brought noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    const float u = toUnitFloat(random64(x, y, slot));
+    out.indirect = Vec3(0.1f / (u + 1e-4f), u, 1.0f);
+    out.direct = Vec3(0.03f / (1.0f - u + 1e-4f));
+  };
+  const Shown film{.width = 130, .height = 70};
+  const Image image = film(noise, 16, true);
+  EXPECT_NE(*image.find("R"), *film(noise, 16, false).find("R"));
+  for (const size_t threads : {1u, 7u}) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const Image again = film(noise, 16, true);
+    for (const ImageChannel& c : image.channels) ASSERT_EQ(*again.find(c.name), c.data) << c.name;
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl

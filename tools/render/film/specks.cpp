@@ -1,0 +1,171 @@
+#include "tools/render/film/specks.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr double kLeastShare = 0.25,
+                 kTimesItsShare = 4.0;  // of its surroundings that a sample may add
+constexpr double kVisible = 0.02;       // contrast
+constexpr size_t kNear = 2;             // pixels to each side, at first
+
+// A value for each pixel, row by row.
+struct Grid {
+  Grid(size_t across, size_t down) : width(across), height(down), values(across * down) {}
+  float& operator[](size_t i) { return values[i]; }
+  float operator[](size_t i) const { return values[i]; }
+  size_t width, height;
+  std::vector<float> values;
+};
+
+// Sums over windows of `radius` cells to each side, of `count` values `stride` apart, in place.
+void sumWindows(float* values, size_t count, size_t stride, size_t radius,
+                std::vector<double>& before) {
+  before.resize(count + 1);
+  for (size_t i = 0; i < count; ++i) before[i + 1] = before[i] + double{values[i * stride]};
+  for (size_t i = 0; i < count; ++i) {
+    const size_t begin = i - std::min(i, radius), end = std::min(count, i + radius + 1);
+    values[i * stride] = static_cast<float>(before[end] - before[begin]);
+  }
+}
+
+// For each pixel the sum over the square window around it, as far as it lies in the film.
+Grid windowSums(Grid grid, size_t radius) {
+  parallelRanges(grid.height, 8, [&](size_t begin, size_t end) {
+    std::vector<double> before;
+    for (size_t y = begin; y < end; ++y)
+      sumWindows(&grid.values[y * grid.width], grid.width, 1, radius, before);
+  });
+  parallelRanges(grid.width, 16, [&](size_t begin, size_t end) {
+    std::vector<double> before;
+    for (size_t x = begin; x < end; ++x)
+      sumWindows(&grid.values[x], grid.height, grid.width, radius, before);
+  });
+  return grid;
+}
+
+// Pixels of the window within the film.
+double windowPixels(const Grid& grid, size_t i, size_t radius) {
+  const auto along = [&](size_t at, size_t count) {
+    return double(std::min(count, at + radius + 1) - (at - std::min(at, radius)));
+  };
+  return along(i % grid.width, grid.width) * along(i / grid.width, grid.height);
+}
+
+bool isShown(size_t kind, Only only) {
+  return only == Only::Everything || (kind == 0) == (only == Only::Direct);
+}
+
+Vec3 brightestOf(const Exposed& film, size_t i, size_t kind) {
+  const auto& b = film.sums[i].brightest[kind];
+  return {static_cast<float>(b[0] * film.perSample), static_cast<float>(b[1] * film.perSample),
+          static_cast<float>(b[2] * film.perSample)};
+}
+
+double samplesOf(const Exposed& film, size_t i) {
+  return film.passes.empty() ? 1.0 / film.perSample : double(film.passes[i].samples);
+}
+
+// What the pixels show.
+struct Surroundings {
+  Grid shown;   // by the mean of the channels, nowhere below 0
+  Grid around;  // mean of `shown` over windows of kNear
+  Grid share;   // of the pixels of such a window, one
+  Grid kept;    // of what a pixel shows, what the means of all windows around hold
+
+  Surroundings(const Exposed& film, Only only, size_t width)
+      : shown(width, film.sums.size() / width), around(shown), share(shown), kept(shown) {
+    const size_t count = film.sums.size();
+    parallelFor(count, 256, [&](size_t i) {
+      double sum = 0.0;
+      for (size_t c = 0; c < 3; ++c) sum += shownOf(film.sums[i], only, c) / 3.0;
+      shown[i] = static_cast<float>(std::max(0.0, sum * film.perSample));
+      share[i] = static_cast<float>(1.0 / windowPixels(shown, i, kNear));
+    });
+    around = windowSums(shown, kNear);
+    kept = windowSums(share, kNear);
+    parallelFor(count, 4096, [&](size_t i) { around[i] *= share[i]; });
+  }
+};
+
+struct Speck {
+  size_t pixel, kind;
+  Vec3 excess;
+};
+
+std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings& at) {
+  std::vector<Speck> specks;
+  for (size_t i = 0; i < film.sums.size(); ++i) {
+    std::array<Vec3, 2> brought;
+    float others = at.shown[i];
+    for (const size_t kind : {0u, 1u}) {
+      if (isShown(kind, only)) brought[kind] = brightestOf(film, i, kind);
+      others -= mean(brought[kind]);
+    }
+    const float around = at.around[i] - (at.shown[i] - others) * at.share[i];
+    const double bound = std::max(kLeastShare, kTimesItsShare / samplesOf(film, i)) *
+                         double{std::max({0.0f, others, around})};
+    for (const size_t kind : {0u, 1u}) {
+      const double light{mean(brought[kind])};
+      if (light > bound)
+        specks.push_back({i, kind, brought[kind] * static_cast<float>(1.0 - bound / light)});
+    }
+  }
+  return specks;
+}
+
+}  // namespace
+
+std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, uint32_t width) {
+  const Surroundings at(film, only, width);
+  const size_t count = film.sums.size();
+  std::vector<std::array<Vec3, 2>> change(count);
+  std::vector<Speck> specks = findSpecks(film, only, at);
+  struct Going {
+    size_t pixel, kind;
+    Vec3 share;  // of the window's light
+    float own;   // what the speck itself adds to that
+  };
+  for (size_t radius = kNear; !specks.empty(); radius *= 2) {
+    const bool wholeFilm = radius >= std::max(at.shown.width, at.shown.height);
+    const Grid light = windowSums(at.around, radius);
+    std::vector<Going> going;
+    std::vector<Speck> wider;
+    for (const Speck& s : specks) {
+      const double own{mean(s.excess)},
+          needed = own / kVisible, there = double{light[s.pixel]} - own * double{at.kept[s.pixel]};
+      if (needed > there && !wholeFilm) {
+        wider.push_back(s);
+      } else if (there > 0.0 && there > 1e-6 * own) {  // else all is black but for this
+        const Vec3 goes = s.excess * static_cast<float>(std::min(1.0, there / needed));
+        change[s.pixel][s.kind] += -goes;
+        going.push_back(
+            {s.pixel, s.kind, goes * static_cast<float>(1.0 / there), static_cast<float>(own)});
+      }
+    }
+    for (const size_t kind : {0u, 1u}) {
+      for (size_t c = 0; c < 3; ++c) {
+        Grid shares(at.shown.width, at.shown.height), own(shares);
+        for (const Going& g : going) {
+          if (g.kind != kind) continue;
+          shares[g.pixel] = g.share[c];
+          own[g.pixel] = g.share[c] * g.own;
+        }
+        shares = windowSums(std::move(shares), radius);
+        own = windowSums(std::move(own), kNear);
+        parallelFor(count, 4096, [&](size_t i) {
+          change[i][kind][c] += at.around[i] * shares[i] - at.share[i] * own[i];
+        });
+      }
+    }
+    specks = std::move(wider);
+  }
+  return change;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,35 @@
+// Specks: light that one sample of a pixel found and that stands far above all around it.
+//
+// A sample that finds a small bright place by a small chance brings the energy of the many that
+// missed it. The image is right on average, and a white pixel. Here the excess of such a sample
+// goes to the pixels around, as widely as it takes to be invisible there (Rushmeier and Ward,
+// Energy preserving non-linear filters, SIGGRAPH 1994):
+//
+//   b_i  = max(1/4, 4/n) max(o_i, a_i)   the most that one of n samples adds to pixel i
+//   e_i  = what the brightest sample adds above b_i
+//   W_i  = sum of a over the smallest square window around i with e_i <= W_i / 50
+//   r_j += sum over i, j in the window of i, of a_j e_i / W_i
+//
+// for direct and for indirect light, whose brightest samples are each their own. o is what a pixel
+// shows without them and a the mean of what 5 x 5 pixels show, by the mean of the channels; in what
+// concerns speck i, a is without it, and with all others: where all is noise, the energy stays in
+// its place. The sum over the film stays as it is, for each channel. A single speck brightens no
+// place by more than 1/50, the contrast that one sees. With more samples each adds less, and the
+// image converges to the same as without: what the bias takes is noise, and edges of light that few
+// samples of a pixel meet. Lights that the camera sees straight have such edges; they are left
+// alone. What a window as large as the film cannot hide stays where it was found.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/vec3.h"
+#include "tools/render/film/develop.h"
+
+namespace bnvpl {
+
+// What each pixel's direct and indirect light change by, in W/(m2 sr), for a film of rows of
+// `width` pixels that shows what `only` says. What is not shown stays as it is.
+std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, uint32_t width);
+
+}  // namespace bnvpl
