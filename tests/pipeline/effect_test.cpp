@@ -55,8 +55,8 @@ TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
 // Where the image shows direct light alone, nothing that shapes indirect light is taken.
 TEST_F(Effect, DirectLightAloneAsksNoVpls) {
   makeStages(scene_);
-  const std::string lit =
-      scene_ + " " + path("lit.vpl") + " --spp 1 --only direct --near-field-rays 2 -o ";
+  const std::string lit = scene_ + " " + path("lit.vpl") +
+                          " --spp 1 --only direct --direct-samples 1 --near-field-rays 2 -o ";
   for (const char* option : {"--gather all", "--error 0.1", "--clamp 3", "--light disk"}) {
     const std::string name = std::string(option).substr(0, std::string(option).find(' '));
     fail("vpl-render", lit + path("i.exr") + " " + option, kExitUsage,
@@ -71,6 +71,37 @@ TEST_F(Effect, DirectLightAloneAsksNoVpls) {
   succeed("vpl-render", lit + path("near.exr"));
   succeed("vpl-render", lit + path("none.exr") + " --compensate none");
   EXPECT_NE(*readExr(at("near.exr")).find("R"), *readExr(at("none.exr")).find("R"));
+  fail(
+      "vpl-render", scene_ + " --only direct --near-field-rays 2 -o " + path("i.exr"), kExitUsage,
+      {"--near-field-rays has no effect", "it needs --only all or indirect or --direct-samples 1"});
+}
+
+// The image of --specks keep, but for what is spread, of the same energy; and so in shards' merge.
+TEST_F(Effect, SpecksAreSpreadUnlessKept) {
+  const std::string paths = scene_ + " --spp 2 --size 32x24 --integrator path --layers all -o ";
+  succeed("vpl-render", paths + path("kept.exr"));
+  succeed("vpl-render", paths + path("same.exr") + " --specks keep");
+  succeed("vpl-render", paths + path("spread.exr") + " --specks spread");
+  const Image kept = readExr(at("kept.exr")), spread = readExr(at("spread.exr"));
+  EXPECT_EQ(*kept.find("R"), *readExr(at("same.exr")).find("R"));
+  EXPECT_NE(*kept.find("R"), *spread.find("R"));
+  EXPECT_EQ(*kept.find("albedo.R"), *spread.find("albedo.R"));
+  for (const char* channel : {"G", "direct.G", "indirect.G"}) {
+    const auto sum = [&](const Image& image) {
+      double all = 0.0;
+      for (const float v : *image.find(channel)) all += double{v};
+      return all;
+    };
+    EXPECT_NEAR(sum(spread) / sum(kept), 1.0, 1e-5) << channel;
+  }
+  std::string shards;
+  for (const char* shard : {"1", "2"}) {
+    const std::string file = path(std::string("s") + shard + ".shard");
+    succeed("vpl-render", paths + file + " --specks spread --shard " + shard + "/2");
+    shards += " " + file;
+  }
+  succeed("vpl-merge", shards + " -o " + path("merged.exr"));
+  EXPECT_EQ(readAll(at("merged.exr")), readAll(at("spread.exr")));
 }
 
 // Layers of gathered VPLs mean nothing in an image without any.
