@@ -60,7 +60,8 @@ class Bench:
     def render(self, scene: str, count: int, *extra) -> tuple[np.ndarray, float]:
         image = self.options.work / "image.exr"
         seconds = run([self.bin / "vpl-render", ROOT / "scenes" / scene / "scene.toml", self.lit(scene, count), "-o",
-                       image, "--size", self.options.size, "--spp", self.options.spp, "--compensate", "none", "--quiet",
+                       image, "--size", self.options.size, "--spp", self.options.spp, "--compensate", "none", "--specks",
+                       "keep", "--quiet",
                        *extra])
         return images.read(image), seconds
 
@@ -68,7 +69,7 @@ class Bench:
         exact = count <= self.options.most_all
         how = ["--gather", "all"] if exact else ["--error", 0.004, "--max-cut", 100000]
         reference, all_s = self.render(scene, count, "--only", "indirect", *how)
-        _, idle_s = self.render(scene, count, "--only", "direct")
+        _, idle_s = self.render(scene, count, "--only", "direct", "--direct-samples", 1, "--light-rays", 1)
 
         def judged(*words) -> tuple[float, float]:
             image, seconds = self.render(scene, count, "--only", "indirect", *words)

@@ -134,6 +134,16 @@ class Rooms:
             run = self.render(scene, ["--integrator", *VARIANTS.get(other, [other]), *sampled])
         return run["image.exr"], run.cpu_s
 
+    def cycles_reads(self, scene: gallery.Scene) -> bool:
+        if scene.path.suffix != ".toml":
+            return False
+        try:
+            self.by_cycles(scene, 4)
+        except SystemExit as problem:
+            print(f"rooms: {scene.title} without Cycles: {str(problem).splitlines()[-1]}", file=sys.stderr)
+            return False
+        return True
+
     def by_cycles(self, scene: gallery.Scene, spp: int) -> Run:
         bounces = self.path_length - 2 if self.path_length else 32
         blender = Runner(Path("/usr/bin"), self.runner.cache, quiet=True)
@@ -170,7 +180,7 @@ class Rooms:
         for name in SETTINGS:
             image, seconds = self.ours(scene, name)
             others = {other: self.timed(scene, name, other, seconds) for other in ("path", *also)
-                      if other != "cycles" or scene.path.suffix == ".toml"}
+                      if other != "cycles" or self.cycles_reads(scene)}
             for layer in ("", "direct", "indirect"):
                 ours = self.measures(scene, image, layer)
                 for other, (picture, spp) in others.items():
@@ -197,7 +207,7 @@ def main() -> int:
                         help="light, guided, unlit-path (without light sampling), spread-path (its specks spread), cycles")
     parser.add_argument("--path-length", type=int, default=0, metavar="L",
                         help="segments from the camera to a light, those at mirrors and glass not counted")
-    parser.add_argument("--reference-bin", type=Path, metavar="FOLDER", help="tools that render the references; --bin unless given")
+    parser.add_argument("--reference-bin", type=Path, metavar="FOLDER", help="tools that render the references, with --specks keep; --bin unless given")
     parser.add_argument("--references-only", action="store_true", help="render the references, and stop")
     parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
     arguments = parser.parse_args()

@@ -76,8 +76,8 @@ TEST_F(Effect, DirectLightAloneAsksNoVpls) {
       {"--near-field-rays has no effect", "it needs --only all or indirect or --direct-samples 1"});
 }
 
-// The image of --specks keep, but for what is spread, of the same energy; and so in shards' merge.
-TEST_F(Effect, SpecksAreSpreadUnlessKept) {
+// The same light in other places; and so in the merge of shards.
+TEST_F(Effect, SpecksAreSpreadOrKept) {
   const std::string paths = scene_ + " --spp 2 --size 32x24 --integrator path --layers all -o ";
   succeed("vpl-render", paths + path("kept.exr"));
   succeed("vpl-render", paths + path("same.exr") + " --specks keep");
@@ -102,6 +102,19 @@ TEST_F(Effect, SpecksAreSpreadUnlessKept) {
   }
   succeed("vpl-merge", shards + " -o " + path("merged.exr"));
   EXPECT_EQ(readAll(at("merged.exr")), readAll(at("spread.exr")));
+  // With VPLs they are spread unless told.
+  makeStages(scene_);
+  const std::string vpls = scene_ + " " + path("lit.vpl") + " --spp 2 --size 32x24 -o ";
+  succeed("vpl-render", vpls + path("v.exr"));
+  succeed("vpl-render", vpls + path("v-spread.exr") + " --specks spread");
+  succeed("vpl-render", vpls + path("v-kept.exr") + " --specks keep");
+  EXPECT_EQ(readAll(at("v.exr")), readAll(at("v-spread.exr")));
+  EXPECT_NE(*readExr(at("v.exr")).find("G"), *readExr(at("v-kept.exr")).find("G"));
+  // Direct light alone asks no VPLs for compensation, nor a balance where the samples are told.
+  for (const char* option : {"--compensate none", "--balance off --direct-samples 3"}) {
+    fail("vpl-render", scene_ + " --only direct -o " + path("i.exr") + " " + option, kExitUsage,
+         {"has no effect", "--direct-samples"});
+  }
 }
 
 // Layers of gathered VPLs mean nothing in an image without any.

@@ -10,7 +10,9 @@
 #include <numeric>
 
 #include "core/random.h"
+#include "tests/support/pipeline.h"
 #include "tools/render/film/passes.h"
+#include "tools/render/film/samples.h"
 
 namespace bnvpl {
 namespace {
@@ -20,11 +22,12 @@ using Brought = std::function<void(uint32_t x, uint32_t y, uint32_t slot, Radian
 
 struct Shown {
   uint32_t width = 64, height = 48;
+  Only only = Only::Everything;
   Image operator()(const Brought& brought, uint32_t spp, bool spread) const {
     Scene scene;
     scene.film = {width, height};
     const FilmOptions options{
-        .spp = spp, .layers = parseLayers("direct,indirect"), .spreadSpecks = spread};
+        .spp = spp, .only = only, .layers = parseLayers("direct,indirect"), .spreadSpecks = spread};
     const Integrator integrator{[&](const TileSamples& tile) {
       for (size_t k = 0; k < tile.samples.size(); ++k) {
         const auto p = static_cast<uint32_t>(k % tile.pixels);
@@ -114,6 +117,86 @@ TEST(Specks, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
     }
     EXPECT_NEAR(sumOf(image, "direct.G"), 0.5 * 64 * 48 + 50.0, 1e-3);
     EXPECT_FLOAT_EQ((*image.find("indirect.G"))[index(film)], 0.5f);
+  }
+}
+
+// What is not shown stays.
+TEST(Specks, OfOneKindOfLightAlone) {
+  for (const Only only : {Only::Direct, Only::Indirect}) {
+    const Shown film{.only = only};
+    const Brought both = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+      out.direct = out.indirect = Vec3(there(x, y, slot) ? 160.0f : 1.0f);
+    };
+    const Image kept = film(both, 16, false), spread = film(both, 16, true);
+    const char *shown = only == Only::Direct ? "direct.G" : "indirect.G",
+               *other = only == Only::Direct ? "indirect.G" : "direct.G";
+    EXPECT_EQ(*spread.find(other), *kept.find(other));
+    EXPECT_LT((*spread.find(shown))[index(film)], 1.3f);
+    EXPECT_EQ(*spread.find("G"), *spread.find(shown));
+    EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6);
+  }
+}
+
+TEST(Specks, KeepTheirEnergyAtBordersAndOnSmallFilms) {
+  for (const auto& [width, height] : {std::array{64u, 48u}, {1u, 1u}, {1u, 64u}, {3u, 2u}}) {
+    const Shown film{.width = width, .height = height};
+    for (const auto& [x, y] : {std::array{0u, 0u}, {width - 1, height - 1}, {width / 2, 0u}}) {
+      const Brought brought = [x = x, y = y](uint32_t u, uint32_t v, uint32_t slot,
+                                             RadianceSample& out) {
+        out.indirect = Vec3(1.0f + float(u % 3) + (u == x && v == y && slot == 3 ? 80.0f : 0.0f));
+      };
+      const Image kept = film(brought, 16, false), spread = film(brought, 16, true);
+      EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6)
+          << width << ' ' << x << ' ' << y;
+      for (const float v : *spread.find("G")) ASSERT_TRUE(std::isfinite(v) && v > 0.5f);
+    }
+  }
+}
+
+// The camera sees nothing to the left.
+TEST(Specks, LeaveTheVoidBlack) {
+  const Shown film;
+  const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    if (x < kX - 1) return;
+    out.indirect = Vec3(there(x, y, slot) ? 500.0f : 1.0f);
+    out.depth = 1.0f;
+  };
+  const Image image = film(brought, 16, true);
+  EXPECT_LT((*image.find("G"))[index(film)], 1.4f);
+  EXPECT_NEAR(sumOf(image, "G"), (64 - kX + 1) * 48 + 499.0 / 16.0, 1e-2);
+  for (size_t i = 0; i < image.pixelCount(); ++i) {
+    if (i % 64 < kX - 1) {
+      ASSERT_EQ((*image.find("G"))[i], 0.0f);
+    }
+  }
+}
+
+// What integrators call seen is the lamp in sight, and all of it.
+TEST(Specks, IntegratorsKnowWhatTheCameraSeesStraight) {
+  test::World world("cornell/scene.toml");
+  world.scene.film = {96, 96};
+  float lamp = 0.0f;
+  for (const Material& m : world.scene.materials) lamp = std::max(lamp, mean(m.emission));
+  const std::vector<Given> ways{{{"direct", "learned"}},
+                                {{"direct", "each"}},
+                                {{"direct-samples", "1"}},
+                                {{"integrator", "path"}},
+                                {{"integrator", "light"}}};
+  for (const Given& way : ways) {
+    const Values options = resolveRender(test::with({{"only", "direct"}, {"spp", "4"}}, way));
+    const ProgressFn quiet;
+    const Integrator integrator =
+        integratorOf(options).make({world.rays, world.lights, {}, 1, Only::Direct, quiet}, options);
+    float most = 0.0f;
+    const Tiles tiles(world.scene.film);
+    for (size_t t = 0; t < tiles.count(); ++t) {
+      sampleTile(world.scene, integrator, 1, tiles.at(t), {0, 4, 4, 4},
+                 [&](uint32_t, const RadianceSample& sample) {
+                   ASSERT_LT(mean(sample.direct - sample.seen), 0.5f * lamp);
+                   most = std::max(most, mean(sample.seen));
+                 });
+    }
+    EXPECT_NEAR(most / lamp, 1.0f, 1e-4f) << way.front().second;
   }
 }
 

@@ -294,9 +294,13 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
   for (const char* count : {"0", "3"}) {
     const Given own{{"spp", "8"}, {"compensate", "none"}, {"direct-samples", count}};
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;
-    // And where no other is shown.
-    const Given alone{{"spp", "4"}, {"only", "direct"}, {"direct-samples", count}};
-    EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, alone))) << count;
+  }
+  // And where no other is shown.
+  const Given few{{"spp", "4"}, {"only", "direct"}, {"specks", "keep"}};
+  for (const Given& more : {Given{}, Given{{"balance", "off"}}, Given{{"direct-samples", "3"}}}) {
+    EXPECT_TRUE(sameExpectation(paths(world, byPaths), [&](uint64_t seed) {
+      return renderVpls(world, {}, with(with(few, more), {{"seed", typed(seed)}})).image;
+    })) << more.size();
   }
 }
 

@@ -371,7 +371,9 @@ void Values::set(std::string_view name, Value value) {
 }
 
 Values resolve(const StageSpec& spec, const Given& given) {
-  Values values, known;  // known: with the stage's own options first, as slots may need them
+  // `known`: the stage's own options before all, and those of methods as soon as they are chosen,
+  // as slots may need them.
+  Values values, known;
   std::vector<const MethodEntry*> methods;
   for (const Option& o : spec.options) takeOption(o, given, known);
   for (const MethodSlot& slot : spec.slots) {
@@ -380,6 +382,7 @@ Values resolve(const StageSpec& spec, const Given& given) {
     const MethodEntry& method = chosen(slot, text ? *text : std::string(slot.fallback));
     for (Values* v : {&values, &known}) v->set(slot.name, std::string(method.name));
     methods.push_back(&method);
+    for (const Option& o : method.options) takeOption(o, given, known);
   }
   for (const Option& o : spec.options) takeOption(o, given, values);
   for (const MethodEntry* m : methods) {

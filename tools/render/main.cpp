@@ -92,7 +92,7 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   Cost cost =
       costOfUnits([&](const Resume& resume) { render(rays, lights, lit, plain, {}, resume); });
   const Film& film = rays.scene().film;
-  cost.memoryBytes += (budgetOf(options) ? 160.0 : 40.0) * film.width * film.height;  // the image
+  cost.memoryBytes += (budgetOf(options) ? 160.0 : 60.0) * film.width * film.height;  // the image
   return cost.ofShard(request.shard);
 }
 
@@ -111,8 +111,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
   if (!estimating) used.check();
 
   if (vpl && !estimating) {
-    const bool rays =
-        integratorOf(options).gathers && options.text("compensate") == "near-field";
+    const bool rays = integratorOf(options).gathers && options.text("compensate") == "near-field";
     requireMemoryFor(request.lit, rays ? kBytesPerVplWithNearField : kBytesPerVpl,
                      "keep fewer VPLs with vpl-eliminate -n");
   }

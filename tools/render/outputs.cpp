@@ -38,7 +38,8 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 }  // namespace
 
 double bytesPerPixelOf(const Values& options) {
-  double bytes = 290;                               // measured: 290, with all layers 320
+  double bytes = 250;  // measured: 245 to 300, by layers
+  if (options.has("specks") && options.text("specks") == "spread") bytes += 40;
   if (budgetOf(options)) bytes += 120;              // what passes keep besides
   if (integratorOf(options).photons) bytes += 168;  // exact sums of what photons bring
   return bytes;

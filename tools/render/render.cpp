@@ -73,14 +73,16 @@ std::string gathering() {
 }  // namespace
 
 const StageSpec& renderSpec() {
-  static const std::string vpls = gathering(), shown = vpls + ",only=all|indirect";
+  // Of direct light alone, near-field rays have a part where the samples themselves are lit.
+  static const std::string vpls = gathering(), shown = vpls + ",only=all|indirect",
+                           compensated = shown + ";" + vpls + ",direct-samples=1";
   static const StageSpec spec{
       "vpl-render",
       stageOptions(),
       {{"integrator", "vpl", "what finds the light", entriesOf(integratorMethods())},
        {"gather", "tilecuts", "how VPLs are gathered", entriesOf(gatherMethods()), shown},
        {"compensate", "near-field", "what makes good the light that VPLs do not bring",
-        entriesOf(compensateMethods()), vpls}}};
+        entriesOf(compensateMethods()), compensated}}};
   return spec;
 }
 

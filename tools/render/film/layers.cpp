@@ -48,8 +48,9 @@ constexpr std::array kLayers{
     Layer{"Z", "", "depth along the viewing axis, scene units", depthOf},
     Layer{"cutsize", "", "clusters or VPLs gathered, a sample", countOf<&PixelCounts::cut>, true},
     Layer{"shadowrays", "", "rays towards VPLs, a sample", countOf<&PixelCounts::shadowRays>, true},
-    Layer{"error", "RGB", "standard error of R, G, B as passes differ, W/(m2 sr)", errorOf, false,
-          true},
+    Layer{"error", "RGB",
+          "standard error of R, G, B as passes differ, before specks are spread, W/(m2 sr)",
+          errorOf, false, true},
     Layer{"samples", "", "samples that passes took", samplesOf, false, true},
 };
 

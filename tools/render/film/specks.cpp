@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/parallel.h"
 
@@ -75,8 +76,8 @@ double samplesOf(const Exposed& film, size_t i) {
 struct Surroundings {
   Grid shown;   // by the mean of the channels, nowhere below 0
   Grid around;  // mean of `shown` over windows of kNear
-  Grid share;   // of the pixels of such a window, one
-  Grid kept;    // of what a pixel shows, what the means of all windows around hold
+  Grid share;   // of the pixels of such a window, one; 0 where nothing is seen but the void
+  Grid kept;    // of what a pixel shows, what `around` holds of it, summed up; near borders not 1
 
   Surroundings(const Exposed& film, Only only, size_t width)
       : shown(width, film.sums.size() / width), around(shown), share(shown), kept(shown) {
@@ -85,7 +86,8 @@ struct Surroundings {
       double sum = 0.0;
       for (size_t c = 0; c < 3; ++c) sum += shownOf(film.sums[i], only, c) / 3.0;
       shown[i] = static_cast<float>(std::max(0.0, sum * film.perSample));
-      share[i] = static_cast<float>(1.0 / windowPixels(shown, i, kNear));
+      const bool isVoid = film.sums[i].sum[PixelSums::kHits] == 0.0 && !(shown[i] > 0.0f);
+      share[i] = isVoid ? 0.0f : static_cast<float>(1.0 / windowPixels(shown, i, kNear));
     });
     around = windowSums(shown, kNear);
     kept = windowSums(share, kNear);
@@ -141,7 +143,7 @@ std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, ui
           needed = own / kVisible, there = double{light[s.pixel]} - own * double{at.kept[s.pixel]};
       if (needed > there && !wholeFilm) {
         wider.push_back(s);
-      } else if (there > 0.0 && there > 1e-6 * own) {  // else all is black but for this
+      } else if (std::isfinite(there) && there > 1e-6 * own) {  // else all is black but for this
         const Vec3 goes = s.excess * static_cast<float>(std::min(1.0, there / needed));
         change[s.pixel][s.kind] += -goes;
         going.push_back(
@@ -149,6 +151,7 @@ std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, ui
       }
     }
     for (const size_t kind : {0u, 1u}) {
+      if (std::ranges::none_of(going, [&](const Going& g) { return g.kind == kind; })) continue;
       for (size_t c = 0; c < 3; ++c) {
         Grid shares(at.shown.width, at.shown.height), own(shares);
         for (const Going& g : going) {
@@ -159,6 +162,7 @@ std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, ui
         shares = windowSums(std::move(shares), radius);
         own = windowSums(std::move(own), kNear);
         parallelFor(count, 4096, [&](size_t i) {
+          if (!std::isfinite(at.around[i])) return;
           change[i][kind][c] += at.around[i] * shares[i] - at.share[i] * own[i];
         });
       }

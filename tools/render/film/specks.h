@@ -7,17 +7,21 @@
 //
 //   b_i  = max(1/4, 4/n) max(o_i, a_i)   the most that one of n samples adds to pixel i
 //   e_i  = what the brightest sample adds above b_i
-//   W_i  = sum of a over the smallest square window around i with e_i <= W_i / 50
+//   W_i  = sum of a over a square window around i, of radius 2, 4, 8, ... pixels, the first with
+//          e_i <= W_i / 50
 //   r_j += sum over i, j in the window of i, of a_j e_i / W_i
 //
 // for direct and for indirect light, whose brightest samples are each their own. o is what a pixel
-// shows without them and a the mean of what 5 x 5 pixels show, by the mean of the channels; in what
-// concerns speck i, a is without it, and with all others: where all is noise, the energy stays in
-// its place. The sum over the film stays as it is, for each channel. A single speck brightens no
-// place by more than 1/50, the contrast that one sees. With more samples each adds less, and the
-// image converges to the same as without: what the bias takes is noise, and edges of light that few
-// samples of a pixel meet. Lights that the camera sees straight have such edges; they are left
-// alone. What a window as large as the film cannot hide stays where it was found.
+// shows without these two, a the mean of what 5 x 5 pixels show, by the mean of the channels. In
+// b_i a is without the brightest samples of i, in W_i and the last line without e_i; of all other
+// specks it is with: where all is noise, the energy stays in its place. The sum over the film stays
+// as it is, for each channel.
+//
+// A single speck brightens no place by more than 1/50, the contrast that one sees; a dark pixel
+// beside a bright one by 1/50 of their mean, and the void not at all. With more samples each adds
+// less, and the image converges to the same as without: what the bias takes is noise, and edges of
+// light that few samples of a pixel meet. Lights that the camera sees straight have such edges;
+// they are left alone. What a window as large as the film cannot hide stays where it was found.
 #pragma once
 
 #include <array>

@@ -42,10 +42,13 @@ constexpr std::array kOptions{
                                    "shadow rays to what each tile of the film has learned to see, "
                                    "or one to each light")),
     neededBy("direct=learned",
-             wholeOption("light-rays", "8", 1, 4096, "", "shadow rays from each shaded point")),
-    switchOption("balance", "on",
-                 "by pilots, near-field rays, clusters of tile cuts and direct samples where they "
-                 "take most noise from the film"),
+             wholeOption("light-rays", "8", 1, 4096, "",
+                         "shadow rays from each shaded point where --direct-samples is 1; by them "
+                         "goes in any case how much tiles learn")),
+    neededBy("only=all|indirect;direct-samples=0",
+             switchOption("balance", "on",
+                          "by pilots, near-field rays, clusters of tile cuts and direct samples "
+                          "where they take most noise from the film")),
     specksOption("spread")};
 
 // What the film shows, pixel by pixel: a ray of each.
@@ -142,9 +145,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const LightKind light = indirect ? lightKindNamed(options.text("light")) : LightKind{};
   const auto parts = std::make_shared<Parts>();
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
-  Compensation compensation = methodNamed(compensateMethods(), options.text("compensate"))
-                                  .make({in.lit, in.rays, clamp, light}, options);
-  // Alone, direct samples send rays of their own to lights.
+  Compensation compensation;
+  if (options.has("compensate")) {
+    compensation = methodNamed(compensateMethods(), options.text("compensate"))
+                       .make({in.lit, in.rays, clamp, light}, options);
+  }
+  // With --only direct, direct samples send rays of their own by the BSDF.
   const unsigned nearFieldRays =
       options.has("near-field-rays") && (compensation || hasSpecularLobes(in.rays.scene()))
           ? static_cast<unsigned>(options.whole("near-field-rays"))
@@ -187,7 +193,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
       indirect ? static_cast<unsigned>(options.whole("sharers")) : 1, std::move(tileLights),
       lightRays, std::move(seenLight), std::move(pixelControl),
       makeCaustics(in, options, nearFieldRays), surfaceLights, directSamples, in.only);
-  if (options.on("balance")) {
+  if (options.has("balance") && options.on("balance")) {
     parts->balance = findBalance(
         in.rays.scene(), in.seed, options.whole("spp"), in.progress,
         [&](const TileSamples& tile) { return parts->integrator->render(tile, Balance{}); });
