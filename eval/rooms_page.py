@@ -69,11 +69,12 @@ def plot(rows: list[dict], path: Path) -> None:
         ax.axvline(1, color="#444444", linewidth=1)
         ax.set_xscale("log")
         ax.grid(axis="x", alpha=0.3)
-        ax.set_xlabel(f"{title} of the full image at equal CPU time, theirs / ours")
+        ax.set_xlabel(f"{title} at equal CPU time, theirs / ours")
     axes[0].set_yticks(range(len(rooms)), rooms)
     axes[0].invert_yaxis()
     marks = dict(zip(*reversed(axes[0].get_legend_handles_labels())))
-    axes[0].legend(marks.values(), marks.keys(), loc="lower center", bbox_to_anchor=(0.5, 1), ncols=4, frameon=False)
+    figure.suptitle(" ")  # room for the legend
+    figure.legend(marks.values(), marks.keys(), loc="upper center", ncols=len(marks), frameon=False)
     figure.savefig(path, metadata={"Date": None})
     plt.close(figure)
 
