@@ -36,19 +36,28 @@ def two(value: float) -> str:
     return f"{float(f'{value:.2g}'):g}"
 
 
+def indirect_mean(rows: list[dict]) -> float:
+    """Ours over that of all others, each weighted by its noise."""
+    weights = [float(row["its_rmse"])**-2 for row in rows]
+    return float(rows[0]["mean"]) * sum(weights) / sum(w * float(row["its_mean"]) for w, row in zip(weights, rows))
+
+
 def table(rows: list[dict]) -> str:
     """Of the default setting's full images."""
-    shown = {}
+    shown, indirect = {}, {}
     for row in rows:
         if row["setting"] == "default" and row["light"] == "full":
             shown.setdefault(row["room"], {})[row["beside"]] = row
+        if row["setting"] == "default" and row["light"] == "indirect":
+            indirect.setdefault(row["room"], []).append(row)
     others = [other for other in OTHERS if any(other in of for of in shown.values())]
-    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | relMSE: " + ", ".join(OTHERS[other] for other in others) +
-             " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|"]
+    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | relMSE: " + ", ".join(OTHERS[other] for other in others) +
+             " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|---|"]
     for room, of in shown.items():
         path = of["path"]
         lines.append("| " + " | ".join([
             room, f"{float(path['indirect_share']):.0%}", path["cpu_s"], f"{float(path['mean']):.3f}, {float(path['its_mean']):.3f}",
+            f"{indirect_mean(indirect[room]):.3f}",
             ", ".join(two(ratio(of[other], 'relmse')) if other in of else "-" for other in others),
             ", ".join(two(ratio(path, column)) for column in ("rmse", "smape", "flip"))]) + " |")
     made = sorted({f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference {row['reference']}" for row in rows})
