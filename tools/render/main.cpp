@@ -111,7 +111,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
   if (!estimating) used.check();
 
   if (vpl && !estimating) {
-    const bool rays = integratorOf(options).gathers && options.text("compensate") == "near-field";
+    const bool rays = options.has("compensate") && options.text("compensate") == "near-field";
     requireMemoryFor(request.lit, rays ? kBytesPerVplWithNearField : kBytesPerVpl,
                      "keep fewer VPLs with vpl-eliminate -n");
   }
