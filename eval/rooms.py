@@ -207,7 +207,8 @@ def main() -> int:
                         help="light, guided, unlit-path (without light sampling), spread-path (its specks spread), cycles")
     parser.add_argument("--path-length", type=int, default=0, metavar="L",
                         help="segments from the camera to a light, those at mirrors and glass not counted")
-    parser.add_argument("--reference-bin", type=Path, metavar="FOLDER", help="tools that render the references, with --specks keep; --bin unless given")
+    parser.add_argument("--reference-bin", type=Path, metavar="FOLDER",
+                        help="tools that render the references, with --specks keep; --bin unless given")
     parser.add_argument("--references-only", action="store_true", help="render the references, and stop")
     parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
     arguments = parser.parse_args()

@@ -10,8 +10,8 @@ from bnvpl_eval import output
 from bnvpl_eval.output import plt
 
 RESULTS = write_docs.DOCS / "rooms.csv"
-OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs", "spread-path": "path tracer with specks spread",
-          "cycles": "Cycles"}
+OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs",
+          "spread-path": "path tracer with specks spread", "cycles": "Cycles"}
 COLOURS = {"path": "#0b62a3", "light": "#c77700", "guided": "#3a7d34", "spread-path": "#7fb2dd", "cycles": "#8b2f8f"}
 KEY = ("room", "setting", "light", "beside", "path_length")
 
@@ -46,13 +46,15 @@ def table(rows: list[dict]) -> str:
     """Of the default setting's full images."""
     shown, indirect = {}, {}
     for row in rows:
-        if row["setting"] == "default" and row["light"] == "full":
+        if row["setting"] != "default":
+            continue
+        if row["light"] == "full":
             shown.setdefault(row["room"], {})[row["beside"]] = row
-        if row["setting"] == "default" and row["light"] == "indirect":
+        if row["light"] == "indirect":
             indirect.setdefault(row["room"], []).append(row)
     others = [other for other in OTHERS if any(other in of for of in shown.values())]
-    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | relMSE: " + ", ".join(OTHERS[other] for other in others) +
-             " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|---|"]
+    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | relMSE: " +
+             ", ".join(OTHERS[other] for other in others) + " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|---|"]
     for room, of in shown.items():
         path = of["path"]
         lines.append("| " + " | ".join([

@@ -8,7 +8,7 @@ void addShown(const Exposed& film, Only only, Image& image) {
   for (size_t c = 0; c < 3; ++c) {
     std::vector<float>& data = image.add(std::string(1, "RGB"[c]));
     for (size_t i = 0; i < data.size(); ++i) {
-      const auto spread = film.spreadOf(i);
+      const BothLights spread = film.spreadOf(i);
       data[i] = static_cast<float>(shownOf(film.sums[i], only, c) * film.perSample +
                                    double{spread[0][c]} + double{spread[1][c]});
     }

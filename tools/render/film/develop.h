@@ -14,12 +14,10 @@ struct Exposed {
   std::span<const PixelSums> sums;
   std::span<const PixelCounts> counts;
   double perSample;  // of `sums`: one over what they are sums of, samples or passes
-  std::span<const PixelPasses> passes = {};          // without passes empty
-  std::span<const std::array<Vec3, 2>> spread = {};  // of spreadSpecks(), or empty
+  std::span<const PixelPasses> passes = {};  // without passes empty
+  std::span<const BothLights> spread = {};   // of spreadSpecks(), or empty
 
-  std::array<Vec3, 2> spreadOf(size_t pixel) const {
-    return spread.empty() ? std::array<Vec3, 2>{} : spread[pixel];
-  }
+  BothLights spreadOf(size_t pixel) const { return spread.empty() ? BothLights{} : spread[pixel]; }
 };
 
 // R, G, B, as `only` shows them.

@@ -116,7 +116,7 @@ Image develop(const Film& size, const FilmOptions& options, State& state, FilmSt
     }
   }
   Exposed film{state.pixels, state.counts, 1.0 / options.spp};
-  std::vector<std::array<Vec3, 2>> spread;
+  std::vector<BothLights> spread;
   if (options.spreadSpecks) film.spread = spread = spreadSpecks(film, options.only, size.width);
   addShown(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);

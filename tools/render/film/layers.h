@@ -12,6 +12,9 @@
 
 namespace bnvpl {
 
+// Of direct light, and of indirect light.
+using BothLights = std::array<Vec3, 2>;
+
 // Sums over a pixel's samples, of the values of RadianceSample, each slot being the first of its
 // channels; and of the brightest sample what it adds to them.
 struct PixelSums {
@@ -52,7 +55,7 @@ struct LayerPixel {
   double perSample;  // of the sums: one over the samples of a pixel, or the passes
   double perCount;   // of the counts: one over the samples
   const PixelPasses& passes;
-  std::array<Vec3, 2> spread;  // what spreadSpecks() adds to direct and to indirect light
+  BothLights spread;  // what spreadSpecks() adds
 };
 
 struct Layer {

@@ -115,10 +115,10 @@ class Passes {
     image.height = static_cast<int>(scene_.film.height);
     return image;
   }
-  Exposed exposed(std::span<const std::array<Vec3, 2>> spread = {}) const {
+  Exposed exposed(std::span<const BothLights> spread = {}) const {
     return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, spread};
   }
-  std::vector<std::array<Vec3, 2>> specks() const {
+  std::vector<BothLights> specks() const {
     if (!options_.spreadSpecks) return {};
     return spreadSpecks(exposed(), options_.only, scene_.film.width);
   }

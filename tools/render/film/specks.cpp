@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "core/parallel.h"
 
@@ -103,7 +104,7 @@ struct Speck {
 std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings& at) {
   std::vector<Speck> specks;
   for (size_t i = 0; i < film.sums.size(); ++i) {
-    std::array<Vec3, 2> brought;
+    BothLights brought;
     float others = at.shown[i];
     for (const size_t kind : {0u, 1u}) {
       if (isShown(kind, only)) brought[kind] = brightestOf(film, i, kind);
@@ -121,18 +122,39 @@ std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings
   return specks;
 }
 
+// A speck, or as much of it as its window hides.
+struct Going {
+  size_t pixel, kind;
+  Vec3 share;  // of the window's light
+  float own;   // what the speck itself adds to that
+};
+
+// Adds what goes into windows of `radius` of one kind of light.
+void addGoing(std::span<const Going> going, size_t kind, const Surroundings& at, size_t radius,
+              std::span<BothLights> change) {
+  if (std::ranges::none_of(going, [&](const Going& g) { return g.kind == kind; })) return;
+  for (size_t c = 0; c < 3; ++c) {
+    Grid shares(at.shown.width, at.shown.height), own(shares);
+    for (const Going& g : going) {
+      if (g.kind != kind) continue;
+      shares[g.pixel] = g.share[c];
+      own[g.pixel] = g.share[c] * g.own;
+    }
+    shares = windowSums(std::move(shares), radius);
+    own = windowSums(std::move(own), kNear);
+    parallelFor(change.size(), 4096, [&](size_t i) {
+      if (!std::isfinite(at.around[i])) return;
+      change[i][kind][c] += at.around[i] * shares[i] - at.share[i] * own[i];
+    });
+  }
+}
+
 }  // namespace
 
-std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, uint32_t width) {
+std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t width) {
   const Surroundings at(film, only, width);
-  const size_t count = film.sums.size();
-  std::vector<std::array<Vec3, 2>> change(count);
+  std::vector<BothLights> change(film.sums.size());
   std::vector<Speck> specks = findSpecks(film, only, at);
-  struct Going {
-    size_t pixel, kind;
-    Vec3 share;  // of the window's light
-    float own;   // what the speck itself adds to that
-  };
   for (size_t radius = kNear; !specks.empty(); radius *= 2) {
     const bool wholeFilm = radius >= std::max(at.shown.width, at.shown.height);
     const Grid light = windowSums(at.around, radius);
@@ -150,23 +172,7 @@ std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, ui
             {s.pixel, s.kind, goes * static_cast<float>(1.0 / there), static_cast<float>(own)});
       }
     }
-    for (const size_t kind : {0u, 1u}) {
-      if (std::ranges::none_of(going, [&](const Going& g) { return g.kind == kind; })) continue;
-      for (size_t c = 0; c < 3; ++c) {
-        Grid shares(at.shown.width, at.shown.height), own(shares);
-        for (const Going& g : going) {
-          if (g.kind != kind) continue;
-          shares[g.pixel] = g.share[c];
-          own[g.pixel] = g.share[c] * g.own;
-        }
-        shares = windowSums(std::move(shares), radius);
-        own = windowSums(std::move(own), kNear);
-        parallelFor(count, 4096, [&](size_t i) {
-          if (!std::isfinite(at.around[i])) return;
-          change[i][kind][c] += at.around[i] * shares[i] - at.share[i] * own[i];
-        });
-      }
-    }
+    for (const size_t kind : {0u, 1u}) addGoing(going, kind, at, radius, change);
     specks = std::move(wider);
   }
   return change;

@@ -34,6 +34,6 @@ namespace bnvpl {
 
 // What each pixel's direct and indirect light change by, in W/(m2 sr), for a film of rows of
 // `width` pixels that shows what `only` says. What is not shown stays as it is.
-std::vector<std::array<Vec3, 2>> spreadSpecks(const Exposed& film, Only only, uint32_t width);
+std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t width);
 
 }  // namespace bnvpl

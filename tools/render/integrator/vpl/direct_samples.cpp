@@ -128,10 +128,10 @@ unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, do
                   double cost, const Balance& balance) {
   if (!(pilot.variance > 0.0)) return 1;
   const Indirect indirect = indirectOf(tile);
-  if (!(balance.price > 0.0) && !(indirect.variance > 0.0)) return kAlone;
   if (balance.price > 0.0)
     return drawsWorth(balance.over(pilot.variance, pilot.light + indirect.light), costOfOne,
                       balance.price, 1, kMost);
+  if (!(indirect.variance > 0.0)) return kAlone;
   const double most = std::clamp(cost / costOfOne, 1.0, double{kMost});
   return drawsWorth(pilot.variance, costOfOne,
                     std::max(indirect.variance, 1e-9 * pilot.variance) / cost, 1,
