@@ -51,6 +51,10 @@ class Bsdf {
   std::optional<RoughLeaving> roughLeaving() const {
     return ask([&](const auto& b) { return b.roughLeaving(point_); });
   }
+  // What of it looks the same all the same; black where that is nothing.
+  MattPart mattPart() const {
+    return ask([&](const auto& b) { return b.mattPart(point_); });
+  }
   // Probability with which a path should take the specular group; 0 or 1 where there is but one.
   float specularProbability() const {
     return ask([](const auto& b) { return b.specularProbability(); });

@@ -49,11 +49,33 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared = {});
-// The same beside a ray whose direction the caller does not draw by the BSDF alone: `rayPdf` is the
-// density of all that it may draw by, 1/sr.
+// By what was learned, or one ray to a light picked in proportion to power, beside a ray whose
+// direction the caller does not draw by the BSDF alone: `rayPdf` is the density of all that it may
+// draw by, 1/sr.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedStrata& strata, const std::function<float(Vec3 wi)>& rayPdf,
+                 const LearnedLight& learned, const std::function<float(Vec3 wi)>& rayPdf,
                  Rng& rng);
+// Light that leaves by all that an eye sees of a surface, and by a part of it that is known apart.
+struct LightWithPart {
+  Vec3 all, part;
+  LightWithPart operator*(float k) const { return {all * k, part * k}; }
+  LightWithPart operator*(Vec3 k) const { return {all * k, part * k}; }
+  LightWithPart& operator+=(const LightWithPart& other) {
+    all += other.all, part += other.part;
+    return *this;
+  }
+};
+inline bool isBlack(const LightWithPart& light) {
+  return isBlack(light.all) && isBlack(light.part);
+}
+// The same, with the light that leaves by `matt`, 1/sr, which is Lambert's.
+LightWithPart directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
+                          LobeGroup group, Vec3 matt, const LearnedLight& learned,
+                          const std::function<float(Vec3 wi)>& rayPdf, Rng& rng);
+// What Lambert's law reflects of light from wi, over its value.
+inline float mattCosine(const SurfacePoint& at, Vec3 wi) {
+  return dot(at.ng, wi) > 0.0f ? std::max(0.0f, dot(at.ns, wi)) : 0.0f;
+}
 
 // How the ray that found a light was chosen, for the other half of MIS.
 struct Arrival {

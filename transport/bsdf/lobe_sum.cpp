@@ -135,6 +135,26 @@ std::optional<RoughLeaving> LobeSum::roughLeaving(const SurfacePoint& point) con
   return RoughLeaving{point.ng, point.ns, coated->ior, coated->alpha};
 }
 
+// Lobes over a matt base look much the same from everywhere: as from half way down.
+MattPart LobeSum::mattPart(const SurfacePoint& point) const {
+  constexpr float kHalfWay = 0.5f;
+  const Vec3 wo{std::sqrt(1.0f - kHalfWay * kHalfWay), 0.0f, kHalfWay};
+  MattPart part{{point.ng, point.ns, 0.0f, 0.0f, true}, {}};
+  for (const Summand& s : lobes()) {
+    if (s.group != LobeGroup::Rough || s.frame != 0) continue;
+    const float kept = s.above.weight > 0.0f ? s.above.through(kHalfWay) : 1.0f;
+    std::visit(
+        [&](const auto& l) {
+          using L = std::decay_t<decltype(l)>;
+          if constexpr (std::is_same_v<L, LambertLobe> || std::is_same_v<L, LayeredBase> ||
+                        std::is_same_v<L, CoatedBase>)
+            part.value += s.weight * l.albedo(wo) * (kept / kPi);
+        },
+        s.lobe);
+  }
+  return part;
+}
+
 float LobeSum::photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) const {
   return shadingFactor(point, normal) * std::fabs(dot(point.ng, wi));
 }

@@ -22,6 +22,9 @@ class PhongBsdf {
   std::optional<RoughLeaving> roughLeaving(const SurfacePoint& point) const {
     return diffuseOnly() ? std::optional(RoughLeaving{point.ng, point.ns}) : std::nullopt;
   }
+  MattPart mattPart(const SurfacePoint& point) const {
+    return {RoughLeaving{point.ng, point.ns}, diffuseValue()};
+  }
   float specularProbability() const { return specularProbability_; }
   bool specularIsDelta() const { return !sharp_; }
   float reflectance() const;

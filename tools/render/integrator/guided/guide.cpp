@@ -160,10 +160,9 @@ void Guide::fillCdfs(const std::vector<float>& radiance) {
   });
 }
 
-Vec3 Guide::sample(uint32_t region, Rng& rng, float& pdf) const {
-  float u = rng.next();
-  const auto cell = static_cast<uint32_t>(sampleCdf(cdf(region), u));
-  const Vec3 local = grid_.direction(cell, u, rng.next());
+Vec3 Guide::sample(uint32_t region, Point2 at, float& pdf) const {
+  const auto cell = static_cast<uint32_t>(sampleCdf(cdf(region), at.x));
+  const Vec3 local = grid_.direction(cell, at.x, at.y);
   pdf = cdfShare(cdf(region), cell) * grid_.pdfInCell(local.z);
   return Basis(normal_[region]).toWorld(local);
 }

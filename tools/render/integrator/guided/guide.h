@@ -9,12 +9,13 @@
 #include "spatial/near_surfaces.h"
 #include "spatial/region_grid.h"
 #include "tools/render/integrator/guided/direction_grid.h"
+#include "tools/render/tile/directions.h"
 #include "transport/lights.h"
 
 namespace bnvpl {
 
 // Thread-safe and immutable once made. Owns all that it needs but the scene's rays.
-class Guide {
+class Guide : public DirectionGuide {
  public:
   // `raysEach`: traced from each VPL to learn. Too few, or no VPLs: an empty guide.
   Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
@@ -25,9 +26,9 @@ class Guide {
   // Whether any light was found to arrive in the region.
   bool knows(uint32_t region) const { return region != kNone && onward_[region] > 0.0f; }
 
-  // Of a region that the guide knows: a unit direction, and its density in 1/sr.
-  Vec3 sample(uint32_t region, Rng& rng, float& pdf) const;
-  float pdf(uint32_t region, Vec3 wi) const;
+  // Of a region that the guide knows.
+  Vec3 sample(uint32_t region, Point2 at, float& pdf) const override;
+  float pdf(uint32_t region, Vec3 wi) const override;
 
   // About the radiance that a white surface would reflect in the region, mean of the channels: all
   // of it, and what rays find that go on from there by the BSDF, the rest being light sampling's.

@@ -3,8 +3,9 @@
 #include <memory>
 
 #include "tools/common/streams.h"
-#include "tools/render/integrator/guided/guided_tracer.h"
+#include "tools/render/integrator/guided/guided_rays.h"
 #include "tools/render/integrator/path_tracer.h"
+#include "tools/render/tile/tile_options.h"
 
 namespace bnvpl::methods::integrator::guided {
 
@@ -16,26 +17,70 @@ constexpr std::array kOptions{
                "chosen by the guide, the others by the BSDF"),
     wholeOption("guide-rays", "256", 0, 1024, "",
                 "rays from each VPL that learn from where light comes; fewer in a short render"),
+    kDirectSamplesOption,
+    neededBy("only=all|indirect;direct-samples=1",
+             wholeOption("paths", "8", 1, 4096, "",
+                         "of indirect light from each shaded point, with --balance on a quarter of "
+                         "them to four times as many")),
+    sharersOption("32",
+                  "samples of a tile that share the light of what their paths hit first, where "
+                  "that is matt; 1: none"),
+    kControlOption,
+    balanceOption("by pilots, paths and direct samples where they take most noise from the film"),
     specksOption("keep")};
 
 // Rays that learn are to cost little beside the samples, of which each has several.
 constexpr uint64_t kSamplesPerRay = 2;
 
-uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
+uint64_t samplesOf(const IntegratorInputs& in, const Values& options) {
   const Film& film = in.rays.scene().film;
-  const uint64_t samples = uint64_t{film.width} * film.height * options.whole("spp");
-  return std::min<uint64_t>(options.whole("guide-rays"),
-                            samples / (kSamplesPerRay * std::max<size_t>(1, in.lit.size())));
+  return uint64_t{film.width} * film.height * options.whole("spp");
 }
 
+uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
+  return std::min<uint64_t>(
+      options.whole("guide-rays"),
+      samplesOf(in, options) / (kSamplesPerRay * std::max<size_t>(1, in.lit.size())));
+}
+
+// What lives as long as the integrator, in an order in which each may borrow from those before.
+struct Parts {
+  std::unique_ptr<const SurfaceLights> surfaceLights;
+  std::unique_ptr<const TileIntegrator> integrator;
+  Balance balance = {};
+};
+
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  const auto tracer = std::make_shared<const GuidedTracer>(
-      in.rays, in.lights,
-      Guide(in.lit, in.rays, in.lights, in.seed, raysEach(in, options), in.progress),
-      SurfaceLights(in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-                    streamKey(in.seed, Stream::SurfaceLights), in.progress),
-      options.real32("guide-share"), maxBouncesOf(options), in.only);
-  return {[tracer](const TileSamples& tile) { tracer->render(tile); }};
+  constexpr unsigned kLightRays = 8;  // by which goes how much tiles learn
+  constexpr uint64_t kCausticPhotons =
+      4;  // of each sample: so their noise goes as that of all else
+  const bool indirect = in.only != Only::Direct;
+  const auto parts = std::make_shared<Parts>();
+  parts->surfaceLights = std::make_unique<const SurfaceLights>(
+      in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+      streamKey(in.seed, Stream::SurfaceLights), in.progress);
+  TileParts tile;
+  tile.surfaceLights = parts->surfaceLights.get();
+  if (options.has("paths")) {
+    tile.raysEach = static_cast<unsigned>(options.whole("paths"));
+    tile.rays = std::make_unique<const GuidedRays>(
+        in.rays, in.lights,
+        Guide(in.lit, in.rays, in.lights, in.seed, raysEach(in, options), in.progress),
+        *parts->surfaceLights, options.real32("guide-share"), tile.raysEach, maxBouncesOf(options),
+        in.only);
+  }
+  if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
+  const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
+  const FilmPoints film = filmRays.all();
+  if (indirect && options.text("control") == "vpls") tile.control = makeControl(in, film);
+  addDirectLight(in, options, filmRays, film, kLightRays, tile);
+  tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
+                               tile.raysEach * options.whole("spp"));
+  parts->integrator =
+      std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
+  parts->balance = balanceOf(in, options, *parts->integrator);
+  return {
+      [parts](const TileSamples& samples) { parts->integrator->render(samples, parts->balance); }};
 }
 
 }  // namespace

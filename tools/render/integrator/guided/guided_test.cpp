@@ -68,7 +68,7 @@ TEST(Guide, DensitiesAreThoseOfTheDraws) {
       integral += pdf;
       half += dot(w, side) > 0.0f ? pdf : 0.0;
       float drawn = 0.0f;
-      const Vec3 d = guide.sample(region, rng, drawn);
+      const Vec3 d = guide.sample(region, {rng.next(), rng.next()}, drawn);
       halfOfDraws += dot(d, side) > 0.0f ? 1.0 / kDraws : 0.0;
       rounded += std::fabs(guide.pdf(region, d) - drawn) > 1e-3f * drawn;  // into the next cell
     }
@@ -116,12 +116,52 @@ TEST(Guided, HasThePathTracersImage) {
   wall.phong().diffuse = Vec3{0.3f};
   wall.phong().glossy = Vec3{0.5f};
   wall.phong().exponent = 12.0f;
-  const World world(std::move(scene));
-  const VplTable lit = fewLit(world);
-  const Given options{{"spp", "64"}};
-  for (const char* only : {"all", "direct", "indirect"}) {
-    const Given shown = with(options, {{"only", only}});
-    EXPECT_TRUE(sameExpectation(paths(world, shown), guided(world, lit, shown))) << only;
+  // The bulb's light over a mirror is photons', which path tracing has none of.
+  Scene withoutMirror = scene;
+  withoutMirror.materials.at(scene.triangles.back().material).phong().mirror = Vec3{};
+  scene.lights.pop_back();
+  for (Scene& of : {std::ref(scene), std::ref(withoutMirror)}) {
+    const World world(std::move(of));
+    const VplTable lit = fewLit(world);
+    const Given options{{"spp", "64"}};
+    for (const char* only : {"all", "direct", "indirect"}) {
+      const Given shown = with(options, {{"only", only}});
+      EXPECT_TRUE(sameExpectation(paths(world, shown), guided(world, lit, shown))) << only;
+    }
+  }
+}
+
+// Light that a path finds is shared: all of it from matt walls, bare or coated, the matt part of it
+// from walls of glTF and of MTL's gloss, and none of it from metal.
+TEST(Guided, SharedPathsHaveThePathTracersImage) {
+  const auto ggx = [](float alpha) { return Roughness(Scalar(alpha), Roughness::Alpha::Same); };
+  MetallicRoughnessModel gltf;
+  gltf.baseColour = Vec3(0.3f, 0.7f, 0.9f);
+  gltf.metallic = 0.4f;
+  gltf.roughness = 0.7f;
+  gltf.clearcoat = 0.5f;
+  CoatedDiffuseModel coated;
+  coated.reflectance = Vec3(0.8f, 0.4f, 0.2f);
+  ConductorModel metal;
+  metal.roughness = ggx(0.4f);
+  PhongModel gloss;
+  gloss.diffuse = Vec3{0.4f};
+  gloss.glossy = Vec3{0.4f};
+  gloss.exponent = 12.0f;
+  const std::array<std::array<MaterialModel, 2>, 2> walls{{{gltf, coated}, {gloss, metal}}};
+  for (const auto& models : walls) {
+    Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+    scene.film = {16, 16};
+    for (Material& m : scene.materials) {
+      if (m.name == "Green") m.model = models[0];
+      if (m.name == "Red") m.model = models[1];
+    }
+    const World world(std::move(scene));
+    const VplTable lit = fewLit(world);
+    const Given indirect{{"only", "indirect"}};
+    EXPECT_TRUE(sameExpectation(
+        paths(world, with(indirect, {{"spp", "128"}})),
+        guided(world, lit, with(indirect, {{"spp", "16"}, {"sharers", "16"}, {"paths", "2"}}))));
   }
 }
 

@@ -3,7 +3,7 @@
 // there the noise of a pixel is that of where its camera rays go, which are cheap.
 #pragma once
 
-#include "tools/render/integrator/vpl/pixel_rays.h"
+#include "tools/render/tile/pixel_rays.h"
 
 namespace bnvpl {
 

@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/shared_hits.h"
+#include "tools/render/tile/shared_hits.h"
 
 namespace bnvpl {
 
@@ -11,7 +11,8 @@ struct Link {
   bool seen = false;
 };
 
-Link linkOf(const Bsdf& bsdf, const SharedHit& hit) {
+Link linkOf(const Directions& from, const SharedHit& hit) {
+  const Bsdf& bsdf = from.bsdf();
   const Vec3 way = hit.position - bsdf.point().position;
   const float squared = dot(way, way);
   if (!(squared > 0.0f)) return {};
@@ -23,8 +24,7 @@ Link linkOf(const Bsdf& bsdf, const SharedHit& hit) {
   const float leaving = hit.leaving.towards(-wi);
   if (!(leaving > 0.0f)) return {};
   const float perArea = share * cosine / squared;
-  Link link{bsdf.pdf(LobeGroup::Rough, wi) * perArea,
-            bsdf.eval(LobeGroup::Rough, wi) * (perArea * leaving)};
+  Link link{from.pdf(wi) * perArea, bsdf.eval(LobeGroup::Rough, wi) * (perArea * leaving)};
   link.seen = link.density > 0.0f || !isBlack(link.value);
   return link;
 }
@@ -39,7 +39,7 @@ size_t shareHits(const RayScene& rays, std::span<HitSharer> group) {
     for (const SharedHit& hit : group[i].hits) {
       if (isBlack(hit.radiance)) continue;
       hits.push_back(&hit);
-      for (size_t k = 0; k < members; ++k) links.push_back(linkOf(*group[k].bsdf, hit));
+      for (size_t k = 0; k < members; ++k) links.push_back(linkOf(*group[k].directions, hit));
     }
   }
   // Of its own hits a sample knows that it sees them.
@@ -52,7 +52,7 @@ size_t shareHits(const RayScene& rays, std::span<HitSharer> group) {
          ++h, begin += members) {
       for (size_t k = 0; k < members; ++k) {
         if (k == i || !links[begin + k].seen) continue;
-        const SurfacePoint& at = group[k].bsdf->point();
+        const SurfacePoint& at = group[k].directions->bsdf().point();
         const Vec3 way = hits[h]->position - at.position;
         segments.push_back({rays.offsetOrigin(at.position, dot(at.ng, way) > 0.0f ? at.ng : -at.ng),
                             rays.offsetOrigin(hits[h]->position, hits[h]->normal)});

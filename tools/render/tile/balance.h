@@ -29,7 +29,7 @@ namespace bnvpl {
 // Costs in shadow rays of a tile's gather, which are traced eight at a time (measured: theory.md).
 namespace cost {
 inline constexpr double kCluster = 0.07, kCameraRay = 8.0, kBsdfRay = 7.0, kLightRay = 4.0,
-                        kNearFieldRay = 16.0, kSharedHit = 1.5;
+                        kSharedHit = 1.5;
 }
 
 inline double squared(Vec3 v) { return double{dot(v, v)}; }

@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/pixel_control.h"
+#include "tools/render/tile/pixel_control.h"
 
 #include "core/parallel.h"
 

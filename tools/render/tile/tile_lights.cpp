@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/tile_lights.h"
+#include "tools/render/tile/tile_lights.h"
 
 #include <algorithm>
 

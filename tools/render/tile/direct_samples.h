@@ -3,8 +3,8 @@
 #pragma once
 
 #include "tools/render/integrator/integrator.h"
-#include "tools/render/integrator/vpl/balance.h"
-#include "tools/render/integrator/vpl/seen_light.h"
+#include "tools/render/tile/balance.h"
+#include "tools/render/tile/seen_light.h"
 #include "transport/direct_light.h"
 
 namespace bnvpl {

@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/caustics.h"
+#include "tools/render/tile/caustics.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 // far more than asking who sees it.
 //
 // A group's rays are techniques of one multi-sample MIS (Veach 1997, section 9.2.2). Sample k sends
-// n_k rays by its BSDF; seen from the hit y their density is
+// n_k rays; seen from the hit y their density is
 //
 //   p_k(y) = pdf_k(x_k -> y) s_y(|x_k - y|) |cos_y| / |x_k - y|^2 V(x_k, y),
 //
@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "tools/render/compensate/compensate.h"
-#include "transport/bsdf.h"
+#include "tools/render/tile/directions.h"
 #include "transport/rays.h"
 
 namespace bnvpl {
@@ -40,7 +40,7 @@ struct SharedHit {
 
 // A sample of the group.
 struct HitSharer {
-  const Bsdf* bsdf;
+  const Directions* directions;
   unsigned rays;                    // that it sent, all of them
   std::span<const SharedHit> hits;  // of these
   Vec3 brought = {};                // by the hits of all, W/(m2 sr)

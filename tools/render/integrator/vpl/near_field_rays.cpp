@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/near_field.h"
+#include "tools/render/integrator/vpl/near_field_rays.h"
 
 #include <algorithm>
 #include <array>
@@ -18,40 +18,42 @@ constexpr unsigned kMaxExtensions = 16;
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 // Shadow rays to lights from the first such point.
 constexpr unsigned kFirstLightRays = 4;
+// In units of cost:: (measured: theory.md).
+constexpr double kCostOfRay = 16.0;
 
 }  // namespace
 
 // The first link of a ray.
-struct NearField::Start {
+struct NearFieldRays::Start {
   Vec3 direction, throughput;
   Arrival arrival;
   const SurfacePoint* hit;
   const ReachGrid::Lookup* near;  // the VPLs there
 };
 
+double NearFieldRays::costOfRay() const { return kCostOfRay; }
+
 // Rays from a sample's point wait for memory together.
-void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsigned count,
-                     uint32_t first, uint64_t key, Rng& rng, RaysBrought& out) const {
+void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
+                         Rng& rng, RaysBrought& out) const {
   constexpr size_t kBatch = RayScene::kBatch;
   std::array<Ray, kBatch> rays;
   std::array<SurfacePoint, kBatch> hits;
   std::array<ReachGrid::Lookup, kBatch> near;
   std::array<Start, kBatch> made;
+  const SurfacePoint& vertex = from.directions.bsdf().point();
   for (unsigned begin = 0, end; begin < count; begin = end) {
     end = begin + std::min(count - begin, unsigned{kBatch});
     size_t alive = 0;
     for (unsigned k = begin; k < end; ++k) {
       BsdfSample next;
       const float pick = rng.next();
-      if (!from.bsdf.sample(LobeGroup::Rough, Transport::Radiance, pick, owenSobol(first + k, key),
-                            next)) {
-        continue;
-      }
-      rays[alive] = rayOn(rays_, from.bsdf.point(), next);
+      if (!from.directions.sample(pick, owenSobol(first + k, key), next)) continue;
+      rays[alive] = rayOn(rays_, vertex, next);
       made[alive] = {next.wi,
                      from.throughput * next.weight,
-                     {next.pdf * static_cast<float>(shares_), from.bsdf.point().position,
-                      LightChoice::Each, from.learned, from.shared},
+                     {next.pdf * static_cast<float>(shares_), vertex.position, LightChoice::Each,
+                      from.learned, from.shared},
                      &hits[alive],
                      &near[alive]};
       ++alive;
@@ -60,7 +62,7 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
     if (compensation_ && only_ != Only::Direct) compensation_.lookUp({hits.data(), alive}, near);
     for (size_t k = 0; k < alive; ++k) {
       const Vec3 before = out.indirect, hitsBefore = out.ofHits;
-      follow(made[k], from.shares, point, rng, out);
+      follow(made[k], from.shares, rng, out);
       const Vec3 alone = (out.indirect - before) - (out.ofHits - hitsBefore);
       out.squares += double{dot(alone, alone)};
     }
@@ -72,8 +74,7 @@ void NearField::send(const NearFieldVertex& from, const GatherPoint& point, unsi
 // what Compensation says is missing: from the scattered light that a VPL knows where it speaks for
 // the point that the ray found, else by lighting that point as the first one, and so on. A light
 // that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
-void NearField::follow(const Start& start, bool share, const GatherPoint& point, Rng& rng,
-                       RaysBrought& out) const {
+void NearFieldRays::follow(const Start& start, bool share, Rng& rng, RaysBrought& out) const {
   Vec3 throughput = start.throughput;
   // From a hit that others share `throughput` is counted anew.
   SharedHit hit;
@@ -133,7 +134,7 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
     if (known) {
       light += throughput * (leaving + *missing.scattered) * missing.share;
     } else {
-      const Gathered g = point(found, first ? kFirstDraws : kLaterDraws, rng);
+      const Gathered g = point_(found, first ? kFirstDraws : kLaterDraws, rng);
       light += throughput * (leaving + g.radiance);
       out.clamped += shared ? start.throughput * throughput * g.clamped : throughput * g.clamped;
       out.shadowRays += g.shadowRays;
@@ -153,8 +154,8 @@ void NearField::follow(const Start& start, bool share, const GatherPoint& point,
 }
 
 // `near`: of the hit, where that is the first; null: to be looked up.
-Missing NearField::missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
-                               Rng& rng) const {
+Missing NearFieldRays::missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
+                                   Rng& rng) const {
   if (!end.rough) return {};
   if (end.links > 0) return {1.0f, {}};
   if (!compensation_) return {};

@@ -4,8 +4,8 @@
 // camera rays.
 #pragma once
 
-#include "tools/render/integrator/vpl/pixel_rays.h"
 #include "tools/render/irradiance_field.h"
+#include "tools/render/tile/pixel_rays.h"
 
 namespace bnvpl {
 

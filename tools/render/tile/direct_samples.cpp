@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/direct_samples.h"
+#include "tools/render/tile/direct_samples.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/pixel_rays.h"
+#include "tools/render/tile/pixel_rays.h"
 
 #include <algorithm>
 #include <cmath>

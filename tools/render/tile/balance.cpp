@@ -1,4 +1,4 @@
-#include "tools/render/integrator/vpl/balance.h"
+#include "tools/render/tile/balance.h"
 
 #include <algorithm>
 #include <cmath>

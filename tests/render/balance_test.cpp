@@ -1,5 +1,5 @@
 // Work by a price: where it goes, and that the mean stays.
-#include "tools/render/integrator/vpl/balance.h"
+#include "tools/render/tile/balance.h"
 
 #include <gtest/gtest.h>
 

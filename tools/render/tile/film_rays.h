@@ -1,0 +1,56 @@
+// What the film shows, pixel by pixel, by a ray of each.
+#pragma once
+
+#include "core/parallel.h"
+#include "tools/common/streams.h"
+#include "tools/render/gather/gather.h"
+#include "tools/render/integrator/camera_vertex.h"
+#include "transport/camera.h"
+
+namespace bnvpl {
+
+class FilmRays {
+ public:
+  // `surfaceLights` may be null. Borrows all.
+  FilmRays(const RayScene& rays, const LightSet& lights, const SurfaceLights* surfaceLights,
+           uint64_t seed)
+      : rays_(rays),
+        lights_(lights),
+        surfaceLights_(surfaceLights),
+        key_(streamKey(seed, Stream::FilmPoints)) {}
+
+  // Without a triangle where nothing rough is seen. `seen`: light without a rough surface between.
+  SurfacePoint point(size_t pixel, float* seen = nullptr) const {
+    const Scene& scene = rays_.scene();
+    const uint32_t width = scene.film.width;
+    Rng rng(key_, pixel);
+    const float x = (static_cast<float>(pixel % width) + rng.next()) / static_cast<float>(width);
+    const float y =
+        (static_cast<float>(pixel / width) + rng.next()) / static_cast<float>(scene.film.height);
+    RadianceSample sample;
+    SpecularPath path = seeFrom(rays_, lights_, scene.camera.position,
+                                cameraDirection(scene.camera, scene.film, x, y), rng, sample,
+                                {nullptr, surfaceLights_});
+    if (!path.rough) path.hit.triangle = kNone;
+    if (seen) *seen = mean(sample.direct);
+    return path.hit;
+  }
+
+  FilmPoints all() const {
+    const Film& size = rays_.scene().film;
+    FilmPoints film{size.width, size.height, {}, {}};
+    film.points.resize(size_t{film.width} * film.height);
+    film.seen.resize(film.points.size());
+    parallelFor(film.points.size(), 64,
+                [&](size_t i) { film.points[i] = point(i, &film.seen[i]); });
+    return film;
+  }
+
+ private:
+  const RayScene& rays_;
+  const LightSet& lights_;
+  const SurfaceLights* surfaceLights_;
+  uint64_t key_;
+};
+
+}  // namespace bnvpl

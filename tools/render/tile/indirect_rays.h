@@ -1,0 +1,58 @@
+// Rays from what the camera sees that look for indirect light: what a method of --integrator puts
+// into a TileIntegrator.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tools/render/integrator/integrator.h"
+#include "tools/render/tile/shared_hits.h"
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+// What many rays brought, added up.
+struct RaysBrought {
+  Vec3 direct, indirect, clamped, compensated;
+  Vec3 ofHits;  // part of `indirect` and `compensated`: by `hits`
+  std::vector<SharedHit> hits;
+  // Of the indirect light that hits do not bring: each ray's squared, channels added up.
+  double squares = 0.0;
+  uint32_t rays = 0, shadowRays = 0;
+
+  // `shared`: what these bring instead, by the rays of many.
+  void addMeanTo(RadianceSample& out, Vec3 shared) const {
+    if (rays == 0) return;
+    const float each = 1.0f / static_cast<float>(rays);
+    const Vec3 instead = shared - ofHits * each;
+    out.direct += direct * each;
+    out.indirect += indirect * each + instead;
+    out.clamped += clamped * each;
+    out.compensated += compensated * each + instead;
+    out.shadowRays += shadowRays;
+  }
+};
+
+// Where rays begin.
+struct RaysFrom {
+  const Directions& directions;  // of the vertex
+  Vec3 throughput;               // from there to the camera
+  const LearnedLight& learned;   // direct light of the vertex is shared with its shadow rays
+  SharedWithPhotons shared;
+  bool shares = false;  // whether other samples share what rays find
+};
+
+// Thread-safe and immutable once made.
+class IndirectRays {
+ public:
+  virtual ~IndirectRays() = default;
+
+  // How rays are drawn from a vertex; without a guide, by its BSDF.
+  virtual Directions directionsFrom(const Bsdf& bsdf) const { return Directions(bsdf); }
+  // Adds `count` rays, whose directions are points `first` and on of a sequence with that key.
+  virtual void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key, Rng& rng,
+                    RaysBrought& out) const = 0;
+  virtual double costOfRay() const = 0;  // in units of cost:: (balance.h)
+};
+
+}  // namespace bnvpl
