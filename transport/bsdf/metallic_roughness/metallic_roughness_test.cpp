@@ -2,6 +2,7 @@
 #include "transport/bsdf/metallic_roughness/metallic_roughness.h"
 
 #include "tests/support/bsdf_checks.h"
+#include "transport/direct_light.h"
 
 namespace bnvpl::test {
 namespace {
@@ -36,6 +37,27 @@ TEST(MetallicRoughness, ExtensionsKeepToIt) {
   specular.specularColour = Vec3(1, 0.5f, 0.2f);
   specular.ior = 1.8f;
   check(materialOf(specular), "specular", 0.02f);
+}
+
+// Others share light by it: no eye may change it, and what is left should be little but gloss.
+TEST(MetallicRoughness, MattPartIsTheSameFromEverywhereAndNearTheBase) {
+  const Scene scene = sceneOf(materialOf(gltf(0.4f, 0.8f)));
+  const Vec3 wi = normalize({-0.3f, 0.2f, 1});
+  Vec3 first;
+  for (const Vec3 wo : {Vec3{0, 0, 1}, normalize({0.5f, 0.1f, 1}), normalize({-2, 1, 1})}) {
+    const SurfacePoint p = seenFrom(wo);
+    const Bsdf bsdf(scene, p);
+    const MattPart part = bsdf.mattPart();
+    if (isBlack(first)) first = part.value;
+    EXPECT_EQ(part.value, first);
+    EXPECT_EQ(part.leaving.towards(wo), 1.0f);
+    const Vec3 all = bsdf.eval(LobeGroup::Rough, wi) * (1.0f / mattCosine(p, wi));
+    for (int c = 0; c < 3; ++c) EXPECT_LT(part.value[c], 1.2f * all[c]) << c;
+  }
+  EXPECT_GT(first.x, 0.5f * 0.6f * 0.9f / kPi);
+  const Scene metal = sceneOf(materialOf(gltf(1.0f, 0.8f)));
+  const SurfacePoint p = seenFrom({0, 0, 1});
+  EXPECT_TRUE(isBlack(Bsdf(metal, p).mattPart().value));
 }
 
 // Appendix B.3.5, in its own words.
