@@ -83,7 +83,8 @@ TEST(Guided, FurnaceIsExact) {
   const World world("furnace/scene.toml");
   const VplTable lit = fewLit(world);
   const Image image =
-      renderVpls(world, lit, {{"integrator", "guided"}, {"spp", "64"}, {"max-bounces", "64"}})
+      renderVpls(world, lit,
+                 {{"integrator", "guided"}, {"spp", "16"}, {"paths", "4"}, {"max-bounces", "64"}})
           .image;
   EXPECT_NEAR(meanOf(image), 2.0, 0.01);  // Le / (1 - rho)
 }
@@ -126,7 +127,9 @@ TEST(Guided, HasThePathTracersImage) {
     const Given options{{"spp", "64"}};
     for (const char* only : {"all", "direct", "indirect"}) {
       const Given shown = with(options, {{"only", only}});
-      EXPECT_TRUE(sameExpectation(paths(world, shown), guided(world, lit, shown))) << only;
+      EXPECT_TRUE(
+          sameExpectation(paths(world, shown), guided(world, lit, with(shown, {{"spp", "16"}}))))
+          << only;
     }
   }
 }
@@ -171,8 +174,9 @@ TEST(Guided, HasThePathTracersImageByWrongVpls) {
   VplTable lit = fewLit(world);
   for (size_t i = 0; i < lit.size(); ++i) lit.flux[i] = i % 5 == 0 ? Vec3{100.0f} : Vec3{};
   const Given options{{"spp", "64"}, {"max-bounces", "3"}};
-  EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, options)));
-  const Given bold = with(options, {{"guide-share", "0.9"}});
+  const Given few = with(options, {{"spp", "16"}, {"paths", "4"}});
+  EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, few)));
+  const Given bold = with(few, {{"guide-share", "0.9"}});
   EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, bold)));
 }
 
