@@ -16,11 +16,12 @@ inline constexpr Option kDirectSamplesOption =
 constexpr Option sharersOption(std::string_view fallback, std::string_view help) {
   return neededBy(kIndirectIsShown, wholeOption("sharers", fallback, 1, 32, "", help));
 }
-inline constexpr Option kControlOption =
-    neededBy(kIndirectIsShown,
-             choiceOption("control", "vpls", "vpls|none",
-                          "control variate of indirect light within a pixel: what the VPLs know of "
-                          "it, along more camera rays, or none"));
+constexpr Option controlOption(std::string_view fallback) {
+  return neededBy(kIndirectIsShown,
+                  choiceOption("control", fallback, "vpls|none",
+                               "control variate of indirect light within a pixel: what the VPLs "
+                               "know of it, along more camera rays, or none"));
+}
 constexpr Option balanceOption(std::string_view help) {
   return neededBy("only=all|indirect;direct-samples=0", switchOption("balance", "on", help));
 }

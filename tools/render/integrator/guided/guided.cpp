@@ -25,7 +25,7 @@ constexpr std::array kOptions{
     sharersOption("32",
                   "samples of a tile that share the light of what their paths hit first, where "
                   "that is matt; 1: none"),
-    kControlOption,
+    controlOption("none"),
     balanceOption("by pilots, paths and direct samples where they take most noise from the film"),
     specksOption("keep")};
 

@@ -32,7 +32,7 @@ constexpr std::array kOptions{
              wholeOption("caustic-photons", "64", 0, 4096, "",
                          "photons a pixel, at most 16M in all, that look for light over mirrors, "
                          "glass and sharp lobes; 0: near-field rays alone do")),
-    kControlOption,
+    controlOption("vpls"),
     neededBy(kDirectIsShown, choiceOption("direct", "learned", "learned|each",
                                           "shadow rays to what each tile of the film has learned "
                                           "to see, or one to each light")),
