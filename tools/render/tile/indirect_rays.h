@@ -2,12 +2,15 @@
 // into a TileIntegrator.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
 #include "tools/render/integrator/integrator.h"
 #include "tools/render/tile/shared_hits.h"
 #include "transport/direct_light.h"
+#include "transport/walk.h"
 
 namespace bnvpl {
 
@@ -41,6 +44,52 @@ struct RaysFrom {
   SharedWithPhotons shared;
   bool shares = false;  // whether other samples share what rays find
 };
+
+// The first link of a ray.
+struct FirstLink {
+  Vec3 direction, throughput;
+  Arrival arrival;
+  const SurfacePoint* hit;  // no triangle where that is nothing
+};
+
+// Draws and traces `count` rays; those from one vertex wait for memory together. hits(batch), then
+// follow(k, link) adds to `out` what the k-th of them finds. `shares`: rays from a vertex for whose
+// number light is shared.
+template <typename Hits, typename Follow>
+void sendRays(const RayScene& scene, const RaysFrom& from, unsigned shares, unsigned count,
+              uint32_t first, uint64_t key, Rng& rng, RaysBrought& out, const Hits& hits,
+              const Follow& follow) {
+  constexpr size_t kBatch = RayScene::kBatch;
+  std::array<Ray, kBatch> rays;
+  std::array<SurfacePoint, kBatch> found;
+  std::array<FirstLink, kBatch> links;
+  const SurfacePoint& vertex = from.directions.bsdf().point();
+  for (unsigned begin = 0, end; begin < count; begin = end) {
+    end = begin + std::min(count - begin, unsigned{kBatch});
+    size_t alive = 0;
+    for (unsigned k = begin; k < end; ++k) {
+      BsdfSample next;
+      const float pick = rng.next();
+      if (!from.directions.sample(pick, owenSobol(first + k, key), next)) continue;
+      rays[alive] = rayOn(scene, vertex, next);
+      links[alive] = {next.wi,
+                      from.throughput * next.weight,
+                      {next.pdf * static_cast<float>(shares), vertex.position, LightChoice::Each,
+                       from.learned, from.shared},
+                      &found[alive]};
+      ++alive;
+    }
+    scene.closestHits({rays.data(), alive}, found);
+    hits(std::span<const SurfacePoint>(found.data(), alive));
+    for (size_t k = 0; k < alive; ++k) {
+      const Vec3 before = out.indirect, hitsBefore = out.ofHits;
+      follow(k, links[k]);
+      const Vec3 alone = (out.indirect - before) - (out.ofHits - hitsBefore);
+      out.squares += double{dot(alone, alone)};
+    }
+  }
+  out.rays += count;
+}
 
 // Thread-safe and immutable once made.
 class IndirectRays {

@@ -11,14 +11,16 @@ namespace bnvpl::methods::integrator::guided {
 
 namespace {
 
+constexpr std::string_view kRaysAreSent = "only=all|indirect;direct-samples=1";
 constexpr std::array kOptions{
     kMaxBouncesOption,
-    realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
-               "chosen by the guide, the others by the BSDF"),
-    wholeOption("guide-rays", "256", 0, 1024, "",
-                "rays from each VPL that learn from where light comes; fewer in a short render"),
+    neededBy(kRaysAreSent, realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
+                                      "chosen by the guide, the others by the BSDF")),
+    neededBy(kRaysAreSent, wholeOption("guide-rays", "256", 0, 1024, "",
+                                       "rays from each VPL that learn from where light comes; "
+                                       "fewer in a short render")),
     kDirectSamplesOption,
-    neededBy("only=all|indirect;direct-samples=1",
+    neededBy(kRaysAreSent,
              wholeOption("paths", "8", 1, 4096, "",
                          "of indirect light from each shaded point, with --balance on a quarter of "
                          "them to four times as many")),
@@ -71,8 +73,9 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   }
   if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
   const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
-  const FilmPoints film = filmRays.all();
-  if (indirect && options.text("control") == "vpls") tile.control = makeControl(in, film);
+  const bool controlled = indirect && options.text("control") == "vpls";
+  const FilmPoints film = controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
+  if (controlled) tile.control = makeControl(in, film);
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
                                tile.raysEach * options.whole("spp"));

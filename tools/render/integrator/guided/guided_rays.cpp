@@ -1,7 +1,6 @@
 #include "tools/render/integrator/guided/guided_rays.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "transport/walk.h"
@@ -27,60 +26,26 @@ bool sampleBy(const Directions& directions, Rng& rng, BsdfSample& out) {
 
 }  // namespace
 
-// The first link of a ray.
-struct GuidedRays::Start {
-  Vec3 direction, throughput;
-  Arrival arrival;
-  const SurfacePoint* hit;
-  float shown;  // radiance that leaves its origin, by the guide, mean of the channels; 0: not known
-};
-
 double GuidedRays::costOfRay() const { return kCostOfRay; }
 
-// Rays from a sample's point wait for memory together.
 void GuidedRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key, Rng& rng,
                       RaysBrought& out) const {
-  constexpr size_t kBatch = RayScene::kBatch;
-  std::array<Ray, kBatch> rays;
-  std::array<SurfacePoint, kBatch> hits;
-  std::array<Start, kBatch> made;
   const Bsdf& bsdf = from.directions.bsdf();
   const uint32_t region = guide_.regionAt(bsdf.point());
   const float shown = guide_.knows(region)
                           ? mean(from.throughput) * mean(bsdf.roughAlbedo()) *
                                 std::max(guide_.total(region), guide_.onward(region))
                           : 0.0f;
-  for (unsigned begin = 0, end; begin < count; begin = end) {
-    end = begin + std::min(count - begin, unsigned{kBatch});
-    size_t alive = 0;
-    for (unsigned k = begin; k < end; ++k) {
-      BsdfSample next;
-      const float pick = rng.next();
-      if (!from.directions.sample(pick, owenSobol(first + k, key), next)) continue;
-      rays[alive] = rayOn(rays_, bsdf.point(), next);
-      made[alive] = {next.wi,
-                     from.throughput * next.weight,
-                     {next.pdf * static_cast<float>(raysEach_), bsdf.point().position,
-                      LightChoice::Each, from.learned, from.shared},
-                     &hits[alive],
-                     shown};
-      ++alive;
-    }
-    rays_.closestHits({rays.data(), alive}, hits);
-    for (size_t k = 0; k < alive; ++k) {
-      const Vec3 before = out.indirect, hitsBefore = out.ofHits;
-      follow(made[k], from.shares, rng, out);
-      const Vec3 alone = (out.indirect - before) - (out.ofHits - hitsBefore);
-      out.squares += double{dot(alone, alone)};
-    }
-  }
-  out.rays += count;
+  sendRays(
+      rays_, from, raysEach_, count, first, key, rng, out, [](std::span<const SurfacePoint>) {},
+      [&](size_t, const FirstLink& link) { follow(link, shown, from.shares, rng, out); });
 }
 
 // Path tracing from what the ray hits on. Others share the light that leaves there in all
 // directions alike: all of it where the surface is matt, or else by its matt part. The rest is this
 // ray's own.
-void GuidedRays::follow(const Start& start, bool share, Rng& rng, RaysBrought& out) const {
+void GuidedRays::follow(const FirstLink& start, float shown, bool share, Rng& rng,
+                        RaysBrought& out) const {
   SpecularPath vertex = followSpecularPath(rays_, lights_, *start.hit, start.direction,
                                            start.arrival, rng, {nullptr, &where_});
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.metFirst;
@@ -101,7 +66,7 @@ void GuidedRays::follow(const Start& start, bool share, Rng& rng, RaysBrought& o
     factor = all || !isBlack(matt) ? hit.leaving.towards(vertex.hit.wo) : 0.0f;
     if (factor == 0.0f) matt = {};
   }
-  const LightWithPart leaving = lightFrom(first, start, vertex.throughput, matt, rng);
+  const LightWithPart leaving = lightFrom(first, start, shown, vertex.throughput, matt, rng);
   add(start.throughput * leaving.all);
   if (factor == 0.0f) return;
   const Vec3 shared = isBlack(matt) ? leaving.all : leaving.part;
@@ -112,8 +77,8 @@ void GuidedRays::follow(const Start& start, bool share, Rng& rng, RaysBrought& o
 
 // Light that leaves the first vertex of a ray, by all and by a matt part of what scatters there,
 // times `throughput`.
-LightWithPart GuidedRays::lightFrom(const Bsdf& first, const Start& start, Vec3 throughput,
-                                    Vec3 matt, Rng& rng) const {
+LightWithPart GuidedRays::lightFrom(const Bsdf& first, const FirstLink& start, float shown,
+                                    Vec3 throughput, Vec3 matt, Rng& rng) const {
   LightWithPart leaving, weight{throughput, throughput};
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
@@ -134,10 +99,10 @@ LightWithPart GuidedRays::lightFrom(const Bsdf& first, const Start& start, Vec3 
     }
 
     float survive = bsdf.reflectance();
-    if (start.shown > 0.0f && guide_.knows(region)) {
+    if (shown > 0.0f && guide_.knows(region)) {
       const float brings =
           mean(start.throughput * weight.all) * mean(bsdf.roughAlbedo()) * guide_.onward(region);
-      survive = std::clamp(kEager * brings / start.shown, kLeastSurvival, 1.0f);
+      survive = std::clamp(kEager * brings / shown, kLeastSurvival, 1.0f);
     }
     BsdfSample scattered;
     if (rng.next() >= survive || !sampleBy(directions, rng, scattered)) break;

@@ -33,13 +33,14 @@ class GuidedRays : public IndirectRays {
   double costOfRay() const override;
 
  private:
-  struct Start;
   Directions directionsIn(uint32_t region, const Bsdf& bsdf) const {
     return guide_.knows(region) ? Directions(bsdf, guide_, region, share_) : Directions(bsdf);
   }
-  void follow(const Start& start, bool share, Rng& rng, RaysBrought& out) const;
-  LightWithPart lightFrom(const Bsdf& first, const Start& start, Vec3 throughput, Vec3 matt,
-                          Rng& rng) const;
+  // `shown`: radiance that leaves the ray's origin by the guide, mean of the channels; 0: not
+  // known.
+  void follow(const FirstLink& start, float shown, bool share, Rng& rng, RaysBrought& out) const;
+  LightWithPart lightFrom(const Bsdf& first, const FirstLink& start, float shown, Vec3 throughput,
+                          Vec3 matt, Rng& rng) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

@@ -1,6 +1,5 @@
 #include "tools/render/integrator/vpl/near_field_rays.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -23,58 +22,25 @@ constexpr double kCostOfRay = 16.0;
 
 }  // namespace
 
-// The first link of a ray.
-struct NearFieldRays::Start {
-  Vec3 direction, throughput;
-  Arrival arrival;
-  const SurfacePoint* hit;
-  const ReachGrid::Lookup* near;  // the VPLs there
-};
-
 double NearFieldRays::costOfRay() const { return kCostOfRay; }
 
-// Rays from a sample's point wait for memory together.
 void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
                          Rng& rng, RaysBrought& out) const {
-  constexpr size_t kBatch = RayScene::kBatch;
-  std::array<Ray, kBatch> rays;
-  std::array<SurfacePoint, kBatch> hits;
-  std::array<ReachGrid::Lookup, kBatch> near;
-  std::array<Start, kBatch> made;
-  const SurfacePoint& vertex = from.directions.bsdf().point();
-  for (unsigned begin = 0, end; begin < count; begin = end) {
-    end = begin + std::min(count - begin, unsigned{kBatch});
-    size_t alive = 0;
-    for (unsigned k = begin; k < end; ++k) {
-      BsdfSample next;
-      const float pick = rng.next();
-      if (!from.directions.sample(pick, owenSobol(first + k, key), next)) continue;
-      rays[alive] = rayOn(rays_, vertex, next);
-      made[alive] = {next.wi,
-                     from.throughput * next.weight,
-                     {next.pdf * static_cast<float>(shares_), vertex.position, LightChoice::Each,
-                      from.learned, from.shared},
-                     &hits[alive],
-                     &near[alive]};
-      ++alive;
-    }
-    rays_.closestHits({rays.data(), alive}, hits);
-    if (compensation_ && only_ != Only::Direct) compensation_.lookUp({hits.data(), alive}, near);
-    for (size_t k = 0; k < alive; ++k) {
-      const Vec3 before = out.indirect, hitsBefore = out.ofHits;
-      follow(made[k], from.shares, rng, out);
-      const Vec3 alone = (out.indirect - before) - (out.ofHits - hitsBefore);
-      out.squares += double{dot(alone, alone)};
-    }
-  }
-  out.rays += count;
+  std::array<ReachGrid::Lookup, RayScene::kBatch> near;
+  sendRays(
+      rays_, from, shares_, count, first, key, rng, out,
+      [&](std::span<const SurfacePoint> hits) {
+        if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, near);
+      },
+      [&](size_t k, const FirstLink& link) { follow(link, near[k], from.shares, rng, out); });
 }
 
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
 // what Compensation says is missing: from the scattered light that a VPL knows where it speaks for
 // the point that the ray found, else by lighting that point as the first one, and so on. A light
 // that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
-void NearFieldRays::follow(const Start& start, bool share, Rng& rng, RaysBrought& out) const {
+void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
+                           Rng& rng, RaysBrought& out) const {
   Vec3 throughput = start.throughput;
   // From a hit that others share `throughput` is counted anew.
   SharedHit hit;
@@ -102,7 +68,7 @@ void NearFieldRays::follow(const Start& start, bool share, Rng& rng, RaysBrought
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
     if (only_ == Only::Direct) return done();
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
-    const Missing missing = missingFrom(end, first ? start.near : nullptr, rng);
+    const Missing missing = missingFrom(end, first ? &near : nullptr, rng);
     throughput *= end.throughput;
     // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
     // with the shadow ray. Else it goes on, by roulette at full weight.

@@ -33,8 +33,9 @@ class NearFieldRays : public IndirectRays {
   double costOfRay() const override;
 
  private:
-  struct Start;
-  void follow(const Start& start, bool share, Rng& rng, RaysBrought& out) const;
+  // `near`: the VPLs at the first hit.
+  void follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share, Rng& rng,
+              RaysBrought& out) const;
   Missing missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near, Rng& rng) const;
 
   const RayScene& rays_;
