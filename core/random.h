@@ -64,27 +64,43 @@ constexpr uint32_t reverseBits(uint32_t x) {
   x = (x & 0xccccccccu) >> 2 | (x & 0x33333333u) << 2;
   return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
 }
-constexpr uint32_t owenScramble(uint32_t x, uint32_t key) {
-  x = reverseBits(x);
+// Of one whose first bit is the lowest.
+constexpr uint32_t owenScrambleReversed(uint32_t x, uint32_t key) {
   x ^= x * 0x3d20adeau;
   x += key;
   x *= (key >> 16) | 1u;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return reverseBits(x);
+  return x;
+}
+constexpr uint32_t owenScramble(uint32_t x, uint32_t key) {
+  return reverseBits(owenScrambleReversed(reverseBits(x), key));
+}
+
+// The second coordinate of Sobol's sequence for an index, its first bit the lowest: bit j is the
+// sum, modulo 2, of those bits i of the index for which C(i, j) is odd, that is (Lucas 1878), which
+// have all bits of j.
+constexpr uint32_t sobolSecondReversed(uint32_t index) {
+  index ^= index >> 1 & 0x55555555u;
+  index ^= index >> 2 & 0x33333333u;
+  index ^= index >> 4 & 0x0f0f0f0fu;
+  index ^= index >> 8 & 0x00ff00ffu;
+  return index ^ index >> 16;
 }
 
 // Point `index` of the first two dimensions of Sobol's sequence, scrambled by `key`: every 2^k
 // points from a multiple of 2^k are spread over all boxes of area 2^-k, so that a mean over them
-// has less noise than one over independent points (Owen 1997).
+// has less noise than one over independent points (Owen 1997). Their order is scrambled too, so
+// that sequences of two keys may go together, one for the pixel and one for the light: in one order
+// both would always lie in corresponding halves, and no number of points would meet all pairs
+// (Burley 2020).
 constexpr Point2 owenSobol(uint32_t index, uint64_t key) {
-  uint32_t y = 0;
-  for (uint32_t column = 0x80000000u, rest = index; rest != 0; rest >>= 1, column ^= column >> 1) {
-    if ((rest & 1u) != 0) y ^= column;
-  }
   const uint64_t bits = mix64(key);
-  return {toUnitFloat(uint64_t{owenScramble(reverseBits(index), uint32_t(bits))} << 32),
-          toUnitFloat(uint64_t{owenScramble(y, uint32_t(bits >> 32))} << 32)};
+  index = owenScramble(index, static_cast<uint32_t>(mix64(bits)));
+  const uint32_t x = reverseBits(owenScrambleReversed(index, static_cast<uint32_t>(bits)));
+  const uint32_t y = reverseBits(
+      owenScrambleReversed(sobolSecondReversed(index), static_cast<uint32_t>(bits >> 32)));
+  return {toUnitFloat(uint64_t{x} << 32), toUnitFloat(uint64_t{y} << 32)};
 }
 
 }  // namespace bnvpl

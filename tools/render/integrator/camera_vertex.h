@@ -6,12 +6,13 @@
 
 namespace bnvpl {
 
-// From the camera to the first rough vertex; what is met on the way is direct light.
+// From the camera to the first rough vertex; what is met on the way is direct light. `pick`: as
+// followSpecularPath's.
 inline SpecularPath seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin,
                             Vec3 direction, Rng& rng, RadianceSample& out,
-                            const LightsBehind& behind = {}) {
+                            const LightsBehind& behind = {}, std::optional<float> pick = {}) {
   const SpecularPath end =
-      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
+      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind, pick);
   out.seen = end.metFirst;
   out.direct = end.metFirst + end.metLater;
   if (end.firstDistance < INFINITY) {

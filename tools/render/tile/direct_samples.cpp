@@ -24,25 +24,26 @@ constexpr uint32_t kDrawPilots = 3u << 29, kDrawSamples = 7u << 28,
 
 // Independent of all else; a number for each part of a sample.
 struct DirectSamples::Stream {
-  uint64_t film, light, bsdf, rest;
+  uint64_t film, light, bsdf, rest, lobes;
   explicit Stream(uint64_t key)
       : film(random64(key, 0, 0)),
         light(random64(key, 0, 1)),
         bsdf(random64(key, 0, 2)),
-        rest(random64(key, 0, 3)) {}
+        rest(random64(key, 0, 3)),
+        lobes(random64(key, 0, 4)) {}
 };
 
 DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLight& learned,
                                         const Stream& stream, uint32_t index) const {
   const Scene& scene = rays_.scene();
-  const Point2 at = owenSobol(index, stream.film);
+  const Point2 at = owenSobol(index, stream.film), lobes = owenSobol(index, stream.lobes);
   Rng rng(stream.rest, index);
   RadianceSample sample;
   const SpecularPath path =
       seeFrom(rays_, lights_, scene.camera.position,
               cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                               (float(y) + at.y) / float(scene.film.height)),
-              rng, sample, {learned.strata, surfaceLights_});
+              rng, sample, {learned.strata, surfaceLights_}, lobes.x);
   Light light{sample.seen, sample.direct, {}};
   if (!path.rough) return light;
   const Bsdf bsdf(scene, path.hit);
@@ -51,8 +52,7 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
                                    : directLight(rays_, lights_, bsdf, LobeGroup::Rough,
                                                  LightChoice::Each, kBsdfRays, rng);
   BsdfSample next;
-  const float pick = rng.next();
-  if (bsdf.sample(LobeGroup::Rough, Transport::Radiance, pick, owenSobol(index, stream.bsdf),
+  if (bsdf.sample(LobeGroup::Rough, Transport::Radiance, lobes.y, owenSobol(index, stream.bsdf),
                   next)) {
     const Arrival arrival{next.pdf * float{kBsdfRays}, path.hit.position, LightChoice::Each,
                           learned};

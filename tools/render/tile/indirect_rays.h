@@ -50,6 +50,7 @@ struct FirstLink {
   Vec3 direction, throughput;
   Arrival arrival;
   const SurfacePoint* hit;  // no triangle where that is nothing
+  float pick;               // chooses lobes there (followSpecularPath)
 };
 
 // Draws and traces `count` rays; those from one vertex wait for memory together. hits(batch), then
@@ -57,7 +58,7 @@ struct FirstLink {
 // number light is shared.
 template <typename Hits, typename Follow>
 void sendRays(const RayScene& scene, const RaysFrom& from, unsigned shares, unsigned count,
-              uint32_t first, uint64_t key, Rng& rng, RaysBrought& out, const Hits& hits,
+              uint32_t first, uint64_t key, RaysBrought& out, const Hits& hits,
               const Follow& follow) {
   constexpr size_t kBatch = RayScene::kBatch;
   std::array<Ray, kBatch> rays;
@@ -69,14 +70,15 @@ void sendRays(const RayScene& scene, const RaysFrom& from, unsigned shares, unsi
     size_t alive = 0;
     for (unsigned k = begin; k < end; ++k) {
       BsdfSample next;
-      const float pick = rng.next();
-      if (!from.directions.sample(pick, owenSobol(first + k, key), next)) continue;
+      const Point2 picks = owenSobol(first + k, ~key);
+      if (!from.directions.sample(picks.x, owenSobol(first + k, key), next)) continue;
       rays[alive] = rayOn(scene, vertex, next);
       links[alive] = {next.wi,
                       from.throughput * next.weight,
                       {next.pdf * static_cast<float>(shares), vertex.position, LightChoice::Each,
                        from.learned, from.shared},
-                      &found[alive]};
+                      &found[alive],
+                      picks.y};
       ++alive;
     }
     scene.closestHits({rays.data(), alive}, found);

@@ -44,7 +44,7 @@ class PixelRays {
           rays_, lights_, scene.camera.position,
           cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                           (float(y) + at.y) / float(scene.film.height)),
-          rng, sample, behind);
+          rng, sample, behind, owenSobol(static_cast<uint32_t>(index), ~key).x);
       fn(path, sample);
     }
   }

@@ -14,8 +14,8 @@ namespace {
 // Dimensions of a tile's random numbers, after its gather's. The rays of all samples of a pixel are
 // points of one sequence: what they look for is much the same for each of them. It repeats after
 // 2^32 points.
-constexpr uint32_t kDrawDirection = 16, kDrawLight = 1u << 30, kDrawMore = 5u << 28,
-                   kDrawColours = 11u << 28;
+constexpr uint32_t kDrawDirection = 16, kDrawLobes = 17, kDrawLight = 1u << 30,
+                   kDrawMore = 5u << 28, kDrawColours = 11u << 28;
 // With a price: rays that tell how many are worth it, and the most, over those asked for.
 constexpr unsigned kFirstPart = 4, kMostTimes = 4;
 // Of so many slots one tells how much noise shared hits leave.
@@ -55,7 +55,9 @@ double TileIntegrator::render(const TileSamples& tile, const Balance& balance) c
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     s.radiance = {};
-    at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance, behind);
+    at.seen[i] =
+        seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance, behind,
+                owenSobol(slotOf(tile, i), random64(tile.key, i % tile.pixels, kDrawLobes)).x);
     if (parts_.seenLight && !parts_.directSamples) {
       parts_.seenLight->withMoreRays(s.radiance, 1, tile, static_cast<uint32_t>(i % tile.pixels),
                                      slotOf(tile, i), behind);

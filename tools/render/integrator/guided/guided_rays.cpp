@@ -37,7 +37,7 @@ void GuidedRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint
                                 std::max(guide_.total(region), guide_.onward(region))
                           : 0.0f;
   sendRays(
-      rays_, from, raysEach_, count, first, key, rng, out, [](std::span<const SurfacePoint>) {},
+      rays_, from, raysEach_, count, first, key, out, [](std::span<const SurfacePoint>) {},
       [&](size_t, const FirstLink& link) { follow(link, shown, from.shares, rng, out); });
 }
 
@@ -47,7 +47,7 @@ void GuidedRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint
 void GuidedRays::follow(const FirstLink& start, float shown, bool share, Rng& rng,
                         RaysBrought& out) const {
   SpecularPath vertex = followSpecularPath(rays_, lights_, *start.hit, start.direction,
-                                           start.arrival, rng, {nullptr, &where_});
+                                           start.arrival, rng, {nullptr, &where_}, start.pick);
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.metFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };

@@ -28,7 +28,7 @@ void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, u
                          Rng& rng, RaysBrought& out) const {
   std::array<ReachGrid::Lookup, RayScene::kBatch> near;
   sendRays(
-      rays_, from, shares_, count, first, key, rng, out,
+      rays_, from, shares_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
         if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, near);
       },
@@ -62,7 +62,7 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
   };
   LearnedStrata strata;
   SpecularPath end = followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival,
-                                        rng, {nullptr, surfaceLights_});
+                                        rng, {nullptr, surfaceLights_}, start.pick);
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
