@@ -27,20 +27,6 @@ constexpr float toUnitFloat(uint64_t bits) { return static_cast<float>(bits >> 4
 // would take it every time, and what one over its probability multiplies would leave all bounds.
 inline constexpr float kMinProbability = 0x1p-24f;
 
-// The numbers of one path, photon or pixel sample, in order of use.
-class Rng {
- public:
-  constexpr Rng(uint64_t key, uint64_t index) : state_(mix64(key + index * 0x9e3779b97f4a7c15u)) {}
-  constexpr float next() {
-    ++dimension_;
-    return toUnitFloat(mix64(state_ + dimension_ * 0xd1342543de82ef95u));
-  }
-
- private:
-  uint64_t state_;
-  uint64_t dimension_ = 0;
-};
-
 // Point `index` of the R2 sequence (Roberts 2018), shifted by `shift` in [0,1)^2: every prefix is
 // well spread over the unit square. Double precision keeps it so beyond 2^24 points.
 struct Point2 {
@@ -102,5 +88,42 @@ constexpr Point2 owenSobol(uint32_t index, uint64_t key) {
       owenScrambleReversed(sobolSecondReversed(index), static_cast<uint32_t>(bits >> 32)));
   return {toUnitFloat(uint64_t{x} << 32), toUnitFloat(uint64_t{y} << 32)};
 }
+
+// The numbers of one path, photon or pixel sample, in order of use: single ones, and points of the
+// unit square.
+class Rng {
+ public:
+  constexpr Rng(uint64_t key, uint64_t index) : state_(mix64(key + index * 0x9e3779b97f4a7c15u)) {}
+  // Those of one of many paths that begin alike, such as a pixel's: the first of them are spread
+  // evenly over all with that key, for each is a point of a sequence of its own.
+  static constexpr Rng spread(uint64_t key, uint32_t index) {
+    Rng rng(key, index);
+    rng.key_ = key, rng.index_ = index, rng.spread_ = kSpread;
+    return rng;
+  }
+  constexpr float next() { return spread_ > 0 ? nextOfSequence().x : nextAlone(); }
+  constexpr Point2 nextPoint() {
+    if (spread_ > 0) return nextOfSequence();
+    const float x = nextAlone();
+    return {x, nextAlone()};
+  }
+
+ private:
+  static constexpr uint32_t kSpread = 8;  // far down a path all numbers matter together
+
+  constexpr float nextAlone() {
+    ++dimension_;
+    return toUnitFloat(mix64(state_ + dimension_ * 0xd1342543de82ef95u));
+  }
+  constexpr Point2 nextOfSequence() {
+    return owenSobol(index_, key_ + spread_-- * 0xd1342543de82ef95u);
+  }
+
+  uint64_t state_;
+  uint64_t dimension_ = 0;
+  uint64_t key_ = 0;
+  uint32_t index_ = 0;
+  uint32_t spread_ = 0;  // points of sequences still to come
+};
 
 }  // namespace bnvpl

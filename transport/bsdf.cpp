@@ -33,8 +33,8 @@ Bsdf::Bsdf(const Scene& scene, const SurfacePoint& point)
 bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const {
   if (const auto* phong = std::get_if<PhongBsdf>(&model_))
     return phong->sample(point_, group, transport, rng, out);
-  const float pick = rng.next(), u = rng.next(), v = rng.next();
-  return sample(group, transport, pick, {u, v}, out);
+  const float pick = rng.next();
+  return sample(group, transport, pick, rng.nextPoint(), out);
 }
 
 }  // namespace bnvpl

@@ -95,16 +95,15 @@ typename Reflects::Light sampleOne(const RayScene& rays, const LightSet& lights,
                                    bool shared, const RayPdf& rayPdf, Rng& rng,
                                    const SharedWithPhotons& photons = {}) {
   if (strata.all) {
-    const float u = rng.next(), v = rng.next();
-    return sampleStratum(rays, lights, reflects, {&strata, 1}, {u, v}, shared, rayPdf, photons);
+    return sampleStratum(rays, lights, reflects, {&strata, 1}, rng.nextPoint(), shared, rayPdf,
+                         photons);
   }
   if (lights.size() == 0) return {};
   float probability = 1.0f;
   const size_t light = lights.pick(rng.next(), probability);
   if (!(probability > 0.0f)) return {};
-  const float u = rng.next(), v = rng.next();
-  return sampleLight(rays, lights, reflects, {static_cast<uint32_t>(light), {u, v}}, probability,
-                     shared, rayPdf, photons);
+  return sampleLight(rays, lights, reflects, {static_cast<uint32_t>(light), rng.nextPoint()},
+                     probability, shared, rayPdf, photons);
 }
 
 // All rays by what was learned, points of a sequence.
@@ -150,8 +149,8 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
     float probability = 1.0f;
     const size_t light = all ? k : lights.pick(rng.next(), probability);
     if (!(probability > 0.0f)) continue;
-    const float u = rng.next(), v = rng.next();
-    sum += sampleLight(rays, lights, ByBsdf{bsdf, group}, {static_cast<uint32_t>(light), {u, v}},
+    sum += sampleLight(rays, lights, ByBsdf{bsdf, group},
+                       {static_cast<uint32_t>(light), rng.nextPoint()},
                        raysTo(lights, light, choice), bsdfRays > 0, rayPdf, shared);
   }
   return sum;

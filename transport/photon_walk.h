@@ -73,7 +73,7 @@ class PhotonWalk {
     }
     const float survive = bsdf.reflectance();
     if (rng_.next() >= survive) return;
-    const LobeChoice lobes = chooseLobes(bsdf, rng_.next());
+    const LobeChoice lobes = chooseLobes(bsdf, rng_);
     if (rough_ + specular_ == 0) beganAtPerfectMirror_ = lobes.specular() && bsdf.specularIsDelta();
     const bool last = lobes.specular() ? ++specular_ > kMaxSpecular : ++rough_ >= maxBounces_;
     BsdfSample sample;

@@ -17,15 +17,15 @@ bool isPlain(const Material& material) {
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& start, Rng& rng,
-                                const LightsBehind& behind, std::optional<float> pick) {
+                                const LightsBehind& behind) {
   SurfacePoint first;
   rays.closestHit(origin, direction, first);
-  return followSpecularPath(rays, lights, first, direction, start, rng, behind, pick);
+  return followSpecularPath(rays, lights, first, direction, start, rng, behind);
 }
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
-                                Rng& rng, const LightsBehind& behind, std::optional<float> pick) {
+                                Rng& rng, const LightsBehind& behind) {
   SpecularPath end;
   LearnedStrata strata;  // of the last specular vertex
   end.hit = first;
@@ -43,13 +43,12 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
 
     const Material& material = rays.scene().materials[end.hit.material];
     if (isPlain(material)) {
-      if (!pick) rng.next();  // as where lobes are chosen
+      rng.next();  // as chooseLobes does
       end.rough = !isBlack(material.phong().diffuse);
       return end;
     }
     const Bsdf bsdf(rays.scene(), end.hit);
-    const LobeChoice lobes = chooseLobes(bsdf, pick ? *pick : rng.next());
-    pick.reset();
+    const LobeChoice lobes = chooseLobes(bsdf, rng);
     end.throughput *= 1.0f / lobes.probability;
     if (!lobes.specular()) {
       end.rough = bsdf.hasRough();

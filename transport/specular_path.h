@@ -2,8 +2,6 @@
 // of "specular path" for every integrator.
 #pragma once
 
-#include <optional>
-
 #include "transport/direct_light.h"
 
 namespace bnvpl {
@@ -27,15 +25,12 @@ struct SpecularPath {
 };
 
 // `arrival`: at the first hit; its `shared` is for all that is met behind specular vertices.
-// `pick`: a number in [0, 1) that chooses the lobes of the first hit; where many paths begin alike,
-// numbers that are spread evenly make a coat reflect its share of them. By `rng` unless given.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
-                                const LightsBehind& behind = {}, std::optional<float> pick = {});
+                                const LightsBehind& behind = {});
 // The same where it is known what the ray hits; first.triangle is kNone where that is nothing.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
-                                Rng& rng, const LightsBehind& behind = {},
-                                std::optional<float> pick = {});
+                                Rng& rng, const LightsBehind& behind = {});
 
 }  // namespace bnvpl

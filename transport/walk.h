@@ -13,11 +13,10 @@ struct LobeChoice {
   float probability;
   bool specular() const { return group == LobeGroup::Specular; }
 };
-// By a number in [0, 1).
-inline LobeChoice chooseLobes(const Bsdf& bsdf, float pick) {
+inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng) {
   const float specular = bsdf.specularProbability();
-  return pick < specular ? LobeChoice{LobeGroup::Specular, specular}
-                         : LobeChoice{LobeGroup::Rough, 1.0f - specular};
+  return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
+                               : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }
 
 // The ray that goes on from a vertex in a sampled direction.

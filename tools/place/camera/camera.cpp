@@ -37,7 +37,7 @@ class CameraPath {
       return false;
     }
     const Bsdf bsdf(rays.scene(), hit);
-    const LobeChoice lobes = chooseLobes(bsdf, rng_.next());
+    const LobeChoice lobes = chooseLobes(bsdf, rng_);
     if (!lobes.specular() && bsdf.hasRough()) {
       if (++rough_ >= 2) chunk.add(bsdf, path_);
       if (rough_ >= depth) {

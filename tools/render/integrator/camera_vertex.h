@@ -6,13 +6,12 @@
 
 namespace bnvpl {
 
-// From the camera to the first rough vertex; what is met on the way is direct light. `pick`: as
-// followSpecularPath's.
+// From the camera to the first rough vertex; what is met on the way is direct light.
 inline SpecularPath seeFrom(const RayScene& rays, const LightSet& lights, Vec3 origin,
                             Vec3 direction, Rng& rng, RadianceSample& out,
-                            const LightsBehind& behind = {}, std::optional<float> pick = {}) {
+                            const LightsBehind& behind = {}) {
   const SpecularPath end =
-      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind, pick);
+      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
   out.seen = end.metFirst;
   out.direct = end.metFirst + end.metLater;
   if (end.firstDistance < INFINITY) {

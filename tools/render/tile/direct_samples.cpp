@@ -24,26 +24,21 @@ constexpr uint32_t kDrawPilots = 3u << 29, kDrawSamples = 7u << 28,
 
 // Independent of all else; a number for each part of a sample.
 struct DirectSamples::Stream {
-  uint64_t film, light, bsdf, rest, lobes;
-  explicit Stream(uint64_t key)
-      : film(random64(key, 0, 0)),
-        light(random64(key, 0, 1)),
-        bsdf(random64(key, 0, 2)),
-        rest(random64(key, 0, 3)),
-        lobes(random64(key, 0, 4)) {}
+  uint64_t path, light;
+  explicit Stream(uint64_t key) : path(random64(key, 0, 0)), light(random64(key, 0, 1)) {}
 };
 
 DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLight& learned,
                                         const Stream& stream, uint32_t index) const {
   const Scene& scene = rays_.scene();
-  const Point2 at = owenSobol(index, stream.film), lobes = owenSobol(index, stream.lobes);
-  Rng rng(stream.rest, index);
+  Rng rng = Rng::spread(stream.path, index);
+  const Point2 at = rng.nextPoint();
   RadianceSample sample;
   const SpecularPath path =
       seeFrom(rays_, lights_, scene.camera.position,
               cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                               (float(y) + at.y) / float(scene.film.height)),
-              rng, sample, {learned.strata, surfaceLights_}, lobes.x);
+              rng, sample, {learned.strata, surfaceLights_});
   Light light{sample.seen, sample.direct, {}};
   if (!path.rough) return light;
   const Bsdf bsdf(scene, path.hit);
@@ -52,8 +47,7 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
                                    : directLight(rays_, lights_, bsdf, LobeGroup::Rough,
                                                  LightChoice::Each, kBsdfRays, rng);
   BsdfSample next;
-  if (bsdf.sample(LobeGroup::Rough, Transport::Radiance, lobes.y, owenSobol(index, stream.bsdf),
-                  next)) {
+  if (bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
     const Arrival arrival{next.pdf * float{kBsdfRays}, path.hit.position, LightChoice::Each,
                           learned};
     const Ray ray = rayOn(rays_, path.hit, next);

@@ -50,7 +50,7 @@ struct FirstLink {
   Vec3 direction, throughput;
   Arrival arrival;
   const SurfacePoint* hit;  // no triangle where that is nothing
-  float pick;               // chooses lobes there (followSpecularPath)
+  Rng rng{0, 0};            // numbers of all that follows
 };
 
 // Draws and traces `count` rays; those from one vertex wait for memory together. hits(batch), then
@@ -70,15 +70,16 @@ void sendRays(const RayScene& scene, const RaysFrom& from, unsigned shares, unsi
     size_t alive = 0;
     for (unsigned k = begin; k < end; ++k) {
       BsdfSample next;
-      const Point2 picks = owenSobol(first + k, ~key);
-      if (!from.directions.sample(picks.x, owenSobol(first + k, key), next)) continue;
+      Rng rng = Rng::spread(key, first + k);
+      const float pick = rng.next();
+      if (!from.directions.sample(pick, rng.nextPoint(), next)) continue;
       rays[alive] = rayOn(scene, vertex, next);
       links[alive] = {next.wi,
                       from.throughput * next.weight,
                       {next.pdf * static_cast<float>(shares), vertex.position, LightChoice::Each,
                        from.learned, from.shared},
                       &found[alive],
-                      picks.y};
+                      rng};
       ++alive;
     }
     scene.closestHits({rays.data(), alive}, found);
@@ -100,8 +101,8 @@ class IndirectRays {
 
   // How rays are drawn from a vertex; without a guide, by its BSDF.
   virtual Directions directionsFrom(const Bsdf& bsdf) const { return Directions(bsdf); }
-  // Adds `count` rays, whose directions are points `first` and on of a sequence with that key.
-  virtual void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key, Rng& rng,
+  // Adds `count` rays, the points `first` and on of sequences with that key.
+  virtual void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
                     RaysBrought& out) const = 0;
   virtual double costOfRay() const = 0;  // in units of cost:: (balance.h)
 };

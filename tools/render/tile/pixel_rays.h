@@ -37,14 +37,14 @@ class PixelRays {
     const uint64_t key = random64(tile.key, pixel, draw_);
     for (unsigned k = 0; k < more; ++k) {
       const uint64_t index = uint64_t{slot} * more + k;
-      const Point2 at = owenSobol(static_cast<uint32_t>(index), key);
-      Rng rng(key, index);
+      Rng rng = Rng::spread(key, static_cast<uint32_t>(index));
+      const Point2 at = rng.nextPoint();
       RadianceSample sample;
       const SpecularPath path = seeFrom(
           rays_, lights_, scene.camera.position,
           cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                           (float(y) + at.y) / float(scene.film.height)),
-          rng, sample, behind, owenSobol(static_cast<uint32_t>(index), ~key).x);
+          rng, sample, behind);
       fn(path, sample);
     }
   }

@@ -14,8 +14,8 @@ namespace {
 // Dimensions of a tile's random numbers, after its gather's. The rays of all samples of a pixel are
 // points of one sequence: what they look for is much the same for each of them. It repeats after
 // 2^32 points.
-constexpr uint32_t kDrawDirection = 16, kDrawLobes = 17, kDrawLight = 1u << 30,
-                   kDrawMore = 5u << 28, kDrawColours = 11u << 28;
+constexpr uint32_t kDrawDirection = 16, kDrawSeen = 17, kDrawLight = 1u << 30, kDrawMore = 5u << 28,
+                   kDrawColours = 11u << 28;
 // With a price: rays that tell how many are worth it, and the most, over those asked for.
 constexpr unsigned kFirstPart = 4, kMostTimes = 4;
 // Of so many slots one tells how much noise shared hits leave.
@@ -55,9 +55,8 @@ double TileIntegrator::render(const TileSamples& tile, const Balance& balance) c
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     s.radiance = {};
-    at.seen[i] =
-        seeFrom(rays_, lights_, s.origin, s.direction, s.rng, s.radiance, behind,
-                owenSobol(slotOf(tile, i), random64(tile.key, i % tile.pixels, kDrawLobes)).x);
+    Rng rng = Rng::spread(random64(tile.key, i % tile.pixels, kDrawSeen), slotOf(tile, i));
+    at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, rng, s.radiance, behind);
     if (parts_.seenLight && !parts_.directSamples) {
       parts_.seenLight->withMoreRays(s.radiance, 1, tile, static_cast<uint32_t>(i % tile.pixels),
                                      slotOf(tile, i), behind);
@@ -207,7 +206,7 @@ double TileIntegrator::addRays(const TileSamples& tile, const Vertices& at,
                        parts_.caustics && seen.links == 0 ? parts_.caustics->shared(seen.hit)
                                                           : SharedWithPhotons{},
                        parts_.sharers > 1},
-                      rays, slotOf(tile, i) * rays, key, tile.samples[i].rng, brought[i]);
+                      rays, slotOf(tile, i) * rays, key, brought[i]);
   };
   const bool priced = balance.price > 0.0 && only_ != Only::Direct;
   const unsigned first = priced ? (parts_.raysEach + kFirstPart - 1) / kFirstPart : parts_.raysEach;

@@ -103,8 +103,8 @@ bool PhongBsdf::sampleGlass(const SurfacePoint& point, Transport transport, Rng&
 bool PhongBsdf::sample(const SurfacePoint& point, LobeGroup group, Transport transport, Rng& rng,
                        BsdfSample& out) const {
   if (glass_) return group == LobeGroup::Specular && sampleGlass(point, transport, rng, out);
-  const float pick = rng.next(), u = rng.next(), v = rng.next();
-  return sample(point, group, transport, pick, {u, v}, out);
+  const float pick = rng.next();
+  return sample(point, group, transport, pick, rng.nextPoint(), out);
 }
 // Where there is no other lobe, all but the albedo cancels. A photon leaves by the geometric
 // cosine, so that its weight stays the albedo.

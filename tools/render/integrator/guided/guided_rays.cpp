@@ -20,15 +20,15 @@ constexpr unsigned kFirstLightRays = 2;
 constexpr double kCostOfRay = 30.0;
 
 bool sampleBy(const Directions& directions, Rng& rng, BsdfSample& out) {
-  const float pick = rng.next(), u = rng.next(), v = rng.next();
-  return directions.sample(pick, {u, v}, out);
+  const float pick = rng.next();
+  return directions.sample(pick, rng.nextPoint(), out);
 }
 
 }  // namespace
 
 double GuidedRays::costOfRay() const { return kCostOfRay; }
 
-void GuidedRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key, Rng& rng,
+void GuidedRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
                       RaysBrought& out) const {
   const Bsdf& bsdf = from.directions.bsdf();
   const uint32_t region = guide_.regionAt(bsdf.point());
@@ -38,16 +38,16 @@ void GuidedRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint
                           : 0.0f;
   sendRays(
       rays_, from, raysEach_, count, first, key, out, [](std::span<const SurfacePoint>) {},
-      [&](size_t, const FirstLink& link) { follow(link, shown, from.shares, rng, out); });
+      [&](size_t, const FirstLink& link) { follow(link, shown, from.shares, out); });
 }
 
 // Path tracing from what the ray hits on. Others share the light that leaves there in all
 // directions alike: all of it where the surface is matt, or else by its matt part. The rest is this
 // ray's own.
-void GuidedRays::follow(const FirstLink& start, float shown, bool share, Rng& rng,
-                        RaysBrought& out) const {
+void GuidedRays::follow(const FirstLink& start, float shown, bool share, RaysBrought& out) const {
+  Rng rng = start.rng;
   SpecularPath vertex = followSpecularPath(rays_, lights_, *start.hit, start.direction,
-                                           start.arrival, rng, {nullptr, &where_}, start.pick);
+                                           start.arrival, rng, {nullptr, &where_});
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.metFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };

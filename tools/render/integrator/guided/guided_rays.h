@@ -28,7 +28,7 @@ class GuidedRays : public IndirectRays {
   Directions directionsFrom(const Bsdf& bsdf) const override {
     return directionsIn(guide_.regionAt(bsdf.point()), bsdf);
   }
-  void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key, Rng& rng,
+  void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
             RaysBrought& out) const override;
   double costOfRay() const override;
 
@@ -38,7 +38,7 @@ class GuidedRays : public IndirectRays {
   }
   // `shown`: radiance that leaves the ray's origin by the guide, mean of the channels; 0: not
   // known.
-  void follow(const FirstLink& start, float shown, bool share, Rng& rng, RaysBrought& out) const;
+  void follow(const FirstLink& start, float shown, bool share, RaysBrought& out) const;
   LightWithPart lightFrom(const Bsdf& first, const FirstLink& start, float shown, Vec3 throughput,
                           Vec3 matt, Rng& rng) const;
 

@@ -25,14 +25,14 @@ constexpr double kCostOfRay = 16.0;
 double NearFieldRays::costOfRay() const { return kCostOfRay; }
 
 void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
-                         Rng& rng, RaysBrought& out) const {
+                         RaysBrought& out) const {
   std::array<ReachGrid::Lookup, RayScene::kBatch> near;
   sendRays(
       rays_, from, shares_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
         if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, near);
       },
-      [&](size_t k, const FirstLink& link) { follow(link, near[k], from.shares, rng, out); });
+      [&](size_t k, const FirstLink& link) { follow(link, near[k], from.shares, out); });
 }
 
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
@@ -40,7 +40,8 @@ void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, u
 // the point that the ray found, else by lighting that point as the first one, and so on. A light
 // that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
 void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
-                           Rng& rng, RaysBrought& out) const {
+                           RaysBrought& out) const {
+  Rng rng = start.rng;
   Vec3 throughput = start.throughput;
   // From a hit that others share `throughput` is counted anew.
   SharedHit hit;
@@ -62,7 +63,7 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
   };
   LearnedStrata strata;
   SpecularPath end = followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival,
-                                        rng, {nullptr, surfaceLights_}, start.pick);
+                                        rng, {nullptr, surfaceLights_});
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;

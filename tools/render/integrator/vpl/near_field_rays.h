@@ -28,13 +28,13 @@ class NearFieldRays : public IndirectRays {
         surfaceLights_(surfaceLights),
         only_(only) {}
 
-  void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key, Rng& rng,
+  void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
             RaysBrought& out) const override;
   double costOfRay() const override;
 
  private:
   // `near`: the VPLs at the first hit.
-  void follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share, Rng& rng,
+  void follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
               RaysBrought& out) const;
   Missing missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near, Rng& rng) const;
 
