@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -65,6 +66,35 @@ TEST(Random, SobolPointsFillEveryBoxOnce) {
     }
   }
   EXPECT_EQ(firsts.size(), 3u);
+}
+
+// Points of two keys meet in all pairs of places: in one order, halves of one would always meet the
+// same halves of the other.
+TEST(Random, SobolPointsOfTwoKeysMeetEverywhere) {
+  constexpr uint32_t kPoints = 256, kKeys = 64;
+  double together = 0.0, squares = 0.0;
+  for (uint64_t key = 0; key < kKeys; ++key) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < kPoints; ++i)
+      sum += (owenSobol(i, key).x < 0.5f) == (owenSobol(i, key + 1000).x < 0.5f) ? 1.0 : -1.0;
+    together += sum / kPoints, squares += (sum / kPoints) * (sum / kPoints);
+  }
+  EXPECT_LT(std::abs(together / kKeys), 4.0 / std::sqrt(double{kPoints} * kKeys));
+  EXPECT_LT(std::sqrt(squares / kKeys), 2.0 / std::sqrt(double{kPoints}));
+}
+
+// Each number of such a path, single or as a point, lies in another interval for each of 2^k paths.
+TEST(Random, SpreadNumbersFillEveryIntervalOnce) {
+  constexpr uint32_t kPaths = 64, kNumbers = 6;
+  std::array<std::set<uint32_t>, kNumbers + 2> intervals;
+  const auto of = [](float u) { return static_cast<uint32_t>(u * float{kPaths}); };
+  for (uint32_t i = 0; i < kPaths; ++i) {
+    Rng rng = Rng::spread(5, i);
+    for (uint32_t d = 0; d < kNumbers; ++d) intervals[d].insert(of(rng.next()));
+    const Point2 point = rng.nextPoint();
+    intervals[kNumbers].insert(of(point.x)), intervals[kNumbers + 1].insert(of(point.y));
+  }
+  for (const auto& found : intervals) EXPECT_EQ(found.size(), size_t{kPaths});
 }
 
 // Chi-square of counts that should be equal; its mean is the cells less one.

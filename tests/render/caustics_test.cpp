@@ -55,7 +55,8 @@ TEST(Caustics, PhotonsAndRaysShareTheLight) {
 TEST(Caustics, PhotonsTakeTheSpecksOfSmallLamps) {
   const World world = shiny(bulbs(0), false);
   const VplTable lit = fewVpls(world);
-  EXPECT_LT(noiseOf(by(world, lit, "16", "4")), 0.6 * noiseOf(by(world, lit, "0", "4")));
+  // Specks are few: one pair of images may have none.
+  EXPECT_LT(noiseOf(by(world, lit, "16", "4"), 4), 0.6 * noiseOf(by(world, lit, "0", "4"), 4));
 }
 
 // No ray meets a point over a mirror.

@@ -139,14 +139,16 @@ testing::AssertionResult sameExpectation(const Render& a, const Render& b, const
          << " seeds; images: " << keptImage(r.image);
 }
 
-double noiseOf(const Render& render) {
-  const Image a = render(1), b = render(2);
+double noiseOf(const Render& render, uint64_t pairs) {
   double sum = 0.0;
-  for (const char channel : kChannels) {
-    const std::vector<float>&p = *a.find({channel}), &q = *b.find({channel});
-    for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
+  for (uint64_t seed = 1; seed < 2 * pairs; seed += 2) {
+    const Image a = render(seed), b = render(seed + 1);
+    for (const char channel : kChannels) {
+      const std::vector<float>&p = *a.find({channel}), &q = *b.find({channel});
+      for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
+    }
   }
-  return std::sqrt(sum);
+  return std::sqrt(sum / double(pairs));
 }
 
 }  // namespace bnvpl::test

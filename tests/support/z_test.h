@@ -45,7 +45,8 @@ ZResult zTest(const Render& a, const Render& b, const ZTest& options = {});
 testing::AssertionResult sameExpectation(const Render& a, const Render& b,
                                          const ZTest& options = {});
 
-// The difference of the images with seeds 1 and 2: the root of its squares over pixels and R, G, B.
-double noiseOf(const Render& render);
+// The difference of the images with seeds 1 and 2, 3 and 4 and so on: the root of the mean over the
+// pairs of its squares over pixels and R, G, B.
+double noiseOf(const Render& render, uint64_t pairs = 1);
 
 }  // namespace bnvpl::test

