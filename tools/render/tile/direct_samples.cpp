@@ -17,8 +17,8 @@ constexpr unsigned kLightRays = 2, kBsdfRays = 1;
 constexpr unsigned kMost = 64;
 // Of each sample where there is no other light and no price.
 constexpr unsigned kAlone = 4;
-constexpr uint32_t kDrawPilots = 3u << 29, kDrawSamples = 7u << 28,
-                   kDrawMore = 9u << 28;  // dimensions of a tile's numbers
+constexpr uint32_t kDrawPilots = 3u << 29,
+                   kDrawSamples = 7u << 28;  // dimensions of a tile's numbers
 
 }  // namespace
 
@@ -141,10 +141,10 @@ struct DirectSamples::Pixel {
 };
 
 void DirectSamples::add(const TileSlots& tile, uint32_t pixel, const LearnedLight& learned,
-                        unsigned count, uint32_t draw, Pixel& out, PixelDraws& draws) const {
+                        unsigned count, Pixel& out, PixelDraws& draws) const {
   const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
-  const Stream stream(random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, draw));
-  uint32_t index = 0;
+  const Stream stream(random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDrawSamples));
+  uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
   for (Light& sum : out.sums) {
     for (unsigned k = 0; k < count; ++k) {
       const Light light = one(x, y, learned, stream, index++);
@@ -169,7 +169,7 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
     for (size_t s = 0; s < slots; ++s)
       draws[p].light +=
           tile.samples[s * tile.pixels + p].radiance.indirect * (1.0f / static_cast<float>(slots));
-    add(tile, p, learned, priced ? (count + 1) / 2 : count, kDrawSamples, pixels[p], draws[p]);
+    add(tile, p, learned, priced ? (count + 1) / 2 : count, pixels[p], draws[p]);
     draws[p].light += draws[p].sum * static_cast<float>(1.0 / draws[p].count);
   }
   if (priced) {
@@ -178,7 +178,7 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
     for (uint32_t p = 0; p < tile.pixels; ++p) {
       Pixel& at = pixels[p];
       const unsigned all = worth[chequer(p % tile.width, p / tile.width)];
-      if (all > at.count) add(tile, p, learned, all - at.count, kDrawMore, at, unused);
+      if (all > at.count) add(tile, p, learned, all - at.count, at, unused);
     }
   }
   double made = 0.0;

@@ -47,7 +47,7 @@ class DirectSamples {
   struct Pixel;
   double costOf(const LearnedLight& learned) const;
   void add(const TileSlots& tile, uint32_t pixel, const LearnedLight& learned, unsigned count,
-           uint32_t draw, Pixel& out, PixelDraws& draws) const;
+           Pixel& out, PixelDraws& draws) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
