@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Table 'rooms' and picture rooms.svg of docs/results.md, from docs/rooms.csv, which rooms.py writes."""
+"""Table 'rooms' and picture rooms.svg of docs/results.md, and the table of guided paths in their theory, from docs/rooms.csv, which
+rooms.py writes."""
 
 import csv
 import re
@@ -10,6 +11,7 @@ from bnvpl_eval import output
 from bnvpl_eval.output import plt
 
 RESULTS = write_docs.DOCS / "rooms.csv"
+GUIDED = write_docs.DOCS.parent / "tools/render/integrator/guided/theory.md"
 OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs",
           "spread-path": "path tracer with specks spread", "cycles": "Cycles"}
 COLOURS = {"path": "#0b62a3", "light": "#c77700", "guided": "#3a7d34", "spread-path": "#7fb2dd", "cycles": "#8b2f8f"}
@@ -66,6 +68,31 @@ def table(rows: list[dict]) -> str:
     return "\n".join([*lines, "", *(f"<!-- {line} -->" for line in made)])
 
 
+def guided_table(rows: list[dict]) -> str:
+    """The path tracer's errors over those of guided paths, full image, in the time of the default setting."""
+    of = {}
+    for row in rows:
+        if (row["setting"], row["light"]) == ("default", "full"):
+            of.setdefault(row["room"], {})[row["beside"]] = row
+    both = [(room, by["path"], by["guided"]) for room, by in of.items() if "guided" in by and by["guided"]["tools"] == by["path"]["tools"]]
+
+    def times(path: dict, guided: dict, column: str) -> float:
+        return float(path[f"its_{column}"]) / max(1e-9, float(guided[f"its_{column}"]))
+
+    lines = ["| view | CPU s | spp, guided, path tracer's | relMSE | RMSE | SMAPE | FLIP | means, guided, path tracer's |", "|---|---|---|---|---|---|---|---|"]
+    for room, path, guided in sorted(both, key=lambda row: -times(row[1], row[2], "relmse")):
+        errors = [two(times(path, guided, column)) for column in ("relmse", "rmse", "smape", "flip")]
+        lines.append("| " + " | ".join([room, guided["cpu_s"], f"{guided['its_spp']}, {path['its_spp']}", *errors,
+                                        f"{float(guided['its_mean']):.3f}, {float(path['its_mean']):.3f}"]) + " |")
+    return "\n".join(lines)
+
+
+def put(page: Path, name: str, table: str) -> None:
+    """Between the page's comments of that name."""
+    text = f"<!-- {name} -->\n{table}\n<!-- end of {name} -->"
+    output.write_text(page, re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: text, page.read_text(), flags=re.S))
+
+
 def plot(rows: list[dict], path: Path) -> None:
     """How many times our relMSE and FLIP the others have: filled at the default, hollow as a draft."""
     rooms = list(dict.fromkeys(row["room"] for row in rows))
@@ -92,9 +119,8 @@ def plot(rows: list[dict], path: Path) -> None:
 
 def write() -> None:
     rows = [row for row in read() if row["path_length"] == "0"]
-    page = write_docs.DOCS / "results.md"
-    text = "\n".join(["<!-- rooms -->", table(rows), "<!-- end of rooms -->"])
-    output.write_text(page, re.sub(r"<!-- rooms -->.*?<!-- end of rooms -->", lambda _: text, page.read_text(), flags=re.S))
+    put(write_docs.DOCS / "results.md", "rooms", table(rows))
+    put(GUIDED, "guided", guided_table(rows))
     plot(rows, write_docs.DOCS / "images/rooms.svg")
 
 
