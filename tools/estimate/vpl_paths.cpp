@@ -52,20 +52,23 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const
 double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const {
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
+  const auto addPath = [&](const Bsdf& bsdf) {
+    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_, settings_.where, rng,
+                                  first, later);
+  };
   // The albedo of layered surfaces depends on where light comes from, and so does what they send
   // where: to a side at random. That of MTL does not, for photons either.
   const Scene& scene = in_.rays.scene();
-  const bool layered = !std::holds_alternative<PhongModel>(scene.materials[hit.material].model);
-  SurfacePoint seen = hit;
-  for (uint64_t j = 0; j < settings_.paths; ++j) {
-    if (layered) {
+  if (std::holds_alternative<PhongModel>(scene.materials[hit.material].model)) {
+    const Bsdf matt(hit, Bsdf(scene, hit).roughAlbedo());
+    for (uint64_t j = 0; j < settings_.paths; ++j) addPath(matt);
+  } else {
+    SurfacePoint seen = hit;
+    for (uint64_t j = 0; j < settings_.paths; ++j) {
       const Point2 at = rng.nextPoint();
       seen.wo = Basis(hit.ng).toWorld(sampleCosineHemisphere(at.x, at.y));
+      addPath(Bsdf(scene, seen));
     }
-    const Bsdf bsdf(scene, seen);
-    r.rays +=
-        2 * addLeavingLight(in_.rays, in_.lights, layered ? bsdf : Bsdf(seen, bsdf.roughAlbedo()),
-                            weight, length_, settings_.where, rng, first, later);
   }
   r.paths += settings_.paths;
   const Vec3 all = first + later;

@@ -30,8 +30,10 @@ class Directions {
     const float byBsdf = bsdf_->pdf(LobeGroup::Rough, wi);
     return guide_ ? (1.0f - share_) * byBsdf + share_ * guide_->pdf(region_, wi) : byBsdf;
   }
-  // By a number in [0, 1) and a point of the unit square. False: absorbed.
-  bool sample(float pick, Point2 at, BsdfSample& out) const {
+  // False: absorbed.
+  bool sample(Rng& rng, BsdfSample& out) const {
+    const float pick = rng.next();
+    const Point2 at = rng.nextPoint();
     if (!guide_) return byBsdf(pick, at, out);
     float byGuide = 0.0f;
     if (pick < share_) {

@@ -71,8 +71,7 @@ void sendRays(const RayScene& scene, const RaysFrom& from, unsigned shares, unsi
     for (unsigned k = begin; k < end; ++k) {
       BsdfSample next;
       Rng rng = Rng::spread(key, first + k);
-      const float pick = rng.next();
-      if (!from.directions.sample(pick, rng.nextPoint(), next)) continue;
+      if (!from.directions.sample(rng, next)) continue;
       rays[alive] = rayOn(scene, vertex, next);
       links[alive] = {next.wi,
                       from.throughput * next.weight,

@@ -6,6 +6,7 @@
 #include "core/sampling.h"
 #include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
+#include "tests/support/z_test.h"
 #include "tools/common/streams.h"
 
 namespace bnvpl::test {
@@ -213,18 +214,14 @@ TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
   sky.lights[0].emission = Vec3{2.0f};
   const World world(std::move(sky));
   const auto noise = [&](const char* compensate) {
-    std::array<Image, 2> images;
-    for (uint64_t seed = 0; seed < 2; ++seed) {
+    const auto shown = [&](uint64_t seed) {
       const Given options =
           with(kPlainDirect, {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}});
-      images[seed] = renderVpls(world, {}, options).image;
-    }
-    const std::vector<float>&a = *images[0].find("G"), &b = *images[1].find("G");
-    double sum = 0.0;
-    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(double{a[i]} - double{b[i]}, 2);
-    return sum;
+      return renderVpls(world, {}, options).image;
+    };
+    return std::pow(noiseOf(shown, 4), 2);
   };
-  EXPECT_LT(noise("near-field"), noise("none") / 3.0);
+  EXPECT_LT(noise("near-field"), 0.3 * noise("none"));
 }
 
 }  // namespace

@@ -19,11 +19,6 @@ constexpr unsigned kFirstLightRays = 2;
 // In units of cost:: (measured: theory.md).
 constexpr double kCostOfRay = 30.0;
 
-bool sampleBy(const Directions& directions, Rng& rng, BsdfSample& out) {
-  const float pick = rng.next();
-  return directions.sample(pick, rng.nextPoint(), out);
-}
-
 }  // namespace
 
 double GuidedRays::costOfRay() const { return kCostOfRay; }
@@ -105,7 +100,7 @@ LightWithPart GuidedRays::lightFrom(const Bsdf& first, const FirstLink& start, f
       survive = std::clamp(kEager * brings / shown, kLeastSurvival, 1.0f);
     }
     BsdfSample scattered;
-    if (rng.next() >= survive || !sampleBy(directions, rng, scattered)) break;
+    if (rng.next() >= survive || !directions.sample(rng, scattered)) break;
     if (bounce == 1)
       weight.part *= matt * (mattCosine(bsdf.point(), scattered.wi) / (scattered.pdf * survive));
     else
