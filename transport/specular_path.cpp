@@ -56,6 +56,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     }
     if (++end.links > kMaxSpecular) return end;
     if (!bsdf.specularIsDelta()) {
+      end.spread = true;
       strata = end.links == 1 && behind.first ? *behind.first
                : behind.others                ? behind.others->at(end.hit.position, end.hit.ng)
                                               : LearnedStrata{};

@@ -17,10 +17,11 @@ struct LightsBehind {
 struct SpecularPath {
   bool rough = false;  // `hit` is a vertex where the rough lobes were taken
   SurfacePoint hit;
-  Vec3 throughput;     // from the start to the hit, one over the probability of `rough` included
-  unsigned links = 0;  // specular vertices passed
-  Vec3 metFirst;       // emission met by the first segment
-  Vec3 metLater;       // emission met behind specular vertices, and light sampled at sharp ones
+  Vec3 throughput;      // from the start to the hit, one over the probability of `rough` included
+  unsigned links = 0;   // specular vertices passed
+  bool spread = false;  // one of them at least by a sharp lobe: the direction was one of many
+  Vec3 metFirst;        // emission met by the first segment
+  Vec3 metLater;        // emission met behind specular vertices, and light sampled at sharp ones
   float firstDistance = INFINITY;  // of the first hit, along the ray
 };
 

@@ -5,6 +5,7 @@
 
 #include "tools/render/integrator/camera_vertex.h"
 #include "transport/camera.h"
+#include "transport/surface_lights.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -28,7 +29,7 @@ struct DirectSamples::Stream {
   explicit Stream(uint64_t key) : path(random64(key, 0, 0)), light(random64(key, 0, 1)) {}
 };
 
-DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLight& learned,
+DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLight& ofTile,
                                         const Stream& stream, uint32_t index) const {
   const Scene& scene = rays_.scene();
   Rng rng = Rng::spread(stream.path, index);
@@ -38,10 +39,16 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
       seeFrom(rays_, lights_, scene.camera.position,
               cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                               (float(y) + at.y) / float(scene.film.height)),
-              rng, sample, {learned.strata, surfaceLights_});
+              rng, sample, {ofTile.strata, surfaceLights_});
   Light light{sample.seen, sample.direct, {}};
   if (!path.rough) return light;
   const Bsdf bsdf(scene, path.hit);
+  LearnedLight learned = ofTile;
+  LearnedStrata around;
+  if (path.spread && surfaceLights_ && learned.strata) {  // to a place that the tile hardly knows
+    around = surfaceLights_->at(path.hit.position, path.hit.ng);
+    if (around.all) learned.strata = &around;
+  }
   light.scattered = learned.strata ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned,
                                                  kBsdfRays, index * learned.rays, stream.light)
                                    : directLight(rays_, lights_, bsdf, LobeGroup::Rough,

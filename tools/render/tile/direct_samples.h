@@ -42,7 +42,7 @@ class DirectSamples {
     Vec3 all() const { return met + scattered; }
   };
   struct Stream;  // of a pixel
-  Light one(uint32_t x, uint32_t y, const LearnedLight& learned, const Stream& stream,
+  Light one(uint32_t x, uint32_t y, const LearnedLight& ofTile, const Stream& stream,
             uint32_t index) const;
   struct Pixel;
   double costOf(const LearnedLight& learned) const;

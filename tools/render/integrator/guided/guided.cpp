@@ -31,8 +31,8 @@ constexpr std::array kOptions{
     balanceOption("by pilots, paths and direct samples where they take most noise from the film"),
     specksOption("keep")};
 
-// Rays that learn are to cost little beside the samples, of which each has several.
-constexpr uint64_t kSamplesPerRay = 2;
+// Rays that learn are to cost little beside the paths.
+constexpr uint64_t kPathsPerRay = 2;
 
 uint64_t samplesOf(const IntegratorInputs& in, const Values& options) {
   const Film& film = in.rays.scene().film;
@@ -40,9 +40,9 @@ uint64_t samplesOf(const IntegratorInputs& in, const Values& options) {
 }
 
 uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
-  return std::min<uint64_t>(
-      options.whole("guide-rays"),
-      samplesOf(in, options) / (kSamplesPerRay * std::max<size_t>(1, in.lit.size())));
+  return std::min<uint64_t>(options.whole("guide-rays"),
+                            samplesOf(in, options) * options.whole("paths") /
+                                (kPathsPerRay * std::max<size_t>(1, in.lit.size())));
 }
 
 // What lives as long as the integrator, in an order in which each may borrow from those before.
