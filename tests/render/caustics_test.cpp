@@ -4,6 +4,7 @@
 #include "tests/render/lit_rooms.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
+#include "tools/render/integrator/vpl/near_field_rays.h"
 
 namespace bnvpl::test {
 namespace {
@@ -50,6 +51,34 @@ TEST(Caustics, PhotonsAndRaysShareTheLight) {
     const VplTable lit = fewVpls(*world);
     EXPECT_TRUE(sameExpectation(by(*world, lit, "16", "1"), by(*world, lit, "0", "4")));
   }
+}
+
+// What a ray finds over a sharp lobe lies around a VPL, which knows the light there: nothing has to
+// be gathered, and no further ray to be sent.
+TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
+  const World world(cellsBeforeMetal(/*seesMetal=*/false));
+  const VplTable lit = litVpls(world, {{"count", "800"}});
+  SurfacePoint cover;
+  cover.position = {0.5f, 0.5f, 0.7f};
+  cover.ng = cover.ns = cover.wo = {0, 0, 1};
+  const Bsdf bsdf(cover, Vec3(1.0f));
+  const auto gathers = [&](const char* compensate) {
+    size_t points = 0;
+    const GatherPoint count = [&](const Bsdf&, unsigned, Rng&) {
+      ++points;
+      return Gathered{};
+    };
+    const NearFieldRays rays(
+        world.rays, world.lights, count,
+        methodNamed(compensateMethods(), compensate).make({lit, world.rays, 2.0f, LightKind{}}, {}),
+        1, nullptr, Only::Indirect);
+    RaysBrought brought;
+    rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1000, 0, 7, brought);
+    EXPECT_GT(mean(brought.indirect), 0.0f);
+    return points;
+  };
+  EXPECT_GT(gathers("none"), 50u);
+  EXPECT_LT(gathers("near-field"), 120u);  // 176 were VPLs asked where rays end straight alone
 }
 
 TEST(Caustics, PhotonsTakeTheSpecksOfSmallLamps) {

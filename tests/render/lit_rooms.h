@@ -3,6 +3,7 @@
 
 #include "core/random.h"
 #include "scene/load_scene.h"
+#include "scene/scene_builder.h"
 
 namespace bnvpl::test {
 
@@ -46,6 +47,44 @@ inline Scene bulbs(uint32_t hidden) {
     s.emission = Vec3{1.0f};
   }
   return scene;
+}
+
+// Eight cells in a row, open towards a sheet of metal, each with a bulb behind a cover, so that it
+// lights its cell alone. The camera looks from between at the sheet, or at the covers, which get
+// all their light over it.
+inline Scene cellsBeforeMetal(bool seesMetal) {
+  constexpr int kCells = 8;
+  SceneBuilder builder("cells");
+  builder.setFilm({8, 8});  // one tile, which sees all cells
+  Camera camera;
+  camera.verticalFovRad = 1.6f;
+  if (seesMetal) camera.forward = {0, 0, 1}, camera.right = {-1, 0, 0};
+  builder.setCamera({4, 0.5, seesMetal ? 1.5 : 1.2}, camera);
+  Material paint, metal;
+  paint.model = DiffuseModel{};
+  metal.model = ConductorModel{};
+  const uint32_t wall = builder.addMaterial(paint), sheet = builder.addMaterial(metal);
+  const auto quad = [&](uint32_t material, Vec3 p, Vec3 a, Vec3 b) {
+    std::vector<double> positions;
+    for (const Vec3 c : {p, p + a, p + a + b, p + b})
+      positions.insert(positions.end(), {double{c.x}, double{c.y}, double{c.z}});
+    Mesh mesh{positions, {}, {}, {}};
+    for (const auto& corners : {std::array<uint32_t, 3>{0, 1, 2}, {0, 2, 3}})
+      mesh.triangles.push_back({corners, kNoCorners, kNoCorners, material});
+    builder.addMesh("cells", std::move(mesh));
+  };
+  quad(sheet, {-4, -4, 3}, {0, 9, 0}, {16, 0, 0});
+  quad(wall, {0, 0, 0}, {kCells, 0, 0}, {0, 1, 0});
+  quad(wall, {0, 0, 0}, {0, 0, 1}, {kCells, 0, 0});
+  quad(wall, {0, 1, 0}, {kCells, 0, 0}, {0, 0, 1});
+  for (int k = 0; k <= kCells; ++k) quad(wall, {float(k), 0, 0}, {0, 1, 0}, {0, 0, 1});
+  LightSpec bulb;
+  bulb.emission = Vec3(1.0f);
+  for (int k = 0; k < kCells; ++k) {
+    quad(wall, {float(k) + 0.3f, 0.3f, 0.7f}, {0.4f, 0, 0}, {0, 0.4f, 0});
+    builder.addLight(bulb, {k + 0.5, 0.5, 0.6});
+  }
+  return builder.finish();
 }
 
 }  // namespace bnvpl::test

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/scene_builder.h"
 #include "tests/render/lit_rooms.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
@@ -95,47 +94,9 @@ TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
   EXPECT_TRUE(sameExpectation(of("path", 0), of("guided", 100)));
 }
 
-// Eight cells in a row, open towards a sheet of metal that the camera looks at from between, each
-// with a bulb behind a cover, so that it lights its cell alone.
-Scene cellsInMetal() {
-  constexpr int kCells = 8;
-  SceneBuilder builder("cells");
-  builder.setFilm({8, 8});  // one tile, which sees all cells
-  Camera camera;
-  camera.verticalFovRad = 1.6f;
-  camera.forward = {0, 0, 1};
-  camera.right = {-1, 0, 0};
-  builder.setCamera({4, 0.5, 1.5}, camera);
-  Material paint, metal;
-  paint.model = DiffuseModel{};
-  metal.model = ConductorModel{};
-  const uint32_t wall = builder.addMaterial(paint), sheet = builder.addMaterial(metal);
-  const auto quad = [&](uint32_t material, Vec3 p, Vec3 a, Vec3 b) {
-    std::vector<double> positions;
-    for (const Vec3 c : {p, p + a, p + a + b, p + b})
-      positions.insert(positions.end(), {double{c.x}, double{c.y}, double{c.z}});
-    Mesh mesh{positions, {}, {}, {}};
-    for (const auto& corners : {std::array<uint32_t, 3>{0, 1, 2}, {0, 2, 3}})
-      mesh.triangles.push_back({corners, kNoCorners, kNoCorners, material});
-    builder.addMesh("cells", std::move(mesh));
-  };
-  quad(sheet, {-4, -4, 3}, {0, 9, 0}, {16, 0, 0});
-  quad(wall, {0, 0, 0}, {kCells, 0, 0}, {0, 1, 0});
-  quad(wall, {0, 0, 0}, {0, 0, 1}, {kCells, 0, 0});
-  quad(wall, {0, 1, 0}, {kCells, 0, 0}, {0, 0, 1});
-  for (int k = 0; k <= kCells; ++k) quad(wall, {float(k), 0, 0}, {0, 1, 0}, {0, 0, 1});
-  LightSpec bulb;
-  bulb.emission = Vec3(1.0f);
-  for (int k = 0; k < kCells; ++k) {
-    quad(wall, {float(k) + 0.3f, 0.3f, 0.7f}, {0.4f, 0, 0}, {0, 0.4f, 0});
-    builder.addLight(bulb, {k + 0.5, 0.5, 0.6});
-  }
-  return builder.finish();
-}
-
 // What is seen over a sharp lobe has other lights than the tile, which sees all of it.
 TEST(SurfaceLights, WhatIsSeenOverSharpLobesLooksForItsOwnLights) {
-  const World world(cellsInMetal());
+  const World world(cellsBeforeMetal(/*seesMetal=*/true));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   const auto direct = [&](const Given& options) -> Render {
     return [&, options](uint64_t seed) {

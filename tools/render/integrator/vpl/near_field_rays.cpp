@@ -36,9 +36,10 @@ void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, u
 }
 
 // One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
-// what Compensation says is missing: from the scattered light that a VPL knows where it speaks for
-// the point that the ray found, else by lighting that point as the first one, and so on. A light
-// that it meets is the other half of the MIS of light sampling. All else is left to the VPLs.
+// what Compensation says is missing: either from the scattered light that a VPL knows where it
+// speaks for the point that the ray found, or else by lighting that point as the first one, and so
+// on. A light that it meets is the other half of the MIS of light sampling. All else is left to the
+// VPLs.
 void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
                            RaysBrought& out) const {
   Rng rng = start.rng;
@@ -69,7 +70,8 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
     if (only_ == Only::Direct) return done();
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
-    const Missing missing = missingFrom(end, first ? &near : nullptr, rng);
+    const bool straight = end.links == 0;
+    const Missing missing = missingFrom(end, first && straight ? &near : nullptr, rng);
     throughput *= end.throughput;
     // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
     // with the shadow ray. Else it goes on, by roulette at full weight.
@@ -80,7 +82,7 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
       return done();
     }
     const Bsdf found(rays_.scene(), end.hit);
-    if (share && first && missing.own.within > 0.0f && end.links == 0) {
+    if (share && first && missing.own.within > 0.0f && straight) {
       const std::optional<RoughLeaving> matt = found.roughLeaving();
       factor = matt ? matt->towards(end.hit.wo) : 0.0f;
       if (factor > 0.0f) {
@@ -92,10 +94,10 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
     }
     if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
     const LearnedLight lights{strata.all ? &strata : nullptr,
-                              first && !known ? kFirstLightRays : 1};
+                              first && !(known && straight) ? kFirstLightRays : 1};
     const Vec3 leaving =
         lights.strata && lights.rays > 1
-            ? directLight(rays_, lights_, found, LobeGroup::Rough, lights, 1, 0,
+            ? directLight(rays_, lights_, found, LobeGroup::Rough, lights, known ? 0 : 1, 0,
                           mix64(static_cast<uint64_t>(rng.next() * 0x1p24f)))
             : directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
     if (known) {
@@ -124,9 +126,11 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
 Missing NearFieldRays::missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
                                    Rng& rng) const {
   if (!end.rough) return {};
-  if (end.links > 0) return {1.0f, {}};
-  if (!compensation_) return {};
-  return compensation_.missing(end.hit, end.hit.distance, near, rng);
+  if (!compensation_) return {end.links > 0 ? 1.0f : 0.0f, {}};
+  Missing missing = compensation_.missing(end.hit, end.hit.distance, near, rng);
+  // Over specular vertices VPLs bring nothing, but know the light all the same.
+  if (end.links > 0) missing = {1.0f, missing.scattered};
+  return missing;
 }
 
 }  // namespace bnvpl
