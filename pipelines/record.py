@@ -98,6 +98,7 @@ class Attempt:
             signal.signal(each, self.on_stop)
         try:
             self.process = subprocess.Popen(command, preexec_fn=die_with_parent)
+            self.tell_to_stop()
         except OSError as error:
             print(f"{pathlib.Path(sys.argv[0]).name}: {command[0]}: {error.strerror}", file=sys.stderr)
             return self.close(127, None)
@@ -106,9 +107,21 @@ class Attempt:
         return self.close(code if code >= 0 else 128 - code, usage)
 
     stopped = False
+    asked_to_stop = told_to_stop = False
 
     def on_stop(self, *_):
         self.stopped = True
+
+    def ask_to_stop(self):
+        """Lets the command save its work and end, also where it is just about to begin."""
+        self.asked_to_stop = True
+        self.tell_to_stop()
+
+    def tell_to_stop(self):
+        running = self.process and self.process.returncode is None
+        if self.asked_to_stop and running and not self.told_to_stop:
+            self.told_to_stop = True
+            self.process.send_signal(signal.SIGTERM)
 
     def close(self, code, usage):
         self.record |= {"end_s": round(time.time(), 3), "exit": code}

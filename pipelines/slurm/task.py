@@ -65,8 +65,7 @@ class Job:
 
     def on_time_limit(self, *_):
         self.out_of_time = True
-        if self.attempt.process and self.attempt.process.returncode is None:
-            self.attempt.process.send_signal(signal.SIGTERM)
+        self.attempt.ask_to_stop()
 
     def run(self):
         task = self.task

@@ -53,6 +53,8 @@ sys.exit(1)
 # A tool that is killed, or that saves a checkpoint when it is asked to stop.
 KILLED = "#!/bin/sh\nkill -9 $$\n"
 SAVES = "#!/bin/sh\ntrap 'echo saved > $2; trap - TERM; kill -TERM $$' TERM\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
+# The time limit, as soon as a tool begins.
+LATE = SAVES.replace("touch $2.ready", "kill -USR1 $PPID")
 SLOW = "#!/bin/sh\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
 
 
@@ -268,6 +270,11 @@ class SubmitTest(unittest.TestCase):
             self.assertEqual(task.wait(), 128 + 15)
             self.assertEqual(self.requeued(), ["requeue 9"] * attempt)
             self.assertEqual(self.record(attempt)["resumed"], attempt == 2)
+
+    def test_a_time_limit_is_heard_while_the_tool_begins(self):
+        tool = self.program("late", LATE)
+        for _ in range(30):  # the signal comes before or after the tool is known
+            self.assertEqual(self.start_task(tool).wait(timeout=60), 128 + 15)
 
     def test_whole_tasks_go_on_from_their_checkpoints(self):
         """A render that nears its time limit, as one task of the pipeline."""
