@@ -164,6 +164,12 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 }
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedLight& learned, const std::function<float(Vec3)>& rayPdf,
+                 uint32_t firstPoint, uint64_t key) {
+  return sampleStrata(rays, lights, ByBsdf{bsdf, group}, learned, true, rayPdf, firstPoint, key);
+}
+
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared) {
   return sampleOne(rays, lights, ByBsdf{bsdf, group}, strata, bsdfRays > 0,

@@ -45,6 +45,11 @@ inline LearnedLight learnedBy(const LearnedStrata& strata) {
 // The same by it; its rays are the points of a sequence (owenSobol) from `firstPoint` on.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint, uint64_t key);
+// The same beside rays whose directions the caller does not draw by the BSDF alone: `rayPdf` is the
+// density of all that they may be drawn by, 1/sr, times their number.
+Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
+                 const LearnedLight& learned, const std::function<float(Vec3 wi)>& rayPdf,
+                 uint32_t firstPoint, uint64_t key);
 // One ray: by what was learned, or where that is nothing to a light picked in proportion to power.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,

@@ -96,8 +96,14 @@ Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uin
     return directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::Each, parts_.raysEach,
                        rng);
   }
-  return directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned, parts_.raysEach,
-                     slot * parts_.lightRays, key);
+  const uint32_t first = slot * parts_.lightRays;
+  if (!parts_.rays)
+    return directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned, 0, first, key);
+  const Directions directions = parts_.rays->directionsFrom(bsdf);
+  const auto rayPdf = [&](Vec3 wi) {
+    return static_cast<float>(parts_.raysEach) * directions.pdf(wi);
+  };
+  return directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned, rayPdf, first, key);
 }
 
 void TileIntegrator::gatherTile(const TileSamples& tile, const Vertices& at, const Balance& balance,

@@ -14,12 +14,12 @@ namespace {
 constexpr std::string_view kRaysAreSent = "only=all|indirect;direct-samples=1";
 constexpr std::array kOptions{
     kMaxBouncesOption,
+    kDirectSamplesOption,  // before those that need it
     neededBy(kRaysAreSent, realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
                                       "chosen by the guide, the others by the BSDF")),
     neededBy(kRaysAreSent, wholeOption("guide-rays", "256", 0, 1024, "",
                                        "rays from each VPL that learn from where light comes; "
                                        "fewer in a short render")),
-    kDirectSamplesOption,
     neededBy(kRaysAreSent,
              wholeOption("paths", "8", 1, 4096, "",
                          "of indirect light from each shaded point, with --balance on a quarter of "

@@ -131,6 +131,9 @@ TEST(Guided, HasThePathTracersImage) {
           sameExpectation(paths(world, shown), guided(world, lit, with(shown, {{"spp", "16"}}))))
           << only;
     }
+    const Given direct = with(options, {{"only", "direct"}});
+    EXPECT_TRUE(sameExpectation(paths(world, direct),
+                                guided(world, lit, with(direct, {{"direct-samples", "1"}}))));
   }
 }
 
