@@ -27,8 +27,8 @@ float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arri
 }
 
 // -> density of that many rays by the BSDF.
-auto raysByBsdf(const Bsdf& bsdf, LobeGroup group, unsigned rays) {
-  return [&bsdf, group, rays](Vec3 wi) { return static_cast<float>(rays) * bsdf.pdf(group, wi); };
+auto raysByBsdf(const Bsdf& bsdf, LobeGroup group, float rays) {
+  return [&bsdf, group, rays](Vec3 wi) { return rays * bsdf.pdf(group, wi); };
 }
 
 // What a vertex reflects of radiance from wi, with the cosine: for the functions below.
@@ -140,7 +140,7 @@ float SharedWithPhotons::ofRays(size_t light, Vec3 towards) const {
 }
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 LightChoice choice, unsigned bsdfRays, Rng& rng, const SharedWithPhotons& shared) {
+                 LightChoice choice, float bsdfRays, Rng& rng, const SharedWithPhotons& shared) {
   Vec3 sum;
   const auto rayPdf = raysByBsdf(bsdf, group, bsdfRays);
   const bool all = choice == LightChoice::Each && lights.size() <= kMaxLightsEach;
@@ -157,8 +157,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 }
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint,
-                 uint64_t key) {
+                 const LearnedLight& learned, float bsdfRays, uint32_t firstPoint, uint64_t key) {
   return sampleStrata(rays, lights, ByBsdf{bsdf, group}, learned, bsdfRays > 0,
                       raysByBsdf(bsdf, group, bsdfRays), firstPoint, key);
 }
@@ -170,7 +169,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
 }
 
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,
+                 const LearnedStrata& strata, float bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared) {
   return sampleOne(rays, lights, ByBsdf{bsdf, group}, strata, bsdfRays > 0,
                    raysByBsdf(bsdf, group, bsdfRays), rng, shared);

@@ -28,10 +28,10 @@ struct SharedWithPhotons {
 };
 
 // Light sampling's part of the light at a vertex: multi-sample MIS by the power heuristic (Veach
-// 1997, section 9.2) against `bsdfRays` rays that the caller sends from there by the BSDF; 0: light
-// sampling is alone.
+// 1997, section 9.2) against `bsdfRays` rays, in the mean, that the caller sends from there by the
+// BSDF; 0: light sampling is alone.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 LightChoice choice, unsigned bsdfRays, Rng& rng,
+                 LightChoice choice, float bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared = {});
 // Light sampling by what was learned about the place: shadow rays to strata of all lights.
 struct LearnedLight {
@@ -44,7 +44,7 @@ inline LearnedLight learnedBy(const LearnedStrata& strata) {
 }
 // The same by it; its rays are the points of a sequence (owenSobol) from `firstPoint` on.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedLight& learned, unsigned bsdfRays, uint32_t firstPoint, uint64_t key);
+                 const LearnedLight& learned, float bsdfRays, uint32_t firstPoint, uint64_t key);
 // The same beside rays whose directions the caller does not draw by the BSDF alone: `rayPdf` is the
 // density of all that they may be drawn by, 1/sr, times their number.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
@@ -52,7 +52,7 @@ Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
                  uint32_t firstPoint, uint64_t key);
 // One ray: by what was learned, or where that is nothing to a light picked in proportion to power.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
-                 const LearnedStrata& strata, unsigned bsdfRays, Rng& rng,
+                 const LearnedStrata& strata, float bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared = {});
 // By what was learned, or one ray to a light picked in proportion to power, beside a ray whose
 // direction the caller does not draw by the BSDF alone: `rayPdf` is the density of all that it may

@@ -182,5 +182,24 @@ TEST_F(Output, OnlyDirectAndOnlyIndirectAddUp) {
   EXPECT_NEAR(sums[0], sums[1] + sums[2], 0.02 * sums[0]);
 }
 
+// Direct light alone has camera rays of its own, which the other layers show.
+TEST_F(Output, OnlyDirectShowsTheOtherLayers) {
+  makeStages(scene_);
+  const std::string command = scene_ + " " + path("lit.vpl") + " --spp 4 --layers albedo,N,Z -o ";
+  succeed("vpl-render", command + path("all.exr"));
+  succeed("vpl-render", command + path("direct.exr") + " --only direct");
+  const Image all = readExr(at("all.exr")), direct = readExr(at("direct.exr"));
+  for (const char* channel : {"albedo.R", "N.X", "N.Y", "Z"}) {
+    double difference = 0.0, size = 0.0;
+    for (size_t i = 0; i < all.pixelCount(); ++i) {
+      const double a = double{(*all.find(channel))[i]}, b = double{(*direct.find(channel))[i]};
+      if (std::isinf(a) || std::isinf(b)) continue;  // the void
+      difference += std::abs(a - b), size += std::abs(a);
+    }
+    EXPECT_GT(size, 0.0) << channel;
+    EXPECT_LT(difference, 0.1 * size) << channel;
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl

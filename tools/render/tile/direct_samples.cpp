@@ -12,9 +12,11 @@ namespace bnvpl {
 
 namespace {
 
-// Shadow rays of a sample, by what the tile has learned, and rays by the BSDF. Few: a further
-// sample's see another point, too.
-constexpr unsigned kLightRays = 2, kBsdfRays = 1;
+// Shadow rays of a sample, by what the tile has learned. Few: a further sample's see another point,
+// too.
+constexpr unsigned kLightRays = 3;
+// Rays by the BSDF, of a sample. What they alone would find is to be found at times.
+constexpr double kLeastByBsdf = 0.125, kMostByBsdf = 1.0;
 constexpr unsigned kMost = 64;
 // Of each sample where there is no other light and no price.
 constexpr unsigned kAlone = 4;
@@ -29,8 +31,14 @@ struct DirectSamples::Stream {
   explicit Stream(uint64_t key) : path(random64(key, 0, 0)), light(random64(key, 0, 1)) {}
 };
 
-DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLight& ofTile,
-                                        const Stream& stream, uint32_t index) const {
+DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
+  seen += other.seen, met += other.met, byLight += other.byLight, byBsdf += other.byBsdf;
+  return *this;
+}
+
+DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const Rays& ofTile,
+                                        const Stream& stream, uint32_t index,
+                                        RadianceSample* shown) const {
   const Scene& scene = rays_.scene();
   Rng rng = Rng::spread(stream.path, index);
   const Point2 at = rng.nextPoint();
@@ -39,58 +47,81 @@ DirectSamples::Light DirectSamples::one(uint32_t x, uint32_t y, const LearnedLig
       seeFrom(rays_, lights_, scene.camera.position,
               cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                               (float(y) + at.y) / float(scene.film.height)),
-              rng, sample, {ofTile.strata, surfaceLights_});
-  Light light{sample.seen, sample.direct, {}};
+              rng, sample, {ofTile.lights.strata, surfaceLights_});
+  Light light{sample.seen, sample.direct, {}, {}};
+  if (shown) *shown = sample;
   if (!path.rough) return light;
   const Bsdf bsdf(scene, path.hit);
-  LearnedLight learned = ofTile;
+  if (shown) describeVertex(bsdf, *shown);
+  LearnedLight learned = ofTile.lights;
   LearnedStrata around;
   if (path.spread && surfaceLights_ && learned.strata) {  // to a place that the tile hardly knows
     around = surfaceLights_->at(path.hit.position, path.hit.ng);
     if (around.all) learned.strata = &around;
   }
-  light.scattered = learned.strata ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned,
-                                                 kBsdfRays, index * learned.rays, stream.light)
-                                   : directLight(rays_, lights_, bsdf, LobeGroup::Rough,
-                                                 LightChoice::Each, kBsdfRays, rng);
+  const float byBsdf = ofTile.byBsdf;
+  light.byLight = path.throughput *
+                  (learned.strata ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned,
+                                                byBsdf, index * learned.rays, stream.light)
+                                  : directLight(rays_, lights_, bsdf, LobeGroup::Rough,
+                                                LightChoice::Each, byBsdf, rng));
   BsdfSample next;
-  if (bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
-    const Arrival arrival{next.pdf * float{kBsdfRays}, path.hit.position, LightChoice::Each,
-                          learned};
-    const Ray ray = rayOn(rays_, path.hit, next);
-    SurfacePoint hit;
-    light.scattered += next.weight * (rays_.closestHit(ray.origin, ray.direction, hit)
-                                          ? emissionMet(lights_, hit, arrival)
-                                          : emissionAtInfinity(lights_, next.wi, arrival));
-  }
-  light.scattered *= path.throughput;
+  if ((byBsdf < 1.0f && rng.next() >= byBsdf) ||
+      !bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next))
+    return light;
+  const Arrival arrival{next.pdf * byBsdf, path.hit.position, LightChoice::Each, learned};
+  const Ray ray = rayOn(rays_, path.hit, next);
+  SurfacePoint hit;
+  const Vec3 emission = rays_.closestHit(ray.origin, ray.direction, hit)
+                            ? emissionMet(lights_, hit, arrival)
+                            : emissionAtInfinity(lights_, next.wi, arrival);
+  light.byBsdf = path.throughput * next.weight * emission * (1.0f / byBsdf);
   return light;
 }
 
-double DirectSamples::costOf(const LearnedLight& learned) const {
-  const double rays =
-      learned.strata ? double(learned.rays) : double(std::min(lights_.size(), kMaxLightsEach));
-  return cost::kCameraRay + cost::kLightRay * rays + cost::kBsdfRay * kBsdfRays;
+double DirectSamples::costOf(const Rays& rays) const {
+  const double toLights = rays.lights.strata ? double(rays.lights.rays)
+                                             : double(std::min(lights_.size(), kMaxLightsEach));
+  return cost::kCameraRay + cost::kLightRay * toLights + cost::kBsdfRay * double(rays.byBsdf);
 }
+
+namespace {
+
+LearnedLight lightsOf(const LearnedStrata* strata) { return {strata, strata ? kLightRays : 0}; }
+
+// Rays by the BSDF that are worth it beside so many shadow rays. A ray that brings B and is sent
+// with the probability q brings B / q, of variance E[B^2] / q - E[B]^2; shadow rays, together, have
+// the variance V. Variance times time is least where each number of rays is in proportion to the
+// root of what it is to divide, over its cost.
+float bsdfRaysWorth(double squareByBsdf, double varianceToLights, double toLights) {
+  if (!(varianceToLights > 0.0)) return static_cast<float>(kMostByBsdf);
+  const double worth =
+      std::sqrt(toLights * squareByBsdf / cost::kBsdfRay / (varianceToLights / cost::kLightRay));
+  return static_cast<float>(std::clamp(worth, kLeastByBsdf, kMostByBsdf));
+}
+
+}  // namespace
 
 DirectSamples::Pilot DirectSamples::pilot(const TileSlots& tile,
                                           const LearnedStrata* strata) const {
   Pilot out;
-  if (count_ > 0) return out;
-  const LearnedLight learned{strata, strata ? kLightRays : 0};
-  double pixels = 0.0;
+  const Rays rays{lightsOf(strata)};
+  double pixels = 0.0, varianceToLights = 0.0, squareByBsdf = 0.0;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     const uint32_t x = p % tile.width, y = p / tile.width;
     if ((x + y) % 2 != 0) continue;
     const Stream stream(random64(tile.key, uint64_t{p} << 32 | tile.firstSlot, kDrawPilots));
-    const Vec3 a = one(tile.x + x, tile.y + y, learned, stream, 0).all(),
-               b = one(tile.x + x, tile.y + y, learned, stream, 1).all();
-    out.variance += 0.5 * squared(a - b);
-    out.light += 0.5f * (a + b);
+    const Light a = one(tile.x + x, tile.y + y, rays, stream, 0),
+                b = one(tile.x + x, tile.y + y, rays, stream, 1);
+    out.variance += 0.5 * squared(a.all() - b.all());
+    varianceToLights += 0.5 * squared(a.byLight - b.byLight);
+    squareByBsdf += 0.5 * (squared(a.byBsdf) + squared(b.byBsdf));
+    out.light += 0.5f * (a.all() + b.all());
     pixels += 1.0;
   }
   out.variance /= pixels;
   out.light *= static_cast<float>(1.0 / pixels);
+  if (strata) out.bsdfRays = bsdfRaysWorth(squareByBsdf, varianceToLights, kLightRays);
   return out;
 }
 
@@ -147,25 +178,28 @@ struct DirectSamples::Pixel {
   unsigned count = 0;       // samples of each slot
 };
 
-void DirectSamples::add(const TileSlots& tile, uint32_t pixel, const LearnedLight& learned,
-                        unsigned count, Pixel& out, PixelDraws& draws) const {
+void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count,
+                        Pixel& out, PixelDraws& draws) const {
   const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
   const Stream stream(random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDrawSamples));
   uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
-  for (Light& sum : out.sums) {
+  for (size_t s = 0; s < out.sums.size(); ++s) {
     for (unsigned k = 0; k < count; ++k) {
-      const Light light = one(x, y, learned, stream, index++);
-      sum.seen += light.seen, sum.met += light.met, sum.scattered += light.scattered;
+      RadianceSample* shown =
+          alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
+      const Light light = one(x, y, rays, stream, index++, shown);
+      out.sums[s] += light;
       draws.add(light.all());
     }
   }
   out.count += count;
 }
 
-double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strata,
-                             const Pilot& pilot, double cost, const Balance& balance) const {
-  const LearnedLight learned{strata, strata ? kLightRays : 0};
-  const double costOfOne = costOf(learned);
+double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPath> paths,
+                             const LearnedStrata* strata, const Pilot& pilot, double cost,
+                             const Balance& balance) const {
+  const Rays rays{lightsOf(strata), pilot.bsdfRays};
+  const double costOfOne = costOf(rays);
   const unsigned count = count_ > 0 ? count_ : countFor(tile, pilot, costOfOne, cost, balance);
   const size_t slots = tile.samples.size() / tile.pixels;
   const bool priced = count_ == 0 && balance.price > 0.0;
@@ -173,10 +207,12 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
   std::vector<PixelDraws> draws(tile.pixels);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     pixels[p].sums.resize(slots);
-    for (size_t s = 0; s < slots; ++s)
-      draws[p].light +=
-          tile.samples[s * tile.pixels + p].radiance.indirect * (1.0f / static_cast<float>(slots));
-    add(tile, p, learned, priced ? (count + 1) / 2 : count, pixels[p], draws[p]);
+    for (size_t s = 0; s < slots; ++s) {
+      const size_t i = s * tile.pixels + p;
+      pixels[p].sums[s] = {paths[i].metFirst, paths[i].metFirst + paths[i].metLater, {}, {}};
+      draws[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(slots));
+    }
+    add(tile, p, rays, priced ? (count + 1) / 2 : count, pixels[p], draws[p]);
     draws[p].light += draws[p].sum * static_cast<float>(1.0 / draws[p].count);
   }
   if (priced) {
@@ -185,25 +221,26 @@ double DirectSamples::render(const TileSamples& tile, const LearnedStrata* strat
     for (uint32_t p = 0; p < tile.pixels; ++p) {
       Pixel& at = pixels[p];
       const unsigned all = worth[chequer(p % tile.width, p / tile.width)];
-      if (all > at.count) add(tile, p, learned, all - at.count, at, unused);
+      if (all > at.count) add(tile, p, rays, all - at.count, at, unused);
     }
   }
   double made = 0.0;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     const Pixel& at = pixels[p];
-    const float each = 1.0f / static_cast<float>(at.count);
     made += at.count;
+    // That have met light, the sample's own among them.
+    const unsigned met = at.count + (alone_ ? 0 : 1);
     for (size_t s = 0; s < slots; ++s) {
       const Light& sum = at.sums[s];
       RadianceSample& out = tile.samples[s * tile.pixels + p].radiance;
       out.direct = sum.met, out.seen = sum.seen;
       if (seenLight_) {
-        seenLight_->withMoreRays(out, at.count, tile, p, tile.firstSlot + static_cast<uint32_t>(s),
+        seenLight_->withMoreRays(out, met, tile, p, tile.firstSlot + static_cast<uint32_t>(s),
                                  {strata, surfaceLights_});
       } else {
-        out.direct *= each, out.seen *= each;
+        out.direct *= 1.0f / static_cast<float>(met), out.seen *= 1.0f / static_cast<float>(met);
       }
-      out.direct += sum.scattered * each;
+      out.direct += (sum.byLight + sum.byBsdf) * (1.0f / static_cast<float>(at.count));
     }
   }
   return costOfOne * made / tile.pixels;

@@ -52,9 +52,10 @@ double TileIntegrator::render(const TileSamples& tile, const Balance& balance) c
   const LearnedStrata strata = parts_.lights ? parts_.lights->at(tile.x, tile.y) : LearnedStrata{};
   const LearnedLight learned{parts_.lights ? &strata : nullptr, parts_.lightRays};
   const LightsBehind behind{learned.strata, parts_.surfaceLights};
-  for (size_t i = 0; i < count; ++i) {
+  const bool directAlone = parts_.directSamples && only_ == Only::Direct;
+  for (CameraSample& s : tile.samples) s.radiance = {};
+  for (size_t i = 0; i < count && !directAlone; ++i) {
     CameraSample& s = tile.samples[i];
-    s.radiance = {};
     Rng rng = Rng::spread(random64(tile.key, i % tile.pixels, kDrawSeen), slotOf(tile, i));
     at.seen[i] = seeFrom(rays_, lights_, s.origin, s.direction, rng, s.radiance, behind);
     if (parts_.seenLight && !parts_.directSamples) {
@@ -67,7 +68,7 @@ double TileIntegrator::render(const TileSamples& tile, const Balance& balance) c
   }
   DirectSamples::Pilot pilot;
   if (parts_.directSamples) pilot = parts_.directSamples->pilot(tile, learned.strata);
-  double cost = double(count) * cost::kCameraRay;
+  double cost = directAlone ? 0.0 : double(count) * cost::kCameraRay;
   if (parts_.gather && only_ != Only::Direct) gatherTile(tile, at, balance, pilot.light);
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
@@ -86,15 +87,15 @@ double TileIntegrator::render(const TileSamples& tile, const Balance& balance) c
   }
   cost /= double(count);
   if (parts_.directSamples)
-    cost += parts_.directSamples->render(tile, learned.strata, pilot, cost, balance);
+    cost += parts_.directSamples->render(tile, at.seen, learned.strata, pilot, cost, balance);
   return cost;
 }
 
 Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t slot,
                               uint64_t key, Rng& rng) const {
   if (!learned.strata) {
-    return directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::Each, parts_.raysEach,
-                       rng);
+    return directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::Each,
+                       static_cast<float>(parts_.raysEach), rng);
   }
   const uint32_t first = slot * parts_.lightRays;
   if (!parts_.rays)

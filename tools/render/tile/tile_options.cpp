@@ -17,7 +17,8 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
   }
   if (options.whole("direct-samples") == 1) return;
   out.directSamples.emplace(in.rays, in.lights, out.seenLight.get(), out.surfaceLights,
-                            static_cast<unsigned>(options.whole("direct-samples")));
+                            static_cast<unsigned>(options.whole("direct-samples")),
+                            in.only == Only::Direct);
 }
 
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,

@@ -97,9 +97,10 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
                               first && !(known && straight) ? kFirstLightRays : 1};
     const Vec3 leaving =
         lights.strata && lights.rays > 1
-            ? directLight(rays_, lights_, found, LobeGroup::Rough, lights, known ? 0 : 1, 0,
+            ? directLight(rays_, lights_, found, LobeGroup::Rough, lights, known ? 0.0f : 1.0f, 0,
                           mix64(static_cast<uint64_t>(rng.next() * 0x1p24f)))
-            : directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0 : 1, rng);
+            : directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0.0f : 1.0f,
+                          rng);
     if (known) {
       light += throughput * (leaving + *missing.scattered) * missing.share;
     } else {
