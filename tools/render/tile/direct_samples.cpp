@@ -15,8 +15,8 @@ namespace {
 // Shadow rays of a sample, by what the tile has learned. Few: a further sample's see another point,
 // too.
 constexpr unsigned kLightRays = 3;
-// Rays by the BSDF, of a sample. What they alone would find is to be found at times.
-constexpr double kLeastByBsdf = 0.125, kMostByBsdf = 1.0;
+// Rays by the BSDF, at most one of a sample. What they alone would find is to be found at times.
+constexpr double kLeastByBsdf = 0.125;
 constexpr unsigned kMost = 64;
 // Of each sample where there is no other light and no price.
 constexpr unsigned kAlone = 4;
@@ -94,10 +94,10 @@ LearnedLight lightsOf(const LearnedStrata* strata) { return {strata, strata ? kL
 // the variance V. Variance times time is least where each number of rays is in proportion to the
 // root of what it is to divide, over its cost.
 float bsdfRaysWorth(double squareByBsdf, double varianceToLights, double toLights) {
-  if (!(varianceToLights > 0.0)) return static_cast<float>(kMostByBsdf);
+  if (!(varianceToLights > 0.0)) return 1.0f;
   const double worth =
       std::sqrt(toLights * squareByBsdf / cost::kBsdfRay / (varianceToLights / cost::kLightRay));
-  return static_cast<float>(std::clamp(worth, kLeastByBsdf, kMostByBsdf));
+  return static_cast<float>(std::clamp(worth, kLeastByBsdf, 1.0));
 }
 
 }  // namespace
@@ -238,7 +238,8 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
         seenLight_->withMoreRays(out, met, tile, p, tile.firstSlot + static_cast<uint32_t>(s),
                                  {strata, surfaceLights_});
       } else {
-        out.direct *= 1.0f / static_cast<float>(met), out.seen *= 1.0f / static_cast<float>(met);
+        const float each = 1.0f / static_cast<float>(met);
+        out.direct *= each, out.seen *= each;
       }
       out.direct += (sum.byLight + sum.byBsdf) * (1.0f / static_cast<float>(at.count));
     }
