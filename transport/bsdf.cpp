@@ -15,13 +15,13 @@ std::variant<PhongBsdf, LobeSum> makeModel(const Scene& scene, const SurfacePoin
   return Made(std::in_place_type<LobeSum>, scene, model, point);
 }
 
+}  // namespace
+
 // Textures may make any model but Lambert's specular somewhere.
 bool mayBeSpecular(const Material& m) {
   if (const auto* phong = std::get_if<PhongModel>(&m.model)) return hasSpecularLobes(*phong);
   return !std::holds_alternative<DiffuseModel>(m.model);
 }
-
-}  // namespace
 
 bool hasSpecularLobes(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(), mayBeSpecular);

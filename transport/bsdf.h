@@ -108,5 +108,7 @@ class Bsdf {
 
 // Whether any material has lobes of the specular group: where none has, work for them is left out.
 bool hasSpecularLobes(const Scene& scene);
+// May have them somewhere.
+bool mayBeSpecular(const Material& material);
 
 }  // namespace bnvpl

@@ -13,8 +13,10 @@ struct LobeChoice {
   float probability;
   bool specular() const { return group == LobeGroup::Specular; }
 };
-inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng) {
-  const float specular = bsdf.specularProbability();
+// `roughWorth`: of the rough lobes' light, the part that is asked for, 0..1.
+inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughWorth = 1.0f) {
+  const float either = bsdf.specularProbability();
+  const float specular = either > 0.0f ? either / (either + (1.0f - either) * roughWorth) : 0.0f;
   return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }

@@ -1,4 +1,6 @@
 // Light over mirrors and sharp lobes, by photons and near-field rays together.
+#include "tools/render/tile/caustics.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/render/lit_rooms.h"
@@ -81,11 +83,64 @@ TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
   EXPECT_LT(gathers("near-field"), 120u);  // 176 were VPLs asked where rays end straight alone
 }
 
+// What a wall reflects by its rough lobes VPLs bring, but close by; rays that meet it are there for
+// its faint gloss.
+TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
+  Scene scene = manyLights();
+  for (Material& m : scene.materials) {
+    if (m.name != "Red") continue;
+    m.phong().glossy = Vec3(0.04f);
+    m.phong().exponent = 400.0f;
+  }
+  const World world(std::move(scene));
+  const VplTable lit = litVpls(world, {{"count", "800"}});
+  SurfacePoint seen;  // above the blocks, looking at that wall
+  seen.position = {0.14f, 0.4f, 0.28f};
+  for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}}) {
+    SurfacePoint wall;
+    world.rays.closestHit(seen.position, way, wall);
+    if (world.scene.materials[wall.material].name == "Red") seen.ng = seen.ns = seen.wo = way;
+  }
+  const Bsdf bsdf(seen, Vec3(1.0f));
+  const GatherPoint nothing = [](const Bsdf&, unsigned, Rng&) { return Gathered{}; };
+  const NearFieldRays rays(
+      world.rays, world.lights, nothing,
+      methodNamed(compensateMethods(), "near-field").make({lit, world.rays, 2.0f, LightKind{}}, {}),
+      1, nullptr, Only::Indirect);
+  unsigned bring = 0;
+  constexpr unsigned kRays = 2000;
+  for (unsigned k = 0; k < kRays; ++k) {
+    RaysBrought brought;
+    rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1, k, 7, brought);
+    bring += mean(brought.indirect) > 0.0f;
+  }
+  EXPECT_GT(bring, kRays / 20);  // 31 where lobes are taken by what they reflect alone
+}
+
 TEST(Caustics, PhotonsTakeTheSpecksOfSmallLamps) {
   const World world = shiny(bulbs(0), false);
   const VplTable lit = fewVpls(world);
   // Specks are few: one pair of images may have none.
   EXPECT_LT(noiseOf(by(world, lit, "16", "4"), 4), 0.6 * noiseOf(by(world, lit, "0", "4"), 4));
+}
+
+// A photon alone in its surroundings is a speck; spread over them it brings the same light.
+TEST(Caustics, SinglePhotonsAreSpread) {
+  const World world = shiny(bulbs(0), false);
+  const auto brought = [&](bool spread) {
+    const Caustics caustics(world.rays, world.lights, 4000, 0.0f, spread, 3, {});
+    double sum = 0.0, squares = 0.0;
+    for (uint32_t i = 0; i < 24 * 24; ++i) {
+      const double light{mean(caustics.at(i % 24, i / 24))};
+      sum += light, squares += light * light;
+    }
+    return std::pair(sum, squares);
+  };
+  const auto [kept, specks] = brought(false);
+  const auto [spread, squares] = brought(true);
+  EXPECT_GT(kept, 0.0);
+  EXPECT_NEAR(spread / kept, 1.0, 1e-4);
+  EXPECT_LT(squares, 0.9 * specks);
 }
 
 // No ray meets a point over a mirror.

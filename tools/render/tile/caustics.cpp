@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tools/common/streams.h"
+#include "tools/render/film/specks.h"
 #include "tools/render/integrator/add_splats.h"
 #include "tools/render/integrator/film_connection.h"
 #include "transport/walk.h"
@@ -11,7 +12,7 @@
 namespace bnvpl {
 
 Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons,
-                   float raysOfPixel, uint64_t seed, const ProgressFn& progress)
+                   float raysOfPixel, bool spread, uint64_t seed, const ProgressFn& progress)
     : rays_(rays),
       lights_(lights),
       photons_(photons),
@@ -19,7 +20,7 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       raysOfPixel_(raysOfPixel),
       width_(rays.scene().film.width) {
   const size_t pixels = size_t{width_} * rays.scene().film.height;
-  std::vector<std::array<double, 3>> sums(pixels);
+  std::vector<PixelSums> sums(pixels);
   SplatProgress done;
   const auto phase = progress.before("caustics", photons);
   addSplats(
@@ -28,12 +29,32 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       },
       photons, done,
       [&](const Splat& splat) {
-        for (int c = 0; c < 3; ++c) sums[splat.pixel][c] += double{splat.radiance[c]};
+        std::array<double, 3> brought{};
+        for (size_t c = 0; c < 3; ++c) brought[c] = double{splat.radiance[c]};
+        PixelSums& pixel = sums[splat.pixel];
+        for (size_t c = 0; c < 3; ++c) pixel.sum[PixelSums::kIndirect + c] += brought[c];
+        pixel.keepBrightest(1, brought);
       },
       progress, {}, [] { return std::string(); });
   radiance_.reserve(pixels);
-  for (const std::array<double, 3>& sum : sums)
+  for (const PixelSums& pixel : sums) {
+    const double* sum = &pixel.sum[PixelSums::kIndirect];
     radiance_.push_back({float(sum[0]), float(sum[1]), float(sum[2])});
+  }
+  if (spread) spreadBrightest(sums);
+}
+
+// A photon counts as one of kSamples samples of its pixel: a quarter of what is around is left to
+// it. Its light alone says what is around, as other light is not known yet.
+void Caustics::spreadBrightest(std::span<PixelSums> sums) {
+  constexpr double kSamples = 16.0;
+  for (PixelSums& pixel : sums) {
+    pixel.sum[PixelSums::kHits] = 1.0;
+    for (double& light : pixel.sum) light *= kSamples;
+    for (double& light : pixel.brightest[1]) light *= kSamples;
+  }
+  const auto change = spreadSpecks({sums, {}, 1.0 / kSamples}, Only::Indirect, width_);
+  for (size_t i = 0; i < sums.size(); ++i) radiance_[i] += change[i][1];
 }
 
 SharedWithPhotons Caustics::shared(const SurfacePoint& seen) const {

@@ -3,9 +3,11 @@
 // Photons find it always.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/progress.h"
+#include "tools/render/film/layers.h"
 #include "tools/render/integrator/splats.h"
 #include "transport/direct_light.h"
 
@@ -17,9 +19,10 @@ namespace bnvpl {
 class Caustics {
  public:
   // So many photons, > 0, from lights with power, and rays from each pixel that look for the same
-  // light. Borrows rays and lights.
+  // light. `spread`: what single photons bring far above all around them, as spreadSpecks() does.
+  // Borrows rays and lights.
   Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
-           uint64_t seed, const ProgressFn& progress);
+           bool spread, uint64_t seed, const ProgressFn& progress);
 
   // What photons bring to a pixel, W/(m^2 sr).
   Vec3 at(uint32_t x, uint32_t y) const { return radiance_[size_t{y} * width_ + x]; }
@@ -27,6 +30,7 @@ class Caustics {
   SharedWithPhotons shared(const SurfacePoint& seen) const;
 
  private:
+  void spreadBrightest(std::span<PixelSums> sums);
   SharedWithPhotons sharedBy(float samples) const;  // of a pixel, per area
   void follow(uint64_t index, Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,

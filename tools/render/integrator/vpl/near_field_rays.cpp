@@ -17,6 +17,8 @@ constexpr unsigned kMaxExtensions = 16;
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 // Shadow rays to lights from the first such point.
 constexpr unsigned kFirstLightRays = 4;
+// What rough lobes that VPLs bring are taken to be worth all the same: rays that go on cost more.
+constexpr float kLeastWorth = 0.1f;
 // In units of cost:: (measured: theory.md).
 constexpr double kCostOfRay = 16.0;
 
@@ -63,20 +65,36 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
     out.hits.push_back(hit);
   };
   LearnedStrata strata;
+  // What VPLs bring of the first hit's rough lobes, rays need not: they take the specular ones.
+  std::optional<Missing> atFirst;
+  if (start.hit->triangle != kNone && only_ != Only::Direct &&
+      mayBeSpecular(rays_.scene().materials[start.hit->material]))
+    atFirst = missingStraight(*start.hit, &near, rng);
+  const float roughWorth = atFirst ? std::max(kLeastWorth, atFirst->share) : 1.0f;
   SpecularPath end = followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival,
-                                        rng, {nullptr, surfaceLights_});
+                                        rng, {nullptr, surfaceLights_}, roughWorth);
   for (unsigned links = 1;; ++links) {
     const bool first = links == 1;
     if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
     if (only_ == Only::Direct) return done();
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
     const bool straight = end.links == 0;
-    const Missing missing = missingFrom(end, first && straight ? &near : nullptr, rng);
+    const Missing missing = !first || !straight || !end.rough ? missingFrom(end, rng)
+                            : atFirst                         ? *atFirst
+                                      : missingStraight(end.hit, &near, rng);
     throughput *= end.throughput;
     // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
     // with the shadow ray. Else it goes on, by roulette at full weight.
     const bool known = missing.scattered.has_value();
-    const bool lit = known ? missing.share > 0.0f : rng.next() < missing.share;
+    float chance = missing.share;
+    if (first && straight && !known && atFirst && chance > 0.0f) {
+      // Part of the roulette was the choice of lobes.
+      const float specular = Bsdf(rays_.scene(), end.hit).specularProbability();
+      chance *= (specular + (1.0f - specular) * roughWorth) / roughWorth;
+      end.throughput *= missing.share / chance;
+      throughput *= missing.share / chance;
+    }
+    const bool lit = known ? missing.share > 0.0f : rng.next() < chance;
     if (!lit) {
       add(light);
       return done();
@@ -123,15 +141,18 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
   }
 }
 
-// `near`: of the hit, where that is the first; null: to be looked up.
-Missing NearFieldRays::missingFrom(const SpecularPath& end, const ReachGrid::Lookup* near,
-                                   Rng& rng) const {
+Missing NearFieldRays::missingFrom(const SpecularPath& end, Rng& rng) const {
   if (!end.rough) return {};
-  if (!compensation_) return {end.links > 0 ? 1.0f : 0.0f, {}};
-  Missing missing = compensation_.missing(end.hit, end.hit.distance, near, rng);
+  if (end.links == 0) return missingStraight(end.hit, nullptr, rng);
   // Over specular vertices VPLs bring nothing, but know the light all the same.
-  if (end.links > 0) missing = {1.0f, missing.scattered};
-  return missing;
+  if (!compensation_) return {1.0f, {}};
+  return {1.0f, compensation_.missing(end.hit, end.hit.distance, nullptr, rng).scattered};
+}
+
+// `near`: of the hit; null: to be looked up.
+Missing NearFieldRays::missingStraight(const SurfacePoint& hit, const ReachGrid::Lookup* near,
+                                       Rng& rng) const {
+  return compensation_ ? compensation_.missing(hit, hit.distance, near, rng) : Missing{};
 }
 
 }  // namespace bnvpl
