@@ -15,8 +15,8 @@ struct LobeChoice {
 };
 // `roughWorth`: of the rough lobes' light, the part that is asked for, 0..1.
 inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughWorth = 1.0f) {
-  const float either = bsdf.specularProbability();
-  const float specular = either > 0.0f ? either / (either + (1.0f - either) * roughWorth) : 0.0f;
+  float specular = bsdf.specularProbability();
+  if (roughWorth < 1.0f && specular > 0.0f) specular /= specular + (1.0f - specular) * roughWorth;
   return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }

@@ -9,6 +9,7 @@
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
+#include "transport/camera.h"
 
 namespace bnvpl::test {
 namespace {
@@ -57,6 +58,18 @@ TEST(Caustics, PhotonsAndRaysShareTheLight) {
   }
 }
 
+NearFieldRays nearField(const World& world, const VplTable& lit, const char* compensate,
+                        GatherPoint point) {
+  return {
+      world.rays,
+      world.lights,
+      std::move(point),
+      methodNamed(compensateMethods(), compensate).make({lit, world.rays, 2.0f, LightKind{}}, {}),
+      1,
+      nullptr,
+      Only::Indirect};
+}
+
 // What a ray finds over a sharp lobe lies around a VPL, which knows the light there: nothing has to
 // be gathered, and no further ray to be sent.
 TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
@@ -72,10 +85,7 @@ TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
       ++points;
       return Gathered{};
     };
-    const NearFieldRays rays(
-        world.rays, world.lights, count,
-        methodNamed(compensateMethods(), compensate).make({lit, world.rays, 2.0f, LightKind{}}, {}),
-        1, nullptr, Only::Indirect);
+    const NearFieldRays rays = nearField(world, lit, compensate, count);
     RaysBrought brought;
     rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1000, 0, 7, brought);
     EXPECT_GT(mean(brought.indirect), 0.0f);
@@ -85,8 +95,7 @@ TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
   EXPECT_LT(gathers("near-field"), 120u);  // 176 were VPLs asked where rays end straight alone
 }
 
-// What a wall reflects by its rough lobes VPLs bring, but close by; rays that meet it are there for
-// its faint gloss.
+// VPLs bring what a far wall reflects by its rough lobes: rays that meet it follow its faint gloss.
 TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
   Scene scene = manyLights();
   for (Material& m : scene.materials) {
@@ -105,10 +114,7 @@ TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
   }
   const Bsdf bsdf(seen, Vec3(1.0f));
   const GatherPoint nothing = [](const Bsdf&, unsigned, Rng&) { return Gathered{}; };
-  const NearFieldRays rays(
-      world.rays, world.lights, nothing,
-      methodNamed(compensateMethods(), "near-field").make({lit, world.rays, 2.0f, LightKind{}}, {}),
-      1, nullptr, Only::Indirect);
+  const NearFieldRays rays = nearField(world, lit, "near-field", nothing);
   unsigned bring = 0;
   constexpr unsigned kRays = 2000;
   for (unsigned k = 0; k < kRays; ++k) {
@@ -156,6 +162,31 @@ TEST(Caustics, SinglePhotonsAreSpread) {
     return squares;
   };
   EXPECT_LT(error(spread), 0.5 * error(kept));
+}
+
+TEST(Caustics, VoidStaysBlackWherePhotonsAreSpread) {
+  constexpr uint32_t kSide = 64;
+  Scene scene = bulbs(0);
+  scene.film = {kSide, kSide};
+  scene.camera.verticalFovRad = 1.2f;  // more than the box
+  const World world = shiny(std::move(scene), false);
+  const Caustics kept(world.rays, world.lights, 20000, 0.0f, false, 3, {}),
+      spread(world.rays, world.lights, 20000, 0.0f, true, 3, {});
+  size_t black = 0, lit = 0;
+  for (uint32_t y = 0; y < kSide; ++y) {
+    for (uint32_t x = 0; x < kSide; ++x) {
+      SurfacePoint seen;
+      const Vec3 way = cameraDirection(world.scene.camera, world.scene.film,
+                                       (float(x) + 0.5f) / kSide, (float(y) + 0.5f) / kSide);
+      const bool hit = world.rays.closestHit(world.scene.camera.position, way, seen);
+      const bool reached = mean(kept.at(x, y)) > 0.0f, shines = mean(spread.at(x, y)) > 0.0f;
+      const bool isVoid = !hit && !reached;
+      EXPECT_FALSE(isVoid && shines) << x << ", " << y;
+      black += isVoid, lit += !reached && shines;
+    }
+  }
+  EXPECT_GT(black, 100u);
+  EXPECT_GT(lit, 100u);
 }
 
 // No ray meets a point over a mirror.

@@ -53,7 +53,7 @@ Only onlyOf(const Values& options) {
 
 FilmOptions filmOptionsOf(const Values& options) {
   return {static_cast<uint32_t>(options.whole("spp")), options.whole("seed"), onlyOf(options),
-          layersOf(options), options.has("specks") && options.text("specks") == "spread"};
+          layersOf(options), spreadsSpecks(options)};
 }
 
 // Whether the integrator sends photons for this image.

@@ -22,6 +22,8 @@
 // less, and the image converges to the same as without: what the bias takes is noise, and edges of
 // light that few samples of a pixel meet. Lights that the camera sees straight have such edges;
 // they are left alone. What a window as large as the film cannot hide stays where it was found.
+//
+// Caustic photons, which come for the whole film, are spread likewise on their own (Caustics).
 #pragma once
 
 #include <array>

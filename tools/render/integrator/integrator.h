@@ -63,9 +63,15 @@ struct IntegratorInputs {
 
 // Of integrators that bring light by samples.
 constexpr Option specksOption(std::string_view fallback) {
-  return choiceOption("specks", fallback, "spread|keep",
-                      "light that a single sample finds far above all around it: spread over its "
-                      "surroundings, the energy as it was, or kept");
+  return choiceOption(
+      "specks", fallback, "spread|keep",
+      "light that a single sample or photon finds far above all around it: spread over its "
+      "surroundings, the energy as it was, or kept");
+}
+
+// Not of methods without the option.
+inline bool spreadsSpecks(const Values& options) {
+  return options.has("specks") && options.text("specks") == "spread";
 }
 
 struct IntegratorMethod {

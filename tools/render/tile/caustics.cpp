@@ -3,13 +3,23 @@
 #include <algorithm>
 #include <array>
 
+#include "core/parallel.h"
 #include "tools/common/streams.h"
 #include "tools/render/film/specks.h"
 #include "tools/render/integrator/add_splats.h"
 #include "tools/render/integrator/film_connection.h"
+#include "transport/camera.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
+
+namespace {
+
+// For spreadSpecks() a photon is one of so many samples of its pixel: it may keep a quarter of what
+// is around.
+constexpr double kSamples = 16.0;
+
+}  // namespace
 
 Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons,
                    float raysOfPixel, bool spread, uint64_t seed, const ProgressFn& progress)
@@ -29,30 +39,36 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       },
       photons, done,
       [&](const Splat& splat) {
-        std::array<double, 3> brought{};
-        for (size_t c = 0; c < 3; ++c) brought[c] = double{splat.radiance[c]};
         PixelSums& pixel = sums[splat.pixel];
-        for (size_t c = 0; c < 3; ++c) pixel.sum[PixelSums::kIndirect + c] += brought[c];
+        std::array<double, 3> brought{};
+        for (size_t c = 0; c < 3; ++c) {
+          brought[c] = kSamples * double{splat.radiance[c]};
+          pixel.sum[PixelSums::kIndirect + c] += brought[c];
+        }
         pixel.keepBrightest(1, brought);
       },
       progress, {}, [] { return std::string(); });
   radiance_.reserve(pixels);
   for (const PixelSums& pixel : sums) {
     const double* sum = &pixel.sum[PixelSums::kIndirect];
-    radiance_.push_back({float(sum[0]), float(sum[1]), float(sum[2])});
+    radiance_.push_back(
+        {float(sum[0] / kSamples), float(sum[1] / kSamples), float(sum[2] / kSamples)});
   }
   if (spread) spreadBrightest(sums);
 }
 
-// A photon counts as one of kSamples samples of its pixel: a quarter of what is around is left to
-// it. Its light alone says what is around, as other light is not known yet.
+// Photons' light alone says what is around, as other light is not known yet. Nothing goes where the
+// camera sees the void.
 void Caustics::spreadBrightest(std::span<PixelSums> sums) {
-  constexpr double kSamples = 16.0;
-  for (PixelSums& pixel : sums) {
-    pixel.sum[PixelSums::kHits] = 1.0;
-    for (double& light : pixel.sum) light *= kSamples;
-    for (double& light : pixel.brightest[1]) light *= kSamples;
-  }
+  const Scene& scene = rays_.scene();
+  parallelFor(sums.size(), 64, [&](size_t i) {
+    const float x = (static_cast<float>(i % width_) + 0.5f) / static_cast<float>(width_);
+    const float y = (static_cast<float>(i / width_) + 0.5f) / static_cast<float>(scene.film.height);
+    SurfacePoint hit;
+    if (rays_.closestHit(scene.camera.position, cameraDirection(scene.camera, scene.film, x, y),
+                         hit))
+      sums[i].sum[PixelSums::kHits] = 1.0;
+  });
   const auto change = spreadSpecks({sums, {}, 1.0 / kSamples}, Only::Indirect, width_);
   for (size_t i = 0; i < sums.size(); ++i) radiance_[i] += change[i][1];
 }

@@ -28,8 +28,8 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
     return {};
   }
   return std::make_unique<const Caustics>(in.rays, in.lights, photons,
-                                          static_cast<float>(raysOfPixel),
-                                          options.text("specks") == "spread", in.seed, in.progress);
+                                          static_cast<float>(raysOfPixel), spreadsSpecks(options),
+                                          in.seed, in.progress);
 }
 
 ControlFn makeControl(const IntegratorInputs& in, const FilmPoints& film) {

@@ -69,7 +69,7 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
   std::optional<Missing> atFirst;
   if (start.hit->triangle != kNone && only_ != Only::Direct &&
       mayBeSpecular(rays_.scene().materials[start.hit->material]))
-    atFirst = missingStraight(*start.hit, &near, rng);
+    atFirst = missingFrom(*start.hit, true, &near, rng);
   const float roughWorth = atFirst ? std::max(kLeastWorth, atFirst->share) : 1.0f;
   SpecularPath end = followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival,
                                         rng, {nullptr, surfaceLights_}, roughWorth);
@@ -79,27 +79,33 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
     if (only_ == Only::Direct) return done();
     Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
     const bool straight = end.links == 0;
-    const Missing missing = !first || !straight || !end.rough ? missingFrom(end, rng)
-                            : atFirst                         ? *atFirst
-                                      : missingStraight(end.hit, &near, rng);
+    const bool atFirstHit = first && straight;
+    const bool chosen = atFirstHit && atFirst;  // lobes, by their worth
+    const Missing missing = !end.rough ? Missing{}
+                            : chosen
+                                ? *atFirst
+                                : missingFrom(end.hit, straight, atFirstHit ? &near : nullptr, rng);
     throughput *= end.throughput;
-    // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
-    // with the shadow ray. Else it goes on, by roulette at full weight.
-    const bool known = missing.scattered.has_value();
-    float chance = missing.share;
-    if (first && straight && !known && atFirst && chance > 0.0f) {
-      // Part of the roulette was the choice of lobes.
-      const float specular = Bsdf(rays_.scene(), end.hit).specularProbability();
-      chance *= (specular + (1.0f - specular) * roughWorth) / roughWorth;
-      end.throughput *= missing.share / chance;
-      throughput *= missing.share / chance;
-    }
-    const bool lit = known ? missing.share > 0.0f : rng.next() < chance;
-    if (!lit) {
+    if (!(missing.share > 0.0f)) {
       add(light);
       return done();
     }
     const Bsdf found(rays_.scene(), end.hit);
+    // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
+    // with the shadow ray. Else it goes on, by roulette at full weight.
+    const bool known = missing.scattered.has_value();
+    float chance = missing.share;
+    if (chosen && !known) {
+      // Part of the roulette was the choice of lobes.
+      const float specular = found.specularProbability();
+      chance *= (specular + (1.0f - specular) * roughWorth) / roughWorth;
+      end.throughput *= missing.share / chance;
+      throughput *= missing.share / chance;
+    }
+    if (!known && rng.next() >= chance) {
+      add(light);
+      return done();
+    }
     if (share && first && missing.own.within > 0.0f && straight) {
       const std::optional<RoughLeaving> matt = found.roughLeaving();
       factor = matt ? matt->towards(end.hit.wo) : 0.0f;
@@ -141,18 +147,15 @@ void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near
   }
 }
 
-Missing NearFieldRays::missingFrom(const SpecularPath& end, Rng& rng) const {
-  if (!end.rough) return {};
-  if (end.links == 0) return missingStraight(end.hit, nullptr, rng);
+// From a rough vertex, straight on or over specular ones. `near`: of it, where that is the first;
+// null: to be looked up.
+Missing NearFieldRays::missingFrom(const SurfacePoint& hit, bool straight,
+                                   const ReachGrid::Lookup* near, Rng& rng) const {
+  if (!compensation_) return {straight ? 0.0f : 1.0f, {}};
+  Missing missing = compensation_.missing(hit, hit.distance, near, rng);
   // Over specular vertices VPLs bring nothing, but know the light all the same.
-  if (!compensation_) return {1.0f, {}};
-  return {1.0f, compensation_.missing(end.hit, end.hit.distance, nullptr, rng).scattered};
-}
-
-// `near`: of the hit; null: to be looked up.
-Missing NearFieldRays::missingStraight(const SurfacePoint& hit, const ReachGrid::Lookup* near,
-                                       Rng& rng) const {
-  return compensation_ ? compensation_.missing(hit, hit.distance, near, rng) : Missing{};
+  if (!straight) missing = {1.0f, missing.scattered};
+  return missing;
 }
 
 }  // namespace bnvpl

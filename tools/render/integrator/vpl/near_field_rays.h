@@ -36,8 +36,8 @@ class NearFieldRays : public IndirectRays {
   // `near`: the VPLs at the first hit.
   void follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
               RaysBrought& out) const;
-  Missing missingFrom(const SpecularPath& end, Rng& rng) const;
-  Missing missingStraight(const SurfacePoint& hit, const ReachGrid::Lookup* near, Rng& rng) const;
+  Missing missingFrom(const SurfacePoint& hit, bool straight, const ReachGrid::Lookup* near,
+                      Rng& rng) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
