@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/vec3.h"
@@ -16,7 +17,7 @@ namespace bnvpl {
 using BothLights = std::array<Vec3, 2>;
 
 // Sums over a pixel's samples, of the values of RadianceSample, each slot being the first of its
-// channels; and of the brightest sample what it adds to them.
+// channels; and of the brightest samples what each adds to them.
 struct PixelSums {
   enum Slot {
     kDirect = 0,
@@ -28,14 +29,17 @@ struct PixelSums {
     kHits = 16,
     kCompensated = 17
   };
+  static constexpr size_t kBrightest = 2;
+
   std::array<double, 20> sum{};
   // Of direct light but what the camera ray itself meets, and of indirect light; by the mean of
-  // the channels.
-  std::array<std::array<double, 3>, 2> brightest{};
+  // the channels, the brightest first.
+  std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
-  void keepBrightest(size_t kind, const std::array<double, 3>& brought) {
-    const auto total = [](const auto& c) { return c[0] + c[1] + c[2]; };
-    if (total(brought) > total(brightest[kind])) brightest[kind] = brought;
+  void keepBrightest(size_t kind, Vec3 brought) {
+    for (Vec3& kept : brightest[kind]) {
+      if (mean(brought) > mean(kept)) std::swap(brought, kept);
+    }
   }
 };
 struct PixelCounts {

@@ -193,8 +193,8 @@ class Passes {
       const size_t i = tiles_.pixelIndex(tile, p);
       for (double& sum : sums[p].sum) sum /= slots;
       for (size_t kind = 0; kind < 2; ++kind) {
-        for (double& brought : sums[p].brightest[kind]) brought /= slots;
-        state_.sums[i].keepBrightest(kind, sums[p].brightest[kind]);
+        for (const Vec3 brought : sums[p].brightest[kind])
+          state_.sums[i].keepBrightest(kind, brought * (1.0f / static_cast<float>(slots)));
       }
       for (size_t k = 0; k < sums[p].sum.size(); ++k) state_.sums[i].sum[k] += sums[p].sum[k];
       for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownOf(sums[p], options_.only, c);

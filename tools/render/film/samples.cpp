@@ -42,9 +42,8 @@ void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   }
   addTo(pixel, PixelSums::kDirect, r.direct);
   addTo(pixel, PixelSums::kIndirect, r.indirect);
-  const Vec3 direct = r.direct - r.seen;
-  pixel.keepBrightest(0, {double{direct.x}, double{direct.y}, double{direct.z}});
-  pixel.keepBrightest(1, {double{r.indirect.x}, double{r.indirect.y}, double{r.indirect.z}});
+  pixel.keepBrightest(0, r.direct - r.seen);
+  pixel.keepBrightest(1, r.indirect);
   addTo(pixel, PixelSums::kClamped, r.clamped);
   addTo(pixel, PixelSums::kCompensated, r.compensated);
   addTo(pixel, PixelSums::kAlbedo, r.albedo);

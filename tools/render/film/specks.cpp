@@ -11,8 +11,8 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kLeastShare = 0.25,
-                 kTimesItsShare = 4.0;  // of its surroundings that a sample may add
+constexpr double kLeastShare = 0.125,
+                 kTimesItsShare = 2.0;  // of its surroundings that a sample may add
 constexpr double kVisible = 0.02;       // contrast
 constexpr size_t kNear = 2;             // pixels to each side, at first
 
@@ -63,12 +63,6 @@ bool isShown(size_t kind, Only only) {
   return only == Only::Everything || (kind == 0) == (only == Only::Direct);
 }
 
-Vec3 brightestOf(const Exposed& film, size_t i, size_t kind) {
-  const auto& b = film.sums[i].brightest[kind];
-  return {static_cast<float>(b[0] * film.perSample), static_cast<float>(b[1] * film.perSample),
-          static_cast<float>(b[2] * film.perSample)};
-}
-
 double samplesOf(const Exposed& film, size_t i) {
   return film.passes.empty() ? 1.0 / film.perSample : double(film.passes[i].samples);
 }
@@ -104,19 +98,24 @@ struct Speck {
 std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings& at) {
   std::vector<Speck> specks;
   for (size_t i = 0; i < film.sums.size(); ++i) {
-    BothLights brought;
+    const auto perSample = static_cast<float>(film.perSample);
     float others = at.shown[i];
     for (const size_t kind : {0u, 1u}) {
-      if (isShown(kind, only)) brought[kind] = brightestOf(film, i, kind);
-      others -= mean(brought[kind]);
+      if (!isShown(kind, only)) continue;
+      for (const Vec3 brought : film.sums[i].brightest[kind]) others -= mean(brought) * perSample;
     }
     const float around = at.around[i] - (at.shown[i] - others) * at.share[i];
     const double bound = std::max(kLeastShare, kTimesItsShare / samplesOf(film, i)) *
                          double{std::max({0.0f, others, around})};
     for (const size_t kind : {0u, 1u}) {
-      const double light{mean(brought[kind])};
-      if (light > bound)
-        specks.push_back({i, kind, brought[kind] * static_cast<float>(1.0 - bound / light)});
+      if (!isShown(kind, only)) continue;
+      Vec3 excess;
+      for (const Vec3 brought : film.sums[i].brightest[kind]) {
+        const double light = double{mean(brought)} * film.perSample;
+        if (light > bound)
+          excess += brought * static_cast<float>(film.perSample - bound * film.perSample / light);
+      }
+      if (mean(excess) > 0.0f) specks.push_back({i, kind, excess});
     }
   }
   return specks;

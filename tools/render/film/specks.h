@@ -5,14 +5,14 @@
 // goes to the pixels around, as widely as it takes to be invisible there (Rushmeier and Ward,
 // Energy preserving non-linear filters, SIGGRAPH 1994):
 //
-//   b_i  = max(1/4, 4/n) max(o_i, a_i)   the most that one of n samples adds to pixel i
-//   e_i  = what the brightest sample adds above b_i
+//   b_i  = max(1/8, 2/n) max(o_i, a_i)   the most that one of n samples adds to pixel i
+//   e_i  = what the two brightest samples add above b_i each
 //   W_i  = sum of a over a square window around i, of radius 2, 4, 8, ... pixels, the first with
 //          e_i <= W_i / 50
 //   r_j += sum over i, j in the window of i, of a_j e_i / W_i
 //
 // for direct and for indirect light, whose brightest samples are each their own. o is what a pixel
-// shows without these two, a the mean of what 5 x 5 pixels show, by the mean of the channels. In
+// shows without these four, a the mean of what 5 x 5 pixels show, by the mean of the channels. In
 // b_i a is without the brightest samples of i, in W_i and the last line without e_i; of all other
 // specks it is with: where all is noise, the energy stays in its place. The sum over the film stays
 // as it is, for each channel.

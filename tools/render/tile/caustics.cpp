@@ -1,7 +1,6 @@
 #include "tools/render/tile/caustics.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/parallel.h"
 #include "tools/common/streams.h"
@@ -15,9 +14,9 @@ namespace bnvpl {
 
 namespace {
 
-// For spreadSpecks() a photon is one of so many samples of its pixel: it may keep a quarter of what
-// is around.
-constexpr double kSamples = 16.0;
+// For spreadSpecks() a photon is one of so many samples of its pixel: the brightest may keep a
+// quarter of what is around. Of the few photons of most pixels the second makes the caustic.
+constexpr double kSamples = 8.0;
 
 }  // namespace
 
@@ -40,12 +39,11 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       photons, done,
       [&](const Splat& splat) {
         PixelSums& pixel = sums[splat.pixel];
-        std::array<double, 3> brought{};
-        for (size_t c = 0; c < 3; ++c) {
-          brought[c] = kSamples * double{splat.radiance[c]};
-          pixel.sum[PixelSums::kIndirect + c] += brought[c];
-        }
-        pixel.keepBrightest(1, brought);
+        for (size_t c = 0; c < 3; ++c)
+          pixel.sum[PixelSums::kIndirect + c] += kSamples * double{splat.radiance[c]};
+        Vec3& brightest = pixel.brightest[1].front();
+        const Vec3 brought = splat.radiance * static_cast<float>(kSamples);
+        if (mean(brought) > mean(brightest)) brightest = brought;
       },
       progress, {}, [] { return std::string(); });
   radiance_.reserve(pixels);
