@@ -7,7 +7,7 @@ VPLS.draft       := 1500
 PHOTONS.draft    := 1M
 SPP.draft        := 16
 ESTIMATE.draft   := --irradiance-error 0.02
-RENDER.draft     := --near-field-rays 2 --error 0.2
+RENDER.draft     := --near-field-rays 2 --error 0.1
 
 # Those of the tools, but for VPLS, which vpl-eliminate wants to be told.
 CANDIDATES.default := 120k

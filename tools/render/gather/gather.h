@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct TileReceivers : TileSlots {
   // should it lower the variance, over the tile's light squared. 0: nothing is asked.
   double price = 0.0;
   float otherLight = 0.0f;  // of the tile besides the VPLs', channels added up, W/(m2 sr)
+  // Likewise, light beyond which the error of a tile counts by less than its own (Balance).
+  float filmLight = std::numeric_limits<float>::infinity();
 };
 
 // One result for each receiver.

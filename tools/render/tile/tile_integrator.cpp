@@ -115,6 +115,7 @@ void TileIntegrator::gatherTile(const TileSamples& tile, const Vertices& at, con
   if (balance.price > 0.0) {
     receivers.otherLight =
         direct.x + direct.y + direct.z + static_cast<float>(std::sqrt(3.0 * balance.light));
+    receivers.filmLight = static_cast<float>(std::sqrt(3.0 * balance.film));
   }
   parts_.gather(receivers, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) {

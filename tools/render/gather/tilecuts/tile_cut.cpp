@@ -126,7 +126,10 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
     }
   };
   std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
-  for (float& l : light) l += tile.otherLight;
+  for (float& l : light) {
+    l += tile.otherLight;
+    if (l > tile.filmLight) l = std::sqrt(l * tile.filmLight);  // as Balance::over
+  }
   const ProbeLanes all(probes, light);
   TileCut cut;
   const double most =

@@ -104,6 +104,32 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
   }
 }
 
+// A lamp in sight hides an error of its tile, but not as much as it is brighter than the film.
+TEST(TileCuts, LampsInSightHideHalfOfTheError) {
+  const GatherCase c("cornell/scene.toml", {96, 96}, {{"count", "1000"}});
+  const auto render = [&](const char* gather) {
+    return renderVpls(c.world, c.lit,
+                      {{"gather", gather},
+                       {"spp", "4"},
+                       {"compensate", "none"},
+                       {"control", "none"},
+                       {"specks", "keep"},
+                       {"layers", "direct,indirect"}})
+        .image;
+  };
+  const Image all = render("all"), cuts = render("tilecuts");
+  double squares = 0.0, light = 0.0, lamp = 0.0;
+  for (size_t i = 0; i < all.pixelCount(); ++i) {
+    if ((*all.find("direct.G"))[i] < 3.0f) continue;
+    squares +=
+        std::pow(double{(*cuts.find("indirect.G"))[i]} - double{(*all.find("indirect.G"))[i]}, 2);
+    light += double{(*all.find("indirect.G"))[i]};
+    lamp += 1.0;
+  }
+  ASSERT_GT(lamp, 20.0);
+  EXPECT_LT(std::sqrt(squares / lamp) / (light / lamp), 0.12);  // 0.24 where it hides all
+}
+
 // Pixels beside a border of tiles (8 pixels) are not much worse than the others, and the step
 // across a border not much larger than between neighbours inside. Over several widths of the film,
 // so that no edge of the scene is always at a border.
