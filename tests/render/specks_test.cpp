@@ -100,6 +100,24 @@ TEST(Specks, AreSpreadAsWidelyAsTheyAreBright) {
   }
 }
 
+// Eight pixels of a block find the same by one sample each: together they are no more to be seen.
+TEST(Specks, OfASharedFindAreHiddenTogether) {
+  const Shown film;
+  const auto finds = [](uint32_t x, uint32_t y) {
+    return x / 4 == kX / 4 && y / 4 == kY / 4 && (x + y) % 2 == 0;
+  };
+  const Brought brought = [&](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    out.indirect = Vec3(slot == 3 && finds(x, y) ? 8.0f : 1.0f);
+  };
+  const Image kept = film(brought, 16, false), spread = film(brought, 16, true);
+  EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6);
+  for (uint32_t i = 0; i < spread.pixelCount(); ++i) {
+    if (!finds(i % film.width, i / film.width)) {
+      ASSERT_LT((*spread.find("G"))[i], 1.03f);  // 1.11 were each hidden alone
+    }
+  }
+}
+
 TEST(Specks, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
   const Shown film;
   for (const bool seen : {false, true}) {

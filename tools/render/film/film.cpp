@@ -117,7 +117,8 @@ Image develop(const Film& size, const FilmOptions& options, State& state, FilmSt
   }
   Exposed film{state.pixels, state.counts, 1.0 / options.spp};
   std::vector<BothLights> spread;
-  if (options.spreadSpecks) film.spread = spread = spreadSpecks(film, options.only, size.width);
+  if (options.spreadSpecks)
+    film.spread = spread = spreadSpecks(film, options.only, size.width, kSharedFinds);
   addShown(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());

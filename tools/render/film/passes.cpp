@@ -120,7 +120,7 @@ class Passes {
   }
   std::vector<BothLights> specks() const {
     if (!options_.spreadSpecks) return {};
-    return spreadSpecks(exposed(), options_.only, scene_.film.width);
+    return spreadSpecks(exposed(), options_.only, scene_.film.width, kSharedFinds);
   }
   // Of the passes that are done, and of the tiles of the one under way.
   uint64_t samplesSoFar() const {

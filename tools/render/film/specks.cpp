@@ -121,6 +121,13 @@ std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings
   return specks;
 }
 
+// What the specks around each pixel bring, by the mean of the channels.
+Grid excessAround(std::span<const Speck> specks, size_t width, size_t height, size_t radius) {
+  Grid excess(width, height);
+  for (const Speck& s : specks) excess[s.pixel] += mean(s.excess);
+  return windowSums(std::move(excess), radius);
+}
+
 // A speck, or as much of it as its window hides.
 struct Going {
   size_t pixel, kind;
@@ -150,10 +157,12 @@ void addGoing(std::span<const Going> going, size_t kind, const Surroundings& at,
 
 }  // namespace
 
-std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t width) {
+std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t width,
+                                     size_t together) {
   const Surroundings at(film, only, width);
   std::vector<BothLights> change(film.sums.size());
   std::vector<Speck> specks = findSpecks(film, only, at);
+  const Grid excess = excessAround(specks, at.shown.width, at.shown.height, together);
   for (size_t radius = kNear; !specks.empty(); radius *= 2) {
     const bool wholeFilm = radius >= std::max(at.shown.width, at.shown.height);
     const Grid light = windowSums(at.around, radius);
@@ -161,7 +170,8 @@ std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t wi
     std::vector<Speck> wider;
     for (const Speck& s : specks) {
       const double own{mean(s.excess)},
-          needed = own / kVisible, there = double{light[s.pixel]} - own * double{at.kept[s.pixel]};
+          needed = double{excess[s.pixel]} / kVisible,
+          there = double{light[s.pixel]} - own * double{at.kept[s.pixel]};
       if (needed > there && !wholeFilm) {
         wider.push_back(s);
       } else if (std::isfinite(there) && there > 1e-6 * own) {  // else all is black but for this

@@ -67,7 +67,7 @@ void Caustics::spreadBrightest(std::span<PixelSums> sums) {
                          hit))
       sums[i].sum[PixelSums::kHits] = 1.0;
   });
-  const auto change = spreadSpecks({sums, {}, 1.0 / kSamples}, Only::Indirect, width_);
+  const auto change = spreadSpecks({sums, {}, 1.0 / kSamples}, Only::Indirect, width_, 0);
   for (size_t i = 0; i < sums.size(); ++i) radiance_[i] += change[i][1];
 }
 
