@@ -23,6 +23,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -212,6 +213,8 @@ def main():
     parser.add_argument('--check', action='store_true', help='write nothing')
     parser.add_argument('--bin', default=ROOT / 'build/release/bin', type=Path, help='folder of the executables')
     arguments = parser.parse_args()
+    # A shell's background jobs ignore SIGINT, which a session sends; what has a handler here is not ignored there.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     differing = 0
     with tempfile.TemporaryDirectory(prefix='bnvpl-docs.') as folder:
         bench = Bench(arguments.bin.resolve(), Path(folder) / 'files')
