@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/guide.md: each artefact beside its cure, from the tools themselves.
 
-    docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # ten minutes on two cores
+    docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # a quarter of an hour on two cores
     docs/make_guide_pictures.py --table                                 # the table of docs/images/README.md
 """
 import argparse
