@@ -11,10 +11,12 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kLeastShare = 0.125,
-                 kTimesItsShare = 2.0;  // of its surroundings that a sample may add
-constexpr double kVisible = 0.02;       // contrast
-constexpr size_t kNear = 2;             // pixels to each side, at first
+// Of its surroundings that a sample may add, of indirect light. Of direct light twice as much: its
+// samples are few rays each and differ more, where they are no specks.
+constexpr double kLeastShare = 0.125, kTimesItsShare = 2.0;
+constexpr std::array<double, 2> kTimes{2.0, 1.0};
+constexpr double kVisible = 0.02;  // contrast
+constexpr size_t kNear = 2;        // pixels to each side, at first
 
 // A value for each pixel, row by row.
 struct Grid {
@@ -105,10 +107,11 @@ std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings
       for (const Vec3 brought : film.sums[i].brightest[kind]) others -= mean(brought) * perSample;
     }
     const float around = at.around[i] - (at.shown[i] - others) * at.share[i];
-    const double bound = std::max(kLeastShare, kTimesItsShare / samplesOf(film, i)) *
+    const double share = std::max(kLeastShare, kTimesItsShare / samplesOf(film, i)) *
                          double{std::max({0.0f, others, around})};
     for (const size_t kind : {0u, 1u}) {
       if (!isShown(kind, only)) continue;
+      const double bound = kTimes[kind] * share;
       Vec3 excess;
       for (const Vec3 brought : film.sums[i].brightest[kind]) {
         const double light = double{mean(brought)} * film.perSample;
@@ -121,10 +124,12 @@ std::vector<Speck> findSpecks(const Exposed& film, Only only, const Surroundings
   return specks;
 }
 
-// What the specks around each pixel bring, by the mean of the channels.
-Grid excessAround(std::span<const Speck> specks, size_t width, size_t height, size_t radius) {
+// What those of indirect light around each pixel bring, by the mean of the channels.
+Grid indirectAround(std::span<const Speck> specks, size_t width, size_t height, size_t radius) {
   Grid excess(width, height);
-  for (const Speck& s : specks) excess[s.pixel] += mean(s.excess);
+  for (const Speck& s : specks) {
+    if (s.kind == 1) excess[s.pixel] += mean(s.excess);
+  }
   return windowSums(std::move(excess), radius);
 }
 
@@ -162,7 +167,7 @@ std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t wi
   const Surroundings at(film, only, width);
   std::vector<BothLights> change(film.sums.size());
   std::vector<Speck> specks = findSpecks(film, only, at);
-  const Grid excess = excessAround(specks, at.shown.width, at.shown.height, together);
+  const Grid shared = indirectAround(specks, at.shown.width, at.shown.height, together);
   for (size_t radius = kNear; !specks.empty(); radius *= 2) {
     const bool wholeFilm = radius >= std::max(at.shown.width, at.shown.height);
     const Grid light = windowSums(at.around, radius);
@@ -170,7 +175,7 @@ std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t wi
     std::vector<Speck> wider;
     for (const Speck& s : specks) {
       const double own{mean(s.excess)},
-          needed = double{excess[s.pixel]} / kVisible,
+          needed = (s.kind == 1 ? double{shared[s.pixel]} : own) / kVisible,
           there = double{light[s.pixel]} - own * double{at.kept[s.pixel]};
       if (needed > there && !wholeFilm) {
         wider.push_back(s);

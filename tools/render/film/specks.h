@@ -5,10 +5,11 @@
 // goes to the pixels around, as widely as it takes to be invisible there (Rushmeier and Ward,
 // Energy preserving non-linear filters, SIGGRAPH 1994):
 //
-//   b_i  = max(1/8, 2/n) max(o_i, a_i)   the most that one of n samples adds to pixel i
+//   b_i  = max(1/8, 2/n) max(o_i, a_i)   the most that one of n samples adds to pixel i; of direct
+//          light twice as much
 //   e_i  = what the two brightest samples add above b_i each
 //   W_i  = sum of a over a square window around i, of radius 2, 4, 8, ... pixels, the first with
-//          sum of e over the pixels around that may share a find <= W_i / 50
+//          e_i, and of indirect light of all pixels around that may share a find, <= W_i / 50
 //   r_j += sum over i, j in the window of i, of a_j e_i / W_i
 //
 // for direct and for indirect light, whose brightest samples are each their own. o is what a pixel
@@ -18,11 +19,11 @@
 // as it is, for each channel.
 //
 // A single speck brightens no place by more than 1/50, the contrast that one sees, nor do those of
-// a find that pixels share (SharedHits); a dark pixel beside a bright one by 1/50 of their mean, and
-// the void not at all. With more samples each adds less, and the image converges to the same as
-// without: what the bias takes is noise, and edges of light that few samples of a pixel meet. Lights
-// that the camera sees straight have such edges; they are left alone. What a window as large as the
-// film cannot hide stays where it was found.
+// a find that pixels share (SharedHits); a dark pixel beside a bright one by 1/50 of their mean,
+// and the void not at all. With more samples each adds less, and the image converges to the same as
+// without: what the bias takes is noise, and edges of light that few samples of a pixel meet.
+// Lights that the camera sees straight have such edges; they are left alone. What a window as large
+// as the film cannot hide stays where it was found.
 //
 // Caustic photons, which come for the whole film, are spread likewise on their own (Caustics).
 #pragma once
@@ -39,8 +40,8 @@ namespace bnvpl {
 inline constexpr size_t kSharedFinds = 3;
 
 // What each pixel's direct and indirect light change by, in W/(m2 sr), for a film of rows of
-// `width` pixels that shows what `only` says. What is not shown stays as it is. `together`: pixels to
-// each side that may share a find.
+// `width` pixels that shows what `only` says. What is not shown stays as it is. `together`: pixels
+// to each side that may share a find.
 std::vector<BothLights> spreadSpecks(const Exposed& film, Only only, uint32_t width,
                                      size_t together);
 
