@@ -6,6 +6,8 @@
 namespace bnvpl {
 
 inline constexpr uint32_t kTileSide = 8;  // pixels; a tile's samples meet the same surfaces
+// Pixels along a block, which see much the same: those of a tile share hits by blocks first.
+inline constexpr uint32_t kBlockSide = 4;
 
 // Slot by slot, a slot being one sample of each pixel, row by row.
 struct TileSlots {

@@ -11,8 +11,8 @@ namespace bnvpl {
 
 namespace {
 
-// Of its surroundings that a sample may add, of indirect light. Of direct light twice as much: its
-// samples are few rays each and differ more, where they are no specks.
+// What a sample of indirect light may add, over what is around. One of direct light may add twice
+// as much: it is made of few rays, so that samples differ more where there are no specks.
 constexpr double kLeastShare = 0.125, kTimesItsShare = 2.0;
 constexpr std::array<double, 2> kTimes{2.0, 1.0};
 constexpr double kVisible = 0.02;  // contrast

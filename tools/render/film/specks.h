@@ -9,7 +9,8 @@
 //          light twice as much
 //   e_i  = what the two brightest samples add above b_i each
 //   W_i  = sum of a over a square window around i, of radius 2, 4, 8, ... pixels, the first with
-//          e_i, and of indirect light of all pixels around that may share a find, <= W_i / 50
+//          e_i <= W_i / 50; of indirect light, with the sum of e over the pixels around that may
+//          share a find with i <= W_i / 50
 //   r_j += sum over i, j in the window of i, of a_j e_i / W_i
 //
 // for direct and for indirect light, whose brightest samples are each their own. o is what a pixel
@@ -18,12 +19,12 @@
 // specks it is with: where all is noise, the energy stays in its place. The sum over the film stays
 // as it is, for each channel.
 //
-// A single speck brightens no place by more than 1/50, the contrast that one sees, nor do those of
-// a find that pixels share (SharedHits); a dark pixel beside a bright one by 1/50 of their mean,
-// and the void not at all. With more samples each adds less, and the image converges to the same as
-// without: what the bias takes is noise, and edges of light that few samples of a pixel meet.
-// Lights that the camera sees straight have such edges; they are left alone. What a window as large
-// as the film cannot hide stays where it was found.
+// No speck brightens a place by more than 1/50, the contrast that one sees, nor do all specks
+// together that pixels owe to one find (shareHits); a dark pixel beside a bright one is brightened
+// by 1/50 of their mean, and the void not at all. With more samples each adds less, and the image
+// converges to the same as without: what the bias takes is noise, and edges of light that few
+// samples of a pixel meet. Lights that the camera sees straight have such edges; they are left
+// alone. What a window as large as the film cannot hide stays where it was found.
 //
 // Caustic photons, which come for the whole film, are spread likewise on their own (Caustics).
 #pragma once
@@ -33,11 +34,12 @@
 
 #include "core/vec3.h"
 #include "tools/render/film/develop.h"
+#include "tools/render/tile.h"
 
 namespace bnvpl {
 
-// Pixels to each side that share what near-field rays find: TileIntegrator's blocks of 4 x 4.
-inline constexpr size_t kSharedFinds = 3;
+// Pixels to each side that share what near-field rays find: those of a block.
+inline constexpr size_t kSharedFinds = kBlockSide - 1;
 
 // What each pixel's direct and indirect light change by, in W/(m2 sr), for a film of rows of
 // `width` pixels that shows what `only` says. What is not shown stays as it is. `together`: pixels

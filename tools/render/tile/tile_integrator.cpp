@@ -20,8 +20,6 @@ constexpr uint32_t kDrawDirection = 16, kDrawSeen = 17, kDrawLight = 1u << 30, k
 constexpr unsigned kFirstPart = 4, kMostTimes = 4;
 // Of so many slots one tells how much noise shared hits leave.
 constexpr size_t kSlotsForOne = 4;
-// Pixels on a side: those of a block, which see much the same, share hits first.
-constexpr uint32_t kBlock = 4;
 
 // Of sample i.
 uint32_t slotOf(const TileSlots& tile, size_t i) {
@@ -136,10 +134,10 @@ class TileIntegrator::Colours {
     const auto slots = static_cast<uint32_t>(tile.samples.size() / tile.pixels);
     for (uint32_t s = 0; s < slots; ++s) {
       const uint64_t random = random64(tile.key, tile.firstSlot + s, kDrawColours);
-      const auto within = static_cast<uint32_t>(1 + random % (kBlock * kBlock - 1));
+      const auto within = static_cast<uint32_t>(1 + random % (kBlockSide * kBlockSide - 1));
       const auto beyond = static_cast<uint32_t>(random >> 62);
-      masks_.push_back(
-          {within % kBlock | (beyond & 1u) * kBlock, within / kBlock | (beyond >> 1) * kBlock});
+      masks_.push_back({within % kBlockSide | (beyond & 1u) * kBlockSide,
+                        within / kBlockSide | (beyond >> 1) * kBlockSide});
     }
   }
   uint32_t of(size_t sample) const {
@@ -255,7 +253,7 @@ size_t TileIntegrator::share(const TileSamples& tile, const Vertices& at,
   std::vector<uint32_t> byBlocks(tile.pixels);
   std::iota(byBlocks.begin(), byBlocks.end(), 0u);
   std::ranges::stable_sort(byBlocks, {}, [&](uint32_t p) {
-    return p / tile.width / kBlock * kTileSide + p % tile.width / kBlock;
+    return p / tile.width / kBlockSide * kTileSide + p % tile.width / kBlockSide;
   });
   for (size_t slot = 0; slot < brought.size(); slot += everySlot * tile.pixels) {
     for (const uint32_t colour : {0u, 1u}) {

@@ -104,7 +104,8 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
   }
 }
 
-// A lamp in sight hides an error of its tile, but not as much as it is brighter than the film.
+// A tile that shows a lamp may have a larger error than others, but not as much larger as the lamp
+// is brighter.
 TEST(TileCuts, LampsInSightHideHalfOfTheError) {
   const GatherCase c("cornell/scene.toml", {96, 96}, {{"count", "1000"}});
   const auto render = [&](const char* gather) {
