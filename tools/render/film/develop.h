@@ -15,7 +15,7 @@ struct Exposed {
   std::span<const PixelCounts> counts;
   double perSample;  // of `sums`: one over what they are sums of, samples or passes
   std::span<const PixelPasses> passes = {};  // without passes empty
-  std::span<const BothLights> spread = {};   // of spreadSpecks(), or empty
+  std::span<const BothLights> spread = {};   // of redistributeFireflies(), or empty
 
   BothLights spreadOf(size_t pixel) const { return spread.empty() ? BothLights{} : spread[pixel]; }
 };

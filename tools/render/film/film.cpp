@@ -4,8 +4,8 @@
 
 #include "tools/common/streams.h"
 #include "tools/render/film/develop.h"
+#include "tools/render/film/fireflies.h"
 #include "tools/render/film/samples.h"
-#include "tools/render/film/specks.h"
 #include "tools/render/film/splat_sums.h"
 #include "tools/render/integrator/add_splats.h"
 
@@ -118,7 +118,7 @@ Image develop(const Film& size, const FilmOptions& options, State& state, FilmSt
   Exposed film{state.pixels, state.counts, 1.0 / options.spp};
   std::vector<BothLights> spread;
   if (options.spreadSpecks)
-    film.spread = spread = spreadSpecks(film, options.only, size.width, kSharedFinds);
+    film.spread = spread = redistributeFireflies(film, options.only, size.width);
   addShown(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());

@@ -27,15 +27,20 @@ struct PixelSums {
     kNormal = 12,
     kDepth = 15,
     kHits = 16,
-    kCompensated = 17
+    kCompensated = 17,
+    kPhotons = 20  // the two brightest photons, which are the same for all samples
   };
   static constexpr size_t kBrightest = 2;
 
-  std::array<double, 20> sum{};
-  // Of direct light but what the camera ray itself meets, and of indirect light; by the mean of
-  // the channels, the brightest first.
+  std::array<double, 26> sum{};
+  // Of direct light but what the camera ray itself meets, and of indirect light but what
+  // photons bring; by the mean of the channels, the brightest first.
   std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
+  Vec3 photon(size_t k) const {
+    const double* of = &sum[kPhotons + 3 * k];
+    return {float(of[0]), float(of[1]), float(of[2])};
+  }
   void keepBrightest(size_t kind, Vec3 brought) {
     for (Vec3& kept : brightest[kind]) {
       if (mean(brought) > mean(kept)) std::swap(brought, kept);
@@ -59,7 +64,7 @@ struct LayerPixel {
   double perSample;  // of the sums: one over the samples of a pixel, or the passes
   double perCount;   // of the counts: one over the samples
   const PixelPasses& passes;
-  BothLights spread;  // what spreadSpecks() adds
+  BothLights spread;  // what redistributeFireflies() adds
 };
 
 struct Layer {

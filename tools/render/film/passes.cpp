@@ -5,8 +5,8 @@
 
 #include "tools/common/clock.h"
 #include "tools/common/streams.h"
+#include "tools/render/film/fireflies.h"
 #include "tools/render/film/pass_error.h"
-#include "tools/render/film/specks.h"
 #include "tools/render/integrator/add_splats.h"
 
 namespace bnvpl {
@@ -120,7 +120,7 @@ class Passes {
   }
   std::vector<BothLights> specks() const {
     if (!options_.spreadSpecks) return {};
-    return spreadSpecks(exposed(), options_.only, scene_.film.width, kSharedFinds);
+    return redistributeFireflies(exposed(), options_.only, scene_.film.width);
   }
   // Of the passes that are done, and of the tiles of the one under way.
   uint64_t samplesSoFar() const {

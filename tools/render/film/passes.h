@@ -7,8 +7,9 @@
 //
 //   error^2 = sum over passes (m_k - m)^2 / (K (K - 1))
 //
-// It is the error of the samples, before specks are spread (specks.h), and knows nothing of what
-// all passes share: VPLs, their flux, and choices that a gather makes once for the film.
+// It is the error of the samples, before fireflies are redistributed (fireflies.h), and knows
+// nothing of what all passes share: VPLs, their flux, and choices that a gather makes once for the
+// film.
 //
 // Adaptive passes give each tile its own number of samples, kPassSpp on average, by the error of
 // the passes before. That is free of bias: whatever was chosen, a pass is right on average, and

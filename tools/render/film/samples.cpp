@@ -43,7 +43,9 @@ void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   addTo(pixel, PixelSums::kDirect, r.direct);
   addTo(pixel, PixelSums::kIndirect, r.indirect);
   pixel.keepBrightest(0, r.direct - r.seen);
-  pixel.keepBrightest(1, r.indirect);
+  pixel.keepBrightest(1, r.indirect - r.photons.all);
+  for (size_t k = 0; k < PixelSums::kBrightest; ++k)
+    addTo(pixel, PixelSums::kPhotons + 3 * k, r.photons.brightest[k]);
   addTo(pixel, PixelSums::kClamped, r.clamped);
   addTo(pixel, PixelSums::kCompensated, r.compensated);
   addTo(pixel, PixelSums::kAlbedo, r.albedo);

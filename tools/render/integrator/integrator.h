@@ -2,6 +2,7 @@
 // this file.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 
@@ -16,12 +17,19 @@
 
 namespace bnvpl {
 
+// What photons bring to a pixel, W/(m2 sr).
+struct PhotonLight {
+  Vec3 all;
+  std::array<Vec3, 2> brightest;  // of single photons, by the mean of the channels
+};
+
 struct RadianceSample {
   Vec3 direct;    // at most mirrors, glass and sharp lobes between the camera and the first rough
                   // vertex, and nothing between that and a light
   Vec3 seen;      // of a light that the camera ray itself meets; part of `direct`
   Vec3 indirect;  // everything else
-  Vec3 clamped;   // indirect light that the bound on 1/d^2 removed from the VPLs
+  PhotonLight photons;  // of the pixel; part of `indirect`
+  Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
   Vec3 compensated;     // indirect light that sampled rays brought instead; part of `indirect`
   Vec3 albedo, normal;  // of the first rough vertex
   float depth = 0.0f;   // of the first hit along the viewing axis; 0: none

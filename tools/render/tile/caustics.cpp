@@ -2,73 +2,38 @@
 
 #include <algorithm>
 
-#include "core/parallel.h"
 #include "tools/common/streams.h"
-#include "tools/render/film/specks.h"
 #include "tools/render/integrator/add_splats.h"
 #include "tools/render/integrator/film_connection.h"
-#include "transport/camera.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
 
-namespace {
-
-// For spreadSpecks() a photon is one of so many samples of its pixel: the brightest may keep a
-// quarter of what is around. Of the few photons of most pixels the second makes the caustic.
-constexpr double kSamples = 8.0;
-
-}  // namespace
-
 Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons,
-                   float raysOfPixel, bool spread, uint64_t seed, const ProgressFn& progress)
+                   float raysOfPixel, uint64_t seed, const ProgressFn& progress)
     : rays_(rays),
       lights_(lights),
       photons_(photons),
       key_(streamKey(seed, Stream::Caustics)),
       raysOfPixel_(raysOfPixel),
-      width_(rays.scene().film.width) {
-  const size_t pixels = size_t{width_} * rays.scene().film.height;
-  std::vector<PixelSums> sums(pixels);
+      width_(rays.scene().film.width),
+      light_(size_t{width_} * rays.scene().film.height) {
   SplatProgress done;
   const auto phase = progress.before("caustics", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
         for (uint64_t i = begin; i < end; ++i) follow(i, out);
       },
-      photons, done,
-      [&](const Splat& splat) {
-        PixelSums& pixel = sums[splat.pixel];
-        for (size_t c = 0; c < 3; ++c)
-          pixel.sum[PixelSums::kIndirect + c] += kSamples * double{splat.radiance[c]};
-        Vec3& brightest = pixel.brightest[1].front();
-        const Vec3 brought = splat.radiance * static_cast<float>(kSamples);
-        if (mean(brought) > mean(brightest)) brightest = brought;
-      },
-      progress, {}, [] { return std::string(); });
-  radiance_.reserve(pixels);
-  for (const PixelSums& pixel : sums) {
-    const double* sum = &pixel.sum[PixelSums::kIndirect];
-    radiance_.push_back(
-        {float(sum[0] / kSamples), float(sum[1] / kSamples), float(sum[2] / kSamples)});
-  }
-  if (spread) spreadBrightest(sums);
+      photons, done, [&](const Splat& splat) { add(splat, light_[splat.pixel]); }, progress, {},
+      [] { return std::string(); });
 }
 
-// Photons' light alone says what is around, as other light is not known yet. Nothing goes where the
-// camera sees the void.
-void Caustics::spreadBrightest(std::span<PixelSums> sums) {
-  const Scene& scene = rays_.scene();
-  parallelFor(sums.size(), 64, [&](size_t i) {
-    const float x = (static_cast<float>(i % width_) + 0.5f) / static_cast<float>(width_);
-    const float y = (static_cast<float>(i / width_) + 0.5f) / static_cast<float>(scene.film.height);
-    SurfacePoint hit;
-    if (rays_.closestHit(scene.camera.position, cameraDirection(scene.camera, scene.film, x, y),
-                         hit))
-      sums[i].sum[PixelSums::kHits] = 1.0;
-  });
-  const auto change = spreadSpecks({sums, {}, 1.0 / kSamples}, Only::Indirect, width_, 0);
-  for (size_t i = 0; i < sums.size(); ++i) radiance_[i] += change[i][1];
+void Caustics::add(const Splat& splat, PhotonLight& to) {
+  to.all += splat.radiance;
+  Vec3 light = splat.radiance;
+  for (Vec3& kept : to.brightest) {
+    if (mean(light) > mean(kept)) std::swap(light, kept);
+  }
 }
 
 SharedWithPhotons Caustics::shared(const SurfacePoint& seen) const {

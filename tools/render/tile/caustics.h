@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "tools/render/film/layers.h"
+#include "tools/render/integrator/integrator.h"
 #include "tools/render/integrator/splats.h"
 #include "transport/direct_light.h"
 
@@ -19,18 +19,16 @@ namespace bnvpl {
 class Caustics {
  public:
   // So many photons, > 0, from lights with power, and rays from each pixel that look for the same
-  // light. `spread`: what single photons bring far above all around them, as spreadSpecks() does.
-  // Borrows rays and lights.
+  // light. Borrows rays and lights.
   Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
-           bool spread, uint64_t seed, const ProgressFn& progress);
+           uint64_t seed, const ProgressFn& progress);
 
-  // What photons bring to a pixel, W/(m^2 sr).
-  Vec3 at(uint32_t x, uint32_t y) const { return radiance_[size_t{y} * width_ + x]; }
+  const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // How rays share with them that leave a point which the camera sees directly.
   SharedWithPhotons shared(const SurfacePoint& seen) const;
 
  private:
-  void spreadBrightest(std::span<PixelSums> sums);
+  static void add(const Splat& splat, PhotonLight& to);
   SharedWithPhotons sharedBy(float samples) const;  // of a pixel, per area
   void follow(uint64_t index, Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
@@ -41,7 +39,7 @@ class Caustics {
   uint64_t photons_, key_;
   float raysOfPixel_;
   uint32_t width_;
-  std::vector<Vec3> radiance_;
+  std::vector<PhotonLight> light_;
 };
 
 }  // namespace bnvpl

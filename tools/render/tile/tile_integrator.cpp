@@ -80,8 +80,9 @@ double TileIntegrator::render(const TileSamples& tile, const Balance& balance) c
   if (parts_.control) parts_.control(tile, at.seen);
   for (size_t i = 0; parts_.caustics && i < count; ++i) {
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
-    tile.samples[i].radiance.indirect +=
-        parts_.caustics->at(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+    RadianceSample& out = tile.samples[i].radiance;
+    out.photons = parts_.caustics->at(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+    out.indirect += out.photons.all;
   }
   cost /= double(count);
   if (parts_.directSamples)

@@ -32,7 +32,7 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
                     const FilmPoints& film, unsigned lightRays, TileParts& out);
 // Null where there is nothing for its photons to find.
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
-                                             uint64_t raysOfPixel, const Values& options);
+                                             uint64_t raysOfPixel);
 // By the option, with what the film's points show.
 ControlFn makeControl(const IntegratorInputs& in, const FilmPoints& film);
 // --balance: by the integrator without one.

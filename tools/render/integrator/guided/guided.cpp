@@ -78,7 +78,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (controlled) tile.control = makeControl(in, film);
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
-                               tile.raysEach * options.whole("spp"), options);
+                               tile.raysEach * options.whole("spp"));
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->balance = balanceOf(in, options, *parts->integrator);

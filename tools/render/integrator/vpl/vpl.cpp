@@ -118,7 +118,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   }
   if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * std::min(options.whole("spp"), kMostSpp), options);
+                               tile.raysEach * std::min(options.whole("spp"), kMostSpp));
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->balance = balanceOf(in, options, *parts->integrator);

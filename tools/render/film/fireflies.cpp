@@ -1,0 +1,188 @@
+#include "tools/render/film/fireflies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/parallel.h"
+#include "tools/render/film/surface_filter.h"
+
+namespace bnvpl {
+
+namespace {
+
+// What a sample of indirect light may add, over what is around. A sample of direct light may add
+// twice as much: it is made of few rays, so that samples differ more where there are no fireflies.
+constexpr double kMinShare = 0.125, kTimesItsShare = 2.0;
+constexpr std::array<double, 2> kTimes{2.0, 1.0};
+constexpr double kVisible = 0.02;  // contrast, of a lump as of noise
+// The level at which the surface around shows how much of its light is in fireflies.
+constexpr size_t kLocal = 3;
+// Light around, over that of a firefly, below which nothing can hide it.
+constexpr float kDark = 1e-6f;
+
+bool isShown(size_t kind, Only only) {
+  return only == Only::Everything || (kind == 0) == (only == Only::Direct);
+}
+
+double samplesOf(const Exposed& film, size_t i) {
+  return film.passes.empty() ? 1.0 / film.perSample : double(film.passes[i].samples);
+}
+
+FilmValues shownLight(const Exposed& film, Only only) {
+  FilmValues shown(film.sums.size());
+  parallelFor(shown.size(), 1024, [&](size_t i) {
+    double sum = 0.0;
+    for (size_t c = 0; c < 3; ++c) sum += shownOf(film.sums[i], only, c) / 3.0;
+    shown[i] = static_cast<float>(sum * film.perSample);
+    if (!std::isfinite(shown[i]) || shown[i] < 0.0f) shown[i] = 0.0f;
+  });
+  return shown;
+}
+
+// What S_level makes of 1: the share of a kernel that edges leave.
+FilmValues smoothedOnes(const SurfaceFilter& filter) {
+  return filter.smooth(FilmValues(filter.pixels(), 1.0f), 0);
+}
+
+// The mean over the surface around each pixel.
+FilmValues meanAround(const SurfaceFilter& filter, const FilmValues& ones,
+                      const FilmValues& values) {
+  FilmValues out = filter.smooth(values, 0);
+  for (size_t i = 0; i < out.size(); ++i) out[i] /= ones[i];
+  return out;
+}
+
+// What the brightest samples and photons of a pixel add to it, kind by kind.
+template <typename Fn>
+void forBrightest(const Exposed& film, size_t i, Only only, const Fn& fn) {
+  const auto perSample = static_cast<float>(film.perSample);
+  for (const size_t kind : {0u, 1u}) {
+    if (!isShown(kind, only)) continue;
+    for (const Vec3 sample : film.sums[i].brightest[kind]) fn(kind, sample * perSample);
+  }
+  if (!isShown(1, only)) return;
+  for (size_t k = 0; k < PixelSums::kBrightest; ++k) fn(1, film.sums[i].photon(k) * perSample);
+}
+
+// The excess of each pixel, of direct and of indirect light.
+std::vector<BothLights> excessOf(const Exposed& film, Only only, const FilmValues& shown,
+                                 const FilmValues& around) {
+  std::vector<BothLights> excess(shown.size());
+  parallelFor(shown.size(), 256, [&](size_t i) {
+    float others = shown[i];
+    forBrightest(film, i, only, [&](size_t, Vec3 light) { others -= mean(light); });
+    const double share = std::max(kMinShare, kTimesItsShare / samplesOf(film, i)) *
+                         double{std::max({0.0f, others, around[i]})};
+    forBrightest(film, i, only, [&](size_t kind, Vec3 light) {
+      const double bound = kTimes[kind] * share, own{mean(light)};
+      if (own > bound)
+        excess[i][kind] += light * static_cast<float>(1.0 - bound * bound / (own * own));
+    });
+    // A dot that nothing surrounds stays.
+    if (!(around[i] > 0.0f) || !isFinite(excess[i][0]) || !isFinite(excess[i][1])) excess[i] = {};
+  });
+  return excess;
+}
+
+FilmValues meansOf(std::span<const BothLights> lights, size_t kind) {
+  FilmValues out(lights.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = mean(lights[i][kind]);
+  return out;
+}
+
+// The square of each firefly's light. Pixels of a block may owe theirs to one find of a near-field
+// ray: each of them counts with the light of all.
+FilmValues squaresOf(std::span<const BothLights> excess, size_t width) {
+  const FilmValues direct = meansOf(excess, 0), indirect = meansOf(excess, 1);
+  const size_t across = (width + kBlockSide - 1) / kBlockSide;
+  const auto blockOf = [&](size_t i) {
+    return i / width / kBlockSide * across + i % width / kBlockSide;
+  };
+  FilmValues squares(excess.size()), blocks(blockOf(excess.size() - 1) + across);
+  for (size_t i = 0; i < excess.size(); ++i) blocks[blockOf(i)] += indirect[i];
+  for (size_t i = 0; i < excess.size(); ++i)
+    squares[i] = direct[i] * direct[i] + indirect[i] * blocks[blockOf(i)];
+  return squares;
+}
+
+// The light of the surface: that of the samples without excess, and in proportion to it what
+// fireflies bring to the surroundings; in a dark corner they may be most of its light.
+FilmValues surfaceLight(const SurfaceFilter& filter, const FilmValues& ones,
+                        const FilmValues& shown, const FilmValues& excess) {
+  FilmValues rest(shown.size());
+  for (size_t i = 0; i < rest.size(); ++i) rest[i] = std::max(0.0f, shown[i] - excess[i]);
+  FilmValues light = meanAround(filter, ones, rest), wide = light, added = excess;
+  for (size_t level = 0; level <= kLocal; ++level) {
+    wide = filter.smooth(wide, level);
+    added = filter.smooth(added, level);
+  }
+  for (size_t i = 0; i < light.size(); ++i)
+    if (wide[i] > 0.0f) light[i] *= 1.0f + added[i] / wide[i];
+  return light;
+}
+
+// Where the excess of each pixel goes: the level, and one over the light within its kernel.
+struct Target {
+  uint8_t level = 0;
+  float perLight = 0.0f;  // 0: it stays
+};
+
+std::vector<Target> chooseTargets(const SurfaceFilter& filter, const FilmValues& light,
+                                  const FilmValues& excess, FilmValues squares, size_t levels) {
+  std::vector<Target> targets(light.size());
+  std::vector<float> least(light.size(), INFINITY);
+  FilmValues lit = light, added = excess;
+  for (size_t level = 0; level < levels; ++level) {
+    lit = filter.smooth(lit, level);
+    added = filter.smooth(added, level);
+    squares = filter.smooth(squares, level);
+    const auto peak = static_cast<float>(SurfaceFilter::peak(level));
+    parallelFor(targets.size(), 1024, [&](size_t i) {
+      if (!(excess[i] > 0.0f) || least[i] <= float(kVisible) || !(lit[i] > kDark * excess[i]))
+        return;
+      const float noise = std::sqrt(peak * squares[i]) / (lit[i] + added[i]);
+      if (!(noise < least[i])) return;
+      least[i] = noise;
+      targets[i] = {static_cast<uint8_t>(level), 1.0f / lit[i]};
+    });
+  }
+  return targets;
+}
+
+}  // namespace
+
+std::vector<BothLights> redistributeFireflies(const Exposed& film, Only only, uint32_t width) {
+  const SurfaceFilter filter(film.sums, width);
+  const FilmValues ones = smoothedOnes(filter), shown = shownLight(film, only);
+  const std::vector<BothLights> excess =
+      excessOf(film, only, shown, meanAround(filter, ones, shown));
+  FilmValues both = meansOf(excess, 0);
+  const FilmValues indirect = meansOf(excess, 1);
+  for (size_t i = 0; i < both.size(); ++i) both[i] += indirect[i];
+  std::vector<BothLights> change(excess.size());
+  if (std::ranges::none_of(both, [](float e) { return e > 0.0f; })) return change;
+  const FilmValues light = surfaceLight(filter, ones, shown, both);
+  const size_t levels = filter.levels();
+  const std::vector<Target> targets =
+      chooseTargets(filter, light, both, squaresOf(excess, width), levels);
+  for (const size_t kind : {0u, 1u}) {
+    if (!isShown(kind, only)) continue;
+    for (size_t c = 0; c < 3; ++c) {
+      // From the widest level to the narrowest, each step taking along what begins there.
+      FilmValues going(light.size(), 0.0f);
+      for (size_t level = levels; level-- > 0;) {
+        for (size_t i = 0; i < going.size(); ++i)
+          if (targets[i].level == level) going[i] += excess[i][kind][c] * targets[i].perLight;
+        going = filter.scatter(going, level);
+      }
+      for (size_t i = 0; i < going.size(); ++i) {
+        const float leaves = targets[i].perLight > 0.0f ? excess[i][kind][c] : 0.0f;
+        change[i][kind][c] = light[i] * going[i] - leaves;
+      }
+    }
+  }
+  return change;
+}
+
+}  // namespace bnvpl
