@@ -67,20 +67,23 @@ void forBrightest(const Exposed& film, size_t i, Only only, const Fn& fn) {
 
 // The excess of each pixel, of direct and of indirect light.
 std::vector<BothLights> excessOf(const Exposed& film, Only only, const FilmValues& shown,
-                                 const FilmValues& around) {
+                                 const FilmValues& smoothed, const FilmValues& ones) {
   std::vector<BothLights> excess(shown.size());
   parallelFor(shown.size(), 256, [&](size_t i) {
     float others = shown[i];
     forBrightest(film, i, only, [&](size_t, Vec3 light) { others -= mean(light); });
+    // The mean of the surface around is without these samples.
+    const float around = (smoothed[i] - SurfaceFilter::kCentre * (shown[i] - others)) / ones[i];
     const double share = std::max(kMinShare, kTimesItsShare / samplesOf(film, i)) *
-                         double{std::max({0.0f, others, around[i]})};
+                         double{std::max({0.0f, others, around})};
     forBrightest(film, i, only, [&](size_t kind, Vec3 light) {
       const double bound = kTimes[kind] * share, own{mean(light)};
       if (own > bound)
         excess[i][kind] += light * static_cast<float>(1.0 - bound * bound / (own * own));
     });
     // A dot that nothing surrounds stays.
-    if (!(around[i] > 0.0f) || !isFinite(excess[i][0]) || !isFinite(excess[i][1])) excess[i] = {};
+    if (!(around > 1e-5f * shown[i]) || !isFinite(excess[i][0]) || !isFinite(excess[i][1]))
+      excess[i] = {};
   });
   return excess;
 }
@@ -91,18 +94,18 @@ FilmValues meansOf(std::span<const BothLights> lights, size_t kind) {
   return out;
 }
 
-// The square of each firefly's light. Pixels of a block may owe theirs to one find of a near-field
+// The square of each firefly's light. Pixels of a tile may owe theirs to one find of a near-field
 // ray: each of them counts with the light of all.
 FilmValues squaresOf(std::span<const BothLights> excess, size_t width) {
   const FilmValues direct = meansOf(excess, 0), indirect = meansOf(excess, 1);
-  const size_t across = (width + kBlockSide - 1) / kBlockSide;
-  const auto blockOf = [&](size_t i) {
-    return i / width / kBlockSide * across + i % width / kBlockSide;
+  const size_t across = (width + kTileSide - 1) / kTileSide;
+  const auto tileOf = [&](size_t i) {
+    return i / width / kTileSide * across + i % width / kTileSide;
   };
-  FilmValues squares(excess.size()), blocks(blockOf(excess.size() - 1) + across);
-  for (size_t i = 0; i < excess.size(); ++i) blocks[blockOf(i)] += indirect[i];
+  FilmValues squares(excess.size()), tiles(tileOf(excess.size() - 1) + across);
+  for (size_t i = 0; i < excess.size(); ++i) tiles[tileOf(i)] += indirect[i];
   for (size_t i = 0; i < excess.size(); ++i)
-    squares[i] = direct[i] * direct[i] + indirect[i] * blocks[blockOf(i)];
+    squares[i] = direct[i] * direct[i] + indirect[i] * tiles[tileOf(i)];
   return squares;
 }
 
@@ -155,8 +158,7 @@ std::vector<Target> chooseTargets(const SurfaceFilter& filter, const FilmValues&
 std::vector<BothLights> redistributeFireflies(const Exposed& film, Only only, uint32_t width) {
   const SurfaceFilter filter(film.sums, width);
   const FilmValues ones = smoothedOnes(filter), shown = shownLight(film, only);
-  const std::vector<BothLights> excess =
-      excessOf(film, only, shown, meanAround(filter, ones, shown));
+  const std::vector<BothLights> excess = excessOf(film, only, shown, filter.smooth(shown, 0), ones);
   FilmValues both = meansOf(excess, 0);
   const FilmValues indirect = meansOf(excess, 1);
   for (size_t i = 0; i < both.size(); ++i) both[i] += indirect[i];

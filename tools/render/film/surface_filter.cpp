@@ -14,7 +14,7 @@ constexpr std::array<float, 5> kTaps{1 / 16.0f, 4 / 16.0f, 6 / 16.0f, 4 / 16.0f,
 constexpr ptrdiff_t kReach = 2;  // taps to each side
 
 // Differences at which a weight is 0.
-constexpr float kMaxTurn = 0.25f;     // 1 - cosine between two normals
+constexpr float kMaxTurn = 0.5f;      // squared distance of two unit normals: 41 degrees
 constexpr float kMaxAlbedo = 0.5f;    // of the larger albedo
 constexpr float kDarkAlbedo = 0.05f;  // of which differences do not show
 constexpr float kMaxDepth = 0.05f;    // of the inverse depth, off the plane through the other pixel
@@ -73,7 +73,7 @@ float SurfaceFilter::weight(size_t i, size_t j, Axis axis, float pixelsApart) co
   const Surface &a = surfaces_[i], &b = surfaces_[j];
   if (a.inverseDepth == 0.0f || b.inverseDepth == 0.0f)
     return a.inverseDepth == b.inverseDepth ? 1.0f : 0.0f;
-  const float turn = falloff(1.0f - dot(a.normal, b.normal), kMaxTurn);
+  const float turn = falloff(lengthSquared(a.normal - b.normal), kMaxTurn);
   if (!(turn > 0.0f)) return 0.0f;
   const float change = b.inverseDepth - a.inverseDepth, byA = a.slope[axis] * pixelsApart,
               byB = b.slope[axis] * pixelsApart;

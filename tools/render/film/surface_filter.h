@@ -39,6 +39,9 @@ class SurfaceFilter {
   // value that another gets.
   static double peak(size_t level);
 
+  // S_0 gives a pixel so much of its own value.
+  static constexpr float kCentre = 36 / 256.0f;
+
  private:
   struct Surface {
     Vec3 normal, albedo;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 
 #include "tools/render/integrator/camera_vertex.h"
 
@@ -126,35 +125,55 @@ void TileIntegrator::gatherTile(const TileSamples& tile, const Vertices& at, con
   }
 }
 
-// Two colours for the samples of each slot, of as many pixels; another pattern for each slot, so
-// that what one colour shares in a slot makes no pattern in the image: a function of Walsh over the
-// bits of x and y, by those that split every block.
+// Two colours for the samples of each slot, of as many pixels, and the blocks of pixels that share
+// hits. Both are cut anew for each slot, so that they make no pattern in the image: blocks lie at
+// random places (around the tile's borders), and the colour is a Walsh function over the bits of
+// x and y. It holds the lowest bit of each, so that pixels side by side mostly share nothing: their
+// noise differs, and no bars are seen.
 class TileIntegrator::Colours {
  public:
   explicit Colours(const TileSamples& tile) : tile_(tile) {
     const auto slots = static_cast<uint32_t>(tile.samples.size() / tile.pixels);
     for (uint32_t s = 0; s < slots; ++s) {
-      const uint64_t random = random64(tile.key, tile.firstSlot + s, kDrawColours);
-      const auto within = static_cast<uint32_t>(1 + random % (kBlockSide * kBlockSide - 1));
-      const auto beyond = static_cast<uint32_t>(random >> 62);
-      masks_.push_back({within % kBlockSide | (beyond & 1u) * kBlockSide,
-                        within / kBlockSide | (beyond >> 1) * kBlockSide});
+      auto random = random64(tile.key, tile.firstSlot + s, kDrawColours);
+      const auto draw = [&](uint32_t count) {
+        const auto value = static_cast<uint32_t>(random % count);
+        random /= count;
+        return value;
+      };
+      patterns_.push_back({1 | draw(kTileSide / 2) << 1, 1 | draw(kTileSide / 2) << 1,
+                           draw(kBlockSide), draw(kBlockSide)});
     }
   }
+  // The block of a pixel in the slot of `sample`.
+  uint32_t block(size_t sample) const {
+    const Place at = placeOf(sample);
+    return at.y / kBlockSide * kTileSide + at.x / kBlockSide;
+  }
   uint32_t of(size_t sample) const {
-    const auto pixel = static_cast<uint32_t>(sample % tile_.pixels);
-    const Mask& mask = masks_[sample / tile_.pixels];
-    return static_cast<uint32_t>(std::popcount(pixel % tile_.width & mask.x) +
-                                 std::popcount(pixel / tile_.width & mask.y)) &
+    const Place at = placeOf(sample);
+    const Pattern& pattern = patterns_[sample / tile_.pixels];
+    return static_cast<uint32_t>(std::popcount(at.x & pattern.maskX) +
+                                 std::popcount(at.y & pattern.maskY)) &
            1u;
   }
 
  private:
-  struct Mask {
+  struct Pattern {
+    uint32_t maskX, maskY, shiftX, shiftY;
+  };
+  struct Place {
     uint32_t x, y;
   };
+  Place placeOf(size_t sample) const {
+    const auto pixel = static_cast<uint32_t>(sample % tile_.pixels);
+    const Pattern& pattern = patterns_[sample / tile_.pixels];
+    return {(pixel % tile_.width + pattern.shiftX) % kTileSide,
+            (pixel / tile_.width + pattern.shiftY) % kTileSide};
+  }
+
   const TileSamples& tile_;
-  std::vector<Mask> masks_;  // of its slots
+  std::vector<Pattern> patterns_;  // of its slots
 };
 
 // Rays that samples of each colour are worth, by what the first `rays` of each of the other colour
@@ -251,17 +270,12 @@ size_t TileIntegrator::share(const TileSamples& tile, const Vertices& at,
   size_t rays = 0;
   std::vector<size_t> members;
   std::vector<HitSharer> group;
-  std::vector<uint32_t> byBlocks(tile.pixels);
-  std::iota(byBlocks.begin(), byBlocks.end(), 0u);
-  std::ranges::stable_sort(byBlocks, {}, [&](uint32_t p) {
-    return p / tile.width / kBlockSide * kTileSide + p % tile.width / kBlockSide;
-  });
   for (size_t slot = 0; slot < brought.size(); slot += everySlot * tile.pixels) {
     for (const uint32_t colour : {0u, 1u}) {
       members.clear();
-      for (const uint32_t p : byBlocks) {
-        if (at.bsdf[slot + p] && colours.of(slot + p) == colour) members.push_back(slot + p);
-      }
+      for (size_t i = slot; i < slot + tile.pixels; ++i)
+        if (at.bsdf[i] && colours.of(i) == colour) members.push_back(i);
+      std::ranges::stable_sort(members, {}, [&](size_t i) { return colours.block(i); });
       for (size_t begin = 0; begin < members.size(); begin += parts_.sharers) {
         const std::span<const size_t> some = std::span(members).subspan(
             begin, std::min<size_t>(parts_.sharers, members.size() - begin));
