@@ -49,7 +49,9 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
   // Once: an OBJ can name one library in many ways, as often as it has lines.
   if (std::find(read.begin(), read.end(), library) != read.end()) return;
   read.push_back(library);
-  const std::string text = logicalLines(readText(library));
+  std::string raw = readText(library);
+  requireNoUtf16(library, raw);
+  const std::string text = logicalLines(std::move(raw));
   const std::map<std::string, MtlKeys> keys = mtlKeys(text);
   std::istringstream in(text);
   std::map<std::string, int> byName;

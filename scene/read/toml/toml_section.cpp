@@ -51,6 +51,7 @@ void refuseDeepKeys(const fs::path& file, const std::string& text) {
 toml::table parseToml(const fs::path& file) {
   if (!isRegularFile(file)) throw InputError(file, "no such file; name a scene.toml");
   const std::string text = readText(file);
+  requireNoUtf16(file, text);
   refuseDeepKeys(file, text);
   try {
     return toml::parse(text, file.string());
