@@ -148,7 +148,7 @@ void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& build
   const std::string type = s.text("type");
   if (type == "point" || type == "spot") {
     light.type = type == "point" ? LightType::Point : LightType::Spot;
-    position = s.point("position");
+    position = s.place("position");
     readPointLight(s, light);
   } else if (type == "directional") {
     light.type = LightType::Directional;
