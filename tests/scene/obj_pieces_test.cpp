@@ -116,6 +116,7 @@ TEST_F(Pieces, OddLinesAreReadAsInTheWhole) {
       "mtllib square.mtl\n" + corners + "usemtl odd\nf 1 2 3\nusemtl\nf 1 2 3\nf 2 3 1\nf 3 1 2\n",
       "mtllib square.mtl\n" + corners + "f 4294967295 4294967294 4294967293\n" + corners +
           "f 1 2 3\n",
+      "mtllib square.mtl\n" + corners + "usemtl odd\nf 1 2 3\nusemtl\nf 1 2 3\nf 2 3 1\n",
       "mtllib square.mtl\nmtllib none.mtl\n" + corners +
           "usemtl even\nf 1 2 3\nusemtl nobody\nf 1 2 3\ng a\nf 2 3 1\n",
       corners + "usemtl even\nf 1 2 3\nmtllib square.mtl\nf 1 2 3\nusemtl \\\nodd\nf 2 3 1\n",

@@ -80,7 +80,7 @@ ObjMesh parse(const MeshLines& lines, const MeshLines::Piece& piece,
   };
   to.usemtl_cb = [](void* p, const char* name, int) { static_cast<Parsed*>(p)->use(name); };
   // obj_lines.cpp leaves no group but for a usemtl without a name.
-  to.group_cb = [](void* p, const char**, int) { static_cast<Parsed*>(p)->material = -1; };
+  to.group_cb = [](void* p, const char**, int) { static_cast<Parsed*>(p)->use(""); };
   ViewBuffer buffer(std::string_view(lines.text).substr(piece.begin, piece.end - piece.begin));
   std::istream in(&buffer);
   tinyobj::LoadObjWithCallback(in, to, &out);
