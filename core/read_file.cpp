@@ -27,6 +27,14 @@ void ReadGuard::check() const {
   throw InputError(file_, "was changed while it was read; run again when it is complete");
 }
 
+void requireNoUtf16(const fs::path& file, std::string_view text) {
+  if (text.size() < 2) return;
+  const std::string_view mark = text.substr(0, 2);
+  const bool marked = mark == "\xff\xfe" || mark == "\xfe\xff";
+  if (marked || (mark[0] == '\0') != (mark[1] == '\0'))
+    throw InputError(file, "is UTF-16 text; save it as UTF-8");
+}
+
 std::string readText(const fs::path& file) {
   const ReadGuard guard(file);
   std::ifstream in(file, std::ios::binary);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/errors.h"
 
@@ -28,5 +29,9 @@ class ReadGuard {
 
 // The whole file. Throws InputError when it cannot be read to its end, or changes meanwhile.
 std::string readText(const fs::path& file);
+
+// Throws InputError when the text, which a parser takes for bytes, begins as UTF-16 does: with its
+// byte order mark, or with one half of a character 0.
+void requireNoUtf16(const fs::path& file, std::string_view text);
 
 }  // namespace bnvpl

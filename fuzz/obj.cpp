@@ -29,18 +29,6 @@ void load(const fs::path& obj, const fs::path& materials, const Affine& transfor
   if (accepted(read)) requireSaneMeshes(scene);
 }
 
-// Of all shapes one after the other: where one ends is up to the reader.
-std::pair<std::vector<int>, std::vector<int>> cornersAndMaterials(const ObjReading& reading) {
-  std::pair<std::vector<int>, std::vector<int>> out;
-  for (const tinyobj::shape_t& shape : reading.shapes) {
-    for (const tinyobj::index_t& i : shape.mesh.indices)
-      out.first.insert(out.first.end(), {i.vertex_index, i.normal_index, i.texcoord_index});
-    const auto& ids = shape.mesh.material_ids;
-    out.second.insert(out.second.end(), ids.begin(), ids.end());
-  }
-  return out;
-}
-
 // As large files are read.
 void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
   ObjReading whole, pieces;
@@ -50,11 +38,12 @@ void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
   const bool asPieces = accepted([&] { pieces = readObj(obj, materials, ignore, kPiece); });
   require(asWhole == asPieces, "pieces are accepted where the whole is");
   if (!asWhole) return;
-  require(whole.attrib.vertices.size() == pieces.attrib.vertices.size() &&
-              whole.attrib.normals.size() == pieces.attrib.normals.size() &&
-              whole.attrib.texcoords.size() == pieces.attrib.texcoords.size(),
+  require(whole.mesh.positions.size() == pieces.mesh.positions.size() &&
+              whole.mesh.normals.size() == pieces.mesh.normals.size() &&
+              whole.mesh.uvs.size() == pieces.mesh.uvs.size(),
           "pieces have the vertices of the whole");
-  require(cornersAndMaterials(whole) == cornersAndMaterials(pieces),
+  require(whole.mesh.corners == pieces.mesh.corners && whole.mesh.counts == pieces.mesh.counts &&
+              whole.mesh.materials == pieces.mesh.materials,
           "pieces have the faces of the whole");
   require(whole.unknown == pieces.unknown, "pieces ask for the materials of the whole");
 }

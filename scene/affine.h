@@ -27,6 +27,10 @@ struct Affine {
 // `inner` first.
 Affine operator*(const Affine& outer, const Affine& inner);
 
+// Cameras and lights lie at most this far from a scene's origin in each coordinate: rays from
+// beyond are longer than floats can square.
+inline constexpr double kFurthestPlace = 1e18;
+
 // Where coordinates should count from so that floats resolve a scene of these bounds: the origin of
 // the files unless the scene lies many times its own size away from it.
 FilePoint sceneOrigin(const FilePoint& lower, const FilePoint& upper);

@@ -26,7 +26,7 @@ struct Film {
 struct Camera {
   Vec3 position;
   Vec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};  // orthonormal
-  float verticalFovRad = 1.0f;                           // of the film, were it not shifted
+  float verticalFovRad = 1.0f;                          // of the film, were it not shifted
   std::array<float, 2> shift{};
 };
 
@@ -117,7 +117,7 @@ struct Scene {
   }
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;
-  Bounds bounds;
+  Bounds bounds;  // of all but strays (scene/strays.h)
   // What the coordinates count from, in the coordinates of the files: 0 but for scenes that lie far
   // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).
   std::array<double, 3> origin{};

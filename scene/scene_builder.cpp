@@ -308,6 +308,27 @@ void SceneBuilder::warnOfMissingUvs() {
   }
 }
 
+// None in scenes of instances, whose places are few and say nothing of their size.
+void SceneBuilder::findStrays() {
+  if (!placed_.empty()) return;
+  std::vector<uint32_t> world;
+  uint32_t next = 0;
+  for (const Part& part : parts_) {
+    for (; next < part.endTriangle; ++next) {
+      if (part.prototype == kNone) world.push_back(next);
+    }
+  }
+  strays_ = Strays(world.size(), [&](size_t i) {
+    const auto& p = scene_.triangles[world[i]].position;
+    return Corners{points_[p[0]], points_[p[1]], points_[p[2]]};
+  });
+  if (strays_.count() == 0) return;
+  warn(name() + ": " + std::to_string(strays_.count()) +
+       (strays_.count() == 1 ? " triangle lies " : " triangles lie up to ") +
+       shortestText(static_cast<float>(strays_.furthest())) +
+       " away from the middle of the others; if it is there by mistake, remove it");
+}
+
 // The points of prototypes keep the coordinates that instances are placed by.
 void SceneBuilder::roundPositions() {
   FilePoint lower, upper;
@@ -322,9 +343,9 @@ void SceneBuilder::roundPositions() {
   size_t triangle = 0;
   for (const Part& part : parts_) {
     for (; triangle < part.endTriangle; ++triangle) {
-      for (const uint32_t p : scene_.triangles[triangle].position) {
-        if (part.prototype == kNone) extend(points_[p]);
-      }
+      const auto& p = scene_.triangles[triangle].position;
+      const Corners corners{points_[p[0]], points_[p[1]], points_[p[2]]};
+      if (part.prototype == kNone && !strays_.has(corners)) std::ranges::for_each(corners, extend);
     }
   }
   for (const Placed& p : placed_) extend(p.toWorld.point({}));
@@ -338,8 +359,10 @@ void SceneBuilder::roundPositions() {
   points_ = {};
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
     LightSpec& light = scene_.lights[i];
-    if (light.type == LightType::Point || light.type == LightType::Spot)
+    if (light.type == LightType::Point || light.type == LightType::Spot) {
+      requirePlace(lightPositions_[i], "a light");
       light.position = fromOrigin(lightPositions_[i], scene_.origin);
+    }
   }
   if (scene_.origin != FilePoint{}) {
     std::ostringstream text;
@@ -473,8 +496,14 @@ void SceneBuilder::placeInstances() {
 // Of prototypes, the corners of their boxes count: what lies between cannot be further out.
 void SceneBuilder::extendBounds() {
   std::vector<Bounds> boxes(scene_.prototypes.size());
+  const Strays strays = strays_.from(scene_.origin);
+  const auto place = [&](uint32_t t, size_t c) {
+    const Vec3 p = scene_.corner(t, c);
+    return FilePoint{p.x, p.y, p.z};
+  };
   const auto extend = [&](Bounds& box, uint32_t begin, uint32_t end) {
     for (uint32_t t = begin; t < end; ++t) {
+      if (strays.count() > 0 && strays.has({place(t, 0), place(t, 1), place(t, 2)})) continue;
       for (size_t c = 0; c < 3; ++c) box.extend(scene_.corner(t, c));
     }
   };
@@ -491,7 +520,16 @@ void SceneBuilder::extendBounds() {
   }
 }
 
+void SceneBuilder::requirePlace(const FilePoint& p, const char* what) const {
+  for (const double x : p) {
+    if (std::fabs(x) <= kFurthestPlace) continue;
+    throw InputError(name() + ": " + what + " lies at " + shortestText(x) + ", beyond " +
+                     shortestText(kFurthestPlace) + "; move it towards the scene");
+  }
+}
+
 void SceneBuilder::placeViews() {
+  for (const FilePoint& p : viewPositions_) requirePlace(p, "a camera");
   for (size_t i = 0; i < scene_.views.size(); ++i)
     scene_.views[i].camera.position = fromOrigin(viewPositions_[i], scene_.origin);
   if (scene_.views.empty()) {
@@ -505,6 +543,12 @@ void SceneBuilder::placeViews() {
 void SceneBuilder::requireSize() const {
   if (scene_.triangles.empty())
     throw InputError(scene_.name() + ": has no triangle; give it a mesh that has an area");
+  if (strays_.furthest() > double{kLargestScene}) {
+    throw InputError(scene_.name() + ": has a triangle that lies " +
+                     shortestText(static_cast<float>(strays_.furthest())) +
+                     " away from the others, beyond " + shortestText(kLargestScene) +
+                     "; remove it");
+  }
   const float size = scene_.bounds.diagonal();
   if (size >= kSmallestScene && size <= kLargestScene) return;
   throw InputError(scene_.name() + ": is " + shortestText(size) + " units across, outside " +
@@ -516,6 +560,7 @@ Scene SceneBuilder::finish() {
   placePrototypes();
   resolveTextures();
   warnOfMissingUvs();
+  findStrays();
   roundPositions();
   dropUnusable();
   placeInstances();

@@ -20,6 +20,7 @@
 
 #include "scene/affine.h"
 #include "scene/scene.h"
+#include "scene/strays.h"
 #include "scene/textures/texture_pool.h"
 
 namespace bnvpl {
@@ -125,6 +126,7 @@ class SceneBuilder {
   void placePrototypes();
   void resolveTextures();
   void warnOfMissingUvs();
+  void findStrays();
   void roundPositions();
   void dropUnusable();
   void placeInstances();
@@ -132,6 +134,7 @@ class SceneBuilder {
   void sortByMask();
   void extendBounds();
   void placeViews();
+  void requirePlace(const FilePoint& p, const char* what) const;
   void requireSize() const;
 
   Scene scene_;
@@ -149,6 +152,7 @@ class SceneBuilder {
   // Of scene_.materials: those that they are mixed of, and themselves.
   std::vector<uint32_t> mixParts_;
   uint32_t grey_ = kNone;
+  Strays strays_;  // of the world
   std::set<std::string> warned_;
 };
 

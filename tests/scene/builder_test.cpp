@@ -287,5 +287,53 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
   EXPECT_NE(error("").find("is a folder"), std::string::npos);
 }
 
+// Unused vertices mean nothing; a stray face does not blow up what offsets of rays follow.
+TEST_F(Builder, StraysFarAwayLeaveTheBoundsAlone) {
+  const std::string mtl = "newmtl paint\nKd 1 1 1\n";
+  const Bounds bounds = loadMesh(kSquareObj, mtl).bounds;
+  const Scene unused = loadMesh(kSquareObj + "v 1e6 0 0\n", mtl);
+  EXPECT_EQ(unused.bounds.upper, bounds.upper);
+  EXPECT_EQ(countContaining(unused.warnings, "away from the middle"), 0u);
+  for (const std::string x : {"1e5", "-1e6", "1e8"}) {
+    const Scene s = loadMesh(
+        kSquareObj + "f 1 2 3\nv " + x + " 0 0\nv " + x + " 100 0\nv " + x + " 0 100\nf -3 -2 -1\n",
+        mtl);
+    EXPECT_EQ(s.triangles.size(), 4u);
+    EXPECT_EQ(s.bounds.lower, bounds.lower) << x;
+    EXPECT_EQ(s.bounds.upper, bounds.upper) << x;
+    EXPECT_EQ(countContaining(s.warnings, "away from the middle of the others"), 1u) << x;
+  }
+  // The scene that lies far away from one face at the origin counts from where it is.
+  const Scene origin =
+      loadMesh(kSquareObj + "f 1 2 3\nv 1e6 0 0\nv 1e6 1e-3 0\nv 1e6 0 1e-3\nf -3 -2 -1\n", mtl,
+               "translate = [-1e6, 0, 0]\n");
+  EXPECT_NEAR(origin.origin[0], -1e6, 10.0);
+  // A ground plane and a dome are no strays, however large.
+  std::string detail;
+  for (int i = 0; i < 100; ++i) detail += "f 1 2 3\n";
+  const Scene plane =
+      loadMesh(kSquareObj + detail + "v -1e5 0 -1e5\nv 1e5 0 -1e5\nv 1e5 0 1e5\nf -3 -2 -1\n", mtl);
+  EXPECT_EQ(plane.bounds.upper.x, 1e5f);
+}
+
+TEST_F(Builder, WhatLiesBeyondFloatsIsRefused) {
+  const std::string mtl = "newmtl paint\nKd 1 1 1\n";
+  for (const std::string x : {"1e10", "1e19", "1e300"}) {
+    const std::string stray =
+        "f 1 2 3\nv " + x + " 0 0\nv " + x + " 1 0\nv " + x + " 0 1\nf -3 -2 -1\n";
+    EXPECT_THROW(loadMesh(kSquareObj + stray, mtl), InputError) << x;
+  }
+  SceneBuilder far("scene"), lamp("scene");
+  for (SceneBuilder* b : {&far, &lamp}) addTriangle(*b, b->addMaterial(lampOf(1)));
+  far.setCamera({0, -1e19, 0}, {});
+  EXPECT_THROW(far.finish(), InputError);
+  lamp.addLight({}, {1e19, 0, 0});
+  EXPECT_THROW(lamp.finish(), InputError);
+  std::string toml = kFilmAndCamera + "[[mesh]]\nfile = \"square.obj\"\n";
+  toml.replace(toml.find("5.0"), 3, "1e19");
+  EXPECT_NE(loadError(toml).find("'position' is 1e+19, outside -1e+18 to 1e+18"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -184,7 +184,7 @@ TEST(LogicalLines, EndWithTheirComments) {
 TEST_F(ObjNames, ErrorsCountTheLinesOfTheFile) {
   write("m.obj", "v 0 0 \\\n0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 0 1 2\n");
   const std::string error = loadError(kFilmAndCamera + "[[mesh]]\nfile = \"m.obj\"\n");
-  EXPECT_NE(error.find("line 6."), std::string::npos) << error;
+  EXPECT_NE(error.find("m.obj:6: "), std::string::npos) << error;
 }
 
 TEST_F(ObjNames, LargeFilesHaveNamesWithBlanksInEachPiece) {

@@ -182,5 +182,16 @@ TEST(Camera, FilmCornersAndBack) {
   EXPECT_LT(projectToFilm(camera, film, {1, 2, 4}).depth, 0.0f);
 }
 
+TEST_F(SceneToml, BackslashesOfFileNamesCountAsSlashes) {
+  write("square.obj", kSquareObj);
+  write("square.mtl", "newmtl paint\nKd 1 1 1\n");
+  const std::string mesh = kFilmAndCamera + "[[mesh]]\nfile = ";
+  EXPECT_EQ(load(mesh + "'.\\square.obj'\n").triangles.size(), 2u);
+  EXPECT_EQ(load(mesh + "\".\\\\square.obj\"\n").triangles.size(), 2u);
+  const std::string cure = "write / in file names, or put them in '...'";
+  EXPECT_NE(loadError(mesh + "\".\\square.obj\"\n").find(cure), std::string::npos);
+  EXPECT_NE(loadError(mesh + "\".\\new.obj\"\n").find(cure), std::string::npos);
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -91,6 +91,7 @@ void readGlb(const std::string& bytes, GltfDocument& out) {
 GltfDocument readGltfDocument(const fs::path& file) {
   if (!isRegularFile(file)) throw InputError(file, "no such file; name a .gltf or .glb");
   const std::string bytes = readText(file);
+  requireNoUtf16(file, bytes);
   GltfDocument out{file, {}, {}, false};
   if (bytes.size() >= 4 && wordAt(bytes, 0) == kMagic)
     readGlb(bytes, out);

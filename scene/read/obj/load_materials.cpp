@@ -1,5 +1,7 @@
 #include "scene/read/obj/load_materials.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scene/read/obj/mtl_metallic_roughness.h"
@@ -59,6 +61,17 @@ void readPhong(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps
   }
   p.diffuseMap = maps.image(in.diffuse_texname, in.diffuse_texopt, true);
   p.glossyMap = maps.image(in.specular_texname, in.specular_texopt, true);
+}
+
+// A material that says nothing of a colour is no black one.
+void greyWithoutColour(const MtlKeys& keys, const std::string& where, SceneBuilder& builder,
+                       tinyobj::material_t& in) {
+  constexpr std::array<std::string_view, 6> kColours{"Kd",     "map_Kd", "Ks",
+                                                     "map_Ks", "Ke",     "map_Ke"};
+  if (std::ranges::any_of(kColours, [&](auto key) { return keys.has(key); })) return;
+  if (isGlass(in.illum)) return;
+  std::ranges::fill(in.diffuse, 0.5);
+  builder.warn(where + "has no colour; it is grey (Kd 0.5)");
 }
 
 void readEmission(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
@@ -123,9 +136,9 @@ void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
   maps.image(in.specular_highlight_texname, in.specular_highlight_texopt, false);
 }
 
-uint32_t addMaterial(const MaterialSource& from, const tinyobj::material_t& in,
-                     SceneBuilder& builder) {
+uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBuilder& builder) {
   const std::string where = from.library.string() + ": material '" + in.name + "': ";
+  greyWithoutColour(from.keys, where, builder, in);
   const MtlMaps maps(from, builder, false);
   const bool facets = from.keys.metallicRoughness();
   Material m;
@@ -141,6 +154,7 @@ uint32_t addMaterial(const MaterialSource& from, const tinyobj::material_t& in,
     readRelief(in, from.keys, maps, m);
     m.opacityMap = maps.image(in.alpha_texname, in.alpha_texopt, false, true);
   }
+  for (const std::string& note : from.keys.notes) builder.warn(note);
   warnOfIgnored(in, from.keys, where, builder);
   return builder.addMaterial(std::move(m));
 }

@@ -19,7 +19,6 @@ void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder);
 
 // Returns the material's number in the scene.
-uint32_t addMaterial(const MaterialSource& from, const tinyobj::material_t& in,
-                     SceneBuilder& builder);
+uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBuilder& builder);
 
 }  // namespace bnvpl

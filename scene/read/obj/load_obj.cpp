@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "scene/read/obj/load_materials.h"
 #include "scene/read/obj/read_obj.h"
+#include "scene/triangulate.h"
 
 namespace bnvpl {
 
@@ -17,10 +18,8 @@ std::vector<uint32_t> addMaterials(const fs::path& obj, const ObjReading& readin
                                    SceneBuilder& builder) {
   const MaterialLibraries& libraries = reading.libraries;
   std::vector<bool> used(libraries.materials.size(), false);
-  for (const tinyobj::shape_t& shape : reading.shapes) {
-    for (const int id : shape.mesh.material_ids) {
-      if (id >= 0 && static_cast<size_t>(id) < used.size()) used[static_cast<size_t>(id)] = true;
-    }
+  for (const int id : reading.mesh.materials) {
+    if (id >= 0) used.at(static_cast<size_t>(id)) = true;
   }
   std::vector<uint32_t> numbers(used.size(), kNone);
   for (size_t i = 0; i < used.size(); ++i) {
@@ -31,29 +30,44 @@ std::vector<uint32_t> addMaterials(const fs::path& obj, const ObjReading& readin
   return numbers;
 }
 
-// Takes the shapes one by one, so that both forms of a mesh need not fit into memory.
-std::vector<Triangle> takeTriangles(std::vector<tinyobj::shape_t>& shapes,
-                                    const std::vector<uint32_t>& materials) {
-  const auto at = [](int index) { return index >= 0 ? static_cast<uint32_t>(index) : kNone; };
+struct CutFaces {
   std::vector<Triangle> triangles;
-  for (tinyobj::shape_t& shape : shapes) {
-    const tinyobj::mesh_t& mesh = shape.mesh;
-    const size_t count = std::min(mesh.num_face_vertices.size(), mesh.indices.size() / 3);
-    for (size_t f = 0; f < count; ++f) {
-      Triangle t;
-      for (size_t k = 0; k < 3; ++k) {
-        const tinyobj::index_t& i = mesh.indices[3 * f + k];
-        t.position[k] = at(i.vertex_index);
-        t.normal[k] = at(i.normal_index);
-        t.uv[k] = at(i.texcoord_index);
-      }
-      const uint32_t material = at(mesh.material_ids[f]);
-      t.material = material < materials.size() ? materials[material] : kNone;
-      triangles.push_back(t);
+  size_t crossing = 0;  // polygons that cross themselves
+};
+
+// A polygon that lacks a vertex is lost as a whole: its triangles have no corners, and the builder
+// leaves them out and counts them.
+CutFaces cutFaces(const ObjMesh& mesh, const std::vector<uint32_t>& materials) {
+  CutFaces out;
+  out.triangles.reserve(mesh.counts.size());
+  std::vector<FilePoint> outline;
+  std::vector<std::array<uint32_t, 3>> cut;
+  const ObjCorner* corner = mesh.corners.data();
+  for (size_t f = 0; f < mesh.counts.size(); corner += mesh.counts[f++]) {
+    const std::span<const ObjCorner> face(corner, mesh.counts[f]);
+    const uint32_t material =
+        mesh.materials[f] < 0 ? kNone : materials[static_cast<size_t>(mesh.materials[f])];
+    outline.clear();
+    cut.clear();
+    for (const ObjCorner& c : face) {
+      if (c.vertex >= mesh.positions.size() / 3) break;
+      const double* p = &mesh.positions[3 * size_t{c.vertex}];
+      outline.push_back({p[0], p[1], p[2]});
     }
-    shape = {};
+    if (outline.size() < face.size()) {
+      out.triangles.resize(out.triangles.size() + face.size() - 2,
+                           {kNoCorners, kNoCorners, kNoCorners, material});
+      continue;
+    }
+    out.crossing += !triangulate(outline, QuadCut::ShorterDiagonal, cut);
+    for (const auto& [a, b, c] : cut) {
+      out.triangles.push_back({{face[a].vertex, face[b].vertex, face[c].vertex},
+                               {face[a].normal, face[b].normal, face[c].normal},
+                               {face[a].uv, face[b].uv, face[c].uv},
+                               material});
+    }
   }
-  return triangles;
+  return out;
 }
 
 // 'a', 'b' and 3 more: of many, the first ones.
@@ -107,15 +121,17 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
   for (const fs::path& library : reading.libraries.read) builder.addFile(library);
   const std::vector<uint32_t> numbers = addMaterials(obj, reading, builder);
 
-  Mesh mesh{reading.attrib.vertices, reading.attrib.normals, reading.attrib.texcoords, {}};
-  mesh.triangles = takeTriangles(reading.shapes, numbers);
-  // The builder leaves them out and counts them, as triangles that lack a vertex.
-  mesh.triangles.resize(mesh.triangles.size() + reading.lostTriangles,
-                        {kNoCorners, kNoCorners, kNoCorners, kNone});
-  if (reading.uncutTriangles > 0) {
-    builder.warn(obj.string() + ": " + std::to_string(reading.uncutTriangles) +
-                 " triangles of polygons that cannot be cut are left out; triangulate the mesh");
+  CutFaces cut = cutFaces(reading.mesh, numbers);
+  cut.triangles.resize(cut.triangles.size() + reading.lostTriangles,
+                       {kNoCorners, kNoCorners, kNoCorners, kNone});
+  if (cut.crossing > 0) builder.warn(obj.string() + ": " + crossingPolygons(cut.crossing));
+  if (reading.unusableFaces > 0) {
+    builder.warn(obj.string() + ": " + std::to_string(reading.unusableFaces) +
+                 " faces of fewer than 3 corners are left out");
   }
+  if (cut.triangles.empty()) builder.warn(obj.string() + ": has no faces; it adds nothing");
+  Mesh mesh{reading.mesh.positions, reading.mesh.normals, reading.mesh.uvs,
+            std::move(cut.triangles)};
   if (builder.addMesh(obj, std::move(mesh), transform) > 0) warnOfGrey(obj, reading, builder);
 }
 

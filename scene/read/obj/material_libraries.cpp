@@ -6,6 +6,7 @@
 
 #include "core/files.h"
 #include "core/read_file.h"
+#include "scene/read/obj/mtl_text.h"
 #include "scene/read/obj/obj_text.h"
 
 namespace bnvpl {
@@ -49,9 +50,11 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
   // Once: an OBJ can name one library in many ways, as often as it has lines.
   if (std::find(read.begin(), read.end(), library) != read.end()) return;
   read.push_back(library);
-  const std::string text = logicalLines(readText(library));
-  const std::map<std::string, MtlKeys> keys = mtlKeys(text);
-  std::istringstream in(text);
+  std::string raw = readText(library);
+  requireNoUtf16(library, raw);
+  MtlText plain = plainMtl(library, logicalLines(std::move(raw)));
+  const std::map<std::string, MtlKeys> keys = mtlKeys(plain.text);
+  std::istringstream in(plain.text);
   std::map<std::string, int> byName;
   std::string warnings, errors;
   tinyobj::LoadMtl(&byName, &materials, &in, &warnings, &errors);
@@ -60,6 +63,7 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
     m.name = std::string(trimmed(m.name));
     const auto stated = keys.find(m.name);
     keysOf.push_back(stated == keys.end() ? MtlKeys{} : stated->second);
+    keysOf.back().notes = plain.notes[m.name];
     if (numbers.try_emplace(oneWord(m.name), static_cast<int>(i)).second)  // the first of a name
       onMaterial(library, m, keysOf.back());
   }

@@ -6,12 +6,14 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bnvpl {
 
 struct MtlKeys {
   std::set<std::string, std::less<>> keys;
-  bool blender = false;  // the library says that Blender wrote it
+  std::vector<std::string> notes;  // what of its lines is ignored: MtlText
+  bool blender = false;            // the library says that Blender wrote it
 
   bool has(std::string_view key) const { return keys.contains(key); }
   // Read as roughness and metal (docs/scene-format.md); else as Phong, mirror or glass.

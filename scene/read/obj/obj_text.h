@@ -14,6 +14,7 @@ std::string logicalLines(std::string text);
 
 inline bool isBlank(char c) { return c == ' ' || c == '\t'; }
 std::string_view trimmed(std::string_view text);  // without blanks at its ends
+std::vector<std::string_view> wordsOf(std::string_view text);
 
 // tinyobjloader ends the name of a usemtl at its first blank. So names travel as one word: blanks
 // become control characters, which no name holds.

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <istream>
-#include <iterator>
+#include <span>
 #include <streambuf>
-#include <utility>
+#include <string_view>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -19,100 +19,106 @@ namespace bnvpl {
 
 namespace {
 
-// Two texts one after the other, read where they are. Borrows both.
-class JoinedTexts : public std::streambuf {
+// A text, read where it is.
+class ViewBuffer : public std::streambuf {
  public:
-  JoinedTexts(std::string_view first, std::string_view second) : second_(second) { point(first); }
-
- protected:
-  int_type underflow() override {
-    if (gptr() == egptr()) point(std::exchange(second_, {}));
-    return gptr() == egptr() ? traits_type::eof() : traits_type::to_int_type(*gptr());
-  }
-
- private:
-  void point(std::string_view text) {
+  explicit ViewBuffer(std::string_view text) {
     char* begin = const_cast<char*>(text.data());  // nobody puts a character back
     setg(begin, begin, begin + text.size());
   }
-  std::string_view second_;
 };
 
-// Tells tinyobj the materials of all libraries at once.
-class KnownMaterials : public tinyobj::MaterialReader {
- public:
-  explicit KnownMaterials(const std::map<std::string, int>& numbers) : numbers_(numbers) {}
-  bool operator()(const std::string&, std::vector<tinyobj::material_t>*,
-                  std::map<std::string, int>* byName, std::string*, std::string*) override {
-    *byName = numbers_;
-    return true;
-  }
-
- private:
-  const std::map<std::string, int>& numbers_;
-};
-constexpr const char* kAskForMaterials = "mtllib all\n";
-
+// What the callbacks of tinyobj fill: the corners in the numbers of the whole mesh.
 struct Parsed {
-  tinyobj::attrib_t attrib;
-  std::vector<tinyobj::shape_t> shapes;
-  std::string problem;  // empty: none
+  ObjMesh mesh;
+  int material = -1;
+  const MeshLines::Piece& piece;
+  const std::map<std::string, int>& materials;
+
+  // `number` counts from 1, or back from the end; 0: there is none.
+  static uint32_t resolved(int number, size_t before) {
+    const int64_t index = number > 0 ? int64_t{number} - 1 : static_cast<int64_t>(before) + number;
+    return number == 0 || index < 0 || index >= kNone ? kNone : static_cast<uint32_t>(index);
+  }
+  void addFace(std::span<const tinyobj::index_t> face) {
+    const size_t vertices = piece.vertices + mesh.positions.size() / 3,
+                 normals = piece.normals + mesh.normals.size() / 3,
+                 coordinates = piece.coordinates + mesh.uvs.size() / 2;
+    for (const tinyobj::index_t& i : face) {
+      mesh.corners.push_back({resolved(i.vertex_index, vertices), resolved(i.normal_index, normals),
+                              resolved(i.texcoord_index, coordinates)});
+    }
+    mesh.counts.push_back(static_cast<uint32_t>(face.size()));
+    mesh.materials.push_back(material);
+  }
+  void use(std::string_view name) {
+    const auto found = materials.find(std::string(trimmed(name)));
+    material = found == materials.end() ? -1 : found->second;
+  }
 };
 
-Parsed parse(const std::string& before, std::string_view text,
-             const std::map<std::string, int>& materials) {
-  Parsed out;
-  JoinedTexts texts(before, text);
-  std::istream in(&texts);
-  KnownMaterials known(materials);
-  std::vector<tinyobj::material_t> none;
-  std::string warnings, errors;
-  const bool ok = tinyobj::LoadObj(&out.attrib, &out.shapes, &none, &warnings, &errors, &in, &known,
-                                   /*triangulate=*/true, /*default_vcols_fallback=*/false);
-  if (!ok || !errors.empty()) out.problem = firstLine(errors.empty() ? warnings : errors);
-  return out;
-}
-
-Parsed parsePiece(const MeshLines& lines, const MeshLines::Piece& piece,
-                  const std::map<std::string, int>& materials) {
-  std::string before = kAskForMaterials;
-  if (piece.material) before.append("usemtl ").append(*piece.material) += '\n';
-  return parse(before, std::string_view(lines.text).substr(piece.begin, piece.end - piece.begin),
-               materials);
+ObjMesh parse(const MeshLines& lines, const MeshLines::Piece& piece,
+              const std::map<std::string, int>& materials) {
+  Parsed out{{}, -1, piece, materials};
+  if (piece.material) out.use(*piece.material);
+  tinyobj::callback_t to;
+  using Real = tinyobj::real_t;
+  to.vertex_cb = [](void* p, Real x, Real y, Real z, Real) {
+    auto& v = static_cast<Parsed*>(p)->mesh.positions;
+    v.insert(v.end(), {x, y, z});
+  };
+  to.normal_cb = [](void* p, Real x, Real y, Real z) {
+    auto& v = static_cast<Parsed*>(p)->mesh.normals;
+    v.insert(v.end(), {x, y, z});
+  };
+  to.texcoord_cb = [](void* p, Real x, Real y, Real) {
+    auto& v = static_cast<Parsed*>(p)->mesh.uvs;
+    v.insert(v.end(), {x, y});
+  };
+  to.index_cb = [](void* p, tinyobj::index_t* corners, int count) {
+    static_cast<Parsed*>(p)->addFace({corners, static_cast<size_t>(count)});
+  };
+  to.usemtl_cb = [](void* p, const char* name, int) { static_cast<Parsed*>(p)->use(name); };
+  // obj_lines.cpp leaves no group but for a usemtl without a name.
+  to.group_cb = [](void* p, const char**, int) { static_cast<Parsed*>(p)->use(""); };
+  ViewBuffer buffer(std::string_view(lines.text).substr(piece.begin, piece.end - piece.begin));
+  std::istream in(&buffer);
+  tinyobj::LoadObjWithCallback(in, to, &out);
+  return std::move(out.mesh);
 }
 
 // The pieces side by side, joined in their order.
-Parsed parsePieces(const MeshLines& lines, const std::map<std::string, int>& materials) {
-  if (lines.pieces.size() == 1) return parsePiece(lines, lines.pieces.front(), materials);
-  std::vector<Parsed> pieces(lines.pieces.size());
+ObjMesh parsePieces(const MeshLines& lines, const std::map<std::string, int>& materials) {
+  if (lines.pieces.size() == 1) return parse(lines, lines.pieces.front(), materials);
+  std::vector<ObjMesh> pieces(lines.pieces.size());
   parallelFor(pieces.size(), 1,
-              [&](size_t i) { pieces[i] = parsePiece(lines, lines.pieces[i], materials); });
-  Parsed out;
-  out.attrib.vertices.reserve(3 * lines.vertices);
-  out.attrib.normals.reserve(3 * lines.normals);
-  out.attrib.texcoords.reserve(2 * lines.coordinates);
+              [&](size_t i) { pieces[i] = parse(lines, lines.pieces[i], materials); });
+  ObjMesh out;
+  out.positions.reserve(3 * lines.vertices);
+  out.normals.reserve(3 * lines.normals);
+  out.uvs.reserve(2 * lines.coordinates);
   const auto move = [](auto& from, auto& to) {
-    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+    to.insert(to.end(), from.begin(), from.end());
     from = {};
   };
-  for (Parsed& piece : pieces) {
-    if (out.problem.empty()) out.problem = piece.problem;
-    move(piece.attrib.vertices, out.attrib.vertices);
-    move(piece.attrib.normals, out.attrib.normals);
-    move(piece.attrib.texcoords, out.attrib.texcoords);
-    move(piece.shapes, out.shapes);
+  for (ObjMesh& piece : pieces) {
+    move(piece.positions, out.positions);
+    move(piece.normals, out.normals);
+    move(piece.uvs, out.uvs);
+    move(piece.corners, out.corners);
+    move(piece.counts, out.counts);
+    move(piece.materials, out.materials);
   }
   return out;
 }
 
 constexpr const char* kTooLarge = "simplify the mesh";
 
-// What tinyobj and then we take for a mesh at least, beside the text: doubles, indices and faces of
-// its, triangles and points of ours.
+// What a mesh takes at least, beside the text: numbers, corners, triangles and points.
 double bytesOf(const MeshLines& lines) {
   const auto n = [](size_t count) { return static_cast<double>(count); };
   constexpr double kReal = sizeof(tinyobj::real_t);
-  const double perTriangle = 3.0 * sizeof(tinyobj::index_t) + sizeof(int) + sizeof(Triangle);
+  const double perTriangle = 3.0 * sizeof(ObjCorner) + sizeof(int) + sizeof(Triangle);
   return n(lines.vertices) * (3.0 * kReal + sizeof(FilePoint)) +
          n(lines.normals) * (3.0 * kReal + sizeof(Vec3)) +
          n(lines.coordinates) * 2.0 * (kReal + sizeof(float)) + n(lines.triangles) * perTriangle;
@@ -125,7 +131,9 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
   std::error_code vanished;  // is readText's to report
   const auto size = static_cast<double>(fs::file_size(obj, vanished));
   if (!vanished) requireMemory(size, obj.string() + ": reading it", kTooLarge);
-  const MeshLines lines = meshLines(obj, readText(obj), pieceBytes);
+  std::string text = readText(obj);
+  requireNoUtf16(obj, text);
+  const MeshLines lines = meshLines(obj, std::move(text), pieceBytes);
   requireMemory(bytesOf(lines),
                 obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
                 kTooLarge);
@@ -143,19 +151,10 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
   }
   out.unknown = out.libraries.resolve(lines.materials);
 
-  Parsed parsed = parsePieces(lines, out.libraries.numbers);
-  if (!parsed.problem.empty()) {
-    // The text alone, in one go, tells the line.
-    const std::string problem = parse("", lines.text, {}).problem;
-    throw InputError(obj, "cannot read the mesh: " + (problem.empty() ? parsed.problem : problem));
-  }
-  out.attrib = std::move(parsed.attrib);
-  out.shapes = std::move(parsed.shapes);
+  out.mesh = parsePieces(lines, out.libraries.numbers);
   out.lostTriangles = lines.lostTriangles;
-  size_t made = 0;
-  for (const tinyobj::shape_t& shape : out.shapes) made += shape.mesh.num_face_vertices.size();
-  out.uncutTriangles = lines.triangles - std::min(lines.triangles, made);
-  for (const size_t vertex : lines.verticesOfWords) out.attrib.vertices.at(3 * vertex) = NAN;
+  out.unusableFaces = lines.unusableFaces;
+  for (const size_t vertex : lines.verticesOfWords) out.mesh.positions.at(3 * vertex) = NAN;
   return out;
 }
 

@@ -1,20 +1,35 @@
 // An OBJ and the libraries that it names, as tinyobjloader understands them.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "core/errors.h"
 #include "scene/read/obj/material_libraries.h"
 #include "scene/read/obj/obj_lines.h"
-#include "scene/read/obj/tinyobj.h"
 
 namespace bnvpl {
 
+struct ObjCorner {
+  uint32_t vertex, normal, uv;  // kNone: none
+  bool operator==(const ObjCorner&) const = default;
+};
+
+// The polygons of an OBJ, in its order.
+struct ObjMesh {
+  std::vector<double> positions, normals, uvs;  // x, y, z; x, y, z; u, v. NaN where it has a word
+  std::vector<ObjCorner> corners;               // of all faces, one after the other
+  std::vector<uint32_t> counts;                 // corners of each face, at least 3
+  std::vector<int> materials;                   // of each, in libraries.materials; -1: none
+};
+
 struct ObjReading {
-  tinyobj::attrib_t attrib;              // NaN where the file has a word
-  std::vector<tinyobj::shape_t> shapes;  // material_ids count in libraries.materials; -1: none
+  ObjMesh mesh;
   MaterialLibraries libraries;
   std::vector<std::string> unknown;  // materials that faces ask for and no library has
-  size_t lostTriangles = 0;          // of polygons that name a vertex that there is not
-  size_t uncutTriangles = 0;         // of polygons that tinyobj cannot cut
+  size_t lostTriangles = 0;          // of faces with numbers that no int holds
+  size_t unusableFaces = 0;          // of fewer than three corners
 };
 
 // `materials` replaces the libraries that the OBJ names; empty: those are used, and hold for the

@@ -6,12 +6,11 @@
 
 #include "scene/read/pbrt/lexer.h"
 #include "scene/read/pbrt/ply_header.h"
+#include "scene/triangulate.h"
 
 namespace bnvpl::pbrt {
 
 namespace {
-
-constexpr size_t kMostCorners = 1024;  // of a face
 
 // Values one after the other. What is beyond the end is 0, and marks the body as cut short.
 class Body {
@@ -143,7 +142,7 @@ void readVertices(const fs::path& file, Body& body, const PlyElement& element, M
 bool readFace(Body& body, const PlyProperty& p, std::vector<uint32_t>& corners) {
   const double count = body.next(p.countType);
   corners.clear();
-  if (!(count >= 3.0 && count <= double(kMostCorners))) {
+  if (!(count >= 3.0 && count <= double(kMaxPolygonCorners))) {
     skipValues(body, p, count);
     return false;
   }
@@ -154,9 +153,15 @@ bool readFace(Body& body, const PlyProperty& p, std::vector<uint32_t>& corners) 
   return true;
 }
 
-// The numbers of corners, all that there are; those of no vertex are for checkCorners().
-void readFaces(Body& body, const PlyElement& element, MeshData& mesh, size_t& unusable) {
-  mesh.triangles.reserve(element.count);
+// Faces of three or more corners, one after the other.
+struct Faces {
+  std::vector<uint32_t> corners;
+  std::vector<uint32_t> counts;  // of corners
+  size_t unusable = 0;
+};
+
+void readFaces(Body& body, const PlyElement& element, Faces& faces) {
+  faces.counts.reserve(element.count);
   std::vector<uint32_t> corners;
   for (size_t i = 0; i < element.count && !body.cut(); ++i) {
     for (const PlyProperty& p : element.properties) {
@@ -165,28 +170,44 @@ void readFaces(Body& body, const PlyElement& element, MeshData& mesh, size_t& un
       } else if (p.name != "vertex_indices" && p.name != "vertex_index") {
         skipList(body, p);
       } else if (!readFace(body, p, corners)) {
-        ++unusable;
+        ++faces.unusable;
       } else {
-        ++mesh.pieces;
-        for (size_t k = 2; k < corners.size(); ++k)
-          mesh.triangles.push_back({{corners[0], corners[k - 1], corners[k]}, {}, {}, kNone});
+        faces.corners.insert(faces.corners.end(), corners.begin(), corners.end());
+        faces.counts.push_back(static_cast<uint32_t>(corners.size()));
       }
     }
   }
 }
 
-void completeCorners(const fs::path& file, MeshData& mesh) {
-  constexpr std::array<uint32_t, 3> kNo{kNone, kNone, kNone};
-  for (Triangle& t : mesh.triangles) {
-    for (const uint32_t corner : t.position) {
-      if (corner >= mesh.vertices()) {
-        throw InputError(file, "has a face with a corner outside of its " +
-                                   std::to_string(mesh.vertices()) + " vertices");
-      }
+void requireVertices(const fs::path& file, const Faces& faces, const MeshData& mesh) {
+  for (const uint32_t corner : faces.corners) {
+    if (corner >= mesh.vertices()) {
+      throw InputError(file, "has a face with a corner outside of its " +
+                                 std::to_string(mesh.vertices()) + " vertices");
     }
-    t.normal = mesh.normals.empty() ? kNo : t.position;
-    t.uv = mesh.uvs.empty() ? kNo : t.position;
   }
+}
+
+// Returns how many cross themselves.
+size_t cutFaces(const Faces& faces, MeshData& mesh) {
+  size_t crossing = 0;
+  mesh.triangles.reserve(faces.counts.size());
+  std::vector<FilePoint> outline;
+  std::vector<std::array<uint32_t, 3>> cut;
+  const uint32_t* first = faces.corners.data();
+  for (const uint32_t count : faces.counts) {
+    outline.clear();
+    cut.clear();
+    for (uint32_t k = 0; k < count; ++k) {
+      const double* p = &mesh.positions[3 * size_t{first[k]}];
+      outline.push_back({p[0], p[1], p[2]});
+    }
+    crossing += !triangulate(outline, QuadCut::FirstCorner, cut);
+    for (const auto& [a, b, c] : cut) mesh.addTriangle(first[a], first[b], first[c]);
+    first += count;
+  }
+  mesh.pieces = faces.counts.size();
+  return crossing;
 }
 
 }  // namespace
@@ -195,14 +216,14 @@ MeshData readPly(const fs::path& file, std::string_view bytes) {
   const PlyHeader header = readPlyHeader(file, bytes);
   Body body(bytes.substr(header.bodyBegin), header.format);
   MeshData mesh;
-  size_t unusable = 0;
+  Faces faces;
   bool hasVertices = false;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex" && !hasVertices) {
       hasVertices = true;
       readVertices(file, body, element, mesh);
     } else if (element.name == "face") {
-      readFaces(body, element, mesh, unusable);
+      readFaces(body, element, faces);
     } else {
       for (size_t i = 0; i < element.count && !body.cut(); ++i) {
         for (const PlyProperty& p : element.properties) {
@@ -220,9 +241,11 @@ MeshData readPly(const fs::path& file, std::string_view bytes) {
     }
   }
   if (!hasVertices) throw InputError(file, "has no vertices");
-  completeCorners(file, mesh);
-  if (unusable > 0) {
-    mesh.notes.push_back(file.string() + ": " + std::to_string(unusable) +
+  requireVertices(file, faces, mesh);
+  if (const size_t crossing = cutFaces(faces, mesh); crossing > 0)
+    mesh.notes.push_back(file.string() + ": " + crossingPolygons(crossing));
+  if (faces.unusable > 0) {
+    mesh.notes.push_back(file.string() + ": " + std::to_string(faces.unusable) +
                          " faces of less than 3 or more than 1024 corners are left out");
   }
   return mesh;

@@ -10,7 +10,7 @@
 
 namespace bnvpl::pbrt {
 
-// Takes any bytes. Throws InputError. Faces of more than three corners become fans of triangles.
+// Takes any bytes. Throws InputError. Faces of more than three corners are cut into triangles.
 // `file` is for messages.
 MeshData readPly(const fs::path& file, std::string_view bytes);
 

@@ -53,7 +53,9 @@ std::string readPacked(const fs::path& file) {
   if (!isRegularFile(file)) throw InputError(file, "no such file; check its name");
   std::string text = readText(file);
   const bool packed = text.size() > 2 && text[0] == '\x1f' && text[1] == '\x8b';
-  return packed ? unpacked(file, text) : text;
+  if (packed) text = unpacked(file, text);
+  requireNoUtf16(file, text);
+  return text;
 }
 
 }  // namespace bnvpl::pbrt

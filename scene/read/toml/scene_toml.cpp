@@ -28,7 +28,7 @@ class FileNames {
 
  private:
   std::string expand(const TomlSection& section, const char* key) const {
-    const std::string text = section.text(key);
+    const std::string text = section.fileName(key);
     std::string out;
     for (size_t i = 0; i < text.size();) {
       const size_t end = text.compare(i, 2, "${") == 0 ? text.find('}', i) : std::string::npos;
@@ -148,7 +148,7 @@ void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& build
   const std::string type = s.text("type");
   if (type == "point" || type == "spot") {
     light.type = type == "point" ? LightType::Point : LightType::Spot;
-    position = s.point("position");
+    position = s.place("position");
     readPointLight(s, light);
   } else if (type == "directional") {
     light.type = LightType::Directional;

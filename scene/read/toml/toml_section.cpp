@@ -46,16 +46,23 @@ void refuseDeepKeys(const fs::path& file, const std::string& text) {
   }
 }
 
+// TOML's own rule, which names of Windows meet.
+constexpr const char* kBackslashCure =
+    "; in \"...\" a backslash begins an escape: write / in file names, or put them in '...'";
+
 }  // namespace
 
 toml::table parseToml(const fs::path& file) {
   if (!isRegularFile(file)) throw InputError(file, "no such file; name a scene.toml");
   const std::string text = readText(file);
+  requireNoUtf16(file, text);
   refuseDeepKeys(file, text);
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& e) {
-    throw InputError(lineOf(file, e.source()) + std::string(e.description()));
+    const std::string problem(e.description());
+    const bool escape = problem.find("escape sequence") != problem.npos;
+    throw InputError(lineOf(file, e.source()) + problem + (escape ? kBackslashCure : ""));
   }
 }
 
@@ -147,6 +154,15 @@ std::string TomlSection::text(const char* key) const {
   const auto v = node(key).value_exact<std::string>();
   if (!v) fail(node(key), std::string("'") + key + "' must be a text in quotes");
   return *v;
+}
+
+std::string TomlSection::fileName(const char* key) const {
+  std::string name = text(key);
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; })) {
+    fail(node(key), std::string("'") + key + "' holds a control character" + kBackslashCure);
+  }
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
 }
 
 FilePoint TomlSection::triple(const char* key, double least, double most) const {

@@ -45,7 +45,10 @@ class TomlSection {
   double numberOf(const toml::node& n, const char* key, double least, double most) const;
   uint32_t integer(const char* key, uint32_t least, uint32_t most) const;
   std::string text(const char* key) const;
+  // A text without control characters, its backslashes as slashes.
+  std::string fileName(const char* key) const;
   std::array<float, 2> pair(const char* key, double most) const;  // each of a size up to `most`
+  FilePoint place(const char* key) const { return triple(key, -kFurthestPlace, kFurthestPlace); }
   FilePoint point(const char* key) const { return triple(key, -kMaxMagnitude, kMaxMagnitude); }
   Vec3 color(const char* key) const;      // not negative
   Vec3 direction(const char* key) const;  // unit length

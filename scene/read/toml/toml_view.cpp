@@ -36,7 +36,7 @@ TomlView readTomlView(const fs::path& file, const toml::table& root) {
       readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
   const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
                            {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift"});
-  const FilePoint position = camera.point("position");
+  const FilePoint position = camera.place("position");
   return {film, position, readCamera(camera, position)};
 }
 

@@ -1,0 +1,24 @@
+// The text of an MTL in the one of its many forms that tinyobjloader reads.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/errors.h"
+
+namespace bnvpl {
+
+struct MtlText {
+  std::string text;
+  std::map<std::string, std::vector<std::string>> notes;  // by material: what is ignored
+};
+
+// `lines` are those of logicalLines(). Keys get their usual case; colours three linear sRGB values
+// (one value is grey, CIE XYZ is converted, spectral files are ignored); options of maps stand
+// before the name, with all their values, and those that mean nothing here are left out. Throws
+// InputError with the line at what should be a number and is none.
+MtlText plainMtl(const fs::path& library, std::string_view lines);
+
+}  // namespace bnvpl
