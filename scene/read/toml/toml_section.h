@@ -4,6 +4,9 @@
 
 #include <toml++/toml.h>
 
+#include <map>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,8 +49,20 @@ class TomlSection {
   uint32_t integer(const char* key, uint32_t least, uint32_t most) const;
   std::string text(const char* key) const;
   std::array<float, 2> pair(const char* key, double most) const;  // each of a size up to `most`
+  bool flag(const char* key, bool otherwise) const;
+  // The place of the text in `names`.
+  uint32_t choice(const char* key, std::span<const char* const> names) const;
+  // 'name', which must not be empty, nor among those that are known.
+  std::string newName(const std::map<std::string, uint32_t>& known) const;
+  // The number of the text among those that are known, each a table of the kind.
+  uint32_t known(const char* key, const std::string& kind,
+                 const std::map<std::string, uint32_t>& numbers) const;
+  std::vector<std::vector<double>> rows(const char* key, size_t rows, size_t columns) const;
+  // A key of another sort would be ignored. `what` is "a point light".
+  void requireOnly(const std::string& what, const std::set<std::string>& allowed) const;
   FilePoint point(const char* key) const { return triple(key, -kMaxMagnitude, kMaxMagnitude); }
-  Vec3 color(const char* key) const;      // not negative
+  Vec3 color(const char* key) const;  // not negative
+  Vec3 vector(const char* key) const { return fromOrigin(point(key), {}); }
   Vec3 direction(const char* key) const;  // unit length
 
   static constexpr double kMaxMagnitude = 1e30;  // of a coordinate, a factor or a power
