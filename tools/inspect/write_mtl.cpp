@@ -118,7 +118,7 @@ std::string facetsText(const MetallicRoughnessModel& m, const PhongModel& p) {
 std::string phongText(const PhongModel& p) {
   if (p.glass) {
     return "illum 7\nNi " + shortestText(p.ior) + "\nTf " + triple(p.transmission) + "\nKs " +
-           triple(p.mirror) + "\n";
+           triple(p.mirror) + "\nNs " + shortestText(p.exponent) + "\n";
   }
   const bool mirror = !isBlack(p.mirror);
   return "illum " + std::string(mirror ? "3" : "2") + "\nKd " + triple(p.diffuse) + "\nKs " +

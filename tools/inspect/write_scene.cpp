@@ -5,7 +5,6 @@
 #include "core/number_text.h"
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
-#include "scene/affine.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
 #include "tools/inspect/scene_difference.h"
@@ -16,21 +15,22 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-FilePoint filePlace(const Scene& scene, Vec3 p) {
-  return {p.x + scene.origin[0], p.y + scene.origin[1], p.z + scene.origin[2]};
+std::string listText(Vec3 v) {
+  return "[" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + "]";
 }
-
-std::string listText(const FilePoint& p) {
-  return "[" + shortestText(p[0]) + ", " + shortestText(p[1]) + ", " + shortestText(p[2]) + "]";
+std::string placeText(const Scene& scene, Vec3 p) {
+  const auto [x, y, z] = scene.origin;
+  if (x == 0.0 && y == 0.0 && z == 0.0) return listText(p);
+  return "[" + shortestText(p.x + x) + ", " + shortestText(p.y + y) + ", " + shortestText(p.z + z) +
+         "]";
 }
-std::string listText(Vec3 v) { return listText(FilePoint{v.x, v.y, v.z}); }
 std::string degText(float rad) { return shortestText(double{rad} * kDegPerRad); }
 
 // `mirrored` is stated where a reader would guess otherwise.
 std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool guess) {
   std::string text = "[film]\nwidth = " + std::to_string(film.width) +
                      "\nheight = " + std::to_string(film.height) +
-                     "\n\n[camera]\nposition = " + listText(filePlace(scene, c.position)) +
+                     "\n\n[camera]\nposition = " + placeText(scene, c.position) +
                      "\nforward = " + listText(c.forward) + "\nup = " + listText(c.up) +
                      "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n";
   if (c.shift != std::array<float, 2>{})
@@ -52,7 +52,7 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
     case LightType::Point:
     case LightType::Spot:
       add("type", l.type == LightType::Point ? "\"point\"" : "\"spot\"");
-      add("position", listText(filePlace(scene, l.position)));
+      add("position", placeText(scene, l.position));
       add("intensity", listText(l.emission));
       if (l.type == LightType::Point) break;
       add("direction", listText(l.direction));
@@ -72,7 +72,7 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
       else
         add("image", "\"" + environmentFile(l.image) + "\"");
       add("rotate_deg", degText(l.rotateRad));
-      add("scale", shortestText(double{l.scale}));
+      add("scale", shortestText(l.scale));
       break;
   }
   return text;
