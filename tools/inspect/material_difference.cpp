@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "scene/material_inputs.h"
-#include "tools/inspect/write_scene.h"
 
 namespace bnvpl {
 
@@ -97,8 +96,7 @@ Vec3 opacityAt(const Scene& scene, const Material& m, float u, float v) {
 bool sameMaterial(const MaterialOf& material, const MaterialOf& again) {
   const Scene &a = material.scene, &b = again.scene;
   const Material &m = *material, &n = *again;
-  if (n.name != materialName(a, material.number) || m.model.index() != n.model.index())
-    return false;
+  if (m.model.index() != n.model.index()) return false;
   const Parts p = partsOf(m), q = partsOf(n);
   const auto part = [&](uint32_t i, uint32_t j) {
     return i == kNone || j == kNone ? i == j : sameMaterial({a, i}, {b, j});

@@ -11,8 +11,7 @@ struct MaterialOf {
   const Material& operator*() const { return scene.materials[number]; }
 };
 
-// By their parameters, textures by their values at some places. `again` has the name that
-// write_scene.h gives.
+// By their parameters, and textures by their values at some places; names do not count.
 bool sameMaterial(const MaterialOf& material, const MaterialOf& again);
 
 }  // namespace bnvpl

@@ -6,7 +6,6 @@
 
 #include "scene/material_inputs.h"
 #include "tools/inspect/material_difference.h"
-#include "tools/inspect/write_scene.h"
 
 namespace bnvpl {
 

@@ -148,25 +148,39 @@ std::string materialText(const Scene& scene, const Material& m, WrittenMaterials
          imageLine(scene, "map_d", m.opacityMap, used);
 }
 
-}  // namespace
-
-std::string materialName(const Scene& scene, uint32_t material) {
-  std::string name = "m" + std::to_string(material) + " " + scene.materials[material].name;
+// Without what OBJ and MTL take for more than a name.
+std::string cleanName(std::string name) {
   for (char& c : name) {
     const auto code = static_cast<unsigned char>(c);
     if (code < 0x20 || code == 0x7f || c == '\\' || c == '#') c = '_';
   }
-  name.resize(name.find_last_not_of(' ') + 1);
   using nlohmann::json;  // replaces what is no UTF-8
-  return json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace));
+  name = json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace));
+  const size_t first = std::min(name.find_first_not_of(' '), name.size());
+  return name.substr(first, name.find_last_not_of(' ') + 1 - first);
+}
+
+}  // namespace
+
+std::vector<std::string> materialNames(const Scene& scene) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Material& m : scene.materials) {
+    const std::string name = cleanName(m.name);
+    const std::string numbered = name + " (" + std::to_string(names.size());
+    std::string own = name.empty() ? numbered + ")" : name;
+    for (size_t copy = 1; !taken.insert(own).second; ++copy)
+      own = numbered + (copy > 1 ? ", " + std::to_string(copy) : "") + ")";
+    names.push_back(own);
+  }
+  return names;
 }
 
 std::string mtlText(const Scene& scene, WrittenMaterials& used) {
   std::string text =
       "# scene.toml states the materials that MTL cannot; here they are the nearest that it can.\n";
   for (const uint32_t i : used.materials) {
-    text +=
-        "newmtl " + materialName(scene, i) + "\n" + materialText(scene, scene.materials[i], used);
+    text += "newmtl " + used.names[i] + "\n" + materialText(scene, scene.materials[i], used);
   }
   return text;
 }

@@ -1,5 +1,6 @@
+#include <algorithm>
 #include <cmath>
-#include <map>
+#include <span>
 
 #include "core/number_text.h"
 #include "scene/affine.h"
@@ -9,64 +10,69 @@ namespace bnvpl {
 
 namespace {
 
-// Numbers from 1, in the order of first use.
+// Numbers from 1 of the indices that are used, in their order.
 class Numbering {
  public:
   std::vector<uint32_t> used;
-  size_t of(uint32_t index) {
-    const auto [it, isNew] = numbers_.try_emplace(index, used.size() + 1);
-    if (isNew) used.push_back(index);
-    return it->second;
+  void finish() {
+    std::ranges::sort(used);
+    used.erase(std::ranges::unique(used).begin(), used.end());
   }
-
- private:
-  std::map<uint32_t, size_t> numbers_;
+  std::string operator[](uint32_t index) const {
+    return std::to_string(std::ranges::lower_bound(used, index) - used.begin() + 1);
+  }
 };
 
 bool isFinite(const std::array<float, 2>& uv) {
   return std::isfinite(uv[0]) && std::isfinite(uv[1]);
 }
 
+std::string placeText(Vec3 p, const FilePoint& origin) {
+  std::string text;
+  for (size_t k = 0; k < 3; ++k)
+    text += " " + (origin[k] == 0.0 ? shortestText(p[k]) : shortestText(p[k] + origin[k]));
+  return text;
+}
+
 }  // namespace
 
 // Consecutive triangles of a material stand together; the order is the scene's.
-std::string objText(const Scene& scene, uint32_t begin, uint32_t end) {
-  const bool world = begin < scene.worldEnd();
+std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
+                    const std::vector<std::string>& names) {
+  const std::span triangles(&scene.triangles[begin], end - begin);
+  const auto hasUv = [&](const Triangle& t, size_t k) {
+    return t.uv[k] != kNone && isFinite(scene.uvs[t.uv[k]]);
+  };
   Numbering positions, normals, uvs;
-  std::string faces;
-  uint32_t material = kNone;
-  for (uint32_t i = begin; i < end; ++i) {
-    const Triangle& t = scene.triangles[i];
-    if (t.material != material) faces += "usemtl " + materialName(scene, t.material) + "\n";
-    material = t.material;
-    faces += "f";
+  for (const Triangle& t : triangles) {
     for (size_t k = 0; k < 3; ++k) {
-      const bool uv = t.uv[k] != kNone && isFinite(scene.uvs[t.uv[k]]);
-      faces += " " + std::to_string(positions.of(t.position[k]));
-      if (uv) faces += "/" + std::to_string(uvs.of(t.uv[k]));
-      if (t.normal[k] != kNone)
-        faces += (uv ? "/" : "//") + std::to_string(normals.of(t.normal[k]));
+      positions.used.push_back(t.position[k]);
+      if (t.normal[k] != kNone) normals.used.push_back(t.normal[k]);
+      if (hasUv(t, k)) uvs.used.push_back(t.uv[k]);
     }
-    faces += "\n";
   }
+  for (Numbering* n : {&positions, &normals, &uvs}) n->finish();
+
   std::string text = "mtllib scene.mtl\n";
-  for (const uint32_t i : positions.used) {
-    const Vec3 p = scene.positions[i];
-    text += "v";
+  const bool world = begin < scene.worldEnd();
+  for (const uint32_t i : positions.used)
+    text += "v" + placeText(scene.positions[i], world ? scene.origin : FilePoint{}) + "\n";
+  for (const uint32_t i : normals.used) text += "vn" + placeText(scene.normals[i], {}) + "\n";
+  for (const uint32_t i : uvs.used)
+    text += "vt " + shortestText(scene.uvs[i][0]) + " " + shortestText(scene.uvs[i][1]) + "\n";
+  uint32_t material = kNone;
+  for (const Triangle& t : triangles) {
+    if (t.material != material) text += "usemtl " + names[t.material] + "\n";
+    material = t.material;
+    text += "f";
     for (size_t k = 0; k < 3; ++k) {
-      const double origin = world ? scene.origin[k] : 0.0;
-      text += " " + (origin == 0.0 ? shortestText(p[k]) : shortestText(p[k] + origin));
+      text += " " + positions[t.position[k]];
+      if (hasUv(t, k)) text += "/" + uvs[t.uv[k]];
+      if (t.normal[k] != kNone) text += (hasUv(t, k) ? "/" : "//") + normals[t.normal[k]];
     }
     text += "\n";
   }
-  for (const uint32_t i : normals.used) {
-    const Vec3 n = scene.normals[i];
-    text += "vn " + shortestText(n.x) + " " + shortestText(n.y) + " " + shortestText(n.z) + "\n";
-  }
-  for (const uint32_t i : uvs.used) {
-    text += "vt " + shortestText(scene.uvs[i][0]) + " " + shortestText(scene.uvs[i][1]) + "\n";
-  }
-  return text + faces;
+  return text;
 }
 
 }  // namespace bnvpl

@@ -1,8 +1,10 @@
 #include "tools/inspect/write_scene.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "core/number_text.h"
+#include "core/sampling.h"
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
 #include "scene/choose_view.h"
@@ -24,7 +26,15 @@ std::string placeText(const Scene& scene, Vec3 p) {
   return "[" + shortestText(p.x + x) + ", " + shortestText(p.y + y) + ", " + shortestText(p.z + z) +
          "]";
 }
-std::string degText(float rad) { return shortestText(double{rad} * kDegPerRad); }
+// Degrees that read back as the angle, where floats have such.
+std::string degText(float rad) {
+  constexpr float kRadPerDeg = kPi / 180.0f;
+  const auto deg = static_cast<float>(double{rad} * kDegPerRad);
+  for (const float d : {deg, std::nextafter(deg, INFINITY), std::nextafter(deg, -INFINITY)}) {
+    if (d * kRadPerDeg == rad) return shortestText(d);
+  }
+  return shortestText(deg);
+}
 
 // `mirrored` is stated where a reader would guess otherwise.
 std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool guess) {
@@ -96,10 +106,11 @@ void writeText(OutputFolder& folder, const std::string& name, const std::string&
 }
 
 // The world, and each prototype with its instances.
-std::string writeMeshes(const Scene& scene, OutputFolder& folder) {
+std::string writeMeshes(const Scene& scene, const std::vector<std::string>& names,
+                        OutputFolder& folder) {
   std::string toml;
   const auto write = [&](const std::string& name, uint32_t begin, uint32_t end) {
-    writeText(folder, name, objText(scene, begin, end));
+    writeText(folder, name, objText(scene, begin, end, names));
     toml += "\n[[mesh]]\nfile = \"" + name + "\"\n";
   };
   if (scene.worldEnd() > 0) write("scene.obj", 0, scene.worldEnd());
@@ -168,9 +179,9 @@ UvTransform uvOfImage(const Scene& scene, const TextureExpression& image) {
 }
 
 void writeSceneToml(const Scene& scene, OutputFolder& folder) {
-  WrittenMaterials used;
+  WrittenMaterials used{materialNames(scene), {}, {}};
   for (const Triangle& t : scene.triangles) used.materials.insert(t.material);
-  const std::string meshes = writeMeshes(scene, folder);
+  const std::string meshes = writeMeshes(scene, used.names, folder);
   writeText(folder, "scene.mtl", mtlText(scene, used));
   std::string toml =
       viewText(scene, scene.film, scene.camera, false) + surfacesText(scene, used) + meshes;

@@ -14,21 +14,23 @@ namespace bnvpl {
 // not the scene that was given. The caller commits.
 void writeSceneToml(const Scene& scene, OutputFolder& folder);
 
-// Materials of a part of a scene, and the textures of Scene::textures that their text names.
+// The materials to write, and the images of Scene::textures that their text names.
 struct WrittenMaterials {
+  std::vector<std::string> names;  // of all materials: see materialNames()
   std::set<uint32_t> materials, textures;
 };
 
 // The file of a texture, relative to the scene's folder.
 std::string textureFile(uint32_t texture);
-// Of the material in MTL, OBJ and TOML: unlike any other, one line of UTF-8.
-std::string materialName(const Scene& scene, uint32_t material);
+// Of each material in MTL, OBJ and TOML: unlike any other, one line of UTF-8.
+std::vector<std::string> materialNames(const Scene& scene);
 // Texture coordinates of an image of Scene::textures: its own scale and offset included.
 UvTransform uvOfImage(const Scene& scene, const TextureExpression& image);
 
 // The triangles from `begin` to `end`, in the coordinates of the files where they stand in the
 // world.
-std::string objText(const Scene& scene, uint32_t begin, uint32_t end);
+std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
+                    const std::vector<std::string>& names);
 // MTL. Of materials that it cannot state, the nearest, for other programs.
 std::string mtlText(const Scene& scene, WrittenMaterials& used);
 // [[texture]] and [[material]] of those that MTL cannot state.

@@ -14,13 +14,13 @@ std::string listText(Vec3 v) {
 }
 
 // JSON's quotes and escapes are TOML's too.
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string inQuotes(const std::string& text) { return nlohmann::json(text).dump(); }
 
 std::string textureName(uint32_t expression) { return "t" + std::to_string(expression); }
 
 template <typename Enum, size_t N>
 std::string nameIn(const std::array<const char*, N>& names, Enum value) {
-  return quoted(names[static_cast<size_t>(value)]);
+  return inQuotes(names[static_cast<size_t>(value)]);
 }
 
 class Surfaces {
@@ -37,7 +37,7 @@ class Surfaces {
   void addTexture(const std::string& key, uint32_t expression) {
     if (expression == kNone) return;
     texture(expression);
-    add(key, quoted(textureName(expression)));
+    add(key, inQuotes(textureName(expression)));
   }
   void field(const std::string& key, const Colour& c) {
     add(key, listText(c.value));
@@ -50,7 +50,7 @@ class Surfaces {
   void field(const std::string& key, bool on) { add(key, on ? "true" : "false"); }
   void field(const std::string& key, Roughness::Alpha a) { add(key, nameIn(kAlphaNames, a)); }
   void field(const std::string& key, uint32_t mixed) {
-    if (mixed != kNone) add(key, quoted(materialName(scene_, mixed)));
+    if (mixed != kNone) add(key, inQuotes(used_.names[mixed]));
   }
   void relief(const Relief& r, const std::string& prefix);
   void opacity(const Material& m, uint32_t number);
@@ -66,8 +66,8 @@ class Surfaces {
 void Surfaces::material(uint32_t number) {
   const Material& m = scene_.materials[number];
   materials_ += "\n[[material]]\n";
-  add("name", quoted(materialName(scene_, number)));
-  add("model", quoted(kModelNames[m.model.index()]));
+  add("name", inQuotes(used_.names[number]));
+  add("model", inQuotes(kModelNames[m.model.index()]));
   const auto each = [&](const char* key, const auto& value) { field(key, value); };
   std::visit([&](const auto& model) { forEachField(model, each); }, m.model);
   if (!isBlack(m.emission)) add("emission", listText(m.emission));
@@ -94,12 +94,12 @@ void Surfaces::opacity(const Material& m, uint32_t number) {
   TextureExpression mask = imageExpression(m.opacityMap, Channel::Alpha);
   const std::string name = "mask of m" + std::to_string(number);
   textures_ += image(name, mask);
-  if (m.opacityTexture == kNone) return add("opacity_texture", quoted(name));
+  if (m.opacityTexture == kNone) return add("opacity_texture", inQuotes(name));
   texture(m.opacityTexture);
-  textures_ += "\n[[texture]]\nname = " + quoted("opacity of m" + std::to_string(number)) +
-               "\ntype = \"product\"\nfirst = " + quoted(name) +
-               "\nsecond = " + quoted(textureName(m.opacityTexture)) + "\n";
-  add("opacity_texture", quoted("opacity of m" + std::to_string(number)));
+  textures_ += "\n[[texture]]\nname = " + inQuotes("opacity of m" + std::to_string(number)) +
+               "\ntype = \"product\"\nfirst = " + inQuotes(name) +
+               "\nsecond = " + inQuotes(textureName(m.opacityTexture)) + "\n";
+  add("opacity_texture", inQuotes("opacity of m" + std::to_string(number)));
 }
 
 std::string uvText(const UvTransform& t) {
@@ -111,9 +111,9 @@ std::string Surfaces::image(const std::string& name, const TextureExpression& e)
   used_.textures.insert(e.image);
   const UvTransform uv = uvOfImage(scene_, e);
   const bool srgb = e.channel != Channel::Alpha && scene_.textures[e.image].srgb;
-  return "\n[[texture]]\nname = " + quoted(name) +
-         "\ntype = \"image\"\nimage = " + quoted(textureFile(e.image)) +
-         "\nencoding = " + quoted(kEncodingNames[srgb ? 0 : 1]) +
+  return "\n[[texture]]\nname = " + inQuotes(name) +
+         "\ntype = \"image\"\nimage = " + inQuotes(textureFile(e.image)) +
+         "\nencoding = " + inQuotes(kEncodingNames[srgb ? 0 : 1]) +
          "\nchannel = " + nameIn(kChannelNames, e.channel) + "\nfactor = " + listText(e.value) +
          "\nwrap_u = " + nameIn(kWrapNames, e.wrapU) + "\nwrap_v = " + nameIn(kWrapNames, e.wrapV) +
          "\n" + (e.invert ? "invert = true\n" : "") + (uv == UvTransform() ? "" : uvText(uv));
@@ -131,14 +131,15 @@ void Surfaces::texture(uint32_t expression) {
     return;
   }
   const bool white = e.kind == TextureExpression::Kind::Image;  // of a texel of 1
-  textures_ += "\n[[texture]]\nname = " + quoted(name) +
-               "\ntype = " + (white ? quoted("constant") : nameIn(kTextureNames, e.kind)) + "\n";
+  textures_ += "\n[[texture]]\nname = " + inQuotes(name) +
+               "\ntype = " + (white ? inQuotes("constant") : nameIn(kTextureNames, e.kind)) + "\n";
   if (white || e.kind == TextureExpression::Kind::Constant) {
     const Vec3 value = white ? max(e.invert ? Vec3(1) - e.value : e.value, Vec3()) : e.value;
     textures_ += "value = " + listText(value) + "\n";
   }
   const auto operand = [&](const char* key, uint32_t number) {
-    if (number != kNone) textures_ += std::string(key) + " = " + quoted(textureName(number)) + "\n";
+    if (number != kNone)
+      textures_ += std::string(key) + " = " + inQuotes(textureName(number)) + "\n";
   };
   operand("first", e.first), operand("second", e.second), operand("amount", e.amount);
   if (e.kind == TextureExpression::Kind::Checkerboard) textures_ += uvText(e.uv);
