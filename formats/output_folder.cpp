@@ -80,8 +80,10 @@ fs::path withoutSlash(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-// The head of the list of the one partial folder; a signal handler can neither lock nor allocate.
+// The head of the list of the youngest partial folder, of which a tool has one: a signal handler
+// can neither lock nor allocate.
 std::atomic<const OutputFolder::Path*> partialPaths{nullptr};
+std::atomic<bool> removing{false};
 static_assert(std::atomic<const OutputFolder::Path*>::is_always_lock_free);
 
 }  // namespace
@@ -134,8 +136,8 @@ void OutputFolder::remember(const fs::path& path) {
 }
 
 void OutputFolder::forget() {
-  const bool mine = partialPaths.exchange(nullptr) != nullptr;
-  while (!mine && !paths_.empty()) ::pause();  // a handler reads them, and is about to end all
+  partialPaths = nullptr;
+  while (removing && !paths_.empty()) ::pause();  // a handler reads them, and is about to end all
   paths_.clear();
 }
 
@@ -180,6 +182,7 @@ void OutputFolder::commit() {
 }
 
 void removePartialFolder() noexcept {
+  removing = true;
   for (const auto* p = partialPaths.exchange(nullptr); p; p = p->older) {
     if (::unlink(p->name.c_str()) != 0) ::rmdir(p->name.c_str());
   }
