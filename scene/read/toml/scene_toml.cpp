@@ -126,7 +126,7 @@ void readMesh(const fs::path& file, const toml::table& table, const FileNames& n
   const uint32_t prototype = builder.beginPrototype();
   load();
   builder.endPrototype();
-  for (const toml::table* t : tablesOf(file, table, "instance")) {
+  for (const toml::table* t : tablesOf(file, table, "instance", "mesh.instance")) {
     builder.addInstance(prototype,
                         readTransform(TomlSection(file, "[[mesh.instance]]", *t, kTransformKeys)));
   }

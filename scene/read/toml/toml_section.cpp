@@ -67,7 +67,7 @@ const toml::table& tableOf(const fs::path& file, const toml::table& root, const 
 }
 
 std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
-                                         const char* key) {
+                                         const char* key, const std::string& written) {
   std::vector<const toml::table*> tables;
   const toml::node* node = root.get(key);
   if (!node) return tables;
@@ -76,8 +76,8 @@ std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table
     if (const toml::table* t = array->get(i)->as_table()) tables.push_back(t);
   }
   if (!array || tables.size() != array->size()) {
-    throw InputError(lineOf(file, node->source()) + "'" + key + "' must be written as [[" + key +
-                     "]]");
+    throw InputError(lineOf(file, node->source()) + "'" + key + "' must be written as [[" +
+                     (written.empty() ? key : written) + "]]");
   }
   return tables;
 }

@@ -10,6 +10,7 @@ namespace bnvpl {
 namespace {
 
 constexpr double kMost = TomlSection::kMaxMagnitude;
+constexpr double kMostFactor = 1e6;  // of a texture: light times some of them stays finite
 
 float number(const TomlSection& s, const std::string& key, float otherwise) {
   return static_cast<float>(s.number(key.c_str(), -kMost, kMost, double{otherwise}));
@@ -82,7 +83,7 @@ void TomlSurfaces::readTexture(const TomlSection& s) {
   switch (e.kind) {
     case TextureExpression::Kind::Constant:
       require({"name", "type", "value"});
-      e.value = s.vector("value");
+      e.value = s.vector("value", kMostFactor);
       break;
     case TextureExpression::Kind::Image: {
       require({"name", "type", "image", "encoding", "channel", "factor", "wrap_u", "wrap_v",
@@ -92,7 +93,7 @@ void TomlSurfaces::readTexture(const TomlSection& s) {
       use.srgb = choice(s, "encoding", kEncodingNames, 0) == 0;
       e.image = builder_.addTexture(use);
       e.channel = static_cast<Channel>(choice(s, "channel", kChannelNames, 0));
-      if (s.has("factor")) e.value = s.vector("factor");
+      if (s.has("factor")) e.value = s.vector("factor", kMostFactor);
       e.invert = s.flag("invert", false);
       readWrap(s, e);
       break;
@@ -181,7 +182,7 @@ void TomlSurfaces::warnOfUnused() const {
   for (const auto& [name, number] : materials_) {
     if (builder_.isReplaced(name) || mixed_.contains(name)) continue;
     builder_.warn(file_.string() + ": [[material]] '" + name +
-                  "' has no effect: no mesh has a material of that name");
+                  "' has no effect: no face has a material of that name from an MTL");
   }
 }
 
