@@ -36,7 +36,8 @@ void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
 void useViewFile(const fs::path& file, Scene& scene) {
   const toml::table root = parseToml(file);
   const TomlSection top(file, "view", root, {"film", "camera"});
-  const TomlView view = readTomlView(file, root, isMirrored(scene.camera));
+  const Camera& own = scene.views.empty() ? scene.camera : scene.views.front().camera;
+  const TomlView view = readTomlView(file, root, isMirrored(own));
   scene.film = view.film;
   scene.camera = view.camera;
   scene.camera.position = fromOrigin(view.position, scene.origin);

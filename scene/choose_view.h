@@ -13,7 +13,7 @@ void chooseCamera(const std::string& nameOrIndex, Scene& scene);
 bool isMirrored(const Camera& camera);
 
 // By a TOML file of [film] and [camera], whose coordinates are the scene file's. It mirrors as the
-// scene's camera does unless it says otherwise, and becomes one of the scene's files. Throws
+// scene's first camera does unless it says otherwise, and becomes one of the scene's files. Throws
 // InputError.
 void useViewFile(const fs::path& file, Scene& scene);
 

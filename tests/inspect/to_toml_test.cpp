@@ -84,6 +84,8 @@ TEST_F(ToToml, AViewMirrorsAsTheScenesCameraDoes) {
   EXPECT_EQ(scene.camera.right, Vec3(-1, 0, 0));
   useViewFile(at("plain.toml"), scene);
   EXPECT_EQ(scene.camera.right, Vec3(1, 0, 0));
+  useViewFile(at("view.toml"), scene);  // not as the view before it
+  EXPECT_EQ(scene.camera.right, Vec3(-1, 0, 0));
 }
 
 TEST_F(ToToml, KeepsScaleAndTransformOfTextures) {
