@@ -25,16 +25,19 @@ void appendBytes(void* to, void* bytes, int count) {
 
 }  // namespace
 
-void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8) {
+void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8,
+              int channels) {
   if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
-      rgb8.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height) ||
+      rgb8.size() != static_cast<size_t>(channels) * static_cast<size_t>(width) *
+                         static_cast<size_t>(height) ||
       rgb8.size() + static_cast<size_t>(height) > kMaxBytes) {
     throw OutputError(file.target(), "a PNG of " + std::to_string(width) + " x " +
                                          std::to_string(height) + " pixels from " +
                                          std::to_string(rgb8.size()) + " bytes cannot be written");
   }
   std::string png;
-  if (!stbi_write_png_to_func(appendBytes, &png, width, height, 3, rgb8.data(), 3 * width)) {
+  if (!stbi_write_png_to_func(appendBytes, &png, width, height, channels, rgb8.data(),
+                              channels * width)) {
     throw OutputError(file.target(), "the PNG could not be compressed");
   }
   file.write(png);

@@ -16,6 +16,10 @@ void use(const View& view, Scene& scene) {
 
 }  // namespace
 
+bool isMirrored(const Camera& camera) {
+  return dot(cross(camera.forward, camera.up), camera.right) < 0.0f;
+}
+
 void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
   const auto named = std::find_if(scene.views.begin(), scene.views.end(),
                                   [&](const View& v) { return v.name == nameOrIndex; });
@@ -32,7 +36,8 @@ void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
 void useViewFile(const fs::path& file, Scene& scene) {
   const toml::table root = parseToml(file);
   const TomlSection top(file, "view", root, {"film", "camera"});
-  const TomlView view = readTomlView(file, root);
+  const Camera& own = scene.views.empty() ? scene.camera : scene.views.front().camera;
+  const TomlView view = readTomlView(file, root, isMirrored(own));
   scene.film = view.film;
   scene.camera = view.camera;
   scene.camera.position = fromOrigin(view.position, scene.origin);

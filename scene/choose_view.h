@@ -9,8 +9,12 @@ namespace bnvpl {
 // lists the cameras.
 void chooseCamera(const std::string& nameOrIndex, Scene& scene);
 
-// By a TOML file of [film] and [camera], whose coordinates are the scene file's. It becomes one of
-// the scene's files. Throws InputError.
+// Whether what is right in the world is left in the image, as in pbrt, whose space is left-handed.
+bool isMirrored(const Camera& camera);
+
+// By a TOML file of [film] and [camera], whose coordinates are the scene file's. It mirrors as the
+// scene's first camera does unless it says otherwise, and becomes one of the scene's files. Throws
+// InputError.
 void useViewFile(const fs::path& file, Scene& scene);
 
 // "0 'Door', 1 'Window'"

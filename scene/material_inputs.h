@@ -1,81 +1,123 @@
-// The parameters of a material, one after the other, for what treats all models alike: hashes,
-// checks, reports.
+// The parameters of a material, one after the other and by name, for what treats all models alike:
+// hashes, checks, reports, and files that state them.
 #pragma once
+
+#include <array>
+#include <concepts>
 
 #include "scene/material.h"
 
 namespace bnvpl {
 
-// Calls fn with each Colour, Scalar, and number or switch of a model (Vec3, float, uint32_t), in a
-// fixed order. Not of the PhongModel, nor the coat's relief.
-template <typename Fn>
-void forEachInput(const PhongModel&, const Fn&) {}
-template <typename Fn>
-void forEachInput(const Roughness& r, const Fn& fn) {
-  fn(r.along);
-  fn(r.across);
-  fn(static_cast<uint32_t>(r.alpha));
+// Names in files, in the order of MaterialModel and Roughness::Alpha.
+inline constexpr std::array<const char*, 9> kModelNames{
+    "phong",          "diffuse",          "diffuse_transmission", "conductor", "dielectric",
+    "coated_diffuse", "coated_conductor", "metallic_roughness",   "mix"};
+static_assert(kModelNames.size() == std::variant_size_v<MaterialModel>);
+inline constexpr std::array<const char*, 3> kAlphaNames{"same", "square", "root"};
+
+// In the order of TextureExpression::Kind, Wrap and Channel.
+inline constexpr std::array<const char*, 5> kTextureNames{"constant", "image", "product", "mix",
+                                                          "checkerboard"};
+inline constexpr std::array<const char*, 4> kWrapNames{"repeat", "mirror", "clamp", "black"};
+inline constexpr std::array<const char*, 6> kChannelNames{"rgb",  "red",   "green",
+                                                          "blue", "alpha", "mean"};
+inline constexpr std::array<const char*, 2> kEncodingNames{"srgb", "linear"};
+
+template <typename Field>
+inline constexpr bool kTextured = std::same_as<Field, Colour> || std::same_as<Field, Scalar>;
+template <typename T, typename Plain>
+concept Like = std::same_as<std::remove_const_t<T>, Plain>;
+
+// Calls fn with the name and the field, by reference, of each parameter of a model, in a fixed
+// order: a Colour, Scalar, bool, Roughness::Alpha, or, of a mix, the number of a material. None of
+// the PhongModel: MTL has names of its own for what it holds.
+template <Like<PhongModel> M, typename Fn>
+void forEachField(M&, const Fn&) {}
+template <Like<Roughness> M, typename Fn>
+void forEachField(M& r, const std::array<const char*, 3>& names, const Fn& fn) {
+  fn(names[0], r.along);
+  fn(names[1], r.across);
+  fn(names[2], r.alpha);
 }
-template <typename Fn>
-void forEachInput(const ConductorFresnel& f, const Fn& fn) {
-  fn(f.eta);
-  fn(f.k);
-  fn(f.reflectance);
-  fn(uint32_t{f.byReflectance});
+inline constexpr std::array<const char*, 3> kRoughnessNames{"roughness_along", "roughness_across",
+                                                            "roughness_to_alpha"};
+template <Like<ConductorFresnel> M, typename Fn>
+void forEachField(M& f, const Fn& fn) {
+  fn("eta", f.eta);
+  fn("k", f.k);
+  fn("reflectance", f.reflectance);
+  fn("by_reflectance", f.byReflectance);
 }
-template <typename Fn>
-void forEachInput(const DiffuseModel& m, const Fn& fn) {
-  fn(m.reflectance);
+template <Like<DiffuseModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  fn("reflectance", m.reflectance);
 }
-template <typename Fn>
-void forEachInput(const DiffuseTransmissionModel& m, const Fn& fn) {
-  fn(m.reflectance);
-  fn(m.transmittance);
+template <Like<DiffuseTransmissionModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  fn("reflectance", m.reflectance);
+  fn("transmittance", m.transmittance);
 }
-template <typename Fn>
-void forEachInput(const ConductorModel& m, const Fn& fn) {
-  forEachInput(m.fresnel, fn);
-  forEachInput(m.roughness, fn);
-  fn(uint32_t{m.multipleScattering});
+template <Like<ConductorModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  forEachField(m.fresnel, fn);
+  forEachField(m.roughness, kRoughnessNames, fn);
+  fn("multiple_scattering", m.multipleScattering);
 }
-template <typename Fn>
-void forEachInput(const DielectricModel& m, const Fn& fn) {
-  fn(m.ior);
-  forEachInput(m.roughness, fn);
-  fn(m.reflection);
-  fn(m.transmission);
-  fn(uint32_t{m.thin});
+template <Like<DielectricModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  fn("ior", m.ior);
+  forEachField(m.roughness, kRoughnessNames, fn);
+  fn("reflection", m.reflection);
+  fn("transmission", m.transmission);
+  fn("thin", m.thin);
 }
-template <typename Fn>
-void forEachInput(const CoatedDiffuseModel& m, const Fn& fn) {
-  fn(m.reflectance);
-  fn(m.ior);
-  forEachInput(m.roughness, fn);
+template <Like<CoatedDiffuseModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  fn("reflectance", m.reflectance);
+  fn("ior", m.ior);
+  forEachField(m.roughness, kRoughnessNames, fn);
 }
-template <typename Fn>
-void forEachInput(const CoatedConductorModel& m, const Fn& fn) {
-  forEachInput(m.fresnel, fn);
-  forEachInput(m.roughness, fn);
-  fn(m.coatIor);
-  forEachInput(m.coatRoughness, fn);
+template <Like<CoatedConductorModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  forEachField(m.fresnel, fn);
+  forEachField(m.roughness, kRoughnessNames, fn);
+  fn("coat_ior", m.coatIor);
+  forEachField(m.coatRoughness,
+               {"coat_roughness_along", "coat_roughness_across", "coat_roughness_to_alpha"}, fn);
 }
-template <typename Fn>
-void forEachInput(const MetallicRoughnessModel& m, const Fn& fn) {
-  fn(m.baseColour);
-  fn(m.specularColour);
-  for (const Scalar& s : {m.metallic, m.roughness, m.anisotropy, m.ior, m.specular, m.clearcoat,
-                          m.clearcoatRoughness, m.transmission, m.anisotropyTurns})
-    fn(s);
+template <Like<MetallicRoughnessModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  fn("base_colour", m.baseColour);
+  fn("specular_colour", m.specularColour);
+  fn("metallic", m.metallic);
+  fn("roughness", m.roughness);
+  fn("anisotropy", m.anisotropy);
+  fn("ior", m.ior);
+  fn("specular", m.specular);
+  fn("clearcoat", m.clearcoat);
+  fn("clearcoat_roughness", m.clearcoatRoughness);
+  fn("transmission", m.transmission);
+  fn("anisotropy_turns", m.anisotropyTurns);
 }
-template <typename Fn>
-void forEachInput(const MixModel& m, const Fn& fn) {
-  fn(m.first);
-  fn(m.second);
-  fn(m.amount);
+template <Like<MixModel> M, typename Fn>
+void forEachField(M& m, const Fn& fn) {
+  fn("first", m.first);
+  fn("second", m.second);
+  fn("amount", m.amount);
 }
+
+// Calls fn with each Colour, Scalar, and number or switch (uint32_t) of a material, in a fixed
+// order. Not of the PhongModel, nor the coat's relief.
 template <typename Fn>
 void forEachInput(const Material& m, const Fn& fn) {
-  std::visit([&](const auto& model) { forEachInput(model, fn); }, m.model);
+  const auto field = [&]<typename Field>(const char*, const Field& f) {
+    if constexpr (kTextured<Field>)
+      fn(f);
+    else
+      fn(static_cast<uint32_t>(f));
+  };
+  std::visit([&](const auto& model) { forEachField(model, field); }, m.model);
   for (const uint32_t number :
        {m.emissionTexture, m.opacityTexture, m.relief.normalMap, m.relief.bumpMap})
     fn(number);
@@ -84,13 +126,10 @@ void forEachInput(const Material& m, const Fn& fn) {
 // Calls fn with the number of each expression of a material, kNone for each there is none for.
 template <typename Fn>
 void forEachExpression(const Material& m, const Fn& fn) {
-  struct Expressions {
-    const Fn& fn;
-    void operator()(const Colour& c) const { fn(c.texture); }
-    void operator()(const Scalar& s) const { fn(s.texture); }
-    void operator()(uint32_t) const {}
+  const auto field = [&]<typename Field>(const char*, const Field& f) {
+    if constexpr (kTextured<Field>) fn(f.texture);
   };
-  std::visit([&](const auto& model) { forEachInput(model, Expressions{fn}); }, m.model);
+  std::visit([&](const auto& model) { forEachField(model, field); }, m.model);
   for (const uint32_t number : {m.emissionTexture, m.opacityTexture, m.relief.normalMap,
                                 m.relief.bumpMap, m.coatRelief.normalMap, m.coatRelief.bumpMap})
     fn(number);

@@ -81,7 +81,17 @@ uint32_t SceneBuilder::addTexture(const TextureUse& use) {
   return textures_.add(use);
 }
 
+uint32_t SceneBuilder::addReplacement(Material material) {
+  assert(!material.name.empty() && !replacements_.contains(material.name));
+  const std::string name = material.name;
+  return replacements_[name] = addMaterial(std::move(material));
+}
+
 uint32_t SceneBuilder::addMaterial(Material material) {
+  if (const auto it = replacements_.find(material.name); it != replacements_.end()) {
+    replaced_.insert(material.name);
+    return it->second;
+  }
   uint32_t parts = 1;
   if (const auto* mix = std::get_if<MixModel>(&material.model)) {
     for (const uint32_t part : {mix->first, mix->second}) {

@@ -63,6 +63,10 @@ class SceneBuilder {
   // white.
   uint32_t addExpression(const TextureExpression& expression);
   uint32_t addMaterial(Material material);
+  // Stands for every material of its name, which must not be empty, that is added afterwards: their
+  // addMaterial() returns its number.
+  uint32_t addReplacement(Material material);
+  bool isReplaced(const std::string& name) const { return replaced_.contains(name); }
   // Reads it at once. Throws InputError when the file is no image.
   uint32_t addEnvironment(const fs::path& image);
   // One that was made of `image`.
@@ -151,6 +155,8 @@ class SceneBuilder {
   std::map<std::string, size_t> meshOfName_;  // in scene_.meshes
   // Of scene_.materials: those that they are mixed of, and themselves.
   std::vector<uint32_t> mixParts_;
+  std::map<std::string, uint32_t> replacements_;  // numbers by name
+  std::set<std::string> replaced_;                // those of them that stood for another
   uint32_t grey_ = kNone;
   Strays strays_;  // of the world
   std::set<std::string> warned_;

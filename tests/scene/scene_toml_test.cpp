@@ -193,5 +193,76 @@ TEST_F(SceneToml, BackslashesOfFileNamesCountAsSlashes) {
   EXPECT_NE(loadError(mesh + "\".\\new.obj\"\n").find(cure), std::string::npos);
 }
 
+TEST_F(SceneToml, AMaterialReplacesThatOfItsName) {
+  const Scene scene = load(base_ +
+                           "[[material]]\nname = \"base\"\nmodel = \"diffuse\"\n"
+                           "[[material]]\nname = \"paint\"\nmodel = \"mix\"\nfirst = \"base\"\n"
+                           "second = \"base\"\namount = 0.25\nemission = [1, 2, 3]\n"
+                           "emission_sides = 2\nopacity = 0.75\nopacity_cutoff = 0.25\n");
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_TRUE(scene.warnings.empty());
+  const Material& m = scene.materials[scene.triangles[0].material];
+  EXPECT_EQ(m.name, "paint");
+  EXPECT_EQ(std::get<MixModel>(m.model).amount.value, 0.25f);
+  EXPECT_EQ(std::get<MixModel>(m.model).first, 0u);
+  EXPECT_EQ(m.emission, Vec3(1, 2, 3));
+  EXPECT_TRUE(m.twoSidedEmission);
+  EXPECT_EQ(m.opacity, 0.75f);
+  EXPECT_EQ(m.opacityCutoff, 0.25f);
+}
+
+TEST_F(SceneToml, AMaterialThatNoFaceHasIsNamed) {
+  const Scene scene = load(base_ + "[[material]]\nname = \"pain\"\nmodel = \"diffuse\"\n");
+  ASSERT_EQ(scene.warnings.size(), 2u);  // and there is no light
+  EXPECT_NE(scene.warnings[0].find("[[material]] 'pain' has no effect"), std::string::npos)
+      << scene.warnings[0];
+}
+
+TEST_F(SceneToml, MistakesInMaterialsAndTextures) {
+  const std::string material = base_ + "[[material]]\nname = \"paint\"\n";  // 11 lines
+  expectError(material, 10, {"[[material]]", "needs 'model'"});
+  expectError(material + "model = \"phong\"\n", 12, {"'phong'", "use one of diffuse, "});
+  expectError(material + "model = \"diffuse\"\nreflectence = [1, 1, 1]\n", 13,
+              {"did you mean 'reflectance'"});
+  expectError(material + "model = \"diffuse\"\neta = [1, 1, 1]\n", 13, {"'eta'"});
+  expectError(material + "model = \"diffuse\"\nreflectance_texture = \"t\"\n", 13,
+              {"no [[texture]] 't' stands before this"});
+  expectError(material + "model = \"mix\"\nfirst = \"paint\"\n", 13,
+              {"no [[material]] 'paint' stands before this"});
+  expectError(material + "model = \"diffuse\"\nemission_sides = 3\n", 13, {"from 1 to 2"});
+  expectError(material + "model = \"dielectric\"\nthin = 1\n", 13, {"true or false"});
+  expectError(material + "model = \"diffuse\"\n[[material]]\nname = \"paint\"\nmodel = \"mix\"\n",
+              14, {"'paint' was given before"});
+  const std::string texture = base_ + "[[texture]]\nname = \"t\"\n";
+  expectError(texture + "type = \"picture\"\n", 12, {"use one of constant, image"});
+  expectError(texture + "type = \"constant\"\nvalue = [1e7, 1, 1]\n", 13, {"1e+06"});
+  expectError(texture + "type = \"constant\"\nvalue = [1, 1, 1]\nimage = \"a\"\n", 14,
+              {"'image' has no meaning for a texture of type constant"});
+  expectError(texture + "type = \"image\"\nimage = \"a\"\nuv_transform = [[1, 0], [0, 1]]\n", 14,
+              {"two rows of three numbers"});
+}
+
+TEST_F(SceneToml, InstancesPlaceAMesh) {
+  const Scene scene = load(base_ +
+                           "scale = 2\n[[mesh.instance]]\ntranslate = [1, 0, 0]\n"
+                           "[[mesh.instance]]\nscale = [1, -1, 1]\n");
+  ASSERT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.bounds.lower, Vec3(-2, -2, 0));
+  EXPECT_EQ(scene.bounds.upper, Vec3(3, 2, 0));
+  EXPECT_EQ(scene.instances[1].mirrored, 1u);
+  expectError(base_ + "instance = 3\n", 10, {"[[mesh.instance]]"});
+  expectError(base_ + "[[mesh.instance]]\nfile = \"a.obj\"\n", 11, {"unknown key 'file'"});
+}
+
+TEST_F(SceneToml, AMirroredCameraSwapsLeftAndRight) {
+  std::string text = base_;
+  text.replace(text.find("vertical_fov"), 0, "mirrored = true\n");
+  const Camera c = load(text).camera;
+  EXPECT_EQ(c.right, Vec3(-1, 0, 0));
+  EXPECT_EQ(c.up, Vec3(0, 1, 0));
+  text.replace(text.find("true"), 4, "1");
+  expectError(text, 7, {"[camera]", "true or false"});
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "formats/atomic_file.h"
+#include "formats/output_folder.h"
 
 namespace bnvpl {
 namespace {
@@ -53,6 +54,7 @@ void sayInterrupted(int signal, const char* what) {
 void end(int signal, const char* what) {
   if (ending.exchange(true)) return;
   removePartialFiles();
+  removePartialFolder();
   sayInterrupted(signal, what);
   std::signal(signal, SIG_DFL);
   ::raise(signal);

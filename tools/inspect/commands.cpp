@@ -1,6 +1,7 @@
 #include "tools/inspect/commands.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
@@ -39,6 +40,19 @@ Json describeChecked(const std::vector<CheckedFile>& files, const std::string& s
   }
   if (!scene.empty()) json["scene"] = scene;
   return json;
+}
+
+// A folder that is replaced as a whole must hold none of the run's other files.
+void requireOutside(const fs::path& folder, const std::vector<fs::path>& files,
+                    const std::string& what) {
+  std::error_code ignored;
+  const fs::path place = fs::weakly_canonical(folder / "", ignored);
+  for (const fs::path& file : files) {
+    const fs::path inside = fs::weakly_canonical(file, ignored).lexically_relative(place);
+    if (file.empty() || inside.empty() || *inside.begin() == "..") continue;
+    throw UsageError("--to-toml '" + folder.string() + "' holds '" + file.string() + "', which " +
+                     what + "; name a folder that does not exist yet");
+  }
 }
 
 }  // namespace
@@ -107,23 +121,24 @@ int runExport(const ExportCommand& command, const ToolOptions& tool) {
 int runScene(const SceneCommand& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
   RunFiles used;
-  used.reads("scene", command.scene.file).writes(tool);
+  used.reads("scene", command.scene.file).writes(tool).check();
+  std::optional<OutputFolder> folder;
   if (!command.toml.empty()) {
-    for (const char* name : {"scene.toml", "scene.obj", "scene.mtl"})
-      used.writes("--to-toml", command.toml / name);
-    createSceneFolder(command.toml);
+    requireOutside(command.toml, {command.scene.file}, "the run reads");
+    requireOutside(command.toml, {tool.stats, tool.depfile}, "is another output");
+    folder.emplace(command.toml);
   }
-  used.check();
   // Its warnings are part of the answer.
   const Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);
+  if (folder) requireOutside(command.toml, scene.files, "the run reads");
   const RayScene rays(scene);
   Json description = describeScene(scene, LightSet(rays));
-  OutputSet files;
-  if (!command.toml.empty()) {
-    description["not_in_toml"] = writeSceneToml(scene, command.toml, files);
-    printWarnings("vpl-inspect", description["not_in_toml"].get<std::vector<std::string>>());
+  if (folder) {
+    writeSceneToml(scene, *folder);
+    folder->commit();
   }
+  OutputSet files;
   const std::string text = command.json ? description.dump(2) + "\n" : sceneText(description);
   summary.add("scene", std::move(description));
   summary.save(tool, files);

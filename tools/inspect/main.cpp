@@ -45,7 +45,9 @@ CLI::App* addScene(CLI::App& cli, SceneCommand& c) {
       "textures, and all that is ignored or approximated.");
   addSceneOptions(*sub, c.scene);
   sub->add_flag("--json", c.json, "the same as JSON");
-  sub->add_option("--to-toml", c.toml, "also write it as scene.toml, OBJ and MTL to this folder")
+  sub->add_option(
+         "--to-toml", c.toml,
+         "also write it as scene.toml, OBJ and MTL: the folder is new, empty, or one made so")
       ->type_name("FOLDER");
   return sub;
 }

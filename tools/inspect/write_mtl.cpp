@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/number_text.h"
@@ -24,6 +25,13 @@ uint32_t plainImage(const Scene& scene, uint32_t expression) {
   return plain ? e.image : kNone;
 }
 
+Vec3 atNormalIncidence(const ConductorFresnel& f) {
+  if (f.byReflectance) return f.reflectance.value;
+  const Vec3 k2 = f.k.value * f.k.value, less = f.eta.value - Vec3(1), more = f.eta.value + Vec3(1);
+  const Vec3 mirrored = less * less + k2, all = more * more + k2;
+  return {mirrored.x / all.x, mirrored.y / all.y, mirrored.z / all.z};
+}
+
 // What is nearest to each model among Lambert, Phong lobe, mirror, glass, and roughness and metal.
 class NearestMtl {
  public:
@@ -31,65 +39,34 @@ class NearestMtl {
 
   PhongModel phong;
   std::optional<MetallicRoughnessModel> facets;  // stated beside Kd, if any; specularColour is f0
-  bool same = true;
 
   void operator()(const PhongModel& m) { phong = m; }
-  void operator()(const DiffuseModel& m) { diffuse(m.reflectance, 1.0f); }
+  void operator()(const DiffuseModel& m) { diffuse(m.reflectance); }
   void operator()(const MetallicRoughnessModel& m) {
-    if (m.transmission.value > 0.5f) {
-      same = false;
-      return glass(m.ior.value, m.baseColour.value);
-    }
+    if (m.transmission.value > 0.5f) return glass(m.ior.value, m.baseColour.value);
     facets = m;
     const float normal = (m.ior.value - 1.0f) / (m.ior.value + 1.0f);
     facets->specularColour.value = m.specularColour.value * (normal * normal * m.specular.value);
-    diffuse(m.baseColour, 1.0f);
-    for (const uint32_t texture :
-         {m.metallic.texture, m.roughness.texture, m.anisotropy.texture, m.anisotropyTurns.texture,
-          m.specular.texture, m.specularColour.texture, m.clearcoat.texture,
-          m.clearcoatRoughness.texture})
-      same = same && texture == kNone;
-    same = same && m.transmission.value == 0.0f &&
-           (m.specular.value == 1.0f || m.metallic.value == 1.0f) &&
-           maxComponent(facets->specularColour.value) <= kF0PerKs;
+    diffuse(m.baseColour);
   }
-  void operator()(const ConductorModel& m) {
-    same = false;
-    lobe(m.fresnel.byReflectance ? m.fresnel.reflectance.value : Vec3(0.8f),
-         m.roughness.along.value);
-  }
-  void operator()(const CoatedConductorModel& m) {
-    same = false;
-    lobe(m.fresnel.byReflectance ? m.fresnel.reflectance.value : Vec3(0.8f),
-         m.roughness.along.value);
-  }
-  void operator()(const CoatedDiffuseModel& m) {
-    same = false;
-    diffuse(m.reflectance, 1.0f);
-  }
-  void operator()(const DiffuseTransmissionModel& m) {
-    same = false;
-    diffuse(m.reflectance, 1.0f);
-  }
-  void operator()(const DielectricModel& m) {
-    same = !m.thin && m.roughness.along.value == 0.0f && m.roughness.along.texture == kNone;
-    glass(m.ior.value, m.transmission.value);
-    phong.mirror = m.reflection.value;
-  }
+  void operator()(const ConductorModel& m) { metal(m.fresnel, m.roughness.along.value); }
+  void operator()(const CoatedConductorModel& m) { metal(m.fresnel, m.roughness.along.value); }
+  void operator()(const CoatedDiffuseModel& m) { diffuse(m.reflectance); }
+  void operator()(const DiffuseTransmissionModel& m) { diffuse(m.reflectance); }
+  void operator()(const DielectricModel& m) { glass(m.ior.value, m.transmission.value); }
   void operator()(const MixModel& m) {
-    same = false;
-    std::visit(*this, scene_.materials[m.amount.value < 0.5f ? m.first : m.second].model);
-    same = false;
+    const uint32_t part = m.amount.value < 0.5f ? m.first : m.second;
+    if (part != kNone) std::visit(*this, scene_.materials[part].model);
   }
 
  private:
-  void diffuse(const Colour& c, float share) {
-    phong.diffuse = share * c.value;
+  void diffuse(const Colour& c) {
+    phong.diffuse = min(c.value, Vec3(1));
     phong.diffuseMap = plainImage(scene_, c.texture);
-    same = same && (c.texture == kNone || phong.diffuseMap != kNone);
   }
-  void lobe(Vec3 albedo, float alpha) {
+  void metal(const ConductorFresnel& fresnel, float alpha) {
     constexpr float kSmooth = 0.03f, kMostExponent = 9999.0f;
+    const Vec3 albedo = min(atNormalIncidence(fresnel), Vec3(1));
     if (alpha < kSmooth) {
       phong.mirror = albedo;
     } else {
@@ -99,73 +76,111 @@ class NearestMtl {
   }
   void glass(float ior, Vec3 colour) {
     phong.glass = true;
-    phong.ior = std::max(1.0f, ior);
-    phong.transmission = colour;
+    phong.ior = std::clamp(ior, 1.0f, 100.0f);
+    phong.transmission = min(colour, Vec3(1));
     phong.mirror = Vec3(1);
   }
 
   const Scene& scene_;
 };
 
-std::string mapLine(const Scene& scene, const char* key, uint32_t map) {
-  if (map == kNone) return "";
-  const Texture& t = scene.textures[map];
-  const auto option = [](const char* name, const std::array<float, 2>& v) {
-    return std::string(name) + shortestText(v[0]) + " " + shortestText(v[1]) + " 0 ";
+std::string mapLine(const Scene& scene, const std::string& key, const TextureExpression& e,
+                    WrittenMaterials& used) {
+  if (e.kind != TextureExpression::Kind::Image || e.image == kNone) return "";
+  used.textures.insert(e.image);
+  const auto option = [](const char* name, float u, float v) {
+    return std::string(name) + shortestText(u) + " " + shortestText(v) + " 0 ";
   };
-  std::string line = std::string(key) + " ";
-  if (t.scale != std::array<float, 2>{1, 1}) line += option("-s ", t.scale);
-  if (t.offset != std::array<float, 2>{0, 0}) line += option("-o ", t.offset);
-  return line + "textures/" + std::to_string(map) + ".png\n";
+  const UvTransform uv = uvOfImage(scene, e);
+  std::string line = key + " ";
+  if (uv.a != 1.0f || uv.e != 1.0f) line += option("-s ", uv.a, uv.e);
+  if (uv.c != 0.0f || uv.f != 0.0f) line += option("-o ", uv.c, uv.f);
+  return line + textureFile(e.image) + "\n";
+}
+std::string imageLine(const Scene& scene, const std::string& key, uint32_t image,
+                      WrittenMaterials& used) {
+  return mapLine(scene, key, imageExpression(image), used);
+}
+std::string textureLine(const Scene& scene, const std::string& key, uint32_t expression,
+                        WrittenMaterials& used) {
+  return expression == kNone ? "" : mapLine(scene, key, scene.expressions[expression], used);
 }
 
-std::string facetsText(const Scene& scene, const MetallicRoughnessModel& m, const PhongModel& p) {
+std::string facetsText(const MetallicRoughnessModel& m, const PhongModel& p) {
   return "illum 2\nKd " + triple(p.diffuse) + "\nKs " +
          triple(m.specularColour.value * (1.0f / kF0PerKs)) + "\nPr " +
          shortestText(m.roughness.value) + "\nPm " + shortestText(m.metallic.value) + "\nPc " +
          shortestText(m.clearcoat.value) + "\nPcr " + shortestText(m.clearcoatRoughness.value) +
          "\naniso " + shortestText(m.anisotropy.value) + "\nanisor " +
-         shortestText(m.anisotropyTurns.value) + "\n" + mapLine(scene, "map_Kd", p.diffuseMap);
+         shortestText(m.anisotropyTurns.value) + "\n";
 }
 
-std::string phongText(const Scene& scene, const PhongModel& p) {
+std::string phongText(const PhongModel& p) {
   if (p.glass) {
     return "illum 7\nNi " + shortestText(p.ior) + "\nTf " + triple(p.transmission) + "\nKs " +
-           triple(p.mirror) + "\n";
+           triple(p.mirror) + "\nNs " + shortestText(p.exponent) + "\n";
   }
   const bool mirror = !isBlack(p.mirror);
   return "illum " + std::string(mirror ? "3" : "2") + "\nKd " + triple(p.diffuse) + "\nKs " +
-         triple(mirror ? p.mirror : p.glossy) + "\nNs " + shortestText(p.exponent) + "\n" +
-         mapLine(scene, "map_Kd", p.diffuseMap) + mapLine(scene, "map_Ks", p.glossyMap);
+         triple(mirror ? p.mirror : p.glossy) + "\nNs " + shortestText(p.exponent) + "\n";
+}
+
+// What only a material that MTL states whole has there.
+std::string moreText(const Scene& scene, const Material& m, WrittenMaterials& used) {
+  std::string text = textureLine(scene, "map_Ke", m.emissionTexture, used);
+  if (m.twoSidedEmission) text += "emission_sides 2\n";
+  if (m.opacity != 1.0f) text += "d " + shortestText(m.opacity) + "\n";
+  return text + textureLine(scene, "norm", m.relief.normalMap, used) +
+         textureLine(scene, "map_Bump -bm " + shortestText(m.relief.strength), m.relief.bumpMap,
+                     used);
+}
+
+std::string materialText(const Scene& scene, const Material& m, WrittenMaterials& used) {
+  NearestMtl nearest(scene);
+  std::visit(nearest, m.model);
+  const PhongModel& p = nearest.phong;
+  std::string text = nearest.facets ? facetsText(*nearest.facets, p) : phongText(p);
+  if (!isBlack(m.emission)) text += "Ke " + triple(m.emission) + "\n";
+  if (std::holds_alternative<PhongModel>(m.model)) text += moreText(scene, m, used);
+  if (p.glass) return text;
+  return text + imageLine(scene, "map_Kd", p.diffuseMap, used) +
+         imageLine(scene, "map_Ks", p.glossyMap, used) +
+         imageLine(scene, "map_d", m.opacityMap, used);
+}
+
+// Without what OBJ and MTL take for more than a name.
+std::string cleanName(std::string name) {
+  for (char& c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f || c == '\\' || c == '#') c = '_';
+  }
+  using nlohmann::json;  // replaces what is no UTF-8
+  name = json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace));
+  const size_t first = std::min(name.find_first_not_of(' '), name.size());
+  return name.substr(first, name.find_last_not_of(' ') + 1 - first);
 }
 
 }  // namespace
 
-std::string mtlName(const Scene& scene, uint32_t material) {
-  std::string name = "m" + std::to_string(material) + " " + scene.materials[material].name;
-  for (char& c : name) {
-    if (c == '\n' || c == '\r' || c == '\\' || c == '#') c = '_';
+std::vector<std::string> materialNames(const Scene& scene) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Material& m : scene.materials) {
+    const std::string name = cleanName(m.name);
+    const std::string numbered = name + " (" + std::to_string(names.size());
+    std::string own = name.empty() ? numbered + ")" : name;
+    for (size_t copy = 1; !taken.insert(own).second; ++copy)
+      own = numbered + (copy > 1 ? ", " + std::to_string(copy) : "") + ")";
+    names.push_back(own);
   }
-  return name.substr(0, name.find_last_not_of(" \t") + 1);
+  return names;
 }
 
-std::string mtlText(const Scene& scene, std::vector<std::string>& approximated) {
-  std::string text;
-  for (uint32_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    NearestMtl nearest(scene);
-    std::visit(nearest, m.model);
-    text += "newmtl " + mtlName(scene, i) + "\n" +
-            (nearest.facets ? facetsText(scene, *nearest.facets, nearest.phong)
-                            : phongText(scene, nearest.phong));
-    if (!isBlack(m.emission)) text += "Ke " + triple(m.emission) + "\n";
-    if (m.twoSidedEmission) text += "emission_sides 2\n";
-    if (m.opacity != 1.0f) text += "d " + shortestText(m.opacity) + "\n";
-    text += mapLine(scene, "map_d", m.opacityMap);
-    const bool same = nearest.same && m.relief.flat() && m.coatRelief.flat() &&
-                      m.emissionTexture == kNone && m.opacityTexture == kNone &&
-                      m.opacityCutoff == 0.5f;
-    if (!same) approximated.push_back("material '" + m.name + "' is more than MTL can say");
+std::string mtlText(const Scene& scene, WrittenMaterials& used) {
+  std::string text =
+      "# scene.toml states the materials that MTL cannot; here they are the nearest that it can.\n";
+  for (const uint32_t i : used.materials) {
+    text += "newmtl " + used.names[i] + "\n" + materialText(scene, scene.materials[i], used);
   }
   return text;
 }

@@ -1,11 +1,15 @@
 #include "tools/inspect/write_scene.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "core/number_text.h"
+#include "core/sampling.h"
 #include "formats/exr_io.h"
 #include "formats/png_io.h"
-#include "scene/affine.h"
+#include "scene/choose_view.h"
+#include "scene/load_scene.h"
+#include "tools/inspect/scene_difference.h"
 
 namespace bnvpl {
 
@@ -13,52 +17,40 @@ namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-FilePoint filePlace(const Scene& scene, Vec3 p) {
-  return {p.x + scene.origin[0], p.y + scene.origin[1], p.z + scene.origin[2]};
+std::string listText(Vec3 v) {
+  return "[" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + "]";
+}
+std::string placeText(const Scene& scene, Vec3 p) {
+  const auto [x, y, z] = scene.origin;
+  if (x == 0.0 && y == 0.0 && z == 0.0) return listText(p);
+  return "[" + shortestText(p.x + x) + ", " + shortestText(p.y + y) + ", " + shortestText(p.z + z) +
+         "]";
+}
+// Degrees that read back as the angle, where floats have such.
+std::string degText(float rad) {
+  constexpr float kRadPerDeg = kPi / 180.0f;
+  const auto deg = static_cast<float>(double{rad} * kDegPerRad);
+  for (const float d : {deg, std::nextafter(deg, INFINITY), std::nextafter(deg, -INFINITY)}) {
+    if (d * kRadPerDeg == rad) return shortestText(d);
+  }
+  return shortestText(deg);
 }
 
-std::string listText(const FilePoint& p) {
-  return "[" + shortestText(p[0]) + ", " + shortestText(p[1]) + ", " + shortestText(p[2]) + "]";
-}
-std::string listText(Vec3 v) { return listText(FilePoint{v.x, v.y, v.z}); }
-std::string degText(float rad) { return shortestText(double{rad} * kDegPerRad); }
-
-// Consecutive triangles of a material stand together; the order is the scene's.
-std::string objText(const Scene& scene) {
-  std::string text = "mtllib scene.mtl\n";
-  for (size_t i = 0; i + 1 < scene.positions.size(); ++i) {
-    const FilePoint p = filePlace(scene, scene.positions[i]);
-    text += "v " + shortestText(p[0]) + " " + shortestText(p[1]) + " " + shortestText(p[2]) + "\n";
-  }
-  for (const Vec3 n : scene.normals)
-    text += "vn " + shortestText(n.x) + " " + shortestText(n.y) + " " + shortestText(n.z) + "\n";
-  for (const auto& [u, v] : scene.uvs)
-    text += "vt " + shortestText(u) + " " + shortestText(v) + "\n";
-  uint32_t material = kNone;
-  for (const Triangle& t : scene.triangles) {
-    if (t.material != material) text += "usemtl " + mtlName(scene, t.material) + "\n";
-    material = t.material;
-    text += "f";
-    for (size_t k = 0; k < 3; ++k) {
-      text += " " + std::to_string(t.position[k] + 1);
-      if (t.uv[k] != kNone) text += "/" + std::to_string(t.uv[k] + 1);
-      if (t.normal[k] != kNone)
-        text += (t.uv[k] != kNone ? "/" : "//") + std::to_string(t.normal[k] + 1);
-    }
-    text += "\n";
-  }
+// `mirrored` is stated where a reader would guess otherwise.
+std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool guess) {
+  std::string text = "[film]\nwidth = " + std::to_string(film.width) +
+                     "\nheight = " + std::to_string(film.height) +
+                     "\n\n[camera]\nposition = " + placeText(scene, c.position) +
+                     "\nforward = " + listText(c.forward) + "\nup = " + listText(c.up) +
+                     "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n";
+  if (c.shift != std::array<float, 2>{})
+    text += "shift = [" + shortestText(c.shift[0]) + ", " + shortestText(c.shift[1]) + "]\n";
+  if (isMirrored(c) != guess) text += std::string("mirrored = ") + (guess ? "false\n" : "true\n");
   return text;
 }
 
-std::string viewText(const Scene& scene, const Film& film, const Camera& c) {
-  return "[film]\nwidth = " + std::to_string(film.width) +
-         "\nheight = " + std::to_string(film.height) +
-         "\n\n[camera]\nposition = " + listText(filePlace(scene, c.position)) +
-         "\nforward = " + listText(c.forward) + "\nup = " + listText(c.up) +
-         "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n" +
-         (c.shift == std::array<float, 2>{}
-              ? ""
-              : "shift = [" + shortestText(c.shift[0]) + ", " + shortestText(c.shift[1]) + "]\n");
+std::string environmentFile(size_t number) {
+  return "textures/environment-" + std::to_string(number) + ".exr";
 }
 
 std::string lightText(const Scene& scene, const LightSpec& l) {
@@ -70,7 +62,7 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
     case LightType::Point:
     case LightType::Spot:
       add("type", l.type == LightType::Point ? "\"point\"" : "\"spot\"");
-      add("position", listText(filePlace(scene, l.position)));
+      add("position", placeText(scene, l.position));
       add("intensity", listText(l.emission));
       if (l.type == LightType::Point) break;
       add("direction", listText(l.direction));
@@ -88,70 +80,122 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
       if (l.image == kNone)
         add("radiance", listText(l.emission));
       else
-        add("image", "\"textures/environment-" + std::to_string(l.image) + ".exr\"");
+        add("image", "\"" + environmentFile(l.image) + "\"");
       add("rotate_deg", degText(l.rotateRad));
-      add("scale", shortestText(double{l.scale}));
+      add("scale", shortestText(l.scale));
       break;
   }
   return text;
 }
 
-// Colours; of a mask its alpha, as grey.
-std::vector<uint8_t> rgbOf(const Scene& scene, uint32_t number) {
-  const Texture& t = scene.textures[number];
-  bool mask = false;
-  for (const Material& m : scene.materials) mask = mask || m.opacityMap == number;
-  std::vector<uint8_t> rgb;
-  rgb.reserve(size_t{3} * t.width * t.height);
-  for (size_t i = 0; i < t.rgba.size(); i += 4) {
-    for (size_t k = 0; k < 3; ++k) rgb.push_back(t.rgba[i + (mask ? 3 : k)]);
+std::string instanceText(const Scene& scene, const Instance& instance) {
+  std::string text = "\n[[mesh.instance]]\ntransform = [";
+  for (size_t r = 0; r < 3; ++r) {
+    const float* row = &instance.toWorld[4 * r];
+    text += "[";
+    for (size_t c = 0; c < 3; ++c) text += shortestText(row[c]) + ", ";
+    text += shortestText(row[3] + scene.origin[r]) + "], ";
   }
-  return rgb;
+  return text + "[0, 0, 0, 1]]\n";
 }
 
-void writeImages(const Scene& scene, const fs::path& folder, OutputSet& files) {
-  for (uint32_t i = 0; i < scene.textures.size(); ++i) {
-    writePng(files.add(folder / "textures" / (std::to_string(i) + ".png")),
-             static_cast<int>(scene.textures[i].width), static_cast<int>(scene.textures[i].height),
-             rgbOf(scene, i));
+void writeText(OutputFolder& folder, const std::string& name, const std::string& text) {
+  AtomicFile file(folder.add(name));
+  file.write(text);
+  file.commit();
+}
+
+// The world, and each prototype with its instances.
+std::string writeMeshes(const Scene& scene, const std::vector<std::string>& names,
+                        OutputFolder& folder) {
+  std::string toml;
+  const auto write = [&](const std::string& name, uint32_t begin, uint32_t end) {
+    writeText(folder, name, objText(scene, begin, end, names));
+    toml += "\n[[mesh]]\nfile = \"" + name + "\"\n";
+  };
+  if (scene.worldEnd() > 0) write("scene.obj", 0, scene.worldEnd());
+  std::vector<std::string> instances(scene.prototypes.size());
+  for (const Instance& i : scene.instances) instances[i.prototype] += instanceText(scene, i);
+  for (size_t p = 0; p < scene.prototypes.size(); ++p) {
+    if (instances[p].empty()) continue;
+    write("instanced-" + std::to_string(p) + ".obj", scene.prototypes[p].begin,
+          scene.prototypes[p].end);
+    toml += instances[p];
   }
-  for (size_t i = 0; i < scene.environments.size(); ++i) {
-    const EnvironmentImage& e = scene.environments[i];
-    Image image;
-    image.width = static_cast<int>(e.width);
-    image.height = static_cast<int>(e.height);
-    for (size_t k = 0; k < 3; ++k) {
-      std::vector<float>& channel = image.add(std::string(1, "RGB"[k]));
-      for (size_t p = 0; p < e.radiance.size(); ++p) channel[p] = e.radiance[p][k];
-    }
-    writeExr(files.add(folder / "textures" / ("environment-" + std::to_string(i) + ".exr")), image,
-             ExrPixelType::Float);
+  return toml;
+}
+
+void writeTexture(const Scene& scene, uint32_t number, OutputFolder& folder) {
+  const Texture& t = scene.textures[number];
+  bool opaque = true;
+  for (size_t i = 3; i < t.rgba.size(); i += 4) opaque = opaque && t.rgba[i] == 255;
+  std::vector<uint8_t> pixels;
+  pixels.reserve(t.rgba.size());
+  for (size_t i = 0; i < t.rgba.size(); ++i) {
+    if (!opaque || i % 4 < 3) pixels.push_back(t.rgba[i]);
   }
+  AtomicFile file(folder.add(textureFile(number)));
+  writePng(file, static_cast<int>(t.width), static_cast<int>(t.height), pixels, opaque ? 3 : 4);
+  file.commit();
+}
+
+void writeEnvironment(const EnvironmentImage& e, const std::string& name, OutputFolder& folder) {
+  Image image;
+  image.width = static_cast<int>(e.width);
+  image.height = static_cast<int>(e.height);
+  for (size_t k = 0; k < 3; ++k) {
+    std::vector<float>& channel = image.add(std::string(1, "RGB"[k]));
+    for (size_t p = 0; p < e.radiance.size(); ++p) channel[p] = e.radiance[p][k];
+  }
+  AtomicFile file(folder.add(name));
+  writeExr(file, image, ExrPixelType::Float);
+  file.commit();
+}
+
+// What was written must be the scene that was given.
+void requireSame(const Scene& scene, const OutputFolder& folder) {
+  const fs::path file = folder.partial() / "scene.toml";
+  std::string difference;
+  try {
+    difference = sceneDifference(scene, loadScene(file));
+  } catch (const InputError& e) {
+    difference = e.what();
+    for (size_t at; (at = difference.find(folder.partial().string())) != std::string::npos;)
+      difference.replace(at, folder.partial().string().size(), folder.target().string());
+  }
+  if (!difference.empty())
+    throw OutputError(folder.target(), "scene.toml cannot state this scene: " + difference);
 }
 
 }  // namespace
 
-void createSceneFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder / "textures", error);
-  if (error) throw OutputError(folder, "cannot create the folder: " + error.message());
+std::string textureFile(uint32_t texture) { return "textures/" + std::to_string(texture) + ".png"; }
+
+UvTransform uvOfImage(const Scene& scene, const TextureExpression& image) {
+  const Texture& t = scene.textures[image.image];
+  const UvTransform& uv = image.uv;
+  return {uv.a * t.scale[0], uv.b * t.scale[0], uv.c * t.scale[0] + t.offset[0],
+          uv.d * t.scale[1], uv.e * t.scale[1], uv.f * t.scale[1] + t.offset[1]};
 }
 
-std::vector<std::string> writeSceneToml(const Scene& scene, const fs::path& folder,
-                                        OutputSet& files) {
+void writeSceneToml(const Scene& scene, OutputFolder& folder) {
+  WrittenMaterials used{materialNames(scene), {}, {}};
+  for (const Triangle& t : scene.triangles) used.materials.insert(t.material);
+  const std::string meshes = writeMeshes(scene, used.names, folder);
+  writeText(folder, "scene.mtl", mtlText(scene, used));
   std::string toml =
-      viewText(scene, scene.film, scene.camera) + "\n[[mesh]]\nfile = \"scene.obj\"\n";
+      viewText(scene, scene.film, scene.camera, false) + surfacesText(scene, used) + meshes;
   for (const LightSpec& light : scene.lights) toml += lightText(scene, light);
-  files.add(folder / "scene.toml").write(toml);
-  files.add(folder / "scene.obj").write(objText(scene));
-  std::vector<std::string> approximated;
-  files.add(folder / "scene.mtl").write(mtlText(scene, approximated));
+  writeText(folder, "scene.toml", toml);
   for (size_t i = 0; scene.views.size() > 1 && i < scene.views.size(); ++i) {
-    files.add(folder / ("view-" + std::to_string(i) + ".toml"))
-        .write(viewText(scene, scene.views[i].film, scene.views[i].camera));
+    writeText(
+        folder, "view-" + std::to_string(i) + ".toml",
+        viewText(scene, scene.views[i].film, scene.views[i].camera, isMirrored(scene.camera)));
   }
-  writeImages(scene, folder, files);
-  return approximated;
+  for (const uint32_t texture : used.textures) writeTexture(scene, texture, folder);
+  for (size_t i = 0; i < scene.environments.size(); ++i)
+    writeEnvironment(scene.environments[i], environmentFile(i), folder);
+  requireSame(scene, folder);
 }
 
 }  // namespace bnvpl

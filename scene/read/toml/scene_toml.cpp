@@ -1,11 +1,12 @@
 #include "scene/read/toml/scene_toml.h"
 
-#include <cstdlib>
+#include <algorithm>
 #include <numbers>
 #include <set>
 
 #include "scene/read/obj/load_obj.h"
 #include "scene/read/toml/toml_section.h"
+#include "scene/read/toml/toml_surfaces.h"
 #include "scene/read/toml/toml_view.h"
 
 namespace bnvpl {
@@ -16,59 +17,14 @@ constexpr double kMaxMagnitude = TomlSection::kMaxMagnitude;
 // A smaller sun is a point: the direction of no float ray lies in it.
 constexpr double kMinSunDeg = 1e-4;
 
-// Names in the file: with ${NAME} filled in, and relative to its folder unless absolute.
-class FileNames {
- public:
-  FileNames(const fs::path& sceneFile, const Defines& defines)
-      : folder_(sceneFile.parent_path()), defines_(defines) {}
-
-  fs::path resolve(const TomlSection& section, const char* key) const {
-    return (folder_ / expand(section, key)).lexically_normal();
-  }
-
- private:
-  std::string expand(const TomlSection& section, const char* key) const {
-    const std::string text = section.fileName(key);
-    std::string out;
-    for (size_t i = 0; i < text.size();) {
-      const size_t end = text.compare(i, 2, "${") == 0 ? text.find('}', i) : std::string::npos;
-      if (end == std::string::npos) {
-        out += text[i++];
-        continue;
-      }
-      const std::string name = text.substr(i + 2, end - i - 2);
-      if (const std::string* given = defines_.find(name)) {
-        out += *given;
-      } else if (const char* value = std::getenv(name.c_str())) {
-        out += value;
-      } else {
-        section.fail(section.node(key), "${" + name + "} is not set; pass --define " + name +
-                                            "=FOLDER or set the environment variable " + name);
-      }
-      i = end + 1;
-    }
-    return out;
-  }
-
-  fs::path folder_;
-  const Defines& defines_;
-};
+const std::vector<std::string> kTransformKeys{"transform", "translate", "rotate_deg", "scale"};
 
 Affine readMatrix(const TomlSection& s) {
-  const toml::array* rows = s.node("transform").as_array();
+  const auto rows = s.rows("transform", 4, 4);
+  if (rows[3] != std::vector<double>{0, 0, 0, 1})
+    s.fail(s.node("transform"), "the last row of 'transform' must be 0, 0, 0, 1");
   Affine a;
-  for (size_t i = 0; i < 4; ++i) {
-    const toml::array* row = rows && rows->size() == 4 ? rows->get(i)->as_array() : nullptr;
-    if (!row || row->size() != 4)
-      s.fail(s.node("transform"), "'transform' must be four rows of four numbers");
-    for (size_t j = 0; j < 4; ++j) {
-      const double v = s.numberOf(*row->get(j), "transform", -kMaxMagnitude, kMaxMagnitude);
-      if (i < 3)
-        a.m[i][j] = v;
-      else if (v != (j == 3 ? 1.0 : 0.0))
-        s.fail(*row, "the last row of 'transform' must be 0, 0, 0, 1");
-    }
-  }
+  for (size_t i = 0; i < 3; ++i) std::ranges::copy(rows[i], a.m[i].begin());
   return a;
 }
 
@@ -96,15 +52,9 @@ const std::vector<std::string> kLightKeys{
     "radiance",   "image",    "cone_deg",  "falloff_deg", "angular_diameter_deg",
     "rotate_deg", "scale"};
 
-// A key of another type would be ignored.
-void requireKeys(const TomlSection& s, const std::string& type,
-                 const std::set<std::string>& allowed) {
-  for (const std::string& key : kLightKeys) {
-    if (key != "type" && s.has(key.c_str()) && !allowed.contains(key)) {
-      s.fail(s.node(key.c_str()),
-             "'" + key + "' has no meaning for a " + type + " light; remove it");
-    }
-  }
+void requireKeys(const TomlSection& s, const std::string& type, std::set<std::string> allowed) {
+  allowed.insert("type");
+  s.requireOnly("a " + type + " light", allowed);
 }
 
 void readPointLight(const TomlSection& s, LightSpec& light) {
@@ -163,11 +113,31 @@ void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& build
   builder.addLight(light, position);
 }
 
+void readMesh(const fs::path& file, const toml::table& table, const FileNames& names,
+              SceneBuilder& builder) {
+  const TomlSection s(
+      file, "[[mesh]]", table,
+      {"file", "materials", "transform", "translate", "rotate_deg", "scale", "instance"});
+  const fs::path materials = s.has("materials") ? names.resolve(s, "materials") : fs::path();
+  const auto load = [&] {
+    loadObj(names.resolve(s, "file"), materials, readTransform(s), builder);
+  };
+  if (!s.has("instance")) return load();
+  const uint32_t prototype = builder.beginPrototype();
+  load();
+  builder.endPrototype();
+  for (const toml::table* t : tablesOf(file, table, "instance", "mesh.instance")) {
+    builder.addInstance(prototype,
+                        readTransform(TomlSection(file, "[[mesh.instance]]", *t, kTransformKeys)));
+  }
+}
+
 }  // namespace
 
 void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& builder) {
   const toml::table root = parseToml(file);
-  const TomlSection top(file, "scene", root, {"film", "camera", "mesh", "light"});
+  const TomlSection top(file, "scene", root,
+                        {"film", "camera", "texture", "material", "mesh", "light"});
   const FileNames names(file, defines);
 
   // What is small comes first: a mistake in it shows before the meshes are read.
@@ -178,12 +148,9 @@ void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& b
   const auto meshes = tablesOf(file, root, "mesh");
   if (meshes.empty())
     throw InputError(file, "has no triangle; name at least one OBJ file in a [[mesh]]");
-  for (const toml::table* t : meshes) {
-    const TomlSection s(file, "[[mesh]]", *t,
-                        {"file", "materials", "transform", "translate", "rotate_deg", "scale"});
-    const fs::path materials = s.has("materials") ? names.resolve(s, "materials") : fs::path();
-    loadObj(names.resolve(s, "file"), materials, readTransform(s), builder);
-  }
+  const TomlSurfaces surfaces(file, root, names, builder);
+  for (const toml::table* t : meshes) readMesh(file, *t, names, builder);
+  surfaces.warnOfUnused();
   for (const toml::table* t : tablesOf(file, root, "light"))
     readLight(TomlSection(file, "[[light]]", *t, kLightKeys), names, builder);
 }

@@ -74,7 +74,7 @@ const toml::table& tableOf(const fs::path& file, const toml::table& root, const 
 }
 
 std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
-                                         const char* key) {
+                                         const char* key, const std::string& written) {
   std::vector<const toml::table*> tables;
   const toml::node* node = root.get(key);
   if (!node) return tables;
@@ -83,8 +83,8 @@ std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table
     if (const toml::table* t = array->get(i)->as_table()) tables.push_back(t);
   }
   if (!array || tables.size() != array->size()) {
-    throw InputError(lineOf(file, node->source()) + "'" + key + "' must be written as [[" + key +
-                     "]]");
+    throw InputError(lineOf(file, node->source()) + "'" + key + "' must be written as [[" +
+                     (written.empty() ? key : written) + "]]");
   }
   return tables;
 }
@@ -163,6 +163,66 @@ std::string TomlSection::fileName(const char* key) const {
   }
   std::replace(name.begin(), name.end(), '\\', '/');
   return name;
+}
+
+bool TomlSection::flag(const char* key, bool otherwise) const {
+  if (!has(key)) return otherwise;
+  const auto v = node(key).value_exact<bool>();
+  if (!v) fail(node(key), std::string("'") + key + "' must be true or false");
+  return *v;
+}
+
+uint32_t TomlSection::choice(const char* key, std::span<const char* const> names) const {
+  const std::string given = text(key);
+  const auto at = std::ranges::find(names, given);
+  if (at != names.end()) return static_cast<uint32_t>(at - names.begin());
+  std::string list;
+  for (const char* name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  fail(node(key), std::string("'") + key + "' is '" + given + "'; use one of " + list);
+}
+
+std::string TomlSection::newName(const std::map<std::string, uint32_t>& known) const {
+  const std::string name = text("name");
+  if (name.empty()) fail(node("name"), "'name' must not be empty");
+  if (known.contains(name))
+    fail(node("name"), "the name '" + name + "' was given before; choose another");
+  return name;
+}
+
+uint32_t TomlSection::known(const char* key, const std::string& kind,
+                            const std::map<std::string, uint32_t>& numbers) const {
+  const std::string name = text(key);
+  const auto it = numbers.find(name);
+  if (it == numbers.end()) {
+    fail(node(key), std::string("'") + key + "': no " + kind + " '" + name +
+                        "' stands before this; write it above");
+  }
+  return it->second;
+}
+
+std::vector<std::vector<double>> TomlSection::rows(const char* key, size_t rows,
+                                                   size_t columns) const {
+  constexpr std::array kNumbers{"no", "one", "two", "three", "four"};
+  const toml::array* lines = node(key).as_array();
+  std::vector<std::vector<double>> out(rows);
+  for (size_t i = 0; i < rows; ++i) {
+    const toml::array* row = lines && lines->size() == rows ? lines->get(i)->as_array() : nullptr;
+    if (!row || row->size() != columns) {
+      fail(node(key), std::string("'") + key + "' must be " + kNumbers[rows] + " rows of " +
+                          kNumbers[columns] + " numbers");
+    }
+    for (size_t j = 0; j < columns; ++j)
+      out[i].push_back(numberOf(*row->get(j), key, -kMaxMagnitude, kMaxMagnitude));
+  }
+  return out;
+}
+
+void TomlSection::requireOnly(const std::string& what, const std::set<std::string>& allowed) const {
+  for (const auto& [key, node] : table_) {
+    if (!allowed.contains(std::string(key.str()))) {
+      fail(node, "'" + std::string(key.str()) + "' has no meaning for " + what + "; remove it");
+    }
+  }
 }
 
 FilePoint TomlSection::triple(const char* key, double least, double most) const {

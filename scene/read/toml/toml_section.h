@@ -4,6 +4,9 @@
 
 #include <toml++/toml.h>
 
+#include <map>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +18,11 @@ namespace bnvpl {
 // Throws InputError, with the line where the file is no TOML.
 toml::table parseToml(const fs::path& file);
 
-// The section [key], which must be there, and the tables of [[key]], of which there may be none.
+// The section [key], which must be there, and the tables of [[key]], of which there may be none;
+// `written` is what [[key]] is called within another.
 const toml::table& tableOf(const fs::path& file, const toml::table& root, const char* key);
 std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
-                                         const char* key);
+                                         const char* key, const std::string& written = "");
 
 // The unit vector from one place to another. False: there is none.
 bool toUnit(const FilePoint& to, const FilePoint& from, Vec3& unit);
@@ -49,8 +53,22 @@ class TomlSection {
   std::string fileName(const char* key) const;
   std::array<float, 2> pair(const char* key, double most) const;  // each of a size up to `most`
   FilePoint place(const char* key) const { return triple(key, -kFurthestPlace, kFurthestPlace); }
+  bool flag(const char* key, bool otherwise) const;
+  // The place of the text in `names`.
+  uint32_t choice(const char* key, std::span<const char* const> names) const;
+  // 'name', which must not be empty, nor among those that are known.
+  std::string newName(const std::map<std::string, uint32_t>& known) const;
+  // The number of the text among those that are known, each a table of the kind.
+  uint32_t known(const char* key, const std::string& kind,
+                 const std::map<std::string, uint32_t>& numbers) const;
+  std::vector<std::vector<double>> rows(const char* key, size_t rows, size_t columns) const;
+  // A key of another sort would be ignored. `what` is "a point light".
+  void requireOnly(const std::string& what, const std::set<std::string>& allowed) const;
   FilePoint point(const char* key) const { return triple(key, -kMaxMagnitude, kMaxMagnitude); }
-  Vec3 color(const char* key) const;      // not negative
+  Vec3 color(const char* key) const;                 // not negative
+  Vec3 vector(const char* key, double most) const {  // each of a size up to `most`
+    return fromOrigin(triple(key, -most, most), {});
+  }
   Vec3 direction(const char* key) const;  // unit length
 
   static constexpr double kMaxMagnitude = 1e30;  // of a coordinate, a factor or a power

@@ -9,7 +9,7 @@ Film readFilm(const TomlSection& s) {
 }
 
 // But for the position.
-Camera readCamera(const TomlSection& s, const FilePoint& position) {
+Camera readCamera(const TomlSection& s, const FilePoint& position, bool mirrored) {
   Camera c;
   if (s.has("look_at") == s.has("forward")) s.fail("needs exactly one of 'look_at' and 'forward'");
   if (s.has("forward")) {
@@ -24,6 +24,7 @@ Camera readCamera(const TomlSection& s, const FilePoint& position) {
     s.fail("'up' is parallel to the viewing direction; choose another 'up'");
   c.right = normalize(right);
   c.up = cross(c.right, c.forward);
+  if (s.flag("mirrored", mirrored)) c.right = -c.right;
   c.verticalFovRad = radians(s.number("vertical_fov_deg", 0.001, 179.9));
   if (s.has("shift")) c.shift = s.pair("shift", 1000.0);
   return c;
@@ -31,13 +32,14 @@ Camera readCamera(const TomlSection& s, const FilePoint& position) {
 
 }  // namespace
 
-TomlView readTomlView(const fs::path& file, const toml::table& root) {
+TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirrored) {
   const Film film =
       readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
-  const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
-                           {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift"});
+  const TomlSection camera(
+      file, "[camera]", tableOf(file, root, "camera"),
+      {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift", "mirrored"});
   const FilePoint position = camera.place("position");
-  return {film, position, readCamera(camera, position)};
+  return {film, position, readCamera(camera, position, mirrored)};
 }
 
 }  // namespace bnvpl

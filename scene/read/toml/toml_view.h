@@ -13,8 +13,9 @@ struct TomlView {
   Camera camera;         // but for its position
 };
 
-// Both sections must be there. Throws InputError.
-TomlView readTomlView(const fs::path& file, const toml::table& root);
+// Both sections must be there; `mirrored` counts where the camera does not say whether it mirrors.
+// Throws InputError.
+TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirrored = false);
 
 inline float radians(double degrees) { return static_cast<float>(degrees) * (kPi / 180.0f); }
 

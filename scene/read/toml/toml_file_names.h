@@ -1,0 +1,26 @@
+// File names in a scene.toml.
+#pragma once
+
+#include "scene/load_scene.h"
+#include "scene/read/toml/toml_section.h"
+
+namespace bnvpl {
+
+// With ${NAME} filled in, and relative to the scene's folder unless absolute. Borrows `defines`.
+class FileNames {
+ public:
+  FileNames(const fs::path& sceneFile, const Defines& defines)
+      : folder_(sceneFile.parent_path()), defines_(defines) {}
+
+  fs::path resolve(const TomlSection& section, const char* key) const {
+    return (folder_ / expand(section, key)).lexically_normal();
+  }
+
+ private:
+  std::string expand(const TomlSection& section, const char* key) const;
+
+  fs::path folder_;
+  const Defines& defines_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,37 @@
+// [[texture]] and [[material]] of a scene.toml: what MTL cannot say.
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "scene/read/toml/toml_file_names.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl {
+
+// Read before the meshes, whose materials they replace. Borrows its arguments. All of it throws
+// InputError.
+class TomlSurfaces {
+ public:
+  TomlSurfaces(const fs::path& file, const toml::table& root, const FileNames& names,
+               SceneBuilder& builder);
+  // After the meshes: warns of materials that no mesh has.
+  void warnOfUnused() const;
+
+ private:
+  void readTexture(const TomlSection& s);
+  void readMaterial(const toml::table& table);
+  void readCommon(const TomlSection& s, Material& m) const;
+  Relief readRelief(const TomlSection& s, const std::string& prefix) const;
+  // The number of a name that stands before; kNone without the key.
+  uint32_t texture(const TomlSection& s, const std::string& key) const;
+  uint32_t material(const TomlSection& s, const char* key);
+
+  const fs::path& file_;
+  const FileNames& names_;
+  SceneBuilder& builder_;
+  std::map<std::string, uint32_t> textures_, materials_;  // numbers by name
+  std::set<std::string> mixed_;                           // materials that others are made of
+};
+
+}  // namespace bnvpl

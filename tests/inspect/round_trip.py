@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""A scene that `vpl-inspect scene --to-toml` wrote looks like the scene, through each of its cameras.
+
+    tests/inspect/round_trip.py build/release/bin SCENE...   # --size 48x32 --seeds 12 to see more
+
+Path traces both with the seeds 1 to n. The differences at a pixel, one for each seed, are draws from a
+distribution whose mean is 0 where both agree: Student's t says how improbable theirs is. The same of blocks of
+2 x 2, 4 x 4, ... pixels up to the whole image, whose mean must lie within three standard errors, too. Scenes
+that cannot be read are named and passed over.
+"""
+
+import argparse
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+SIGNIFICANCE = 1e-5  # of all t of an image together
+ROUNDING = 1e-3  # of a block's mean: coordinates and colours go through text
+
+
+def run(*command) -> str:
+    """What went wrong; empty: nothing."""
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+    return lines[-1] if done.returncode else ""
+
+
+def pixels(file: Path) -> np.ndarray:
+    image = oiio.ImageInput.open(str(file))
+    names = list(image.spec().channelnames)
+    values = image.read_image(oiio.FLOAT)
+    image.close()
+    return values[:, :, [names.index(c) for c in "RGB"]].astype(np.float64)
+
+
+def blocks(images: np.ndarray, side: int) -> np.ndarray:
+    """Means over blocks of side x side pixels of each image; what is left over at the edges is not counted."""
+    n, height, width, channels = images.shape
+    rows, columns = max(1, height // side), max(1, width // side)
+    cut = images[:, : rows * min(side, height), : columns * min(side, width)]
+    return cut.reshape(n, rows, cut.shape[1] // rows, columns, cut.shape[2] // columns, channels).mean(axis=(2, 4))
+
+
+def student(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """t of each mean difference; rounding alone is none."""
+    error = (a - b).std(axis=0, ddof=1) / math.sqrt(len(a))
+    scale = 0.5 * (a + b).mean(axis=0)
+    return (a - b).mean(axis=0) / np.maximum(error, ROUNDING * scale + 1e-30)
+
+
+def difference(a: np.ndarray, b: np.ndarray) -> str:
+    """Why the expectations of two sets of images differ; empty: they do not."""
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        return "values that are not finite"
+    whole = student(a.mean(axis=(1, 2)), b.mean(axis=(1, 2)))
+    if np.abs(whole).max() > 3:
+        return f"the means differ by {np.abs(whole).max():.1f} standard errors: {a.mean():.6g} became {b.mean():.6g}"
+    ts, side = [], 1
+    while side <= max(a.shape[1:3]):
+        ts.append(student(blocks(a, side), blocks(b, side)).ravel())
+        side *= 2
+    t = np.abs(np.concatenate(ts))
+    freedom = len(a) - 1  # Wallace's normal deviate for Student's t
+    z = (8 * freedom + 1) / (8 * freedom + 3) * math.sqrt(freedom * math.log1p(t.max() ** 2 / freedom))
+    p = -math.expm1(t.size * math.log1p(-min(math.erfc(z / math.sqrt(2)), 1 - 1e-16)))  # Sidak
+    return f"t = {t.max():.3g} among {t.size}, p = {p:.2g}" if p < SIGNIFICANCE else ""
+
+
+def compare(options, scene: Path, copy: Path, first: list, second: list) -> str:
+    images = []
+    for file, view in ((scene, first), (copy, second)):
+        for seed in range(1, options.seeds + 1):
+            out = copy.parent.parent / "image.exr"
+            problem = run(options.bin / "vpl-render", file, *view, "-o", out, "--integrator", "path", "--spp",
+                          options.spp, "--size", options.size, "--seed", seed, "--quiet")
+            if problem:
+                return problem
+            images.append(pixels(out))
+    return difference(np.stack(images[: options.seeds]), np.stack(images[options.seeds :]))
+
+
+def check(options, scene: Path) -> str | None:
+    """Empty: the same; None: passed over."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "copy"
+        described = subprocess.run([str(options.bin / "vpl-inspect"), "scene", "--json", str(scene)],
+                                   capture_output=True, text=True)
+        if described.returncode:
+            print(f"passed over: {(described.stderr.strip().splitlines() or ['?'])[-1]}")
+            return None
+        problem = run(options.bin / "vpl-inspect", "scene", scene, "--to-toml", copy)
+        if problem:
+            return problem
+        views = [([], [])]
+        for i in range(1, min(options.cameras, len(json.loads(described.stdout)["cameras"]))):
+            views.append((["--camera", i], ["--view", copy / f"view-{i}.toml"]))
+        for first, second in views:
+            problem = compare(options, scene, copy / "scene.toml", first, second)
+            if problem:
+                return f"{' '.join(map(str, first))} {problem}".strip()
+    return ""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin", type=Path, help="folder of the tools")
+    parser.add_argument("scenes", type=Path, nargs="+")
+    parser.add_argument("--size", default="16x12", help="pixels")
+    parser.add_argument("--seeds", type=int, default=8)
+    parser.add_argument("--spp", type=int, default=8)
+    parser.add_argument("--cameras", type=int, default=3, help="at most so many of a scene")
+    options = parser.parse_args()
+    different = 0
+    for scene in options.scenes:
+        problem = check(options, scene)
+        if problem is None:
+            continue
+        print(f"{scene}: {'DIFFERENT: ' + problem if problem else 'the same'}", flush=True)
+        different += bool(problem)
+    return 1 if different else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
