@@ -106,6 +106,15 @@ TEST_F(Rerun, CleanRemovesWhatMakeMade) {
   EXPECT_EQ(clean(), unmade);
 }
 
+TEST_F(Rerun, NinjasGraphReplacesNoOther) {
+  write("build.ninja", "# of CMake\n");
+  const Outcome r = shell("pipelines/generate_ninja.py " + path("veach-door/scene.toml") +
+                          " --bin " BNVPL_BIN_FROM_SOURCE " --out " + path(""));
+  EXPECT_EQ(r.code, 1);
+  EXPECT_TRUE(contains(r.err, "was not made by this program")) << r.err;
+  EXPECT_EQ(readAll(at("build.ninja")), "# of CMake\n");
+}
+
 TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
   EXPECT_EQ(made(), all_);
   const std::string image = readAll(at("out/image.exr"));
