@@ -21,8 +21,8 @@ import shlex
 import stages
 
 # Stages take all cores, so one runs at a time whatever -j says. So do shards, unless they are launched elsewhere.
-HEADER = """\
-# Made by generate_ninja.py; run that again to change it.
+MARK = "# Made by generate_ninja.py"
+HEADER = MARK + """; run that again to change it.
 ninja_required_version = 1.7
 builddir = {out}
 pool stage
@@ -76,6 +76,15 @@ def build(task, out, options):
     return rows
 
 
+def write_graph(target, text):
+    """Whole or not at all, and over nobody else's graph, such as that of CMake."""
+    if target.exists() and not target.read_text(errors="replace").startswith(MARK):
+        stages.refuse(f"{target} was not made by this program; give another --out, or remove it")
+    partial = target.with_name(f"{target.name}.partial")
+    partial.write_text(text)
+    partial.replace(target)
+
+
 def main():
     options = arguments()
     for scene in options.scenes:
@@ -91,7 +100,7 @@ def main():
     target = pathlib.Path(options.out) / "build.ninja"
     text = "\n".join(rows) + "\n"
     target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(text)
+    write_graph(target, text)
     print(f"ninja -f {target}")
 
 

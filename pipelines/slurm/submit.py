@@ -12,6 +12,7 @@ import dataclasses
 import json
 import pathlib
 import shlex
+import shutil
 import subprocess
 import sys
 
@@ -57,6 +58,10 @@ def arguments():
     stages.complete(options)
     stages.check_scene(options.scene)
     return options
+
+
+def kind_of(stage):
+    return "merge" if stage.startswith("merge-") else stage
 
 
 def jobs_of(scene, options):
@@ -117,11 +122,14 @@ class Submission:
         if self.submitted:
             subprocess.run(["scancel", *self.submitted.values()])
 
+    def limits(self, name, kind):
+        memory, time, cores = (each[kind] for each in (self.options.memory, self.options.time, self.options.cpus))
+        return (self.needs.memory(name) if memory == "auto" else memory,
+                self.needs.time(name, int(cores)) if time == "auto" else time, cores)
+
     def submit(self, name, kind, words, command, note):
         chosen = self.options
-        memory, time, cores = (each[kind] for each in (chosen.memory, chosen.time, chosen.cpus))
-        memory = self.needs.memory(name) if memory == "auto" else memory
-        time = self.needs.time(name, int(cores)) if time == "auto" else time
+        memory, time, cores = self.limits(name, kind)
         full = ["sbatch", "--parsable", f"--job-name={stages.name_of(self.scene)}-{name}",
                 f"--cpus-per-task={cores}", f"--mem={memory}", f"--time={time}",
                 "--requeue", "--open-mode=append", *words, *shlex.split(chosen.sbatch),
@@ -131,6 +139,7 @@ class Submission:
             self.submitted[name] = f"ID_OF_{name}"
             return
         self.submitted[name] = self.slurm(*full).strip().split(";")[0]
+        self.ids.write_text(json.dumps(self.submitted) + "\n")
         print(f"{self.submitted[name]}  {name}: {note}", flush=True)
 
     def submit_stage(self, name, tasks):
@@ -139,7 +148,7 @@ class Submission:
         wanted = [i for i, task in enumerate(described, 1) if before or not task_program.up_to_date(self.run, task)]
         if not wanted:
             return
-        kind = "merge" if name.startswith("merge-") else name
+        kind = kind_of(name)
         if not self.options.dry_run:
             (self.run / f"{name}.job.json").write_text(json.dumps(
                 {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}, indent=1))
@@ -166,7 +175,12 @@ class Submission:
     def submit_all(self):
         jobs = jobs_of(self.scene, self.options)
         if not self.options.dry_run:
+            for command in ("sbatch", "squeue", "scancel"):
+                if not shutil.which(command):
+                    stages.refuse(f"there is no {command} here; run this where Slurm's commands are")
             self.refuse_while_queued()
+            for name, _ in jobs:  # what cannot be known is refused before anything is done
+                self.limits(name, kind_of(name))
             self.run.mkdir(parents=True, exist_ok=True)
             self.put_aside({task.name for _, tasks in jobs for task in tasks})
         for name, tasks in jobs:
@@ -175,8 +189,6 @@ class Submission:
             print(f"{self.run.parent} is up to date")
             return
         self.submit_summary()
-        if not self.options.dry_run:
-            self.ids.write_text(json.dumps(self.submitted) + "\n")
 
 
 def main():

@@ -225,6 +225,17 @@ class SubmitTest(unittest.TestCase):
         self.environment["PATH"] = f"{self.folder}/slurm"
         self.assertIn("there is no sbatch here", self.submit().stdout)
 
+    def test_what_is_refused_moves_no_records_and_submits_nothing(self):
+        self.submit("--shards", "2")
+        before = sorted(file.name for file in self.at("run").rglob("*"))
+        self.jobs()
+        done = self.submit("--shards", "3", "--photons", "many", "--bin", str(BIN.resolve()))
+        self.assertNotEqual(done.returncode, 0)
+        (self.folder / "slurm/sbatch").unlink()
+        self.assertIn("there is no sbatch here", self.submit("--shards", "3").stdout)
+        self.assertEqual(sorted(file.name for file in self.at("run").rglob("*")), before)
+        self.assertEqual(self.jobs(), {})
+
     def test_a_run_that_is_queued_is_not_submitted_again(self):
         self.submit("--shards", "1")
         (self.folder / "queued").write_text("101 101")

@@ -2,6 +2,7 @@
 #include "tools/common/interrupt.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -60,15 +61,35 @@ TEST(Interrupt, ALoopThatDefersMaySaveAndSayHowToGoOn) {
               "continues\n$");
 }
 
-TEST(Interrupt, ASecondSignalDoesNotWait) {
+TEST(Interrupt, TheSameSignalASecondLaterDoesNotWait) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const auto run = [&] {
+      catchInterrupts("tool");
+      const DeferInterrupts defer;
+      std::raise(signal);
+      ::usleep(1'100'000);
+      std::raise(signal);
+      std::exit(0);
+    };
+    EXPECT_EXIT(run(), KilledBySignal(signal), "no output was touched");
+  }
+}
+
+// Make answers Ctrl-C, which the tool gets too, with a SIGTERM to the tool; wrappers may send more.
+TEST(Interrupt, OneRequestMayComeAsSeveralSignals) {
   const auto run = [] {
     catchInterrupts("tool");
-    const DeferInterrupts defer;
-    std::raise(SIGINT);
-    std::raise(SIGTERM);
-    std::exit(0);
+    try {
+      const DeferInterrupts defer;
+      for (const int signal : {SIGINT, SIGTERM, SIGINT, SIGHUP, SIGTERM}) std::raise(signal);
+      ::usleep(1'100'000);
+      std::raise(SIGXCPU);
+      if (interrupted()) throw Interrupted("the work is saved");
+    } catch (const Interrupted& reason) {
+      endInterrupted(reason);
+    }
   };
-  EXPECT_EXIT(run(), KilledBySignal(SIGTERM), "no output was touched");
+  EXPECT_EXIT(run(), KilledBySignal(SIGINT), "^tool: interrupted \\(SIGINT\\); the work is saved");
 }
 
 TEST(Interrupt, WhatNobodyActedUponEndsTheToolAfterTheLoop) {

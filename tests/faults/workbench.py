@@ -114,7 +114,10 @@ class Workbench(unittest.TestCase):
         self.random = random.Random(time.time_ns())
 
     def old(self, name: str) -> bytes:
-        return f"old {name}\n".encode()
+        """An older file of the kind, which alone an output replaces."""
+        begin = {".vpl": b"\x89VPL\r\n\x1a\n", ".exr": b"\x76\x2f\x31\x01", ".png": b"\x89PNG\r\n\x1a\n",
+                 ".shard": b"\x89VPLSHD\n", ".csv": b"old,file\n", ".json": b'{"tool": "vpl-old"}', ".d": b"old: \\\n "}
+        return begin[Path(name).suffix] + f"old {name}\n".encode()
 
     def put_old(self, command: Command) -> None:
         for name in command.outputs:

@@ -137,6 +137,70 @@ TEST_F(Files, TwoOutputsOfOneName) {
           {"--diff", "--stats"});
 }
 
+// Told by content: a slip of the name costs no file of another kind, whoever made it.
+TEST_F(Files, AnOutputReplacesNoFileOfAnotherKind) {
+  write("notes", "of somebody\n");
+  write("package.json", "{\"name\": \"x\"}\n");
+  write("Makefile", "all:\n\techo\n");
+  fs::create_symlink("notes", at("link"));
+  const std::string render = toml_ + lit_ + "--spp 1 -o ", image = path("image.exr");
+  for (const char* name :
+       {"candidates.vpl", "image.png", "notes", "link", "package.json", "Makefile"}) {
+    refused("vpl-render", render + path("x.exr") + " --stats " + path(name),
+            {name, "is not the JSON summary", "--stats", "name another file"}, kExitOutput);
+    refused("vpl-render", render + path("x.exr") + " --depfile " + path(name),
+            {name, "is not a list of files", "--depfile"}, kExitOutput);
+  }
+  for (const char* name : {"notes", "link", "image.png"}) {
+    fs::copy(at(name), at(std::string("x") + name + ".exr"));
+    refused("vpl-render", render + path(std::string("x") + name + ".exr"),
+            {"is not an OpenEXR image", "-o"}, kExitOutput);
+  }
+  fs::copy(at("image.exr"), at("wrong.vpl"));
+  fs::copy(at("image.exr"), at("wrong.png"));
+  fs::copy(at("lit.vpl"), at("wrong.csv"));
+  fs::copy(at("lit.vpl"), at("wrong.ply"));
+  fs::copy(at("image.png"), at("wrong.svg"));
+  const std::string wrong = path("wrong.vpl"), png = path("wrong.png");
+  refused("vpl-place", toml_ + "-n 9 -o " + wrong, {"is not VPLs"}, kExitOutput);
+  refused("vpl-eliminate", candidates_ + "-n 9 -o " + wrong, {"is not VPLs"}, kExitOutput);
+  refused("vpl-estimate", toml_ + vpls_ + "-o " + wrong, {"is not VPLs"}, kExitOutput);
+  refused("vpl-render", render + path("x.exr") + " --png " + png, {"is not a PNG"}, kExitOutput);
+  refused("vpl-inspect", "export " + lit_ + "-o " + path("wrong.csv"), {"a CSV"}, kExitOutput);
+  refused("vpl-inspect", "export " + lit_ + "-o " + path("wrong.ply"), {"a PLY"}, kExitOutput);
+  refused("vpl-inspect", "plot " + lit_ + "--scene " + toml_ + "-o " + png, {"PNG"}, kExitOutput);
+  refused("vpl-inspect", "compare " + image + " " + image + " --diff " + png, {"a PNG"},
+          kExitOutput);
+  refused("vpl-inspect", "run " + path("sub") + " --svg " + path("wrong.svg"), {"an SVG"},
+          kExitOutput);
+  refused("vpl-inspect", "info " + lit_ + "--stats " + path("candidates.vpl"), {"JSON"},
+          kExitOutput);
+}
+
+TEST_F(Files, AnOlderFileOfTheKindIsReplaced) {
+  write("empty", "");
+  fs::copy(at("empty"), at("empty.vpl"));
+  succeed("vpl-place",
+          toml_ + "-n 9 --quiet -o " + path("empty.vpl") + " --stats " + path("empty"));
+  const std::string image = path("image.exr");
+  for (int time = 0; time < 2; ++time) {
+    succeed("vpl-render", toml_ + lit_ + "--spp 1 --quiet -o " + image + " --png " +
+                              path("image.png") + " --stats " + path("s") + " --depfile " +
+                              path("d"));
+    succeed("vpl-inspect", "--quiet export " + lit_ + "-o " + path("x.csv"));
+    succeed("vpl-inspect", "--quiet export " + lit_ + "-o " + path("x.PLY"));
+    EXPECT_EQ(tool("vpl-inspect", "run pipelines/slurm/example --svg " + path("x.svg")).code, 0);
+    succeed("vpl-estimate",
+            toml_ + vpls_ + "--photons 1k --quiet --shard 1/1 -o " + path("x.shard"));
+  }
+}
+
+TEST_F(Files, MergeKeepsWhatTheShardsWereMadeFrom) {
+  succeed("vpl-estimate",
+          toml_ + vpls_ + "--photons 50k --quiet --shard 1/1 -o " + path("x.shard"));
+  refused("vpl-merge", path("x.shard") + " -o " + vpls_, {"-o '", "vpls.vpl", "same file"});
+}
+
 TEST_F(Files, ACheckpointIsNoOtherFile) {
   const std::string estimate = toml_ + vpls_ + "--photons 1k -o " + path("new.vpl");
   refused("vpl-estimate", estimate + " --checkpoint " + path("new.vpl"), {"-o", "--checkpoint"});

@@ -89,6 +89,32 @@ TEST_F(Rerun, MakeFollowsEveryFileOfTheScene) {
   EXPECT_EQ(made(), "");
 }
 
+// Also where it made them among files of others.
+TEST_F(Rerun, CleanRemovesWhatMakeMade) {
+  const std::vector<std::string> others{"package.json", "notes.d",        "run.cmd", "image.png",
+                                        "x.checkpoint", "shards/a.shard", "place.d"};
+  fs::create_directories(at("out/shards"));
+  for (const std::string& name : others) write("out/" + name, "# of somebody\n");
+  const auto clean = [&] { return made("clean"), listing(); };
+  const auto before = listing();
+  EXPECT_EQ(clean(), before);
+  for (const char* name : {"out/image.png", "out/place.d"}) fs::remove(at(name));
+  const auto unmade = listing();
+  made("SHARDS=place=2");
+  made();
+  EXPECT_NE(listing(), unmade);
+  EXPECT_EQ(clean(), unmade);
+}
+
+TEST_F(Rerun, NinjasGraphReplacesNoOther) {
+  write("build.ninja", "# of CMake\n");
+  const Outcome r = shell("pipelines/generate_ninja.py " + path("veach-door/scene.toml") +
+                          " --bin " BNVPL_BIN_FROM_SOURCE " --out " + path(""));
+  EXPECT_EQ(r.code, 1);
+  EXPECT_TRUE(contains(r.err, "was not made by this program")) << r.err;
+  EXPECT_EQ(readAll(at("build.ninja")), "# of CMake\n");
+}
+
 TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
   EXPECT_EQ(made(), all_);
   const std::string image = readAll(at("out/image.exr"));

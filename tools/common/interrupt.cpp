@@ -7,7 +7,9 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <string_view>
 
@@ -27,6 +29,8 @@ constexpr std::array<Stop, 4> kStops{
 std::array<char, 64> toolName{};  // what a handler needs is ready before it runs
 std::atomic<bool> onTerminal{false}, deferring{false}, ending{false};
 std::atomic<int> pending{0};
+std::array<std::atomic<int64_t>, kStops.size()> firstNs{};  // when each signal came; 0: not yet
+constexpr int64_t kOneRequestNs = 1'000'000'000;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 // A line on stderr, without the C library's streams, whose locks the interrupted code may hold.
@@ -65,10 +69,25 @@ void endAtOnce(int signal) {
                                   : "no output was touched");
 }
 
+// One request to stop may come as several signals: Ctrl-C reaches a tool and Make, which sends
+// SIGTERM on. Only the same signal a while later is another request.
+bool isAnotherRequest(int signal) {
+  struct timespec now {};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const int64_t nowNs = int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+  for (size_t i = 0; i < kStops.size(); ++i) {
+    int64_t first = 0;
+    if (kStops[i].signal == signal && !firstNs[i].compare_exchange_strong(first, nowNs))
+      return nowNs - first >= kOneRequestNs;
+  }
+  return false;
+}
+
 extern "C" void onStop(int signal) {
   const int saved = errno;
   int none = 0;
-  if (!deferring || !pending.compare_exchange_strong(none, signal)) endAtOnce(signal);
+  const bool another = isAnotherRequest(signal);
+  if (!deferring || (!pending.compare_exchange_strong(none, signal) && another)) endAtOnce(signal);
   errno = saved;
 }
 

@@ -26,8 +26,8 @@ namespace bnvpl {
 // Called once, by runTool, before there is any other thread.
 void catchInterrupts(const std::string& tool);
 
-// While one lives, the first signal only makes interrupted() true; a second one ends the tool at
-// once. At its end a signal that nobody acted upon has its usual effect.
+// While one lives, a signal only makes interrupted() true; the same signal again, a second later or
+// more, ends the tool at once. At its end a signal that nobody acted upon has its usual effect.
 class DeferInterrupts {
  public:
   DeferInterrupts();

@@ -32,17 +32,6 @@ Identity identityOf(const fs::path& file) {
   return {0, 0, fs::weakly_canonical(fs::absolute(target, ignored), ignored).string()};
 }
 
-std::string contentOf(const std::string& extension) {
-  static const std::map<std::string, std::string> contents{{".vpl", "VPLs"},
-                                                           {".exr", "an OpenEXR image"},
-                                                           {".png", "a PNG picture"},
-                                                           {".svg", "an SVG picture"},
-                                                           {".ply", "a PLY point cloud"},
-                                                           {".csv", "a CSV table"},
-                                                           {".shard", "a shard"}};
-  return contents.at(extension);
-}
-
 std::string sceneFileName(const fs::path& file) {
   const std::string extension = lowerExtension(file);
   if (extension == ".toml" || extension == ".pbrt" || extension == ".gltf" || extension == ".glb")
@@ -50,6 +39,10 @@ std::string sceneFileName(const fs::path& file) {
   if (extension == ".obj") return "a mesh of the scene";
   if (extension == ".mtl") return "a material library of the scene";
   return "an image of the scene";
+}
+
+bool mayBeNamed(const std::string& extension, OutputKind kind) {
+  return extensionOf(kind).empty() || extensionOf(kind) == extension;
 }
 
 std::string quoted(const fs::path& file) { return "'" + file.string() + "'"; }
@@ -62,30 +55,48 @@ RunFiles& RunFiles::reads(const std::string& option, const fs::path& file) {
 }
 
 RunFiles& RunFiles::writes(const std::string& option, const fs::path& file,
-                           const std::vector<std::string>& extensions) {
-  if (!file.empty()) outputs_.push_back({option, file, extensions});
+                           const std::vector<OutputKind>& kinds) {
+  if (!file.empty()) outputs_.push_back({option, file, kinds});
   return *this;
 }
 
 RunFiles& RunFiles::writes(const ToolOptions& tool) {
-  return writes("--stats", tool.stats).writes("--depfile", tool.depfile);
+  return writes("--stats", tool.stats, {OutputKind::Stats})
+      .writes("--depfile", tool.depfile, {OutputKind::Depfile});
 }
 
 void RunFiles::checkExtensions() const {
   for (const Named& out : outputs_) {
     const std::string extension = lowerExtension(out.file);
-    const auto& known = out.extensions;
-    if (known.empty() || extension.empty() ||
-        std::find(known.begin(), known.end(), extension) != known.end())
+    if (out.kinds.empty() || extension.empty() ||
+        std::ranges::any_of(out.kinds, [&](OutputKind k) { return mayBeNamed(extension, k); }))
       continue;
     std::string contents, names;
-    for (const std::string& k : known) {
+    for (const OutputKind k : out.kinds) {
       const std::string separator = contents.empty() ? "" : " or ";
       contents += separator + contentOf(k);
-      names += separator + out.file.filename().replace_extension(k).string();
+      names += separator + out.file.filename().replace_extension(extensionOf(k)).string();
     }
     throw UsageError(out.option + " " + quoted(out.file) + " would hold " + contents +
                      ", not what its extension says; name it " + names);
+  }
+}
+
+// An older file of the kind is replaced.
+void RunFiles::checkKinds() const {
+  for (const Named& out : outputs_) {
+    const std::string extension = lowerExtension(out.file);
+    std::string contents;
+    bool replaces = out.kinds.empty();
+    for (const OutputKind k : out.kinds) {
+      if (!extension.empty() && !mayBeNamed(extension, k)) continue;
+      contents += (contents.empty() ? "" : " or ") + contentOf(k);
+      replaces = replaces || mayReplace(out.file, k);
+    }
+    if (replaces) continue;
+    throw OutputError(out.file, "is not " + contents + ", which " + out.option +
+                                    " would replace it with; name another file, or remove this "
+                                    "one");
   }
 }
 
@@ -135,6 +146,7 @@ void RunFiles::check() const {
 void RunFiles::ready(const std::vector<fs::path>& sceneFiles) {
   for (const fs::path& file : sceneFiles) reads(sceneFileName(file), file);
   check();
+  checkKinds();
   for (const Named& out : outputs_) requireWritable({out.file});
 }
 

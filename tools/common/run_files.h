@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "tools/common/output_kind.h"
 
 namespace bnvpl {
 
@@ -23,10 +24,11 @@ class RunFiles {
   // given.
   RunFiles& reads(const std::string& option, const fs::path& file);
 
-  // `extensions`, which tell what it holds, are those that its name may have, in upper case too;
-  // none given: any. A name may also have none. A checkpoint, which is read too, is one of these.
+  // `kinds` are what it may hold, of which the extension of its name, in upper case too, chooses
+  // one; a name may also have none. None given: neither name nor an older file is looked at. A
+  // checkpoint, which is read too, is one of these.
   RunFiles& writes(const std::string& option, const fs::path& file,
-                   const std::vector<std::string>& extensions = {});
+                   const std::vector<OutputKind>& kinds = {});
   RunFiles& writes(const ToolOptions& tool);  // --stats and --depfile
 
   // First of all: asks, and touches nothing. Throws UsageError, which names both options, when an
@@ -35,16 +37,18 @@ class RunFiles {
   void check() const;
 
   // Last before the work: check(), with the scene's own files as inputs, which are known only now;
-  // then tries to write beside each output.
+  // then tries to write beside each output. Throws OutputError, too, where an output would replace
+  // a file of another kind.
   void ready(const std::vector<fs::path>& sceneFiles = {});
 
  private:
   struct Named {
     std::string option;
     fs::path file;
-    std::vector<std::string> extensions;  // of outputs
+    std::vector<OutputKind> kinds;  // of outputs
   };
   void checkExtensions() const;
+  void checkKinds() const;
   void checkIdentities() const;
   void checkPartialNames() const;
 

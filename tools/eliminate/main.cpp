@@ -79,7 +79,7 @@ int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost
   }
   RunFiles used;
   used.reads("candidates", paths.input).reads("--scene", paths.scene.file);
-  used.writes("-o", paths.output, {".vpl"}).writes(tool);
+  used.writes("-o", paths.output, {OutputKind::Vpl}).writes(tool);
   if (!cost.estimate) {
     used.check();
     requireMemoryFor(paths.input, kBytesPerCandidate, "place fewer with vpl-place -n");

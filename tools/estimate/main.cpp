@@ -36,7 +36,7 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
   const auto& shard = request.shard;
   RunFiles used;
   used.reads("scene", request.scene.file).reads("vpls", request.input);
-  used.writes("-o", request.output, {shard ? kShardExtension : ".vpl"});
+  used.writes("-o", request.output, {shard ? OutputKind::Shard : OutputKind::Vpl});
   used.writes("--checkpoint", request.checkpoint.file);
   used.writes(tool);
   if (!request.cost.estimate) {

@@ -109,7 +109,11 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
 int runExport(const ExportCommand& command, const ToolOptions& tool) {
   requireExportable(command.output);
   Summary summary("vpl-inspect");
-  RunFiles().reads("file", command.file).writes("-o", command.output).writes(tool).ready();
+  RunFiles()
+      .reads("file", command.file)
+      .writes("-o", command.output, {OutputKind::Ply, OutputKind::Csv})
+      .writes(tool)
+      .ready();
   const VplTable table = readVpl(command.file);
   OutputSet files;
   exportTable(table, files.add(command.output));
@@ -148,7 +152,7 @@ int runScene(const SceneCommand& command, const ToolOptions& tool) {
 
 int runRun(const RunCommand& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
-  RunFiles().writes("--svg", command.svg, {".svg"}).writes(tool).ready();
+  RunFiles().writes("--svg", command.svg, {OutputKind::Svg}).writes(tool).ready();
   const RunRecords run = readRunRecords(command.folder);
   const Json description = describeRun(run);
   OutputSet files;
@@ -164,7 +168,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
   RunFiles used;
   used.reads("file", command.file).reads("--scene", command.scene.file);
-  used.writes("-o", command.output, {".png"}).writes(tool).check();
+  used.writes("-o", command.output, {OutputKind::Png}).writes(tool).check();
   const VplTable table = readVpl(command.file);
   Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
   used.ready(scene.files);

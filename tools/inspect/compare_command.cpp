@@ -178,7 +178,7 @@ int runCompare(const CompareCommand& command, const ToolOptions& tool) {
   RunFiles used;
   used.reads("A", command.imageA).reads("B", command.imageB);
   used.reads("--second-half", command.secondB).reads("--mask", command.mask);
-  used.writes("--diff", command.diff, {".png"}).writes(tool).ready();
+  used.writes("--diff", command.diff, {OutputKind::Png}).writes(tool).ready();
 
   Sides s;
   readSides(command, s);

@@ -29,8 +29,8 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
   const MergeStage& stage = stageOf(shards);
   RunFiles used;
   for (const fs::path& file : inputs) used.reads("shard", file);
-  used.writes("-o", output.product, {std::string(stage.extension), kShardExtension});
-  used.writes("--png", output.png, {".png"}).writes(tool).check();
+  used.writes("-o", output.product, {stage.product, OutputKind::Shard});
+  used.writes("--png", output.png, {OutputKind::Png}).writes(tool).check();
   const bool toShard = lowerExtension(output.product) == kShardExtension;
   if (!output.png.empty() && (toShard || !stage.image))
     throw UsageError("--png is a preview of an image; leave it out");
@@ -42,6 +42,8 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
     shards.writeTo(files.add(output.product));
   } else {
     read = stage.merge(shards, output, files, summary);
+    for (const fs::path& file : read) used.reads("an input of the shards", file);
+    used.check();
     shards.verifyRest();
   }
   summary.add("shards", inputs.size(), "merged " + std::to_string(inputs.size()) + " files");

@@ -8,9 +8,10 @@
 namespace bnvpl {
 
 std::span<const MergeStage> mergeStages() {
-  static constexpr std::array kStages{MergeStage{"vpl-place", ".vpl", mergePlaced},
-                                      MergeStage{"vpl-estimate", ".vpl", mergeEstimated},
-                                      MergeStage{"vpl-render", ".exr", mergeRendered, true}};
+  static constexpr std::array kStages{
+      MergeStage{"vpl-place", OutputKind::Vpl, mergePlaced},
+      MergeStage{"vpl-estimate", OutputKind::Vpl, mergeEstimated},
+      MergeStage{"vpl-render", OutputKind::Exr, mergeRendered, true}};
   return kStages;
 }
 

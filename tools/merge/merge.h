@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/vpl_table.h"
+#include "tools/common/output_kind.h"
 #include "tools/common/run_tool.h"
 #include "tools/merge/shard_set.h"
 
@@ -17,8 +18,8 @@ struct MergeOutput {
 };
 
 struct MergeStage {
-  std::string_view tool;       // whose shards these are
-  std::string_view extension;  // of its product
+  std::string_view tool;  // whose shards these are
+  OutputKind product;
   // Adds the product to `files` and its figures to the summary. Returns the files that it read
   // besides the shards.
   std::vector<fs::path> (*merge)(ShardSet& shards, const MergeOutput& output, OutputSet& files,

@@ -119,7 +119,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   const uint64_t count = options.whole("count");
   RunFiles used;
   used.reads("scene", request.scene.file);
-  used.writes("-o", output, {request.shard ? kShardExtension : ".vpl"});
+  used.writes("-o", output, {request.shard ? OutputKind::Shard : OutputKind::Vpl});
   used.writes("--checkpoint", request.checkpoint.file).writes(tool);
   if (!request.cost.estimate) {
     used.check();

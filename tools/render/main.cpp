@@ -104,8 +104,8 @@ int runRender(const Request& request, const ToolOptions& tool) {
   const auto& shard = request.shard;
   RunFiles used;
   used.reads("scene", request.scene.file).reads("lit", request.lit);
-  used.writes("-o", request.images.exr, {shard ? kShardExtension : ".exr"});
-  used.writes("--png", request.images.png, {".png"});
+  used.writes("-o", request.images.exr, {shard ? OutputKind::Shard : OutputKind::Exr});
+  used.writes("--png", request.images.png, {OutputKind::Png});
   used.writes("--checkpoint", request.checkpoint.file).writes(tool);
   const bool estimating = request.cost.estimate;
   if (!estimating) used.check();
