@@ -16,7 +16,7 @@ struct FilmOptions {
   uint64_t seed = 1;
   Only only = Only::Everything;
   std::vector<const Layer*> layers;  // channels beside R, G, B
-  bool spreadSpecks = false;         // specks.h
+  bool spreadSpecks = false;         // fireflies.h
 };
 
 struct FilmStats {
