@@ -31,7 +31,7 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
   const size_t pixels = size_t{width_} * rays.scene().film.height;
   std::vector<PixelSums> sums(pixels);
   SplatProgress done;
-  const auto phase = progress.before("caustics", photons);
+  const auto phase = progress.before("caustic photons", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
         for (uint64_t i = begin; i < end; ++i) follow(i, out);
