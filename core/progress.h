@@ -25,7 +25,8 @@ class ProgressFn {
   explicit operator bool() const { return static_cast<bool>(count_); }
   void operator()(uint64_t done) const { count_(done); }
 
-  // Preparations for the main work. They end with this object; one at a time.
+  // Work that is counted apart from the main one, such as its preparations. It ends with this
+  // object; one at a time.
   class [[nodiscard]] Phase {
    public:
     explicit Phase(const End* end) : end_(end) {}

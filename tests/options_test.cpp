@@ -3,6 +3,7 @@
 
 #include "core/errors.h"
 #include "tests/support/pipeline.h"
+#include "tools/common/escape_text.h"
 #include "tools/common/option.h"
 #include "tools/common/stage_cli.h"
 
@@ -155,6 +156,28 @@ TEST(Options, EveryStageIsSound) {
   StageSpec twice = spec();
   twice.slots[0].methods[0].options = kStage;
   EXPECT_THROW(requireSound(twice), std::logic_error);
+}
+
+TEST(EscapedText, KeepsWhatIsReadAndSpellsOutWhatActs) {
+  const std::pair<const char*, const char*> texts[] = {
+      {"plain \xc3\xa4\xe6\xb0\xb4\xf0\x9f\x92\xa1", "plain \xc3\xa4\xe6\xb0\xb4\xf0\x9f\x92\xa1"},
+      {"\x1b]0;title\a\x1b[31m", "\\x1b]0;title\\x07\\x1b[31m"},
+      {"\x7f\r", "\\u007f\\x0d"},
+      {"\xc2\x9b", "\\u009b"},      // C1: CSI in one character
+      {"\xe2\x80\xae", "\\u202e"},  // right-to-left override
+      {"\xef\xbb\xbf", "\\ufeff"},
+      {"\x9b\xff", "\\x9b\\xff"},           // no UTF-8
+      {"\xc0\xaf", "\\xc0\\xaf"},           // overlong
+      {"\xed\xa0\x80", "\\xed\\xa0\\x80"},  // a surrogate
+      {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},
+      {"\xe2\x80", "\\xe2\\x80"},  // cut short
+      {"", ""}};
+  for (const auto& [text, safe] : texts) {
+    EXPECT_EQ(escapedLine(text), safe);
+    EXPECT_EQ(escapedText(text), safe);
+  }
+  EXPECT_EQ(escapedText("a\n\tb"), "a\n\tb");
+  EXPECT_EQ(escapedLine("a\n\tb"), "a\\n\\tb");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ SurfaceLights::SurfaceLights(const RayScene& rays, const LightSet& lights,
     return facingOf(normals[a]) < facingOf(normals[b]);
   });
   const std::vector<Group> groups = groupsOf(order, normals);
-  const auto phase = progress.before("visible lights", groups.size());
+  const auto phase = progress.before("light visibility, groups of VPLs", groups.size());
   std::vector<StrataValues> found(groups.size());
   parallelFor(groups.size(), 1, [&](size_t g) {
     std::vector<SurfacePoint> at;

@@ -196,6 +196,16 @@ TEST_F(Options, VplsAndReferencesExcludeEachOther) {
   fail("vpl-render", scene_ + " a.vpl -o x --integrator light", kExitUsage, {"light", "a.vpl"});
 }
 
+// A script gives every stage the same seed; a method that draws no numbers ignores it.
+TEST_F(Options, ASeedThatNothingDrawsByIsAccepted) {
+  makeStages(scene_);
+  const std::string keep = path("candidates.vpl") + " -n 60 -o ";
+  succeed("vpl-eliminate", keep + path("seeded.vpl") + " --seed 7");
+  EXPECT_EQ(readAll(at("seeded.vpl")), readAll(at("vpls.vpl")));
+  fail("vpl-eliminate", keep + "x --seed soon", kExitUsage, {"--seed", "soon"});
+  fail("vpl-eliminate", keep + "x --method random --alpha 4", kExitUsage, {"--alpha", "no effect"});
+}
+
 TEST_F(Options, ListsTakeOneWord) {
   makeStages(scene_);
   succeed("vpl-render",
@@ -212,7 +222,10 @@ TEST_F(Options, DefinesMayStandAnywhere) {
   const std::string define = "--define DIR=far ", end = " -o " + path("c.vpl") + " -n 10 ";
   succeed("vpl-place", path("near.toml") + end + define);
   succeed("vpl-place", define + path("near.toml") + end);
-  succeed("vpl-place", "--define DIR=nowhere " + define + path("near.toml") + end);
+  for (const char* twice : {"--define DIR=nowhere ", "--define DIR=far "}) {
+    fail("vpl-place", twice + define + path("near.toml") + end, kExitUsage,
+         {"--define DIR is given more than once"});
+  }
   fail("vpl-place", path("near.toml") + end, kExitInput,
        {"near.toml:", "${DIR} is not set", "--define DIR="});
   fail("vpl-place", path("near.toml") + end + "--define DIR", kExitUsage, {"NAME=VALUE"});

@@ -29,7 +29,6 @@ TEST_F(Effect, OptionsWithoutEffectAreRefused) {
   const std::string keep = path("candidates.vpl") + " -n 5 -o " + path("v.vpl");
   fail("vpl-eliminate", keep + " --density uniform --uniform-share 0.5", kExitUsage,
        {"--uniform-share", "--density uniform", "--density local"});
-  fail("vpl-eliminate", keep + " --seed 3", kExitUsage, {"--seed", "--method", "random"});
   fail("vpl-eliminate", keep + " --scene " + scene_, kExitUsage, {"--scene", "elimination"});
   fail("vpl-eliminate", keep + " --method rejection", kExitUsage, {"rejection", "--scene SCENE"});
   fail("vpl-place", scene_ + " -n 5 -o " + path("c.vpl") + " --light-depth 3", kExitUsage,

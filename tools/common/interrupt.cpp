@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -11,10 +10,10 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
-#include <string_view>
 
 #include "formats/atomic_file.h"
 #include "formats/output_folder.h"
+#include "tools/common/standard_streams.h"
 
 namespace bnvpl {
 namespace {
@@ -27,31 +26,19 @@ constexpr std::array<Stop, 4> kStops{
     {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}, {SIGXCPU, "SIGXCPU"}}};
 
 std::array<char, 64> toolName{};  // what a handler needs is ready before it runs
-std::atomic<bool> onTerminal{false}, deferring{false}, ending{false};
+std::atomic<bool> deferring{false}, ending{false};
 std::atomic<int> pending{0};
 std::array<std::atomic<int64_t>, kStops.size()> firstNs{};  // when each signal came; 0: not yet
 constexpr int64_t kOneRequestNs = 1'000'000'000;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-// A line on stderr, without the C library's streams, whose locks the interrupted code may hold.
 void sayInterrupted(int signal, const char* what) {
-  std::array<char, 8192> line;  // longer than any two paths
-  size_t length = 0;
-  const auto add = [&](std::string_view text) {
-    const size_t fits = std::min(text.size(), line.size() - length);
-    std::memcpy(line.data() + length, text.data(), fits);
-    length += fits;
-  };
-  if (onTerminal) add("\r\x1b[K");  // over the progress
-  add(toolName.data());
-  add(": interrupted (");
+  ErrorLine line;
+  line.add(toolName.data()).add(": interrupted (");
   for (const Stop& stop : kStops) {
-    if (stop.signal == signal) add(stop.name);
+    if (stop.signal == signal) line.add(stop.name);
   }
-  add("); ");
-  add(what);
-  add("\n");
-  [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, line.data(), length);
+  line.add("); ").add(what);
 }
 
 // Inside the handler the signal waits until it returns.
@@ -95,7 +82,6 @@ extern "C" void onStop(int signal) {
 
 void catchInterrupts(const std::string& tool) {
   std::strncpy(toolName.data(), tool.c_str(), toolName.size() - 1);
-  onTerminal = ::isatty(STDERR_FILENO) == 1;
   std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};
   action.sa_handler = onStop;

@@ -389,7 +389,10 @@ Values resolve(const StageSpec& spec, const Given& given) {
     for (const Option& o : m->options) takeOption(o, given, values);
   }
   for (const auto& [name, text] : given) {
-    if (!values.has(name)) refuseWithoutEffect(spec, name, values);
+    if (values.has(name)) continue;
+    const std::vector<Found> found = findAll(spec, name);
+    if (found.empty() || !found.front().option->harmless) refuseWithoutEffect(spec, name, values);
+    parseValue(*found.front().option, text);
   }
   return values;
 }

@@ -39,6 +39,7 @@ struct Option {
   std::string_view letter = {};   // "-n": a short spelling
   bool recorded = true;           // false: changes nothing of what is computed
   bool optional = false;          // has no value unless it is given
+  bool harmless = false;          // may be given where it has no effect: ignored, not recorded
 };
 
 // Entries of a table.
@@ -70,7 +71,12 @@ constexpr Option durationOption(std::string_view name, std::string_view help) {
   return {name, Option::Kind::Duration, {}, 0x1p-10, 1e9, {}, help};
 }
 // Of every stage that draws random numbers.
-constexpr Option seedOption() { return wholeOption("seed", "1", 0, 0x1p64, {}, "random seed"); }
+// A script may give one to every stage, also to a method that draws none.
+constexpr Option seedOption() {
+  Option seed = wholeOption("seed", "1", 0, 0x1p64, {}, "random seed");
+  seed.harmless = true;
+  return seed;
+}
 
 constexpr Option letterFor(std::string_view letter, Option option) {
   option.letter = letter;

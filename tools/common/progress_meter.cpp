@@ -9,15 +9,14 @@
 
 #include "tools/common/clock.h"
 #include "tools/common/run_tool.h"
+#include "tools/common/standard_streams.h"
 
 namespace bnvpl {
 
 namespace {
 constexpr double kTerminalIntervalS = 0.2;
 constexpr double kLogIntervalS = 10.0;  // a build log wants a sign of life, not a film
-// The first units of a work may take far longer than the others: from these on, what is left is
-// extrapolated.
-constexpr double kTellingShare = 0.02, kTellingS = 10.0;
+constexpr double kReportIntervalS = 0.2;
 }  // namespace
 
 std::string durationText(double seconds) {
@@ -34,17 +33,16 @@ std::string durationText(double seconds) {
   return text;
 }
 
-std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS) {
+std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
+                         std::optional<double> leftS) {
   if (total == 0)
     return what + " " + formatSi(static_cast<double>(done)) + " in " + durationText(elapsedS);
   const double share = static_cast<double>(done) / static_cast<double>(total);
   char percent[32];
-  std::snprintf(percent, sizeof percent, " (%.0f %%)", 100.0 * share);
-  std::string text = what + " " + formatSi(static_cast<double>(done)) + " of " +
-                     formatSi(static_cast<double>(total)) + percent;
-  if (share >= kTellingShare || (share > 0.0 && elapsedS >= kTellingS))
-    text += ", " + durationText(elapsedS * (1.0 - share) / share) + " left";
-  return text;
+  std::snprintf(percent, sizeof percent, " (%.0f %%)", std::floor(100.0 * share));
+  return what + " " + formatSi(static_cast<double>(done)) + " of " +
+         formatSi(static_cast<double>(total)) + percent +
+         (leftS ? ", " + durationText(*leftS) + " left" : "");
 }
 
 ProgressMeter::ProgressMeter(std::string what, uint64_t total, bool quiet)
@@ -53,41 +51,48 @@ ProgressMeter::ProgressMeter(std::string what, uint64_t total, bool quiet)
       terminal_(::isatty(STDERR_FILENO) == 1),
       nextPrintS_(work_.startS + (terminal_ ? kTerminalIntervalS : kLogIntervalS)) {}
 
-ProgressMeter::~ProgressMeter() {
-  if (!quiet_ && terminal_) std::fprintf(stderr, "\r\x1b[K");
-}
+ProgressMeter::~ProgressMeter() { eraseProgress(); }
 
 void ProgressMeter::add(uint64_t done) {
-  const uint64_t sum = done_.fetch_add(done, std::memory_order_relaxed) + done;
+  done_.fetch_add(done, std::memory_order_relaxed);
   if (quiet_) return;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;  // somebody else is printing
   const double now = nowS();
+  if (now < nextReportS_) return;
+  nextReportS_ = now + kReportIntervalS;
+  const uint64_t sum = done_;
+  work_.left.report(now, sum);
   if (now < nextPrintS_) return;
   nextPrintS_ = now + (terminal_ ? kTerminalIntervalS : kLogIntervalS);
-  print(now - work_.startS, sum);
+  print(now, sum);
 }
 
 void ProgressMeter::beginPhase(std::string_view what, uint64_t total) {
   const std::scoped_lock lock(mutex_);
   main_ = std::exchange(work_, {std::string(what), total, nowS()});
   mainDone_ = done_.exchange(0);
+  work_.left.report(work_.startS, 0);
+  nextReportS_ = 0.0;
 }
 
 void ProgressMeter::endPhase() {
   const std::scoped_lock lock(mutex_);
-  main_.startS += nowS() - work_.startS;
+  const double tookS = nowS() - work_.startS;
   work_ = std::move(main_);
+  work_.startS += tookS;
+  work_.left.skip(tookS);
   done_ = mainDone_;
+  nextReportS_ = 0.0;
 }
 
-void ProgressMeter::print(double elapsedS, uint64_t done) const {
-  const std::string text = progressText(work_.what, done, work_.total, elapsedS);
+void ProgressMeter::print(double nowS, uint64_t done) const {
+  const std::string text = progressText(work_.what, done, work_.total, nowS - work_.startS,
+                                        work_.left.seconds(work_.total));
   if (terminal_)
-    std::fprintf(stderr, "\r\x1b[K%s", text.c_str());
+    showProgress(text);
   else
-    std::fprintf(stderr, "%s: %s\n", runningTool().c_str(), text.c_str());
-  std::fflush(stderr);
+    ErrorLine().add(runningTool()).add(": ").add(text);
 }
 
 }  // namespace bnvpl

@@ -5,18 +5,21 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "core/progress.h"
+#include "tools/common/time_left.h"
 
 namespace bnvpl {
 
 // "47 s", "2 min 05 s", "1 h 46 min". Negative counts as 0.
 std::string durationText(double seconds);
 
-// "samples 12M of 40M (30 %), 2 min 05 s left", without the time as long as too little is done to
-// tell it: under 2 % within 10 s. Of a total that nobody knows, 0: "samples 12M in 34 s".
-std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS);
+// "samples 12M of 40M (30 %), 2 min 05 s left", without the time where it is not known yet. Without
+// a total, 0, it ends in the time since the start: "samples 12M in 34 s".
+std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
+                         std::optional<double> leftS);
 
 class ProgressMeter {
  public:
@@ -37,10 +40,11 @@ class ProgressMeter {
     std::string what;
     uint64_t total;
     double startS;  // later by the time that its preparations took
+    TimeLeft left = {};
   };
   void beginPhase(std::string_view what, uint64_t total);
   void endPhase();
-  void print(double elapsedS, uint64_t done) const;
+  void print(double nowS, uint64_t done) const;
 
   Work work_;
   Work main_{};  // what goes on after the phase
@@ -48,7 +52,7 @@ class ProgressMeter {
   bool quiet_, terminal_;
   std::atomic<uint64_t> done_{0};
   std::mutex mutex_;
-  double nextPrintS_;
+  double nextReportS_ = 0.0, nextPrintS_;
 };
 
 }  // namespace bnvpl

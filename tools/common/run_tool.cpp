@@ -15,6 +15,7 @@
 
 #include "tools/common/build_id.h"
 #include "tools/common/clock.h"
+#include "tools/common/escape_text.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/pin_functions.h"
@@ -35,7 +36,7 @@ char** arguments = nullptr;
 
 // Formats nothing in memory, of which there may be none left.
 int fail(int code, const char* what, const char* more = "") {
-  std::fprintf(stderr, "%s: %s%s\n", toolName.c_str(), what, more);
+  ErrorLine().add(toolName).add(": ").add(what).add(more);
   return code;
 }
 
@@ -252,7 +253,7 @@ void Summary::finish(const ToolOptions& options, OutputSet& files) const {
   const Cost cost = close(options, files);
   if (options.quiet) return;
   std::string text;
-  for (const std::string& line : lines_) text += tool_ + ": " + line + "\n";
+  for (const std::string& line : lines_) text += tool_ + ": " + escapedLine(line) + "\n";
   char last[64];
   std::snprintf(last, sizeof last, ": %.2f s, peak memory %.0f MiB\n", cost.timeS, cost.memoryMiB);
   // The files are whole: a log that is full is no reason for Make to remove them.
@@ -262,9 +263,7 @@ void Summary::finish(const ToolOptions& options, OutputSet& files) const {
 }
 
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
-  for (const std::string& w : warnings) {
-    std::fprintf(stderr, "%s: warning: %s\n", tool.c_str(), w.c_str());
-  }
+  for (const std::string& w : warnings) ErrorLine().add(tool).add(": warning: ").add(w);
 }
 
 void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,

@@ -1,6 +1,7 @@
 #include "tools/common/scene_options.h"
 
 #include <CLI/CLI.hpp>
+#include <set>
 
 #include "scene/choose_view.h"
 #include "scene/scene_hash.h"
@@ -67,12 +68,16 @@ SceneOptions sceneOptionsOf(const Json& json) {
 
 Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings) {
   Defines defines;
+  std::set<std::string> names;
   for (const std::string& d : options.defines) {
     const size_t equals = d.find('=');
     if (equals == std::string::npos || equals == 0) {
       throw UsageError("--define '" + d + "' is not NAME=VALUE");
     }
-    defines.set(d.substr(0, equals), d.substr(equals + 1));
+    const std::string name = d.substr(0, equals);
+    if (!names.insert(name).second)
+      throw UsageError("--define " + name + " is given more than once; give each name one value");
+    defines.set(name, d.substr(equals + 1));
   }
   Scene scene = loadScene(options.file, defines);
   for (const std::string& name : defines.unused()) {

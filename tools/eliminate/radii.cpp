@@ -33,7 +33,7 @@ double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsi
               const ProgressFn& progress) {
   const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMaxAreaRows);
   const KdTree tree(position);
-  const auto phase = progress.before("shares of the area", rows.size());
+  const auto phase = progress.before("surface area, candidates", rows.size());
   return sumOf(surfaceShares(position, normal, k, tree, rows, progress)) *
          static_cast<double>(position.size()) / static_cast<double>(rows.size());
 }
@@ -86,7 +86,7 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
     return result;
   }
   {
-    const auto phase = progress.before("radii", position.size());
+    const auto phase = progress.before("radii, candidates", position.size());
     result.radius = surfaceShares(position, normal, neighbours(), progress);
   }
   const double estimate = sumOf(result.radius);

@@ -156,7 +156,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
   if (result.passes) reportPasses(*result.passes, options, summary);
   if (integratorOf(options).gathers) {
     std::snprintf(line, sizeof line,
-                  "of the indirect light, the clamp took %.2f %%; rays brought %.2f %% instead",
+                  "indirect light: clamping removed %.2f %%, compensation added %.2f %%",
                   percentOf(stats.clamped, stats.indirect),
                   percentOf(stats.compensated, stats.indirect));
     summary.add("mean_clamped", stats.clamped, only == "direct" ? "" : line);

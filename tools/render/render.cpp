@@ -129,7 +129,7 @@ uint64_t renderWork(const Scene& scene, const Values& options) {
     spp = budget->passes * kPassSpp;
   }
   const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * spp;
-  return sendsPhotons(options) ? 2 * samples : samples;
+  return budget && sendsPhotons(options) ? 2 * samples : samples;  // else photons count apart
 }
 
 RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source) {

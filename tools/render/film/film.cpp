@@ -141,7 +141,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   };
   const auto state = [&] { return film.encode(); };
   const uint64_t own = resume.shard.shareOf(film.pixels.size());
-  if (progress) progress(own * slotsBefore(film.at.pass) + film.at.splats.traced);
+  if (progress) progress(own * slotsBefore(film.at.pass));
   for (; film.at.pass < passes; ++film.at.pass, film.beginPass()) {
     const uint32_t begin = slotsBefore(film.at.pass), end = slotsBefore(film.at.pass + 1);
     const auto report = [&](const Tile& tile) {
@@ -164,8 +164,11 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         state);
   }
   if (integrator.photons) {
+    const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
+    const auto phase = progress.before("photons", resume.shard.shareOf(photons));
+    if (progress) progress(film.at.splats.traced);
     addSplats(
-        integrator.photons, uint64_t{options.spp} * film.pixels.size(), film.at.splats,
+        integrator.photons, photons, film.at.splats,
         [&](const Splat& splat) { film.splats.add(splat); }, progress, resume, state);
     film.splats.addNonFinite(film.at.splats.nonFinite);
   }

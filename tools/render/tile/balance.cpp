@@ -89,7 +89,7 @@ Balance findBalance(const Scene& scene, uint64_t seed, uint64_t spp, const Progr
   const Tiles tiles(scene.film);
   const size_t count = std::min(kTiles, tiles.count());
   const uint64_t key = streamKey(seed, Stream::Balance);
-  const auto phase = progress.before("balance", count);
+  const auto phase = progress.before("sample allocation pilot, tiles", count);
   std::vector<Looked> looked(count);
   parallelFor(count, 1, [&](size_t k) {
     // One of each of so many equal parts of the film.

@@ -19,7 +19,7 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       width_(rays.scene().film.width),
       light_(size_t{width_} * rays.scene().film.height) {
   SplatProgress done;
-  const auto phase = progress.before("caustics", photons);
+  const auto phase = progress.before("caustic photons", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
         for (uint64_t i = begin; i < end; ++i) follow(i, out);

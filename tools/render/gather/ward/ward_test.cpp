@@ -32,7 +32,7 @@ TEST(Ward, TellsOfItsPreparations) {
   Preparations told;
   const Values options = resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}, {"only", "indirect"}}));
   render(c.world.rays, c.world.lights, c.lit, options, told.progress);
-  EXPECT_EQ(told.names, std::vector<std::string>{"visibility of VPLs"});
+  EXPECT_EQ(told.names, std::vector<std::string>{"visibility pilot, VPLs"});
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
   const NearSurfaces near(position_, normal_, lit.radius, kSmooth);
   findRadiance(lit, near);
   regions_ = RegionGrid(position_, normal_, lit.radius);
-  const ProgressFn::Phase phase = progress.before("guide", lit.size());
+  const ProgressFn::Phase phase = progress.before("guiding distributions", lit.size());
   const uint64_t key = streamKey(seed, Stream::Guide);
   const uint32_t each = strata_.cells();
   std::vector<Learnt> learnt(lit.size() * each);
