@@ -99,6 +99,8 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
 // Colours; of a mask its alpha, as grey.
 std::vector<uint8_t> rgbOf(const Scene& scene, uint32_t number) {
   const Texture& t = scene.textures[number];
+  if (!t.floats.empty())
+    throw InputError(t.name, "has floats, which a PNG cannot hold; convert it to 8 bits first");
   bool mask = false;
   for (const Material& m : scene.materials) mask = mask || m.opacityMap == number;
   std::vector<uint8_t> rgb;
