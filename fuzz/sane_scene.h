@@ -12,7 +12,8 @@ inline bool isUnit(Vec3 v) { return std::fabs(length(v) - 1.0f) < 1e-3f; }
 inline bool isLight(Vec3 v) { return isFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
 
 inline void requireSane(const Texture& t) {
-  require(t.width > 0 && t.height > 0 && t.rgba.size() == size_t{4} * t.width * t.height,
+  require(t.width > 0 && t.height > 0 &&
+              (t.rgba.empty() ? t.floats.size() : t.rgba.size()) == size_t{4} * t.width * t.height,
           "a texture has all its texels");
   for (const float u : {-1e30f, -0.3f, 0.0f, 0.5f, 1.0f, 3e38f}) {  // out of bounds: a report
     t.lookup(u, 1.0f - u);

@@ -25,6 +25,8 @@ constexpr size_t kMaxLamps = size_t{1} << 27;  // triangles
 // Of an expression: operands may share operands, so that few expressions ask for very many lookups.
 constexpr uint32_t kMaxLookups = 1000;
 
+constexpr const char* kGrey = "it is grey";
+
 bool isFinite(const FilePoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
@@ -71,10 +73,10 @@ void SceneBuilder::addCamera(const std::string& name, const FilePoint& position,
   viewPositions_.push_back(position);
 }
 
-uint32_t SceneBuilder::addTexture(const TextureUse& use) {
+uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& otherwise) {
   if (use.bytes) return textures_.add(use);
   if (!isRegularFile(use.file)) {
-    warn(use.file.string() + ": no such texture; the plain material colour is used");
+    warn(use.file.string() + ": no such texture; " + otherwise);
     return kNone;
   }
   addFile(use.file);
@@ -85,6 +87,14 @@ uint32_t SceneBuilder::addReplacement(Material material) {
   assert(!material.name.empty() && !replacements_.contains(material.name));
   const std::string name = material.name;
   return replacements_[name] = addMaterial(std::move(material));
+}
+
+uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression image) {
+  image.image = addTexture(use, kGrey);
+  if (image.image == kNone) return addExpression(constantExpression(Vec3{0.5f}));
+  const uint32_t expression = addExpression(image);
+  greyable_.push_back(expression);
+  return expression;
 }
 
 uint32_t SceneBuilder::addMaterial(Material material) {
@@ -134,11 +144,19 @@ uint32_t SceneBuilder::greyMaterial() {
   return grey_;
 }
 
-uint32_t SceneBuilder::addEnvironment(const fs::path& image) {
+EnvironmentImage SceneBuilder::readEnvironment(const fs::path& image) {
   const ReadGuard guard(image);
-  EnvironmentImage radiance = loadEnvironment(image);
+  size_t negative = 0;
+  EnvironmentImage radiance = loadEnvironment(image, negative);
   guard.check();
-  return addEnvironment(image, std::move(radiance));
+  warnOfNegative(image.string(), negative, radiance.radiance.size());
+  return radiance;
+}
+
+void SceneBuilder::warnOfNegative(const std::string& image, size_t negative, size_t pixels) {
+  if (negative == 0) return;
+  warn(image + ": " + std::to_string(negative) + " of " + std::to_string(pixels) +
+       " pixels have negative values, which count as 0");
 }
 
 uint32_t SceneBuilder::addEnvironment(const fs::path& image, EnvironmentImage radiance) {
@@ -284,9 +302,15 @@ void SceneBuilder::placePrototypes() {
 // Until here, maps hold the numbers of the pool.
 void SceneBuilder::resolveTextures() {
   TexturePool::Result read = textures_.take();
-  for (const std::string& problem : read.problems)
-    warn(problem + "; the plain material colour is used");
+  std::vector<bool> grey(read.indexOf.size(), false);
+  for (const uint32_t e : greyable_) grey[scene_.expressions[e].image] = true;
+  size_t next = 0;
+  for (size_t i = 0; i < read.indexOf.size(); ++i) {
+    if (read.indexOf[i] == TexturePool::kUnreadable)
+      warn(read.problems.at(next++) + "; " + (grey[i] ? kGrey : kPlainColour));
+  }
   scene_.textures = std::move(read.textures);
+  for (const Texture& t : scene_.textures) warnOfNegative(t.name, t.negative, t.floats.size() / 4);
   static_assert(TexturePool::kUnreadable == kNone);
   const auto resolve = [&](uint32_t& map) {
     if (map != kNone) map = read.indexOf.at(map);
@@ -299,6 +323,10 @@ void SceneBuilder::resolveTextures() {
     }
   }
   for (TextureExpression& e : scene_.expressions) resolve(e.image);
+  for (const uint32_t e : greyable_) {
+    if (scene_.expressions[e].image == kNone)
+      scene_.expressions[e] = constantExpression(Vec3{0.5f});
+  }
 }
 
 void SceneBuilder::warnOfMissingUvs() {

@@ -40,6 +40,8 @@ struct Mesh {
 
 class SceneBuilder {
  public:
+  // What becomes of a texture that cannot be read.
+  static constexpr const char* kPlainColour = "the plain material colour is used";
   // `sceneFile` names the scene in messages and is the first of the files.
   explicit SceneBuilder(fs::path sceneFile);
 
@@ -57,7 +59,9 @@ class SceneBuilder {
   void expectTexture(const TextureUse& use) { textures_.expect(use); }
   // The number for a Material's map; the same for the same use. kNone, with a warning, where there
   // is no such file. One that turns out to be damaged is taken from its materials by finish().
-  uint32_t addTexture(const TextureUse& use);
+  uint32_t addTexture(const TextureUse& use, const std::string& otherwise = kPlainColour);
+  // The same for an expression that is grey, 0.5, where the image is missing or damaged.
+  uint32_t addGreyableImage(const TextureUse& use, TextureExpression image);
   // The number for a parameter of a material. Its operands are numbers of expressions that were
   // added before, its image one of addTexture(); an image that turns out to be damaged counts as
   // white.
@@ -67,8 +71,12 @@ class SceneBuilder {
   // addMaterial() returns its number.
   uint32_t addReplacement(Material material);
   bool isReplaced(const std::string& name) const { return replaced_.contains(name); }
-  // Reads it at once. Throws InputError when the file is no image.
-  uint32_t addEnvironment(const fs::path& image);
+  // The radiance of an image, read at once; a warning counts negative pixels, which are 0. Throws
+  // InputError when the file is no image.
+  EnvironmentImage readEnvironment(const fs::path& image);
+  uint32_t addEnvironment(const fs::path& image) {
+    return addEnvironment(image, readEnvironment(image));
+  }
   // One that was made of `image`.
   uint32_t addEnvironment(const fs::path& image, EnvironmentImage radiance);
   // light.position is what `position` becomes; it has no meaning for lights at infinity.
@@ -122,6 +130,7 @@ class SceneBuilder {
     size_t position, normal, uv;
   };
   Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
+  void warnOfNegative(const std::string& image, size_t negative, size_t pixels);
   uint32_t greyMaterial();
   void recordMesh(const std::string& name, size_t triangles);
 
@@ -149,6 +158,7 @@ class SceneBuilder {
   std::vector<Placed> placed_;
   uint32_t open_ = kNone;                     // prototype that meshes go to; kNone: the world
   uint32_t shared_ = kNone;                   // the same of finish()
+  std::vector<uint32_t> greyable_;            // of scene_.expressions
   std::vector<uint32_t> lookups_;             // of scene_.expressions, operands included
   std::vector<FilePoint> viewPositions_;      // of scene_.views
   std::vector<FilePoint> lightPositions_;     // of scene_.lights

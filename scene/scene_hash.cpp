@@ -94,6 +94,7 @@ uint64_t hashScene(const Scene& scene) {
     for (const uint32_t i : {t.width, t.height, uint32_t{t.srgb}}) h.value(i);
     for (const float f : {t.scale[0], t.scale[1], t.offset[0], t.offset[1]}) h.value(f);
     h.array(t.rgba);
+    if (!t.floats.empty()) h.array(t.floats);
   }
   h.value(uint64_t{scene.lights.size()});
   for (const LightSpec& l : scene.lights) {

@@ -5,17 +5,29 @@
 
 #include "core/cdf.h"
 #include "core/prefetch.h"
+#include "transport/alpha_test.h"
 #include "transport/light_shape.h"
 #include "transport/lights.h"
 
 namespace bnvpl {
 
 LightSet::EmitterPoint LightSet::samplePointOn(const Light& light, float u, float v) const {
-  const uint32_t t = light.triangles[sampleCdf<float>(light.cdf, u)];
+  const size_t i = sampleCdf<float>(light.cdf, u);
+  const uint32_t t = light.triangles[i];
   const Vec3 p0 = scene_.corner(t, 0), p1 = scene_.corner(t, 1), p2 = scene_.corner(t, 2);
-  const Barycentric b = sampleTriangle(u, v);
+  Barycentric b;
+  float density = 1.0f;
+  if (light.grids.empty()) {
+    b = sampleTriangle(u, v);
+  } else {
+    const EmissionGrid::Drawn drawn = light.grids[i].sample(u, v);
+    b = drawn.at;
+    density = densityOver(light, i, drawn.density);
+  }
+  const Material& m = scene_.materials[light.material];
+  const bool there = density > 0.0f && (!m.masked() || isThere(scene_, t, b.u, b.v));
   return {(1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2, normalize(cross(p1 - p0, p2 - p0)),
-          emissionOn(scene_.materials[light.material], t, b)};
+          there ? emissionOn(m, t, b) : Vec3(), there ? density : 1.0f};
 }
 
 Vec3 LightSet::emissionOn(const Material& m, uint32_t triangle, const Barycentric& b) const {
@@ -29,7 +41,7 @@ Vec3 LightSet::emissionOn(const Material& m, uint32_t triangle, const Barycentri
 }
 
 bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const {
-  const auto [p, normal, emission] = samplePointOn(light, u, v);
+  const auto [p, normal, emission, density] = samplePointOn(light, u, v);
   Vec3 n = normal;
   const Vec3 d = p - at;
   const float d2 = lengthSquared(d);
@@ -40,8 +52,8 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectS
     cosine = -cosine;
     n = -n;
   }
-  if (cosine <= 0.0f) return false;
-  out.pdf = d2 / (cosine * light.areaTotal);
+  if (cosine <= 0.0f || isBlack(emission)) return false;
+  out.pdf = d2 / (cosine * light.areaTotal) * density;
   out.radianceOverPdf = emission * (1.0f / out.pdf);
   out.infinite = false;
   out.target = rays_.offsetOrigin(p, n);
@@ -135,17 +147,21 @@ bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSampl
   return !isBlack(out.radianceOverPdf);
 }
 
-Point2 LightSet::drawnBy(size_t index, const SurfacePoint& hit) const {
-  const Light& light = lights_[index];
+LightSet::Hit LightSet::hitOf(const Light& light, const SurfacePoint& hit) const {
   const auto it = std::lower_bound(light.triangles.begin(), light.triangles.end(), hit.triangle);
-  const auto i = static_cast<size_t>(it - light.triangles.begin());
   const Vec3 p0 = scene_.corner(hit.triangle, 0), e1 = scene_.corner(hit.triangle, 1) - p0,
              e2 = scene_.corner(hit.triangle, 2) - p0, d = hit.position - p0;
   const Vec3 n = cross(e1, e2);
   const float perArea = 1.0f / lengthSquared(n);
-  const float b1 = std::max(0.0f, dot(cross(d, e2), n) * perArea),
-              b2 = std::max(0.0f, dot(cross(e1, d), n) * perArea);
-  const Point2 within = triangleDrawnBy({b1, b2});
+  return {static_cast<size_t>(it - light.triangles.begin()),
+          {std::max(0.0f, dot(cross(d, e2), n) * perArea),
+           std::max(0.0f, dot(cross(e1, d), n) * perArea)}};
+}
+
+Point2 LightSet::drawnBy(size_t index, const SurfacePoint& hit) const {
+  const Light& light = lights_[index];
+  const auto [i, at] = hitOf(light, hit);
+  const Point2 within = light.grids.empty() ? triangleDrawnBy(at) : light.grids[i].drawnBy(at);
   const float begin = i > 0 ? light.cdf[i - 1] : 0.0f;
   return {begin + within.x * cdfShare<float>(light.cdf, i), within.y};
 }
@@ -231,13 +247,13 @@ PhotonStart LightSet::emit(size_t index, Rng& rng) const {
   PhotonStart start;
   if (light.area) {
     const float u = rng.next(), v = rng.next();
-    const auto [p, normal, emission] = samplePointOn(light, u, v);
+    const auto [p, normal, emission, density] = samplePointOn(light, u, v);
     Vec3 n = normal;
     if (light.twoSided && rng.next() < 0.5f) n = -n;
     const float a = rng.next(), b = rng.next();
     start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, b));
     start.origin = rays_.offsetOrigin(p, n);
-    start.flux = fluxOf(light, emission);
+    start.flux = fluxOf(light, emission) * (1.0f / density);
   } else if (s.type == LightType::Point) {
     const float u = rng.next(), v = rng.next();
     start = {s.position, sampleSphere(u, v), light.power};

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/cdf.h"
+#include "core/parallel.h"
+#include "transport/lamp_texture.h"
 #include "transport/light_shape.h"
 
 namespace bnvpl {
@@ -64,28 +66,43 @@ void LightSet::addAreaLights() {
     double total = 0.0;
     for (const double a : areas[i]) total += a;
     lights_[i].areaTotal = static_cast<float>(total);
+    const Material& m = scene_.materials[lights_[i].material];
+    const bool even = m.emissionTexture == kNone && !m.masked();
+    const Vec3 emission = even ? m.emission : spreadTexture(lights_[i], areas[i]);
     lights_[i].cdf = makeCdf<float>(areas[i]);
-    lights_[i].power = fluxOf(lights_[i], meanEmission(lights_[i], areas[i]));
+    lights_[i].power = fluxOf(lights_[i], emission);
   }
 }
 
-// Over the surface. Of a texture, by some points of each triangle: it only shares out rays and
-// photons.
-Vec3 LightSet::meanEmission(const Light& light, const std::vector<double>& areas) const {
-  const Material& m = scene_.materials[light.material];
-  if (m.emissionTexture == kNone) return m.emission;
-  const size_t points = std::clamp<size_t>(4096 / areas.size(), 1, 1024);
-  std::array<double, 3> sum{};
-  double total = 0.0;
-  for (size_t i = 0; i < areas.size(); ++i) {
-    for (size_t k = 0; k < points; ++k) {
-      const Point2 at = r2Sequence(k, 0.5, 0.5);
-      const Vec3 emission = emissionOn(m, light.triangles[i], sampleTriangle(at.x, at.y));
-      for (size_t c = 0; c < 3; ++c) sum[c] += double{emission[c]} * areas[i];
+// Mean emission of a light with a texture or a mask, whose points are to be drawn where it shines;
+// the areas of its triangles become the weights of drawing one.
+Vec3 LightSet::spreadTexture(Light& light, std::vector<double>& areas) const {
+  const LampTexture texture(scene_, light.material, light.triangles);
+  light.grids.resize(areas.size());
+  std::vector<std::array<double, 3>> sums(areas.size());
+  parallelFor(areas.size(), 16, [&](size_t i) {
+    const uint32_t triangle = light.triangles[i], side = texture.side(triangle);
+    std::vector<LampTexture::Mean> cells(size_t{side} * side);
+    parallelFor(side, 16, [&](size_t row) {
+      const auto r = static_cast<uint32_t>(row);
+      for (uint32_t c = 0; c < 2 * r + 1; ++c)
+        cells[row * row + c] = texture.over(triangle, EmissionGrid::corners(side, r, c));
+    });
+    std::vector<double> weights;
+    double weight = 0.0;
+    for (const LampTexture::Mean& cell : cells) {
+      weights.push_back(cell.weight);
+      weight += cell.weight;
+      for (size_t c = 0; c < 3; ++c) sums[i][c] += cell.emission[c];
     }
-    total += areas[i] * static_cast<double>(points);
-  }
-  return {float(sum[0] / total), float(sum[1] / total), float(sum[2] / total)};
+    light.grids[i] = EmissionGrid(side, weights);
+    for (double& s : sums[i]) s *= areas[i] / static_cast<double>(cells.size());
+    areas[i] *= weight / static_cast<double>(cells.size());
+  });
+  std::array<double, 3> sum{};
+  for (const auto& s : sums)
+    for (size_t c = 0; c < 3; ++c) sum[c] += s[c] / double{light.areaTotal};
+  return {float(sum[0]), float(sum[1]), float(sum[2])};
 }
 
 void LightSet::addSpecLights() {
@@ -183,9 +200,21 @@ Vec3 LightSet::emitted(const SurfacePoint& hit, size_t& light) const {
 }
 
 float LightSet::pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const {
+  const Light& l = lights_[light];
   const float cosine = dot(hit.ng, hit.wo);
-  return cosine > 0.0f ? lengthSquared(hit.position - from) / (cosine * lights_[light].areaTotal)
-                       : 0.0f;
+  if (!(cosine > 0.0f)) return 0.0f;
+  const float even = lengthSquared(hit.position - from) / (cosine * l.areaTotal);
+  if (l.grids.empty()) return even;
+  const Hit at = hitOf(l, hit);
+  return even * densityOver(l, at.triangle, l.grids[at.triangle].density(at.at));
+}
+
+// `ofGrid`: density within the triangle over an even one.
+float LightSet::densityOver(const Light& light, size_t i, float ofGrid) const {
+  const uint32_t t = light.triangles[i];
+  const float area = 0.5f * length(cross(scene_.corner(t, 1) - scene_.corner(t, 0),
+                                         scene_.corner(t, 2) - scene_.corner(t, 0)));
+  return cdfShare<float>(light.cdf, i) * light.areaTotal / area * ofGrid;
 }
 
 }  // namespace bnvpl

@@ -9,6 +9,7 @@
 #include "core/cdf.h"
 #include "core/random.h"
 #include "core/sampling.h"
+#include "transport/emission_grid.h"
 #include "transport/rays.h"
 
 namespace bnvpl {
@@ -100,7 +101,10 @@ class LightSet {
     bool area = false;  // else a light of emissive triangles:
     uint32_t material = kNone;
     std::vector<uint32_t> triangles;
-    std::vector<float> cdf;  // over area, or over the texels of each row of an environment image
+    // Over area, over the light of textured triangles, or over the texels of each row of an
+    // environment image.
+    std::vector<float> cdf;
+    std::vector<EmissionGrid> grids;        // of textured triangles
     std::vector<double> rowCdf;             // over those rows
     std::vector<uint32_t> guide, rowGuide;  // of each row of `cdf`, and of rowCdf
     std::span<const uint32_t> guideOfRow(size_t row) const {
@@ -124,10 +128,17 @@ class LightSet {
   PhotonStart emitFromInfinity(const Light& light, Rng& rng) const;
   struct EmitterPoint {
     Vec3 position, normal, emission;
+    float density;  // over that of points drawn evenly from all of the light's area
   };
   EmitterPoint samplePointOn(const Light& light, float u, float v) const;
   Vec3 emissionOn(const Material& m, uint32_t triangle, const Barycentric& at) const;
-  Vec3 meanEmission(const Light& light, const std::vector<double>& areas) const;
+  Vec3 spreadTexture(Light& light, std::vector<double>& areas) const;
+  float densityOver(const Light& light, size_t i, float ofGrid) const;
+  struct Hit {
+    size_t triangle;  // of the light's
+    Barycentric at;
+  };
+  Hit hitOf(const Light& light, const SurfacePoint& hit) const;
   // What all of an area light sends out if it shines like this everywhere.
   static Vec3 fluxOf(const Light& light, Vec3 emission) {
     return emission * (kPi * light.areaTotal * (light.twoSided ? 2.0f : 1.0f));

@@ -15,7 +15,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "scene/scene.h"
+#include "transport/alpha_test.h"
 
 namespace bnvpl {
 
@@ -35,21 +35,6 @@ struct ExactQuery {
 
 // An Embree reciprocal is wrong by less than 2^-21 of itself.
 inline float beyond(float distance) { return distance * (1.0f + 0x1p-18f); }
-
-// Alpha test: whether the surface is there.
-inline bool isThere(const Scene& scene, uint32_t triangle, float b1, float b2) {
-  const Triangle& t = scene.triangles[triangle];
-  const Material& m = scene.materials[t.material];
-  float opacity = m.opacity;
-  if (t.uv[0] != kNone && t.uv[1] != kNone && t.uv[2] != kNone) {
-    const auto &a = scene.uvs[t.uv[0]], &b = scene.uvs[t.uv[1]], &c = scene.uvs[t.uv[2]];
-    const float b0 = 1.0f - b1 - b2, u = b0 * a[0] + b1 * b[0] + b2 * c[0],
-                v = b0 * a[1] + b1 * b[1] + b2 * c[1];
-    if (m.opacityMap != kNone) opacity *= scene.textures[m.opacityMap].lookupAlpha(u, v);
-    if (m.opacityTexture != kNone) opacity *= scene.expressionAt(m.opacityTexture, u, v).x;
-  }
-  return !(opacity < m.opacityCutoff);
-}
 
 inline void rejectCutAway(const RTCFilterFunctionNArguments* args) {
   const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);

@@ -1,5 +1,6 @@
 #include "scene/textures/texture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -71,34 +72,33 @@ Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb)
 
 float srgbToLinear(uint8_t encoded) { return srgbTable()[encoded]; }
 
-Vec3 Texture::lookup(float u, float v) const {
-  const std::optional<Bilinear> b = bilinear(*this, u, v);
-  if (!b) return {};
+Vec3 Texture::colourAt(size_t texel) const {
+  if (rgba.empty()) return {floats[4 * texel], floats[4 * texel + 1], floats[4 * texel + 2]};
   const auto& table = srgbTable();
-  Vec3 sum;
-  for (int k = 0; k < 4; ++k) {
-    const uint8_t* p = &rgba[4 * b->texel[k]];
-    const Vec3 c = srgb ? Vec3{table[p[0]], table[p[1]], table[p[2]]}
-                        : Vec3{float(p[0]), float(p[1]), float(p[2])} * (1.0f / 255.0f);
-    sum += b->weight[k] * c;
-  }
-  return sum;
-}
-
-Vec3 Texture::texel(uint32_t column, uint32_t row) const {
-  const auto& table = srgbTable();
-  const uint8_t* p = &rgba[4 * (size_t{row} * width + column)];
+  const uint8_t* p = &rgba[4 * texel];
   return srgb ? Vec3{table[p[0]], table[p[1]], table[p[2]]}
               : Vec3{float(p[0]), float(p[1]), float(p[2])} * (1.0f / 255.0f);
 }
 
+Vec3 Texture::lookup(float u, float v) const {
+  const std::optional<Bilinear> b = bilinear(*this, u, v);
+  if (!b) return {};
+  Vec3 sum;
+  for (int k = 0; k < 4; ++k) sum += b->weight[k] * colourAt(b->texel[k]);
+  return sum;
+}
+
+Vec3 Texture::texel(uint32_t column, uint32_t row) const {
+  return colourAt(size_t{row} * width + column);
+}
+
 float Texture::texelAlpha(uint32_t column, uint32_t row) const {
-  return float(rgba[4 * (size_t{row} * width + column) + 3]) * (1.0f / 255.0f);
+  return alphaAt(size_t{row} * width + column);
 }
 
 void Texture::prefetch(float u, float v) const {
   const std::optional<Bilinear> b = bilinear(*this, u, v);
-  if (!b) return;
+  if (!b || rgba.empty()) return;
   bnvpl::prefetch(&rgba[4 * b->texel[0]]);
   bnvpl::prefetch(&rgba[4 * b->texel[2]]);
 }
@@ -107,8 +107,7 @@ float Texture::lookupAlpha(float u, float v) const {
   const std::optional<Bilinear> b = bilinear(*this, u, v);
   if (!b) return 1.0f;
   float sum = 0.0f;
-  for (int k = 0; k < 4; ++k)
-    sum += b->weight[k] * float(rgba[4 * b->texel[k] + 3]) * (1.0f / 255.0f);
+  for (int k = 0; k < 4; ++k) sum += b->weight[k] * alphaAt(b->texel[k]);
   return sum;
 }
 
@@ -118,11 +117,86 @@ Vec3 EnvironmentImage::lookup(float u, float v) const {
   return radiance[size_t{y} * width + x];
 }
 
+namespace {
+
+EnvironmentImage fromExr(const fs::path& file, std::vector<float>* alpha = nullptr) {
+  const Image image = readExr(file);
+  const std::vector<float>*r = image.find("R"), *g = image.find("G"), *b = image.find("B");
+  if (const std::vector<float>* grey = image.find("Y"); grey && !r && !g && !b) r = g = b = grey;
+  if (!r || !g || !b) throw InputError(file, "has no R, G and B channels; supply a colour image");
+  if (const std::vector<float>* a = image.find("A"); a && alpha) *alpha = *a;
+  EnvironmentImage e;
+  e.width = static_cast<uint32_t>(image.width);
+  e.height = static_cast<uint32_t>(image.height);
+  e.radiance.resize(r->size());
+  for (size_t i = 0; i < r->size(); ++i) e.radiance[i] = {(*r)[i], (*g)[i], (*b)[i]};
+  return e;
+}
+
+bool isExr(const fs::path& file) { return lowerExtension(file) == ".exr"; }
+bool isFloats(const std::string& bytes) { return isRadianceHdr(bytes) || isPfm(bytes); }
+EnvironmentImage decodeFloats(const fs::path& file, const std::string& bytes) {
+  return isPfm(bytes) ? readPfm(file, bytes) : readRadianceHdr(file, bytes);
+}
+
+EnvironmentImage decodeEnvironment(const fs::path& file) {
+  const std::string bytes = readBytes(file);
+  if (isFloats(bytes)) return decodeFloats(file, bytes);
+  const Texture t = decodeColours(file, bytes, true);
+  EnvironmentImage e{t.width, t.height, {}};
+  e.radiance.resize(size_t{t.width} * t.height);
+  for (size_t i = 0; i < e.radiance.size(); ++i) {
+    e.radiance[i] = {srgbToLinear(t.rgba[4 * i]), srgbToLinear(t.rgba[4 * i + 1]),
+                     srgbToLinear(t.rgba[4 * i + 2])};
+  }
+  return e;
+}
+
+// Negative values become 0; returns the number of pixels that had some.
+size_t requireFinite(const fs::path& file, EnvironmentImage& e) {
+  size_t negative = 0;
+  for (size_t i = 0; i < e.radiance.size(); ++i) {
+    Vec3& L = e.radiance[i];
+    if (!isFinite(L)) {
+      throw InputError(file, "pixel " + std::to_string(i % e.width) + "," +
+                                 std::to_string(i / e.width) + " is not finite; repair the image");
+    }
+    if (L.x >= 0 && L.y >= 0 && L.z >= 0) continue;
+    L = max(L, Vec3{});
+    ++negative;
+  }
+  return negative;
+}
+
+// `alpha`: of each texel, or empty.
+Texture textureOfFloats(const fs::path& file, EnvironmentImage image,
+                        const std::vector<float>& alpha, bool mask) {
+  Texture t;
+  t.width = image.width;
+  t.height = image.height;
+  t.srgb = false;
+  t.negative = requireFinite(file, image);
+  t.floats.reserve(4 * image.radiance.size());
+  const bool varies = !alpha.empty() && std::ranges::any_of(alpha, [](float a) { return a != 1; });
+  for (size_t i = 0; i < image.radiance.size(); ++i) {
+    const Vec3 c = image.radiance[i];
+    const float own = alpha.empty() || !std::isfinite(alpha[i]) ? 1.0f : alpha[i];
+    t.floats.insert(t.floats.end(), {c.x, c.y, c.z, mask && !varies ? luminance(c) : own});
+  }
+  return t;
+}
+
+}  // namespace
+
 Texture loadTexture(const fs::path& file, bool srgb, bool mask) {
-  return decodeTexture(file, readBytes(file), srgb, mask);
+  if (!isExr(file)) return decodeTexture(file, readBytes(file), srgb, mask);
+  std::vector<float> alpha;
+  EnvironmentImage image = fromExr(file, &alpha);
+  return textureOfFloats(file, std::move(image), alpha, mask);
 }
 
 Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask) {
+  if (isFloats(bytes)) return textureOfFloats(name, decodeFloats(name, bytes), {}, mask);
   Texture t = decodeColours(name, bytes, srgb);
   if (mask) {
     bool varies = false;
@@ -137,47 +211,9 @@ Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb,
   return t;
 }
 
-namespace {
-
-EnvironmentImage fromExr(const fs::path& file) {
-  const Image image = readExr(file);
-  const std::vector<float>*r = image.find("R"), *g = image.find("G"), *b = image.find("B");
-  if (!r || !g || !b) throw InputError(file, "has no R, G and B channels; supply a colour image");
-  EnvironmentImage e;
-  e.width = static_cast<uint32_t>(image.width);
-  e.height = static_cast<uint32_t>(image.height);
-  e.radiance.resize(r->size());
-  for (size_t i = 0; i < r->size(); ++i) e.radiance[i] = {(*r)[i], (*g)[i], (*b)[i]};
-  return e;
-}
-
-EnvironmentImage decodeEnvironment(const fs::path& file) {
-  const std::string bytes = readBytes(file);
-  if (isRadianceHdr(bytes)) return readRadianceHdr(file, bytes);
-  if (isPfm(bytes)) return readPfm(file, bytes);
-  const Texture t = decodeColours(file, bytes, true);
-  EnvironmentImage e{t.width, t.height, {}};
-  e.radiance.resize(size_t{t.width} * t.height);
-  for (size_t i = 0; i < e.radiance.size(); ++i) {
-    e.radiance[i] = {srgbToLinear(t.rgba[4 * i]), srgbToLinear(t.rgba[4 * i + 1]),
-                     srgbToLinear(t.rgba[4 * i + 2])};
-  }
-  return e;
-}
-
-}  // namespace
-
-EnvironmentImage loadEnvironment(const fs::path& file, bool clampNegative) {
-  EnvironmentImage e = lowerExtension(file) == ".exr" ? fromExr(file) : decodeEnvironment(file);
-  for (size_t i = 0; i < e.radiance.size(); ++i) {
-    if (clampNegative && isFinite(e.radiance[i])) e.radiance[i] = max(e.radiance[i], Vec3{});
-    const Vec3 L = e.radiance[i];
-    if (!isFinite(L) || L.x < 0 || L.y < 0 || L.z < 0) {
-      throw InputError(file, "pixel " + std::to_string(i % e.width) + "," +
-                                 std::to_string(i / e.width) +
-                                 " is negative or not finite; repair the image");
-    }
-  }
+EnvironmentImage loadEnvironment(const fs::path& file, size_t& negative) {
+  EnvironmentImage e = isExr(file) ? fromExr(file) : decodeEnvironment(file);
+  negative = requireFinite(file, e);
   return e;
 }
 

@@ -275,5 +275,31 @@ TEST_F(Effect, VplsWithoutPhotonsAreAWarningWithItsCure) {
   EXPECT_TRUE(contains(few.err, "raise --photons")) << few.err;
 }
 
+// Paths that no light without a size can end.
+TEST_F(Effect, PathsThatMissThePointLightBehindGlassSayIt) {
+  write("m.obj",
+        "mtllib m.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\n"
+        "v -1 1 1\nusemtl w\nf 1 4 3 2\nusemtl pane\nf 5 6 7 8\n");
+  const std::string light =
+      "[[light]]\ntype = \"point\"\nposition = [0, 2, 0]\nintensity = [1, 1, 1]\n";
+  write("s.toml",
+        "[film]\nwidth = 8\nheight = 8\n[camera]\nposition = [0, 0.5, 3]\nlook_at = [0, 0, 0]\n"
+        "vertical_fov_deg = 40\n[[mesh]]\nfile = \"m.obj\"\n" +
+            light);
+  const auto warnings = [&](const std::string& integrator, const std::string& pane) {
+    write("m.mtl", "newmtl w\nKd .5 .5 .5\nnewmtl pane\n" + pane + "\n");
+    const Outcome r = tool("vpl-render", path("s.toml") + " --spp 1 --integrator " + integrator +
+                                             " -o " + path("i.exr"));
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    return r.err;
+  };
+  const std::string glass = "Ni 1.5\nillum 4";
+  EXPECT_TRUE(
+      contains(warnings("path", glass), "misses light of the point light through material 'pane'"));
+  EXPECT_EQ(warnings("light", glass), "");
+  EXPECT_EQ(warnings("path", "Kd .5 .5 .5"), "");
+  EXPECT_EQ(warnings("path", "Kd 0 0 0\nKs 1 1 1\nillum 3"), "");
+}
+
 }  // namespace
 }  // namespace bnvpl

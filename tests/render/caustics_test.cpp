@@ -134,7 +134,7 @@ TEST(Caustics, PhotonsTakeTheSpecksOfSmallLamps) {
 // A photon alone in its surroundings is a firefly; redistributed over the surface it brings the
 // same light, and none to the void.
 TEST(Caustics, SinglePhotonsAreRedistributed) {
-  constexpr uint32_t kSide = 64;
+  constexpr uint32_t kSide = 48;
   Scene scene = bulbs(0);
   scene.film = {kSide, kSide};
   scene.camera.verticalFovRad = 1.2f;  // more than the box
@@ -148,8 +148,8 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
             .image;
     return *image.find("G");
   };
-  const std::vector<float> right = light("2048", "keep", "64"), kept = light("2", "keep", "64"),
-                           moved = light("2", "spread", "64");
+  const std::vector<float> right = light("512", "keep", "16"), kept = light("2", "keep", "16"),
+                           moved = light("2", "spread", "16");
   const auto sum = [](const std::vector<float>& of) {
     return std::accumulate(of.begin(), of.end(), 0.0);
   };

@@ -26,10 +26,13 @@ TEST_F(GltfErrors, NameThePlaceInTheFile) {
   expectError(missing, "/accessors/1", "needs 'count'");
 
   Gltf range = triangleGltf();
-  range.add("materials", "{\"pbrMetallicRoughness\":{\"metallicFactor\":1.5}}");
-  expectError(range, "/materials/0/pbrMetallicRoughness/metallicFactor", "is 1.5, outside 0 to 1");
+  range.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":3.5}}");
+  expectError(range, "/cameras/0/perspective/yfov", "is 3.5, outside 1e-05 to 3.13");
 
   EXPECT_NE(loadError("{\"asset\":{\"version\":\"1.0\"}}").find("/asset/version"),
+            std::string::npos);
+  EXPECT_NE(loadError("{\"asset\":{\"version\":\"2.1\",\"minVersion\":\"2.1\"}}")
+                .find("/asset/minVersion: is '2.1'; glTF 2.0 is read"),
             std::string::npos);
   EXPECT_NE(loadError("{\"meshes\":[]}").find("needs 'asset'"), std::string::npos);
 }

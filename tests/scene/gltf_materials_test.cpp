@@ -98,6 +98,30 @@ TEST_F(GltfMaterials, ExtensionsSetTheirParameters) {
   EXPECT_EQ(m.specularColour.value, Vec3(1, 0, 1));
 }
 
+// As rounding, Blender and other exporters write them.
+TEST_F(GltfMaterials, NumbersOutOfRangeAreMovedIntoItWithAWarning) {
+  const Scene s = load(withMaterial(
+      "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1.2,0.4,1.0000001192,1],"
+      "\"metallicFactor\":-1e-9,\"roughnessFactor\":1.0000001},\"emissiveFactor\":[1.5,0,-1e-7],"
+      "\"alphaCutoff\":-0.1,\"extensions\":{\"KHR_materials_transmission\":{"
+      "\"transmissionFactor\":1.0000002},\"KHR_materials_emissive_strength\":{"
+      "\"emissiveStrength\":-1}}}"));
+  const MetallicRoughnessModel& m = modelOf(s);
+  EXPECT_EQ(m.baseColour.value, Vec3(1, 0.4f, 1));
+  EXPECT_EQ(m.metallic.value, 0.0f);
+  EXPECT_EQ(m.roughness.value, 1.0f);
+  EXPECT_EQ(m.transmission.value, 1.0f);
+  EXPECT_EQ(countContaining(s.warnings,
+                            "baseColorFactor/0: is 1.2, outside 0 to 1; 1 is used, also "
+                            "at 1 places like it"),
+            1u)
+      << joined(s.warnings);
+  for (const char* name :
+       {"metallicFactor: is -1e-09", "roughnessFactor: is 1.0000001", "emissiveFactor/2: is -1e-07",
+        "alphaCutoff: is -0.1", "transmissionFactor: is 1.0000002", "emissiveStrength: is -1"})
+    EXPECT_EQ(countContaining(s.warnings, name), 1u) << name << joined(s.warnings);
+}
+
 TEST_F(GltfMaterials, UnlitShines) {
   const Scene s = load(withMaterial(
       "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0,1]},\"extensions\":{"

@@ -108,6 +108,7 @@ TEST_F(GltfViews, CandelaAndLuxBecomeRadiometric) {
   EXPECT_FLOAT_EQ(spot.lights[0].coneRad, 0.5f);
   EXPECT_FLOAT_EQ(spot.lights[0].falloffRad, 0.3f);
   EXPECT_EQ(countContaining(spot.warnings, "the range of lights is ignored"), 1u);
+  EXPECT_EQ(load(withLight("{\"type\":\"point\",\"range\":3.4e38}")).lights.size(), 1u);
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ class Hostile : public SceneFiles {
   }
 };
 
+EnvironmentImage environmentOf(const fs::path& file) {
+  size_t negative = 0;
+  return loadEnvironment(file, negative);
+}
+
 std::string repeated(const std::string& text, size_t times) {
   std::string all;
   for (size_t i = 0; i < times; ++i) all += text;
@@ -111,7 +116,7 @@ TEST_F(Hostile, ImagesThatClaimTooMuchAreRefused) {
   claims[2] = 10;                  // run-length encoded: the size of the file says nothing
   write("t.tga", claims);
   EXPECT_THROW(loadTexture(at("t.tga"), true, false), InputError);
-  EXPECT_THROW(loadEnvironment(at("t.tga")), InputError);
+  EXPECT_THROW(environmentOf(at("t.tga")), InputError);
 }
 
 // The start of a JPEG with one Huffman table of `symbols` symbols, and `scans` scans.
@@ -154,16 +159,16 @@ TEST_F(Hostile, RadianceImagesThatAreCutShortAreRefused) {
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n";
   const std::string row("\2\2\0\x08\x88\x80\x88\x40\x08\1\2\3\4\5\6\7\x08\x88\x81", 19);
   write("a.hdr", header + row + row);
-  const EnvironmentImage e = loadEnvironment(at("a.hdr"));
+  const EnvironmentImage e = environmentOf(at("a.hdr"));
   ASSERT_EQ(e.radiance.size(), 16u);
   EXPECT_EQ(e.radiance[10], Vec3(1.0f, 0.5f, 3.0f / 128.0f));
   const std::string flat(2 * 8 * 4, '\x80');
   write("flat.hdr", header + flat);
-  EXPECT_EQ(loadEnvironment(at("flat.hdr")).radiance.at(15), Vec3(0.5f));
+  EXPECT_EQ(environmentOf(at("flat.hdr")).radiance.at(15), Vec3(0.5f));
   for (const std::string& whole : {header + row + row, header + flat}) {
     for (size_t length = 0; length < whole.size(); ++length) {
       write("a.hdr", whole.substr(0, length));
-      EXPECT_THROW(loadEnvironment(at("a.hdr")), InputError) << length;
+      EXPECT_THROW(environmentOf(at("a.hdr")), InputError) << length;
     }
   }
 }

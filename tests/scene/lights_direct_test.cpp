@@ -86,6 +86,85 @@ TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
   }
 }
 
+// One texel of 64 x 64 shines. `uv`: of the lamp's corners; the square is 2 x 1.
+Scene texelScene(const std::array<std::array<float, 2>, 4>& uv, Wrap wrap = Wrap::Repeat) {
+  Scene scene = lampScene(false);
+  scene.uvs.assign(uv.begin(), uv.end());
+  for (size_t t = 0; t < 2; ++t) scene.triangles[t].uv = scene.triangles[t].position;
+  Texture texture;
+  texture.width = texture.height = 64;
+  texture.rgba.assign(size_t{4} * 64 * 64, 0);
+  for (size_t c = 0; c < 4; ++c) texture.rgba[4 * (20 * 64 + 40) + c] = 255;
+  scene.textures.push_back(texture);
+  TextureExpression image = imageExpression(0);
+  image.wrapU = image.wrapV = wrap;
+  scene.expressions = {image};
+  scene.materials[0].emissionTexture = 0;
+  return scene;
+}
+
+// Whatever the texture coordinates are: the power is the integral of the texture, and points of the
+// lamp are drawn where it shines.
+TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
+  using Uv = std::array<std::array<float, 2>, 4>;
+  const double texel = 1.0 / 4096;
+  struct Case {
+    Uv uv;
+    Wrap wrap;
+    double share;  // of the lamp's area
+  };
+  for (const Case& c :
+       {Case{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
+        Case{Uv{{{3, 1}, {2, 1}, {2, 0}, {3, 0}}}, Wrap::Repeat, texel},            // mirrored
+        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},            // tiles
+        Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // very many
+        Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Black, texel / 9},
+        Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Clamp, texel / 9},
+        Case{Uv{{{0.5f, 0}, {0.5f, 1}, {1.5f, 1}, {1.5f, 0}}}, Wrap::Repeat, texel}}) {
+    const Lit lit(texelScene(c.uv, c.wrap));
+    const Vec3 expected = Vec3(10, 5, 1) * (2.0f * kPi * float(c.share));
+    expectClose(lit.lights.power(0), expected, 2e-3f);
+    if (c.wrap == Wrap::Mirror) continue;  // half a million tiles are more than cells
+    expectClose(meanOver(20000, [&](Rng& rng) { return lit.lights.emit(0, rng).flux; }), expected,
+                0.05f);
+  }
+}
+
+// Half a texel of the lamp may lie outside: by many points.
+TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
+  const std::array<std::array<float, 2>, 4> uv{
+      {{0.6f, 0.68f}, {0.64f, 0.66f}, {0.65f, 0.7f}, {0.61f, 0.69f}}};
+  Scene scene = texelScene(uv);
+  double sum = 0.0;
+  constexpr uint32_t kPoints = 400000;
+  for (uint32_t k = 0; k < kPoints; ++k) {
+    const Point2 p = r2Sequence(k, 0.5, 0.5);
+    const Barycentric b = sampleTriangle(p.x, p.y);
+    for (const auto& t : {scene.triangles[0].uv, scene.triangles[1].uv}) {
+      const auto at = [&](size_t i) {
+        return (1 - b.u - b.v) * uv[t[0]][i] + b.u * uv[t[1]][i] + b.v * uv[t[2]][i];
+      };
+      sum += double{scene.expressionAt(0, at(0), at(1)).x} / (2.0 * kPoints);
+    }
+  }
+  ASSERT_GT(sum, 0.01);
+  const Lit lit(std::move(scene));
+  expectClose(lit.lights.power(0), Vec3(10, 5, 1) * (2.0f * kPi * float(sum)), 1e-3f);
+}
+
+TEST(DirectLight, CutAwayPartsOfALampDoNotShine) {
+  Scene scene = texelScene({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
+  scene.materials[0].emissionTexture = kNone;
+  scene.materials[0].opacityTexture = 0;  // there from half a texel's light on
+  scene.maskedBegin = 0;
+  const Lit lit(std::move(scene));
+  const Vec3 power = lit.lights.power(0);
+  // Where (1 - |x|) (1 - |y|) >= 1/2: 4 (1 - ln 2) / 2 of a texel, or 0.614.
+  expectClose(power, Vec3(10, 5, 1) * (2.0f * kPi * 0.6137f / 4096), 0.1f);
+  expectClose(irradiance(lit.lights, 0, {0.25f, 0, 0.18f}, {0, 1, 0}) / (kPi * 2.0f),
+              Vec3(10, 5, 1) * (0.6137f / 4096 / (kPi * 2.25f)), 0.5f);
+}
+
 TEST(DirectLight, LampShinesOnItsSidesOnly) {
   const Lit one(lampScene(false)), two(lampScene(true));
   EXPECT_EQ(irradiance(one.lights, 0, {0, 3, 0}, {0, -1, 0}), Vec3());
@@ -96,14 +175,21 @@ TEST(DirectLight, LampShinesOnItsSidesOnly) {
 }
 
 TEST(DirectLight, LampSampleIsWhatARayFinds) {
-  for (const bool twoSided : {false, true}) {
-    const Lit lit(lampScene(twoSided));
+  Scene texel = texelScene({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
+  texel.materials[0].twoSidedEmission = true;
+  std::array<Scene, 3> scenes{lampScene(false), lampScene(true), std::move(texel)};
+  for (Scene& scene : scenes) {
+    const bool twoSided = scene.materials[0].twoSidedEmission;
+    const Lit lit(std::move(scene));
     const Vec3 from{0.5f, twoSided ? 2.5f : 0.5f, 0.2f};
     Rng rng(2, 3);
     for (int i = 0; i < 1000; ++i) {
       const float u = rng.next(), v = rng.next();
       DirectSample s;
-      ASSERT_TRUE(lit.lights.sampleDirect(0, from, u, v, s));
+      if (!lit.lights.sampleDirect(0, from, u, v, s)) {
+        ASSERT_FALSE(lit.scene.textures.empty());  // a black point of a cell that is not
+        continue;
+      }
       EXPECT_FALSE(lit.rays.occluded(from, s.target));
       SurfacePoint hit;
       ASSERT_TRUE(lit.rays.closestHit(from, s.wi, hit));
@@ -112,7 +198,10 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
       ASSERT_EQ(light, 0u);
       const float pdf = lit.lights.pdfEmitted(light, hit, from);
       EXPECT_NEAR(pdf, s.pdf, 2e-4f * pdf);
-      expectClose(s.radianceOverPdf * s.pdf, radiance, 1e-4f);
+      expectClose(s.radianceOverPdf * s.pdf, radiance, 1e-2f);
+      const Point2 back = lit.lights.drawnBy(light, hit);
+      EXPECT_NEAR(back.x, u, 1e-3f);
+      EXPECT_NEAR(back.y, v, 1e-2f);
     }
   }
 }

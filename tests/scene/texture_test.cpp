@@ -5,6 +5,11 @@ namespace {
 
 using Textures = SceneFiles;
 
+EnvironmentImage environmentOf(const fs::path& file) {
+  size_t negative = 0;
+  return loadEnvironment(file, negative);
+}
+
 void expectColour(Vec3 a, Vec3 b) {
   EXPECT_LT(length(a - b), 1e-5f) << a.x << " " << a.y << " " << a.z;
 }
@@ -52,10 +57,10 @@ TEST_F(Textures, ScaleAndOffsetOfTheMtl) {
 
 TEST_F(Textures, EnvironmentRefusesWhatIsNoRadiance) {
   write("bad.png", "no picture");
-  EXPECT_THROW(loadEnvironment(at("bad.png")), InputError);
-  EXPECT_THROW(loadEnvironment(at("absent.exr")), InputError);
+  EXPECT_THROW(environmentOf(at("bad.png")), InputError);
+  EXPECT_THROW(environmentOf(at("absent.exr")), InputError);
   write("t.tga", tga(1, 2, {{255, 0, 0, 255}, {0, 0, 255, 255}}));
-  const EnvironmentImage e = loadEnvironment(at("t.tga"));
+  const EnvironmentImage e = environmentOf(at("t.tga"));
   EXPECT_EQ(e.width, 1u);
   EXPECT_EQ(e.height, 2u);
   expectColour(e.lookup(0.5f, 0.1f), {1, 0, 0});  // v = 0 is the top

@@ -127,6 +127,8 @@ std::string writeMeshes(const Scene& scene, const std::vector<std::string>& name
 
 void writeTexture(const Scene& scene, uint32_t number, OutputFolder& folder) {
   const Texture& t = scene.textures[number];
+  if (!t.floats.empty())
+    throw InputError(t.name, "has floats, which a PNG cannot hold; convert it to 8 bits first");
   bool opaque = true;
   for (size_t i = 3; i < t.rgba.size(); i += 4) opaque = opaque && t.rgba[i] == 255;
   std::vector<uint8_t> pixels;

@@ -14,6 +14,7 @@
 #include "tools/common/run_files.h"
 #include "tools/common/scene_options.h"
 #include "tools/common/shard.h"
+#include "tools/render/integrator/light_in_glass.h"
 #include "tools/render/outputs.h"
 #include "tools/render/render.h"
 
@@ -130,6 +131,8 @@ int runRender(const Request& request, const ToolOptions& tool) {
   }
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
+  const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
+  if (!missed.empty()) printWarnings("vpl-render", {missed});
   if (estimating) {
     printCost(costOfRendering(rays, lights, lit, request, options), request.cost);
     return kExitOk;

@@ -91,7 +91,7 @@ void removeOurParts(Json& json) {
 
 GltfModel::GltfModel(const fs::path& file, SceneBuilder& builder) : file_(file), builder_(builder) {
   GltfDocument document = readGltfDocument(file);
-  requireValid(document);
+  requireValid(document, [&](const std::string& text) { builder_.warn(text); });
   checkExtensions(document, builder);
   readBuffers(document);
   openViews(document.json);

@@ -1,7 +1,8 @@
 #include "scene/read/gltf/gltf_rules.h"
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <string_view>
 
 #include "core/number_text.h"
@@ -12,7 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMost = 1e30;         // of a coordinate, a factor or a power, as in scene.toml
+constexpr double kMost = 1e30;  // of a coordinate, a factor or a power, as in scene.toml
+constexpr double kAny = std::numeric_limits<double>::max();
 constexpr double kMostBytes = 0x1p40;  // of a size or an offset: sums of two do not overflow
 
 struct Rule {
@@ -23,6 +25,7 @@ struct Rule {
   double least = -kMost, most = kMost;
   size_t count = 0;          // Numbers: so many
   std::string_view of = {};  // Index: into this array
+  bool clamped = false;      // numbers out of range are moved to its nearer end, with a warning
 };
 using Kind = Rule::Kind;
 
@@ -49,9 +52,17 @@ constexpr Rule needed(Rule rule) {
   return rule;
 }
 
+// Exporters write factors that rounding, or a user, has taken out of range.
+constexpr Rule clamped(Rule rule) {
+  rule.clamped = true;
+  return rule;
+}
+constexpr Rule factorRule(std::string_view path) { return clamped(numberRule(path, 0, 1)); }
+
 constexpr Rule kRules[] = {
     needed(objectRule("asset")),
     needed(textRule("asset/version")),
+    textRule("asset/minVersion"),
     textRule("extensionsUsed/*"),
     textRule("extensionsRequired/*"),
     needed(sizeRule("buffers/*/byteLength", 1)),
@@ -117,11 +128,11 @@ constexpr Rule kRules[] = {
     numberRule("cameras/*/perspective/aspectRatio", 1e-3, 1e3),
     needed(textRule("extensions/KHR_lights_punctual/lights/*/type")),
     textRule("extensions/KHR_lights_punctual/lights/*/name"),
-    numbersRule("extensions/KHR_lights_punctual/lights/*/color", 3, 0, 1e3),
-    numberRule("extensions/KHR_lights_punctual/lights/*/intensity", 0),
-    numberRule("extensions/KHR_lights_punctual/lights/*/range", 0),
-    numberRule("extensions/KHR_lights_punctual/lights/*/spot/innerConeAngle", 0, 1.58),
-    numberRule("extensions/KHR_lights_punctual/lights/*/spot/outerConeAngle", 0, 1.58),
+    clamped(numbersRule("extensions/KHR_lights_punctual/lights/*/color", 3, 0, 1e3)),
+    clamped(numberRule("extensions/KHR_lights_punctual/lights/*/intensity", 0)),
+    numberRule("extensions/KHR_lights_punctual/lights/*/range", -kAny, kAny),
+    clamped(numberRule("extensions/KHR_lights_punctual/lights/*/spot/innerConeAngle", 0, 1.58)),
+    clamped(numberRule("extensions/KHR_lights_punctual/lights/*/spot/outerConeAngle", 0, 1.58)),
     textRule("images/*/uri"),
     textRule("images/*/mimeType"),
     textRule("images/*/name"),
@@ -132,22 +143,24 @@ constexpr Rule kRules[] = {
     sizeRule("samplers/*/wrapT"),
     sizeRule("samplers/*/magFilter"),
     textRule("materials/*/name"),
-    numbersRule("materials/*/pbrMetallicRoughness/baseColorFactor", 4, 0, 1),
-    numberRule("materials/*/pbrMetallicRoughness/metallicFactor", 0, 1),
-    numberRule("materials/*/pbrMetallicRoughness/roughnessFactor", 0, 1),
-    numbersRule("materials/*/emissiveFactor", 3, 0, 1e3),
+    clamped(numbersRule("materials/*/pbrMetallicRoughness/baseColorFactor", 4, 0, 1)),
+    factorRule("materials/*/pbrMetallicRoughness/metallicFactor"),
+    factorRule("materials/*/pbrMetallicRoughness/roughnessFactor"),
+    clamped(numbersRule("materials/*/emissiveFactor", 3, 0, 1e3)),
     textRule("materials/*/alphaMode"),
-    numberRule("materials/*/alphaCutoff", 0),
+    clamped(numberRule("materials/*/alphaCutoff", 0)),
     flagRule("materials/*/doubleSided"),
     numberRule("materials/*/normalTexture/scale"),
-    numberRule("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0),
-    numberRule("materials/*/extensions/KHR_materials_ior/ior", 0, 100),
-    numberRule("materials/*/extensions/KHR_materials_transmission/transmissionFactor", 0, 1),
-    numberRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatFactor", 0, 1),
-    numberRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", 0, 1),
+    clamped(
+        numberRule("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0)),
+    clamped(numberRule("materials/*/extensions/KHR_materials_ior/ior", 0, 100)),
+    factorRule("materials/*/extensions/KHR_materials_transmission/transmissionFactor"),
+    factorRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatFactor"),
+    factorRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor"),
     numberRule("materials/*/extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale"),
-    numberRule("materials/*/extensions/KHR_materials_specular/specularFactor", 0, 1),
-    numbersRule("materials/*/extensions/KHR_materials_specular/specularColorFactor", 3, 0, 1e3),
+    factorRule("materials/*/extensions/KHR_materials_specular/specularFactor"),
+    clamped(numbersRule("materials/*/extensions/KHR_materials_specular/specularColorFactor", 3, 0,
+                        1e3)),
     objectRule("materials/*/extensions/KHR_materials_unlit"),
 };
 
@@ -179,14 +192,20 @@ std::string escaped(const std::string& key) {  // RFC 6901
 
 class Checker {
  public:
-  explicit Checker(const GltfDocument& document) : document_(document) {}
+  Checker(GltfDocument& document, const std::function<void(const std::string&)>& warn)
+      : document_(document), warn_(warn) {}
 
   void check(const Rule& rule) {
     if (rule.kind == Kind::Index) {
       const Json::json_pointer array("/" + std::string(rule.of));
       indexEnd_ = document_.json.contains(array) ? document_.json[array].size() : 0;
     }
+    movedFirst_.clear();
+    moved_ = 0;
     walk(rule, rule.path, document_.json, "");
+    if (moved_ == 0) return;
+    warn_(movedFirst_ +
+          (moved_ > 1 ? ", also at " + std::to_string(moved_ - 1) + " places like it" : ""));
   }
 
  private:
@@ -194,7 +213,7 @@ class Checker {
     throw GltfError(document_.file, pointer, problem);
   }
 
-  void walk(const Rule& rule, std::string_view path, const Json& at, const std::string& pointer) {
+  void walk(const Rule& rule, std::string_view path, Json& at, const std::string& pointer) {
     if (path.empty()) return checkValue(rule, at, pointer);
     const size_t slash = path.find('/');
     const std::string key(path.substr(0, slash));
@@ -207,8 +226,7 @@ class Checker {
     if (rule.required && rest.empty()) fail(pointer, "needs '" + key + "'; export the file again");
   }
 
-  void walkAll(const Rule& rule, std::string_view rest, const Json& at,
-               const std::string& pointer) {
+  void walkAll(const Rule& rule, std::string_view rest, Json& at, const std::string& pointer) {
     if (!at.is_structured()) fail(pointer, "must be a list or an object; export the file again");
     if (at.is_array()) {
       for (size_t i = 0; i < at.size(); ++i)
@@ -219,7 +237,7 @@ class Checker {
     }
   }
 
-  void checkValue(const Rule& rule, const Json& v, const std::string& pointer) {
+  void checkValue(const Rule& rule, Json& v, const std::string& pointer) {
     switch (rule.kind) {
       case Kind::Object:
         if (!v.is_object()) fail(pointer, "must be an object; export the file again");
@@ -231,33 +249,39 @@ class Checker {
         if (!v.is_boolean()) fail(pointer, "must be true or false; export the file again");
         break;
       case Kind::Number:
-        checnumberRule(rule, v, pointer);
+        checkNumber(rule, v, pointer);
         break;
       case Kind::Numbers:
         if (!v.is_array() || v.size() != rule.count)
           fail(pointer, "must be " + std::to_string(rule.count) + " numbers");
         for (size_t i = 0; i < v.size(); ++i)
-          checnumberRule(rule, v[i], pointer + "/" + std::to_string(i));
+          checkNumber(rule, v[i], pointer + "/" + std::to_string(i));
         break;
       case Kind::Whole:
         if (!v.is_number_unsigned()) fail(pointer, "must be a whole number");
-        checnumberRule(rule, v, pointer);
+        checkNumber(rule, v, pointer);
         break;
       case Kind::Index:
-        checindexRule(rule, v, pointer);
+        checkIndex(rule, v, pointer);
         break;
     }
   }
 
-  void checnumberRule(const Rule& rule, const Json& v, const std::string& pointer) {
+  void checkNumber(const Rule& rule, Json& v, const std::string& pointer) {
     if (!v.is_number()) fail(pointer, "must be a number; export the file again");
     const double number = v.get<double>();
     if (number >= rule.least && number <= rule.most) return;
-    fail(pointer, "is " + shortestText(number) + ", outside " + shortestText(rule.least) + " to " +
-                      shortestText(rule.most));
+    const std::string problem = "is " + shortestText(number) + ", outside " +
+                                shortestText(rule.least) + " to " + shortestText(rule.most);
+    if (!rule.clamped) fail(pointer, problem);
+    v = std::clamp(number, rule.least, rule.most);
+    if (moved_++ == 0) {
+      movedFirst_ = document_.file.string() + "#" + pointer + ": " + problem + "; " +
+                    shortestText(v.get<double>()) + " is used";
+    }
   }
 
-  void checindexRule(const Rule& rule, const Json& v, const std::string& pointer) {
+  void checkIndex(const Rule& rule, const Json& v, const std::string& pointer) {
     if (!v.is_number_unsigned()) fail(pointer, "must be an index");
     if (v.get<uint64_t>() < indexEnd_) return;
     fail(pointer, "is " + std::to_string(v.get<uint64_t>()) + ", but there are " +
@@ -265,14 +289,17 @@ class Checker {
                       "; export the file again");
   }
 
-  const GltfDocument& document_;
-  size_t indexEnd_ = 0;  // of the rule that is being checked
+  GltfDocument& document_;
+  const std::function<void(const std::string&)>& warn_;
+  // Of the rule that is being checked: the end of its indices, and what was out of range.
+  size_t indexEnd_ = 0, moved_ = 0;
+  std::string movedFirst_;
 };
 
 }  // namespace
 
-void requireValid(const GltfDocument& document) {
-  Checker checker(document);
+void requireValid(GltfDocument& document, const std::function<void(const std::string&)>& warn) {
+  Checker checker(document, warn);
   for (const Rule& rule : kRules) checker.check(rule);
   for (const std::string_view info : kTextureInfos) {
     for (Rule rule : kTextureRules) {
@@ -281,10 +308,16 @@ void requireValid(const GltfDocument& document) {
       checker.check(rule);
     }
   }
-  const std::string version = document.json["asset"]["version"];
+  const Json& asset = document.json["asset"];
+  const std::string version = asset["version"];
   if (!version.starts_with("2.")) {
     throw GltfError(document.file, "/asset/version",
                     "is '" + version + "'; glTF 2.0 is read, so export it as that");
+  }
+  const std::string least = asset.value("minVersion", "2.0");
+  if (least != "2.0") {
+    throw GltfError(document.file, "/asset/minVersion",
+                    "is '" + least + "'; glTF 2.0 is read, so export it as that");
   }
 }
 

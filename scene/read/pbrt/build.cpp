@@ -144,10 +144,7 @@ void noteUnused(const char* directive, const Entity& entity, Notes& notes) {
 void noteUnused(const Description& d, const std::vector<Placed>& shapes, Notes& notes) {
   noteUnused("Film", d.film, notes);
   noteUnused("Camera", d.camera, notes);
-  for (const Light& light : d.lights) {
-    if (light.params.unused().size() < light.params.all().size())
-      noteUnused("LightSource", light, notes);
-  }
+  for (const Light& light : d.lights) noteUnused("LightSource", light, notes);
   std::set<uint32_t> lamps;
   for (const Placed& placed : shapes) {
     noteUnused("Shape", *placed.shape, notes);

@@ -11,10 +11,18 @@ namespace {
 constexpr double kHottest = 1e6, kColdest = 100.0;  // kelvin
 
 double temperatureOf(const Param& p) {
-  if (p.numbers.empty()) failAt(p.place, "'" + p.name + "' must be a temperature in kelvin");
+  if (p.numbers.empty() || p.numbers.size() > 2)
+    failAt(p.place, "'" + p.name + "' must be a temperature in kelvin");
   if (!(p.numbers[0] >= kColdest && p.numbers[0] <= kHottest))
     failAt(p.place, "'" + p.name + "' must be 100 to 1000000 kelvin");
   return p.numbers[0];
+}
+
+// The scale that pbrt-v3 has behind the temperature.
+float scaleOf(const Param& p) {
+  if (p.numbers.size() < 2) return 1.0f;
+  if (!(p.numbers[1] >= 0.0)) failAt(p.place, "'" + p.name + "' must have a scale of 0 or more");
+  return static_cast<float>(p.numbers[1]);
 }
 
 Vec3 clamped(Vec3 v, float most) { return min(max(v, Vec3{}), Vec3{most}); }
@@ -51,7 +59,7 @@ Vec3 Colors::light(const Params& params, const std::string& name, ColorSpace spa
   if (p->type == ParamType::Rgb)
     return intoGamut(srgbOfLight(max(rgbOf(*p), Vec3{}), p->colorSpace));
   if (p->type == ParamType::Blackbody)
-    return intoGamut(srgbOf(xyzOfLight(blackbody(temperatureOf(*p)))));
+    return intoGamut(srgbOf(xyzOfLight(blackbody(temperatureOf(*p))))) * scaleOf(*p);
   if (p->type == ParamType::Float) {
     failAt(p->place, "'" + name + "' must be an rgb, blackbody or spectrum");
   }

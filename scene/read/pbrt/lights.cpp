@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "core/files.h"
-#include "core/read_file.h"
 #include "scene/read/pbrt/octahedral.h"
 #include "scene/read/pbrt/transform.h"
 
@@ -32,6 +31,7 @@ class Builder {
       goniometric();
     } else {
       r_.notes.add(light_.place, "light '" + light_.type + "' is not read; it is left out");
+      for (const Param* p : p_.all()) p_.ignore({p->name.c_str()});
       return;
     }
     p_.ignore({"portal", "scale", "power", "illuminance"});
@@ -57,9 +57,7 @@ class Builder {
     return file;
   }
   EnvironmentImage squareImage(const fs::path& file) const {
-    const ReadGuard guard(file);
-    EnvironmentImage e = loadEnvironment(file, true);
-    guard.check();
+    EnvironmentImage e = builder_.readEnvironment(file);
     if (e.width != e.height) {
       failAt(*p_.placeOf("filename"),
              file.string() + " is " + std::to_string(e.width) + " x " + std::to_string(e.height) +
@@ -193,7 +191,8 @@ Emission emissionOf(const LightReader& reader, const Entity& light, double areaM
     e.image = (reader.folder / image).lexically_normal();
     if (p.has("power") && isRegularFile(e.image)) {
       double sum = 0.0;
-      const EnvironmentImage pixels = loadEnvironment(e.image, true);
+      size_t negative = 0;
+      const EnvironmentImage pixels = loadEnvironment(e.image, negative);
       for (const Vec3& v : pixels.radiance) sum += double{luminance(v)};
       has *= sum / double(pixels.radiance.size());
     }

@@ -147,9 +147,7 @@ std::optional<TextureUse> Textures::imageUse(const TextureEntity& t) {
 
 uint32_t Textures::imagemap(const TextureEntity& t) {
   const std::optional<TextureUse> use = imageUse(t);
-  const uint32_t texture = use ? builder_.addTexture(*use) : kNone;
-  if (texture == kNone) return kNone;
-  TextureExpression e = imageExpression(texture, t.isSpectrum ? Channel::Rgb : Channel::Mean);
+  TextureExpression e = imageExpression(kNone, t.isSpectrum ? Channel::Rgb : Channel::Mean);
   const std::string wrap = t.params.text("wrap", "repeat");
   if (wrap == "clamp" || wrap == "black") {
     e.wrapU = e.wrapV = wrap == "clamp" ? Wrap::Clamp : Wrap::Black;
@@ -159,7 +157,7 @@ uint32_t Textures::imagemap(const TextureEntity& t) {
   e.value = Vec3{float(t.params.number("scale", 1.0))};
   e.invert = t.params.boolean("invert", false);
   e.uv = mapping(t);
-  return builder_.addExpression(e);
+  return builder_.addGreyableImage(*use, e);
 }
 
 UvTransform Textures::mapping(const TextureEntity& t) {

@@ -31,6 +31,7 @@ TEST_F(PbrtLights, RgbIsRadianceItself) {
 
 TEST_F(PbrtLights, SpectraHaveLuminanceOneTimesScale) {
   EXPECT_NEAR(luminance(lamp("\"blackbody L\" 3000 \"float scale\" 5")), 5.0f, 0.01f);
+  EXPECT_NEAR(luminance(lamp("\"blackbody L\" [3000 1.5]")), 1.5f, 3e-3f);  // of pbrt-v3
   EXPECT_NEAR(luminance(lamp("\"spectrum L\" [400 70 700 90]")), 1.0f, 1e-3f);
   expectNear(lamp("\"spectrum L\" \"stdillum-D65\""), Vec3{1.0f}, 2e-3f);
 }
@@ -148,6 +149,26 @@ TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
   write("wide.pfm", "PF\n2 1\n-1\n" + std::string(24, '\0'));
   expectError("WorldBegin LightSource \"infinite\" \"string filename\" \"wide.pfm\"", "1:35",
               {"2 x 1", "makeequiarea"});
+}
+
+// Images resampled by others have such values.
+TEST_F(PbrtLights, NegativePixelsAreBlackAndCounted) {
+  std::vector<Vec3> square(64, Vec3{1.0f});
+  square[9] = {-1e-5f, 1, 1};
+  write("sky.pfm", pfm(8, square));
+  const Scene s = loadWorld("LightSource \"infinite\" \"string filename\" \"sky.pfm\"\n");
+  EXPECT_EQ(countContaining(s.warnings, "sky.pfm: 1 of 64 pixels have negative values"), 1u);
+  square[9].x = NAN;
+  write("sky.pfm", pfm(8, square));
+  EXPECT_NE(pbrtError("WorldBegin LightSource \"infinite\" \"string filename\" \"sky.pfm\"" +
+                      kSquareShape)
+                .find("pixel 1,1 is not finite"),
+            std::string::npos);
+}
+
+TEST_F(PbrtLights, UnknownParametersAreNamedEvenWhereNoneIsKnown) {
+  const Scene s = loadWorld("LightSource \"infinite\" \"string mapname\" \"sky.exr\"\n");
+  EXPECT_EQ(countContaining(s.warnings, "parameter 'mapname' is unknown and ignored"), 1u);
 }
 
 }  // namespace

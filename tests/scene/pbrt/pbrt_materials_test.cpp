@@ -164,13 +164,7 @@ TEST_F(PbrtMaterials, Relief) {
   EXPECT_FALSE(n.textures.at(n.expressions.at(relief.normalMap).image).srgb);
 }
 
-TEST_F(PbrtMaterials, MissingTexturesKeepTheDefault) {
-  const Scene s = loadWorld(
-      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\"\n"
-      "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
-  EXPECT_EQ(std::get<DiffuseModel>(s.materials.at(s.triangles[0].material).model).reflectance.value,
-            Vec3{0.5f});
-  EXPECT_EQ(countContaining(s.warnings, "none.png"), 1u);
+TEST_F(PbrtMaterials, TexturesDoNotContainThemselves) {
   const Scene loop = loadWorld(
       "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"u\"\n"
       "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
@@ -180,6 +174,35 @@ TEST_F(PbrtMaterials, MissingTexturesKeepTheDefault) {
                       kSquareShape)
                 .find("contains itself"),
             std::string::npos);
+}
+
+TEST_F(PbrtMaterials, TexturesOfFloatsAreReadAsTheyAre) {
+  const float texels[] = {2.5f, 0.5f, -1.0f};
+  write("t.pfm", "PF\n1 1\n-1\n" + std::string(reinterpret_cast<const char*>(texels), 12));
+  const Scene s = loadWorld(
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
+  const auto& m = std::get<DiffuseModel>(s.materials.back().model);
+  EXPECT_EQ(s.expressionAt(m.reflectance.texture, 0.3f, 0.7f), Vec3(2.5f, 0.5f, 0));
+  EXPECT_EQ(countContaining(s.warnings, "t.pfm: 1 of 1 pixels have negative values"), 1u);
+}
+
+// Whether it is missing or damaged, and whatever looks it up.
+TEST_F(PbrtMaterials, TexturesThatCannotBeReadAreGrey) {
+  write("damaged.png", "no image");
+  for (const std::string file : {"gone.exr", "damaged.png"}) {
+    const std::string image =
+        "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + file + "\"\n";
+    const std::string twice = "Texture \"s\" \"spectrum\" \"scale\" \"texture tex\" \"t\"\n";
+    for (const std::string name : {"t", "s"}) {
+      const Scene s = loadWorld(image + twice + "Material \"diffuse\" \"texture reflectance\" \"" +
+                                name + "\"\n");
+      const auto& m = std::get<DiffuseModel>(s.materials.back().model);
+      EXPECT_EQ(s.expressionAt(m.reflectance.texture, 0.3f, 0.7f), Vec3(0.5f)) << file << name;
+      EXPECT_EQ(countContaining(s.warnings, file), 1u) << joined(s.warnings);
+      EXPECT_EQ(countContaining(s.warnings, "; it is grey"), 1u) << joined(s.warnings);
+    }
+  }
 }
 
 }  // namespace
