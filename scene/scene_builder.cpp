@@ -73,11 +73,11 @@ void SceneBuilder::addCamera(const std::string& name, const FilePoint& position,
 
 uint32_t SceneBuilder::addTexture(const TextureUse& use) {
   if (use.bytes) return textures_.add(use);
+  addFile(use.file);
   if (!isRegularFile(use.file)) {
     warn(use.file.string() + ": no such texture; the plain material colour is used");
     return kNone;
   }
-  addFile(use.file);
   return textures_.add(use);
 }
 
