@@ -142,8 +142,10 @@ def relative(path):
 
 
 def check_path(path):
-    if re.search(r"[\s$:|'\"]", path):
-        refuse(f"'{path}' contains a space or one of $ : | ' \"; choose another path")
+    """Refuses what the shell, Make or ninja reads as more than a part of a name."""
+    found = re.search(r"[^\w/.,+@!-]", path)
+    if found:
+        refuse(f"{path!r} contains {found[0]!r}, which the pipelines cannot handle; choose another path")
     return path
 
 

@@ -75,11 +75,11 @@ void SceneBuilder::addCamera(const std::string& name, const FilePoint& position,
 
 uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& otherwise) {
   if (use.bytes) return textures_.add(use);
+  addFile(use.file);
   if (!isRegularFile(use.file)) {
     warn(use.file.string() + ": no such texture; " + otherwise);
     return kNone;
   }
-  addFile(use.file);
   return textures_.add(use);
 }
 

@@ -13,6 +13,15 @@ class BudgetRun : public PipelineTest {
     return scene_ + " --integrator path --size 32x24 " + more;
   }
   nlohmann::json stats() const { return nlohmann::json::parse(readAll(at("s.json"))); }
+  // Of a run by `budget`, which does not end by itself, the checkpoint c is left.
+  void stop(const std::string& budget) const {
+    for (const char* seconds : {"2", "6", "18"}) {  // a busy machine may take long to begin
+      if (fs::exists(at("c"))) break;
+      shell(std::string("timeout --foreground -s INT ") + seconds + " '" BNVPL_BIN "/vpl-render' " +
+            paths(budget));
+    }
+    ASSERT_TRUE(fs::exists(at("c")));
+  }
   std::string passesDone() const { return std::to_string(stats()["passes"].get<uint64_t>()); }
 };
 
@@ -89,12 +98,7 @@ TEST_F(BudgetRun, ThePreviewIsThereBeforeTheImage) {
 TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
-  for (const char* seconds : {"2", "6", "18"}) {  // a busy machine may take long to begin
-    if (fs::exists(at("c"))) break;
-    shell(std::string("timeout --foreground -s INT ") + seconds + " '" BNVPL_BIN "/vpl-render' " +
-          paths("--time 1h" + work));
-  }
-  ASSERT_TRUE(fs::exists(at("c")));
+  stop("--time 1h" + work);
   fail("vpl-render", paths("--time 1h --seed 2" + work), kExitInput, {"seed was 1 and is now 2"});
   succeed("vpl-render", paths("--time 1s" + work));  // spent already: the pass under way ends
   EXPECT_GT(stats()["passes_time_s"].get<double>(), 1.0);
@@ -102,6 +106,22 @@ TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
   succeed("vpl-render", paths("--passes " + passesDone() + " --quiet -o " + path("b.exr")));
   EXPECT_TRUE(readAll(at("a.exr")) == readAll(at("b.exr")));
   EXPECT_FALSE(fs::exists(at("c")));
+}
+
+TEST_F(BudgetRun, ACheckpointGoesOnByAnyBudget) {
+  const std::string work =
+      " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
+  stop("--time 1h" + work);
+  const fs::path kept = at("kept");
+  fs::copy_file(at("c"), kept);
+  for (const std::string& budget : {std::string("--passes 2"), std::string("--target-error 10"),
+                                    std::string("--passes 2 --time 1h")}) {
+    fs::copy_file(kept, at("c"), fs::copy_options::overwrite_existing);
+    succeed("vpl-render", paths(budget + work));
+    EXPECT_FALSE(fs::exists(at("c"))) << budget;
+  }
+  stop("--passes 100000000" + work);
+  succeed("vpl-render", paths("--time 1s" + work));
 }
 
 }  // namespace

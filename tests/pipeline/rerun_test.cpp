@@ -89,6 +89,58 @@ TEST_F(Rerun, MakeFollowsEveryFileOfTheScene) {
   EXPECT_EQ(made(), "");
 }
 
+// Also with the time that it had, as mv keeps it; its name is of words.
+TEST_F(Rerun, AMissingTextureIsSeenWhenItArrives) {
+  const fs::path texture = at("veach-door/wood (1) floor.png"), away = at("away.png");
+  fs::rename(at("veach-door/landscape.png"), away);
+  const std::string mtl = readAll(at("veach-door/room.mtl"));
+  write("veach-door/room.mtl",
+        std::regex_replace(mtl, std::regex("landscape\\.png"), "wood (1) floor.png"));
+  const auto follows = [&](const auto& build) {
+    EXPECT_EQ(build(), all_);
+    EXPECT_EQ(build(), "");
+    for (int twice = 0; twice < 2; ++twice) {
+      ::usleep(20000);
+      fs::rename(away, texture);
+      EXPECT_EQ(build(), all_);
+      EXPECT_EQ(build(), "");
+      ::usleep(20000);
+      fs::rename(texture, away);
+      EXPECT_EQ(build(), all_);
+      EXPECT_EQ(build(), "");
+    }
+  };
+  follows([&] { return made(); });
+  if (!haveNinja()) return;
+  generate("20k");
+  follows([&] { return built(); });
+}
+
+TEST_F(Rerun, NamesThatMakeOrNinjaMisreadAreRefusedAtOnce) {
+  for (const char* name : {"a&b", "a;b", "a`b", "a%b", "a*b", "a=b", "a:b", "a(b", "a#b", "a^b"}) {
+    const std::string scene = path(std::string(name) + "/scene.toml");
+    for (const std::string& command :
+         {"make -f pipelines/Makefile OUT=" + path("o") + " SCENE=" + scene,
+          "pipelines/generate_ninja.py --out " + path("o") + " " + scene}) {
+      const Outcome r = shell(command);
+      EXPECT_NE(r.code, 0);
+      EXPECT_TRUE(contains(r.err, "which the pipelines cannot handle; choose")) << name << r.err;
+    }
+  }
+  EXPECT_FALSE(fs::exists(at("o")));
+  const std::string mtl = readAll(at("veach-door/room.mtl"));
+  for (const char* name : {"a;b.png", "a=b.png", "a$b.png", "a*b.png", "a:b.png"}) {
+    fs::copy_file(at("veach-door/landscape.png"), at(std::string("veach-door/") + name));
+    std::string edited = mtl;
+    write("veach-door/room.mtl", edited.replace(mtl.find("landscape.png"), 13, name));
+    fail("vpl-place",
+         path("veach-door/scene.toml") + " --quiet -n 1k -o " + path("c.vpl") + " --depfile " +
+             path("c.d"),
+         2, {"--depfile: Make and ninja cannot read the name", "rename it"});
+  }
+  EXPECT_FALSE(fs::exists(at("c.vpl")));
+}
+
 // Also where it made them among files of others.
 TEST_F(Rerun, CleanRemovesWhatMakeMade) {
   const std::vector<std::string> others{"package.json", "notes.d",        "run.cmd", "image.png",

@@ -8,6 +8,7 @@
 
 #include "core/files.h"
 #include "formats/output_target.h"
+#include "tools/common/depfile.h"
 #include "tools/common/run_tool.h"
 
 namespace bnvpl {
@@ -136,6 +137,15 @@ void RunFiles::checkPartialNames() const {
   }
 }
 
+void RunFiles::checkDepfileNames() const {
+  const bool asked = std::ranges::any_of(outputs_, [](const Named& out) {
+    return std::ranges::find(out.kinds, OutputKind::Depfile) != out.kinds.end();
+  });
+  if (!asked) return;
+  for (const Named& in : inputs_) requireDepfileName(in.file);
+  for (const Named& out : outputs_) requireDepfileName(out.file);
+}
+
 void RunFiles::check() const {
   checkIdentities();
   checkPartialNames();
@@ -147,6 +157,7 @@ void RunFiles::ready(const std::vector<fs::path>& sceneFiles) {
   for (const fs::path& file : sceneFiles) reads(sceneFileName(file), file);
   check();
   checkKinds();
+  checkDepfileNames();
   for (const Named& out : outputs_) requireWritable({out.file});
 }
 

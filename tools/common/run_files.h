@@ -38,7 +38,7 @@ class RunFiles {
 
   // Last before the work: check(), with the scene's own files as inputs, which are known only now;
   // then tries to write beside each output. Throws OutputError, too, where an output would replace
-  // a file of another kind.
+  // a file of another kind; and UsageError for names that a depfile cannot say.
   void ready(const std::vector<fs::path>& sceneFiles = {});
 
  private:
@@ -49,6 +49,7 @@ class RunFiles {
   };
   void checkExtensions() const;
   void checkKinds() const;
+  void checkDepfileNames() const;
   void checkIdentities() const;
   void checkPartialNames() const;
 

@@ -266,23 +266,6 @@ void printWarnings(const std::string& tool, const std::vector<std::string>& warn
   for (const std::string& w : warnings) ErrorLine().add(tool).add(": warning: ").add(w);
 }
 
-void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,
-                const std::vector<fs::path>& files) {
-  if (depfile.empty()) return;
-  const auto escape = [](const fs::path& path) {  // what both Make and ninja understand
-    std::string out;
-    for (const char c : path.string()) {
-      if (c == ' ' || c == '#' || c == '\\') out += '\\';
-      if (c == '$') out += '$';
-      out += c;
-    }
-    return out;
-  };
-  std::string text = escape(target) + ":";
-  for (const fs::path& f : files) text += " \\\n  " + escape(f);
-  outputs.add(depfile).write(text + "\n");
-}
-
 std::string formatSi(double value) {
   const char* const suffixes[] = {"", "k", "M", "G", "T"};
   int step = 0;

@@ -106,11 +106,6 @@ class Summary {
 // Prints each warning once, by name, to stderr. Warnings are not silenced by --quiet.
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
 
-// Adds "target: file file ..." in Make syntax to what the run makes. Does nothing when `depfile` is
-// empty.
-void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,
-                const std::vector<fs::path>& files);
-
 std::string formatSi(double value);  // 12345678 -> "12.3M"
 
 }  // namespace bnvpl

@@ -5,6 +5,7 @@
 
 #include "formats/vpl_io.h"
 #include "tools/common/cost.h"
+#include "tools/common/depfile.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/memory.h"
 #include "tools/common/progress_meter.h"

@@ -5,6 +5,7 @@
 
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
+#include "tools/common/depfile.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/film_size.h"
 #include "tools/common/run_files.h"

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "core/files.h"
 #include "tools/common/film_size.h"
 
 namespace bnvpl {
@@ -101,7 +102,9 @@ Json describeScene(const Scene& scene, const LightSet& lights) {
   json["cameras"] = describeViews(scene);
   json["textures"] = describeTextures(scene);
   json["files"] = Json::array();
-  for (const fs::path& file : scene.files) json["files"].push_back(file.string());
+  for (const fs::path& file : scene.files) {
+    if (isRegularFile(file)) json["files"].push_back(file.string());
+  }
   json["warnings"] = scene.warnings;
   return json;
 }

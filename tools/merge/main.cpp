@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/files.h"
+#include "tools/common/depfile.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/exposure.h"
 #include "tools/common/run_files.h"

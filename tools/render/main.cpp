@@ -6,6 +6,7 @@
 #include "formats/vpl_io.h"
 #include "tools/common/checkpoint.h"
 #include "tools/common/cost.h"
+#include "tools/common/depfile.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/exposure.h"
 #include "tools/common/film_size.h"

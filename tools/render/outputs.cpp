@@ -78,7 +78,8 @@ PreviewFn previewTo(const ImagePaths& paths, const Values& options) {
 Json resumableOptions(const Values& options) {
   Json record = recordOf(renderSpec(), options);
   if (budgetOf(options)) {
-    record.erase("spp");
+    // Records are compared in the order of their keys.
+    for (const char* countedBy : {"spp", "passes"}) record.erase(countedBy);
     record["passes"] = "any number";
   }
   return record;

@@ -116,8 +116,10 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
       [&](const fs::path& library, const tinyobj::material_t& material, const MtlKeys& keys) {
         expectTextures({library, obj, keys}, material, builder);
       });
-  for (const fs::path& library : reading.libraries.missing)
+  for (const fs::path& library : reading.libraries.missing) {
+    builder.addFile(library);
     builder.warn(library.string() + ": no such material library; its materials are grey");
+  }
   for (const fs::path& library : reading.libraries.read) builder.addFile(library);
   const std::vector<uint32_t> numbers = addMaterials(obj, reading, builder);
 
