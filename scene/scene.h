@@ -130,7 +130,7 @@ struct Scene {
   std::vector<EnvironmentImage> environments;
 
   uint64_t contentHash = 0;     // of geometry, materials, textures and lights; not of the camera
-  std::vector<fs::path> files;  // everything that was read, for depfiles
+  std::vector<fs::path> files;  // everything that was read or is missing, for depfiles
   std::vector<std::string> warnings;  // each names what was ignored or repaired
 
   // Whether anything shines: a light that is not black, or a triangle whose material emits.

@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "core/number_text.h"
 #include "core/read_file.h"
+#include "scene/coplanar_lamps.h"
 #include "scene/material_inputs.h"
 #include "scene/scene_hash.h"
 
@@ -605,6 +606,7 @@ Scene SceneBuilder::finish() {
   dropDoubledLamps();
   sortByMask();
   extendBounds();
+  for (const std::string& warning : liftCoplanarLamps(scene_)) warn(warning);
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex
   requireSize();
   placeViews();

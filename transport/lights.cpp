@@ -5,11 +5,20 @@
 #include <cmath>
 
 #include "core/cdf.h"
+#include "core/number_text.h"
 #include "core/parallel.h"
 #include "transport/lamp_texture.h"
 #include "transport/light_shape.h"
 
 namespace bnvpl {
+
+namespace {
+
+// Of what a light sends out, over the square of the scene's diagonal: squares of the light at its
+// surfaces, and sums of them, stay in the range of floats. W per square unit.
+constexpr float kStrongest = 1e17f;
+
+}  // namespace
 
 LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
   addAreaLights();
@@ -20,9 +29,22 @@ LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
       throw InputError(scene_.name() + ": the power of the " + name(i) +
                        " is beyond the range of floats; make it weaker or smaller");
     }
+    requireInRange(i);
     weights.push_back(mean(lights_[i].power));
   }
   setPickProbabilities(weights);
+}
+
+void LightSet::requireInRange(size_t i) const {
+  const Light& l = lights_[i];
+  // As a spot lights what is in its cone.
+  const bool local = !l.area && (l.spec.type == LightType::Point || l.spec.type == LightType::Spot);
+  const float sent = local ? maxComponent(l.spec.emission) * (4.0f * kPi) : maxComponent(l.power);
+  const float across = scene_.bounds.diagonal();
+  if (!(sent / across / across > kStrongest)) return;
+  throw InputError(scene_.name() + ": the " + name(i) + " sends out " + shortestText(sent) +
+                   " W, more than 1e17 W over the square of the scene's diagonal, " +
+                   shortestText(across) + "; make it weaker");
 }
 
 void LightSet::setPickProbabilities(const std::vector<double>& weights) {

@@ -32,6 +32,7 @@ struct PhotonStart {
 
 class LightSet {
  public:
+  // Throws InputError where a light is stronger than floats can compute with.
   explicit LightSet(const RayScene& rays);
 
   size_t size() const { return lights_.size(); }
@@ -120,6 +121,7 @@ class LightSet {
   };
   void addAreaLights();
   void addSpecLights();
+  void requireInRange(size_t light) const;
   void setPickProbabilities(const std::vector<double>& weights);
   Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
   float texelPdf(const Light& light, size_t x, uint32_t y) const;

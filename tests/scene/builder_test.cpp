@@ -1,9 +1,11 @@
 // What a loader of any format may count on: SceneBuilder, and the choice of a loader.
 #include <algorithm>
 
+#include "core/random.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_hash.h"
 #include "tests/scene/scene_files.h"
+#include "transport/rays.h"
 
 namespace bnvpl {
 namespace {
@@ -333,6 +335,34 @@ TEST_F(Builder, WhatLiesBeyondFloatsIsRefused) {
   toml.replace(toml.find("5.0"), 3, "1e19");
   EXPECT_NE(loadError(toml).find("'position' is 1e+19, outside -1e+18 to 1e+18"),
             std::string::npos);
+}
+
+// Which of two coplanar faces a ray meets is not left to rounding where one of them shines.
+TEST_F(Builder, LampsInTheirWallsPlaneAreInFront) {
+  write("m.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+  const std::string wall = "usemtl wall\nf 1 2 3 4\n", lamp = "usemtl lamp\nf 5 6 7 8\n";
+  for (const std::string& faces : {wall + lamp, lamp + wall}) {
+    for (const char* tilt : {"0", "0.37"}) {
+      const std::string z(tilt);
+      write("m.obj", "mtllib m.mtl\nv -1 -1 0.7\nv 1 -1 0.7\nv 1 1 " + z + "\nv -1 1 " + z +
+                         "\nv -.5 -1 0.7\nv .3 -1 0.7\nv .3 1 " + z + "\nv -.5 1 " + z + "\n" +
+                         faces);
+      const Scene scene = load(kFilmAndCamera + "[[mesh]]\nfile = \"m.obj\"\n");
+      const RayScene rays(scene);
+      for (int k = 0; k < 200; ++k) {
+        const Point2 p = r2Sequence(uint64_t(k), 0.5, 0.5);
+        const Vec3 to{1.9f * p.x - 0.95f, 1.9f * p.y - 0.95f, 0};
+        for (const float side : {1.0f, -1.0f}) {
+          SurfacePoint hit;
+          ASSERT_TRUE(rays.closestHit(to + Vec3{0, 0, 5 * side}, {0, 0, -side}, hit));
+          const bool shines = !isBlack(scene.materials[hit.material].emission);
+          if (std::fabs(to.x + 0.5f) < 0.01f || std::fabs(to.x - 0.3f) < 0.01f) continue;
+          EXPECT_EQ(shines, side > 0 && to.x > -0.5f && to.x < 0.3f)
+              << to.x << " " << to.y << faces;
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

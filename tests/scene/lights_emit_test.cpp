@@ -64,6 +64,24 @@ TEST(Emission, MeanFluxIsThePower) {
   }
 }
 
+// Floats would not hold the squares of their light.
+TEST(Emission, LightsThatAreTooStrongAreRefused) {
+  for (Case c : cases()) {
+    c.spec.emission = Vec3(1e17f);
+    for (const bool strong : {false, true}) {
+      Scene scene = floorScene();
+      if (strong) c.spec.emission = Vec3(1e25f);
+      scene.lights.push_back(c.spec);
+      const RayScene rays(scene);
+      if (strong) {
+        EXPECT_THROW(LightSet{rays}, InputError) << c.name;
+      } else {
+        EXPECT_NO_THROW(LightSet{rays}) << c.name;
+      }
+    }
+  }
+}
+
 TEST(Emission, LampsSendEvenlyFromTheirLitSides) {
   for (const bool twoSided : {false, true}) {
     Scene scene;
