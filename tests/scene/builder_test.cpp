@@ -176,7 +176,7 @@ TEST_F(Builder, TexturesAreNumberedByTheirUse) {
   }
   std::vector<std::string> files;
   for (const fs::path& f : scene.files) files.push_back(f.filename().string());
-  EXPECT_EQ(files, (std::vector<std::string>{"s", "bad.tga", "a.tga"}));
+  EXPECT_EQ(files, (std::vector<std::string>{"s", "bad.tga", "a.tga", "gone.tga"}));
 }
 
 TEST_F(Builder, FarScenesCountFromTheirOwnOriginWithCameraAndLights) {

@@ -50,8 +50,8 @@ TEST(LoaderQuirks, BackslashPathAndCarriageReturns) {
   for (const Material& m : scene.materials) EXPECT_EQ(m.name.find('\r'), std::string::npos);
   std::vector<std::string> files;
   for (const fs::path& f : scene.files) files.push_back(f.filename().string());
-  EXPECT_EQ(files,
-            (std::vector<std::string>{"quirks.toml", "quirks.obj", "quirks.mtl", "checker.png"}));
+  EXPECT_EQ(files, (std::vector<std::string>{"quirks.toml", "quirks.obj", "quirks.mtl",
+                                             "checker.png", "missing.png"}));
 }
 
 TEST_F(Loader, MissingTextureOfManyMaterialsIsNamedOnce) {
