@@ -132,7 +132,7 @@ TEST(Eliminate, TellsOfItsPreparations) {
   candidates.albedo.assign(flat.position.size(), Vec3(0.5f));
   candidates.id.resize(flat.position.size());
   eliminate(candidates, resolve(eliminateSpec(), keep(1000, "local")), nullptr, nullptr, progress);
-  EXPECT_EQ(names, (std::vector<std::string>{"radii", "weights"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"radii, candidates", "conflict weights"}));
 }
 
 TEST(Eliminate, RadiiStandForTheArea) {

@@ -31,6 +31,7 @@ struct Shown {
     const Integrator integrator{[&](const TileSamples& tile) {
       for (size_t k = 0; k < tile.samples.size(); ++k) {
         const auto p = static_cast<uint32_t>(k % tile.pixels);
+        tile.samples[k].radiance.depth = 1.0f;
         brought(tile.x + p % tile.width, tile.y + p / tile.width,
                 tile.firstSlot + static_cast<uint32_t>(k / tile.pixels), tile.samples[k].radiance);
       }
@@ -169,9 +170,11 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
 TEST(Fireflies, LeaveTheVoidBlack) {
   const Shown film;
   const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-    if (x < kX - 1) return;
+    if (x < kX - 1) {
+      out.depth = 0.0f;
+      return;
+    }
     out.indirect = Vec3(there(x, y, slot) ? 500.0f : 1.0f);
-    out.depth = 1.0f;
   };
   const Image image = film(brought, 16, true);
   EXPECT_LT((*image.find("G"))[index(film)], 1.4f);

@@ -71,8 +71,7 @@ void SurfaceFilter::findSlopes() {
 
 float SurfaceFilter::weight(size_t i, size_t j, Axis axis, float pixelsApart) const {
   const Surface &a = surfaces_[i], &b = surfaces_[j];
-  if (a.inverseDepth == 0.0f || b.inverseDepth == 0.0f)
-    return a.inverseDepth == b.inverseDepth ? 1.0f : 0.0f;
+  if (a.inverseDepth == 0.0f || b.inverseDepth == 0.0f) return 0.0f;
   const float turn = falloff(lengthSquared(a.normal - b.normal), kMaxTurn);
   if (!(turn > 0.0f)) return 0.0f;
   const float change = b.inverseDepth - a.inverseDepth, byA = a.slope[axis] * pixelsApart,

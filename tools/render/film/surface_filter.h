@@ -45,7 +45,7 @@ class SurfaceFilter {
  private:
   struct Surface {
     Vec3 normal, albedo;
-    float inverseDepth = 0.0f;  // 0: the pixel sees no surface
+    float inverseDepth = 0.0f;  // 0: the pixel sees no surface, and shares no light
     float slope[2] = {};        // change of inverseDepth from pixel to pixel along x and y
   };
   enum Axis : size_t { kX, kY };
