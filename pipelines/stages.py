@@ -145,7 +145,8 @@ def check_path(path):
     """Refuses what the shell, Make or ninja reads as more than a part of a name."""
     found = re.search(r"[^\w/.,+@!-]", path)
     if found:
-        refuse(f"{path!r} contains {found[0]!r}, which the pipelines cannot handle; choose another path")
+        character = "a space" if found[0] == " " else repr(found[0])
+        refuse(f"{path!r} contains {character}, which the pipelines cannot handle; choose another path")
     return path
 
 

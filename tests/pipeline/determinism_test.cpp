@@ -77,9 +77,10 @@ TEST_F(Determinism, LightPlacementAndReferencesForAnyThreads) {
 // Otherwise the tests above would pass for programs that ignore the seed.
 TEST_F(Determinism, AnotherSeedIsAnotherFile) {
   const auto pair = [&](const std::string& name, const std::string& arguments) {
-    succeed(name, arguments + " -o " + path("a") + " --seed 1");
-    succeed(name, arguments + " -o " + path("b") + " --seed 2");
-    EXPECT_FALSE(readAll(at("a")) == readAll(at("b"))) << name;
+    const std::string a = "a-" + name, b = "b-" + name;
+    succeed(name, arguments + " -o " + path(a) + " --seed 1");
+    succeed(name, arguments + " -o " + path(b) + " --seed 2");
+    EXPECT_FALSE(readAll(at(a)) == readAll(at(b))) << name;
   };
   pair("vpl-place", door_ + " -n 500");
   makeStages(door_);
