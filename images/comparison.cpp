@@ -47,6 +47,8 @@ void measureChannels(const ImagePair& pair, double epsilon, Comparison& c) {
     smape += measures[k].smape;
     c.channels.push_back(channelFrom(pair.b.channels[k], measures[k]));
   }
+  c.rmseBelowNoise = squared < 0.0;
+  c.relMseBelowNoise = relative < 0.0;
   c.mse = std::max(0.0, squared / double(channels));
   c.rmse = std::sqrt(c.mse);
   c.relMse = std::max(0.0, relative / double(channels));

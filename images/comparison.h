@@ -23,6 +23,9 @@ struct Comparison {
     double meanA = 0, meanB = 0;
     double rmse = 0, relMse = 0, smape = 0;
   };
+  // Whether the estimate of an error, less the noise that two halves of the reference tell of, is
+  // negative: less than that noise can show. The error then counts as 0.
+  bool rmseBelowNoise = false, relMseBelowNoise = false;
   // The means of both maps, and how they were made.
   struct Flip {
     double ldr = 0, hdr = 0;

@@ -143,6 +143,48 @@ TEST_F(CompareCli, BothHalvesMakeTheReferenceOfFlipAndMaps) {
   EXPECT_GT(json("--exposure -3")["flip"].get<double>(), 0.0);
 }
 
+TEST_F(CompareCli, TheSecondHalfHasNoiseOfItsOwn) {
+  for (const char* same : {"a.exr", "b.exr"}) {
+    fs::copy_file(at(same), at("copy.exr"), fs::copy_options::overwrite_existing);
+    for (const char* second : {same, "copy.exr"}) {
+      const Outcome result = runInspect(both() + "--second-half " + path(second));
+      EXPECT_EQ(result.code, kExitInput);
+      EXPECT_TRUE(contains(result.output, "holds the same pixels as")) << result.output;
+    }
+  }
+}
+
+// The halves lie on both sides of the image: (2 - 1) (2 - 3) < 0.
+TEST_F(CompareCli, AnErrorBelowTheNoiseIsSaidToBe) {
+  for (const auto& [name, value] : {std::pair{"x.exr", 2.0f}, {"y.exr", 1.0f}, {"z.exr", 3.0f}})
+    writeExr(at(name), flatImage(4, 3, value, value, value), ExrPixelType::Float);
+  const std::string files = "compare " + path("x.exr") + " " + path("y.exr");
+  const Outcome result = runInspect(files + " --second-half " + path("z.exr"));
+  EXPECT_TRUE(contains(result.output, "RMSE           0   (below the reference's noise)"))
+      << result.output;
+  EXPECT_FALSE(contains(runInspect(files).output, "below the reference's noise"));
+}
+
+TEST_F(CompareCli, OtherScenesAndViewsAreNamed) {
+  const auto show = [&](const char* name, const char* scene, const char* view, float value) {
+    Image image = flatImage(4, 3, value, value, value);
+    image.attributes["bnvpl.provenance"] =
+        std::string(R"([{"tool":"vpl-render","inputs":{"scene":")") + scene +
+        R"("},"view":{"size":"4x3","hash":")" + view + "\"}}]";
+    writeExr(at(name), image, ExrPixelType::Float);
+  };
+  const auto compare = [&] {
+    return runInspect("compare " + path("p.exr") + " " + path("q.exr")).output;
+  };
+  show("p.exr", "0123456789abcdef", "00000000000000aa", 1.0f);
+  show("q.exr", "0123456789abcdef", "00000000000000aa", 2.0f);
+  EXPECT_FALSE(contains(compare(), "warning")) << compare();
+  show("q.exr", "0123456789abcdef", "00000000000000bb", 2.0f);
+  EXPECT_TRUE(contains(compare(), "show different views of one scene")) << compare();
+  show("q.exr", "fedcba9876543210", "00000000000000aa", 2.0f);
+  EXPECT_TRUE(contains(compare(), "show different scenes")) << compare();
+}
+
 TEST_F(CompareCli, TheSecondHalfIsCheckedToo) {
   Image bad = flatImage(4, 3, 2, 2, 2);
   bad.channels[1].data[5] = INFINITY;

@@ -97,14 +97,43 @@ TEST_F(Options, Version) {
 TEST_F(Options, UnknownAndMissingOptions) {
   for (const std::string& name : kStages) {
     fail(name, "--no-such-option", kExitUsage, {"--help"});
-    fail(name, "", kExitUsage, {"required"});
+    fail(name, "", kExitUsage, {" is required"});
     fail(name, "a b c d e -o x", kExitUsage);
     fail(name, "-o", kExitUsage);
   }
   fail("vpl-inspect", "", kExitUsage);
-  fail("vpl-merge", "", kExitUsage, {"required"});
+  fail("vpl-merge", "", kExitUsage, {" is required"});
   fail("vpl-place", scene_, kExitUsage, {"-o"});
   fail("vpl-eliminate", "a.vpl -o b.vpl", kExitUsage, {"--count"});
+}
+
+// What the library of options says is not for people.
+TEST_F(Options, MistakesAreToldInSentences) {
+  const std::string out = " -o " + path("x.vpl");
+  fail("vpl-place", scene_ + out + " -n 1 -n 2", kExitUsage, {"--count is given more than once"});
+  fail("vpl-place", scene_ + " one two" + out, kExitUsage, {"'one', 'two' have no meaning here"});
+  fail("vpl-place", scene_ + out + " --thread 3", kExitUsage,
+       {"'--thread', '3' have no meaning here; check how the option is written"});
+  fail("vpl-place", scene_ + " -o", kExitUsage, {"--output needs a value: FILE"});
+  fail("vpl-place", scene_ + out + " --camera 1 --view " + scene_, kExitUsage,
+       {"--camera and --view cannot be given together"});
+  fail("vpl-eliminate", "a.vpl -n 5 --define A=b" + out, kExitUsage,
+       {"--define has an effect only with --scene"});
+  fail("vpl-inspect", "", kExitUsage, {"a command is missing; use one of info, check, "});
+  fail("vpl-inspect", "inform a.vpl", kExitUsage, {"'inform' is no command; use one of info, "});
+  fail("vpl-inspect", "compare a.exr b.exr --map flup --diff d.png", kExitUsage,
+       {"--map: 'flup' is none of difference|flip|", "see vpl-inspect compare --help"});
+}
+
+// VPLs are lit for any view; of direct light alone nothing indirect is known.
+TEST_F(Options, WhatWouldHaveNoEffectIsRefused) {
+  fail("vpl-estimate", scene_ + " a.vpl -o x.vpl --view " + scene_, kExitUsage, {"'--view'"});
+  fail("vpl-estimate", scene_ + " a.vpl -o x.vpl --camera 1", kExitUsage, {"'--camera'"});
+  for (const auto& [only, layer] : {std::pair{"direct", "indirect"}, {"indirect", "direct"}}) {
+    fail("vpl-render", scene_ + " a.vpl -o x.exr --only " + only + " --layers N," + layer,
+         kExitUsage, {layer, std::string("--only ") + only});
+  }
+  fail("vpl-eliminate", "a.vpl -o b.vpl -n 5 --area 1e39", kExitUsage, {"--area", "1e30"});
 }
 
 TEST_F(Options, UnknownChoices) {

@@ -26,7 +26,14 @@ CLI::Option* addChoice(CLI::App& cli, const std::string& flags, Enum& value,
   std::string names;
   for (const auto& [name, choice] : choices) names += (names.empty() ? "" : "|") + name;
   return cli.add_option(flags, value, help)
-      ->transform(CLI::CheckedTransformer(choices, CLI::ignore_case).description(""))
+      ->transform(CLI::Validator(
+          [choices, names](std::string& text) {
+            const auto found = choices.find(CLI::detail::to_lower(text));
+            if (found == choices.end()) return "'" + text + "' is none of " + names;
+            text = std::to_string(static_cast<int>(found->second));
+            return std::string();
+          },
+          ""))
       ->type_name(names)
       ->default_str(nameOf(value, choices));
 }

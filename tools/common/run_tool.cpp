@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "tools/common/build_id.h"
+#include "tools/common/cli_errors.h"
 #include "tools/common/clock.h"
 #include "tools/common/escape_text.h"
 #include "tools/common/exit_codes.h"
@@ -49,8 +50,6 @@ int failForMemory() {
 int report() {
   try {
     throw;
-  } catch (const CLI::ParseError& e) {
-    return fail(kExitUsage, e.what(), ("; see " + toolName + " --help").c_str());
   } catch (const UsageError& e) {
     return fail(kExitUsage, e.what());
   } catch (const InputError& e) {
@@ -103,11 +102,14 @@ bool parse(CLI::App& cli, int argc, char** argv) {
     return true;
   } catch (const CLI::Success& e) {
     // CLI11 helps before it looks at words that mean nothing, such as an unknown subcommand.
-    if (cli.remaining_size(true) > 0) throw CLI::ExtrasError(cli.remaining(true));
+    if (cli.remaining_size(true) > 0)
+      throw UsageError(describe(CLI::ExtrasError(cli.remaining(true)), cli, toolName));
     std::ostringstream text;
     cli.exit(e, text, text);
     print(text.str());
     return false;
+  } catch (const CLI::ParseError& e) {
+    throw UsageError(describe(e, cli, toolName));
   }
 }
 

@@ -20,6 +20,7 @@ void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene, ViewCo
       ->take_all()
       ->allow_extra_args(false)  // or it would swallow what follows
       ->needs(scene);
+  if (views == ViewCount::None) return;
   CLI::Option* camera = cli.add_option("--camera", options.cameras,
                                        "camera of the scene's file; the first unless given" + more)
                             ->type_name("NAME|NUMBER")

@@ -15,9 +15,9 @@ struct SceneOptions {
 };
 
 // How many cameras, or views, a tool takes.
-enum class ViewCount { One, Several };
+enum class ViewCount { None, One, Several };
 
-// The positional argument SCENE, --define, --camera and --view.
+// The positional argument SCENE, --define, and where views matter --camera and --view.
 void addSceneOptions(CLI::App& cli, SceneOptions& options, ViewCount views = ViewCount::One);
 // The same for tools that need a scene at times: --scene SCENE in place of the argument.
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);

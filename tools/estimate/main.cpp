@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
   CLI::App cli{"Find the flux that leaves each VPL's share of the surface.", "vpl-estimate"};
   ToolOptions tool;
   Request request;
-  addSceneOptions(cli, request.scene);
+  addSceneOptions(cli, request.scene, ViewCount::None);
   addFile(cli, "vpls", request.input, "from vpl-eliminate (.vpl)")->required();
   addFile(cli, "-o,--output", request.output, "lit VPLs (.vpl)")->required();
   addStageOptions(cli, estimateSpec(), request.given);

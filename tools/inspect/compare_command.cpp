@@ -13,6 +13,7 @@
 #include "tools/common/standard_streams.h"
 #include "tools/inspect/commands.h"
 #include "tools/inspect/file_kind.h"
+#include "tools/inspect/provenance.h"
 
 namespace bnvpl {
 namespace {
@@ -38,6 +39,45 @@ Image readImage(const fs::path& file) {
   return readExr(file);
 }
 
+// Halves with the same noise would hide it, and what they share with A would count for it.
+void requireOther(const fs::path& second, const Layer& s, const fs::path& file,
+                  const Layer& other) {
+  const auto same = [](const std::vector<float>* x, const std::vector<float>* y) {
+    return *x == *y;
+  };
+  if (std::ranges::equal(s.data, other.data, same)) {
+    throw InputError(
+        second,
+        "holds the same pixels as " + file.string() +
+            ", so that its noise tells nothing; render the reference again with another --seed");
+  }
+}
+
+// What the last stage of an image ran on.
+std::optional<StageRecord> lastRecord(const fs::path& file, const Image& image) {
+  const std::vector<StageRecord> chain = parseProvenance(file, provenanceOf(image));
+  return chain.empty() ? std::nullopt : std::optional(chain.back());
+}
+
+// A comparison of other things is possible, and mostly a mistake.
+void warnOfOtherScenes(const CompareCommand& command, const Sides& s) {
+  const auto a = lastRecord(command.imageA, s.imageA), b = lastRecord(command.imageB, s.imageB);
+  if (!a || !b) return;
+  const auto sceneOf = [](const StageRecord& record) {
+    const auto found = record.inputs.find("scene");
+    return found == record.inputs.end() ? std::string() : found->second;
+  };
+  const std::string sceneA = sceneOf(*a), sceneB = sceneOf(*b);
+  if (sceneA.empty() || sceneB.empty()) return;
+  const std::string pair = command.imageA.string() + " and " + command.imageB.string();
+  if (sceneA != sceneB) {
+    printWarnings("vpl-inspect",
+                  {pair + " show different scenes (content " + sceneA + " and " + sceneB + ")"});
+  } else if (a->views != b->views) {
+    printWarnings("vpl-inspect", {pair + " show different views of one scene"});
+  }
+}
+
 void readSides(const CompareCommand& command, Sides& s) {
   s.imageA = readImage(command.imageA);
   s.imageB = readImage(command.imageB);
@@ -52,6 +92,8 @@ void readSides(const CompareCommand& command, Sides& s) {
     s.second = findLayer(command.secondB, s.imageSecond, s.b.name);
     requireSameShape(command.secondB, s.second, command.imageB.string(), s.b);
     requireFinite(command.secondB, s.second);
+    requireOther(command.secondB, s.second, command.imageB, s.b);
+    requireOther(command.secondB, s.second, command.imageA, s.a);
     s.imageMean = meanOf(s.b, s.second);
     s.reference = findLayer(command.imageB, s.imageMean, s.b.name);
   }
@@ -182,6 +224,7 @@ int runCompare(const CompareCommand& command, const ToolOptions& tool) {
 
   Sides s;
   readSides(command, s);
+  warnOfOtherScenes(command, s);
   Comparison c = compareLayers(command.imageA, s.a, command.imageB, s.b, command.limits.epsilon,
                                s.halves ? &s.second : nullptr, s.mask);
   std::optional<FlipMaps> flip;

@@ -92,6 +92,8 @@ Json comparisonJson(const Comparison& c, const CompareOptions& options) {
             {"rmse", c.rmse},
             {"rmse_over_mean", finiteOrNull(c.rmseOverMean())},
             {"relmse", finiteOrNull(c.relMse)},
+            {"rmse_below_noise", c.rmseBelowNoise},
+            {"relmse_below_noise", c.relMseBelowNoise},
             {"relmse_epsilon", c.epsilon},
             {"smape", c.smape},
             {"flip", c.flip ? Json(c.flip->ldr) : Json(nullptr)},
@@ -115,10 +117,12 @@ std::string comparisonText(const Comparison& c, const CompareOptions& options) {
     out.add("  %-12s %s   (mean %.6g, reference %.6g)\n", k.name.c_str(),
             orUndefined(k.meanA / k.meanB).c_str(), k.meanA, k.meanB);
   }
-  out.add("RMSE           %.6g\n", c.rmse);
+  constexpr const char* kBelow = "   (below the reference's noise)";
+  out.add("RMSE           %.6g%s\n", c.rmse, c.rmseBelowNoise ? kBelow : "");
   out.add("RMSE / mean    %s\n", orUndefined(c.rmseOverMean()).c_str());
-  out.add("relMSE         %s   (epsilon %.6g = %g times the squared mean of the reference)\n",
-          orUndefined(c.relMse).c_str(), c.epsilon, options.epsilon);
+  out.add("relMSE         %s   (epsilon %.6g = %g times the squared mean of the reference)%s\n",
+          orUndefined(c.relMse).c_str(), c.epsilon, options.epsilon,
+          c.relMseBelowNoise ? kBelow : "");
   out.add("SMAPE          %.6g\n", c.smape);
   if (c.flip) addFlipText(*c.flip, out);
   addChannelText(c, out);

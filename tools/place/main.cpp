@@ -130,8 +130,8 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   Scene scene = loadSceneFor("vpl-place", request.scene, Warnings::Silent);
   const PlaceMethod& method = placeMethod(options);
   const PlaceViews views = placeViews(request, method, scene);
+  printWarnings("vpl-place", scene.warnings);  // they may tell why there is no light
   if (method.needsLight) scene.requireLight();
-  printWarnings("vpl-place", scene.warnings);
   if (!request.cost.estimate) used.ready(scene.files);
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);

@@ -1,5 +1,6 @@
 #include "tools/render/outputs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -33,6 +34,16 @@ void writePreview(AtomicFile& file, const Image& image, float ev) {
            toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
 }
 
+// A picture that shows nothing is mostly a mistake.
+void warnOfBlack(const Image& image) {
+  for (const char* channel : {"R", "G", "B"}) {
+    if (std::ranges::any_of(*image.find(channel), [](float v) { return v != 0.0f; })) return;
+  }
+  printWarnings("vpl-render",
+                {"the image is black: the camera looks away from everything, or no light comes to "
+                 "what it sees; vpl-inspect scene shows camera and lights"});
+}
+
 double percentOf(double part, double whole) { return whole > 0 ? 100 * part / whole : 0.0; }
 
 }  // namespace
@@ -58,6 +69,7 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
     printWarnings("vpl-render",
                   {std::to_string(overflow) + " values exceed half precision; use --pixels float"});
   }
+  warnOfBlack(image);
   if (paths.png.empty()) return;
   const float ev = exposureOf(image, options.text("exposure"));
   writePreview(files.add(paths.png), image, ev);
@@ -156,10 +168,9 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
   summary.add("samples", stats.samples, line);
   if (result.passes) reportPasses(*result.passes, options, summary);
   if (integratorOf(options).gathers) {
-    std::snprintf(line, sizeof line,
-                  "indirect light: clamping removed %.2f %%, compensation added %.2f %%",
-                  percentOf(stats.clamped, stats.indirect),
-                  percentOf(stats.compensated, stats.indirect));
+    std::snprintf(
+        line, sizeof line, "indirect light: clamping removed %.2f %%, compensation added %.2f %%",
+        percentOf(stats.clamped, stats.indirect), percentOf(stats.compensated, stats.indirect));
     summary.add("mean_clamped", stats.clamped, only == "direct" ? "" : line);
     summary.add("mean_compensated", stats.compensated);
     std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample",

@@ -118,7 +118,7 @@ const IntegratorMethod& integratorOf(const Values& options) {
 std::vector<const Layer*> layersOf(const Values& options) {
   return parseLayers(options.text("layers"),
                      integratorOf(options).gathers && onlyOf(options) != Only::Direct,
-                     budgetOf(options).has_value());
+                     budgetOf(options).has_value(), options.text("only"));
 }
 
 uint64_t renderWork(const Scene& scene, const Values& options) {

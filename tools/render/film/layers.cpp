@@ -69,7 +69,8 @@ std::string layerList() {
   return lines;
 }
 
-std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool passes) {
+std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool passes,
+                                      std::string_view shown) {
   std::istringstream words(list);
   std::set<std::string, std::less<>> names;
   for (std::string name; std::getline(words, name, ',');) names.insert(name);
@@ -86,7 +87,13 @@ std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool p
       throw UsageError("--layers: '" + std::string(layer.name) +
                        "' is known of passes; add --time, --target-error or --passes");
     }
-    const bool possible = (vpls || !layer.ofVpls) && (passes || !layer.ofPasses);
+    const bool light = layer.name == "direct" || layer.name == "indirect";
+    const bool isShown = shown == "all" || !light || layer.name == shown;
+    if (named && !isShown) {
+      throw UsageError("--layers: '" + std::string(layer.name) + "' is not complete with --only " +
+                       std::string(shown) + "; leave one of them out");
+    }
+    const bool possible = isShown && (vpls || !layer.ofVpls) && (passes || !layer.ofPasses);
     if (named || (all && possible)) layers.push_back(&layer);
     known += std::string(layer.name) + ", ";
   }

@@ -81,9 +81,9 @@ std::string channelName(const Layer& layer, size_t channel);
 std::string layerList();
 
 // Of a comma-separated list of names, or "all" that the image can have; `vpls`: those of VPLs, too;
-// `passes`: those of passes. Throws UsageError for a name that is unknown or that the image cannot
-// have.
+// `passes`: those of passes; `shown`: "direct" or "indirect" where the image shows that light
+// alone. Throws UsageError for a name that is unknown or that the image cannot have.
 std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true,
-                                      bool passes = false);
+                                      bool passes = false, std::string_view shown = "all");
 
 }  // namespace bnvpl
