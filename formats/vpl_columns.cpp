@@ -49,9 +49,10 @@ const char* fraction(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
                       maxComponent(value) <= 1.0f + kFractionTolerance;
   return within ? nullptr : "not between 0 and 1";
 }
-const char* aboveZero(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
+const char* length(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
   if (!isFinite(value)) return kNotFinite;
-  return minComponent(value) > 0.0f ? nullptr : "not above 0";
+  if (!(minComponent(value) > 0.0f)) return "not above 0";
+  return maxComponent(value) <= 4e9f ? nullptr : "larger than any scene";
 }
 const char* zeroOrMore(Vec3 value, const VplTable& /*table*/, size_t /*row*/) {
   if (!isFinite(value)) return kNotFinite;

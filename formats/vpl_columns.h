@@ -30,14 +30,14 @@ namespace vpl_check {
 const char* finite(Vec3 value, const VplTable& table, size_t row);
 const char* unitLength(Vec3 value, const VplTable& table, size_t row);
 const char* fraction(Vec3 value, const VplTable& table, size_t row);
-const char* aboveZero(Vec3 value, const VplTable& table, size_t row);
+const char* length(Vec3 value, const VplTable& table, size_t row);
 const char* zeroOrMore(Vec3 value, const VplTable& table, size_t row);
 const char* partOfFlux(Vec3 value, const VplTable& table, size_t row);
 inline constexpr VplCheck kAny{"any", nullptr};
 inline constexpr VplCheck kFinite{"finite", finite};
 inline constexpr VplCheck kUnitLength{"length 1 ± 0.001", unitLength};
 inline constexpr VplCheck kFraction{"0 to 1, ± 0.0001", fraction};
-inline constexpr VplCheck kAboveZero{"above 0", aboveZero};
+inline constexpr VplCheck kLength{"above 0, to 4e9", length};  // no scene is larger
 inline constexpr VplCheck kZeroOrMore{"0 or more", zeroOrMore};
 inline constexpr VplCheck kPartOfFlux{"0 to flux", partOfFlux};
 }  // namespace vpl_check
@@ -78,7 +78,7 @@ inline constexpr std::array<VplColumn, 11> kVplColumns{{
      "diffuse: fraction of the incident flux that leaves again, linear sRGB"},
     {"id", &VplTable::id, "", "-", VplStage::Candidates, vpl_check::kAny,
      "row in path order at placement; survives every stage"},
-    {"radius", &VplTable::radius, "", "scene unit", VplStage::Eliminated, vpl_check::kAboveZero,
+    {"radius", &VplTable::radius, "", "scene unit", VplStage::Eliminated, vpl_check::kLength,
      "r_max of this VPL: it stands for 2√3 · radius² of surface"},
     {"flux", &VplTable::flux, "rgb", "W", VplStage::Lit, vpl_check::kZeroOrMore,
      "leaving this VPL's share of the surface, linear sRGB"},

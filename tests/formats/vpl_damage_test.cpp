@@ -167,6 +167,8 @@ TEST_F(VplDamage, WrongValuesAreRefusedAtTheirByte) {
   EXPECT_SAYS(complaintAbout(at(1, 0, 2), 1.5f), "column normal, row 0: not of unit length");
   EXPECT_SAYS(complaintAbout(at(2, 1, 2), 1.5f), "column albedo, row 1: not between");
   EXPECT_SAYS(complaintAbout(columnOffset(4) + 4, 0.0f), "column radius, row 1: not above 0");
+  EXPECT_SAYS(complaintAbout(columnOffset(4) + 4, 3e38f),
+              "column radius, row 1: larger than any scene");
   EXPECT_SAYS(complaintAbout(at(5, 0, 0), -1.0f), "column flux, row 0: negative");
   EXPECT_SAYS(complaintAbout(columnOffset(7), nan), "column relative_error, row 0: not a finite");
   EXPECT_SAYS(complaintAbout(at(10, 1, 2), -1.0f), "column first_bounce_flux, row 1: negative");

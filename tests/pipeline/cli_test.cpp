@@ -133,7 +133,16 @@ TEST_F(Options, WhatWouldHaveNoEffectIsRefused) {
     fail("vpl-render", scene_ + " a.vpl -o x.exr --only " + only + " --layers N," + layer,
          kExitUsage, {layer, std::string("--only ") + only});
   }
-  fail("vpl-eliminate", "a.vpl -o b.vpl -n 5 --area 1e39", kExitUsage, {"--area", "1e30"});
+  fail("vpl-eliminate", "a.vpl -o b.vpl -n 5 --area 1e39", kExitUsage, {"--area", "1e19"});
+}
+
+TEST_F(Options, VplsLargerThanTheSceneAreRefused) {
+  const std::string vpls = path("vpls.vpl");
+  succeed("vpl-place", scene_ + " -n 300 -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 30 --density uniform --area 1e10 -o " + vpls);
+  const std::vector<std::string> told{"vpls.vpl: row 0: radius", "beyond the scene's size"};
+  fail("vpl-estimate", scene_ + " " + vpls + " -o " + path("lit.vpl"), kExitInput, told);
+  fail("vpl-inspect", "check " + vpls + " --scene " + scene_, kExitInput, told);
 }
 
 TEST_F(Options, UnknownChoices) {

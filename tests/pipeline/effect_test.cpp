@@ -297,8 +297,8 @@ TEST_F(Effect, PathsThatMissThePointLightBehindGlassSayIt) {
   EXPECT_TRUE(
       contains(warnings("path", glass), "misses light of the point light through material 'pane'"));
   EXPECT_EQ(warnings("light", glass), "");
-  EXPECT_EQ(warnings("path", "Kd .5 .5 .5"), "");
-  EXPECT_EQ(warnings("path", "Kd 0 0 0\nKs 1 1 1\nillum 3"), "");
+  for (const char* pane : {"Kd .5 .5 .5", "Kd 0 0 0\nKs 1 1 1\nillum 3"})
+    EXPECT_FALSE(contains(warnings("path", pane), "misses light"));
 }
 
 }  // namespace

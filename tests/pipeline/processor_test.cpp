@@ -35,12 +35,12 @@ TEST_F(ProcessorRun, ShardsForAnyAndForThisAreNotMixed) {
   succeed("vpl-place", place + "1/2 -o " + path("this.shard"));
   succeed("vpl-place", place + "2/2 --processor any -o " + path("any.shard"));
   const std::string output = " -o " + path("x.vpl");
-  fail(
-      "vpl-merge", path("this.shard") + " " + path("any.shard") + output, kExitInput,
-      {"any.shard: is of another run than", "this.shard", "processor was absent and is now \"any\""});
-  fail(
-      "vpl-merge", path("any.shard") + " " + path("this.shard") + output, kExitInput,
-      {"this.shard: is of another run than", "any.shard", "processor was \"any\" and is now absent"});
+  fail("vpl-merge", path("this.shard") + " " + path("any.shard") + output, kExitInput,
+       {"any.shard: is of another run than", "this.shard",
+        "processor was absent and is now \"any\""});
+  fail("vpl-merge", path("any.shard") + " " + path("this.shard") + output, kExitInput,
+       {"this.shard: is of another run than", "any.shard",
+        "processor was \"any\" and is now absent"});
 }
 
 TEST_F(ProcessorRun, AnyIsAnotherRunForACheckpoint) {

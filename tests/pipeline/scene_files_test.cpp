@@ -92,6 +92,7 @@ TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
     EXPECT_EQ(r.code, kExitOk) << r.err;
     EXPECT_TRUE(contains(r.err, problem) && contains(r.err, cure) && contains(r.err, "Ke"))
         << name << ": " << r.err;
+    EXPECT_EQ(contains(r.err, "the image is black"), name == std::string("vpl-render"));
   }
   succeed("vpl-eliminate", path("c.vpl") + " -n 5 -o " + path("v.vpl"));
   fail("vpl-place", room_ + " --method light -n 30 -o " + path("l.vpl"), kExitInput,

@@ -86,7 +86,7 @@ TEST_F(Views, WhatMeansNothingIsRefused) {
   fail("vpl-place", place + by("ad"), kExitInput, {"d.toml", "no such file"});
   makeStages(scene_);
   fail("vpl-render", scene_ + " " + path("lit.vpl") + by("ab") + " -o " + path("x.exr"), kExitUsage,
-       {"--view", "received 2"});
+       {"--view", "given more than once"});
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 

@@ -1,6 +1,8 @@
 #include "tools/common/scene_options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <set>
 
 #include "scene/choose_view.h"
@@ -116,6 +118,17 @@ Json viewRecord(const Camera& camera, const Film& film) {
   return {{"size", sizeText(film)}, {"hash", hashText(hashView(camera, film))}};
 }
 Json viewRecord(const Scene& scene) { return viewRecord(scene.camera, scene.film); }
+
+void requireRadiiWithin(const fs::path& file, std::span<const float> radii, const Scene& scene) {
+  const float size = length(scene.bounds.upper - scene.bounds.lower);
+  const auto at = std::ranges::find_if(radii, [&](float radius) { return radius > size; });
+  if (at == radii.end()) return;
+  char text[128];
+  std::snprintf(text, sizeof text, "row %td: radius %.6g is beyond the scene's size, %.6g; ",
+                at - radii.begin(), double{*at}, double{size});
+  throw InputError(file, text + std::string("rerun vpl-eliminate, without --area or with the area "
+                                            "in sight"));
+}
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,
                       const std::string& cure) {

@@ -2,6 +2,8 @@
 // hashes.
 #pragma once
 
+#include <span>
+
 #include "scene/load_scene.h"
 #include "tools/common/run_tool.h"
 
@@ -39,6 +41,9 @@ std::vector<View> viewsOf(const SceneOptions& options, Scene& scene);
 // What a view is, for records: its size in pixels, and a hash of camera and film.
 Json viewRecord(const Camera& camera, const Film& film);
 Json viewRecord(const Scene& scene);
+
+// Refuses VPLs that stand for more than the scene: stages would look for neighbours everywhere.
+void requireRadiiWithin(const fs::path& file, std::span<const float> radii, const Scene& scene);
 
 // Refuses rows that lie on another scene. `cure` says what to rerun.
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

@@ -21,7 +21,7 @@ inline constexpr std::array kRadiusOptions{
     neededBy("density=local",
              realOption("uniform-share", "0.2", 0, 1, "share of the VPLs",
                         "how many are spent evenly; the rest follows the candidates")),
-    realOption("area", "0", 0, 1e30, "scene units squared",
+    realOption("area", "0", 0, 1e19, "scene units squared",
                "indirectly visible area; 0: estimated from the candidates"),
     neededBy("density=local;area=0",
              wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate"))};

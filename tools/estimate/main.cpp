@@ -51,6 +51,7 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
   if (!request.cost.estimate) used.ready(scene.files);
   requireSameScene(request.input, vpls.sceneHash, scene,
                    "rerun vpl-place and vpl-eliminate on this scene");
+  requireRadiiWithin(request.input, vpls.radius, scene);
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
   if (request.cost.estimate) {

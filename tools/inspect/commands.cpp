@@ -84,6 +84,7 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   std::vector<CheckedFile> checked;
   for (const fs::path& file : command.files) {
     checked.push_back(checkFile(file));
+    if (withScene && checked.back().stage) requireRadiiWithin(file, readVpl(file).radius, scene);
     say(file.string() + ": OK (" + checked.back().what + ")");
   }
   const std::string hash = withScene ? hashText(scene.contentHash) : "";

@@ -130,7 +130,9 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   Scene scene = loadSceneFor("vpl-place", request.scene, Warnings::Silent);
   const PlaceMethod& method = placeMethod(options);
   const PlaceViews views = placeViews(request, method, scene);
-  printWarnings("vpl-place", scene.warnings);  // they may tell why there is no light
+  // Warnings may tell why there is no light, which the error then says in their place.
+  if (method.needsLight) std::erase(scene.warnings, scene.name() + ": " + kNoLight);
+  printWarnings("vpl-place", scene.warnings);
   if (method.needsLight) scene.requireLight();
   if (!request.cost.estimate) used.ready(scene.files);
   const RayScene rays(scene, tool.processor);

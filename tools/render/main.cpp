@@ -125,6 +125,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
   if (vpl) {
     requireSameScene(request.lit, lit.sceneHash, scene,
                      "rerun the pipeline from vpl-place on this scene");
+    requireRadiiWithin(request.lit, lit.radius, scene);
   }
   if (!estimating) {
     requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
