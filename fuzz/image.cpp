@@ -1,4 +1,5 @@
-// Textures, environments and masks, in whatever of PNG, JPEG, TGA, BMP and HDR the bytes are.
+// Textures, environments and masks, in whatever of PNG, JPEG, TGA, BMP, HDR, PFM and EXR the bytes
+// are.
 #include "fuzz/sane_scene.h"
 #include "images/mask.h"
 
@@ -8,7 +9,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const fs::path file = folder.write("image", {reinterpret_cast<const char*>(data), size});
 
   EnvironmentImage environment;
-  if (accepted([&] { environment = loadEnvironment(file); })) requireSane(environment);
+  size_t negative = 0;
+  if (accepted([&] { environment = loadEnvironment(file, negative); })) requireSane(environment);
 
   Texture texture;
   if (!accepted([&] { texture = loadTexture(file, true, true); })) return 0;
