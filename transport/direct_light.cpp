@@ -1,5 +1,8 @@
 #include "transport/direct_light.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/sampling.h"
 
 namespace bnvpl {
@@ -132,10 +135,17 @@ typename Reflects::Light besideRay(const RayScene& rays, const LightSet& lights,
 
 }  // namespace
 
+uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards) {
+  const float density = lights.photonDensity(light, towards);
+  const int step = density > 0.0f && std::isfinite(density) ? (std::ilogb(density) + 512) / 2 : 0;
+  return uint64_t{light} << 9 | static_cast<uint64_t>(step);
+}
+
 float SharedWithPhotons::ofRays(size_t light, Vec3 towards) const {
   const float sent = lights ? photons * lights->pickProbability(light) : 0.0f;
   if (!(sent > 0.0f)) return 1.0f;
   if (!lights->hittable(light)) return 0.0f;
+  if (lamps && !std::ranges::binary_search(*lamps, lampOf(*lights, light, towards))) return 1.0f;
   return powerHeuristic(rays, sent * lights->photonDensity(light, towards));
 }
 

@@ -1,7 +1,9 @@
 // Light that reaches a surface point straight from the lights, by shadow rays.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "transport/bsdf.h"
 #include "transport/light_strata.h"
@@ -16,6 +18,10 @@ enum class LightChoice {
 };
 inline constexpr size_t kMaxLightsEach = 32;
 
+// A light as its photons know it: of a sky that is an image, a region of like radiance, as the sun
+// in it. Regions are told by the density of photons, in steps of four times.
+uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards);
+
 // Light behind specular vertices that photons bring as well: MIS by the power heuristic, of rays
 // per area of the surface that they leave from and photons per area of emitter. That is the ratio
 // of both ways where the specular surfaces between are flat; elsewhere, weights that sum up to one.
@@ -23,6 +29,8 @@ struct SharedWithPhotons {
   const LightSet* lights = nullptr;  // null: there are no photons
   float rays = 0.0f;                 // 1/unit^2, by the BSDF
   float photons = 0.0f;              // in all
+  // Lamps (lampOf) that photons are sent from, ascending; null: all. Others are left to rays.
+  const std::vector<uint64_t>* lamps = nullptr;
   // Share of what rays find. `towards`: the light, if it is at infinity.
   float ofRays(size_t light, Vec3 towards) const;
 };

@@ -9,6 +9,7 @@
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
+#include "transport/camera.h"
 
 namespace bnvpl::test {
 namespace {
@@ -172,6 +173,25 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
     ++isVoid;
   }
   EXPECT_GT(isVoid, 100u);
+}
+
+// A lamp that too few photons come from is left to the rays, all of its light.
+TEST(Caustics, LampsWithTooFewPhotonsAreLeftToRays) {
+  const World world = shiny(manyLights(), false);
+  size_t lamp = 0;
+  while (!world.lights.hittable(lamp)) ++lamp;
+  SurfacePoint seen;
+  ASSERT_TRUE(world.rays.closestHit(
+      world.scene.camera.position,
+      cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
+  const auto share = [&](uint64_t photons, bool left) {
+    const Caustics caustics(world.rays, world.lights, photons, 8.0f, 3, {});
+    EXPECT_GT(caustics.lamps(), 0u);
+    EXPECT_EQ(caustics.sparseLamps() == caustics.lamps(), left) << photons;
+    return caustics.shared(seen).ofRays(lamp, {0, 1, 0});
+  };
+  EXPECT_EQ(share(16, true), 1.0f);
+  EXPECT_LT(share(400000, false), 1.0f);
 }
 
 // No ray meets a point over a mirror.

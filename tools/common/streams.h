@@ -24,6 +24,7 @@ enum class Stream : uint32_t {
   Guide = 16,
   Caustics,
   Balance,
+  CausticPilot,
   PilotPhotons = 30,  // of vpl-estimate --method both
   PilotPaths
 };

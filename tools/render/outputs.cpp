@@ -179,6 +179,14 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     summary.add("mean_cut", stats.cut);
     summary.add("mean_shadow_rays", stats.shadowRays);
   }
+  if (result.lamps > 0) {
+    std::snprintf(line, sizeof line,
+                  "caustics of %zu of %zu lamps by near-field rays alone: too few of their photons "
+                  "come into view",
+                  result.sparseLamps, result.lamps);
+    summary.add("lamps", result.lamps);
+    summary.add("lamps_without_photons", result.sparseLamps, result.sparseLamps > 0 ? line : "");
+  }
   summary.addNonFinite(stats.nonFinite, "samples");
 }
 

@@ -147,6 +147,8 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
       integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress}, options);
   RenderResult result;
   result.vpls = integrator.vpls;
+  result.lamps = integrator.lamps;
+  result.sparseLamps = integrator.sparseLamps;
   if (const auto budget = budgetOf(options)) {
     result.image = renderPasses(rays.scene(), integrator, film, *budget, result.stats,
                                 result.passes.emplace(), progress, resume, preview);

@@ -29,8 +29,9 @@ uint64_t renderWork(const Scene& scene, const Values& options);
 struct RenderResult {
   Image image;
   FilmStats stats;
-  size_t vpls = 0;                   // with flux
-  std::optional<PassesDone> passes;  // of a budget
+  size_t vpls = 0;                    // with flux
+  size_t lamps = 0, sparseLamps = 0;  // as of Integrator
+  std::optional<PassesDone> passes;   // of a budget
 };
 
 // The image that shards have made together, `film` being theirs; the summary's `vpls` stays 0.

@@ -57,6 +57,8 @@ struct Integrator {
   Splatter photons = {};
   bool wholePixels = false;  // a tile is to hold every sample of its pixels, not some at a time
   size_t vpls = 0;           // with flux
+  // Lamps that caustic photons could be sent from, and those whose photons are too few.
+  size_t lamps = 0, sparseLamps = 0;
 };
 
 // Borrowed until the image is done.

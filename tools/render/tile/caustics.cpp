@@ -1,7 +1,9 @@
 #include "tools/render/tile/caustics.h"
 
 #include <algorithm>
+#include <map>
 
+#include "core/parallel.h"
 #include "tools/common/streams.h"
 #include "tools/render/integrator/add_splats.h"
 #include "tools/render/integrator/film_connection.h"
@@ -18,14 +20,50 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       raysOfPixel_(raysOfPixel),
       width_(rays.scene().film.width),
       light_(size_t{width_} * rays.scene().film.height) {
+  chooseLamps(streamKey(seed, Stream::CausticPilot), progress);
   SplatProgress done;
   const auto phase = progress.before("caustic photons", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
-        for (uint64_t i = begin; i < end; ++i) follow(i, out);
+        for (uint64_t i = begin; i < end; ++i) follow(key_, i, out);
       },
       photons, done, [&](const Splat& splat) { add(splat, light_[splat.pixel]); }, progress, {},
       [] { return std::string(); });
+}
+
+void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
+  constexpr uint64_t kChunk = 4096;
+  const uint64_t count = (photons_ + kPilotShare - 1) / kPilotShare;
+  struct Found {
+    double sum = 0.0, squares = 0.0;
+  };
+  std::vector<std::map<uint64_t, Found>> chunks((count + kChunk - 1) / kChunk);
+  const auto phase = progress.before("caustic pilot, photons", count);
+  parallelFor(chunks.size(), 1, [&](size_t c) {
+    Splats splats;
+    const uint64_t begin = c * kChunk, end = std::min(count, begin + kChunk);
+    for (uint64_t i = begin; i < end; ++i) {
+      splats.list.clear();
+      const uint64_t lamp = follow(key, i, splats);
+      if (lamp == kNoLamp) continue;
+      Found& found = chunks[c][lamp];
+      for (const Splat& splat : splats.list) {
+        const double light{mean(splat.radiance)};
+        found.sum += light, found.squares += light * light;
+      }
+    }
+    if (progress) progress(end - begin);
+  });
+  std::map<uint64_t, Found> all;
+  for (const auto& chunk : chunks) {
+    for (const auto& [lamp, found] : chunk)
+      all[lamp].sum += found.sum, all[lamp].squares += found.squares;
+  }
+  for (const auto& [lamp, found] : all)
+    if (found.sum * found.sum >= kMinPilotPhotons * found.squares && found.sum > 0.0)
+      dense_.push_back(lamp);
+  lamps_ = all.size();
+  chosen_ = true;
 }
 
 void Caustics::add(const Splat& splat, PhotonLight& to) {
@@ -41,35 +79,41 @@ SharedWithPhotons Caustics::shared(const SurfacePoint& seen) const {
 }
 
 SharedWithPhotons Caustics::sharedBy(float samples) const {
-  return {&lights_, raysOfPixel_ * samples, static_cast<float>(photons_)};
+  return {&lights_, raysOfPixel_ * samples, static_cast<float>(photons_),
+          chosen_ ? &dense_ : nullptr};
 }
 
 // Where there is a choice, photons take the specular lobes: what they leave to the others is not
 // asked for. So even a coat that reflects little of a photon brings its little by each of them.
-void Caustics::follow(uint64_t index, Splats& out) const {
-  Rng rng(key_, index);
+uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
+  Rng rng(key, index);
   float probability = 1.0f;
   const size_t light = lights_.pick(rng.next(), probability);
-  if (!(probability > 0.0f)) return;
+  if (!(probability > 0.0f)) return kNoLamp;
   const PhotonStart start = lights_.emit(light, rng);
+  const uint64_t lamp =
+      lights_.hittable(light) ? lampOf(lights_, light, -start.direction) : kNoLamp;
+  if (chosen_ && lamp != kNoLamp && !std::ranges::binary_search(dense_, lamp)) return lamp;
   Vec3 flux = start.flux * static_cast<float>(1.0 / (double{probability} * double(photons_)));
   Ray next{start.origin, start.direction};
   SurfacePoint hit;
   for (unsigned links = 0; links <= kMaxSpecular && isFinite(flux); ++links) {
     rays_.closestHit(next.origin, next.direction, hit);
-    if (hit.triangle == kNone) return;
+    if (hit.triangle == kNone) return lamp;
     const Bsdf bsdf(rays_.scene(), hit);
     if (links > 0 && bsdf.hasRough())
       connect(bsdf.point(), flux * bsdf.photonShadingFactor(), light, -start.direction, out);
-    if (!(bsdf.specularProbability() > 0.0f)) return;
+    if (!(bsdf.specularProbability() > 0.0f)) return lamp;
     BsdfSample sample;
-    if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next)) return;
+    if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
+      return lamp;
     flux *= sample.weight;
     if (links == 0) continue;
     const float survive = std::min(1.0f, maxComponent(sample.weight));
-    if (rng.next() >= survive) return;
+    if (rng.next() >= survive) return lamp;
     flux *= 1.0f / survive;
   }
+  return lamp;
 }
 
 void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,

@@ -15,7 +15,14 @@ namespace bnvpl {
 
 // Photons that go over specular vertices alone, at least one, and are connected with the camera
 // where they come to a rough one. They share the light of lamps and sky with the near-field rays by
-// MIS, and bring all of what no ray can hit. Thread-safe and immutable once made.
+// MIS, and bring all of what no ray can hit.
+//
+// A pilot of an eighth as many photons tells lamp by lamp (lampOf: a light, or a region of a sky)
+// the noise of what photons bring: with the splats r_k of a lamp, (sum r_k)^2 / sum r_k^2 is the
+// number of equal photons that would be as noisy. A lamp that does not have kMinPilotPhotons of
+// them is left to the near-field rays: the sun over a wide ground, of which hardly a photon comes
+// in through a window. The photons that count are others than the pilot's, so the mean stays right.
+// Thread-safe and immutable once made.
 class Caustics {
  public:
   // So many photons, > 0, from lights with power, and rays from each pixel that look for the same
@@ -26,11 +33,20 @@ class Caustics {
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // How rays share with them that leave a point which the camera sees directly.
   SharedWithPhotons shared(const SurfacePoint& seen) const;
+  // That rays can hit and photons were sent from, and those that are left to rays.
+  size_t lamps() const { return lamps_; }
+  size_t sparseLamps() const { return lamps_ - dense_.size(); }
 
  private:
+  static constexpr double kMinPilotPhotons = 4.0;
+  static constexpr uint64_t kPilotShare = 8;  // the pilot's photons are one in so many
+
+  void chooseLamps(uint64_t key, const ProgressFn& progress);
   static void add(const Splat& splat, PhotonLight& to);
   SharedWithPhotons sharedBy(float samples) const;  // of a pixel, per area
-  void follow(uint64_t index, Splats& out) const;
+  // Returns the lamp that sent the photon, which is kNoLamp where no ray can hit it.
+  static constexpr uint64_t kNoLamp = UINT64_MAX;
+  uint64_t follow(uint64_t key, uint64_t index, Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
                Splats& out) const;
 
@@ -39,6 +55,9 @@ class Caustics {
   uint64_t photons_, key_;
   float raysOfPixel_;
   uint32_t width_;
+  std::vector<uint64_t> dense_;  // lamps that photons are sent from, ascending
+  bool chosen_ = false;          // whether dense_ says so; before, all are
+  size_t lamps_ = 0;
   std::vector<PhotonLight> light_;
 };
 

@@ -79,11 +79,18 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
                                tile.raysEach * options.whole("spp"));
+  const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
+               sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->balance = balanceOf(in, options, *parts->integrator);
   return {
-      [parts](const TileSamples& samples) { parts->integrator->render(samples, parts->balance); }};
+      [parts](const TileSamples& samples) { parts->integrator->render(samples, parts->balance); },
+      {},
+      false,
+      0,
+      lamps,
+      sparse};
 }
 
 }  // namespace

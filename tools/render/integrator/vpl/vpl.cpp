@@ -119,6 +119,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
                                tile.raysEach * std::min(options.whole("spp"), kMostSpp));
+  const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
+               sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->balance = balanceOf(in, options, *parts->integrator);
@@ -126,7 +128,9 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
       [parts](const TileSamples& samples) { parts->integrator->render(samples, parts->balance); },
       {},
       gather.wholePixels,
-      parts->vpls.size()};
+      parts->vpls.size(),
+      lamps,
+      sparse};
 }
 
 }  // namespace
