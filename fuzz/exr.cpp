@@ -34,6 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   }
   compareWithItself(file, image, "");
   EnvironmentImage environment;
-  if (accepted([&] { environment = loadEnvironment(file); })) requireSane(environment);
+  size_t negative = 0;
+  if (accepted([&] { environment = loadEnvironment(file, negative); })) requireSane(environment);
   return 0;
 }

@@ -8,7 +8,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const fs::path file = folder.write("image", {reinterpret_cast<const char*>(data), size});
 
   EnvironmentImage environment;
-  if (accepted([&] { environment = loadEnvironment(file); })) requireSane(environment);
+  size_t negative = 0;
+  if (accepted([&] { environment = loadEnvironment(file, negative); })) requireSane(environment);
 
   Texture texture;
   if (!accepted([&] { texture = loadTexture(file, true, true); })) return 0;
