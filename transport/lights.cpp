@@ -29,22 +29,24 @@ LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
       throw InputError(scene_.name() + ": the power of the " + name(i) +
                        " is beyond the range of floats; make it weaker or smaller");
     }
-    requireInRange(i);
     weights.push_back(mean(lights_[i].power));
   }
   setPickProbabilities(weights);
 }
 
-void LightSet::requireInRange(size_t i) const {
-  const Light& l = lights_[i];
-  // As a spot lights what is in its cone.
-  const bool local = !l.area && (l.spec.type == LightType::Point || l.spec.type == LightType::Spot);
-  const float sent = local ? maxComponent(l.spec.emission) * (4.0f * kPi) : maxComponent(l.power);
+void LightSet::requireSquares() const {
   const float across = scene_.bounds.diagonal();
-  if (!(sent / across / across > kStrongest)) return;
-  throw InputError(scene_.name() + ": the " + name(i) + " sends out " + shortestText(sent) +
-                   " W, more than 1e17 W over the square of the scene's diagonal, " +
-                   shortestText(across) + "; make it weaker");
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    const Light& l = lights_[i];
+    // As a spot lights what is in its cone.
+    const bool local =
+        !l.area && (l.spec.type == LightType::Point || l.spec.type == LightType::Spot);
+    const float sent = local ? maxComponent(l.spec.emission) * (4.0f * kPi) : maxComponent(l.power);
+    if (!(sent / across / across > kStrongest)) continue;
+    throw InputError(scene_.name() + ": the " + name(i) + " sends out " + shortestText(sent) +
+                     " W, more than 1e17 W over the square of the scene's diagonal, " +
+                     shortestText(across) + "; make it weaker, or use --integrator path");
+  }
 }
 
 void LightSet::setPickProbabilities(const std::vector<double>& weights) {

@@ -32,7 +32,7 @@ struct PhotonStart {
 
 class LightSet {
  public:
-  // Throws InputError where a light is stronger than floats can compute with.
+  // Throws InputError where floats do not hold the power of a light.
   explicit LightSet(const RayScene& rays);
 
   size_t size() const { return lights_.size(); }
@@ -95,6 +95,9 @@ class LightSet {
   bool hasPower() const { return mean(totalPower()) > 0.0f; }
   // Throws InputError, naming the scene, when none has.
   void requirePower() const;
+  // Throws InputError where floats do not hold the squares of a light's light, by which VPLs are
+  // gathered.
+  void requireSquares() const;
 
  private:
   struct Light {
@@ -121,7 +124,6 @@ class LightSet {
   };
   void addAreaLights();
   void addSpecLights();
-  void requireInRange(size_t light) const;
   void setPickProbabilities(const std::vector<double>& weights);
   Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
   float texelPdf(const Light& light, size_t x, uint32_t y) const;
