@@ -166,9 +166,9 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
     return squares;
   };
   EXPECT_LT(error(moved), 0.5 * error(kept));
-  size_t isVoid = 0;
+  size_t isVoid = 0;  // pixels without a surface; at silhouettes samples see both
   for (size_t i = 0; i < right.size(); ++i) {
-    if (std::isfinite(depth[i])) continue;
+    if (std::isfinite(depth[i]) || right[i] > 0.0f) continue;
     EXPECT_EQ(moved[i], kept[i]);
     ++isVoid;
   }

@@ -272,7 +272,8 @@ TEST(Fireflies, StayInTheDarkAlone) {
   EXPECT_NEAR(light[index(film)] / light[index(film) + 1], 1.0, 0.05);
 }
 
-// Fireflies of a wall brighten neither the floor before it nor a pillar of another colour.
+// Fireflies of a wall brighten neither the floor before it nor a pillar of another colour, as long
+// as the wall can hide them.
 TEST(Fireflies, StopAtEdges) {
   const Shown film;
   enum class Edge { Normal, Depth, Albedo };
@@ -282,7 +283,7 @@ TEST(Fireflies, StopAtEdges) {
       out.normal = beyond && edge == Edge::Normal ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
       out.depth = beyond && edge == Edge::Depth ? 2.0f : 1.0f;
       out.albedo = Vec3(beyond && edge == Edge::Albedo ? 0.2f : 0.8f);
-      out.indirect = Vec3(there(x, y, slot) ? 300.0f : 1.0f);
+      out.indirect = Vec3(there(x, y, slot) ? 20.0f : 1.0f);
     };
     const Image kept = film(brought, 16, false), moved = film(brought, 16, true);
     EXPECT_NEAR(sumOf(moved, "G") / sumOf(kept, "G"), 1.0, 1e-6);
@@ -293,6 +294,18 @@ TEST(Fireflies, StopAtEdges) {
       }
     }
   }
+}
+
+// On a bumpy surface no pixel is like its neighbours; what it finds goes over the edges.
+TEST(Fireflies, AreHiddenOnBumpySurfaces) {
+  const Shown film;
+  const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    const float tilt = (x + y) % 2 == 0 ? 0.6f : -0.6f;
+    out.normal = Vec3(tilt, 0, 0.8f);
+    out.indirect = Vec3(there(x, y, slot) ? 20.0f : 1.0f);
+  };
+  const Image image = film(brought, 16, true);
+  for (const float v : *image.find("G")) ASSERT_LE(v, 1.0f + 0.125f + 0.03f);
 }
 
 TEST(Fireflies, SameBytesForAnyThreads) {

@@ -15,7 +15,7 @@ namespace {
 // twice as much: it is made of few rays, so that samples differ more where there are no fireflies.
 constexpr double kMinShare = 0.125, kTimesItsShare = 2.0;
 constexpr std::array<double, 2> kTimes{2.0, 1.0};
-constexpr double kVisible = 0.02;  // contrast, of a lump as of noise
+constexpr float kVisible = 0.02f;  // contrast
 // The level at which the surface around shows how much of its light is in fireflies.
 constexpr size_t kLocal = 3;
 // Light around, over that of a firefly, below which nothing can hide it.
@@ -72,14 +72,13 @@ std::vector<BothLights> excessOf(const Exposed& film, Only only, const FilmValue
   parallelFor(shown.size(), 256, [&](size_t i) {
     float others = shown[i];
     forBrightest(film, i, only, [&](size_t, Vec3 light) { others -= mean(light); });
-    // The mean of the surface around is without these samples.
+    // The mean of what is around is without these samples.
     const float around = (smoothed[i] - SurfaceFilter::kCentre * (shown[i] - others)) / ones[i];
     const double share = std::max(kMinShare, kTimesItsShare / samplesOf(film, i)) *
                          double{std::max({0.0f, others, around})};
     forBrightest(film, i, only, [&](size_t kind, Vec3 light) {
       const double bound = kTimes[kind] * share, own{mean(light)};
-      if (own > bound)
-        excess[i][kind] += light * static_cast<float>(1.0 - bound * bound / (own * own));
+      if (own > bound) excess[i][kind] += light * static_cast<float>(1.0 - bound / own);
     });
     // A dot that nothing surrounds stays.
     if (!(around > 1e-5f * shown[i]) || !isFinite(excess[i][0]) || !isFinite(excess[i][1]))
@@ -94,19 +93,20 @@ FilmValues meansOf(std::span<const BothLights> lights, size_t kind) {
   return out;
 }
 
-// The square of each firefly's light. Pixels of a tile may owe theirs to one find of a near-field
-// ray: each of them counts with the light of all.
-FilmValues squaresOf(std::span<const BothLights> excess, size_t width) {
+// The light of each pixel's fireflies that its lump has to hide. Pixels of a tile may owe theirs to
+// one find of a near-field ray: where that is most, each counts with the geometric mean of its own
+// light and that of all.
+FilmValues lumpsOf(std::span<const BothLights> excess, size_t width) {
   const FilmValues direct = meansOf(excess, 0), indirect = meansOf(excess, 1);
   const size_t across = (width + kTileSide - 1) / kTileSide;
   const auto tileOf = [&](size_t i) {
     return i / width / kTileSide * across + i % width / kTileSide;
   };
-  FilmValues squares(excess.size()), tiles(tileOf(excess.size() - 1) + across);
+  FilmValues lumps(excess.size()), tiles(tileOf(excess.size() - 1) + across);
   for (size_t i = 0; i < excess.size(); ++i) tiles[tileOf(i)] += indirect[i];
   for (size_t i = 0; i < excess.size(); ++i)
-    squares[i] = direct[i] * direct[i] + indirect[i] * tiles[tileOf(i)];
-  return squares;
+    lumps[i] = std::sqrt(direct[i] * direct[i] + indirect[i] * tiles[tileOf(i)]);
+  return lumps;
 }
 
 // The light of the surface: that of the samples without excess, and in proportion to it what
@@ -125,63 +125,87 @@ FilmValues surfaceLight(const SurfaceFilter& filter, const FilmValues& ones,
   return light;
 }
 
-// Where the excess of each pixel goes: the level, and one over the light within its kernel.
+// Where the excess of a pixel goes: the level, one over the light within its kernel, and the
+// contrast of its lump.
 struct Target {
   uint8_t level = 0;
   float perLight = 0.0f;  // 0: it stays
+  float contrast = INFINITY;
 };
 
+// The narrowest level whose contrast does not show, or else the one with the least.
 std::vector<Target> chooseTargets(const SurfaceFilter& filter, const FilmValues& light,
-                                  const FilmValues& excess, FilmValues squares, size_t levels) {
+                                  const FilmValues& excess, const FilmValues& lumps) {
   std::vector<Target> targets(light.size());
-  std::vector<float> least(light.size(), INFINITY);
   FilmValues lit = light, added = excess;
-  for (size_t level = 0; level < levels; ++level) {
+  for (size_t level = 0; level < filter.levels(); ++level) {
     lit = filter.smooth(lit, level);
     added = filter.smooth(added, level);
-    squares = filter.smooth(squares, level);
     const auto peak = static_cast<float>(SurfaceFilter::peak(level));
     parallelFor(targets.size(), 1024, [&](size_t i) {
-      if (!(excess[i] > 0.0f) || least[i] <= float(kVisible) || !(lit[i] > kDark * excess[i]))
+      Target& target = targets[i];
+      if (!(excess[i] > 0.0f) || target.contrast <= kVisible || !(lit[i] > kDark * excess[i]))
         return;
-      const float noise = std::sqrt(peak * squares[i]) / (lit[i] + added[i]);
-      if (!(noise < least[i])) return;
-      least[i] = noise;
-      targets[i] = {static_cast<uint8_t>(level), 1.0f / lit[i]};
+      const float contrast = peak * lumps[i] / (lit[i] + added[i]);
+      if (contrast < target.contrast)
+        target = {static_cast<uint8_t>(level), 1.0f / lit[i], contrast};
     });
   }
   return targets;
 }
 
+// On small or bumpy surfaces the edges leave too little room: what shows there goes over them. Each
+// firefly keeps one of its two targets.
+std::vector<Target> chooseOverEdges(const SurfaceFilter& filter, const FilmValues& light,
+                                    FilmValues excess, const FilmValues& lumps,
+                                    std::span<Target> within) {
+  for (size_t i = 0; i < excess.size(); ++i)
+    if (within[i].contrast <= kVisible) excess[i] = 0.0f;
+  std::vector<Target> over = chooseTargets(filter, light, excess, lumps);
+  for (size_t i = 0; i < excess.size(); ++i)
+    (over[i].contrast < within[i].contrast ? within[i] : over[i]).perLight = 0.0f;
+  return over;
+}
+
+// Moves the excess of each pixel to its target, for one channel of one kind of light.
+void move(const SurfaceFilter& filter, std::span<const Target> targets, const FilmValues& light,
+          std::span<const BothLights> excess, size_t kind, size_t channel,
+          std::span<BothLights> change) {
+  // From the widest level to the narrowest, each step taking along what begins there.
+  FilmValues moved(light.size(), 0.0f);
+  for (size_t level = filter.levels(); level-- > 0;) {
+    for (size_t i = 0; i < moved.size(); ++i)
+      if (targets[i].level == level) moved[i] += excess[i][kind][channel] * targets[i].perLight;
+    moved = filter.scatter(moved, level);
+  }
+  for (size_t i = 0; i < moved.size(); ++i) {
+    const float leaves = targets[i].perLight > 0.0f ? excess[i][kind][channel] : 0.0f;
+    change[i][kind][channel] += light[i] * moved[i] - leaves;
+  }
+}
+
 }  // namespace
 
 std::vector<BothLights> redistributeFireflies(const Exposed& film, Only only, uint32_t width) {
-  const SurfaceFilter filter(film.sums, width);
-  const FilmValues ones = smoothedOnes(filter), shown = shownLight(film, only);
-  const std::vector<BothLights> excess = excessOf(film, only, shown, filter.smooth(shown, 0), ones);
+  const SurfaceFilter within(film.sums, width, SurfaceFilter::Edges::Stop),
+      over(film.sums, width, SurfaceFilter::Edges::Ignore);
+  const FilmValues ones = smoothedOnes(within), shown = shownLight(film, only);
+  const std::vector<BothLights> excess =
+      excessOf(film, only, shown, over.smooth(shown, 0), smoothedOnes(over));
   FilmValues both = meansOf(excess, 0);
   const FilmValues indirect = meansOf(excess, 1);
   for (size_t i = 0; i < both.size(); ++i) both[i] += indirect[i];
   std::vector<BothLights> change(excess.size());
   if (std::ranges::none_of(both, [](float e) { return e > 0.0f; })) return change;
-  const FilmValues light = surfaceLight(filter, ones, shown, both);
-  const size_t levels = filter.levels();
-  const std::vector<Target> targets =
-      chooseTargets(filter, light, both, squaresOf(excess, width), levels);
+  const FilmValues light = surfaceLight(within, ones, shown, both);
+  const FilmValues lumps = lumpsOf(excess, width);
+  std::vector<Target> withinEdges = chooseTargets(within, light, both, lumps);
+  const std::vector<Target> overEdges = chooseOverEdges(over, light, both, lumps, withinEdges);
   for (const size_t kind : {0u, 1u}) {
     if (!isShown(kind, only)) continue;
     for (size_t c = 0; c < 3; ++c) {
-      // From the widest level to the narrowest, each step taking along what begins there.
-      FilmValues going(light.size(), 0.0f);
-      for (size_t level = levels; level-- > 0;) {
-        for (size_t i = 0; i < going.size(); ++i)
-          if (targets[i].level == level) going[i] += excess[i][kind][c] * targets[i].perLight;
-        going = filter.scatter(going, level);
-      }
-      for (size_t i = 0; i < going.size(); ++i) {
-        const float leaves = targets[i].perLight > 0.0f ? excess[i][kind][c] : 0.0f;
-        change[i][kind][c] = light[i] * going[i] - leaves;
-      }
+      move(within, withinEdges, light, excess, kind, c, change);
+      move(over, overEdges, light, excess, kind, c, change);
     }
   }
   return change;

@@ -8,20 +8,20 @@
 //
 //   b_i    = max(1/8, 2/n) max(o_i, a_i)  bound on what one of n samples adds to pixel i; twice as
 //            much for direct light
-//   e_i    = what the two brightest samples and photons p add beyond: p - b_i^2 / p, where p > b_i
-//   M_l, Y_l, Q_l = S_l ... S_0 of the light a, of e, and of e^2 (surface_filter.h)
+//   e_i    = what the two brightest samples and photons add beyond
+//   M_l, Y_l = S_l ... S_0 of the light a, and of e (surface_filter.h)
 //   r_j   += sum over i of  a_j e_i / M_l(i) K_l(i, j),   K_l being the kernel of S_l ... S_0
 //
-// o is what a pixel shows without these samples and a what the surface around shows, by the mean of
-// the channels. l is the narrowest level at which the noise of what is added does not show,
+// o is what a pixel shows without these samples and a what is around it, by the mean of the
+// channels. l is the narrowest level at which the lump does not show,
 //
-//   P_l Q_l <= kVisible^2 (M_l + Y_l)^2
+//   P_l e_i <= kVisible (M_l + Y_l)
 //
-// where P_l is the peak of K_l: for one firefly the contrast of its lump, for n equal ones within a
-// kernel about sqrt(n) times as much, as their sum is light that they agree on. Those that pixels
-// of a block owe to one find are counted as one. If no level is enough, l is the one where the
-// noise shows least. M_l holds what edges take from K_l, so the sum over the film stays as it is,
-// for each channel. A firefly in the void or in the dark, where M_l is 0, stays where it was found.
+// where P_l is the peak of K_l. Those that pixels of a tile owe to one find are hidden together. If
+// no level is enough, l is the one with the least contrast; on small or bumpy surfaces, whose edges
+// leave too little room, that may be a level of a filter that ignores them. M_l holds what edges
+// take from K_l, so the sum over the film stays as it is, for each channel. A firefly in the void
+// or in the dark, where M_l is 0, stays where it was found.
 //
 // With more samples each adds less, and the image converges to the same as without: what the bias
 // takes is noise, and edges of light that few samples of a pixel meet. Lights that the camera sees

@@ -32,8 +32,8 @@ float lesser(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
 
 }  // namespace
 
-SurfaceFilter::SurfaceFilter(std::span<const PixelSums> sums, size_t width)
-    : width_(width), height_(sums.size() / width), surfaces_(sums.size()) {
+SurfaceFilter::SurfaceFilter(std::span<const PixelSums> sums, size_t width, Edges edges)
+    : width_(width), height_(sums.size() / width), edges_(edges), surfaces_(sums.size()) {
   parallelFor(sums.size(), 1024, [&](size_t i) {
     const auto& sum = sums[i].sum;
     const double hits = sum[PixelSums::kHits];
@@ -72,6 +72,7 @@ void SurfaceFilter::findSlopes() {
 float SurfaceFilter::weight(size_t i, size_t j, Axis axis, float pixelsApart) const {
   const Surface &a = surfaces_[i], &b = surfaces_[j];
   if (a.inverseDepth == 0.0f || b.inverseDepth == 0.0f) return 0.0f;
+  if (edges_ == Edges::Ignore) return 1.0f;
   const float turn = falloff(lengthSquared(a.normal - b.normal), kMaxTurn);
   if (!(turn > 0.0f)) return 0.0f;
   const float change = b.inverseDepth - a.inverseDepth, byA = a.slope[axis] * pixelsApart,

@@ -25,7 +25,8 @@ using FilmValues = std::vector<float>;
 class SurfaceFilter {
  public:
   // The surface that each pixel sees, by the means of its samples.
-  SurfaceFilter(std::span<const PixelSums> sums, size_t width);
+  enum class Edges { Stop, Ignore };  // of surfaces; the void stops it in any case
+  SurfaceFilter(std::span<const PixelSums> sums, size_t width, Edges edges);
 
   size_t pixels() const { return surfaces_.size(); }
   // Levels until the filter is as wide as the film.
@@ -54,6 +55,7 @@ class SurfaceFilter {
   FilmValues along(const FilmValues& values, Axis axis, size_t level) const;
 
   size_t width_, height_;
+  Edges edges_;
   std::vector<Surface> surfaces_;
 };
 
