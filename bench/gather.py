@@ -61,7 +61,7 @@ class Bench:
         image = self.options.work / "image.exr"
         seconds = run([self.bin / "vpl-render", ROOT / "scenes" / scene / "scene.toml", self.lit(scene, count), "-o",
                        image, "--size", self.options.size, "--spp", self.options.spp, "--compensate", "none",
-                       "--specks", "keep", "--quiet", *extra])
+                       "--fireflies", "keep", "--quiet", *extra])
         return images.read(image), seconds
 
     def measure(self, scene: str, count: int) -> dict:

@@ -61,7 +61,7 @@ def options_of(counts: dict) -> tuple[list, list, list, list]:
 
 SETTINGS = {name: options_of(counts) for name, counts in stages.presets().items() if name != "final"}
 # Integrators that are not a method's name alone.
-VARIANTS = {"unlit-path": ["path", "--light-sampling", "off"], "spread-path": ["path", "--specks", "spread"]}
+VARIANTS = {"unlit-path": ["path", "--light-sampling", "off"], "spread-path": ["path", "--fireflies", "redistribute"]}
 # How far the mean is off, and four measures of error.
 COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
 CYCLES = settings.ROOT / "eval/cycles/render_cycles.py"
@@ -160,7 +160,7 @@ class Rooms:
             options = ["--integrator", "path", *sampled, *self.bounces()]
             return self.render(scene, options, by=self.references)["image.exr"]
         lit, _ = self.lit(scene, (["-n", "240k", "--seed", seed], ["-n", "12k"], ["--seed", seed], []), self.references)
-        return self.render(scene, [*sampled, "--specks", "keep"], lit, self.references)["image.exr"]
+        return self.render(scene, [*sampled, "--fireflies", "keep"], lit, self.references)["image.exr"]
 
     def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray | None:
         """COLUMNS; none where there is no light."""
@@ -208,7 +208,7 @@ def main() -> int:
     parser.add_argument("--path-length", type=int, default=0, metavar="L",
                         help="segments from the camera to a light, those at mirrors and glass not counted")
     parser.add_argument("--reference-bin", type=Path, metavar="FOLDER",
-                        help="tools that render the references, with --specks keep; --bin unless given")
+                        help="tools that render the references, with --fireflies keep; --bin unless given")
     parser.add_argument("--references-only", action="store_true", help="render the references, and stop")
     parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
     arguments = parser.parse_args()

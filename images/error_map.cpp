@@ -84,7 +84,7 @@ Rgb8 errorColour(double value) {
 }
 
 ErrorMap relMseMap(const Layer& a, const Layer& reference, double epsilon) {
-  // Noise spans decades: on a straight scale, one bright speck would leave all else black.
+  // Noise spans decades: on a straight scale, one bright firefly would leave all else black.
   return {channelMeans(a, reference,
                        [&](double x, double r) { return (x - r) * (x - r) / (r * r + epsilon); }),
           "RELMSE", true, 1.0};

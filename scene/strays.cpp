@@ -9,8 +9,8 @@ namespace bnvpl {
 namespace {
 
 constexpr double kTimesAsFar = 1000.0;
-constexpr double kMostExtent = 1.0 / 16.0;  // of the distance
-constexpr double kMostSquares = 0.05;       // sum of the squares of extent by distance
+constexpr double kMaxExtent = 1.0 / 16.0;  // of the distance
+constexpr double kMaxSquares = 0.05;       // sum of the squares of extent by distance
 constexpr size_t kSamples = size_t{1} << 16;
 
 double extentOf(const Corners& c) {
@@ -54,7 +54,7 @@ Strays::Strays(size_t count, const std::function<Corners(size_t)>& corners) {
     furthest_ = std::max(furthest_, d);
     squares += size * size;
   }
-  if (squares > kMostSquares) *this = {};
+  if (squares > kMaxSquares) *this = {};
 }
 
 double Strays::distance(const Corners& triangle) const {
@@ -68,7 +68,7 @@ double Strays::distance(const Corners& triangle) const {
 
 bool Strays::has(const Corners& triangle) const {
   const double d = distance(triangle);
-  return d > beyond_ && extentOf(triangle) <= kMostExtent * d;
+  return d > beyond_ && extentOf(triangle) <= kMaxExtent * d;
 }
 
 Strays Strays::from(const FilePoint& origin) const {

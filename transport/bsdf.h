@@ -2,7 +2,7 @@
 // for every stage:
 //   rough     reflection by Lambert and by lobes with alpha >= 0.3 (Phong lobes with an exponent up
 //   to
-//             kSharpExponent). VPLs stand for the light that leaves through these; photons deposit
+//             kNearSpecularExponent). VPLs stand for the light that leaves through these; photons deposit
 //             here; VPLs light these.
 //   specular  sharper lobes, mirrors, and all light that crosses a surface. Paths pass through: a
 //   VPL
@@ -52,8 +52,8 @@ class Bsdf {
     return ask([&](const auto& b) { return b.roughLeaving(point_); });
   }
   // What of it looks the same all the same; black where that is nothing.
-  MattPart mattPart() const {
-    return ask([&](const auto& b) { return b.mattPart(point_); });
+  DiffusePart diffusePart() const {
+    return ask([&](const auto& b) { return b.diffusePart(point_); });
   }
   // Probability with which a path should take the specular group; 0 or 1 where there is but one.
   float specularProbability() const {

@@ -49,7 +49,7 @@ struct ByBsdfAndPart {
   Vec3 matt;
   const SurfacePoint& point() const { return bsdf.point(); }
   LightWithPart operator()(Vec3 wi) const {
-    return {bsdf.eval(group, wi), matt * mattCosine(bsdf.point(), wi)};
+    return {bsdf.eval(group, wi), matt * diffuseCosine(bsdf.point(), wi)};
   }
 };
 

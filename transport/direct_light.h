@@ -86,7 +86,7 @@ LightWithPart directLight(const RayScene& rays, const LightSet& lights, const Bs
                           LobeGroup group, Vec3 matt, const LearnedLight& learned,
                           const std::function<float(Vec3 wi)>& rayPdf, Rng& rng);
 // What Lambert's law reflects of light from wi, over its value.
-inline float mattCosine(const SurfacePoint& at, Vec3 wi) {
+inline float diffuseCosine(const SurfacePoint& at, Vec3 wi) {
   return dot(at.ng, wi) > 0.0f ? std::max(0.0f, dot(at.ns, wi)) : 0.0f;
 }
 

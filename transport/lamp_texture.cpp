@@ -91,7 +91,7 @@ LampTexture::LampTexture(const Scene& scene, uint32_t material, std::span<const 
     all.length += cells.length;
   }
   double factor = 1.0;
-  while (all.area / (factor * factor) + all.length / factor > kMostCells && factor < 0x1p16)
+  while (all.area / (factor * factor) + all.length / factor > kMaxCells && factor < 0x1p16)
     factor *= 1.25;
   if (factor == 1.0) return;
   coarsen(factor);
@@ -188,9 +188,9 @@ LampTexture::Cells LampTexture::cellsOf(uint32_t triangle) const {
 
 uint32_t LampTexture::side(uint32_t triangle) const {
   if (material_.emissionTexture == kNone) return 1;
-  constexpr double kMost = 1024;
+  constexpr double kMax = 1024;
   const Cells cells = cellsOf(triangle);
-  return static_cast<uint32_t>(std::clamp(std::ceil(std::sqrt(cells.area)), 1.0, kMost));
+  return static_cast<uint32_t>(std::clamp(std::ceil(std::sqrt(cells.area)), 1.0, kMax));
 }
 
 template <typename Fn>

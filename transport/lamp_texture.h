@@ -1,7 +1,7 @@
 // Integrals of what a lamp with an emission texture or an alpha mask sends out, over parts of its
 // triangles. The parts are cut along the lines between which a lookup is bilinear, and a quadrature
 // that is exact for bilinear functions sums up the pieces: no texel is missed, however small it is.
-// Where a lamp shows more texels than kMostCells, the integrand is the texture box-filtered to that
+// Where a lamp shows more texels than kMaxCells, the integrand is the texture box-filtered to that
 // many: its mean stays the same, and what was not black stays so.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace bnvpl {
 
 class LampTexture {
  public:
-  static constexpr double kMostCells = 0x1p19;
+  static constexpr double kMaxCells = 0x1p19;
 
   // Of a material of the scene, and the triangles that show it. Borrows the scene.
   LampTexture(const Scene& scene, uint32_t material, std::span<const uint32_t> triangles);

@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kLeast = 0.1;  // of an even share
+constexpr double kMin = 0.1;  // of an even share
 
 }  // namespace
 
@@ -131,7 +131,7 @@ float SeenStrata::probability(uint32_t stratum) const {
 StrataValues distributionOf(std::span<const float> values) {
   double total = 0.0, kept = 0.0, running = 0.0;
   for (const float v : values) total += double{v};
-  const double least = total * kLeast / static_cast<double>(values.size());
+  const double least = total * kMin / static_cast<double>(values.size());
   for (const float v : values) kept += double{v} > least ? double{v} : 0.0;
   StrataValues out;
   for (uint32_t s = 0; s < values.size(); ++s) {

@@ -23,9 +23,9 @@ struct LightPlace {
 
 class LightStrata {
  public:
-  static constexpr size_t kMost = 1024;
+  static constexpr size_t kMax = 1024;
   // Lights without power have no stratum.
-  explicit LightStrata(const LightSet& lights, size_t most = kMost);
+  explicit LightStrata(const LightSet& lights, size_t most = kMax);
 
   size_t size() const { return strata_.size(); }
   // Of all power.

@@ -55,7 +55,7 @@ Vec3 relieved(const Scene& scene, const Relief& relief, const SurfacePoint& hit,
                     side;
   if (!isFinite(bent)) return ns;
   const float above = dot(bent, hit.ng);
-  return above >= kLeastRelief ? bent : normalize(bent + hit.ng * (kLeastRelief - above));
+  return above >= kMinRelief ? bent : normalize(bent + hit.ng * (kMinRelief - above));
 }
 
 }  // namespace

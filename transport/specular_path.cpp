@@ -25,7 +25,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Ve
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
-                                Rng& rng, const LightsBehind& behind, float roughWorth) {
+                                Rng& rng, const LightsBehind& behind, float roughImportance) {
   SpecularPath end;
   LearnedStrata strata;  // of the last specular vertex
   end.hit = first;
@@ -48,7 +48,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
       return end;
     }
     const Bsdf bsdf(rays.scene(), end.hit);
-    const LobeChoice lobes = chooseLobes(bsdf, rng, end.links == 0 ? roughWorth : 1.0f);
+    const LobeChoice lobes = chooseLobes(bsdf, rng, end.links == 0 ? roughImportance : 1.0f);
     end.throughput *= 1.0f / lobes.probability;
     if (!lobes.specular()) {
       end.rough = bsdf.hasRough();

@@ -30,9 +30,9 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Ve
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
                                 const LightsBehind& behind = {});
 // The same where it is known what the ray hits; first.triangle is kNone where that is nothing.
-// `roughWorth`: there, as of chooseLobes.
+// `roughImportance`: there, as of chooseLobes.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
-                                Rng& rng, const LightsBehind& behind = {}, float roughWorth = 1.0f);
+                                Rng& rng, const LightsBehind& behind = {}, float roughImportance = 1.0f);
 
 }  // namespace bnvpl

@@ -13,7 +13,7 @@ namespace {
 
 // Points that learn together, at least; more where there would be too many groups for a
 // preparation.
-constexpr size_t kPointsOfGroup = 8, kMostGroups = 512;
+constexpr size_t kPointsOfGroup = 8, kMaxGroups = 512;
 // A light has fewer strata than for tiles of the film: there are more of these rays, but each place
 // has few.
 constexpr size_t kStrata = 256;
@@ -27,7 +27,7 @@ struct Group {
 
 std::vector<Group> groupsOf(std::span<const uint32_t> order, std::span<const Vec3> normals) {
   const size_t most =
-      std::max(kPointsOfGroup, (order.size() + kMostGroups - 1) / std::max<size_t>(1, kMostGroups));
+      std::max(kPointsOfGroup, (order.size() + kMaxGroups - 1) / std::max<size_t>(1, kMaxGroups));
   std::vector<Group> groups;
   for (size_t k = 0; k < order.size(); ++k) {
     const uint32_t facing = facingOf(normals[order[k]]);

@@ -13,10 +13,10 @@ struct LobeChoice {
   float probability;
   bool specular() const { return group == LobeGroup::Specular; }
 };
-// `roughWorth`: of the rough lobes' light, the part that is asked for, 0..1.
-inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughWorth = 1.0f) {
+// `roughImportance`: of the rough lobes' light, the part that is asked for, 0..1.
+inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance = 1.0f) {
   float specular = bsdf.specularProbability();
-  if (roughWorth < 1.0f && specular > 0.0f) specular /= specular + (1.0f - specular) * roughWorth;
+  if (roughImportance < 1.0f && specular > 0.0f) specular /= specular + (1.0f - specular) * roughImportance;
   return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }

@@ -35,7 +35,7 @@ ESTIMATE = {
 }
 REJECTION_CANDIDATES = 10  # photons' VPLs for each that is to be kept
 RENDER = {
-    "literal": ("--compensate", "none", "--specks", "keep"),
+    "literal": ("--compensate", "none", "--fireflies", "keep"),
 }
 
 

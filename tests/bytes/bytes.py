@@ -62,11 +62,15 @@ class Tools:
         return done.returncode, done.stderr
 
     def _renames(self):
-        """How version 0.1 spells what today's options say."""
+        """Pairs of what today's options say and how an older build spells it."""
         text = subprocess.run([self.folder / 'vpl-render', '--help'], capture_output=True, text=True).stdout
-        if '--compensate' in text:
-            return []
-        return [(('--compensate', 'none'), ('--near-field', 'off')), (('--method', 'even'), ('--method', 'even'))]
+        older = []
+        if '--fireflies' not in text:
+            older += [(('--fireflies', 'redistribute'), ('--specks', 'spread')), (('--fireflies', 'keep'), ('--specks', 'keep'))]
+            older += [((new,), (old,)) for new, old in (('--reuse', '--sharers'), ('--allocate', '--balance'))]
+        if '--compensate' not in text:
+            older.append((('--compensate', 'none'), ('--near-field', 'off')))
+        return older
 
 
 def hash_vpl(file):

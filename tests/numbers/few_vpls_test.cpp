@@ -108,7 +108,8 @@ TEST(FewVpls, RadiiBeyondFloatsAreRefused) {
   EXPECT_THROW(keepVpls(tableOf(apart, normal), {{"count", "2"}}), InputError);
   const std::vector<Vec3> near{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
   const auto keepWithin = [&](const char* area) {
-    return keepVpls(tableOf(near, normal), {{"count", "2"}, {"density", "uniform"}, {"area", area}});
+    return keepVpls(tableOf(near, normal),
+                    {{"count", "2"}, {"density", "uniform"}, {"area", area}});
   };
   EXPECT_THROW(keepWithin("1e300"), UsageError);
   EXPECT_THROW(keepWithin("1e-80"), InputError);

@@ -27,7 +27,8 @@ TEST(Lobes, OfAnyExponent) {
     const Scene scene = sceneOf(m);
     const SurfacePoint at = pointSeenFrom({0.3f, 0.1f, 0.9f});
     const Bsdf bsdf(scene, at);
-    const LobeGroup group = exponent > kSharpExponent ? LobeGroup::Specular : LobeGroup::Rough;
+    const LobeGroup group =
+        exponent > kNearSpecularExponent ? LobeGroup::Specular : LobeGroup::Rough;
     for (uint64_t i = 0; i < 20000; ++i) {
       Rng rng(3, i);
       BsdfSample s;

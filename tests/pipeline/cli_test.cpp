@@ -114,6 +114,9 @@ TEST_F(Options, MistakesAreToldInSentences) {
   fail("vpl-place", scene_ + " one two" + out, kExitUsage, {"'one', 'two' have no meaning here"});
   fail("vpl-place", scene_ + out + " --thread 3", kExitUsage,
        {"'--thread', '3' have no meaning here; check how the option is written"});
+  // Options of former versions name what they are today.
+  fail("vpl-render", scene_ + " " + path("lit.vpl") + " --specks keep" + out, kExitUsage,
+       {"--specks is --fireflies redistribute or keep today"});
   fail("vpl-place", scene_ + " -o", kExitUsage, {"--output needs a value: FILE"});
   fail("vpl-place", scene_ + out + " --camera 1 --view " + scene_, kExitUsage,
        {"--camera and --view cannot be given together"});

@@ -76,11 +76,11 @@ TEST_F(Effect, DirectLightAloneAsksNoVpls) {
 }
 
 // The same light in other places; and so in the merge of shards.
-TEST_F(Effect, SpecksAreSpreadOrKept) {
+TEST_F(Effect, FirefliesAreRedistributedOrKept) {
   const std::string paths = scene_ + " --spp 2 --size 32x24 --integrator path --layers all -o ";
   succeed("vpl-render", paths + path("kept.exr"));
-  succeed("vpl-render", paths + path("same.exr") + " --specks keep");
-  succeed("vpl-render", paths + path("spread.exr") + " --specks spread");
+  succeed("vpl-render", paths + path("same.exr") + " --fireflies keep");
+  succeed("vpl-render", paths + path("spread.exr") + " --fireflies redistribute");
   const Image kept = readExr(at("kept.exr")), spread = readExr(at("spread.exr"));
   EXPECT_EQ(*kept.find("R"), *readExr(at("same.exr")).find("R"));
   EXPECT_NE(*kept.find("R"), *spread.find("R"));
@@ -96,7 +96,7 @@ TEST_F(Effect, SpecksAreSpreadOrKept) {
   std::string shards;
   for (const char* shard : {"1", "2"}) {
     const std::string file = path(std::string("s") + shard + ".shard");
-    succeed("vpl-render", paths + file + " --specks spread --shard " + shard + "/2");
+    succeed("vpl-render", paths + file + " --fireflies spread --shard " + shard + "/2");
     shards += " " + file;
   }
   succeed("vpl-merge", shards + " -o " + path("merged.exr"));
@@ -105,17 +105,21 @@ TEST_F(Effect, SpecksAreSpreadOrKept) {
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("lit.vpl") + " --spp 2 --size 32x24 -o ";
   succeed("vpl-render", vpls + path("v.exr"));
-  succeed("vpl-render", vpls + path("v-spread.exr") + " --specks spread");
-  succeed("vpl-render", vpls + path("v-kept.exr") + " --specks keep");
-  EXPECT_EQ(readAll(at("v.exr")), readAll(at("v-spread.exr")));
+  succeed("vpl-render", vpls + path("v-redistributed.exr") + " --fireflies redistribute");
+  succeed("vpl-render", vpls + path("v-kept.exr") + " --fireflies keep");
+  EXPECT_EQ(readAll(at("v.exr")), readAll(at("v-redistributed.exr")));
   const auto recorded = [&](const char* file) {
     const Image image = readExr(at(file));
-    return Json::parse(image.attributes.at("bnvpl.provenance")).back().at("options").at("specks");
+    return Json::parse(image.attributes.at("bnvpl.provenance"))
+        .back()
+        .at("options")
+        .at("fireflies");
   };
-  EXPECT_EQ(recorded("v.exr"), "spread");
+  EXPECT_EQ(recorded("v.exr"), "redistribute");
   EXPECT_EQ(recorded("v-kept.exr"), "keep");
-  // Direct light alone asks no VPLs for compensation, nor a balance where the samples are told.
-  for (const char* option : {"--compensate none", "--balance off --direct-samples 3"}) {
+  // Direct light alone asks no VPLs for compensation, nor sample allocation where the samples are
+  // told.
+  for (const char* option : {"--compensate none", "--allocate off --direct-samples 3"}) {
     fail("vpl-render", scene_ + " --only direct -o " + path("i.exr") + " " + option, kExitUsage,
          {"has no effect", "--direct-samples"});
   }

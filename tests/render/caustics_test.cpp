@@ -1,5 +1,5 @@
 // Light over mirrors and sharp lobes, by photons and near-field rays together.
-#include "tools/render/tile/caustics.h"
+#include "tools/render/tile/caustics/caustics.h"
 
 #include <gtest/gtest.h>
 
@@ -41,8 +41,8 @@ Render by(const World& world, const VplTable& lit, const char* photons, const ch
                        {"gather", "all"},
                        {"spp", spp},
                        {"caustic-photons", photons},
-                       {"specks", "keep"},
-                       {"balance", "off"},  // few rays are noisier than a z-test bears
+                       {"fireflies", "keep"},
+                       {"allocate", "off"},  // few rays are noisier than a z-test bears
                        {"seed", typed(seed)}})
         .image;
   };
@@ -86,7 +86,7 @@ TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
       return Gathered{};
     };
     const NearFieldRays rays = nearField(world, lit, compensate, count);
-    RaysBrought brought;
+    RayContributions brought;
     rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1000, 0, 7, brought);
     EXPECT_GT(mean(brought.indirect), 0.0f);
     return points;
@@ -118,17 +118,17 @@ TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
   unsigned bring = 0;
   constexpr unsigned kRays = 2000;
   for (unsigned k = 0; k < kRays; ++k) {
-    RaysBrought brought;
+    RayContributions brought;
     rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1, k, 7, brought);
     bring += mean(brought.indirect) > 0.0f;
   }
   EXPECT_GT(bring, kRays / 20);  // 31 where lobes are taken by what they reflect alone
 }
 
-TEST(Caustics, PhotonsTakeTheSpecksOfSmallLamps) {
+TEST(Caustics, PhotonsTakeTheFirefliesOfSmallLamps) {
   const World world = shiny(bulbs(0), false);
   const VplTable lit = fewVpls(world);
-  // Specks are few: one pair of images may have none.
+  // Fireflies are few: one pair of images may have none.
   EXPECT_LT(noiseOf(by(world, lit, "16", "4"), 4), 0.6 * noiseOf(by(world, lit, "0", "4"), 4));
 }
 
@@ -141,17 +141,17 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
   scene.camera.verticalFovRad = 1.2f;  // more than the box
   const World world = shiny(std::move(scene), false);
   const VplTable lit = fewVpls(world);
-  const auto image = [&](const char* photons, const char* specks) {
+  const auto image = [&](const char* photons, const char* fireflies) {
     return renderVpls(world, lit,
                       {{"only", "indirect"},
                        {"caustic-photons", photons},
-                       {"specks", specks},
+                       {"fireflies", fireflies},
                        {"layers", "Z"}})
         .image;
   };
   const Image many = image("512", "keep");
   const std::vector<float>&right = *many.find("G"), &depth = *many.find("Z"),
-        kept = *image("2", "keep").find("G"), moved = *image("2", "spread").find("G");
+        kept = *image("2", "keep").find("G"), moved = *image("2", "redistribute").find("G");
   const auto sum = [](const std::vector<float>& of) {
     return std::accumulate(of.begin(), of.end(), 0.0);
   };

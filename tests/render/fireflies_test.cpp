@@ -1,4 +1,4 @@
-// Specks are spread: the energy stays, what many samples agree on stays where it is, and more
+// Fireflies are spread: the energy stays, what many samples agree on stays where it is, and more
 // samples need less of it.
 #include "tools/render/film/fireflies.h"
 
@@ -12,7 +12,7 @@
 #include "core/random.h"
 #include "tests/support/pipeline.h"
 #include "tools/render/film/passes.h"
-#include "tools/render/film/samples.h"
+#include "tools/render/film/tiles.h"
 
 namespace bnvpl {
 namespace {
@@ -26,8 +26,10 @@ struct Shown {
   Image operator()(const Brought& brought, uint32_t spp, bool spread) const {
     Scene scene;
     scene.film = {width, height};
-    const FilmOptions options{
-        .spp = spp, .only = only, .layers = parseLayers("direct,indirect"), .spreadSpecks = spread};
+    const FilmOptions options{.spp = spp,
+                              .only = only,
+                              .layers = parseLayers("direct,indirect"),
+                              .redistributeFireflies = spread};
     const Integrator integrator{[&](const TileSamples& tile) {
       for (size_t k = 0; k < tile.samples.size(); ++k) {
         const auto p = static_cast<uint32_t>(k % tile.pixels);
@@ -54,7 +56,7 @@ bool there(uint32_t x, uint32_t y, uint32_t slot) { return x == kX && y == kY &&
 size_t index(const Shown& film) { return size_t{kY} * film.width + kX; }
 
 // A grey room, where one sample, of the first pass, finds light of another colour.
-Brought speck(Vec3 light) {
+Brought firefly(Vec3 light) {
   return [light, found = std::make_shared<std::atomic<bool>>()](
              uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     out.direct = Vec3(0.5f);
@@ -66,8 +68,8 @@ TEST(Fireflies, GoWhereNobodySeesThemAndKeepTheirEnergy) {
   const Vec3 light(300, 100, 50);
   for (const uint64_t passes : {0u, 6u}) {
     const Shown film{.passes = passes};
-    const Image kept = film(speck(light), 16, false);
-    const Image spread = film(speck(light), 16, true);
+    const Image kept = film(firefly(light), 16, false);
+    const Image spread = film(firefly(light), 16, true);
     for (const char* channel : {"R", "G", "B", "indirect.R", "indirect.G", "indirect.B"}) {
       const double before = sumOf(kept, channel);
       EXPECT_GT((*kept.find(channel))[index(film)], 2.0f) << channel;
@@ -86,7 +88,7 @@ TEST(Fireflies, GoWhereNobodySeesThemAndKeepTheirEnergy) {
 TEST(Fireflies, AreSpreadAsWidelyAsTheyAreBright) {
   const Shown film;
   for (const float light : {20.0f, 200.0f}) {
-    const Image image = film(speck(Vec3(light)), 16, true);
+    const Image image = film(firefly(Vec3(light)), 16, true);
     float most = 0.0f;
     for (size_t i = 0; i < image.pixelCount(); ++i)
       if (i != index(film)) most = std::max(most, (*image.find("G"))[i] - 1.0f);
@@ -120,7 +122,7 @@ TEST(Fireflies, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
       out.direct = out.indirect = Vec3(0.5f);
       if (!there(x, y, slot)) return;
       out.direct += Vec3(800.0f);
-      if (seen) out.seen = Vec3(800.0f);
+      if (seen) out.emission = Vec3(800.0f);
     };
     const Image image = film(brought, 16, true);
     if (seen) {
@@ -207,8 +209,8 @@ TEST(Fireflies, IntegratorsKnowWhatTheCameraSeesStraight) {
     for (size_t t = 0; t < tiles.count(); ++t) {
       sampleTile(world.scene, integrator, 1, tiles.at(t), {0, 4, 4, 4},
                  [&](uint32_t, const RadianceSample& sample) {
-                   ASSERT_LT(mean(sample.direct - sample.seen), 0.5f * lamp);
-                   most = std::max(most, mean(sample.seen));
+                   ASSERT_LT(mean(sample.direct - sample.emission), 0.5f * lamp);
+                   most = std::max(most, mean(sample.emission));
                  });
     }
     EXPECT_NEAR(most / lamp, 1.0f, 1e-4f) << way.front().second;
@@ -242,7 +244,7 @@ TEST(Fireflies, MoreSamplesLeaveThemWhereTheyAre) {
   EXPECT_EQ(at(256, true), at(256, false));
 }
 
-// Two samples of a pixel, of one pass or of two, are two specks.
+// Two samples of a pixel, of one pass or of two, are two fireflies.
 TEST(Fireflies, TwoOfAPixelAreSpread) {
   const Brought twice = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     const bool found = x == kX && y == kY && (slot == 3 || slot == 7);
@@ -266,7 +268,7 @@ TEST(Fireflies, StayInTheDarkAlone) {
   const Image black = film(dark, 16, true);
   EXPECT_FLOAT_EQ((*black.find("G"))[index(film)], 1.0f);
   EXPECT_DOUBLE_EQ(sumOf(black, "G"), 1.0);
-  const Image bright = film(speck(Vec3(1e6f)), 16, true);
+  const Image bright = film(firefly(Vec3(1e6f)), 16, true);
   EXPECT_NEAR(sumOf(bright, "G"), 64 * 48 + 1e6 / 16.0, 1.0);
   const std::vector<float>& light = *bright.find("G");
   EXPECT_NEAR(light[index(film)] / light[index(film) + 1], 1.0, 0.05);

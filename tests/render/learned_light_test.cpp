@@ -33,7 +33,7 @@ TEST(LearnedLight, FindsTheFewLightsThatAreSeen) {
 }
 
 // A lamp that the camera sees: its border is as sharp as many rays make it.
-TEST(LearnedLight, BordersOfSeenLightHaveLessNoise) {
+TEST(LearnedLight, BordersOfVisibleEmissionHaveLessNoise) {
   Scene scene = room(32, 32);
   for (Material& m : scene.materials) {
     m.phong().diffuse = {};  // what is left is what the camera sees

@@ -227,7 +227,7 @@ TEST(Passes, EndByTimeErrorOrNumber) {
     renderPasses(film.scene, noise, {}, budget, m.stats, m.passes);
     return m.passes;
   };
-  EXPECT_EQ(ended({.timeS = 1e-6}).passes, kFewestPasses);
+  EXPECT_EQ(ended({.timeS = 1e-6}).passes, kMinPasses);
   EXPECT_EQ(ended({.timeS = 1e-6}).endedBy, "time");
   EXPECT_EQ(ended({.passes = 5}).passes, 5u);
   EXPECT_EQ(ended({.passes = 5}).endedBy, "passes");

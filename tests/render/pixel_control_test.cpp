@@ -4,7 +4,7 @@
 #include "tests/render/lit_rooms.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
-#include "tools/render/irradiance_field.h"
+#include "tools/render/tile/control/irradiance_field.h"
 
 namespace bnvpl::test {
 namespace {
@@ -24,7 +24,7 @@ TEST(IrradianceField, KnowsTheLightOfAFurnace) {
 }
 
 // Edges of boxes and walls in every pixel.
-TEST(PixelControl, TakesNoiseAndNoLight) {
+TEST(PixelControlVariate, TakesNoiseAndNoLight) {
   const World world(room(16, 16));
   const VplTable lit = litVpls(world, {{"count", "400"}}, {}, {{"count", "8k"}});
   const auto by = [&](const char* control, const char* spp) -> Render {
@@ -34,7 +34,7 @@ TEST(PixelControl, TakesNoiseAndNoLight) {
                          {"gather", "all"},
                          {"spp", spp},
                          {"control", control},
-                         {"specks", "keep"},
+                         {"fireflies", "keep"},
                          {"seed", typed(seed)}})
           .image;
     };
@@ -45,7 +45,7 @@ TEST(PixelControl, TakesNoiseAndNoLight) {
 
 // Where a VPL's surface lies half in the dark, what it says is not taken from samples that saw
 // less.
-TEST(PixelControl, TakesNoMoreThanThereIs) {
+TEST(PixelControlVariate, TakesNoMoreThanThereIs) {
   World world("veach-door/scene.toml");
   world.scene.film = {80, 45};
   const VplTable lit = litVpls(world, {{"count", "1000"}});

@@ -72,7 +72,7 @@ TEST(SurfaceLights, NearFieldRaysFindTheFewLightsThatAreSeen) {
                         {{"only", "indirect"},
                          {"spp", "4"},
                          {"gather", "all"},
-                         {"specks", "keep"},
+                         {"fireflies", "keep"},
                          {"seed", typed(seed)}})
           .image;
     };
@@ -104,7 +104,7 @@ TEST(SurfaceLights, WhatIsSeenOverSharpLobesLooksForItsOwnLights) {
                         with({{"only", "direct"},
                               {"spp", "4"},
                               {"direct-samples", "4"},
-                              {"specks", "keep"},
+                              {"fireflies", "keep"},
                               {"seed", typed(seed)}},
                              options))
           .image;

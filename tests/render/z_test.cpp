@@ -296,8 +296,8 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;
   }
   // And where no other is shown.
-  const Given few{{"spp", "4"}, {"only", "direct"}, {"specks", "keep"}};
-  for (const Given& more : {Given{}, Given{{"balance", "off"}}, Given{{"direct-samples", "3"}}}) {
+  const Given few{{"spp", "4"}, {"only", "direct"}, {"fireflies", "keep"}};
+  for (const Given& more : {Given{}, Given{{"allocate", "off"}}, Given{{"direct-samples", "3"}}}) {
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), [&](uint64_t seed) {
       return renderVpls(world, {}, with(with(few, more), {{"seed", typed(seed)}})).image;
     })) << more.size();
@@ -324,8 +324,8 @@ Scene coatedCornellBox() {
   return scene;
 }
 
-// Few VPLs leave gaps and short rays. What pixels found decides by the price how many rays follow,
-// and which clusters are traced; what a ray has found lights others, below a coat, too.
+// Few VPLs leave gaps and short rays. What pixels found decides by the marginalCost how many rays
+// follow, and which clusters are traced; what a ray has found lights others, below a coat, too.
 TEST(SameExpectation, WorkByAPriceAndSharedHits) {
   const std::array scenes{sceneOf("cornell/scene.toml", 16, 12),
                           sceneOf("u-shape/scene.toml", 16, 12), coatedCornellBox()};
@@ -333,21 +333,20 @@ TEST(SameExpectation, WorkByAPriceAndSharedHits) {
     const World world(scene);
     const VplTable lit =
         litVpls(world, {{"count", "60"}}, {{"photons", "50k"}}, {{"count", "2000"}});
-    const auto with4spp = [&](const char* balance, const char* sharers) {
+    const auto with4spp = [&](const char* balance, const char* reuse) {
       return vpls(world, lit,
                   {{"spp", "4"},
                    {"gather", "tilecuts"},
                    {"compensate", "near-field"},
                    {"caustic-photons", "0"},
-                   {"balance", balance},
-                   {"sharers", sharers}});
+                   {"allocate", balance},
+                   {"reuse", reuse}});
     };
     for (const char* balance : {"off", "on"}) {
-      for (const char* sharers : {"1", "8"}) {
-        if (*sharers == '1' && std::string_view(balance) == "off") continue;
-        EXPECT_TRUE(
-            sameExpectation(with4spp("off", "1"), with4spp(balance, sharers), {.seeds = 48}))
-            << &scene - scenes.data() << ", balance " << balance << ", sharers " << sharers;
+      for (const char* reuse : {"1", "8"}) {
+        if (*reuse == '1' && std::string_view(balance) == "off") continue;
+        EXPECT_TRUE(sameExpectation(with4spp("off", "1"), with4spp(balance, reuse), {.seeds = 48}))
+            << &scene - scenes.data() << ", balance " << balance << ", reuse " << reuse;
       }
     }
   }

@@ -232,10 +232,10 @@ TEST(Bsdf, MirrorReturnsTheOneDirection) {
 }
 
 TEST(Bsdf, ExponentPartsRoughFromChain) {
-  for (const float exponent : {kSharpExponent, kSharpExponent + 1.0f}) {
+  for (const float exponent : {kNearSpecularExponent, kNearSpecularExponent + 1.0f}) {
     const Scene scene = sceneOf(phong(Vec3(0.2f), Vec3(0.5f), exponent));
     const SurfacePoint p = pointSeenFrom({0, 0, 1});
-    const bool sharp = exponent > kSharpExponent;
+    const bool sharp = exponent > kNearSpecularExponent;
     EXPECT_EQ(hasSpecularLobes(scene), sharp);
     EXPECT_FLOAT_EQ(Bsdf(scene, p).roughAlbedo().x, sharp ? 0.2f : 0.7f);
     EXPECT_EQ(Bsdf(scene, p).specularProbability() > 0.0f, sharp);

@@ -87,8 +87,8 @@ void expectConsistent(const LightStrata& strata, const LightSet& lights) {
 TEST(LightStrata, EachPointLiesInTheStratumThatDrawsIt) {
   const Lit lit(manyLights());
   const LightStrata strata(lit.lights);
-  EXPECT_GT(strata.size(), LightStrata::kMost * 3 / 4);
-  EXPECT_LE(strata.size(), LightStrata::kMost);
+  EXPECT_GT(strata.size(), LightStrata::kMax * 3 / 4);
+  EXPECT_LE(strata.size(), LightStrata::kMax);
   expectConsistent(strata, lit.lights);
 }
 
@@ -104,8 +104,8 @@ TEST(LightStrata, ManyLightsShareThem) {
   scene.lights.back().emission = Vec3(1.0f);
   const Lit lit(std::move(scene));
   const LightStrata strata(lit.lights);
-  EXPECT_LE(strata.size(), LightStrata::kMost);
-  EXPECT_GT(strata.size(), LightStrata::kMost / 2);
+  EXPECT_LE(strata.size(), LightStrata::kMax);
+  EXPECT_GT(strata.size(), LightStrata::kMax / 2);
   expectConsistent(strata, lit.lights);
   EXPECT_EQ(strata.stratumOf({0, {0.5f, 0.5f}}), kNone);  // without power
 }

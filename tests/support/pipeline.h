@@ -67,13 +67,13 @@ inline const Given kFewCandidates{{"count", "20k"}};
 inline const Given kFewVpls{{"count", "1000"}};
 inline const Given kFewPhotons{{"photons", "300k"}};
 inline const Given kPlainRender{{"gather", "all"}, {"compensate", "none"}, {"clamp", "1"},
-                                {"spp", "4"},      {"balance", "off"},     {"specks", "keep"}};
+                                {"spp", "4"},      {"allocate", "off"},    {"fireflies", "keep"}};
 // The same without what only indirect light takes.
 inline const Given kPlainDirect{{"compensate", "none"},
                                 {"spp", "4"},
                                 {"only", "direct"},
                                 {"direct-samples", "1"},
-                                {"specks", "keep"}};
+                                {"fireflies", "keep"}};
 
 // From the scene to VPLs without flux, and with it; the options go behind those above.
 inline VplTable keptVpls(const World& world, const Given& eliminated, const Given& placed = {}) {

@@ -1,6 +1,8 @@
 #include "tools/common/cli_errors.h"
 
+#include <array>
 #include <regex>
+#include <utility>
 #include <vector>
 
 namespace bnvpl {
@@ -14,11 +16,22 @@ std::string commandsOf(const CLI::App& cli) {
   return names;
 }
 
+// Options of former versions.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
+    {{"--specks", "--fireflies redistribute or keep"},
+     {"--sharers", "--reuse"},
+     {"--balance", "--allocate"},
+     {"--near-field", "--compensate near-field or none"}}};
+
 // Words that no option takes.
 std::string describeExtras(const std::vector<std::string>& words) {
   std::string list;
   bool option = false;
   for (const std::string& word : words) {
+    for (const auto& [before, today] : kRenamed) {
+      if (word == before || word.starts_with(std::string(before) + "="))
+        return std::string(before) + " is " + std::string(today) + " today";
+    }
     list += (list.empty() ? "'" : ", '") + word + "'";
     option = option || word.starts_with('-');
   }

@@ -15,8 +15,8 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kLeastCpuS = 0.5;     // that a probe takes, where there is so much to do
-constexpr double kFewestUnits = 32.0;  // that it does: they differ
+constexpr double kMinCpuS = 0.5;     // that a probe takes, where there is so much to do
+constexpr double kMinUnits = 32.0;  // that it does: they differ
 constexpr uint64_t kFirstRows = 1 << 17;
 
 double bytesIn(const char* key) {  // of /proc/self/status: "VmHWM:     12345 kB"
@@ -99,13 +99,13 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part) {
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
     const Probe some = probe(part, shard);
     const double share = 1.0 / static_cast<double>(shard.of);
-    const double cpuS = some.cpuS - setupS, enoughS = std::max(kLeastCpuS, setupS);
-    if (shard.whole() || (some.units >= kFewestUnits && cpuS >= enoughS)) {
+    const double cpuS = some.cpuS - setupS, enoughS = std::max(kMinCpuS, setupS);
+    if (shard.whole() || (some.units >= kMinUnits && cpuS >= enoughS)) {
       const double workS = std::max(0.0, some.cpuS - fewer.cpuS) / (share - fewerShare);
       const double beforeS = std::max(setupS, some.cpuS - workS * share);
       return {bytesIn("VmHWM"), startS + beforeS, workS, share};
     }
-    const double more = std::max(kFewestUnits / std::max(some.units, 0.5),
+    const double more = std::max(kMinUnits / std::max(some.units, 0.5),
                                  enoughS / std::max(cpuS, 0.01 * enoughS));
     if (some.units > 0.0) {
       fewer = some;
@@ -124,7 +124,7 @@ Cost costOfRows(uint64_t rows, const std::function<void(uint64_t)>& part,
     const double before = cpuSecondsSoFar();
     part(some);
     const double cpuS = cpuSecondsSoFar() - before;
-    if (some < rows && cpuS < kLeastCpuS) continue;
+    if (some < rows && cpuS < kMinCpuS) continue;
     const double all = static_cast<double>(rows) / static_cast<double>(some);
     return {memory.before() + all * (memory.peak() - memory.before()), startS,
             cpuS * growth(rows) / growth(some), 1.0 / all};

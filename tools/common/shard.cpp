@@ -15,12 +15,12 @@ constexpr std::array<std::string_view, 11> kOwn{
     "--output", "--shard",   "--checkpoint",  "--checkpoint-every", "--threads", "--quiet",
     "--stats",  "--depfile", "--shard-spare", "--estimate",         "--json"};
 
-// Digits only, from 1 to kMostShards; 0 for anything else.
+// Digits only, from 1 to kMaxShards; 0 for anything else.
 uint64_t numberOf(const std::string& text) {
   const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
   if (text.empty() || text.size() > 7 || !digits) return 0;
   const uint64_t value = std::stoull(text);
-  return value > kMostShards ? 0 : value;
+  return value > kMaxShards ? 0 : value;
 }
 
 Shard parseShard(const std::string& text) {
@@ -32,7 +32,7 @@ Shard parseShard(const std::string& text) {
   const uint64_t all = of.empty() ? 0 : numberOf(of.substr(1));
   if (first == 0 || last < first || all < last) {
     throw UsageError("--shard '" + text + "' is not a part of so many, such as 3/64 or 3-6/64, " +
-                     "of at most " + std::to_string(kMostShards));
+                     "of at most " + std::to_string(kMaxShards));
   }
   return {first - 1, last, all};
 }

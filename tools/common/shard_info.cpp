@@ -36,7 +36,7 @@ ShardInfo parseShardInfo(const fs::path& file, const std::string& text) {
       fieldOf<ShardParts>(json, "parts"),
       fieldOf<uint64_t>(json, "of")};
   const bool history = info.run.history.empty() || isProvenance(info.run.history);
-  if (!history || info.parts.empty() || info.of < 1 || info.of > kMostShards)
+  if (!history || info.parts.empty() || info.of < 1 || info.of > kMaxShards)
     throw InputError(file, "is damaged (its parts or history); delete it and make it again");
   return info;
 }

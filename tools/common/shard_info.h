@@ -12,7 +12,7 @@
 namespace bnvpl {
 
 // Sums of a light tracer's shards have room for three times as many.
-inline constexpr uint64_t kMostShards = 10000;
+inline constexpr uint64_t kMaxShards = 10000;
 
 // Whose work a shard holds: the same for all shards of a whole.
 struct ShardRun {

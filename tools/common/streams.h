@@ -23,7 +23,7 @@ enum class Stream : uint32_t {
   PathLights,     // in vpl-estimate
   Guide = 16,
   Caustics,
-  Balance,
+  Allocation,
   CausticPilot,
   PilotPhotons = 30,  // of vpl-estimate --method both
   PilotPaths

@@ -139,13 +139,13 @@ void addReferenceOptions(CLI::App& sub, CompareCommand& c) {
 }
 
 void addLimitOptions(CLI::App& sub, CompareCommand& c) {
-  constexpr double kMost = 1e300;
-  addReal(sub, realOption("epsilon", "", 0, kMost, "", "of relMSE, times the squared mean of B"),
+  constexpr double kMax = 1e300;
+  addReal(sub, realOption("epsilon", "", 0, kMax, "", "of relMSE, times the squared mean of B"),
           c.limits.epsilon);
-  addReal(sub, realOption("max-relmse", "", 0, kMost, "", "largest relMSE allowed"),
+  addReal(sub, realOption("max-relmse", "", 0, kMax, "", "largest relMSE allowed"),
           c.limits.maxRelMse);
-  addReal(sub, realOption("max-rmse", "", 0, kMost, "", "largest RMSE allowed"), c.limits.maxRmse);
-  addReal(sub, realOption("max-rmse-over-mean", "", 0, kMost, "", "largest RMSE / mean(B) allowed"),
+  addReal(sub, realOption("max-rmse", "", 0, kMax, "", "largest RMSE allowed"), c.limits.maxRmse);
+  addReal(sub, realOption("max-rmse-over-mean", "", 0, kMax, "", "largest RMSE / mean(B) allowed"),
           c.limits.maxRmseOverMean);
 }
 

@@ -12,17 +12,17 @@ namespace bnvpl {
 namespace {
 
 constexpr const char* kSuffix = ".task.json";
-constexpr uintmax_t kMostBytes = uintmax_t{1} << 24;
+constexpr uintmax_t kMaxBytes = uintmax_t{1} << 24;
 constexpr size_t kLongestName = 200;
 constexpr double kLatestS = 1e11;  // the year 5138
-constexpr double kMostS = 1e12, kMostMiB = 1e12, kMostAttempts = 1e6, kMostExit = 255;
+constexpr double kMaxS = 1e12, kMaxMiB = 1e12, kMaxAttempts = 1e6, kMaxExit = 255;
 
 // The fields of one record; what is wrong names the file.
 class Record {
  public:
   explicit Record(const fs::path& file) : file_(file) {
     if (!isRegularFile(file)) fail("is not a regular file");
-    if (fs::file_size(file) > kMostBytes) fail("is too large for a record");
+    if (fs::file_size(file) > kMaxBytes) fail("is too large for a record");
     json_ = Json::parse(readText(file), nullptr, false);
     if (!json_.is_object()) fail("is no record of pipelines/record.py");
   }
@@ -85,13 +85,13 @@ TaskAttempt attemptOf(const Record& record) {
   a.stage = record.name("stage");
   a.host = record.name("host");
   a.job = record.optionalName("job");
-  a.number = static_cast<unsigned>(record.number("attempt", kMostAttempts));
+  a.number = static_cast<unsigned>(record.number("attempt", kMaxAttempts));
   a.resumed = record.flag("resumed");
   a.startS = record.number("start_s", kLatestS);
   a.endS = record.optionalNumber("end_s", kLatestS);
-  a.cpuS = record.optionalNumber("cpu_s", kMostS);
-  a.peakMemoryMiB = record.optionalNumber("peak_memory_MiB", kMostMiB);
-  if (const auto code = record.optionalNumber("exit", kMostExit)) a.exit = static_cast<int>(*code);
+  a.cpuS = record.optionalNumber("cpu_s", kMaxS);
+  a.peakMemoryMiB = record.optionalNumber("peak_memory_MiB", kMaxMiB);
+  if (const auto code = record.optionalNumber("exit", kMaxExit)) a.exit = static_cast<int>(*code);
   if (a.endS && *a.endS < a.startS) record.fail("ends before it starts");
   if (a.endS.has_value() != a.exit.has_value())
     record.fail("has one of 'end_s' and 'exit' without the other");

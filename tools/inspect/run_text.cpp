@@ -8,7 +8,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr size_t kMostNamed = 10;  // unfinished tasks
+constexpr size_t kMaxNamed = 10;  // unfinished tasks
 
 std::string textOf(const Json& json, const char* key) { return json[key].get<std::string>(); }
 size_t count(const Json& json, const char* key) { return json[key].get<size_t>(); }
@@ -67,7 +67,7 @@ void appendHosts(std::string& text, const Json& hosts) {
 
 void appendUnfinished(std::string& text, const Json& tasks) {
   for (size_t i = 0; i < tasks.size(); ++i) {
-    if (i == kMostNamed) {
+    if (i == kMaxNamed) {
       append(text, "not done: %zu more tasks\n", tasks.size() - i);
       return;
     }

@@ -12,7 +12,7 @@ namespace {
 
 // Pixels.
 constexpr double kWidth = 1200, kLeft = 130, kRight = 20, kTop = 44, kBottom = 34;
-constexpr double kMostHeight = 900, kRowMost = 16, kRowLeast = 1, kHostGap = 4, kFont = 11;
+constexpr double kMaxHeight = 900, kRowMost = 16, kRowLeast = 1, kHostGap = 4, kFont = 11;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
 
 // Of stages in their order; a merge follows its stage in a lighter tone.
@@ -200,7 +200,7 @@ std::string timelineSvg(const RunRecords& run) {
   size_t lanes = 0;
   for (const auto& [name, host] : hosts) lanes += host.lanes;
   const double rowHeight =
-      std::clamp(kMostHeight / static_cast<double>(lanes), kRowLeast, kRowMost);
+      std::clamp(kMaxHeight / static_cast<double>(lanes), kRowLeast, kRowMost);
   Picture picture(run, startS, endOfRun(run) - startS);
   for (const auto& [name, host] : hosts) picture.host(name, host, rowHeight);
   return picture.finish();

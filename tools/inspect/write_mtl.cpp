@@ -65,13 +65,13 @@ class NearestMtl {
     phong.diffuseMap = plainImage(scene_, c.texture);
   }
   void metal(const ConductorFresnel& fresnel, float alpha) {
-    constexpr float kSmooth = 0.03f, kMostExponent = 9999.0f;
+    constexpr float kSmooth = 0.03f, kMaxExponent = 9999.0f;
     const Vec3 albedo = min(atNormalIncidence(fresnel), Vec3(1));
     if (alpha < kSmooth) {
       phong.mirror = albedo;
     } else {
       phong.glossy = albedo;
-      phong.exponent = std::min(kMostExponent, std::max(0.0f, 2.0f / (alpha * alpha) - 2.0f));
+      phong.exponent = std::min(kMaxExponent, std::max(0.0f, 2.0f / (alpha * alpha) - 2.0f));
     }
   }
   void glass(float ior, Vec3 colour) {

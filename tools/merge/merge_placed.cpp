@@ -19,7 +19,7 @@ namespace {
 ViewTurns turnsOf(const Json& record) {
   std::vector<uint64_t> shares;
   if (!record.contains("views")) return ViewTurns();
-  uint64_t left = kMostViewTurns;
+  uint64_t left = kMaxViewTurns;
   for (const Json& view : fieldOf<std::vector<Json>>(record, "views")) {
     const auto share = fieldOf<uint64_t>(view, "share");
     if (share == 0 || share > left)

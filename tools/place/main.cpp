@@ -48,12 +48,12 @@ std::vector<uint64_t> parseShares(const std::string& text) {
     const size_t end = std::min(text.find(',', begin), text.size());
     const auto share = parseReal(text.substr(begin, end - begin));
     const bool whole =
-        share && *share >= 1 && *share <= kMostViewTurns && *share == std::floor(*share);
+        share && *share >= 1 && *share <= kMaxViewTurns && *share == std::floor(*share);
     all += shares.emplace_back(whole ? static_cast<uint64_t>(*share) : 0);
-    if (!whole || all > kMostViewTurns) {
+    if (!whole || all > kMaxViewTurns) {
       throw UsageError("--view-shares '" + text +
                        "' is not a list of whole numbers such as 2,1,1, of at most " +
-                       std::to_string(kMostViewTurns) + " together");
+                       std::to_string(kMaxViewTurns) + " together");
     }
     begin = end + 1;
   }
@@ -72,8 +72,8 @@ PlaceViews placeViews(const Request& request, const PlaceMethod& method, Scene& 
     throw UsageError("--view-shares has " + std::to_string(shares.size()) + " parts for " +
                      std::to_string(views.size()) + " views; give one for each --view or --camera");
   }
-  if (shares.size() > kMostViewTurns)
-    throw UsageError("more than " + std::to_string(kMostViewTurns) + " views; name fewer");
+  if (shares.size() > kMaxViewTurns)
+    throw UsageError("more than " + std::to_string(kMaxViewTurns) + " views; name fewer");
   return {std::move(views), std::move(shares)};
 }
 

@@ -7,13 +7,13 @@
 
 namespace bnvpl {
 
-inline constexpr uint64_t kMostViewTurns = 1 << 16;  // of all shares together
+inline constexpr uint64_t kMaxViewTurns = 1 << 16;  // of all shares together
 
 // Paths take turns among the views by their shares, whole numbers: of any paths in a row, each view
 // has as nearly its share as whole numbers allow. With one view every path is its own.
 class ViewTurns {
  public:
-  // One share for each view, positive, at most kMostViewTurns together.
+  // One share for each view, positive, at most kMaxViewTurns together.
   explicit ViewTurns(std::vector<uint64_t> shares = {1});
 
   struct Turn {

@@ -50,7 +50,7 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 
 double bytesPerPixelOf(const Values& options) {
   double bytes = 250;  // measured: 245 to 300, by layers
-  if (options.has("specks") && options.text("specks") == "spread") bytes += 40;
+  if (options.has("fireflies") && options.text("fireflies") == "redistribute") bytes += 40;
   if (budgetOf(options)) bytes += 120;              // what passes keep besides
   if (integratorOf(options).photons) bytes += 168;  // exact sums of what photons bring
   return bytes;
@@ -139,7 +139,7 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
   summary.add("passes_time_s", passes.timeS);
   summary.add("ended_by", passes.endedBy);
   const double wantedS = options.has("time") ? options.real("time") : INFINITY;
-  if (passes.passes == kFewestPasses && passes.timeS > 1.1 * wantedS) {
+  if (passes.passes == kMinPasses && passes.timeS > 1.1 * wantedS) {
     std::snprintf(line, sizeof line,
                   "two passes, the fewest, took %.1f s instead of --time's %.6g; choose a smaller "
                   "--size, or a lower quality",

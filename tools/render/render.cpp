@@ -15,11 +15,11 @@ const std::string& layersHelp() {
   return help;
 }
 
-constexpr double kMostSpp = 0x1p32 - 1;
+constexpr double kMaxSpp = 0x1p32 - 1;
 
 std::span<const Option> stageOptions() {
   static const std::array options{
-      countOption("spp", "16", kMostSpp, "",
+      countOption("spp", "16", kMaxSpp, "",
                   "samples a pixel; with --time, --target-error or --passes the most, and without "
                   "being given no limit"),
       unrecorded(optional(durationOption(
@@ -29,7 +29,7 @@ std::span<const Option> stageOptions() {
       unrecorded(optional(
           realOption("target-error", "", 0.0001, 10, "",
                      "render by passes, until the image's estimated error is at most this"))),
-      optional(wholeOption("passes", "", kFewestPasses, 0x1p40, "",
+      optional(wholeOption("passes", "", kMinPasses, 0x1p40, "",
                            "render by so many passes; with --time or --target-error at most so "
                            "many")),
       neededBy("time;target-error;passes",
@@ -53,7 +53,7 @@ Only onlyOf(const Values& options) {
 
 FilmOptions filmOptionsOf(const Values& options) {
   return {static_cast<uint32_t>(options.whole("spp")), options.whole("seed"), onlyOf(options),
-          layersOf(options), spreadsSpecks(options)};
+          layersOf(options), redistributesFireflies(options)};
 }
 
 // Whether the integrator sends photons for this image.
@@ -89,7 +89,7 @@ const StageSpec& renderSpec() {
 Values resolveRender(const Given& given) {
   Values options = resolve(renderSpec(), given);
   const bool limited = std::ranges::any_of(given, [](const auto& g) { return g.first == "spp"; });
-  if (budgetOf(options) && !limited) options.set("spp", static_cast<uint64_t>(kMostSpp));
+  if (budgetOf(options) && !limited) options.set("spp", static_cast<uint64_t>(kMaxSpp));
   return options;
 }
 
@@ -101,10 +101,10 @@ std::optional<Budget> budgetOf(const Values& options) {
   if (time) budget.timeS = options.real("time");
   if (error) budget.error = options.real("target-error");
   budget.passes = options.whole("spp") / kPassSpp;
-  if (budget.passes < kFewestPasses) {
+  if (budget.passes < kMinPasses) {
     throw UsageError("--spp: with --time, --target-error or --passes it is at least " +
-                     std::to_string(kFewestPasses * kPassSpp) + ", for " +
-                     std::to_string(kFewestPasses) + " passes of " + std::to_string(kPassSpp));
+                     std::to_string(kMinPasses * kPassSpp) + ", for " + std::to_string(kMinPasses) +
+                     " passes of " + std::to_string(kPassSpp));
   }
   if (passes) budget.passes = std::min(budget.passes, options.whole("passes"));
   budget.adaptive = options.on("adaptive");
@@ -125,7 +125,7 @@ uint64_t renderWork(const Scene& scene, const Values& options) {
   const auto budget = budgetOf(options);
   uint64_t spp = options.whole("spp");
   if (budget) {
-    if (!options.has("passes") && spp == static_cast<uint64_t>(kMostSpp)) return 0;
+    if (!options.has("passes") && spp == static_cast<uint64_t>(kMaxSpp)) return 0;
     spp = budget->passes * kPassSpp;
   }
   const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * spp;

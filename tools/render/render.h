@@ -7,6 +7,7 @@
 #include "core/resume.h"
 #include "formats/image.h"
 #include "tools/render/film/passes.h"
+#include "tools/render/integrator/integrator.h"
 
 namespace bnvpl {
 

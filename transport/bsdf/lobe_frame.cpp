@@ -7,7 +7,7 @@ namespace {
 // The mirror image of wo lies at least so far above the geometric surface, as a cosine.
 constexpr float kAboveSurface = 0.01f;
 
-constexpr float kLeastCosine = 1e-5f;  // of wo: lobes divide by it
+constexpr float kMinCosine = 1e-5f;  // of wo: lobes divide by it
 
 float leastAbove(Vec3 ng, Vec3 wo) { return std::min(kAboveSurface, 0.9f * dot(ng, wo)); }
 
@@ -42,7 +42,7 @@ LobeFrame::LobeFrame(const SurfacePoint& point, Vec3 shadingNormal, float turned
     y = cross(z, x);
   }
   wo = toLocal(point.wo);
-  wo.z = std::max(kLeastCosine, wo.z);
+  wo.z = std::max(kMinCosine, wo.z);
 }
 
 }  // namespace bnvpl

@@ -136,10 +136,10 @@ std::optional<RoughLeaving> LobeSum::roughLeaving(const SurfacePoint& point) con
 }
 
 // Lobes over a matt base look much the same from everywhere: as from half way down.
-MattPart LobeSum::mattPart(const SurfacePoint& point) const {
+DiffusePart LobeSum::diffusePart(const SurfacePoint& point) const {
   constexpr float kHalfWay = 0.5f;
   const Vec3 wo{std::sqrt(1.0f - kHalfWay * kHalfWay), 0.0f, kHalfWay};
-  MattPart part{{point.ng, point.ns, 0.0f, 0.0f, true}, {}};
+  DiffusePart part{{point.ng, point.ns, 0.0f, 0.0f, true}, {}};
   for (const Summand& s : lobes()) {
     if (s.group != LobeGroup::Rough || s.frame != 0) continue;
     const float kept = s.above.weight > 0.0f ? s.above.through(kHalfWay) : 1.0f;

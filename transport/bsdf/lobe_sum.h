@@ -45,7 +45,7 @@ class LobeSum {
   Vec3 diffuseValue() const { return diffuseValue_; }
   bool diffuseOnly() const { return diffuseOnly_; }
   std::optional<RoughLeaving> roughLeaving(const SurfacePoint& point) const;
-  MattPart mattPart(const SurfacePoint& point) const;
+  DiffusePart diffusePart(const SurfacePoint& point) const;
   float specularProbability() const { return specularProbability_; }
   bool specularIsDelta() const { return specularIsDelta_; }
   float reflectance() const { return reflectance_; }

@@ -15,16 +15,16 @@ struct RoughLeaving {
   // A factor of the radiance towards wo, unit; 0: not known, as the coat leaves next to nothing or
   // its normal bends.
   float towards(Vec3 wo) const {
-    constexpr float kLeast = 1e-3f;
+    constexpr float kMin = 1e-3f;
     if (ior == 0.0f) return !unbent || keepsNormal(ng, ns, wo) ? 1.0f : 0.0f;
     if (!keepsNormal(ng, ns, wo)) return 0.0f;
     const float out = CoatedBase{{}, ior, alpha}.through(dot(ns, wo));
-    return out > kLeast ? out : 0.0f;
+    return out > kMin ? out : 0.0f;
   }
 };
 
 // A part of the rough group's value that is such a product, where the whole is not.
-struct MattPart {
+struct DiffusePart {
   RoughLeaving leaving;
   Vec3 value;  // 1/sr, for light from the shading normal's side: times the cosine with it
 };

@@ -44,7 +44,7 @@ class Gathers:
         c = self.context.configuration(self.view, method).but(
             vpls=self.plan["vpls"], candidates=self.plan["vpls"] * self.plan["candidates_per_vpl"],
             photons=self.plan["photons"], spp=self.plan["spp"],
-            render=("--gather", gather, "--compensate", "none", "--specks", "keep", *options))
+            render=("--gather", gather, "--compensate", "none", "--fireflies", "keep", *options))
         seeds = range(1, 1 + self.plan["seeds"])
         row = self.context.judge("claims", self.view, c, seeds, label=gather)
         row["shadow_rays"] = pipeline.shadow_rays(self.context.runner, self.view, c, seeds[0])

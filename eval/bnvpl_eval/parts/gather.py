@@ -51,4 +51,4 @@ def run(context: Context) -> None:
 
 
 def configuration(context: Context, view, gather: str):
-    return context.configuration(view, "local").but(render=("--gather", gather, "--compensate", "none", "--specks", "keep"))
+    return context.configuration(view, "local").but(render=("--gather", gather, "--compensate", "none", "--fireflies", "keep"))

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kAgain = "; export the file again";
 
 // Without a buffer view all elements are 0: a few bytes of JSON could ask for any amount of memory.
-constexpr size_t kMostZeros = size_t{1} << 16;
+constexpr size_t kMaxZeros = size_t{1} << 16;
 
 // Elements that lie somewhere in a view.
 struct Elements {
@@ -99,7 +99,7 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
                                     components, accessor.componentType);
     out.resize(count * components);
     for (size_t i = 0; i < count; ++i) copyElement(all, i, read, &out[i * components]);
-  } else if (count > kMostZeros) {
+  } else if (count > kMaxZeros) {
     model.fail(pointer,
                "has " + std::to_string(count) + " elements but no 'bufferView'; give it one");
   } else {

@@ -13,16 +13,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMost = 1e30;  // of a coordinate, a factor or a power, as in scene.toml
+constexpr double kMax = 1e30;  // of a coordinate, a factor or a power, as in scene.toml
 constexpr double kAny = std::numeric_limits<double>::max();
-constexpr double kMostBytes = 0x1p40;  // of a size or an offset: sums of two do not overflow
+constexpr double kMaxBytes = 0x1p40;  // of a size or an offset: sums of two do not overflow
 
 struct Rule {
   enum class Kind { Object, Text, Flag, Number, Numbers, Whole, Index };
   std::string_view path;  // "*": each element of an array, each member of an object
   Kind kind;
   bool required = false;
-  double least = -kMost, most = kMost;
+  double least = -kMax, most = kMax;
   size_t count = 0;          // Numbers: so many
   std::string_view of = {};  // Index: into this array
   bool clamped = false;      // numbers out of range are moved to its nearer end, with a warning
@@ -34,14 +34,14 @@ constexpr Rule textRule(std::string_view path, bool required = false) {
   return {path, Kind::Text, required};
 }
 constexpr Rule flagRule(std::string_view path) { return {path, Kind::Flag}; }
-constexpr Rule numberRule(std::string_view path, double least = -kMost, double most = kMost) {
+constexpr Rule numberRule(std::string_view path, double least = -kMax, double most = kMax) {
   return {path, Kind::Number, false, least, most};
 }
-constexpr Rule numbersRule(std::string_view path, size_t count, double least = -kMost,
-                           double most = kMost) {
+constexpr Rule numbersRule(std::string_view path, size_t count, double least = -kMax,
+                           double most = kMax) {
   return {path, Kind::Numbers, false, least, most, count};
 }
-constexpr Rule sizeRule(std::string_view path, double least = 0, double most = kMostBytes) {
+constexpr Rule sizeRule(std::string_view path, double least = 0, double most = kMaxBytes) {
   return {path, Kind::Whole, false, least, most};
 }
 constexpr Rule indexRule(std::string_view path, std::string_view of) {

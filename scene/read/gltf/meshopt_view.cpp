@@ -7,7 +7,7 @@ namespace bnvpl {
 namespace {
 
 // A byte of the codec stands for at most so many of the result: it spends two bits on 16 bytes.
-constexpr size_t kMostPerByte = 128;
+constexpr size_t kMaxPerByte = 128;
 
 bool decode(const std::string& mode, std::string& out, size_t count, size_t stride,
             std::string_view from) {
@@ -48,7 +48,7 @@ std::string decodeMeshopt(const fs::path& file, const std::string& pointer,
   const auto fail = [&](const std::string& problem) {
     throw GltfError(file, pointer, problem + "; export the file again, or without compression");
   };
-  if (count * stride > compressed.size() * kMostPerByte)
+  if (count * stride > compressed.size() * kMaxPerByte)
     fail("promises more elements than its bytes can hold");
   std::string out(count * stride, '\0');
   if (count == 0) return out;

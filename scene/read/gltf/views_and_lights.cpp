@@ -45,8 +45,8 @@ float radians(double angle) { return static_cast<float>(angle); }
 
 // The rim is between the two cones; its profile is scene.toml's.
 void setCone(const tinygltf::SpotLight& spot, LightSpec& light) {
-  constexpr double kLeast = 1e-4;
-  const double outer = std::clamp(spot.outerConeAngle, kLeast, std::numbers::pi / 2);
+  constexpr double kMin = 1e-4;
+  const double outer = std::clamp(spot.outerConeAngle, kMin, std::numbers::pi / 2);
   light.coneRad = radians(outer);
   light.falloffRad =
       std::min(light.coneRad, radians(std::max(0.0, outer - std::max(0.0, spot.innerConeAngle))));

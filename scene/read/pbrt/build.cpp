@@ -15,7 +15,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr size_t kAtOnce = 256;                  // shapes that are in memory beside the scene
-constexpr size_t kMostCopied = size_t{1} << 27;  // triangles that lamps of objects may become
+constexpr size_t kMaxCopied = size_t{1} << 27;  // triangles that lamps of objects may become
 
 // A shape and where it stands: once in the world, or as often as its object is placed.
 struct Placed {
@@ -98,7 +98,7 @@ class Meshes {
       return share(placed, std::move(mesh), file);
     if (placed.worldFromShape.size() > 1)
       copied_ += placed.worldFromShape.size() * mesh.triangles.size();
-    if (copied_ > kMostCopied)
+    if (copied_ > kMaxCopied)
       failAt(shape.place, "the lamps of objects are more than 2^27 triangles; place fewer");
     for (const Affine& transform : placed.worldFromShape) {
       const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));

@@ -144,8 +144,8 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
   Vec3 up;
   if (unit(axis(0, 1, 0), up) && dot(up, camera.up) < 0.0f) camera.up = -camera.up;
   aim(windowOf(description, pixels.film, notes), pixels, camera);
-  constexpr float kLeast = 1e-5f, kMostFov = 3.1415f;
-  if (!(camera.verticalFovRad > kLeast && camera.verticalFovRad < kMostFov))
+  constexpr float kMin = 1e-5f, kMaxFov = 3.1415f;
+  if (!(camera.verticalFovRad > kMin && camera.verticalFovRad < kMaxFov))
     failAt(entity.place, "the field of view is too small or too large");
   // + 0.0: not -0.
   const FilePoint position = worldFromCamera->point({0, 0, 0});

@@ -78,12 +78,12 @@ Vec3 Colors::reflectance(const Param& p) const {
 }
 
 Vec3 Colors::unbounded(const Param& p) const {
-  constexpr float kMostFloat = 1e30f;
+  constexpr float kMaxFloat = 1e30f;
   if (p.type == ParamType::Rgb)
-    return clamped(srgbOfReflectance(rgbOf(p), p.colorSpace), kMostFloat);
+    return clamped(srgbOfReflectance(rgbOf(p), p.colorSpace), kMaxFloat);
   if (p.type == ParamType::Float && p.numbers.size() == 1)
-    return clamped(Vec3{float(p.numbers[0])}, kMostFloat);
-  if (p.type == ParamType::Spectrum) return clamped(srgbOf(xyzUnderD65(spectrum(p))), kMostFloat);
+    return clamped(Vec3{float(p.numbers[0])}, kMaxFloat);
+  if (p.type == ParamType::Spectrum) return clamped(srgbOf(xyzUnderD65(spectrum(p))), kMaxFloat);
   failAt(p.place, "'" + p.name + "' must be an rgb or spectrum");
 }
 
@@ -104,8 +104,8 @@ double Colors::ior(const Params& params, const std::string& name, double otherwi
   }
   // As pbrt has it, an interface of 0 is none.
   if (eta == 0.0) return 1.0;
-  constexpr double kLeast = 0.01, kMostIor = 100.0;
-  if (!(eta >= kLeast && eta <= kMostIor))
+  constexpr double kMin = 0.01, kMaxIor = 100.0;
+  if (!(eta >= kMin && eta <= kMaxIor))
     failAt(p->place, "'" + name + "' must be a refractive index from 0.01 to 100");
   return eta;
 }

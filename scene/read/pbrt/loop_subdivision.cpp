@@ -11,8 +11,8 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr int64_t kMostLevels = 10;
-constexpr size_t kMostTriangles = size_t{1} << 22;
+constexpr int64_t kMaxLevels = 10;
+constexpr size_t kMaxTriangles = size_t{1} << 22;
 
 struct Surface {
   std::vector<FilePoint> points;
@@ -154,13 +154,13 @@ std::vector<double> normalsOf(const Surface& s) {
 }  // namespace
 
 MeshData loopSubdivision(const Params& params, const Place& place) {
-  const auto levels = params.integer("levels", 3, 0, kMostLevels);
+  const auto levels = params.integer("levels", 3, 0, kMaxLevels);
   params.ignore({"scheme"});
   const std::vector<double>& p = params.floats("P", 3);
   if (p.empty()) failAt(place, "loopsubdiv needs \"point3 P\", its vertices");
   const std::vector<uint32_t> indices = params.indices("indices", 3, p.size() / 3);
   if (indices.empty()) failAt(place, "loopsubdiv needs \"integer indices\"");
-  if (indices.size() / 3 > kMostTriangles >> (2 * levels))
+  if (indices.size() / 3 > kMaxTriangles >> (2 * levels))
     failAt(place, "loopsubdiv would become more than 2^22 triangles; lower 'levels'");
   Surface s;
   for (size_t i = 0; i < p.size(); i += 3) s.points.push_back({p[i], p[i + 1], p[i + 2]});

@@ -7,7 +7,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kMostParams = 256;  // of one directive
+constexpr size_t kMaxParams = 256;  // of one directive
 
 bool isTruth(std::string_view text) { return text == "true" || text == "false"; }
 
@@ -19,7 +19,7 @@ double numberOf(const Token& token) {
                ? "the file ends where a number is expected"
                : "a number is expected, not '" + std::string(token.text.substr(0, 64)) + "'");
   }
-  if (std::fabs(number) > kMost)
+  if (std::fabs(number) > kMax)
     failAt(token.place, "the number " + std::string(token.text) + " is beyond 1e30");
   return number;
 }
@@ -136,7 +136,7 @@ Params readParams(Tokens& tokens, ColorSpace colorSpace, Notes& notes) {
     } else {
       const Place place = p.place;
       params.add(std::move(p));
-      if (params.all().size() > kMostParams) failAt(place, "more than 256 parameters");
+      if (params.all().size() > kMaxParams) failAt(place, "more than 256 parameters");
     }
   }
   return params;

@@ -22,7 +22,7 @@ class Tokens {
 // Throws InputError when the next token is no string; `what` should be there.
 std::string readString(Tokens& tokens, const char* what);
 
-// In brackets or not. Throws InputError when they are no numbers, or beyond kMost.
+// In brackets or not. Throws InputError when they are no numbers, or beyond kMax.
 void readNumbers(Tokens& tokens, std::span<double> out);
 template <size_t kCount>
 std::array<double, kCount> readNumbers(Tokens& tokens) {

@@ -30,7 +30,7 @@ enum class ColorSpace { Srgb, DciP3, Rec2020, Aces };
 struct Param {
   ParamType type = ParamType::Unknown;
   std::string name;
-  std::vector<double> numbers;       // finite, at most kMost in size
+  std::vector<double> numbers;       // finite, at most kMax in size
   std::vector<std::string> strings;  // of strings, textures and named spectra; bools: true, false
   ColorSpace colorSpace = ColorSpace::Srgb;  // of an rgb
   Place place;
@@ -38,7 +38,7 @@ struct Param {
 };
 
 // Larger numbers are refused, so that floats hold what is computed from them.
-inline constexpr double kMost = 1e30;
+inline constexpr double kMax = 1e30;
 
 // Values are asked for by name. One of another type than asked for, or out of range, is an
 // InputError with its place. What nobody asked for can be listed.
@@ -55,8 +55,8 @@ class Params {
   const Param* find(const std::string& name, std::initializer_list<ParamType> types,
                     const char* expected) const;
 
-  double number(const std::string& name, double otherwise, double least = -kMost,
-                double most = kMost) const;
+  double number(const std::string& name, double otherwise, double least = -kMax,
+                double most = kMax) const;
   int64_t integer(const std::string& name, int64_t otherwise, int64_t least, int64_t most) const;
   bool boolean(const std::string& name, bool otherwise) const;
   std::string text(const std::string& name, const std::string& otherwise = "") const;

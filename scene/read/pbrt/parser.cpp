@@ -14,8 +14,8 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kDeepestInclude = 64, kMostIncludes = 10'000;
-constexpr size_t kMostAttributes = 64;  // parameters that Attribute sets for one target
+constexpr size_t kDeepestInclude = 64, kMaxIncludes = 10'000;
+constexpr size_t kMaxAttributes = 64;  // parameters that Attribute sets for one target
 
 class Parser {
  public:
@@ -148,7 +148,7 @@ void Parser::readFile(const fs::path& file, const Place* from) {
   const fs::path real = fs::weakly_canonical(file);
   if (std::find(reading_.begin(), reading_.end(), real) != reading_.end())
     failAt(*from, file.string() + " includes itself; remove one of the Includes");
-  if (reading_.size() == kDeepestInclude || included_ == kMostIncludes) {
+  if (reading_.size() == kDeepestInclude || included_ == kMaxIncludes) {
     failAt(*from, reading_.size() == kDeepestInclude ? "Includes lie more than 64 deep"
                                                      : "more than 10000 Includes");
   }
@@ -275,7 +275,7 @@ void Parser::attribute(const Token& at) {
   auto& set = now().attributes[target];
   const auto merged = std::make_shared<Params>(set ? *set : Params());
   for (const Param* p : more.all()) merged->add(*p);
-  if (merged->all().size() > kMostAttributes)
+  if (merged->all().size() > kMaxAttributes)
     failAt(at.place, "Attribute sets more than 64 parameters of one target");
   set = merged;
 }

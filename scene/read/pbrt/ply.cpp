@@ -118,8 +118,8 @@ std::vector<Target> targetsOf(const fs::path& file, const PlyElement& element, M
 
 // Passes over so many values of a list; a count in words can be any number, and infinite.
 void skipValues(Body& body, const PlyProperty& p, double count) {
-  constexpr double kMost = 1e15;  // more than any file holds
-  if (count > 0.0) body.skip(p.type, static_cast<size_t>(std::min(count, kMost)));
+  constexpr double kMax = 1e15;  // more than any file holds
+  if (count > 0.0) body.skip(p.type, static_cast<size_t>(std::min(count, kMax)));
 }
 
 void skipList(Body& body, const PlyProperty& p) { skipValues(body, p, body.next(p.countType)); }

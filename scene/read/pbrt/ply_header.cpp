@@ -8,7 +8,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kMostHeader = 1 << 20;  // bytes
+constexpr size_t kMaxHeader = 1 << 20;  // bytes
 
 PlyType typeOf(const fs::path& file, const std::string& name) {
   static const std::map<std::string, PlyType> kTypes{
@@ -74,7 +74,7 @@ PlyHeader readPlyHeader(const fs::path& file, std::string_view bytes) {
   if (!bytes.starts_with("ply")) throw InputError(file, "is no PLY file");
   PlyHeader header;
   bool hasFormat = false;
-  for (size_t at = 0; at < std::min(bytes.size(), kMostHeader);) {
+  for (size_t at = 0; at < std::min(bytes.size(), kMaxHeader);) {
     const size_t end = std::min(bytes.find('\n', at), bytes.size());
     std::istringstream words(std::string(bytes.substr(at, end - at)));
     at = end + 1;

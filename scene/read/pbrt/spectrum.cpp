@@ -123,11 +123,11 @@ MetalRgb metalRgb(const Spectrum& eta, const Spectrum& k) {
     reflectance.value.push_back(metalReflectance(eta.at(nm), k.at(nm)));
   }
   const Vec3 etaRgb = srgbOf(xyzUnderD65(eta)), target = srgbOf(xyzUnderD65(reflectance));
-  constexpr double kLeastEta = 0.05, kMostReflectance = 0.999;
+  constexpr double kMinEta = 0.05, kMaxReflectance = 0.999;
   MetalRgb metal;
   for (size_t c = 0; c < 3; ++c) {
-    const double f = std::clamp(double{target[c]}, 0.0, kMostReflectance);
-    double n = std::max(double{etaRgb[c]}, kLeastEta);
+    const double f = std::clamp(double{target[c]}, 0.0, kMaxReflectance);
+    double n = std::max(double{etaRgb[c]}, kMinEta);
     double k2 = (f * (n + 1) * (n + 1) - (n - 1) * (n - 1)) / (1.0 - f);
     if (k2 < 0.0) {  // eta alone reflects more than that: the eta that reflects as much
       n = (1.0 + std::sqrt(f)) / (1.0 - std::sqrt(f));

@@ -12,7 +12,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kMostUnpacked = size_t{1} << 34;  // bytes; a scene of text that large is a mistake
+constexpr size_t kMaxUnpacked = size_t{1} << 34;  // bytes; a scene of text that large is a mistake
 
 std::string unpacked(const fs::path& file, const std::string& packed) {
   z_stream stream{};
@@ -30,7 +30,7 @@ std::string unpacked(const fs::path& file, const std::string& packed) {
       taken += piece;
     }
     const size_t had = out.size(), more = std::clamp(had, size_t{1} << 16, size_t{1} << 26);
-    if (had + more > kMostUnpacked) throw InputError(file, "unpacks to more than 16 GiB");
+    if (had + more > kMaxUnpacked) throw InputError(file, "unpacks to more than 16 GiB");
     out.resize(had + more);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + had);
     stream.avail_out = static_cast<uInt>(more);

@@ -169,11 +169,11 @@ UvTransform Textures::mapping(const TextureEntity& t) {
     t.params.ignore({"v1", "v2", "udelta", "vdelta", "uscale", "vscale"});
     return uv;
   }
-  constexpr double kMostUv = 1e6;
-  uv.a = float(t.params.number("uscale", 1.0, -kMostUv, kMostUv));
-  uv.e = float(t.params.number("vscale", 1.0, -kMostUv, kMostUv));
-  uv.c = float(t.params.number("udelta", 0.0, -kMostUv, kMostUv));
-  uv.f = float(t.params.number("vdelta", 0.0, -kMostUv, kMostUv));
+  constexpr double kMaxUv = 1e6;
+  uv.a = float(t.params.number("uscale", 1.0, -kMaxUv, kMaxUv));
+  uv.e = float(t.params.number("vscale", 1.0, -kMaxUv, kMaxUv));
+  uv.c = float(t.params.number("udelta", 0.0, -kMaxUv, kMaxUv));
+  uv.f = float(t.params.number("vdelta", 0.0, -kMaxUv, kMaxUv));
   return uv;
 }
 

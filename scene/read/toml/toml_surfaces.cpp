@@ -9,11 +9,11 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kMost = TomlSection::kMaxMagnitude;
-constexpr double kMostFactor = 1e6;  // of a texture: light times some of them stays finite
+constexpr double kMax = TomlSection::kMaxMagnitude;
+constexpr double kMaxFactor = 1e6;  // of a texture: light times some of them stays finite
 
 float number(const TomlSection& s, const std::string& key, float otherwise) {
-  return static_cast<float>(s.number(key.c_str(), -kMost, kMost, double{otherwise}));
+  return static_cast<float>(s.number(key.c_str(), -kMax, kMax, double{otherwise}));
 }
 
 // The place of a key's text among the names; `otherwise` without the key.
@@ -83,7 +83,7 @@ void TomlSurfaces::readTexture(const TomlSection& s) {
   switch (e.kind) {
     case TextureExpression::Kind::Constant:
       require({"name", "type", "value"});
-      e.value = s.vector("value", kMostFactor);
+      e.value = s.vector("value", kMaxFactor);
       break;
     case TextureExpression::Kind::Image: {
       require({"name", "type", "image", "encoding", "channel", "factor", "wrap_u", "wrap_v",
@@ -93,7 +93,7 @@ void TomlSurfaces::readTexture(const TomlSection& s) {
       use.srgb = choice(s, "encoding", kEncodingNames, 0) == 0;
       e.image = builder_.addTexture(use);
       e.channel = static_cast<Channel>(choice(s, "channel", kChannelNames, 0));
-      if (s.has("factor")) e.value = s.vector("factor", kMostFactor);
+      if (s.has("factor")) e.value = s.vector("factor", kMaxFactor);
       e.invert = s.flag("invert", false);
       readWrap(s, e);
       break;

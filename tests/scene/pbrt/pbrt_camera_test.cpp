@@ -84,8 +84,8 @@ TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
       EXPECT_NEAR(back.y, y / 40, 1e-5f);
     }
   }
-  expectError(film + "\"float cropwindow\" [0.5 0.1 0 1]",
-              "1:63", {"cropwindow", "xmin xmax ymin ymax"});
+  expectError(film + "\"float cropwindow\" [0.5 0.1 0 1]", "1:63",
+              {"cropwindow", "xmin xmax ymin ymax"});
 }
 
 TEST_F(PbrtCamera, ScreenWindowsMayLieAnywhere) {

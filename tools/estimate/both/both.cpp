@@ -32,7 +32,7 @@ constexpr std::array kOptions{
 constexpr double kPilot = 1.0 / 32.0;
 // A point of a VPL may cost its pilot so many rays for each path, as a guess; the pilot measures.
 constexpr double kGuessedRays = 10.0;
-constexpr uint64_t kLeastPoints = 2, kMostPoints = 32;
+constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
 // Pilots of paths that would take more than this share of the work are not worth it.
 constexpr double kDearPilot = 0.25;
 // The phases that shards divide; those before are pilots.
@@ -154,9 +154,9 @@ class Estimator {
 
     const auto vpls = static_cast<double>(in_.vpls.size());
     const double guess = vpls * kGuessedRays * static_cast<double>(options_.whole("paths"));
-    if (guess * kLeastPoints > kDearPilot * whole) return photonsAlone(work_ - told_);
+    if (guess * kMinPoints > kDearPilot * whole) return photonsAlone(work_ - told_);
     const uint64_t points = std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess),
-                                                 kLeastPoints, kMostPoints);
+                                                 kMinPoints, kMaxPoints);
     const std::vector<uint64_t> pointsOf(in_.vpls.size(), points);
     const std::vector<PathSums> paths = gather(1, Stream::PilotPaths, pointsOf, few).sums;
     pilots.points = static_cast<double>(points);

@@ -10,10 +10,10 @@ namespace bnvpl::methods::estimate::both {
 
 namespace {
 
-constexpr size_t kRays = size_t{1} << 20, kFewest = 16, kMost = 256;
+constexpr size_t kRays = size_t{1} << 20, kMin = 16, kMax = 256;
 
 size_t countFor(size_t vpls) {
-  return std::min(vpls, std::clamp(kRays / std::max<size_t>(1, vpls), kFewest, kMost));
+  return std::min(vpls, std::clamp(kRays / std::max<size_t>(1, vpls), kMin, kMax));
 }
 
 // By the form factor of a disk of the VPL's part of the surface, which a flux is spread over.

@@ -22,7 +22,7 @@ constexpr double kSurprise = 2.0;
 constexpr int kParts = 16;
 // The flux that errors of a VPL are judged by is at least this share of the mean VPL's: when work
 // is shared out, and when it is enough.
-constexpr double kLeastFlux = 0.1, kLeastFluxOfError = 0.01;
+constexpr double kMinFlux = 0.1, kMinFluxOfError = 0.01;
 // Work that might be enough: all, and so many times less in steps of a fourth of an octave.
 constexpr int kSteps = 24;
 constexpr double kStep = 0.8408964152537145;  // 2^(-1/4)
@@ -126,7 +126,7 @@ class Points {
     double mean = 0.0;
     for (const Judged& j : judged_) mean += j.flux / static_cast<double>(judged_.size());
     for (size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = 1.0 / std::max(judged_[i].flux + kLeastFlux * mean, 1e-300);
+      weight_[i] = 1.0 / std::max(judged_[i].flux + kMinFlux * mean, 1e-300);
   }
 
   // Least weight / (photons / v_photon + n / v_point) + price cost n: Neyman's allocation, beside

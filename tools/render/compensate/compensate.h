@@ -1,4 +1,5 @@
-// What makes good the light that VPLs do not bring (bias compensation): the slot of --compensate.
+// Bias compensation (Kollig & Keller 2006): sampled rays carry the light that VPLs leave out. The
+// methods of --compensate say, for a point that a ray found, how much that is.
 #pragma once
 
 #include <cmath>
@@ -15,37 +16,39 @@
 
 namespace bnvpl {
 
-// From where, and how much of it, a point's own light is missing: what VPLs know of it does not do.
-struct OwnLight {
-  float within = 0.0f;           // distance, world units; INFINITY: from everywhere
-  float clampRadius = INFINITY;  // of the VPL that speaks for the point; INFINITY: none does
+// The uncovered share of a point's light, as a function of the receiver's distance, for points
+// whose light is found by further rays.
+struct UncoveredShare {
+  float within = 0.0f;           // distance from which it is 0, world units; may be INFINITY
+  float clampRadius = INFINITY;  // of the VPL that covers the point; INFINITY: no VPL does
   LightKind kind = {};
 
-  float share(float distance) const {
+  float at(float distance) const {
     if (!(distance < within)) return 0.0f;
     return withKind(kind, [&](auto k) { return k.removed(distance / clampRadius); });
   }
 };
 
-// What VPLs do not bring from a point that a ray from a receiver has found.
-struct Missing {
-  float share = 0.0f;  // of the light from there, 0..1
-  // Radiance that leaves there of light that came by way of other surfaces, W/(m2 sr); empty: has
-  // to be found out, as first-bounce light always has, whose edges a VPL does not know.
+// What VPLs leave out of the light from a point to the receiver whose ray found it.
+struct Uncovered {
+  float share = 0.0f;  // of the point's light, 0..1
+  // Radiance that leaves the point of light that arrived there from other surfaces, W/(m2 sr), as
+  // the VPL knows it. Empty: further rays find it. First-bounce light is always found by shadow
+  // rays, as a VPL does not know the edges of shadows.
   std::optional<Vec3> scattered;
-  OwnLight own = {};  // for other receivers; at this one's distance the share is the same
+  UncoveredShare byDistance = {};  // for other receivers that reuse the point
 };
 
-// Thread-safe. Both empty: nothing is made good, and no rays are sent for it.
+// Thread-safe. Both functions empty: nothing is compensated, and no rays are sent for it.
 struct Compensation {
-  // The VPLs at many hits, which wait for memory together; of those that hit nothing none.
+  // Looks up the VPLs at the hits of a batch of rays, so that memory accesses overlap. Skips
+  // points that hit nothing.
   std::function<void(std::span<const SurfacePoint>, std::span<ReachGrid::Lookup>)> lookUp;
-  // For a point that a ray has found from `distance`, world units. `near`: of that point, or null
-  // where it was not looked up.
-  std::function<Missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near,
-                        Rng& rng)>
-      missing;
-  explicit operator bool() const { return missing != nullptr; }
+  // For a point that a ray found at `distance`, world units. `near`: its look-up, or null.
+  std::function<Uncovered(const SurfacePoint& point, float distance, const ReachGrid::Lookup* near,
+                          Rng& rng)>
+      uncovered;
+  explicit operator bool() const { return uncovered != nullptr; }
 };
 
 // Borrowed until the image is done.

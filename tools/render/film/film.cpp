@@ -3,11 +3,11 @@
 #include <array>
 
 #include "tools/common/streams.h"
-#include "tools/render/film/develop.h"
+#include "tools/render/film/film_sums.h"
 #include "tools/render/film/fireflies.h"
-#include "tools/render/film/samples.h"
 #include "tools/render/film/splat_sums.h"
-#include "tools/render/integrator/add_splats.h"
+#include "tools/render/film/tiles.h"
+#include "tools/render/splat/add_splats.h"
 
 namespace bnvpl {
 
@@ -115,11 +115,11 @@ Image develop(const Film& size, const FilmOptions& options, State& state, FilmSt
         state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
     }
   }
-  Exposed film{state.pixels, state.counts, 1.0 / options.spp};
-  std::vector<BothLights> spread;
-  if (options.spreadSpecks)
-    film.spread = spread = redistributeFireflies(film, options.only, size.width);
-  addShown(film, options.only, image);
+  FilmSums film{state.pixels, state.counts, 1.0 / options.spp};
+  std::vector<BothLights> redistributed;
+  if (options.redistributeFireflies)
+    film.redistributed = redistributed = redistributeFireflies(film, options.only, size.width);
+  addRadiance(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
   stats.nonFinite += state.splats.nonFinite();

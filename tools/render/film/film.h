@@ -6,8 +6,9 @@
 #include "core/progress.h"
 #include "core/resume.h"
 #include "formats/image.h"
+#include "scene/scene.h"
+#include "tools/render/film/integrator.h"
 #include "tools/render/film/layers.h"
-#include "tools/render/integrator/integrator.h"
 
 namespace bnvpl {
 
@@ -15,8 +16,8 @@ struct FilmOptions {
   uint32_t spp = 8;  // samples a pixel
   uint64_t seed = 1;
   Only only = Only::Everything;
-  std::vector<const Layer*> layers;  // channels beside R, G, B
-  bool spreadSpecks = false;         // fireflies.h
+  std::vector<const Layer*> layers;    // channels beside R, G, B
+  bool redistributeFireflies = false;  // fireflies.h
 };
 
 struct FilmStats {
@@ -28,7 +29,7 @@ struct FilmStats {
 };
 
 // Channel `c` of what the image shows, as the sums have it.
-inline double shownOf(const PixelSums& p, Only only, size_t c) {
+inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
   return (only != Only::Indirect ? p.sum[PixelSums::kDirect + c] : 0.0) +
          (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
 }

@@ -25,15 +25,15 @@ bool isShown(size_t kind, Only only) {
   return only == Only::Everything || (kind == 0) == (only == Only::Direct);
 }
 
-double samplesOf(const Exposed& film, size_t i) {
+double samplesOf(const FilmSums& film, size_t i) {
   return film.passes.empty() ? 1.0 / film.perSample : double(film.passes[i].samples);
 }
 
-FilmValues shownLight(const Exposed& film, Only only) {
+FilmValues shownLight(const FilmSums& film, Only only) {
   FilmValues shown(film.sums.size());
   parallelFor(shown.size(), 1024, [&](size_t i) {
     double sum = 0.0;
-    for (size_t c = 0; c < 3; ++c) sum += shownOf(film.sums[i], only, c) / 3.0;
+    for (size_t c = 0; c < 3; ++c) sum += shownRadiance(film.sums[i], only, c) / 3.0;
     shown[i] = static_cast<float>(sum * film.perSample);
     if (!std::isfinite(shown[i]) || shown[i] < 0.0f) shown[i] = 0.0f;
   });
@@ -55,7 +55,7 @@ FilmValues meanAround(const SurfaceFilter& filter, const FilmValues& ones,
 
 // What the brightest samples and photons of a pixel add to it, kind by kind.
 template <typename Fn>
-void forBrightest(const Exposed& film, size_t i, Only only, const Fn& fn) {
+void forBrightest(const FilmSums& film, size_t i, Only only, const Fn& fn) {
   const auto perSample = static_cast<float>(film.perSample);
   for (const size_t kind : {0u, 1u}) {
     if (!isShown(kind, only)) continue;
@@ -66,7 +66,7 @@ void forBrightest(const Exposed& film, size_t i, Only only, const Fn& fn) {
 }
 
 // The excess of each pixel, of direct and of indirect light.
-std::vector<BothLights> excessOf(const Exposed& film, Only only, const FilmValues& shown,
+std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValues& shown,
                                  const FilmValues& smoothed, const FilmValues& ones) {
   std::vector<BothLights> excess(shown.size());
   parallelFor(shown.size(), 256, [&](size_t i) {
@@ -186,7 +186,7 @@ void move(const SurfaceFilter& filter, std::span<const Target> targets, const Fi
 
 }  // namespace
 
-std::vector<BothLights> redistributeFireflies(const Exposed& film, Only only, uint32_t width) {
+std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, uint32_t width) {
   const SurfaceFilter within(film.sums, width, SurfaceFilter::Edges::Stop),
       over(film.sums, width, SurfaceFilter::Edges::Ignore);
   const FilmValues ones = smoothedOnes(within), shown = shownLight(film, only);

@@ -32,13 +32,13 @@
 #include <vector>
 
 #include "core/vec3.h"
-#include "tools/render/film/develop.h"
-#include "tools/render/tile.h"
+#include "tools/render/film/film_sums.h"
+#include "tools/render/sample.h"
 
 namespace bnvpl {
 
 // What each pixel's direct and indirect light change by, in W/(m2 sr), for a film of rows of
 // `width` pixels that shows what `only` says. What is not shown stays as it is.
-std::vector<BothLights> redistributeFireflies(const Exposed& film, Only only, uint32_t width);
+std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, uint32_t width);
 
 }  // namespace bnvpl

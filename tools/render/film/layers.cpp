@@ -17,7 +17,7 @@ double meanOf(const LayerPixel& p, size_t channel) {
 
 template <PixelSums::Slot kSlot, size_t kKind>
 double lightOf(const LayerPixel& p, size_t channel) {
-  return meanOf<kSlot>(p, channel) + double{p.spread[kKind][channel]};
+  return meanOf<kSlot>(p, channel) + double{p.redistributed[kKind][channel]};
 }
 
 // Over the samples that hit something; the void is infinitely far.
@@ -48,9 +48,10 @@ constexpr std::array kLayers{
     Layer{"Z", "", "depth along the viewing axis, scene units", depthOf},
     Layer{"cutsize", "", "clusters or VPLs gathered, a sample", countOf<&PixelCounts::cut>, true},
     Layer{"shadowrays", "", "rays towards VPLs, a sample", countOf<&PixelCounts::shadowRays>, true},
-    Layer{"error", "RGB",
-          "standard error of R, G, B as passes differ, before specks are spread, W/(m2 sr)",
-          errorOf, false, true},
+    Layer{
+        "error", "RGB",
+        "standard error of R, G, B as passes differ, before fireflies are redistributed, W/(m2 sr)",
+        errorOf, false, true},
     Layer{"samples", "", "samples that passes took", samplesOf, false, true},
 };
 

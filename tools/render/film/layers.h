@@ -64,7 +64,7 @@ struct LayerPixel {
   double perSample;  // of the sums: one over the samples of a pixel, or the passes
   double perCount;   // of the counts: one over the samples
   const PixelPasses& passes;
-  BothLights spread;  // what redistributeFireflies() adds
+  BothLights redistributed;  // what redistributeFireflies() adds
 };
 
 struct Layer {

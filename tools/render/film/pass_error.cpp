@@ -46,10 +46,10 @@ std::vector<double> tileDeviations(const Tiles& tiles, std::span<const double> v
 
 }  // namespace
 
-std::vector<double> relativeVariances(const Exposed& film, Only only, uint32_t width) {
+std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t width) {
   const size_t count = film.sums.size();
   const auto shown = [&](size_t i, size_t c) {
-    return shownOf(film.sums[i], only, c) * film.perSample;
+    return shownRadiance(film.sums[i], only, c) * film.perSample;
   };
   const double mean =
       parallelSum(count, [&](size_t i) { return shown(i, 0) + shown(i, 1) + shown(i, 2); }) /

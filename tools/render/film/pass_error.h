@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "tools/render/film/develop.h"
-#include "tools/render/film/samples.h"
+#include "tools/render/film/film_sums.h"
+#include "tools/render/film/tiles.h"
 
 namespace bnvpl {
 
@@ -14,7 +14,7 @@ namespace bnvpl {
 // of vpl-inspect compare, but over the brightness of 3 x 3 pixels. A pixel's own is too dark just
 // where its noise has missed the light, and where one sample is far too bright it hides that. At
 // edges of shadows it is less than relMSE.
-std::vector<double> relativeVariances(const Exposed& film, Only only, uint32_t width);
+std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t width);
 
 // Root of their mean.
 double relativeError(std::span<const double> variances);

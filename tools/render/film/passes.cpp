@@ -7,7 +7,7 @@
 #include "tools/common/streams.h"
 #include "tools/render/film/fireflies.h"
 #include "tools/render/film/pass_error.h"
-#include "tools/render/integrator/add_splats.h"
+#include "tools/render/splat/add_splats.h"
 
 namespace bnvpl {
 
@@ -89,8 +89,8 @@ class Passes {
       closePass();
       if (preview && nowS() >= previewS) {
         Image image = blank();
-        const auto spread = specks();
-        addShown(exposed(spread), options_.only, image);
+        const auto redistributed = fireflies();
+        addRadiance(sumsSoFar(redistributed), options_.only, image);
         preview(image);
         previewS = nowS() + kPreviewEveryS;
       }
@@ -99,10 +99,10 @@ class Passes {
 
   Image image(FilmStats& stats, PassesDone& done) const {
     Image image = blank();
-    const auto spread = specks();
-    addShown(exposed(spread), options_.only, image);
-    for (const Layer* layer : options_.layers) addLayer(*layer, exposed(spread), image);
-    stats = statsOf(exposed(), samplesSoFar());
+    const auto redistributed = fireflies();
+    addRadiance(sumsSoFar(redistributed), options_.only, image);
+    for (const Layer* layer : options_.layers) addLayer(*layer, sumsSoFar(redistributed), image);
+    stats = statsOf(sumsSoFar(), samplesSoFar());
     stats.nonFinite += state_.at.splats.nonFinite;
     done = {state_.at.pass, error_, nowS() - startS_, endedBy_};
     return image;
@@ -115,12 +115,12 @@ class Passes {
     image.height = static_cast<int>(scene_.film.height);
     return image;
   }
-  Exposed exposed(std::span<const BothLights> spread = {}) const {
-    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, spread};
+  FilmSums sumsSoFar(std::span<const BothLights> redistributed = {}) const {
+    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, redistributed};
   }
-  std::vector<BothLights> specks() const {
-    if (!options_.spreadSpecks) return {};
-    return redistributeFireflies(exposed(), options_.only, scene_.film.width);
+  std::vector<BothLights> fireflies() const {
+    if (!options_.redistributeFireflies) return {};
+    return redistributeFireflies(sumsSoFar(), options_.only, scene_.film.width);
   }
   // Of the passes that are done, and of the tiles of the one under way.
   uint64_t samplesSoFar() const {
@@ -134,7 +134,7 @@ class Passes {
 
   bool ended() {
     const uint64_t passes = state_.at.pass;
-    if (passes < kFewestPasses) return false;
+    if (passes < kMinPasses) return false;
     const double spentS = nowS() - startS_;
     if (spentS + spentS / double(passes) > budget_.timeS) endedBy_ = "time";
     if (passes >= kUniformPasses && budget_.error > 0.0 && error_ <= budget_.error)
@@ -185,7 +185,7 @@ class Passes {
     const uint64_t key = random64(key_, state_.at.pass, kDrawPass);
     const auto turn = static_cast<uint32_t>(random64(key, index, kDrawTurn) >> 33);
     std::vector<PixelSums> sums(tile.pixels());
-    sampleTile(scene_, integrator_, key, tile, {0, slots, slots, kMostSlots, turn},
+    sampleTile(scene_, integrator_, key, tile, {0, slots, slots, kMaxSlots, turn},
                [&](uint32_t p, const RadianceSample& sample) {
                  addSample(sample, sums[p], state_.counts[tiles_.pixelIndex(tile, p)]);
                });
@@ -197,7 +197,7 @@ class Passes {
           state_.sums[i].keepBrightest(kind, brought * (1.0f / static_cast<float>(slots)));
       }
       for (size_t k = 0; k < sums[p].sum.size(); ++k) state_.sums[i].sum[k] += sums[p].sum[k];
-      for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownOf(sums[p], options_.only, c);
+      for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownRadiance(sums[p], options_.only, c);
     }
   }
 
@@ -217,17 +217,17 @@ class Passes {
         for (size_t c = 0; c < 3; ++c) {
           const double value = state_.values[i][c];
           state_.squares[i][c] += value * value;
-          const double mean = shownOf(state_.sums[i], options_.only, c) / passes;
+          const double mean = shownRadiance(state_.sums[i], options_.only, c) / passes;
           const double spread = std::max(0.0, state_.squares[i][c] / passes - mean * mean);
           known_[i].variance[c] = state_.at.pass > 1 ? spread / (passes - 1.0) : 0.0;
         }
       }
     });
-    variances_ = relativeVariances(exposed(), options_.only, scene_.film.width);
+    variances_ = relativeVariances(sumsSoFar(), options_.only, scene_.film.width);
     error_ = relativeError(variances_);
   }
 
-  static constexpr uint64_t kMostSlots = uint64_t{1} << 20;  // of a pixel in a pass
+  static constexpr uint64_t kMaxSlots = uint64_t{1} << 20;  // of a pixel in a pass
   enum Draw : uint32_t { kDrawPass, kDrawSlots, kDrawTurn };
 
   const Scene& scene_;

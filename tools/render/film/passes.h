@@ -28,14 +28,14 @@
 
 namespace bnvpl {
 
-inline constexpr uint32_t kPassSpp = 4;       // samples a pixel of a pass, on average
-inline constexpr uint64_t kFewestPasses = 2;  // for an error to be known
+inline constexpr uint32_t kPassSpp = 4;    // samples a pixel of a pass, on average
+inline constexpr uint64_t kMinPasses = 2;  // for an error to be known
 
 struct Budget {
   double timeS = INFINITY;  // of the passes, by the clock; no pass begins that is expected to end
                             // later
   double error = 0.0;       // ends when relativeError() is at most this; 0: never
-  uint64_t passes = UINT64_MAX;  // at most; at least kFewestPasses
+  uint64_t passes = UINT64_MAX;  // at most; at least kMinPasses
   bool adaptive = true;          // not with photons, which go where they will
 };
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/render/integrator/splats.h"
+#include "tools/render/splat/splat.h"
 
 namespace bnvpl {
 

@@ -1,4 +1,5 @@
-// How light is gathered from VPLs: the slot of --gather. A method is a folder beside this file.
+// The methods of --gather, which sum the light of VPLs at receivers. Each is a folder beside this
+// file.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 #include "core/random.h"
 #include "tools/common/method.h"
 #include "tools/render/light_tree/light_tree.h"
-#include "tools/render/tile.h"
+#include "tools/render/sample.h"
 #include "transport/bsdf.h"
 #include "transport/virtual_light.h"
 
@@ -24,36 +25,35 @@ struct Gathered {
   uint32_t shadowRays = 0;
 };
 
-// The points of a tile's samples; null: nothing to light.
+// The receivers of a tile's samples; null: nothing to light.
 struct TileReceivers : TileSlots {
   std::span<const Bsdf* const> bsdf;
-  // What a shadow ray of a sample has to be worth, for gathers that can do with fewer: by so much
-  // should it lower the variance, over the tile's light squared. 0: nothing is asked.
-  double price = 0.0;
-  float otherLight = 0.0f;  // of the tile besides the VPLs', channels added up, W/(m2 sr)
-  // Likewise, light beyond which the error of a tile counts by less than its own (Balance).
+  // Variance, relative to the tile's squared light, that a further shadow ray of a sample must
+  // remove to be worth its time (SampleAllocation); 0: unknown.
+  double marginalCost = 0.0;
+  float otherLight = 0.0f;  // mean light of the tile besides the VPLs', channels added, W/(m2 sr)
+  // Light of the film's median tile, in the same unit.
   float filmLight = std::numeric_limits<float>::infinity();
 };
 
 // One result for each receiver.
 using GatherTile = std::function<void(const TileReceivers&, std::span<Gathered>)>;
-// At a point whose light reaches the image over one random ray among many: all VPLs on average, by
-// `draws` (> 0) random ones.
+// Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs.
 using GatherPoint = std::function<Gathered(const Bsdf&, unsigned draws, Rng&)>;
 
 // Thread-safe and immutable once made.
 struct Gather {
   GatherTile tile;
   GatherPoint point = {};    // empty: PointGather (gather/point_gather.h)
-  bool wholePixels = false;  // a tile is to hold every sample of its pixels, not some at a time
+  bool wholePixels = false;  // every call needs all samples of its pixels
 };
 
-// What the camera sees, one point for each pixel, row by row; triangle is kNone where there is
-// nothing to light. `seen`: the light on the way there, mean of the channels, W/(m2 sr).
+// The shading point of each pixel, row by row; its triangle is kNone where there is none.
+// `emission`: light that the camera ray meets before, mean of the channels, W/(m2 sr).
 struct FilmPoints {
   uint32_t width = 0, height = 0;
   std::vector<SurfacePoint> points;
-  std::vector<float> seen;
+  std::vector<float> emission;
 };
 
 // Borrowed until the image is done.
@@ -69,7 +69,7 @@ struct GatherInputs {
 using GatherMethod = Method<Gather (*)(const GatherInputs&, const Values&)>;
 std::span<const GatherMethod* const> gatherMethods();
 
-// A Gather that lights point by point: fn(bsdf) -> Gathered.
+// A Gather that lights each receiver on its own: fn(bsdf) -> Gathered.
 template <typename Fn>
 Gather gatherEach(Fn fn) {
   return {[fn = std::move(fn)](const TileReceivers& tile, std::span<Gathered> out) {

@@ -1,6 +1,6 @@
 #include "tools/render/integrator/path_tracer.h"
 
-#include "tools/render/integrator/camera_vertex.h"
+#include "tools/render/camera_vertex.h"
 #include "transport/leaving_light.h"
 
 namespace bnvpl {

@@ -13,8 +13,8 @@ struct ClusterReceiver {
   AxisFrame normal;
 };
 
-// Upper bound of what a cluster can send, but for 1/d^2 and visibility: BSDF, cosines and intensity,
-// summed over the channels, W/sr.
+// Upper bound of what a cluster can send, but for 1/d^2 and visibility: BSDF, cosines and
+// intensity, summed over the channels, W/sr.
 float sentBound(const LightNode& n, const ClusterReceiver& receiver);
 
 // Squared distance to the farthest point of a box.

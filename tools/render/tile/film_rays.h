@@ -1,10 +1,10 @@
-// What the film shows, pixel by pixel, by a ray of each.
+// One camera ray for each pixel of the film: the surface points that the film shows.
 #pragma once
 
 #include "core/parallel.h"
 #include "tools/common/streams.h"
+#include "tools/render/camera_vertex.h"
 #include "tools/render/gather/gather.h"
-#include "tools/render/integrator/camera_vertex.h"
 #include "transport/camera.h"
 
 namespace bnvpl {
@@ -19,8 +19,8 @@ class FilmRays {
         surfaceLights_(surfaceLights),
         key_(streamKey(seed, Stream::FilmPoints)) {}
 
-  // Without a triangle where nothing rough is seen. `seen`: light without a rough surface between.
-  SurfacePoint point(size_t pixel, float* seen = nullptr) const {
+  // The shading point; its triangle is kNone if there is none. `emission`: mean of the channels.
+  SurfacePoint point(size_t pixel, float* emission = nullptr) const {
     const Scene& scene = rays_.scene();
     const uint32_t width = scene.film.width;
     Rng rng(key_, pixel);
@@ -28,11 +28,11 @@ class FilmRays {
     const float y =
         (static_cast<float>(pixel / width) + rng.next()) / static_cast<float>(scene.film.height);
     RadianceSample sample;
-    SpecularPath path = seeFrom(rays_, lights_, scene.camera.position,
-                                cameraDirection(scene.camera, scene.film, x, y), rng, sample,
-                                {nullptr, surfaceLights_});
+    SpecularPath path = traceCameraPath(rays_, lights_, scene.camera.position,
+                                        cameraDirection(scene.camera, scene.film, x, y), rng,
+                                        sample, {nullptr, surfaceLights_});
     if (!path.rough) path.hit.triangle = kNone;
-    if (seen) *seen = mean(sample.direct);
+    if (emission) *emission = mean(sample.direct);
     return path.hit;
   }
 
@@ -40,9 +40,9 @@ class FilmRays {
     const Film& size = rays_.scene().film;
     FilmPoints film{size.width, size.height, {}, {}};
     film.points.resize(size_t{film.width} * film.height);
-    film.seen.resize(film.points.size());
+    film.emission.resize(film.points.size());
     parallelFor(film.points.size(), 64,
-                [&](size_t i) { film.points[i] = point(i, &film.seen[i]); });
+                [&](size_t i) { film.points[i] = point(i, &film.emission[i]); });
     return film;
   }
 

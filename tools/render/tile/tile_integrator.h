@@ -1,40 +1,40 @@
-// What methods of --integrator have in common that light the samples of a tile together: direct
-// light by shadow rays to what the tile has learned to see, VPLs for all samples at once, and rays
-// whose finds samples share.
+// Renders the samples of a tile together, for the methods vpl and guided of --integrator: direct
+// light by shadow rays to lights that the tile has learned to see, VPLs gathered for all samples at
+// once, and rays for indirect light whose vertices the samples reuse.
 #pragma once
 
 #include <memory>
 #include <optional>
 
 #include "tools/render/gather/gather.h"
-#include "tools/render/integrator/integrator.h"
-#include "tools/render/tile/balance.h"
-#include "tools/render/tile/caustics.h"
-#include "tools/render/tile/direct_samples.h"
-#include "tools/render/tile/indirect_rays.h"
-#include "tools/render/tile/tile_lights.h"
+#include "tools/render/tile/allocation/sample_allocation.h"
+#include "tools/render/tile/caustics/caustics.h"
+#include "tools/render/tile/direct/direct_samples.h"
+#include "tools/render/tile/direct/tile_lights.h"
+#include "tools/render/tile/reuse/indirect_rays.h"
 #include "transport/specular_path.h"
 #include "transport/surface_lights.h"
 
 namespace bnvpl {
 
-// Corrects the indirect light of a tile's samples, which saw `paths`, by what is 0 on average.
-using ControlFn = std::function<void(const TileSamples& tile, std::span<const SpecularPath> paths)>;
+// Adds a control variate, whose mean is 0, to the indirect light of a tile's samples. `paths`:
+// their camera paths.
+using ControlVariateFn =
+    std::function<void(const TileSamples& tile, std::span<const SpecularPath> paths)>;
 
-// Null or empty: it does without.
+// Parts that are null or empty are left out.
 struct TileParts {
-  GatherTile gather;  // of VPLs
+  GatherTile gather;  // VPLs
   std::unique_ptr<const IndirectRays> rays;
-  unsigned raysEach = 0;  // from each shaded point; 0: none
-  unsigned sharers = 1;   // samples that share what rays find
-  std::unique_ptr<const TileLights>
-      lights;              // where direct light comes from, which `lightRays` look
-  unsigned lightRays = 0;  // for; null: one ray to each light
-  std::unique_ptr<const SeenLight> seenLight;
+  unsigned raysEach = 0;  // from each shading point
+  unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse
+  std::unique_ptr<const TileLights> lights;  // null: one shadow ray to each light
+  unsigned lightRays = 0;                    // shadow rays to what the tile has learned to see
+  std::unique_ptr<const VisibleEmission> visibleEmission;
   std::unique_ptr<const Caustics> caustics;
-  ControlFn control;
-  const SurfaceLights* surfaceLights = nullptr;  // tells sharp lobes where to look for lights
-  std::optional<DirectSamples> directSamples;    // camera samples of direct light alone
+  ControlVariateFn control;
+  const SurfaceLights* surfaceLights = nullptr;  // for light sampling at near-specular vertices
+  std::optional<DirectSamples> directSamples;
 };
 
 // Thread-safe and immutable once made.
@@ -42,26 +42,20 @@ class TileIntegrator {
  public:
   TileIntegrator(const RayScene& rays, const LightSet& lights, TileParts parts, Only only)
       : rays_(rays), lights_(lights), parts_(std::move(parts)), only_(only) {}
-  // Without a price: every part as its options say. Returns the mean cost of a sample.
-  double render(const TileSamples& tile, const Balance& balance) const;
+  // Fills in the radiance of the tile's samples. Without a marginal cost every part has the number
+  // of samples that its options say. Returns the mean cost of a sample, in the units of cost::.
+  double render(const TileSamples& tile, const SampleAllocation& allocation) const;
 
  private:
-  struct Vertices;
+  struct ShadingPoints;
+  class RayTracing;
+  ShadingPoints traceCameraPaths(const TileSamples& tile, const LearnedLight& learned) const;
   Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t slot, uint64_t key,
                 Rng& rng) const;
-  void gatherTile(const TileSamples& tile, const Vertices& at, const Balance& balance,
-                  Vec3 direct) const;
-  double addRays(const TileSamples& tile, const Vertices& at, const LearnedLight& learned,
-                 const Balance& balance, Vec3 direct) const;
-  struct SharedLight;
-  class Colours;
-  std::array<unsigned, 2> worthOf(const TileSamples& tile, const Colours& colours,
-                                  std::span<const RaysBrought> brought,
-                                  std::span<const SharedLight> shared, unsigned rays, Vec3 direct,
-                                  const Balance& balance) const;
-  size_t share(const TileSamples& tile, const Vertices& at, std::span<const Directions> directions,
-               const Colours& colours, std::span<const RaysBrought> brought, size_t everySlot,
-               std::span<SharedLight> out) const;
+  void gatherVpls(const TileSamples& tile, const ShadingPoints& points,
+                  const SampleAllocation& allocation, Vec3 direct) const;
+  double addRays(const TileSamples& tile, const ShadingPoints& points, const LearnedLight& learned,
+                 const SampleAllocation& allocation, Vec3 direct) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

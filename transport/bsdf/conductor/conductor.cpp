@@ -6,9 +6,9 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kMostReflectance = 0.9999f;  // 1 would ask for an infinite k
+constexpr float kMaxReflectance = 0.9999f;  // 1 would ask for an infinite k
 float kOfReflectance(float r) {
-  r = std::clamp(r, 0.0f, kMostReflectance);
+  r = std::clamp(r, 0.0f, kMaxReflectance);
   return 2.0f * std::sqrt(r) / std::sqrt(1.0f - r);
 }
 

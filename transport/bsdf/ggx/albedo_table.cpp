@@ -13,7 +13,7 @@ namespace {
 
 // Nodes are denser where cosine and alpha are small.
 constexpr size_t kCosines = 24, kAlphas = 28, kIors = 13;
-constexpr float kLeastCosine = 1e-4f, kLargestIor = 3.0f;
+constexpr float kMinCosine = 1e-4f, kLargestIor = 3.0f;
 BetweenNodes ofCosine(float c) { return betweenSquared(c, kCosines); }
 BetweenNodes ofAlpha(float a) { return betweenSquared(a, kAlphas); }
 BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kLargestIor - 1.0f), kIors); }
@@ -23,7 +23,7 @@ BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kLargestIo
 template <typename Fn>
 void overVisibleFacets(float cosine, float alpha, const Fn& fn) {
   constexpr uint32_t kPoints = 512;
-  const float co = std::max(kLeastCosine, cosine);
+  const float co = std::max(kMinCosine, cosine);
   const Vec3 wo{std::sqrt(1.0f - co * co), 0.0f, co};
   const Ggx ggx{std::max(kSmoothAlpha, alpha), std::max(kSmoothAlpha, alpha)};
   for (uint32_t i = 0; i < kPoints; ++i) {
@@ -190,7 +190,7 @@ float schlickOverHemisphere(float cosine) {
     std::array<float, kCosines> t{};
     constexpr int kSide = 48;
     for (size_t j = 0; j < kCosines; ++j) {
-      const float co = std::max(kLeastCosine, nodeSquared(j, kCosines));
+      const float co = std::max(kMinCosine, nodeSquared(j, kCosines));
       const Vec3 wo{std::sqrt(1.0f - co * co), 0.0f, co};
       for (int i = 0; i < kSide * kSide; ++i) {
         const Vec3 wi = sampleCosineHemisphere((float(i % kSide) + 0.5f) / kSide,

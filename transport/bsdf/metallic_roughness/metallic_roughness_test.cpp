@@ -40,24 +40,24 @@ TEST(MetallicRoughness, ExtensionsKeepToIt) {
 }
 
 // Others share light by it: no eye may change it, and what is left should be little but gloss.
-TEST(MetallicRoughness, MattPartIsTheSameFromEverywhereAndNearTheBase) {
+TEST(MetallicRoughness, DiffusePartIsTheSameFromEverywhereAndNearTheBase) {
   const Scene scene = sceneOf(materialOf(gltf(0.4f, 0.8f)));
   const Vec3 wi = normalize({-0.3f, 0.2f, 1});
   Vec3 first;
   for (const Vec3 wo : {Vec3{0, 0, 1}, normalize({0.5f, 0.1f, 1}), normalize({-2, 1, 1})}) {
     const SurfacePoint p = seenFrom(wo);
     const Bsdf bsdf(scene, p);
-    const MattPart part = bsdf.mattPart();
+    const DiffusePart part = bsdf.diffusePart();
     if (isBlack(first)) first = part.value;
     EXPECT_EQ(part.value, first);
     EXPECT_EQ(part.leaving.towards(wo), 1.0f);
-    const Vec3 all = bsdf.eval(LobeGroup::Rough, wi) * (1.0f / mattCosine(p, wi));
+    const Vec3 all = bsdf.eval(LobeGroup::Rough, wi) * (1.0f / diffuseCosine(p, wi));
     for (int c = 0; c < 3; ++c) EXPECT_LT(part.value[c], 1.2f * all[c]) << c;
   }
   EXPECT_GT(first.x, 0.5f * 0.6f * 0.9f / kPi);
   const Scene metal = sceneOf(materialOf(gltf(1.0f, 0.8f)));
   const SurfacePoint p = seenFrom({0, 0, 1});
-  EXPECT_TRUE(isBlack(Bsdf(metal, p).mattPart().value));
+  EXPECT_TRUE(isBlack(Bsdf(metal, p).diffusePart().value));
 }
 
 // Appendix B.3.5, in its own words.

@@ -26,14 +26,14 @@ PhongBsdf::PhongBsdf(const Scene& scene, const PhongModel& m, const SurfacePoint
     mirror_ *= k;
   }
   exponent_ = m.exponent;
-  sharp_ = isSharp(m) && !isBlack(glossy_);
+  nearSpecular_ = isNearSpecular(m) && !isBlack(glossy_);
   if (const float sum = maxComponent(diffuse_ + glossy_ + mirror_); sum > 1.0f) {
     diffuse_ *= 1.0f / sum;
     glossy_ *= 1.0f / sum;
     mirror_ *= 1.0f / sum;
   }
   const float rough = maxComponent(roughAlbedo());
-  const float chain = maxComponent(mirror_ + (sharp_ ? glossy_ : Vec3{}));
+  const float chain = maxComponent(mirror_ + (nearSpecular_ ? glossy_ : Vec3{}));
   if (chain > 0.0f) specularProbability_ = chain / (chain + rough);
   if (specularProbability_ < kMinProbability) specularProbability_ = 0.0f;
   const float d = maxComponent(diffuse_), g = maxComponent(roughGlossy());
@@ -57,14 +57,14 @@ Vec3 PhongBsdf::eval(const SurfacePoint& point, LobeGroup group, Vec3 wi) const 
   const float cosine = dot(point.ns, wi);
   if (glass_ || dot(point.ng, wi) <= 0.0f || cosine <= 0.0f) return {};
   Vec3 value = group == LobeGroup::Rough ? diffuseValue() : Vec3{};
-  if (sharp_ == (group == LobeGroup::Specular) && !isBlack(glossy_))
+  if (nearSpecular_ == (group == LobeGroup::Specular) && !isBlack(glossy_))
     value += glossyBound(dot(glossyAxis(point), wi));
   return value * cosine;
 }
 
 float PhongBsdf::pdf(const SurfacePoint& point, LobeGroup group, Vec3 wi) const {
   if (glass_ || dot(point.ng, wi) <= 0.0f) return 0.0f;
-  if (group == LobeGroup::Specular && !sharp_) return 0.0f;
+  if (group == LobeGroup::Specular && !nearSpecular_) return 0.0f;
   return groupPdf(group, dot(point.ns, wi), dot(glossyAxis(point), wi));
 }
 
@@ -129,7 +129,7 @@ bool PhongBsdf::sample(const SurfacePoint& point, LobeGroup group, Transport tra
     return sampleDiffuse(point, photons, shading, at, out);
   const Vec3 lobeAxis = glossyAxis(point);
 
-  if (group == LobeGroup::Specular && !sharp_) {
+  if (group == LobeGroup::Specular && !nearSpecular_) {
     out.wi = lobeAxis;
     out.weight = mirror_ * shading;
     if (photons) out.weight *= dot(ng, out.wi) / std::max(1e-6f, dot(ns, out.wi));
@@ -148,7 +148,7 @@ bool PhongBsdf::sample(const SurfacePoint& point, LobeGroup group, Transport tra
   out.pdf = groupPdf(group, photons ? cosGeometric : cosShading, dot(lobeAxis, out.wi));
   if (!(out.pdf > 0.0f)) return false;
   Vec3 value = group == LobeGroup::Rough ? diffuseValue() : Vec3{};
-  if (sharp_ == (group == LobeGroup::Specular) && !isBlack(glossy_))
+  if (nearSpecular_ == (group == LobeGroup::Specular) && !isBlack(glossy_))
     value += glossyBound(dot(lobeAxis, out.wi));
   const float cosine = photons ? cosGeometric * shading : std::max(0.0f, cosShading);
   out.weight = value * (cosine / out.pdf);

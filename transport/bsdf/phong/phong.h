@@ -9,7 +9,7 @@
 namespace bnvpl {
 
 // Phong exponents above this are "specular": alpha = sqrt(2 / (n + 2)) below 0.3.
-inline constexpr float kSharpExponent = 20.0f;
+inline constexpr float kNearSpecularExponent = 20.0f;
 
 class PhongBsdf {
  public:
@@ -22,11 +22,11 @@ class PhongBsdf {
   std::optional<RoughLeaving> roughLeaving(const SurfacePoint& point) const {
     return diffuseOnly() ? std::optional(RoughLeaving{point.ng, point.ns}) : std::nullopt;
   }
-  MattPart mattPart(const SurfacePoint& point) const {
+  DiffusePart diffusePart(const SurfacePoint& point) const {
     return {RoughLeaving{point.ng, point.ns}, diffuseValue()};
   }
   float specularProbability() const { return specularProbability_; }
-  bool specularIsDelta() const { return !sharp_; }
+  bool specularIsDelta() const { return !nearSpecular_; }
   float reflectance() const;
 
   Vec3 eval(const SurfacePoint& point, LobeGroup group, Vec3 wi) const;
@@ -49,7 +49,7 @@ class PhongBsdf {
   }
 
  private:
-  Vec3 roughGlossy() const { return sharp_ ? Vec3{} : glossy_; }
+  Vec3 roughGlossy() const { return nearSpecular_ ? Vec3{} : glossy_; }
   float groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const;
   Vec3 glossyBound(float cosAlpha) const;  // Phong lobe without the cosine
   bool sampleDiffuse(const SurfacePoint& point, bool photons, float shading, Point2 at,
@@ -58,15 +58,15 @@ class PhongBsdf {
 
   Vec3 diffuse_, glossy_, mirror_, transmission_;
   float exponent_ = 0.0f, ior_ = 1.5f;
-  bool sharp_ = false, glass_ = false;
+  bool nearSpecular_ = false, glass_ = false;
   float specularProbability_ = 0.0f;
   float diffuseShare_ = 1.0f;  // of the rough samples that go to the diffuse lobe
 };
 
-inline bool isSharp(const PhongModel& m) { return m.exponent > kSharpExponent; }
+inline bool isNearSpecular(const PhongModel& m) { return m.exponent > kNearSpecularExponent; }
 // Whether the model has lobes of the specular group.
 inline bool hasSpecularLobes(const PhongModel& m) {
-  return m.glass || !isBlack(m.mirror) || (!isBlack(m.glossy) && isSharp(m));
+  return m.glass || !isBlack(m.mirror) || (!isBlack(m.glossy) && isNearSpecular(m));
 }
 
 }  // namespace bnvpl

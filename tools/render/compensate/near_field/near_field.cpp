@@ -9,25 +9,23 @@ namespace bnvpl {
 
 namespace {
 
-// VPLs that were placed from the lights stand for all surfaces by chance, without a reach of their
-// own.
+// Distance, in r_max, within which a photon's VPL covers a point; it has no reach of its own.
 constexpr float kReachWithoutPhotons = 2.0f;
-// Points of a VPL's disk that its area is measured with: as many as find its surface so often.
-// Where the last still fall short there are slivers, whose area, and so whose radiance, is not
-// known.
+// A VPL's area is measured with kAreaPoints points of its disk, or up to kMaxAreaPoints until
+// kMinFound of them lie on its surface. Surfaces that even these miss are slivers of unknown area.
 constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
-// A ray shorter than this many r_max has found a crevice or a corner, where the light differs from
-// the mean of the VPL's surroundings: the point's own light is found out instead (measured:
+// A ray shorter than this many r_max ends in a crevice or a corner, where the light differs from
+// the mean over the VPL's surface: further rays find the point's own light instead (measured:
 // docs/theory.md, "Near field").
 constexpr float kShortRay = 0.7f;
-constexpr float kUnknown = -1.0f;  // area that nobody has asked for
+constexpr float kUnknown = -1.0f;  // an area that is not measured yet
 
 std::vector<float> scaled(std::vector<float> values, float factor) {
   for (float& v : values) v *= factor;
   return values;
 }
 
-// Area of the surface that VPL i speaks for, world units squared. 0: not known.
+// Area of the surface that VPL i covers, world units squared; 0 if unknown.
 float areaOf(uint32_t i, const Coverage& coverage) {
   float sum = 0.0f;
   uint32_t points = 0, found = 0;
@@ -52,13 +50,13 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, Lig
       kind_(kind),
       clampRadius_(scaled(lit.radius, clamp)),
       area_(lit.size()),
-      gaps_(lit.reach > 0.0) {
+      covers_(lit.reach > 0.0) {
   for (std::atomic<float>& area : area_) area = kUnknown;
 }
 
 std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
-  if (!gaps_) return {};  // the flux of a photon says nothing of the area around it
-  // Two threads may measure one area; both find the same.
+  if (!covers_) return {};  // a photon's flux belongs to no area
+  // Two threads may measure the same area; both find the same value.
   float area = area_[vpl].load(std::memory_order_relaxed);
   if (area == kUnknown) {
     area = areaOf(vpl, coverage_);
@@ -68,11 +66,11 @@ std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
   return (lit_.flux[vpl] - lit_.firstBounceFlux[vpl]) * (1.0f / (kPi * area));
 }
 
-Missing NearField::missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
-                           Rng& rng) const {
-  const Coverage::Found found = coverage_.pick(seen.position, seen.ng, near, rng);
+Uncovered NearField::uncovered(const SurfacePoint& point, float distance,
+                               const ReachGrid::Lookup& near, Rng& rng) const {
+  const Coverage::Found found = coverage_.pick(point.position, point.ng, near, rng);
   if (!found.vpl) {
-    return {gaps_ ? 1.0f : 0.0f, {}, {gaps_ ? INFINITY : 0.0f, INFINITY, kind_}};
+    return {covers_ ? 1.0f : 0.0f, {}, {covers_ ? INFINITY : 0.0f, INFINITY, kind_}};
   }
   const float relative = distance / clampRadius_[*found.vpl];
   const float share = withKind(kind_, [&](auto k) { return k.removed(relative); });
@@ -91,9 +89,9 @@ Compensation make(const CompensateInputs& in, const Values&) {
       [field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) {
         field->coverage().lookUp(hits, near);
       },
-      [field](const SurfacePoint& seen, float distance, const ReachGrid::Lookup* near, Rng& rng) {
-        return field->missing(seen, distance,
-                              near ? *near : field->coverage().lookUp(seen.position), rng);
+      [field](const SurfacePoint& point, float distance, const ReachGrid::Lookup* near, Rng& rng) {
+        return field->uncovered(point, distance,
+                                near ? *near : field->coverage().lookUp(point.position), rng);
       }};
 }
 
@@ -101,7 +99,10 @@ Compensation make(const CompensateInputs& in, const Values&) {
 
 extern const CompensateMethod method;
 const CompensateMethod method{
-    "near-field", "sampled rays bring what the clamp and gaps between VPLs take", {}, make};
+    "near-field",
+    "sampled rays add the light that the clamp removes and that comes from areas without a VPL",
+    {},
+    make};
 
 }  // namespace methods::compensate::near_field
 

@@ -1,6 +1,6 @@
-// What the VPLs leave out of the light from one surface point to another: the part of 1/d^2 that
-// the clamp removes, and all light from points that no VPL stands for. Sampled rays bring exactly
-// that back (Kollig & Keller 2006, with the VPLs' own bound and gaps).
+// The light that VPLs leave out between two surface points: the part of 1/d^2 that the clamp
+// removes, and all light from points that no VPL covers. Sampled rays add exactly that (Kollig &
+// Keller 2006).
 #pragma once
 
 #include <atomic>
@@ -15,16 +15,17 @@ namespace bnvpl {
 
 class NearField {
  public:
-  // Borrows the table and the scene. `clamp` and `kind` as for makeVplLights().
+  // Borrows the table and the scene. `clamp` and `kind`: those of makeVplLights().
   NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {});
 
-  // `near`: what coverage() finds at the point.
-  Missing missing(const SurfacePoint& seen, float distance, const ReachGrid::Lookup& near,
-                  Rng& rng) const;
+  // `near`: the result of coverage().lookUp() for the point.
+  Uncovered uncovered(const SurfacePoint& point, float distance, const ReachGrid::Lookup& near,
+                      Rng& rng) const;
   const Coverage& coverage() const { return coverage_; }
 
  private:
-  // Of Missing: mean of the surface that the VPL speaks for; empty where that is not known.
+  // Mean of Uncovered::scattered over the surface that the VPL covers; empty if its area is
+  // unknown.
   std::optional<Vec3> scatteredBy(uint32_t vpl) const;
 
   const VplTable& lit_;
@@ -32,10 +33,10 @@ class NearField {
   Coverage coverage_;
   LightKind kind_;
   std::vector<float> clampRadius_;  // of each VPL, world units
-  // Of that surface, world units squared; measured when it is first asked for, as an image of few
-  // pixels meets few of many VPLs.
+  // Area of the surface that each VPL covers, world units squared. It is measured on first use,
+  // because an image of few pixels meets few of many VPLs.
   mutable std::vector<std::atomic<float>> area_;
-  bool gaps_;  // whether a point without a VPL is a gap: not for VPLs from the lights
+  bool covers_;  // whether VPLs cover areas: photons' VPLs, which lie on surfaces by chance, do not
 };
 
 }  // namespace bnvpl

@@ -28,7 +28,7 @@ VplTable withoutThoseThatLookLeft(const VplTable& vpls) {
 }
 
 // A generous clamp takes much of the light; rays give back what it takes. And where VPLs are
-// missing altogether, here on every surface that looks to the left, rays carry all.
+// uncovered altogether, here on every surface that looks to the left, rays carry all.
 TEST(NearField, GivesBackWhatClampAndGapsTake) {
   World world("cornell/scene.toml");
   world.scene.film = {48, 48};
@@ -105,8 +105,9 @@ double distanceToAShareOfAVplThatReaches(const VplTable& lit, const SurfacePoint
   return nearest;
 }
 
-Missing missingAt(const NearField& nearField, const SurfacePoint& hit, float distance, Rng& rng) {
-  return nearField.missing(hit, distance, nearField.coverage().lookUp(hit.position), rng);
+Uncovered uncoveredAt(const NearField& nearField, const SurfacePoint& hit, float distance,
+                      Rng& rng) {
+  return nearField.uncovered(hit, distance, nearField.coverage().lookUp(hit.position), rng);
 }
 
 // In the furnace every surface sends out rho^2 / (1 - rho) of light that came by way of another. So
@@ -130,12 +131,12 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
                                    : Vec3{u, v, side};
     if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
     const float distance = 0.8f * clamp * lit.radius[0];
-    const Missing missing = missingAt(nearField, hit, distance, rng);
-    if (!missing.scattered) continue;
+    const Uncovered uncovered = uncoveredAt(nearField, hit, distance, rng);
+    if (!uncovered.scattered) continue;
     ++known;
-    sum += double{missing.scattered->x};
-    EXPECT_LT(distanceToAShareOfAVplThatReaches(lit, hit, distance / clamp, missing.share), 1e-5)
-        << missing.share;
+    sum += double{uncovered.scattered->x};
+    EXPECT_LT(distanceToAShareOfAVplThatReaches(lit, hit, distance / clamp, uncovered.share), 1e-5)
+        << uncovered.share;
   }
   ASSERT_GT(known, 3000);
   EXPECT_NEAR(sum / known, 0.5, 0.015);
@@ -165,9 +166,9 @@ TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
     SurfacePoint hit;
     EXPECT_TRUE(rays.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
     Rng rng(streamKey(1, Stream::PixelSamples), 0);
-    const Missing missing = missingAt(NearField(lit, rays, 2.0f), hit, 1.0f, rng);
-    EXPECT_NEAR(missing.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
-    return missing.scattered;
+    const Uncovered uncovered = uncoveredAt(NearField(lit, rays, 2.0f), hit, 1.0f, rng);
+    EXPECT_NEAR(uncovered.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
+    return uncovered.scattered;
   };
   const auto known = [](float area) { return (3.0f - 1.0f) / (kPi * area); };
   for (const float width : {3.0f, 1.0f, 0.25f}) {

@@ -19,8 +19,8 @@ using Probes = std::array<const Bsdf*, kProbes>;
 constexpr float kBlockedShare = 0.01f;
 // A probe that is darker than this share of the tile's mean counts as if it were not.
 constexpr float kDarkest = 0.2f;
-// Of the variance that the model foresees, where a price asks what it is worth. A sixteenth of it
-// is measured (theory.md); but sixteen pixels share the error, which a person sees as grain.
+// Of the variance that the model foresees, where a marginalCost asks what it is worth. A sixteenth
+// of it is measured (theory.md); but sixteen pixels share the error, which a person sees as grain.
 constexpr double kWorth = 0.5;
 // Roulette on small contributions may add this share to the variance that is allowed.
 constexpr float kRouletteShare = 0.5f;
@@ -71,7 +71,7 @@ Probes chooseProbes(const TileReceivers& tile) {
   }
   Probes probes{};
   for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
-    probes[k] = lit[random64(tile.key, k, kDrawProbe) % lit.size()];
+    probes[k] = lit[random64(tile.key, k, kDimProbe) % lit.size()];
   }
   return probes;
 }
@@ -89,7 +89,7 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
     const Vec3 from = rays.offsetOrigin(b.point().position, b.point().ng);
     for (const uint32_t node : tree.startCut) {
       const LightNode& n = tree.nodes[node];
-      const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDrawVpl)));
+      const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDimVpl)));
       Coupling c;
       if (!couple(vpls, vpl.index, b, c)) continue;
       const Vec3 part = c.transfer * vpls.intensity[vpl.index] * vpl.weight;
@@ -128,21 +128,22 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
   std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
   for (float& l : light) {
     l += tile.otherLight;
-    if (l > tile.filmLight) l = std::sqrt(l * tile.filmLight);  // as Balance::over
+    if (l > tile.filmLight) l = std::sqrt(l * tile.filmLight);  // as SampleAllocation::over
   }
   const ProbeLanes all(probes, light);
   TileCut cut;
   const double most =
       double{options.error} * double{options.error} * double(tile.allSlots) * double{kProbes};
   // Opening a cluster leaves about half of its variance and costs a ray.
-  const double least = 2.0 * tile.price * double{kProbes} / kWorth;
+  const double least = 2.0 * tile.marginalCost * double{kProbes} / kWorth;
   const auto allowed = static_cast<float>(std::max(most, least) / double{kProbes});
   const float darkest = *std::min_element(light.begin(), light.end());
   cut.allowed = std::sqrt(allowed) * darkest;
-  // A ray that is traced with probability q leaves c^2 (1/q - 1) of what brings c: worth the price
-  // is q = c / sqrt(price).
+  // A ray that is traced with probability q leaves c^2 (1/q - 1) of what brings c: worth the
+  // marginalCost is q = c / sqrt(marginalCost).
   cut.negligible =
-      std::max(kRouletteShare * allowed, static_cast<float>(std::sqrt(tile.price))) * darkest;
+      std::max(kRouletteShare * allowed, static_cast<float>(std::sqrt(tile.marginalCost))) *
+      darkest;
   double sum = 0.0;
   std::vector<Open> heap;
   const auto insert = [&](uint32_t node) {

@@ -6,11 +6,9 @@
 
 #include "tools/render/gather/gather.h"
 #include "tools/render/light_tree/cut_options.h"
+#include "tools/render/tile_dimensions.h"
 
 namespace bnvpl {
-
-// Dimensions of a tile's random numbers.
-enum TileDraw : uint32_t { kDrawProbe, kDrawVpl, kDrawShift, kDrawPacket, kDrawRoulette };
 
 struct TileCutOptions {
   float error = 0.05f;     // standard deviation to allow a pixel, as a share of its tile's light

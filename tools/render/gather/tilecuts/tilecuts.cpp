@@ -29,7 +29,7 @@ constexpr uint32_t kSquare = 8;
 // Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
 uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
   const uint32_t square = y / kSquare << 16 | x / kSquare;
-  const auto turn = static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDrawPacket) % 4);
+  const auto turn = static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDimPacket) % 4);
   return square << 2 | ((y % 2 << 1 | x % 2) ^ turn);
 }
 
@@ -68,7 +68,7 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
                         (static_cast<float>(number) + 0.5f) / static_cast<float>(ofSlot)) /
                        static_cast<float>(tile.allSlots);
       packet.rouletteKey = mix64(tile.key + imageSlot);
-      packet.rouletteDraw = kDrawRoulette + static_cast<uint32_t>(number);
+      packet.rouletteDraw = kDimRoulette + static_cast<uint32_t>(number);
       const size_t begin = number * lit.size() / ofSlot, end = (number + 1) * lit.size() / ofSlot;
       for (size_t k = begin; k < end; ++k) {
         const uint32_t pixel = lit[k] % tile.pixels;
@@ -116,7 +116,7 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
     brightest = std::max(brightest, packet.brightest);
   }
   const auto take = [&](uint32_t node, ReceiverPacket& packet) {
-    const float u = packet.stratum + toUnitFloat(random64(tile.key, node, kDrawShift));
+    const float u = packet.stratum + toUnitFloat(random64(tile.key, node, kDimStratum));
     queue.add(packet, tree.draw(tree.nodes[node], u < 1.0f ? u : u - 1.0f), node, cut.negligible);
     ++packet.clusters;
   };

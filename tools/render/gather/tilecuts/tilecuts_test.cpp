@@ -114,7 +114,7 @@ TEST(TileCuts, LampsInSightHideHalfOfTheError) {
                        {"spp", "4"},
                        {"compensate", "none"},
                        {"control", "none"},
-                       {"specks", "keep"},
+                       {"fireflies", "keep"},
                        {"layers", "direct,indirect"}})
         .image;
   };

@@ -30,7 +30,8 @@ TEST(Ward, SavesShadowRays) {
 TEST(Ward, TellsOfItsPreparations) {
   const GatherCase& c = *gatherCases().front();
   Preparations told;
-  const Values options = resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}, {"only", "indirect"}}));
+  const Values options =
+      resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}, {"only", "indirect"}}));
   render(c.world.rays, c.world.lights, c.lit, options, told.progress);
   EXPECT_EQ(told.names, std::vector<std::string>{"visibility pilot, VPLs"});
 }

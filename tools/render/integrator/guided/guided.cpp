@@ -5,7 +5,7 @@
 #include "tools/common/streams.h"
 #include "tools/render/integrator/guided/guided_rays.h"
 #include "tools/render/integrator/path_tracer.h"
-#include "tools/render/tile/tile_options.h"
+#include "tools/render/integrator/tile_options.h"
 
 namespace bnvpl::methods::integrator::guided {
 
@@ -20,16 +20,17 @@ constexpr std::array kOptions{
     neededBy(kRaysAreSent, wholeOption("guide-rays", "256", 0, 1024, "",
                                        "rays from each VPL that learn from where light comes; "
                                        "fewer in a short render")),
-    neededBy(kRaysAreSent,
-             wholeOption("paths", "8", 1, 4096, "",
-                         "of indirect light from each shaded point, with --balance on a quarter of "
-                         "them to four times as many")),
-    sharersOption("32",
-                  "samples of a tile that share the light of what their paths hit first, where "
-                  "that is matt; 1: none"),
+    neededBy(
+        kRaysAreSent,
+        wholeOption("paths", "8", 1, 4096, "",
+                    "of indirect light from each shaded point, with --allocate on a quarter of "
+                    "them to four times as many")),
+    reuseOption("32",
+                "samples of a tile that share the light of what their paths hit first, where "
+                "that is matt; 1: none"),
     controlOption("none"),
-    balanceOption("by pilots, paths and direct samples where they take most noise from the film"),
-    specksOption("keep")};
+    allocateOption("by pilots, paths and direct samples where they take most noise from the film"),
+    firefliesOption("keep")};
 
 // Rays that learn are to cost little beside the paths.
 constexpr uint64_t kPathsPerRay = 2;
@@ -49,7 +50,7 @@ uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
 struct Parts {
   std::unique_ptr<const SurfaceLights> surfaceLights;
   std::unique_ptr<const TileIntegrator> integrator;
-  Balance balance = {};
+  SampleAllocation allocation = {};
 };
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
@@ -71,11 +72,11 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
         *parts->surfaceLights, options.real32("guide-share"), tile.raysEach, maxBouncesOf(options),
         in.only);
   }
-  if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
+  if (indirect) tile.reuse = static_cast<unsigned>(options.whole("reuse"));
   const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
   const bool controlled = indirect && options.text("control") == "vpls";
   const FilmPoints film = controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
-  if (controlled) tile.control = makeControl(in, film);
+  if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
                                tile.raysEach * options.whole("spp"));
@@ -83,14 +84,15 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
-  parts->balance = balanceOf(in, options, *parts->integrator);
-  return {
-      [parts](const TileSamples& samples) { parts->integrator->render(samples, parts->balance); },
-      {},
-      false,
-      0,
-      lamps,
-      sparse};
+  parts->allocation = allocationOf(in, options, *parts->integrator);
+  return {[parts](const TileSamples& samples) {
+            parts->integrator->render(samples, parts->allocation);
+          },
+          {},
+          false,
+          0,
+          lamps,
+          sparse};
 }
 
 }  // namespace

@@ -167,7 +167,7 @@ TEST(Guided, SharedPathsHaveThePathTracersImage) {
     const Given indirect{{"only", "indirect"}};
     EXPECT_TRUE(sameExpectation(
         paths(world, with(indirect, {{"spp", "128"}})),
-        guided(world, lit, with(indirect, {{"spp", "16"}, {"sharers", "16"}, {"paths", "2"}}))));
+        guided(world, lit, with(indirect, {{"spp", "16"}, {"reuse", "16"}, {"paths", "2"}}))));
   }
 }
 

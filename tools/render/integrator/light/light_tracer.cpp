@@ -1,7 +1,7 @@
 #include "tools/render/integrator/light/light_tracer.h"
 
 #include "tools/common/streams.h"
-#include "tools/render/integrator/film_connection.h"
+#include "tools/render/splat/film_connection.h"
 
 namespace bnvpl {
 

@@ -1,7 +1,7 @@
 // Light tracing (Dutre, Lafortune & Willems 1993), the adjoint of path tracing.
 #pragma once
 
-#include "tools/render/integrator/splats.h"
+#include "tools/render/splat/splat.h"
 #include "transport/lights.h"
 #include "transport/photon_walk.h"
 

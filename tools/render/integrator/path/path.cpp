@@ -13,7 +13,7 @@ constexpr std::array kOptions{
     switchOption("light-sampling", "on",
                  "shadow rays to lamps and sky; off: rays of the BSDF alone find them, but for "
                  "lights that no ray can hit"),
-    specksOption("keep")};
+    firefliesOption("keep")};
 
 struct Parts {
   LightSet lights;

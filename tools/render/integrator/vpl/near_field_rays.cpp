@@ -9,153 +9,207 @@ namespace bnvpl {
 
 namespace {
 
-// Vertices beyond the first that a near-field ray may add; each follows with the missing share
-// alone.
+// Vertices that a path may add to its first. Each follows with the probability of the uncovered
+// share alone.
 constexpr unsigned kMaxExtensions = 16;
-// VPLs that light what a near-field ray found, which has more noise of its own the further it is
-// down the path (measured: docs/theory.md, "Near field").
+// VPLs that light a vertex: few, and fewer later on the path, whose noise counts less (measured:
+// docs/theory.md, "Near field").
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
-// Shadow rays to lights from the first such point.
+// Shadow rays to lights from the first vertex.
 constexpr unsigned kFirstLightRays = 4;
-// What rough lobes that VPLs bring are taken to be worth all the same: rays that go on cost more.
-constexpr float kLeastWorth = 0.1f;
-// In units of cost:: (measured: theory.md).
+// Least importance of rough lobes whose light VPLs carry: such rays may go on, which costs more.
+constexpr float kMinImportance = 0.1f;
+// In the units of cost:: (measured: theory.md).
 constexpr double kCostOfRay = 16.0;
 
 }  // namespace
 
 double NearFieldRays::costOfRay() const { return kCostOfRay; }
 
-void NearFieldRays::send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
-                         RaysBrought& out) const {
+void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
+                         RayContributions& out) const {
   std::array<ReachGrid::Lookup, RayScene::kBatch> near;
   sendRays(
-      rays_, from, shares_, count, first, key, out,
+      rays_, from, misRays_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
         if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, near);
       },
-      [&](size_t k, const FirstLink& link) { follow(link, near[k], from.shares, out); });
+      [&](size_t k, const FirstSegment& segment) { follow(segment, near[k], from.reuse, out); });
 }
 
-// One ray for the light over a mirror, glass or sharp lobe (VPLs shine in straight lines), and for
-// what Compensation says is missing: either from the scattered light that a VPL knows where it
-// speaks for the point that the ray found, or else by lighting that point as the first one, and so
-// on. A light that it meets is the other half of the MIS of light sampling. All else is left to the
-// VPLs.
-void NearFieldRays::follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
-                           RaysBrought& out) const {
-  Rng rng = start.rng;
-  Vec3 throughput = start.throughput;
-  // From a hit that others share `throughput` is counted anew.
-  SharedHit hit;
-  bool shared = false;
-  float factor = 0.0f;  // of its RoughLeaving, towards this ray
-  const auto add = [&](Vec3 light) {
-    if (shared) {
-      hit.radiance += light;
+// A path from a shading point. A segment leads from a rough vertex over specular vertices to the
+// next rough one.
+struct NearFieldRays::Path {
+  const FirstSegment& start;
+  RayContributions& out;
+  Rng rng;
+  Vec3 throughput;  // from the camera, or once the path has a reused vertex, from there
+  SpecularPath segment = {};
+  unsigned segments = 1;
+  Vec3 light = {};  // found, but not added yet
+  LearnedStrata strata = {};
+  // Set where the first hit offers specular and rough lobes: the uncovered share decided how often
+  // the path took the rough ones.
+  std::optional<Uncovered> atFirstHit = {};
+  float roughImportance = 1.0f;
+  std::optional<ReusedVertex> reused = {};
+  float towardsStart = 0.0f;  // factor of its RoughLeaving
+
+  bool isFirst() const { return segments == 1; }
+  bool isStraight() const { return segment.links == 0; }
+  bool choseLobes() const { return isFirst() && isStraight() && atFirstHit; }
+
+  LearnedLight learned(unsigned rays) const { return {strata.all ? &strata : nullptr, rays}; }
+
+  void addLight() {
+    if (isBlack(light)) return;
+    if (reused) {
+      reused->radiance += light;
       light = start.throughput * light;
-      out.ofHits += light;
+      out.vertexLight += light;
     }
     out.compensated += light;
     out.indirect += light;
-  };
-  const auto done = [&] {
-    if (!shared) return;
-    hit.radiance *= 1.0f / factor;
-    out.hits.push_back(hit);
-  };
-  LearnedStrata strata;
-  // What VPLs bring of the first hit's rough lobes, rays need not: they take the specular ones.
-  std::optional<Missing> atFirst;
-  if (start.hit->triangle != kNone && only_ != Only::Direct &&
-      mayBeSpecular(rays_.scene().materials[start.hit->material]))
-    atFirst = missingFrom(*start.hit, true, &near, rng);
-  const float roughWorth = atFirst ? std::max(kLeastWorth, atFirst->share) : 1.0f;
-  SpecularPath end = followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival,
-                                        rng, {nullptr, surfaceLights_}, roughWorth);
-  for (unsigned links = 1;; ++links) {
-    const bool first = links == 1;
-    if (first && only_ != Only::Indirect) out.direct += throughput * end.metFirst;
-    if (only_ == Only::Direct) return done();
-    Vec3 light = throughput * (end.metLater + (first ? Vec3{} : end.metFirst));
-    const bool straight = end.links == 0;
-    const bool atFirstHit = first && straight;
-    const bool chosen = atFirstHit && atFirst;  // lobes, by their worth
-    const Missing missing = !end.rough ? Missing{}
-                            : chosen
-                                ? *atFirst
-                                : missingFrom(end.hit, straight, atFirstHit ? &near : nullptr, rng);
-    throughput *= end.throughput;
-    if (!(missing.share > 0.0f)) {
-      add(light);
-      return done();
+    light = {};
+  }
+  // From here on the path finds the radiance that leaves its first vertex, for its own sample and
+  // for those that reuse the vertex.
+  void makeReusable(const Uncovered& uncovered, const Bsdf& bsdf) {
+    if (!isFirst() || !isStraight() || !(uncovered.byDistance.within > 0.0f)) return;
+    const std::optional<RoughLeaving> leaving = bsdf.roughLeaving();
+    towardsStart = leaving ? leaving->towards(segment.hit.wo) : 0.0f;
+    if (!(towardsStart > 0.0f)) return;
+    addLight();
+    reused = {segment.hit.position, segment.hit.ng, *leaving, {}, uncovered.byDistance};
+    throughput = segment.throughput;
+  }
+  void finish() {
+    if (!reused) return;
+    reused->radiance *= 1.0f / towardsStart;
+    out.vertices.push_back(*reused);
+  }
+};
+
+// Estimates the light that a ray adds to the VPLs' light. Emission that a segment meets is one half
+// of MIS with light sampling. At a rough vertex the path
+//   - ends where VPLs carry all of its light (uncovered share 0);
+//   - weights the vertex by the uncovered share and ends there, if a VPL knows the radiance that
+//     leaves it; only the first-bounce light is found anew, by shadow rays;
+//   - otherwise survives with the probability of the uncovered share, is lit like a shading point
+//     by lights and VPLs, and goes on in a direction sampled from the BSDF.
+void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& near, bool reuse,
+                           RayContributions& out) const {
+  Path path{start, out, start.rng, start.throughput};
+  begin(path, near);
+  for (bool goesOn = true; goesOn; ++path.segments) {
+    const SpecularPath& segment = path.segment;
+    const bool first = path.isFirst();
+    if (first && only_ != Only::Indirect) out.direct += path.throughput * segment.metFirst;
+    if (only_ == Only::Direct) break;
+    path.light = path.throughput * (segment.metLater + (first ? Vec3{} : segment.metFirst));
+    Uncovered uncovered;
+    if (path.choseLobes() && segment.rough) {
+      uncovered = *path.atFirstHit;
+    } else if (segment.rough) {
+      uncovered = uncoveredAt(segment.hit, path.isStraight(),
+                              first && path.isStraight() ? &near : nullptr, path.rng);
     }
-    const Bsdf found(rays_.scene(), end.hit);
-    // Where a VPL knows the scattered light the path ends, so nothing shares the first-bounce light
-    // with the shadow ray. Else it goes on, by roulette at full weight.
-    const bool known = missing.scattered.has_value();
-    float chance = missing.share;
-    if (chosen && !known) {
-      // Part of the roulette was the choice of lobes.
-      const float specular = found.specularProbability();
-      chance *= (specular + (1.0f - specular) * roughWorth) / roughWorth;
-      end.throughput *= missing.share / chance;
-      throughput *= missing.share / chance;
-    }
-    if (!known && rng.next() >= chance) {
-      add(light);
-      return done();
-    }
-    if (share && first && missing.own.within > 0.0f && straight) {
-      const std::optional<RoughLeaving> matt = found.roughLeaving();
-      factor = matt ? matt->towards(end.hit.wo) : 0.0f;
-      if (factor > 0.0f) {
-        add(light);
-        hit = {end.hit.position, end.hit.ng, *matt, {}, missing.own};
-        shared = true;
-        light = {}, throughput = end.throughput;
+    path.throughput *= segment.throughput;
+    goesOn = uncovered.share > 0.0f;
+    if (goesOn) {
+      const Bsdf bsdf(rays_.scene(), segment.hit);
+      goesOn = survives(path, uncovered, bsdf);
+      if (goesOn) {
+        if (reuse) path.makeReusable(uncovered, bsdf);
+        shade(path, uncovered, bsdf);
+        path.addLight();
+        goesOn = !uncovered.scattered && extend(path, bsdf);
       }
     }
-    if (surfaceLights_) strata = surfaceLights_->at(end.hit.position, end.hit.ng);
-    const LearnedLight lights{strata.all ? &strata : nullptr,
-                              first && !(known && straight) ? kFirstLightRays : 1};
-    const Vec3 leaving =
-        lights.strata && lights.rays > 1
-            ? directLight(rays_, lights_, found, LobeGroup::Rough, lights, known ? 0.0f : 1.0f, 0,
-                          mix64(static_cast<uint64_t>(rng.next() * 0x1p24f)))
-            : directLight(rays_, lights_, found, LobeGroup::Rough, strata, known ? 0.0f : 1.0f,
-                          rng);
-    if (known) {
-      light += throughput * (leaving + *missing.scattered) * missing.share;
-    } else {
-      const Gathered g = point_(found, first ? kFirstDraws : kLaterDraws, rng);
-      light += throughput * (leaving + g.radiance);
-      out.clamped += shared ? start.throughput * throughput * g.clamped : throughput * g.clamped;
-      out.shadowRays += g.shadowRays;
-    }
-    add(light);
-    BsdfSample sample;
-    Ray next;
-    if (known || links == kMaxExtensions ||
-        !scatter(rays_, found, LobeGroup::Rough, Transport::Radiance, rng, sample, next)) {
-      return done();
-    }
-    throughput *= sample.weight;
-    end = followSpecularPath(rays_, lights_, next.origin, next.direction,
-                             {sample.pdf, end.hit.position, LightChoice::One, lights}, rng,
-                             {nullptr, surfaceLights_});
+    path.addLight();
   }
+  path.finish();
 }
 
-// From a rough vertex, straight on or over specular ones. `near`: of it, where that is the first;
-// null: to be looked up.
-Missing NearFieldRays::missingFrom(const SurfacePoint& hit, bool straight,
-                                   const ReachGrid::Lookup* near, Rng& rng) const {
+// Follows the first segment. Where VPLs carry a part of the light that rough lobes would find,
+// the path takes specular lobes the more often.
+void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& near) const {
+  const SurfacePoint& hit = *path.start.hit;
+  if (hit.triangle != kNone && only_ != Only::Direct &&
+      mayBeSpecular(rays_.scene().materials[hit.material])) {
+    path.atFirstHit = uncoveredAt(hit, true, &near, path.rng);
+    path.roughImportance = std::max(kMinImportance, path.atFirstHit->share);
+  }
+  path.segment = followSpecularPath(rays_, lights_, hit, path.start.direction, path.start.arrival,
+                                    path.rng, {nullptr, surfaceLights_}, path.roughImportance);
+}
+
+// `straight`: the segment passed no specular vertex. `near`: the VPLs at the hit; null: not looked
+// up yet.
+Uncovered NearFieldRays::uncoveredAt(const SurfacePoint& hit, bool straight,
+                                     const ReachGrid::Lookup* near, Rng& rng) const {
   if (!compensation_) return {straight ? 0.0f : 1.0f, {}};
-  Missing missing = compensation_.missing(hit, hit.distance, near, rng);
-  // Over specular vertices VPLs bring nothing, but know the light all the same.
-  if (!straight) missing = {1.0f, missing.scattered};
-  return missing;
+  Uncovered out = compensation_.uncovered(hit, hit.distance, near, rng);
+  // VPLs carry no light over specular vertices, but their radiance is right there, too.
+  if (!straight) out = {1.0f, out.scattered};
+  return out;
+}
+
+// Russian roulette with the uncovered share, unless a VPL knows the radiance: then the share is a
+// weight in shade(). Where it also decided on the lobes at the first hit, a part of it is already
+// in the probability of the rough ones.
+bool NearFieldRays::survives(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
+  if (uncovered.scattered) return true;
+  float probability = uncovered.share;
+  if (path.choseLobes()) {
+    const float specular = bsdf.specularProbability();
+    probability *= (specular + (1.0f - specular) * path.roughImportance) / path.roughImportance;
+    path.segment.throughput *= uncovered.share / probability;
+    path.throughput *= uncovered.share / probability;
+  }
+  return path.rng.next() < probability;
+}
+
+// The light of the lights by shadow rays, and scattered light as a VPL knows it or from all VPLs.
+// Shadow rays share with the next segment's ray by MIS, if there will be one.
+void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
+  const bool known = uncovered.scattered.has_value(), first = path.isFirst();
+  const SurfacePoint& hit = path.segment.hit;
+  if (surfaceLights_) path.strata = surfaceLights_->at(hit.position, hit.ng);
+  const LearnedLight lights =
+      path.learned(first && !(known && path.isStraight()) ? kFirstLightRays : 1);
+  const float bsdfRays = known ? 0.0f : 1.0f;
+  const Vec3 firstBounce =
+      lights.strata && lights.rays > 1
+          ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, lights, bsdfRays, 0,
+                        mix64(static_cast<uint64_t>(path.rng.next() * 0x1p24f)))
+          : directLight(rays_, lights_, bsdf, LobeGroup::Rough, path.strata, bsdfRays, path.rng);
+  if (known) {
+    path.light += path.throughput * (firstBounce + *uncovered.scattered) * uncovered.share;
+    return;
+  }
+  const Gathered vpls = point_(bsdf, first ? kFirstDraws : kLaterDraws, path.rng);
+  path.light += path.throughput * (firstBounce + vpls.radiance);
+  path.out.clamped += path.reused ? path.start.throughput * path.throughput * vpls.clamped
+                                  : path.throughput * vpls.clamped;
+  path.out.shadowRays += vpls.shadowRays;
+}
+
+// False: the path is absorbed, or long enough.
+bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
+  BsdfSample sample;
+  Ray next;
+  if (path.segments == kMaxExtensions ||
+      !scatter(rays_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
+    return false;
+  }
+  path.throughput *= sample.weight;
+  const LearnedLight lights = path.learned(path.isFirst() ? kFirstLightRays : 1);
+  path.segment =
+      followSpecularPath(rays_, lights_, next.origin, next.direction,
+                         {sample.pdf, path.segment.hit.position, LightChoice::One, lights},
+                         path.rng, {nullptr, surfaceLights_});
+  return true;
 }
 
 }  // namespace bnvpl

@@ -1,12 +1,13 @@
-// Rays by the BSDF from what the camera sees: for the light that VPLs do not bring.
+// BSDF rays from shading points, for the light that VPLs do not carry: light over mirrors, glass
+// and near-specular lobes, and the light that bias compensation asks for.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
-#include "tools/render/integrator/integrator.h"
-#include "tools/render/tile/indirect_rays.h"
+#include "tools/render/tile/reuse/indirect_rays.h"
 #include "transport/specular_path.h"
 #include "transport/surface_lights.h"
 
@@ -14,36 +15,41 @@ namespace bnvpl {
 
 class NearFieldRays : public IndirectRays {
  public:
-  // `point`: lights what a ray has found. `shares`: rays from a vertex for whose number light is
-  // shared with shadow rays and photons; others are right on average, too. `surfaceLights`: where
-  // to look for the lights of what rays found; null: by power.
+  // `point`: gathers VPLs at the vertices of rays. `misRays`: the number of rays from a shading
+  // point that MIS with shadow rays and photons assumes; other numbers remain unbiased.
+  // `surfaceLights`: where vertices look for lights; null: light sampling by power.
   NearFieldRays(const RayScene& rays, const LightSet& lights, GatherPoint point,
-                Compensation compensation, unsigned shares, const SurfaceLights* surfaceLights,
+                Compensation compensation, unsigned misRays, const SurfaceLights* surfaceLights,
                 Only only)
       : rays_(rays),
         lights_(lights),
         point_(std::move(point)),
         compensation_(std::move(compensation)),
-        shares_(shares),
+        misRays_(misRays),
         surfaceLights_(surfaceLights),
         only_(only) {}
 
-  void send(const RaysFrom& from, unsigned count, uint32_t first, uint64_t key,
-            RaysBrought& out) const override;
+  void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
+            RayContributions& out) const override;
   double costOfRay() const override;
 
  private:
-  // `near`: the VPLs at the first hit.
-  void follow(const FirstLink& start, const ReachGrid::Lookup& near, bool share,
-              RaysBrought& out) const;
-  Missing missingFrom(const SurfacePoint& hit, bool straight, const ReachGrid::Lookup* near,
-                      Rng& rng) const;
+  struct Path;
+  // `near`: the VPLs at the first hit. `reuse`: whether other samples reuse the first vertex.
+  void follow(const FirstSegment& start, const ReachGrid::Lookup& near, bool reuse,
+              RayContributions& out) const;
+  void begin(Path& path, const ReachGrid::Lookup& near) const;
+  Uncovered uncoveredAt(const SurfacePoint& hit, bool straight, const ReachGrid::Lookup* near,
+                        Rng& rng) const;
+  bool survives(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
+  void shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
+  bool extend(Path& path, const Bsdf& bsdf) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
   GatherPoint point_;
   Compensation compensation_;
-  unsigned shares_;
+  unsigned misRays_;
   const SurfaceLights* surfaceLights_;
   Only only_;
 };

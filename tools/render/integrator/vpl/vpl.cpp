@@ -5,8 +5,8 @@
 
 #include "tools/common/streams.h"
 #include "tools/render/gather/point_gather.h"
+#include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
-#include "tools/render/tile/tile_options.h"
 
 namespace bnvpl::methods::integrator::vpl {
 
@@ -22,12 +22,12 @@ constexpr std::array kOptions{
     kDirectSamplesOption,
     neededBy("only=all|indirect;direct-samples=1",
              wholeOption("near-field-rays", "8", 1, 4096, "",
-                         "rays by the BSDF from each shaded point, with --balance on a quarter of "
+                         "rays by the BSDF from each shaded point, with --allocate on a quarter of "
                          "them to four times as many: for --compensate, for light over specular "
                          "surfaces, and with --direct-samples 1 for half of the direct light")),
-    sharersOption("8",
-                  "samples of a tile that share what their near-field rays find close by and in "
-                  "gaps between VPLs on matt surfaces; 1: none"),
+    reuseOption("8",
+                "samples of a tile that share what their near-field rays find close by and in "
+                "gaps between VPLs on matt surfaces; 1: none"),
     neededBy(kIndirectIsShown,
              wholeOption("caustic-photons", "64", 0, 4096, "",
                          "photons a pixel, at most 16M in all, that look for light over mirrors, "
@@ -40,9 +40,10 @@ constexpr std::array kOptions{
              wholeOption("light-rays", "8", 1, 4096, "",
                          "shadow rays from each shaded point where --direct-samples is 1; by them "
                          "goes in any case how much tiles learn")),
-    balanceOption("by pilots, near-field rays, clusters of tile cuts and direct samples where they "
-                  "take most noise from the film"),
-    specksOption("spread")};
+    allocateOption(
+        "by pilots, near-field rays, clusters of tile cuts and direct samples where they "
+        "take most noise from the film"),
+    firefliesOption("redistribute")};
 
 // What lives as long as the integrator, in an order in which each may borrow from those before.
 struct Parts {
@@ -51,7 +52,7 @@ struct Parts {
   std::unique_ptr<const SurfaceLights> surfaceLights;
   std::unique_ptr<const PointGather> point;
   std::unique_ptr<const TileIntegrator> integrator;
-  Balance balance = {};
+  SampleAllocation allocation = {};
 };
 
 // With a point function.
@@ -72,15 +73,15 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
 }
 
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
-  constexpr uint64_t kMostPhotons = 16000000;  // seconds, for each shard
+  constexpr uint64_t kMaxPhotons = 16000000;  // seconds, for each shard
   const Film& film = in.rays.scene().film;
   return in.only == Only::Direct ? 0
-                                 : std::min(kMostPhotons, uint64_t{film.width} * film.height *
-                                                              options.whole("caustic-photons"));
+                                 : std::min(kMaxPhotons, uint64_t{film.width} * film.height *
+                                                             options.whole("caustic-photons"));
 }
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  constexpr uint64_t kMostSpp = 256;  // a budget names no number
+  constexpr uint64_t kMaxSpp = 256;  // a budget names no number
   // Of direct light alone no VPL is asked, whatever it were.
   const bool indirect = in.only != Only::Direct;
   const float clamp = indirect ? options.real32("clamp") : 1.0f;
@@ -108,7 +109,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";
   const bool controlled = indirect && options.text("control") == "vpls";
   const FilmPoints film = controlled || learned ? filmRays.all() : FilmPoints{};
-  if (controlled) tile.control = makeControl(in, film);
+  if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film,
                  learned ? static_cast<unsigned>(options.whole("light-rays")) : 0, tile);
   if (tile.raysEach > 0) {
@@ -116,21 +117,22 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                                       std::move(compensation), tile.raysEach,
                                                       tile.surfaceLights, in.only);
   }
-  if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
+  if (indirect) tile.reuse = static_cast<unsigned>(options.whole("reuse"));
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * std::min(options.whole("spp"), kMostSpp));
+                               tile.raysEach * std::min(options.whole("spp"), kMaxSpp));
   const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
-  parts->balance = balanceOf(in, options, *parts->integrator);
-  return {
-      [parts](const TileSamples& samples) { parts->integrator->render(samples, parts->balance); },
-      {},
-      gather.wholePixels,
-      parts->vpls.size(),
-      lamps,
-      sparse};
+  parts->allocation = allocationOf(in, options, *parts->integrator);
+  return {[parts](const TileSamples& samples) {
+            parts->integrator->render(samples, parts->allocation);
+          },
+          {},
+          gather.wholePixels,
+          parts->vpls.size(),
+          lamps,
+          sparse};
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+// The first part of a camera path, from the camera to the shading point; the same for all
+// integrators.
+#pragma once
+
+#include "tools/render/sample.h"
+#include "transport/specular_path.h"
+
+namespace bnvpl {
+
+// Follows a camera ray to the first rough vertex. Light that it meets on the way is direct light.
+inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
+                                    Vec3 direction, Rng& rng, RadianceSample& out,
+                                    const LightsBehind& behind = {}) {
+  const SpecularPath path =
+      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
+  out.emission = path.metFirst;
+  out.direct = path.metFirst + path.metLater;
+  if (path.firstDistance < INFINITY) {
+    out.depth = path.firstDistance * dot(direction, rays.scene().camera.forward);
+  }
+  return path;
+}
+
+// Albedo and normal of the shading point.
+inline void describeShadingPoint(const Bsdf& bsdf, RadianceSample& out) {
+  out.albedo = bsdf.roughAlbedo();
+  out.normal = bsdf.point().ns;
+}
+
+// One camera path of an integrator that traces paths. leaving(bsdf, throughput, directOnly, out)
+// adds the light that leaves the shading point, or if `directOnly` the part of it that comes from
+// the lights without another bounce. `indirect`: whether indirect light is wanted at points that
+// the camera sees without a specular vertex between.
+template <typename Leaving>
+RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
+                         Only only, bool indirect, Rng& rng, const Leaving& leaving,
+                         const LightsBehind& behind = {}) {
+  RadianceSample out;
+  const SpecularPath path =
+      traceCameraPath(rays, lights, sample.origin, sample.direction, rng, out, behind);
+  const bool directOnly = only == Only::Direct || (!indirect && path.links == 0);
+  if (!path.rough) return out;
+  const Bsdf bsdf(rays.scene(), path.hit);
+  describeShadingPoint(bsdf, out);
+  if (directOnly && only == Only::Indirect) return out;
+  leaving(bsdf, path.throughput, directOnly, out);
+  return out;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,57 @@
+#include "tools/render/film/film_sums.h"
+
+#include "core/parallel.h"
+
+namespace bnvpl {
+
+void addRadiance(const FilmSums& film, Only only, Image& image) {
+  for (size_t c = 0; c < 3; ++c) {
+    std::vector<float>& data = image.add(std::string(1, "RGB"[c]));
+    for (size_t i = 0; i < data.size(); ++i) {
+      const BothLights redistributed = film.redistributedOf(i);
+      data[i] = static_cast<float>(shownRadiance(film.sums[i], only, c) * film.perSample +
+                                   double{redistributed[0][c]} + double{redistributed[1][c]});
+    }
+  }
+}
+
+void addLayer(const Layer& layer, const FilmSums& film, Image& image) {
+  for (size_t c = 0; c < std::max<size_t>(1, layer.channels.size()); ++c) {
+    std::vector<float>& data = image.add(channelName(layer, c));
+    for (size_t i = 0; i < data.size(); ++i) {
+      const PixelPasses passes = film.passes.empty() ? PixelPasses{} : film.passes[i];
+      data[i] = static_cast<float>(
+          layer.value({film.sums[i], film.counts[i], film.perSample,
+                       film.passes.empty() ? film.perSample : 1.0 / double(passes.samples), passes,
+                       film.redistributedOf(i)},
+                      c));
+    }
+  }
+}
+
+FilmStats statsOf(const FilmSums& film, uint64_t samples) {
+  const auto meanOf = [&](size_t slot) {
+    return parallelSum(film.sums.size(),
+                       [&](size_t i) {
+                         const auto& sum = film.sums[i].sum;
+                         return (sum[slot] + sum[slot + 1] + sum[slot + 2]) / 3.0;
+                       }) *
+           film.perSample / static_cast<double>(film.sums.size());
+  };
+  FilmStats stats;
+  stats.direct = meanOf(PixelSums::kDirect);
+  stats.indirect = meanOf(PixelSums::kIndirect);
+  stats.clamped = meanOf(PixelSums::kClamped);
+  stats.compensated = meanOf(PixelSums::kCompensated);
+  stats.samples = samples;
+  for (const PixelCounts& c : film.counts) {
+    stats.cut += double(c.cut);
+    stats.shadowRays += double(c.shadowRays);
+    stats.nonFinite += c.nonFinite;
+  }
+  stats.cut /= double(samples);
+  stats.shadowRays /= double(samples);
+  return stats;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,82 @@
+#include "tools/render/film/tiles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "transport/camera.h"
+
+namespace bnvpl {
+
+namespace {
+
+bool isFinite(const RadianceSample& r) {
+  using bnvpl::isFinite;
+  return isFinite(r.direct + r.indirect) && isFinite(r.clamped) && isFinite(r.compensated) &&
+         isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
+}
+
+void addTo(PixelSums& p, size_t slot, Vec3 v) {
+  p.sum[slot] += double{v.x};
+  p.sum[slot + 1] += double{v.y};
+  p.sum[slot + 2] += double{v.z};
+}
+
+}  // namespace
+
+Tiles::Tiles(const Film& film)
+    : width_(film.width),
+      height_(film.height),
+      across_((width_ + kTileSide - 1) / kTileSide),
+      down_((height_ + kTileSide - 1) / kTileSide) {}
+
+Tile Tiles::at(size_t index) const {
+  const auto x0 = static_cast<uint32_t>(index % across_) * kTileSide,
+             y0 = static_cast<uint32_t>(index / across_) * kTileSide;
+  return {x0, y0, std::min(width_, x0 + kTileSide), std::min(height_, y0 + kTileSide)};
+}
+
+void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
+  if (!isFinite(r)) {
+    ++counts.nonFinite;
+    return;
+  }
+  addTo(pixel, PixelSums::kDirect, r.direct);
+  addTo(pixel, PixelSums::kIndirect, r.indirect);
+  pixel.keepBrightest(0, r.direct - r.emission);
+  pixel.keepBrightest(1, r.indirect - r.photons.all);
+  for (size_t k = 0; k < PixelSums::kBrightest; ++k)
+    addTo(pixel, PixelSums::kPhotons + 3 * k, r.photons.brightest[k]);
+  addTo(pixel, PixelSums::kClamped, r.clamped);
+  addTo(pixel, PixelSums::kCompensated, r.compensated);
+  addTo(pixel, PixelSums::kAlbedo, r.albedo);
+  addTo(pixel, PixelSums::kNormal, r.normal);
+  pixel.sum[PixelSums::kDepth] += double{r.depth};
+  if (r.depth > 0.0f) pixel.sum[PixelSums::kHits] += 1.0;
+  counts.cut += r.cut;
+  counts.shadowRays += r.shadowRays;
+}
+
+void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
+              std::span<PixelCounts> counts) {
+  if (!isFinite(splat.radiance)) {
+    ++counts[splat.pixel].nonFinite;
+    return;
+  }
+  addTo(pixels[splat.pixel], PixelSums::kIndirect, splat.radiance * share);
+}
+
+CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
+                        uint32_t slot) {
+  const uint64_t index = uint64_t{y} * scene.film.width + x;
+  const Point2 jitter = r2Sequence(slot, double{toUnitFloat(random64(key, index, 0))},
+                                   double{toUnitFloat(random64(key, index, 1))});
+  CameraSample s;
+  s.origin = scene.camera.position;
+  s.direction =
+      cameraDirection(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
+                      (float(y) + jitter.y) / float(scene.film.height));
+  s.rng = Rng(key + 1, index * stride + slot);
+  return s;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,90 @@
+// The samples of a tile of the film.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/scene.h"
+#include "tools/render/film/integrator.h"
+#include "tools/render/film/layers.h"
+
+namespace bnvpl {
+
+// Pixels of one tile, row by row.
+struct Tile {
+  uint32_t x0, y0, x1, y1;
+  uint32_t pixels() const { return (x1 - x0) * (y1 - y0); }
+  uint32_t width() const { return x1 - x0; }
+  uint32_t x(uint32_t p) const { return x0 + p % (x1 - x0); }
+  uint32_t y(uint32_t p) const { return y0 + p / (x1 - x0); }
+};
+
+// The film in tiles of 8 x 8 pixels, whose samples meet the same surfaces.
+class Tiles {
+ public:
+  explicit Tiles(const Film& film);
+  size_t across() const { return across_; }
+  size_t down() const { return down_; }
+  size_t count() const { return across_ * down_; }
+  Tile at(size_t index) const;
+  size_t pixelIndex(const Tile& tile, uint32_t p) const {
+    return size_t{tile.y(p)} * width_ + tile.x(p);
+  }
+
+ private:
+  uint32_t width_, height_;
+  size_t across_, down_;
+};
+
+// Which samples of each pixel of a tile.
+struct SlotRange {
+  uint32_t first = 0, end = 0;  // of them
+  uint32_t all = 0;             // of those that are stratified with each other
+  uint64_t stride = 0;          // numbers of random streams of a pixel; at least `all`
+  uint32_t turn = 0;            // as of TileSlots
+};
+
+// Calls take(pixel of the tile, its RadianceSample) for each sample, in their order. Depends on the
+// key, the tile's place and the slots only.
+template <typename Take>
+void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
+                const SlotRange& slots, const Take& take);
+
+// A sample to the sums of its pixel; one that is not finite counts as zero.
+void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& counts);
+// What a photon brings, times `share`, likewise.
+void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
+              std::span<PixelCounts> counts);
+
+// One sample of a pixel, stratified with those of the pixel's other slots.
+CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
+                        uint32_t slot);
+
+template <typename Take>
+void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
+                const SlotRange& slots, const Take& take) {
+  constexpr uint32_t kSlotsAtOnce = 16;  // samples of each pixel that are held in memory together
+  const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
+  std::vector<CameraSample> samples;
+  for (uint32_t slot = slots.first, slotEnd; slot < slots.end; slot = slotEnd) {
+    slotEnd =
+        slot + std::min(slots.end - slot,
+                        integrator.wholePixels ? UINT32_MAX : kSlotsAtOnce);  // no sum beyond 2^32
+    samples.clear();
+    for (uint32_t s = slot; s < slotEnd; ++s) {
+      for (uint32_t p = 0; p < tile.pixels(); ++p) {
+        samples.push_back(makeSample(scene, key, slots.stride, tile.x(p), tile.y(p), s));
+      }
+    }
+    integrator.samples(
+        {{tile.pixels(), tile.width(), tile.x0, tile.y0, slot, slots.all, tileKey, slots.turn},
+         samples});
+    for (size_t k = 0; k < samples.size(); ++k) {
+      take(static_cast<uint32_t>(k % tile.pixels()), samples[k].radiance);
+    }
+  }
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,50 @@
+#include "tools/render/integrator/tile_options.h"
+
+#include "tools/render/tile/control/pixel_control_variate.h"
+
+namespace bnvpl {
+
+void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
+                    const FilmPoints& film, unsigned lightRays, TileParts& out) {
+  if (in.only == Only::Indirect) return;
+  if (lightRays > 0) {
+    const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options.whole("spp") * lightRays;
+    out.lightRays = lightRays;
+    out.lights = std::make_unique<const TileLights>(
+        in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
+        in.seed);
+    out.visibleEmission = std::make_unique<const VisibleEmission>(in.rays, in.lights, film);
+  }
+  if (options.whole("direct-samples") == 1) return;
+  out.directSamples.emplace(in.rays, in.lights, out.visibleEmission.get(), out.surfaceLights,
+                            static_cast<unsigned>(options.whole("direct-samples")),
+                            in.only == Only::Direct);
+}
+
+std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
+                                             uint64_t raysOfPixel) {
+  if (photons == 0 || in.only == Only::Direct || !hasSpecularLobes(in.rays.scene()) ||
+      !in.lights.hasPower()) {
+    return {};
+  }
+  return std::make_unique<const Caustics>(in.rays, in.lights, photons,
+                                          static_cast<float>(raysOfPixel), in.seed, in.progress);
+}
+
+ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film) {
+  const auto control =
+      std::make_shared<const PixelControlVariate>(in.rays, in.lights, film, in.lit);
+  return [control](const TileSamples& tile, std::span<const SpecularPath> paths) {
+    control->apply(tile, paths);
+  };
+}
+
+SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
+                              const TileIntegrator& integrator) {
+  if (!options.has("allocate") || !options.on("allocate")) return {};
+  return findAllocation(
+      in.rays.scene(), in.seed, options.whole("spp"), in.progress,
+      [&](const TileSamples& tile) { return integrator.render(tile, SampleAllocation{}); });
+}
+
+}  // namespace bnvpl

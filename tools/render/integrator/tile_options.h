@@ -1,0 +1,42 @@
+// Options of the methods that use a TileIntegrator, and the parts that they make.
+#pragma once
+
+#include "tools/render/integrator/integrator.h"
+#include "tools/render/tile/film_rays.h"
+#include "tools/render/tile/tile_integrator.h"
+
+namespace bnvpl {
+
+inline constexpr std::string_view kIndirectIsShown = "only=all|indirect",
+                                  kDirectIsShown = "only=all|direct";
+
+inline constexpr Option kDirectSamplesOption =
+    neededBy(kDirectIsShown, wholeOption("direct-samples", "0", 0, 4096, "",
+                                         "camera samples of direct light for each sample; 0: by "
+                                         "noise and cost; 1: the sample itself"));
+constexpr Option reuseOption(std::string_view fallback, std::string_view help) {
+  return neededBy(kIndirectIsShown, wholeOption("reuse", fallback, 1, 32, "", help));
+}
+constexpr Option controlOption(std::string_view fallback) {
+  return neededBy(kIndirectIsShown,
+                  choiceOption("control", fallback, "vpls|none",
+                               "control variate of indirect light within a pixel: the VPLs' "
+                               "prediction along more camera rays, or none"));
+}
+constexpr Option allocateOption(std::string_view help) {
+  return neededBy("only=all|indirect;direct-samples=0", switchOption("allocate", "on", help));
+}
+
+// The parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing where the
+// image shows indirect light alone.
+void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
+                    const FilmPoints& film, unsigned lightRays, TileParts& out);
+// Null where the scene has nothing that makes caustics.
+std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
+                                             uint64_t raysOfPixel);
+ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film);
+// --allocate: runs the pilot.
+SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
+                              const TileIntegrator& integrator);
+
+}  // namespace bnvpl

@@ -1,0 +1,64 @@
+// Samples of the film: what an integrator gets and what it finds.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/random.h"
+#include "core/vec3.h"
+
+namespace bnvpl {
+
+// The part of the light that an image shows.
+enum class Only { Everything, Direct, Indirect };
+
+// The light of the photons that landed in a pixel, W/(m2 sr).
+struct PhotonLight {
+  Vec3 all;
+  std::array<Vec3, 2> brightest;  // two photons, by the mean of the channels
+};
+
+// Radiance in W/(m2 sr). The first rough vertex of a camera path is the shading point: mirrors,
+// glass and near-specular lobes may lie between it and the camera.
+struct RadianceSample {
+  Vec3 direct;          // light that scatters at most at the shading point and on the way to it
+  Vec3 emission;        // directly visible emission; part of `direct`
+  Vec3 indirect;        // all other light
+  PhotonLight photons;  // of the pixel; part of `indirect`
+  Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
+  Vec3 compensated;     // indirect light by sampled rays instead of VPLs; part of `indirect`
+  Vec3 albedo, normal;  // of the shading point
+  float depth = 0.0f;   // of the first hit along the viewing axis; 0: the ray hit nothing
+  uint32_t cut = 0, shadowRays = 0;
+};
+
+// One sample of a pixel.
+struct CameraSample {
+  Vec3 origin, direction;
+  Rng rng{0, 0};
+  RadianceSample radiance;  // the integrator fills this in
+};
+
+inline constexpr uint32_t kTileSide = 8;  // pixels
+// Side of the blocks of a tile whose pixels reuse each other's vertices first.
+inline constexpr uint32_t kBlockSide = 4;
+
+// How the samples of a tile lie in memory: slot by slot, row by row. A slot holds one sample of
+// each pixel.
+struct TileSlots {
+  uint32_t pixels = 0;     // in each slot
+  uint32_t width = 1;      // of a row
+  uint32_t x = 0, y = 0;   // the first pixel, on the film
+  uint32_t firstSlot = 0;  // index of the first slot among all
+  uint32_t allSlots = 1;   // samples per pixel
+  uint64_t key = 0;        // of the tile's random numbers
+  uint32_t turn = 0;       // offset of slot 0 in sequences that the whole film shares; random for
+                           // each pass over the film
+};
+
+struct TileSamples : TileSlots {
+  std::span<CameraSample> samples;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,47 @@
+#include "tools/render/splat/film_connection.h"
+
+#include <algorithm>
+
+#include "transport/bsdf.h"
+#include "transport/camera.h"
+
+namespace bnvpl {
+
+// Radiance of the pixel = 1 / A times the integral of radiance * |cos| / (d^2 cos^3 theta) over the
+// surfaces that it sees, with A the pixel's area on the plane at depth 1 and theta the angle to the
+// viewing axis, so that d cos theta is the depth.
+float samplesPerArea(const Scene& scene, const SurfacePoint& seen) {
+  const Vec3 way = seen.position - scene.camera.position;
+  const float depth = dot(way, scene.camera.forward);
+  return dot(seen.ng, seen.wo) * length(way) /
+         (depth * depth * depth * pixelAreaAtUnitDepth(scene.camera, scene.film));
+}
+
+std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex) {
+  const Scene& scene = rays.scene();
+  const Film& film = scene.film;
+  const FilmPoint at = projectToFilm(scene.camera, film, vertex.position);
+  if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return {};
+  const Vec3 way = vertex.position - scene.camera.position;
+  if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon came to the other side
+  // The camera's own ray, so that light scatters as it does where a path from there arrives. What
+  // it meets is the vertex where it is the same triangle, or, at an edge, within the rounding of a
+  // offset origin.
+  SurfacePoint seen;
+  if (!rays.closestHit(scene.camera.position, way / length(way), seen)) return {};
+  const Vec3 tolerance = rays.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
+  if (seen.triangle != vertex.triangle &&
+      lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
+    return {};
+  }
+  const float cosShading = dot(seen.ns, vertex.wo);
+  if (!(cosShading > 0.0f)) return {};
+  const Vec3 value = Bsdf(scene, seen).eval(LobeGroup::Rough, vertex.wo) / cosShading;
+  if (isBlack(value)) return {};
+  const auto x = std::min(film.width - 1, static_cast<uint32_t>(at.x * float(film.width)));
+  const auto y = std::min(film.height - 1, static_cast<uint32_t>(at.y * float(film.height)));
+  seen.position = vertex.position;
+  return FilmConnection{y * film.width + x, samplesPerArea(scene, seen), value};
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,122 @@
+#include "tools/render/tile/allocation/sample_allocation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+#include "tools/common/streams.h"
+#include "tools/render/film/tiles.h"
+#include "tools/render/tile/allocation/parity_pattern.h"
+
+namespace bnvpl {
+
+namespace {
+
+// The pilot: so many tiles, with so many samples per pixel.
+constexpr size_t kPilotTiles = 48;
+constexpr uint32_t kPilotSlots = 4;
+// Floor of a tile's light, over the film's median.
+constexpr double kFloor = 0.05;
+
+struct PilotTile {
+  double variance = 0.0, cost = 0.0;  // of a sample, means over the tile
+  Vec3 light;
+};
+
+PilotTile samplePilot(const Scene& scene, const Tiles& tiles, size_t index, uint64_t key,
+                      uint64_t spp, const std::function<double(const TileSamples&)>& render) {
+  const Tile tile = tiles.at(index);
+  std::vector<CameraSample> samples;
+  for (uint32_t s = 0; s < kPilotSlots; ++s) {
+    for (uint32_t p = 0; p < tile.pixels(); ++p)
+      samples.push_back(makeSample(scene, key, kPilotSlots, tile.x(p), tile.y(p), s));
+  }
+  const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
+  PilotTile out;
+  out.cost =
+      render({{tile.pixels(), tile.width(), tile.x0, tile.y0, 0, all, random64(key, index, 0), 0},
+              samples});
+  for (uint32_t p = 0; p < tile.pixels(); ++p) {
+    Vec3 sum;
+    double squares = 0.0;
+    for (uint32_t s = 0; s < kPilotSlots; ++s) {
+      const RadianceSample& r = samples[size_t{s} * tile.pixels() + p].radiance;
+      sum += r.direct + r.indirect;
+      squares += squared(r.direct + r.indirect);
+    }
+    out.variance += std::max(0.0, squares - squared(sum) / kPilotSlots) / (kPilotSlots - 1.0);
+    out.light += sum * (1.0f / kPilotSlots);
+  }
+  out.variance /= tile.pixels();
+  out.light *= 1.0f / static_cast<float>(tile.pixels());
+  return out;
+}
+
+}  // namespace
+
+unsigned samplesFor(double variance, double cost, double marginalCost, unsigned min, unsigned max) {
+  const double samples = std::sqrt(variance / (cost * marginalCost));
+  if (!(samples > double(min))) return min;
+  return static_cast<unsigned>(std::lround(std::min(samples, double(max))));
+}
+
+std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels, const TileSlots& tile,
+                                        double cost, const SampleAllocation& allocation,
+                                        unsigned min, unsigned max) {
+  std::array<unsigned, 2> samples{};
+  for (const uint32_t own : {0u, 1u}) {
+    double variance = 0.0, degreesOfFreedom = 0.0;
+    Vec3 light;
+    float others = 0.0f;
+    for (uint32_t i = 0; i < tile.pixels; ++i) {
+      const PixelMoments& p = pixels[i];
+      if (parity(i % tile.width, i / tile.width) == own || !(p.count > 0.0)) continue;
+      variance += std::max(0.0, p.squares - squared(p.sum) / p.count);
+      degreesOfFreedom += p.count - 1.0;
+      light += p.light;
+      others += 1.0f;
+    }
+    samples[own] =
+        degreesOfFreedom > 0.0
+            ? samplesFor(allocation.relative(variance / degreesOfFreedom, light * (1.0f / others)),
+                         cost, allocation.marginalCost, min, max)
+            : min;
+  }
+  return samples;
+}
+
+SampleAllocation findAllocation(const Scene& scene, uint64_t seed, uint64_t spp,
+                                const ProgressFn& progress,
+                                const std::function<double(const TileSamples&)>& render) {
+  const Tiles tiles(scene.film);
+  const size_t count = std::min(kPilotTiles, tiles.count());
+  const uint64_t key = streamKey(seed, Stream::Allocation);
+  const auto phase = progress.before("sample allocation pilot, tiles", count);
+  std::vector<PilotTile> pilot(count);
+  parallelFor(count, 1, [&](size_t k) {
+    // A random tile of the k-th of `count` equal parts of the film.
+    const size_t begin = k * tiles.count() / count, end = (k + 1) * tiles.count() / count;
+    pilot[k] =
+        samplePilot(scene, tiles, begin + random64(key, k, 1) % (end - begin), key, spp, render);
+    if (progress) progress(1);
+  });
+  SampleAllocation out;
+  std::vector<double> lights;
+  for (const PilotTile& tile : pilot) lights.push_back(squared(tile.light));
+  std::ranges::nth_element(lights, lights.begin() + static_cast<ptrdiff_t>(count / 2));
+  out.medianLight = lights[count / 2];
+  out.floorLight = kFloor * kFloor * out.medianLight;
+  // The mean of the deviations, not of the variances: one tile that no number of samples makes
+  // quiet must not let all others be noisy.
+  double deviation = 0.0, cost = 0.0;
+  for (const PilotTile& tile : pilot) {
+    deviation += std::sqrt(out.relative(tile.variance, tile.light));
+    cost += tile.cost;
+  }
+  if (!(deviation > 0.0 && cost > 0.0) || !std::isfinite(deviation)) return {};
+  out.marginalCost = deviation * deviation / (cost * static_cast<double>(count));
+  return out;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,128 @@
+#include "tools/render/tile/caustics/caustics.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/parallel.h"
+#include "tools/common/streams.h"
+#include "tools/render/splat/add_splats.h"
+#include "tools/render/splat/film_connection.h"
+#include "transport/walk.h"
+
+namespace bnvpl {
+
+Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons,
+                   float raysOfPixel, uint64_t seed, const ProgressFn& progress)
+    : rays_(rays),
+      lights_(lights),
+      photons_(photons),
+      key_(streamKey(seed, Stream::Caustics)),
+      raysOfPixel_(raysOfPixel),
+      width_(rays.scene().film.width),
+      light_(size_t{width_} * rays.scene().film.height) {
+  chooseLamps(streamKey(seed, Stream::CausticPilot), progress);
+  SplatProgress done;
+  const auto phase = progress.before("caustic photons", photons);
+  addSplats(
+      [&](uint64_t begin, uint64_t end, Splats& out) {
+        for (uint64_t i = begin; i < end; ++i) follow(key_, i, out);
+      },
+      photons, done, [&](const Splat& splat) { add(splat, light_[splat.pixel]); }, progress, {},
+      [] { return std::string(); });
+}
+
+void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
+  constexpr uint64_t kChunk = 4096;
+  const uint64_t count = (photons_ + kPilotShare - 1) / kPilotShare;
+  struct SplatMoments {
+    double sum = 0.0, squares = 0.0;
+  };
+  std::vector<std::map<uint64_t, SplatMoments>> chunks((count + kChunk - 1) / kChunk);
+  const auto phase = progress.before("caustic pilot, photons", count);
+  parallelFor(chunks.size(), 1, [&](size_t c) {
+    Splats splats;
+    const uint64_t begin = c * kChunk, end = std::min(count, begin + kChunk);
+    for (uint64_t i = begin; i < end; ++i) {
+      splats.list.clear();
+      const uint64_t lamp = follow(key, i, splats);
+      if (lamp == kNoLamp) continue;
+      SplatMoments& found = chunks[c][lamp];
+      for (const Splat& splat : splats.list) {
+        const double light{mean(splat.radiance)};
+        found.sum += light, found.squares += light * light;
+      }
+    }
+    if (progress) progress(end - begin);
+  });
+  std::map<uint64_t, SplatMoments> all;
+  for (const auto& chunk : chunks) {
+    for (const auto& [lamp, found] : chunk)
+      all[lamp].sum += found.sum, all[lamp].squares += found.squares;
+  }
+  for (const auto& [lamp, found] : all)
+    if (found.sum * found.sum >= kMinPilotPhotons * found.squares && found.sum > 0.0)
+      dense_.push_back(lamp);
+  lamps_ = all.size();
+  chosen_ = true;
+}
+
+void Caustics::add(const Splat& splat, PhotonLight& to) {
+  to.all += splat.radiance;
+  Vec3 light = splat.radiance;
+  for (Vec3& kept : to.brightest) {
+    if (mean(light) > mean(kept)) std::swap(light, kept);
+  }
+}
+
+SharedWithPhotons Caustics::shared(const SurfacePoint& point) const {
+  return sharedBy(samplesPerArea(rays_.scene(), point));
+}
+
+SharedWithPhotons Caustics::sharedBy(float samplesPerArea) const {
+  return {&lights_, raysOfPixel_ * samplesPerArea, static_cast<float>(photons_),
+          chosen_ ? &dense_ : nullptr};
+}
+
+// Photons always take the specular lobes, as the light of the others is not wanted. Even a coat
+// that reflects little then carries its little by every photon.
+uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
+  Rng rng(key, index);
+  float probability = 1.0f;
+  const size_t light = lights_.pick(rng.next(), probability);
+  if (!(probability > 0.0f)) return kNoLamp;
+  const PhotonStart start = lights_.emit(light, rng);
+  const uint64_t lamp =
+      lights_.hittable(light) ? lampOf(lights_, light, -start.direction) : kNoLamp;
+  if (chosen_ && lamp != kNoLamp && !std::ranges::binary_search(dense_, lamp)) return lamp;
+  Vec3 flux = start.flux * static_cast<float>(1.0 / (double{probability} * double(photons_)));
+  Ray next{start.origin, start.direction};
+  SurfacePoint hit;
+  for (unsigned links = 0; links <= kMaxSpecular && isFinite(flux); ++links) {
+    rays_.closestHit(next.origin, next.direction, hit);
+    if (hit.triangle == kNone) return lamp;
+    const Bsdf bsdf(rays_.scene(), hit);
+    if (links > 0 && bsdf.hasRough())
+      connect(bsdf.point(), flux * bsdf.photonShadingFactor(), light, -start.direction, out);
+    if (!(bsdf.specularProbability() > 0.0f)) return lamp;
+    BsdfSample sample;
+    if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
+      return lamp;
+    flux *= sample.weight;
+    if (links == 0) continue;
+    const float survive = std::min(1.0f, maxComponent(sample.weight));
+    if (rng.next() >= survive) return lamp;
+    flux *= 1.0f / survive;
+  }
+  return lamp;
+}
+
+void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
+                       Splats& out) const {
+  const auto film = connectToFilm(rays_, vertex);
+  if (!film) return;
+  const float share = 1.0f - sharedBy(film->perArea).ofRays(light, towards);
+  const Vec3 radiance = flux * film->value * (film->perArea * share);
+  if (isFinite(radiance)) out.list.push_back({film->pixel, radiance});
+}
+
+}  // namespace bnvpl

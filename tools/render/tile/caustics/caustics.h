@@ -1,0 +1,64 @@
+// Caustic photons: light that reaches directly visible surfaces over mirrors, glass and
+// near-specular lobes. One in thousands of rays from such a surface meets a small lamp on this way
+// and makes a firefly; every photon of the lamp may find it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+#include "tools/render/sample.h"
+#include "tools/render/splat/splat.h"
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+// Photons pass at least one specular vertex and nothing else, and are connected with the camera at
+// the first rough one. They share the light of lamps and sky with near-field rays by MIS; lights
+// that no ray can hit are theirs alone.
+//
+// A pilot with an eighth of the photons finds the noise of each lamp's photons (lampOf: a light, or
+// a region of a sky). With the splats r_k of a lamp, (sum r_k)^2 / sum r_k^2 is the number of equal
+// splats that would be as noisy. A lamp with fewer than kMinPilotPhotons of them is left to
+// near-field rays, such as a sun above wide ground, of whose photons hardly one enters the window.
+// The photons of the image are independent of the pilot's, so that it stays unbiased.
+// Thread-safe and immutable once made.
+class Caustics {
+ public:
+  // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
+  // find the same light. Borrows rays and lights.
+  Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
+           uint64_t seed, const ProgressFn& progress);
+
+  const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
+  // MIS with rays that leave a directly visible point.
+  SharedWithPhotons shared(const SurfacePoint& point) const;
+  // Lamps that sent photons and that rays can hit, and those of them that are left to rays.
+  size_t lamps() const { return lamps_; }
+  size_t sparseLamps() const { return lamps_ - dense_.size(); }
+
+ private:
+  static constexpr double kMinPilotPhotons = 4.0;
+  static constexpr uint64_t kPilotShare = 8;  // the pilot has one photon for so many
+
+  void chooseLamps(uint64_t key, const ProgressFn& progress);
+  static void add(const Splat& splat, PhotonLight& to);
+  SharedWithPhotons sharedBy(float samplesPerArea) const;
+  // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
+  static constexpr uint64_t kNoLamp = UINT64_MAX;
+  uint64_t follow(uint64_t key, uint64_t index, Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
+               Splats& out) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  uint64_t photons_, key_;
+  float raysOfPixel_;
+  uint32_t width_;
+  std::vector<uint64_t> dense_;  // lamps with enough photons, ascending
+  bool chosen_ = false;          // whether the pilot is done; until then all lamps send photons
+  size_t lamps_ = 0;
+  std::vector<PhotonLight> light_;
+};
+
+}  // namespace bnvpl

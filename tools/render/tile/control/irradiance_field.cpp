@@ -1,0 +1,32 @@
+#include "tools/render/tile/control/irradiance_field.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/sampling.h"
+#include "spatial/near_surfaces.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr float kMinAlbedo = 0.01f;  // the irradiance at darker VPLs would be noise
+constexpr float kSmooth = 5.0f;      // radius of the average, in r_max
+
+}  // namespace
+
+IrradianceField::IrradianceField(const VplTable& lit)
+    : regions_(lit.position, lit.normal, lit.radius), indirect_(lit.size()) {
+  const NearSurfaces near(lit.position, lit.normal, lit.radius, kSmooth);
+  parallelFor(lit.size(), 64, [&](size_t i) {
+    Vec3 flux, reflected;
+    near.forEach(i, [&](uint32_t k) {
+      const float area = 2.0f * std::sqrt(3.0f) * lit.radius[k] * lit.radius[k];
+      flux += lit.flux[k] - lit.firstBounceFlux[k];
+      reflected += max(lit.albedo[k], Vec3(kMinAlbedo)) * area;
+    });
+    for (size_t c = 0; c < 3; ++c) indirect_[i][c] = std::max(0.0f, flux[c]) / (kPi * reflected[c]);
+  });
+}
+
+}  // namespace bnvpl

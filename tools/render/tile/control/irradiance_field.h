@@ -1,0 +1,29 @@
+// Irradiance at surfaces, from lit VPLs: the flux of each VPL over what its surface reflects,
+// averaged over the VPLs around it. It is too coarse to be shown, but good enough to predict how
+// light varies (PixelControlVariate).
+#pragma once
+
+#include <vector>
+
+#include "formats/vpl_table.h"
+#include "spatial/region_grid.h"
+
+namespace bnvpl {
+
+class IrradianceField {
+ public:
+  explicit IrradianceField(const VplTable& lit);
+
+  // Irradiance by indirect light, over pi: the radiance that a white diffuse surface would reflect
+  // there, W/(m2 sr). 0 where no VPL covers the point.
+  Vec3 indirectAt(Vec3 position, Vec3 normal) const {
+    const uint32_t region = regions_.at(position, normal);
+    return region == UINT32_MAX ? Vec3{} : indirect_[region];
+  }
+
+ private:
+  RegionGrid regions_;
+  std::vector<Vec3> indirect_;  // of each VPL
+};
+
+}  // namespace bnvpl

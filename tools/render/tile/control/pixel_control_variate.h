@@ -1,0 +1,35 @@
+// A control variate for indirect light within a pixel. Where several surfaces or a texture share a
+// pixel, its few samples are noisy by which of them they happen to see. The lit VPLs predict the
+// light at a surface point cheaply, so that the prediction can be averaged over many more camera
+// rays.
+#pragma once
+
+#include "tools/render/tile/control/irradiance_field.h"
+#include "tools/render/tile/control/pixel_rays.h"
+
+namespace bnvpl {
+
+class PixelControlVariate {
+ public:
+  // Borrows rays and lights.
+  PixelControlVariate(const RayScene& rays, const LightSet& lights, const FilmPoints& film,
+                      const VplTable& lit);
+
+  // Adds to the indirect light of each sample, which saw the end of its path,
+  //
+  //   beta (mean prediction over further rays - prediction for the sample),
+  //
+  // whose expectation is 0. beta, the regression of light on prediction, comes from other pixels of
+  // the tile.
+  void apply(const TileSamples& tile, std::span<const SpecularPath> paths) const;
+
+ private:
+  Vec3 predicted(const SpecularPath& path) const;
+  std::vector<float> predictedAt(const FilmPoints& film) const;
+
+  const Scene& scene_;
+  IrradianceField field_;
+  PixelRays pixels_;
+};
+
+}  // namespace bnvpl

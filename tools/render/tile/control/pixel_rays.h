@@ -1,0 +1,60 @@
+// Further camera rays of a pixel, for quantities that are cheap to find along a ray and vary within
+// the pixel.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/random.h"
+#include "core/sampling.h"
+#include "tools/render/camera_vertex.h"
+#include "tools/render/gather/gather.h"
+#include "tools/render/sample.h"
+#include "tools/render/tile_dimensions.h"
+#include "transport/camera.h"
+
+namespace bnvpl {
+
+class PixelRays {
+ public:
+  // `values`: the quantity along one ray of each pixel. The more it varies around a pixel, the more
+  // rays each of the pixel's samples gets; none where its deviation is below `minDeviation` times
+  // its mean. Borrows rays and lights.
+  PixelRays(const RayScene& rays, const LightSet& lights, const FilmPoints& film,
+            std::span<const float> values, double minDeviation, TileDimension dimension);
+
+  // Rays for each sample of a pixel of the tile.
+  unsigned count(const TileSlots& tile, uint32_t pixel) const {
+    return raysEach_[size_t{tile.y + pixel / tile.width} * width_ + tile.x + pixel % tile.width];
+  }
+  // Calls fn(path, sample) for each ray. The rays are independent of the sample.
+  template <typename Fn>
+  void forEach(const TileSlots& tile, uint32_t pixel, uint32_t slot, const LightsBehind& behind,
+               const Fn& fn) const {
+    const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+    const unsigned rays = count(tile, pixel);
+    const Scene& scene = rays_.scene();
+    const uint64_t key = random64(tile.key, pixel, dimension_);
+    for (unsigned k = 0; k < rays; ++k) {
+      const uint64_t index = uint64_t{slot} * rays + k;
+      Rng rng = Rng::spread(key, static_cast<uint32_t>(index));
+      const Point2 at = rng.nextPoint();
+      RadianceSample sample;
+      const SpecularPath path = traceCameraPath(
+          rays_, lights_, scene.camera.position,
+          cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
+                          (float(y) + at.y) / float(scene.film.height)),
+          rng, sample, behind);
+      fn(path, sample);
+    }
+  }
+
+ private:
+  const RayScene& rays_;
+  const LightSet& lights_;
+  uint32_t width_;
+  TileDimension dimension_;
+  std::vector<uint8_t> raysEach_;  // of each pixel
+};
+
+}  // namespace bnvpl

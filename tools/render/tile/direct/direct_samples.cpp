@@ -1,0 +1,268 @@
+#include "tools/render/tile/direct/direct_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/render/camera_vertex.h"
+#include "tools/render/tile/allocation/parity_pattern.h"
+#include "transport/camera.h"
+#include "transport/surface_lights.h"
+#include "transport/walk.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Shadow rays of a direct sample. They are few, because another sample also sees another point.
+constexpr unsigned kLightRays = 3;
+// Least mean number of BSDF rays of a direct sample, as some light may be found by them alone.
+constexpr double kMinBsdfRays = 0.125;
+constexpr unsigned kMaxSamples = 64;
+// Direct samples of a sample without indirect light and without a marginal cost.
+constexpr unsigned kSamplesAlone = 4;
+
+}  // namespace
+
+// Independent numbers for the camera path and for the light sampling of each sample.
+struct DirectSamples::RandomNumbers {
+  uint64_t path, light;
+  explicit RandomNumbers(uint64_t key) : path(random64(key, 0, 0)), light(random64(key, 0, 1)) {}
+};
+
+DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
+  emission += other.emission, met += other.met;
+  byLight += other.byLight, byBsdf += other.byBsdf;
+  return *this;
+}
+
+DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
+                                           const RandomNumbers& numbers, uint32_t index,
+                                           RadianceSample* layers) const {
+  const Scene& scene = rays_.scene();
+  Rng rng = Rng::spread(numbers.path, index);
+  const Point2 at = rng.nextPoint();
+  RadianceSample seen;
+  const SpecularPath path = traceCameraPath(
+      rays_, lights_, scene.camera.position,
+      cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
+                      (float(y) + at.y) / float(scene.film.height)),
+      rng, seen, {rays.lights.strata, surfaceLights_});
+  Light light{seen.emission, seen.direct, {}, {}};
+  if (layers) *layers = seen;
+  if (!path.rough) return light;
+  const Bsdf bsdf(scene, path.hit);
+  if (layers) describeShadingPoint(bsdf, *layers);
+  LearnedLight learned = rays.lights;
+  LearnedStrata around;
+  if (path.spread && surfaceLights_ && learned.strata) {
+    // Near-specular reflection leads to places of which the tile has learned little.
+    around = surfaceLights_->at(path.hit.position, path.hit.ng);
+    if (around.all) learned.strata = &around;
+  }
+  light.byLight = path.throughput *
+                  (learned.strata ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned,
+                                                rays.bsdf, index * learned.rays, numbers.light)
+                                  : directLight(rays_, lights_, bsdf, LobeGroup::Rough,
+                                                LightChoice::Each, rays.bsdf, rng));
+  light.byBsdf = bsdfRay(bsdf, path.throughput, rays, learned, rng);
+  return light;
+}
+
+// Light by at most one BSDF ray, which is sent with the probability rays.bsdf.
+Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
+                            const LearnedLight& learned, Rng& rng) const {
+  BsdfSample next;
+  if ((rays.bsdf < 1.0f && rng.next() >= rays.bsdf) ||
+      !bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next))
+    return {};
+  const Arrival arrival{next.pdf * rays.bsdf, bsdf.point().position, LightChoice::Each, learned};
+  const Ray ray = rayOn(rays_, bsdf.point(), next);
+  SurfacePoint hit;
+  const Vec3 emission = rays_.closestHit(ray.origin, ray.direction, hit)
+                            ? emissionMet(lights_, hit, arrival)
+                            : emissionAtInfinity(lights_, next.wi, arrival);
+  return throughput * next.weight * emission * (1.0f / rays.bsdf);
+}
+
+double DirectSamples::costOf(const Rays& rays) const {
+  const double toLights = rays.lights.strata ? double(rays.lights.rays)
+                                             : double(std::min(lights_.size(), kMaxLightsEach));
+  return cost::kCameraRay + cost::kLightRay * toLights + cost::kBsdfRay * double(rays.bsdf);
+}
+
+namespace {
+
+LearnedLight lightsOf(const LearnedStrata* strata) { return {strata, strata ? kLightRays : 0}; }
+
+// The efficient mean number of BSDF rays beside `lightRays` shadow rays. A ray that finds the light
+// B and is sent with the probability q has the variance E[B^2] / q - E[B]^2; V is the variance of
+// the shadow rays together. Variance times cost is least where each number of rays is proportional
+// to the root of what it divides, over its cost.
+float bsdfRaysFor(double squareByBsdf, double varianceByLight, double lightRays) {
+  if (!(varianceByLight > 0.0)) return 1.0f;
+  const double rays =
+      std::sqrt(lightRays * squareByBsdf / cost::kBsdfRay / (varianceByLight / cost::kLightRay));
+  return static_cast<float>(std::clamp(rays, kMinBsdfRays, 1.0));
+}
+
+}  // namespace
+
+DirectSamples::Pilot DirectSamples::pilot(const TileSlots& tile,
+                                          const LearnedStrata* strata) const {
+  Pilot out;
+  const Rays rays{lightsOf(strata)};
+  double pixels = 0.0, varianceByLight = 0.0, squareByBsdf = 0.0;
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    const uint32_t x = p % tile.width, y = p / tile.width;
+    if (parity(x, y) != 0) continue;
+    const RandomNumbers numbers(
+        random64(tile.key, uint64_t{p} << 32 | tile.firstSlot, kDimDirectPilots));
+    const Light a = sample(tile.x + x, tile.y + y, rays, numbers, 0),
+                b = sample(tile.x + x, tile.y + y, rays, numbers, 1);
+    out.variance += 0.5 * squared(a.all() - b.all());
+    varianceByLight += 0.5 * squared(a.byLight - b.byLight);
+    squareByBsdf += 0.5 * (squared(a.byBsdf) + squared(b.byBsdf));
+    out.light += 0.5f * (a.all() + b.all());
+    pixels += 1.0;
+  }
+  out.variance /= pixels;
+  out.light *= static_cast<float>(1.0 / pixels);
+  if (strata) out.bsdfRays = bsdfRaysFor(squareByBsdf, varianceByLight, kLightRays);
+  return out;
+}
+
+namespace {
+
+// Indirect light of one sample: means over the tile.
+struct Indirect {
+  double variance = 0.0;
+  Vec3 light;
+};
+
+Indirect indirectOf(const TileSamples& tile) {
+  const size_t slots = tile.samples.size() / tile.pixels;
+  Indirect out;
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    Vec3 sum;
+    double squares = 0.0;
+    for (size_t s = 0; s < slots; ++s) {
+      const Vec3 v = tile.samples[s * tile.pixels + p].radiance.indirect;
+      sum += v, squares += squared(v);
+    }
+    out.light += sum * (1.0f / static_cast<float>(tile.samples.size()));
+    if (slots > 1) {
+      out.variance += (squares - squared(sum) / double(slots)) / double(slots - 1);
+    } else {  // from the difference to the next pixel of the row
+      const uint32_t x = p % tile.width, other = x + 1 < tile.width ? p + 1 : p - std::min(x, 1u);
+      out.variance += 0.5 * squared(sum - tile.samples[other].radiance.indirect);
+    }
+  }
+  out.variance = std::max(0.0, out.variance / tile.pixels);
+  return out;
+}
+
+// Direct samples for each sample. Without a marginal cost of the film, that of the tile's indirect
+// light holds.
+unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, double costOfOne,
+                  double cost, const SampleAllocation& allocation) {
+  if (!(pilot.variance > 0.0)) return 1;
+  const Indirect indirect = indirectOf(tile);
+  if (allocation.marginalCost > 0.0)
+    return samplesFor(allocation.relative(pilot.variance, pilot.light + indirect.light), costOfOne,
+                      allocation.marginalCost, 1, kMaxSamples);
+  if (!(indirect.variance > 0.0)) return kSamplesAlone;
+  const double max = std::clamp(cost / costOfOne, 1.0, double{kMaxSamples});
+  return samplesFor(pilot.variance, costOfOne,
+                    std::max(indirect.variance, 1e-9 * pilot.variance) / cost, 1,
+                    static_cast<unsigned>(max));
+}
+
+}  // namespace
+
+// The direct samples of a pixel so far.
+struct DirectSamples::Pixel {
+  std::vector<Light> sums;  // of its slots
+  unsigned count = 0;       // in each slot
+};
+
+void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count,
+                        Pixel& out, PixelMoments& moments) const {
+  const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+  const RandomNumbers numbers(
+      random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDimDirectSamples));
+  uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
+  for (size_t s = 0; s < out.sums.size(); ++s) {
+    for (unsigned k = 0; k < count; ++k) {
+      RadianceSample* layers =
+          alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
+      const Light light = sample(x, y, rays, numbers, index++, layers);
+      out.sums[s] += light;
+      moments.add(light.all());
+    }
+  }
+  out.count += count;
+}
+
+double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPath> paths,
+                             const LearnedStrata* strata, const Pilot& pilot, double cost,
+                             const SampleAllocation& allocation) const {
+  const Rays rays{lightsOf(strata), pilot.bsdfRays};
+  const double costOfOne = costOf(rays);
+  const unsigned count = count_ > 0 ? count_ : countFor(tile, pilot, costOfOne, cost, allocation);
+  const size_t slots = tile.samples.size() / tile.pixels;
+  const bool allocated = count_ == 0 && allocation.marginalCost > 0.0;
+  std::vector<Pixel> pixels(tile.pixels);
+  std::vector<PixelMoments> moments(tile.pixels);
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    pixels[p].sums.resize(slots);
+    for (size_t s = 0; s < slots; ++s) {
+      const size_t i = s * tile.pixels + p;
+      pixels[p].sums[s] = {paths[i].metFirst, paths[i].metFirst + paths[i].metLater, {}, {}};
+      moments[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(slots));
+    }
+    add(tile, p, rays, allocated ? (count + 1) / 2 : count, pixels[p], moments[p]);
+    moments[p].light += moments[p].sum * static_cast<float>(1.0 / moments[p].count);
+  }
+  if (allocated) addMore(tile, rays, costOfOne, allocation, moments, pixels);
+  double samples = 0.0;
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    samples += pixels[p].count;
+    store(tile, p, strata, pixels[p]);
+  }
+  return costOfOne * samples / tile.pixels;
+}
+
+// The first half of the samples tells the pixels of the other parity how many they need.
+void DirectSamples::addMore(const TileSamples& tile, const Rays& rays, double cost,
+                            const SampleAllocation& allocation,
+                            std::span<const PixelMoments> moments, std::span<Pixel> pixels) const {
+  PixelMoments unused;
+  const auto counts = samplesByParity(moments, tile, cost, allocation, 1, kMaxSamples);
+  for (uint32_t p = 0; p < tile.pixels; ++p) {
+    const unsigned all = counts[parity(p % tile.width, p / tile.width)];
+    if (all > pixels[p].count) add(tile, p, rays, all - pixels[p].count, pixels[p], unused);
+  }
+}
+
+// Means over the samples of a pixel. Its camera samples count among the rays that may meet
+// emission, unless they have no rays.
+void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const LearnedStrata* strata,
+                          const Pixel& from) const {
+  const unsigned cameraRays = from.count + (alone_ ? 0 : 1);
+  for (size_t s = 0; s < from.sums.size(); ++s) {
+    const Light& sum = from.sums[s];
+    RadianceSample& out = tile.samples[s * tile.pixels + pixel].radiance;
+    out.direct = sum.met, out.emission = sum.emission;
+    if (visibleEmission_) {
+      visibleEmission_->average(out, cameraRays, tile, pixel,
+                                tile.firstSlot + static_cast<uint32_t>(s),
+                                {strata, surfaceLights_});
+    } else {
+      const float each = 1.0f / static_cast<float>(cameraRays);
+      out.direct *= each, out.emission *= each;
+    }
+    out.direct += (sum.byLight + sum.byBsdf) * (1.0f / static_cast<float>(from.count));
+  }
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,83 @@
+// Camera samples for direct light alone. Where indirect light costs hundreds of rays per sample and
+// direct light has most of the noise, as behind windows or lamp shades, further samples of both
+// would waste time.
+#pragma once
+
+#include "tools/render/sample.h"
+#include "tools/render/tile/allocation/sample_allocation.h"
+#include "tools/render/tile/direct/visible_emission.h"
+#include "transport/direct_light.h"
+
+namespace bnvpl {
+
+class DirectSamples {
+ public:
+  // `count`: direct samples for each camera sample; 0: as many as a pilot finds efficient. The
+  // pilot's samples are used for nothing else, so that the mean is unbiased.
+  // `alone`: camera samples have no rays of their own; the direct samples also fill in depth,
+  // normal and albedo.
+  // `visibleEmission` and `surfaceLights` may be null.
+  DirectSamples(const RayScene& rays, const LightSet& lights,
+                const VisibleEmission* visibleEmission, const SurfaceLights* surfaceLights,
+                unsigned count, bool alone)
+      : rays_(rays),
+        lights_(lights),
+        visibleEmission_(visibleEmission),
+        surfaceLights_(surfaceLights),
+        count_(count),
+        alone_(alone) {}
+
+  struct Pilot {
+    double variance = 0.0;  // of one direct sample, mean over the tile
+    Vec3 light;             // mean over the tile
+    float bsdfRays = 1.0f;  // efficient mean number from each shading point, at most 1
+  };
+  // `strata`: the lights that the tile has learned to see; may be null.
+  Pilot pilot(const TileSlots& tile, const LearnedStrata* strata) const;
+  // Sets the direct light of the tile's camera samples. `paths`: their camera paths, whose emission
+  // counts, too. `cost`: of a sample without its direct light. Returns the cost of the direct
+  // samples of a sample.
+  double render(const TileSamples& tile, std::span<const SpecularPath> paths,
+                const LearnedStrata* strata, const Pilot& pilot, double cost,
+                const SampleAllocation& allocation) const;
+
+ private:
+  // The direct light of a sample, or a sum over samples.
+  struct Light {
+    Vec3 emission;  // directly visible
+    Vec3 met;       // by the camera path: `emission`, and light at specular vertices
+    // Light that the shading point scatters, by shadow rays and by BSDF rays.
+    Vec3 byLight, byBsdf;
+    Vec3 all() const { return met + byLight + byBsdf; }
+    Light& operator+=(const Light& other);
+  };
+  // Rays from a shading point.
+  struct Rays {
+    LearnedLight lights;
+    float bsdf = 1.0f;  // mean number, at most 1
+  };
+  struct RandomNumbers;  // of a pixel
+  // One direct sample. `layers`: receives depth, normal and albedo; may be null.
+  Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
+               uint32_t index, RadianceSample* layers = nullptr) const;
+  Vec3 bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays, const LearnedLight& learned,
+               Rng& rng) const;
+  struct Pixel;
+  double costOf(const Rays& rays) const;
+  void add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count, Pixel& out,
+           PixelMoments& moments) const;
+  void addMore(const TileSamples& tile, const Rays& rays, double cost,
+               const SampleAllocation& allocation, std::span<const PixelMoments> moments,
+               std::span<Pixel> pixels) const;
+  void store(const TileSamples& tile, uint32_t pixel, const LearnedStrata* strata,
+             const Pixel& from) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  const VisibleEmission* visibleEmission_;
+  const SurfaceLights* surfaceLights_;
+  unsigned count_;
+  bool alone_;
+};
+
+}  // namespace bnvpl

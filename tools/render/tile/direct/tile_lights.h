@@ -1,0 +1,46 @@
+// The parts of the lights that each tile of the film sees, learned by shadow rays from the tile's
+// shading points on first use, so that a shard learns its own tiles alone.
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <vector>
+
+#include "tools/render/gather/gather.h"
+#include "transport/light_probes.h"
+
+namespace bnvpl {
+
+class TileLights {
+ public:
+  // `raysOfTile`: shadow rays that the samples of a tile will send; learning takes half as many,
+  // within bounds. `shadingPoint`: of a pixel of the film. Borrows rays and lights.
+  TileLights(const RayScene& rays, const LightSet& lights,
+             std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
+             uint64_t seed);
+
+  // Strata of the tile that has the pixel. Thread-safe.
+  LearnedStrata at(uint32_t x, uint32_t y) const;
+
+ private:
+  struct Tile {
+    std::once_flag probed, learned;
+    StrataValues found;  // by the tile's own probes
+    StrataValues light;  // by those of the 3 x 3 tiles around it
+  };
+
+  const StrataValues& probe(size_t tile) const;
+  const StrataValues& learn(size_t tile) const;
+
+  const RayScene& rays_;
+  const LightSet& lights_;
+  std::function<SurfacePoint(size_t pixel)> shadingPoint_;
+  LightStrata strata_;
+  size_t probes_;  // for each stratum
+  uint64_t key_;
+  size_t tilesX_, tilesY_;
+  mutable std::vector<Tile> tiles_;
+  StrataValues everywhere_;
+};
+
+}  // namespace bnvpl

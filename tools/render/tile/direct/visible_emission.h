@@ -1,0 +1,32 @@
+// Directly visible emission: lamps and sky that the camera sees, also through mirrors, glass and
+// near-specular lobes. Its edges are sharp and bright. Camera rays are cheap, so that pixels at
+// such edges get more of them.
+#pragma once
+
+#include "tools/render/tile/control/pixel_rays.h"
+
+namespace bnvpl {
+
+class VisibleEmission {
+ public:
+  // Borrows rays and lights.
+  VisibleEmission(const RayScene& rays, const LightSet& lights, const FilmPoints& film)
+      : pixels_(rays, lights, film, film.emission, 0.0, kDimEmissionRays) {}
+
+  // `sum`: direct light and emission of `count` camera rays of a sample. Replaces both by the mean
+  // over these and the pixel's further rays. The number of further rays depends on the film's
+  // points, not on the sample, so that the mean is unbiased.
+  void average(RadianceSample& sum, unsigned count, const TileSlots& tile, uint32_t pixel,
+               uint32_t slot, const LightsBehind& behind) const {
+    pixels_.forEach(tile, pixel, slot, behind, [&](const SpecularPath&, const RadianceSample& s) {
+      sum.direct += s.direct, sum.emission += s.emission;
+    });
+    const float each = 1.0f / static_cast<float>(count + pixels_.count(tile, pixel));
+    sum.direct *= each, sum.emission *= each;
+  }
+
+ private:
+  PixelRays pixels_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,111 @@
+// Rays for indirect light from shading points. A method of --integrator implements IndirectRays for
+// its TileIntegrator.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tools/render/sample.h"
+#include "tools/render/tile/reuse/path_reuse.h"
+#include "transport/direct_light.h"
+#include "transport/walk.h"
+
+namespace bnvpl {
+
+// Sums over the rays of one sample, W/(m2 sr).
+struct RayContributions {
+  Vec3 direct, indirect, clamped, compensated;
+  // Vertices that other samples may reuse, and their light as this sample's own rays found it: part
+  // of `indirect` and `compensated`.
+  std::vector<ReusedVertex> vertices;
+  Vec3 vertexLight;
+  double squares = 0.0;  // squared indirect light of each ray but for `vertexLight`, channels added
+  uint32_t rays = 0, shadowRays = 0;
+
+  // Adds the mean of the rays, with `reused` in place of the mean of vertexLight: the light of the
+  // vertices that the group's rays have found.
+  void addMeanTo(RadianceSample& out, Vec3 reused) const {
+    if (rays == 0) return;
+    const float each = 1.0f / static_cast<float>(rays);
+    const Vec3 difference = reused - vertexLight * each;
+    out.direct += direct * each;
+    out.indirect += indirect * each + difference;
+    out.clamped += clamped * each;
+    out.compensated += compensated * each + difference;
+    out.shadowRays += shadowRays;
+  }
+};
+
+// The shading point that rays leave.
+struct RayOrigin {
+  const Directions& directions;
+  Vec3 throughput;              // from the shading point to the camera
+  const LearnedLight& learned;  // how its shadow rays choose lights, for MIS with the rays
+  SharedWithPhotons shared;     // MIS with caustic photons
+  bool reuse = false;           // whether other samples reuse the vertices
+};
+
+// The first segment of a ray.
+struct FirstSegment {
+  Vec3 direction, throughput;
+  Arrival arrival;
+  const SurfacePoint* hit;  // its triangle is kNone if the ray hit nothing
+  Rng rng{0, 0};            // random numbers of the rest of the path
+};
+
+// Samples and traces `count` rays in batches, so that their memory accesses overlap. Calls
+// hits(batch) with what a batch hit, then follow(k, segment) for its k-th ray, which adds to `out`.
+// `misRays`: the number of rays from the shading point that MIS weights assume.
+template <typename Hits, typename Follow>
+void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, unsigned count,
+              uint32_t first, uint64_t key, RayContributions& out, const Hits& hits,
+              const Follow& follow) {
+  constexpr size_t kBatch = RayScene::kBatch;
+  std::array<Ray, kBatch> rays;
+  std::array<SurfacePoint, kBatch> found;
+  std::array<FirstSegment, kBatch> segments;
+  const SurfacePoint& point = from.directions.bsdf().point();
+  for (unsigned begin = 0, end; begin < count; begin = end) {
+    end = begin + std::min(count - begin, unsigned{kBatch});
+    size_t alive = 0;
+    for (unsigned k = begin; k < end; ++k) {
+      BsdfSample next;
+      Rng rng = Rng::spread(key, first + k);
+      if (!from.directions.sample(rng, next)) continue;
+      rays[alive] = rayOn(scene, point, next);
+      segments[alive] = {next.wi,
+                         from.throughput * next.weight,
+                         {next.pdf * static_cast<float>(misRays), point.position, LightChoice::Each,
+                          from.learned, from.shared},
+                         &found[alive],
+                         rng};
+      ++alive;
+    }
+    scene.closestHits({rays.data(), alive}, found);
+    hits(std::span<const SurfacePoint>(found.data(), alive));
+    for (size_t k = 0; k < alive; ++k) {
+      const Vec3 before = out.indirect, vertexBefore = out.vertexLight;
+      follow(k, segments[k]);
+      const Vec3 own = (out.indirect - before) - (out.vertexLight - vertexBefore);
+      out.squares += double{dot(own, own)};
+    }
+  }
+  out.rays += count;
+}
+
+// Thread-safe and immutable once made.
+class IndirectRays {
+ public:
+  virtual ~IndirectRays() = default;
+
+  // How ray directions are sampled at a shading point.
+  virtual Directions directionsFrom(const Bsdf& bsdf) const { return Directions(bsdf); }
+  // Adds `count` rays, which use the points `first` and on of the sequences of `key`.
+  virtual void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
+                    RayContributions& out) const = 0;
+  virtual double costOfRay() const = 0;  // in the units of cost:: (sample_allocation.h)
+};
+
+}  // namespace bnvpl
