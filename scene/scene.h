@@ -115,6 +115,12 @@ struct Scene {
   uint32_t worldEnd() const {
     return prototypes.empty() ? static_cast<uint32_t>(triangles.size()) : prototypes.front().begin;
   }
+  // Those of the world and of the prototypes, each stored once.
+  size_t maskedTriangles() const {
+    size_t count = worldEnd() - maskedBegin;
+    for (const Prototype& p : prototypes) count += p.end - p.maskedBegin;
+    return count;
+  }
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;
   Bounds bounds;  // of all but strays (scene/strays.h)

@@ -58,5 +58,26 @@ TEST_F(SceneReport, AViewFileReplacesTheCamera) {
   EXPECT_EQ(runInspect("scene --camera 3 " + quoted(at("tiny.toml"))).code, 2);
 }
 
+// Also those of what occurs many times, each of which is stored once.
+TEST_F(SceneReport, CountsMaskedTriangles) {
+  writeTinyScene(at("."));
+  writeAll(at("tiny.mtl"), "newmtl white\nKd 0.7 0.7 0.7\nnewmtl gone\nKd 1 1 1\nd 0.2\n");
+  std::string obj = readAll(at("tiny.obj"));
+  obj.insert(obj.find("f 5 6 7 8"), "usemtl gone\n");
+  writeAll(at("tiny.obj"), obj);
+  const auto count = [&] {
+    return Json::parse(runInspect("scene --json " + quoted(at("tiny.toml"))).output)
+        .at("masked_triangles");
+  };
+  EXPECT_EQ(count(), 2);
+  std::string toml = readAll(at("tiny.toml"));
+  toml.insert(
+      toml.find("[[light]]"),
+      "[[mesh.instance]]\ntranslate = [0, 0, 0]\n[[mesh.instance]]\ntranslate = [0, 9, 0]\n");
+  writeAll(at("tiny.toml"), toml);
+  EXPECT_EQ(count(), 2);
+  EXPECT_EQ(loadScene(at("tiny.toml")).prototypes.size(), 1u);
+}
+
 }  // namespace
 }  // namespace bnvpl

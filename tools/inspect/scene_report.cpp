@@ -90,7 +90,7 @@ Json describeScene(const Scene& scene, const LightSet& lights) {
                     {"upper", placeJson(scene, scene.bounds.upper)}};
   json["origin"] = scene.origin;
   json["triangles"] = scene.triangles.size();
-  json["masked_triangles"] = scene.triangles.size() - scene.maskedBegin;
+  json["masked_triangles"] = scene.maskedTriangles();
   json["vertices"] = scene.positions.size() - 1;
   json["meshes"] = Json::array();
   for (const MeshRecord& m : scene.meshes)
