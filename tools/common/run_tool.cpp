@@ -220,7 +220,7 @@ Processor processorOf(const Json& record) {
 std::string extendProvenance(const std::string& earlier, const Json& record) {
   Json chain = earlier.empty() ? Json::array() : Json::parse(earlier);
   chain.push_back(record);
-  return chain.dump();
+  return jsonText(chain);
 }
 
 Summary::Summary(std::string tool) : tool_(std::move(tool)), startS_(nowS()) {
@@ -246,7 +246,7 @@ Summary::Cost Summary::close(const ToolOptions& options, OutputSet& files) const
   const Cost cost{nowS() - startS_, peakMemoryMiB()};
   values["time_s"] = cost.timeS;
   values["peak_memory_MiB"] = cost.memoryMiB;
-  if (!options.stats.empty()) files.add(options.stats).write(values.dump(2) + "\n");
+  if (!options.stats.empty()) files.add(options.stats).write(jsonText(values, 2) + "\n");
   files.commit();
   return cost;
 }
