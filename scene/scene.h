@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,9 @@ struct MeshRecord {
   std::string name;
   size_t triangles = 0, instances = 0;  // triangles of one instance
 };
+
+// Takes one text after another, each of which names what was ignored or repaired.
+using OnWarning = std::function<void(const std::string&)>;
 
 struct Scene {
   Film film;

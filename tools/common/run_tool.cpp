@@ -33,6 +33,7 @@ double peakMemoryMiB() {
 }
 
 std::string toolName;  // before each line on stderr
+std::vector<std::string> heldWarnings;
 char** arguments = nullptr;
 
 // Formats nothing in memory, of which there may be none left.
@@ -53,6 +54,8 @@ int report() {
   } catch (const UsageError& e) {
     return fail(kExitUsage, e.what());
   } catch (const InputError& e) {
+    std::erase(heldWarnings, e.what());
+    printHeldWarnings();
     return fail(kExitInput, e.what());
   } catch (const OutputError& e) {
     return fail(kExitOutput, e.what());
@@ -266,6 +269,13 @@ void Summary::finish(const ToolOptions& options, OutputSet& files) const {
 
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
   for (const std::string& w : warnings) ErrorLine().add(tool).add(": warning: ").add(w);
+}
+
+void holdWarning(const std::string& text) { heldWarnings.push_back(text); }
+
+void printHeldWarnings() {
+  printWarnings(toolName, heldWarnings);
+  heldWarnings.clear();
 }
 
 std::string formatSi(double value) {

@@ -76,7 +76,7 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   for (const fs::path& file : command.files) used.reads("file", file);
   used.reads("--scene", command.scene.file).writes(tool).check();
   Scene scene;
-  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  if (withScene) scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
 
   const auto say = [&](const std::string& line) {
@@ -136,7 +136,7 @@ int runScene(const SceneCommand& command, const ToolOptions& tool) {
     folder.emplace(command.toml);
   }
   // Its warnings are part of the answer.
-  const Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  const Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
   if (folder) requireOutside(command.toml, scene.files, "the run reads");
   const RayScene rays(scene);
@@ -173,7 +173,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   used.reads("file", command.file).reads("--scene", command.scene.file);
   used.writes("-o", command.output, {OutputKind::Png}).writes(tool).check();
   const VplTable table = readVpl(command.file);
-  Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
   requireSameScene(command.file, table.sceneHash, scene,
                    "name the scene it was made from, or rerun vpl-place");
