@@ -24,6 +24,7 @@ import cost_tables  # noqa: E402
 import design  # noqa: E402
 import fit  # noqa: E402
 import measure  # noqa: E402
+import output_guard  # noqa: E402
 import scenes  # noqa: E402
 import size  # noqa: E402
 
@@ -112,6 +113,10 @@ def checks(model, rows):
     return found
 
 
+ROWS = output_guard.json_kind("runs of cost_model.py", lambda rows: isinstance(rows, list) and all(
+    isinstance(row, dict) and "role" in row and "stage" in row for row in rows))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
@@ -119,10 +124,12 @@ def main():
     parser.add_argument("--table", action="store_true")
     options = parser.parse_args()
     if not options.table:
+        if options.keep:
+            output_guard.or_exit(output_guard.check, options.keep, ROWS, "--keep")
         had = json.loads(options.keep.read_text()) if options.keep and options.keep.exists() else []
         rows = measure_all(options.bin.resolve(), had)
         if options.keep:
-            options.keep.write_text(json.dumps(rows, indent=1) + "\n")
+            output_guard.or_exit(output_guard.write, options.keep, json.dumps(rows, indent=1) + "\n", ROWS, "--keep")
         rates = fitted(rows)
         model = cost.Model(rates)
         cost.MODEL.write_text(json.dumps({"rates": rates, "scales": scales(model, rows), "checks": checks(model, rows)},

@@ -26,6 +26,10 @@ import matplotlib.pyplot as plt  # noqa: E402
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "eval"))
 from bnvpl_eval import images, statistics  # noqa: E402
+from bnvpl_eval.guard import output_guard  # noqa: E402
+
+FIGURES = output_guard.json_kind("figures of gather.py", lambda rows: isinstance(rows, list) and all(
+    isinstance(row, dict) and "lightcuts_s" in row for row in rows))
 
 TILE_ERRORS = [0.025, 0.05, 0.1, 0.2, 0.4]
 
@@ -118,6 +122,9 @@ def main() -> None:
     parser.add_argument("--plot", type=Path, help="PNG to write")
     parser.add_argument("--json", type=Path, help="figures to write")
     options = parser.parse_args()
+    for file, kind, option in ((options.json, FIGURES, "--json"), (options.plot, output_guard.PNG, "--plot")):
+        if file:
+            output_guard.or_exit(output_guard.check, file, kind, option)
     for name in options.scenes.split(","):
         variable = {"sponza": "SPONZA_DIR", "veach-ajar": "VEACH_AJAR_DIR"}.get(name)
         if variable and variable not in os.environ:
@@ -133,9 +140,9 @@ def main() -> None:
             print(f"| {scene} | {r['vpls']} | {r['relmse']:.2e} | {r['lightcuts_s']:.2f} | {r['tilecuts_s']:.2f} "
                   f"| {r['ratio']:.1f}x | {every} | {r['default_relmse']:.2e}, {r['default_s']:.2f} |", flush=True)
     if options.json:
-        options.json.write_text(json.dumps(rows, indent=1) + "\n")
+        output_guard.or_exit(output_guard.write, options.json, json.dumps(rows, indent=1) + "\n", FIGURES, "--json")
     if options.plot:
-        plot(rows, options.plot)
+        output_guard.or_exit(output_guard.replace, options.plot, output_guard.PNG, lambda partial: plot(rows, partial), "--plot")
 
 
 if __name__ == "__main__":

@@ -94,6 +94,7 @@ def main() -> int:
     if not chosen:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
+    output.check(folder)
     # What holds at the beginning: hours later the working tree may be another.
     begin = {"commit": arguments.commit or commit(), "processor": processor(),
              "threads": len(os.sched_getaffinity(0)), "date": datetime.date.today().isoformat()}

@@ -133,7 +133,8 @@ def resized(pixels: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def save(pixels: np.ndarray, name: str) -> None:
-    Image.fromarray(pixels).save(write_docs.DOCS / "images" / f"{name}.jpg", quality=90)
+    output.save(write_docs.DOCS / "images" / f"{name}.jpg", output.output_guard.JPEG,
+                lambda partial: Image.fromarray(pixels).save(partial, quality=90))
 
 
 def write_table(rows: list[str]) -> None:
@@ -141,7 +142,7 @@ def write_table(rows: list[str]) -> None:
     heads = "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / author's render |\n|---|---|---|---|"
     made = f"<!-- tools of {commit()}, {datetime.date.today().isoformat()} -->"
     text = "\n".join(["<!-- gallery -->", heads, *rows, "", made, "<!-- end -->"])
-    output.write_text(path, re.sub(r"<!-- gallery -->.*?<!-- end -->", lambda _: text, path.read_text(), flags=re.S))
+    output.write_page(path, re.sub(r"<!-- gallery -->.*?<!-- end -->", lambda _: text, path.read_text(), flags=re.S))
 
 
 def main() -> int:

@@ -96,7 +96,7 @@ def guided_table(rows: list[dict]) -> str:
 def put(page: Path, name: str, table: str) -> None:
     """Between the page's comments of that name."""
     text = f"<!-- {name} -->\n{table}\n<!-- end of {name} -->"
-    output.write_text(page, re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: text, page.read_text(), flags=re.S))
+    output.write_page(page, re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: text, page.read_text(), flags=re.S))
 
 
 def plot(rows: list[dict], path: Path) -> None:
@@ -119,7 +119,7 @@ def plot(rows: list[dict], path: Path) -> None:
     marks = dict(zip(*reversed(axes[0].get_legend_handles_labels())))
     figure.suptitle(" ")  # room for the legend
     figure.legend(marks.values(), marks.keys(), loc="upper center", ncols=len(marks), frameon=False)
-    figure.savefig(path, metadata={"Date": None})
+    output.save(path, output.output_guard.SVG, lambda partial: figure.savefig(partial, metadata={"Date": None}))
     plt.close(figure)
 
 

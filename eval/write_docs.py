@@ -75,7 +75,7 @@ def write_tables(report: dict, wanted: list[str]) -> None:
             return match[0]
         return f"<!-- table {match[1]} -->\n{markdown(tables[match[1]])}\n\n{made}\n<!-- end -->"
 
-    output.write_text(path, re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, path.read_text(), flags=re.S))
+    output.write_page(path, re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, path.read_text(), flags=re.S))
 
 
 def write_plots(folder: Path, wanted: list[str]) -> None:
@@ -118,6 +118,10 @@ def framed(picture: np.ndarray, top: int, left: int, height: int, width: int) ->
     return out
 
 
+def save_png(pixels: np.ndarray, target: Path, **how) -> None:
+    output.save(target, output.output_guard.PNG, lambda partial: Image.fromarray(pixels).save(partial, **how))
+
+
 def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> None:
     """Ours and the reference in full, at one exposure; below them, enlarged, where the named ones differ most."""
     found = {image["id"]: folder / image["files"]["full"] for image in view["images"]}
@@ -133,14 +137,14 @@ def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> Non
     crops = [shown[name][top:top + height, left:left + width].repeat(ENLARGED, axis=0).repeat(ENLARGED, axis=1)
              for name in names]
     full[0] = framed(full[0], top, left, height, width)
-    Image.fromarray(below([beside(full), beside(crops)])).save(target, optimize=True)
+    save_png(below([beside(full), beside(crops)]), target, optimize=True)
 
 
 def write_overlays(folder: Path, view: dict, names: list[str], target: Path) -> None:
     found = {picture["id"]: folder / picture["file"] for picture in view["pictures"]}
     parts = [np.asarray(Image.open(found[name]).convert("RGB")) for name in names]
     times = -(-LEAST_WIDTH // parts[0].shape[1])
-    Image.fromarray(beside([part.repeat(times, axis=0).repeat(times, axis=1) for part in parts])).save(target)
+    save_png(beside([part.repeat(times, axis=0).repeat(times, axis=1) for part in parts]), target)
 
 
 def write_pictures(report: dict, folder: Path) -> None:
@@ -174,7 +178,7 @@ def write_summary(results: dict) -> None:
                           path.read_text(), flags=re.S)
     if count != 1:
         raise SystemExit(f"eval: {path}: has {count} places for the summary, '<!-- summary -->' to '<!-- end -->', not one")
-    output.write_text(path, text)
+    output.write_page(path, text)
 
 
 def main() -> int:

@@ -18,6 +18,7 @@ import cost
 import farm_graph
 import farm_picture
 import farm_schedule
+import output_guard
 import stages
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
@@ -86,7 +87,13 @@ def arguments(words):
     if widest > options.cores:
         p.error(f"--cpus: a task of {widest} cores does not fit on a node of {options.cores}; raise --cores")
     stages.complete(options)
+    if options.svg:
+        output_guard.or_exit(output_guard.check, *picture_of(options))
     return options
+
+
+def picture_of(options):
+    return options.svg, output_guard.SVG, "--svg", {"--model": options.model}
 
 
 def tasks_of(options):
@@ -185,7 +192,9 @@ def main(words):
     print_limit(rows)
     if options.svg:
         limit_s = sum(job.wall_s + options.start for job in farm_graph.critical_path(jobs))
-        options.svg.write_text(farm_picture.svg(rows, limit_s, jobs, outcome, options.nodes[-1] * options.cores))
+        file, *guard = picture_of(options)
+        output_guard.or_exit(output_guard.write, file,
+                       farm_picture.svg(rows, limit_s, jobs, outcome, options.nodes[-1] * options.cores), *guard)
 
 
 if __name__ == "__main__":

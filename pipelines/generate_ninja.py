@@ -18,6 +18,7 @@ import argparse
 import pathlib
 import shlex
 
+import output_guard
 import stages
 
 # Stages take all cores, so one runs at a time whatever -j says. So do shards, unless they are launched elsewhere.
@@ -77,12 +78,8 @@ def build(task, out, options):
 
 
 def write_graph(target, text):
-    """Whole or not at all, and over nobody else's graph, such as that of CMake."""
-    if target.exists() and not target.read_text(errors="replace").startswith(MARK):
-        stages.refuse(f"{target} was not made by this program; give another --out, or remove it")
-    partial = target.with_name(f"{target.name}.partial")
-    partial.write_text(text)
-    partial.replace(target)
+    """Over nobody else's graph, such as that of CMake."""
+    output_guard.or_exit(output_guard.write, target, text, output_guard.text_kind("a graph of this program", MARK), "--out")
 
 
 def main():

@@ -50,12 +50,12 @@ std::vector<std::string> Defines::unused() const {
   return names;
 }
 
-Scene loadScene(const fs::path& path, const Defines& defines) {
+Scene loadScene(const fs::path& path, const Defines& defines, const OnWarning& onWarning) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     throw InputError(path, "is a folder; name the scene.toml in it");
   const Format& format = formatOf(path);
-  SceneBuilder builder(path);
+  SceneBuilder builder(path, onWarning);
   format.read(path, defines, builder);
   return builder.finish();
 }

@@ -34,8 +34,9 @@ class Defines {
 };
 
 // Reads a scene and everything that it names; the extension says the format. What could be
-// repaired is in Scene::warnings. Throws InputError with file, line where there is one, problem and
-// cure; MemoryError or std::bad_alloc when it does not fit.
-Scene loadScene(const fs::path& path, const Defines& defines = {});
+// repaired is in Scene::warnings, and goes to `onWarning` as it arises: what an error follows is
+// nowhere else. Throws InputError with file, line where there is one, problem and cure; MemoryError
+// or std::bad_alloc when it does not fit.
+Scene loadScene(const fs::path& path, const Defines& defines = {}, const OnWarning& onWarning = {});
 
 }  // namespace bnvpl

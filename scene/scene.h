@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,9 @@ struct MeshRecord {
   size_t triangles = 0, instances = 0;  // triangles of one instance
 };
 
+// Takes one text after another, each of which names what was ignored or repaired.
+using OnWarning = std::function<void(const std::string&)>;
+
 struct Scene {
   Film film;
   Camera camera;
@@ -114,6 +118,12 @@ struct Scene {
   uint32_t maskedBegin = 0;  // first of the world whose material has an alpha mask
   uint32_t worldEnd() const {
     return prototypes.empty() ? static_cast<uint32_t>(triangles.size()) : prototypes.front().begin;
+  }
+  // Those of the world and of the prototypes, each stored once.
+  size_t maskedTriangles() const {
+    size_t count = worldEnd() - maskedBegin;
+    for (const Prototype& p : prototypes) count += p.end - p.maskedBegin;
+    return count;
   }
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;

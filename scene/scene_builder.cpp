@@ -55,7 +55,10 @@ bool hasTexture(const Material& m) {
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(fs::path sceneFile) { scene_.files.push_back(std::move(sceneFile)); }
+SceneBuilder::SceneBuilder(fs::path sceneFile, OnWarning onWarning)
+    : onWarning_(std::move(onWarning)) {
+  scene_.files.push_back(std::move(sceneFile));
+}
 
 void SceneBuilder::setFilm(const Film& film) {
   scene_.film = film;
@@ -177,7 +180,9 @@ void SceneBuilder::addFile(const fs::path& file) {
 }
 
 void SceneBuilder::warn(const std::string& text) {
-  if (warned_.insert(text).second) scene_.warnings.push_back(text);
+  if (!warned_.insert(text).second) return;
+  scene_.warnings.push_back(text);
+  if (onWarning_) onWarning_(text);
 }
 
 SceneBuilder::Base SceneBuilder::addCorners(const fs::path& file, const Mesh& mesh,

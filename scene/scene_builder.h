@@ -42,8 +42,9 @@ class SceneBuilder {
  public:
   // What becomes of a texture that cannot be read.
   static constexpr const char* kPlainColour = "the plain material colour is used";
-  // `sceneFile` names the scene in messages and is the first of the files.
-  explicit SceneBuilder(fs::path sceneFile);
+  // `sceneFile` names the scene in messages and is the first of the files. Each warning goes to
+  // `onWarning` as it arises, also where an error follows and there is no Scene to hold it.
+  explicit SceneBuilder(fs::path sceneFile, OnWarning onWarning = {});
 
   // Of a format that has one camera.
   void setFilm(const Film& film);
@@ -170,6 +171,7 @@ class SceneBuilder {
   uint32_t grey_ = kNone;
   Strays strays_;  // of the world
   std::set<std::string> warned_;
+  OnWarning onWarning_;
 };
 
 }  // namespace bnvpl

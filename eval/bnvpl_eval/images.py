@@ -1,10 +1,11 @@
 """EXR images as NumPy arrays: (height, width, 3) float32, top row first."""
 
-import os
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+
+from .guard import guarded, output_guard
 
 
 def channel_names(layer: str) -> list[str]:
@@ -27,7 +28,7 @@ def read(path: Path, layer: str = "") -> np.ndarray:
 
 
 def write_half(path: Path, layers: dict[str, np.ndarray], note: str) -> None:
-    """Half floats, written beside `path` and renamed. `layers`: '' and others to (h, w, 3)."""
+    """Half floats, in place of an older image at most. `layers`: '' and others to (h, w, 3)."""
     names = [name for layer in layers for name in channel_names(layer)]
     pixels = np.ascontiguousarray(np.concatenate(list(layers.values()), axis=2), dtype=np.float32)
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], oiio.HALF)
@@ -36,14 +37,15 @@ def write_half(path: Path, layers: dict[str, np.ndarray], note: str) -> None:
     spec.attribute("DateTime", "")  # or the bytes would tell when
     spec.attribute("ImageDescription", note)
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f".{path.name}.partial-{os.getpid()}.exr")
-    target = oiio.ImageOutput.create(str(partial))
-    if target is None or not target.open(str(partial), spec) or not target.write_image(pixels):
-        partial.unlink(missing_ok=True)
-        reason = target.geterror() if target else oiio.geterror()
-        raise SystemExit(f"eval: {path}: cannot be written ({reason}); is the folder writable and the disk not full?")
-    target.close()
-    os.replace(partial, path)
+
+    def make(partial: Path) -> None:
+        target = oiio.ImageOutput.create(str(partial))
+        if target is None or not target.open(str(partial), spec) or not target.write_image(pixels):
+            reason = target.geterror() if target else oiio.geterror()
+            raise SystemExit(f"eval: {path}: cannot be written ({reason}); is the folder writable and the disk not full?")
+        target.close()
+
+    guarded(output_guard.replace, path, output_guard.EXR, make)
 
 
 def read_channel(path: Path, name: str) -> np.ndarray:

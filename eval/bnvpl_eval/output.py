@@ -1,10 +1,11 @@
-"""Writes what a run found: results.json, results.csv, runs.csv, and report.json with its pictures."""
+"""Writes what a run found: results.json, results.csv, runs.csv, and report.json with its pictures. Each replaces nothing
+but an older one of its kind."""
 
 import csv
 import io
 import json
-import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
@@ -12,6 +13,7 @@ import numpy as np
 
 from . import images
 from .context import Context
+from .guard import guarded, output_guard
 from .settings import View
 
 matplotlib.use("Agg")
@@ -20,10 +22,31 @@ import matplotlib.pyplot as plt  # noqa: E402 (after the choice of its backend)
 LAYERS = {"indirect": "Indirect light", "full": "Full image"}
 
 
-def write_text(path: Path, text: str) -> None:
-    partial = path.with_name(f".{path.name}.partial-{os.getpid()}")
-    partial.write_text(text)
-    os.replace(partial, path)
+RESULTS = output_guard.json_object("the results of an evaluation", "provenance", "settings", "results", "runs")
+REPORT = output_guard.json_object("the report of an evaluation", "title", "provenance", "scenes")
+FILES = {"results.json": RESULTS, "results.csv": output_guard.CSV, "runs.csv": output_guard.CSV, "report.json": REPORT}
+
+
+def check(folder: Path) -> None:
+    """Before the hours of work: that write_all() will replace nothing of others in the folder."""
+    if folder.exists() and not folder.is_dir():
+        raise SystemExit(f"eval: {folder}: is no folder; name another for the results")
+    for name, kind in FILES.items():
+        guarded(output_guard.check, folder / name, kind)
+
+
+def write_text(path: Path, text: str, kind: output_guard.Kind) -> None:
+    guarded(output_guard.write, path, text, kind)
+
+
+def write_page(path: Path, text: str) -> None:
+    """A page that was read and is put back with other tables: of any kind."""
+    write_text(path, text, output_guard.Kind("a page", lambda _: True))
+
+
+def save(target: Path, kind: output_guard.Kind, make: Callable[[Path], None]) -> None:
+    """A file that make() writes beside the target, with the same extension."""
+    guarded(output_guard.replace, target, kind, make)
 
 
 def write_all(context: Context, folder: Path, provenance: dict) -> Path:
@@ -31,7 +54,7 @@ def write_all(context: Context, folder: Path, provenance: dict) -> Path:
     rows = [{key: value for key, value in row.items() if key != "images"} for row in context.results]
     runs = [run.record for run in context.runner.runs.values()]
     write_text(folder / "results.json", json.dumps(
-        {"provenance": provenance, "settings": context.size, "results": rows, "runs": runs}, indent=1) + "\n")
+        {"provenance": provenance, "settings": context.size, "results": rows, "runs": runs}, indent=1) + "\n", RESULTS)
     write_csv(folder / "results.csv", rows)
     write_csv(folder / "runs.csv", [{**run, "options": " ".join(run["options"]),
                                      "inputs": " ".join(run["inputs"].values())} for run in runs])
@@ -44,7 +67,7 @@ def write_all(context: Context, folder: Path, provenance: dict) -> Path:
                     "views": [view_entry(context, view, folder) for view in scene.views
                               if view.name in context.pictures]}
                    for scene in context.scenes]}
-    write_text(folder / "report.json", json.dumps(report, indent=1) + "\n")
+    write_text(folder / "report.json", json.dumps(report, indent=1) + "\n", REPORT)
     return folder / "report.json"
 
 
@@ -54,7 +77,7 @@ def write_csv(path: Path, rows: list[dict]) -> None:
     writer = csv.DictWriter(text, columns)
     writer.writeheader()
     writer.writerows(rows)
-    write_text(path, text.getvalue())
+    write_text(path, text.getvalue(), output_guard.CSV)
 
 
 def view_entry(context: Context, view: View, folder: Path) -> dict:
@@ -79,7 +102,7 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
         if "channel" in picture:
             label += heat_map(images.read_channel(picture["file"], picture["channel"]), target)
         else:
-            shutil.copyfile(picture["file"], target)
+            save(target, output_guard.PNG, lambda partial, file=picture["file"]: shutil.copyfile(file, partial))
         entry["pictures"].append({"id": picture["id"], "label": label,
                                   "file": str(target.relative_to(folder))})
     return entry
@@ -88,5 +111,6 @@ def view_entry(context: Context, view: View, folder: Path) -> dict:
 def heat_map(values: np.ndarray, target: Path) -> str:
     """A pixel for each of the image, so that the viewer can lay it over; returns the scale, in words."""
     most = float(values.max())
-    plt.imsave(target, values, cmap="viridis", vmin=0, vmax=max(most, 1e-30), metadata={"Software": None})
+    save(target, output_guard.PNG, lambda partial: plt.imsave(
+        partial, values, cmap="viridis", vmin=0, vmax=max(most, 1e-30), metadata={"Software": None}))
     return f": dark 0, yellow {most:.0f}" if most >= 10 else f": dark 0, yellow {most:.3g}"

@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from . import images
+from .guard import guarded, output_guard
 from .runner import Runner, digest, scene_key
 from .settings import EVAL, ROOT, View
 
 CHUNK = 2048  # spp of one render
 FOLDER = EVAL / "references"
+RECORD = output_guard.json_object("the record of a reference", "key", "scene", "film", "spp", "half")
 
 
 def path(view: View, film: str, half: str) -> Path:
@@ -49,7 +51,7 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     record = {"key": reference_key(view, film, total, half), "scene": view.file, "film": film,
               "integrator": view.reference_integrator, "spp": total, "half": half,
               "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]], "cpu_s": round(cpu_s, 1)}
-    target.with_suffix(".json").write_text(json.dumps(record, indent=1) + "\n")
+    guarded(output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD)
 
 
 def _stored(view: View, film: str, half: str) -> dict | None:

@@ -10,6 +10,7 @@ import OpenImageIO as oiio
 
 import model_cases
 import model_scenes
+from outputs import output_guard, write_scene
 from scene_source import SceneError, read_toml, resolve
 
 
@@ -111,8 +112,8 @@ def with_tall_block(obj: Path, mtl: Path, lines: str, folder: Path) -> tuple[Pat
     if not name:
         raise SceneError(f"{obj}: has no 'o TallBlock' followed by usemtl; use the Cornell box")
     new_obj, new_mtl = folder / "block.obj", folder / "block.mtl"
-    new_obj.write_text(before + "o TallBlock\nusemtl Block" + after[after.index("\n"):])
-    new_mtl.write_text(mtl.read_text() + "\nnewmtl Block\n" + lines)
+    write_scene(new_obj, before + "o TallBlock\nusemtl Block" + after[after.index("\n"):])
+    write_scene(new_mtl, mtl.read_text() + "\nnewmtl Block\n" + lines)
     return new_obj, new_mtl
 
 
@@ -139,8 +140,13 @@ def write_sky(path: Path) -> None:
     sky[x >= 28] *= 0.25
     image = oiio.ImageBuf(oiio.ImageSpec(32, 16, 3, oiio.FLOAT))
     image.set_pixels(oiio.ROI(), np.ascontiguousarray(sky, np.float32))
-    if not image.write(str(path)):
-        raise OSError(f"{path}: cannot write: {image.geterror()}")
+
+
+    def make(partial: Path) -> None:
+        if not image.write(str(partial)):
+            raise OSError(f"{path}: cannot write: {image.geterror()}")
+
+    output_guard.replace(path, output_guard.EXR, make)
 
 
 def prepare(case: Case, scenes: Path, folder: Path) -> Path:
@@ -165,14 +171,14 @@ def prepare(case: Case, scenes: Path, folder: Path) -> Path:
         mtl = resolve(original, mesh["materials"]) if "materials" in mesh else _library_of(obj)
         if case.drop:
             edited = folder / f"mesh{number}.mtl"
-            edited.write_text(edit_mtl(mtl.read_text(), case.drop))
+            write_scene(edited, edit_mtl(mtl.read_text(), case.drop))
             mtl = edited
         if case.tall_block:
             obj, mtl = with_tall_block(obj, mtl, case.tall_block, folder)
         text += _toml_table("[[mesh]]", mesh | {"file": str(obj), "materials": str(mtl)})
     if case.teapot:
         mtl = folder / "teapot.mtl"
-        mtl.write_text("newmtl Teapot\n" + case.teapot)
+        write_scene(mtl, "newmtl Teapot\n" + case.teapot)
         teapot = {"file": str(scenes / "teapot" / "teapot.obj"), "materials": str(mtl)}
         text += _toml_table("[[mesh]]", teapot | TEAPOT)
     for light in case.lights or table.get("light", []):
@@ -180,5 +186,5 @@ def prepare(case: Case, scenes: Path, folder: Path) -> Path:
             write_sky(folder / light["image"])
         text += _toml_table("[[light]]", light)
     path = folder / "scene.toml"
-    path.write_text(text)
+    write_scene(path, text)
     return path

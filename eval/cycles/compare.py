@@ -11,6 +11,8 @@ import OpenImageIO as oiio
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
+from outputs import output_guard  # noqa: E402
+
 ROUNDING = 2e-4  # relative: two float renderers differ by this where neither has noise
 BLOCK = 8  # pixels: wide enough that its mean is not a single path's
 
@@ -125,7 +127,6 @@ def write_picture(path: Path, title: str, ours: np.ndarray, cycles: np.ndarray) 
     for axis in axes:
         axis.set_xticks([])
         axis.set_yticks([])
-    partial = path.with_suffix(".partial.png")
-    figure.savefig(partial, dpi=80, metadata={"Software": None})
+    output_guard.replace(path, output_guard.PNG,
+                         lambda partial: figure.savefig(partial, dpi=80, metadata={"Software": None}))
     pyplot.close(figure)
-    partial.replace(path)

@@ -30,6 +30,7 @@ import numpy as np
 import compare
 import walk
 from cases import CASES, Case, View, prepare
+from outputs import RESULTS, output_guard
 from scene_source import SceneError
 
 HERE = Path(__file__).resolve().parent
@@ -230,9 +231,7 @@ def describe_run(options: argparse.Namespace) -> dict:
 
 
 def write_results(path: Path, runs: dict) -> None:
-    partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps(runs, indent=1, sort_keys=True) + "\n")
-    partial.replace(path)
+    output_guard.write(path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results")
 
 
 def table(results: dict) -> str:
@@ -262,6 +261,7 @@ def main(arguments: list[str]) -> int:
     options.blender = require_program(
         options.blender, "apt-get install --no-install-recommends blender, or name it by --blender")
     options.vpl_render = require_program(options.vpl_render, "build it, or name it by --vpl-render")
+    output_guard.check(options.results, RESULTS, "--results")
     options.out.mkdir(parents=True, exist_ok=True)
     results = json.loads(options.results.read_text()) if options.results.is_file() else {}
     about = describe_run(options)
@@ -276,6 +276,6 @@ def main(arguments: list[str]) -> int:
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (SceneError, ToolError, OSError, ValueError) as problem:
+    except (SceneError, ToolError, output_guard.Refused, OSError, ValueError) as problem:
         print(f"cross_check.py: {problem}", file=sys.stderr)
         sys.exit(EXIT_INPUT)

@@ -11,6 +11,7 @@ import numpy as np
 
 import model_scenes as scenes
 import scene_source as source
+from outputs import GLB, MAKER, output_guard
 
 FLOAT = 5126
 
@@ -87,7 +88,7 @@ def write(path: Path, sketch: scenes.Sketch) -> None:
     nodes = [camera_node()] + [{"mesh": n} for n in range(len(meshes) - bool(sketch.nodes))]
     nodes += [node | {"mesh": len(meshes) - 1} for node in sketch.nodes]  # all of the last part
     fov = np.radians(scenes.CAMERA["vertical_fov_deg"])
-    whole = {"asset": {"version": "2.0"}, "scene": 0,
+    whole = {"asset": {"version": "2.0", "generator": MAKER}, "scene": 0,
              "scenes": [{"nodes": list(range(len(nodes)))}],
              "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"],
              "cameras": [{"type": "perspective", "perspective":
@@ -103,6 +104,6 @@ def write(path: Path, sketch: scenes.Sketch) -> None:
     text = json.dumps(whole).encode()
     text += b" " * (-len(text) % 4)
     data = chunk.data + b"\0" * (-len(chunk.data) % 4)
-    path.write_bytes(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data))
-                     + struct.pack("<I4s", len(text), b"JSON") + text
-                     + struct.pack("<I4s", len(data), b"BIN\0") + data)
+    output_guard.write(path, struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data))
+                       + struct.pack("<I4s", len(text), b"JSON") + text
+                       + struct.pack("<I4s", len(data), b"BIN\0") + data, GLB)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import gltf_file
 import model_scenes
+from outputs import write_scene
 
 WHITE, BLACK, BROWN = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (0.7, 0.4, 0.2)
 
@@ -47,7 +48,7 @@ def write(name: str, path: Path) -> None:
     if path.suffix == ".glb":
         gltf_file.write(path, sketch)
     elif path.suffix == ".obj":
-        path.write_text(model_scenes.obj_text(sketch))
-        path.with_suffix(".mtl").write_text(model_scenes.mtl_text(sketch))
+        write_scene(path, model_scenes.obj_text(sketch))
+        write_scene(path.with_suffix(".mtl"), model_scenes.mtl_text(sketch))
     else:
-        path.write_text(model_scenes.pbrt_text(sketch))
+        write_scene(path, model_scenes.pbrt_text(sketch))

@@ -25,6 +25,7 @@ import scene_source as source  # noqa: E402
 from cycles_gltf import import_gltf  # noqa: E402
 from cycles_lights import make_lamp, make_world, place  # noqa: E402
 from cycles_materials import make_material  # noqa: E402
+from outputs import output_guard  # noqa: E402
 from scene_source import SceneError  # noqa: E402
 
 # Cycles 3.4 samples a triangle by solid angle where its longest edge exceeds the distance of its
@@ -177,6 +178,11 @@ def build(options: argparse.Namespace) -> tuple[int, int]:
     return scene.width, scene.height
 
 
+def render(path: Path) -> None:
+    bpy.context.scene.render.filepath = str(path.resolve())
+    bpy.ops.render.render(write_still=True)
+
+
 def run() -> None:
     options = parse_arguments()
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -196,15 +202,12 @@ def run() -> None:
         for seed in options.seeds.split(","):
             bpy.context.scene.cycles.seed = int(seed)
             name = options.output.replace("{bounces}", bounces).replace("{seed}", seed)
-            partial = Path(name).with_suffix(".partial.exr")
-            bpy.context.scene.render.filepath = str(partial.resolve())
-            bpy.ops.render.render(write_still=True)
-            partial.replace(name)
+            output_guard.replace(name, output_guard.EXR, render, "--output", {"the scene": options.scene})
 
 
 if __name__ == "__main__":
     try:
         run()
-    except SceneError as error:
+    except (SceneError, output_guard.Refused) as error:
         print(f"render_cycles.py: {error}", file=sys.stderr)
         sys.exit(3)

@@ -310,6 +310,21 @@ class CommandLine(InFolder):
         self.assertEqual(done.stderr.count("\n"), 1)
         self.assertIn(said, done.stderr)
 
+    def test_files_of_others_stay(self) -> None:
+        """OUT may be the folder of the scenes themselves."""
+        scene = self.folder / "room-point" / "scene.toml"
+        cases.prepare(next(case for case in cases.CASES if case.name == "room-point"), ROOT / "scenes", scene.parent)
+        cases.prepare(next(case for case in cases.CASES if case.name == "room-point"), ROOT / "scenes", scene.parent)
+        scene.write_text("[film]\nwidth = 8\n")
+        fake = self.write("fake", "#!/bin/sh\nexit 0\n")
+        fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
+        words = ("room-point", "--blender", str(fake), "--vpl-render", str(fake), "--out", str(self.folder))
+        self.assert_one_line(command(*words), 3, "scene.toml: is not a scene that cross_check.py made")
+        self.assertEqual(scene.read_text(), "[film]\nwidth = 8\n")
+        results = self.write("results.json", '{"asset": {"version": "2.0"}}')
+        self.assert_one_line(command(*words), 3, "results.json: is not results of cross_check.py, which --results would")
+        self.assertEqual(results.read_text(), '{"asset": {"version": "2.0"}}')
+
     def test_no_blender_is_one_line_and_code_3(self) -> None:
         done = command("cornell", "--blender", "no-such-blender", "--out", str(self.folder))
         self.assert_one_line(done, 3, "no-such-blender: no such program; apt-get install")

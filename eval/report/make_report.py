@@ -10,26 +10,29 @@ Exit codes: 0 done, 2 wrong options, 3 bad or missing input, 4 output cannot be 
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
 from html_page import page_html
 from report_json import ReportError, load
 
+sys.path.append(str(Path(__file__).resolve().parents[2] / "pipelines"))
+import output_guard  # noqa: E402  (after the path that it needs)
+
 EXIT_INPUT = 3
 EXIT_OUTPUT = 4
 
 
-def write_whole(path: Path, data: bytes) -> None:
-    """The old file or the whole new one, never half of it."""
-    partial = path.with_name(path.name + ".partial")
+def write_output(program: str, path: Path, data: bytes, kind: output_guard.Kind, report: Path) -> int:
+    """The exit code; what is wrong is printed."""
     try:
-        partial.write_bytes(data)
-        os.replace(partial, path)
-    except OSError:
-        partial.unlink(missing_ok=True)
-        raise
+        output_guard.write(path, data, kind, "-o", {"the report": report})
+        return 0
+    except output_guard.Refused as e:
+        print(f"{program}: {e}", file=sys.stderr)
+    except OSError as e:
+        print(f"{program}: {path}: {e.strerror}; choose another place", file=sys.stderr)
+    return EXIT_OUTPUT
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -44,15 +47,10 @@ def main(arguments: list[str] | None = None) -> int:
     except ReportError as e:
         print(f"make_report.py: {e}", file=sys.stderr)
         return EXIT_INPUT
-    try:
-        write_whole(options.output, page)
-    except OSError as e:
-        print(f"make_report.py: {options.output}: {e.strerror}; choose another place",
-              file=sys.stderr)
-        return EXIT_OUTPUT
-    if not options.quiet:
+    code = write_output("make_report.py", options.output, page, output_guard.HTML, options.report)
+    if code == 0 and not options.quiet:
         print(f"make_report.py: {options.output}: {len(page) / 2**20:.1f} MiB", file=sys.stderr)
-    return 0
+    return code
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.axis import Axis as PlotAxis  # noqa: E402
 
 from axis import Axis, axes_of, ticks  # noqa: E402
-from make_report import EXIT_INPUT, EXIT_OUTPUT, write_whole  # noqa: E402
+from make_report import EXIT_INPUT, output_guard, write_output  # noqa: E402
 from palette import LIGHT, MARKERS  # noqa: E402
 from report_json import ReportError, load  # noqa: E402
 from svg_plot import name_lines  # noqa: E402
@@ -104,12 +104,8 @@ def main(arguments: list[str] | None = None) -> int:
     except ReportError as e:
         print(f"plots.py: {e}", file=sys.stderr)
         return EXIT_INPUT
-    try:
-        write_whole(options.output, picture(plots[options.plot], kind, options.dpi))
-    except OSError as e:
-        print(f"plots.py: {options.output}: {e.strerror}; choose another place", file=sys.stderr)
-        return EXIT_OUTPUT
-    return 0
+    return write_output("plots.py", options.output, picture(plots[options.plot], kind, options.dpi),
+                        {"png": output_guard.PNG, "svg": output_guard.SVG}[kind], options.report)
 
 
 if __name__ == "__main__":

@@ -173,6 +173,23 @@ class InputTest(unittest.TestCase):
         self.assertEqual(made.returncode, 4)
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
 
+    def test_outputs_replace_only_their_kind(self) -> None:
+        for main, words, name in ((make_report.main, [], "r.html"), (plots.main, ["conv"], "p.svg"),
+                                  (plots.main, ["conv"], "p.png")):
+            file = self.folder / name
+            file.write_bytes(b"\x89VPL\r\n\x1a\n")
+            made = call(main, self.json, *words, "-o", file)
+            self.assertEqual(made.returncode, 4)
+            self.assertRegex(made.stderr, rf"\A[^\n]*/{name}: is not an? [^\n]*, which -o would replace it with; name [^\n]*\n\Z")
+            self.assertEqual(file.read_bytes(), b"\x89VPL\r\n\x1a\n")
+            file.unlink()
+            for _ in range(2):
+                self.assertEqual(call(main, self.json, *words, "-o", file).returncode, 0)
+        before = self.json.read_bytes()
+        made = call(make_report.main, self.json, "-o", self.json)
+        self.assertIn("is the file of the report, which the run reads", made.stderr)
+        self.assertEqual(self.json.read_bytes(), before)
+
     def test_a_full_disk_leaves_the_old_page(self) -> None:
         old = self.make()
         self.change(lambda r: r.update(title="Another"))
@@ -187,7 +204,7 @@ class InputTest(unittest.TestCase):
         self.assertEqual(made.returncode, 4)
         self.assertIn("report.html: No space left on device", made.stderr)
         self.assertEqual(self.page.read_text(encoding="utf-8"), old)
-        self.assertEqual(list(self.folder.glob("report.html*")), [self.page])
+        self.assertEqual(list(self.folder.glob("*report.html*")), [self.page])
 
 
 if __name__ == "__main__":

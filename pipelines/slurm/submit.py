@@ -19,12 +19,16 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 import needs  # noqa: E402
+import output_guard  # noqa: E402
 import record  # noqa: E402
 import stages  # noqa: E402
 import task as task_program  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
 SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
+JOB = output_guard.json_object("a job of this program", "threads", "retries", "tasks")
+IDS = output_guard.json_kind("a list of jobs of this program", lambda ids: isinstance(ids, dict) and
+                             all(isinstance(job, str) and job.isdigit() for job in ids.values()))
 
 
 def per_stage(value, **others):
@@ -91,6 +95,17 @@ class Submission:
         self.needs = needs.Needs(options)
         self.ids = self.run / "jobs.json"
 
+    def job_file(self, name):
+        return self.run / f"{name}.job.json"
+
+    def check_files(self, names):
+        """All that will be written, before anything is."""
+        for folder in (self.run, self.run / "earlier"):
+            if folder.exists() and not folder.is_dir():
+                stages.refuse(f"{folder}: is no folder, which the run needs there; give another --out, or remove it")
+        for file, kind in [(self.ids, IDS), *((self.job_file(name), JOB) for name in names)]:
+            output_guard.or_exit(output_guard.check, file, kind)
+
     def refuse_while_queued(self):
         """Two runs of one scene would do the same work twice."""
         if not self.ids.exists():
@@ -139,7 +154,7 @@ class Submission:
             self.submitted[name] = f"ID_OF_{name}"
             return
         self.submitted[name] = self.slurm(*full).strip().split(";")[0]
-        self.ids.write_text(json.dumps(self.submitted) + "\n")
+        output_guard.or_exit(output_guard.write, self.ids, json.dumps(self.submitted) + "\n", IDS)
         print(f"{self.submitted[name]}  {name}: {note}", flush=True)
 
     def submit_stage(self, name, tasks):
@@ -150,8 +165,8 @@ class Submission:
             return
         kind = kind_of(name)
         if not self.options.dry_run:
-            (self.run / f"{name}.job.json").write_text(json.dumps(
-                {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}, indent=1))
+            job = {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}
+            output_guard.or_exit(output_guard.write, self.job_file(name), json.dumps(job, indent=1), JOB)
         words = [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"] if before else []
         if len(tasks) > 1:  # shards, and images of several views
             at_once = f"%{self.options.at_once}" if self.options.at_once else ""
@@ -163,7 +178,7 @@ class Submission:
         words.append(f"--output={self.run}/{log}.log")
         note = f"{len(wanted)} of {len(tasks)} tasks" if len(wanted) < len(tasks) else \
             f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
-        program = [sys.executable, str(HERE / "task.py"), f"{self.run}/{name}.job.json"]
+        program = [sys.executable, str(HERE / "task.py"), str(self.job_file(name))]
         self.submit(name, kind, words, program, note)
 
     def submit_summary(self):
@@ -178,6 +193,7 @@ class Submission:
             for command in ("sbatch", "squeue", "scancel"):
                 if not shutil.which(command):
                     stages.refuse(f"there is no {command} here; run this where Slurm's commands are")
+            self.check_files([name for name, _ in jobs])
             self.refuse_while_queued()
             for name, _ in jobs:  # what cannot be known is refused before anything is done
                 self.limits(name, kind_of(name))

@@ -22,6 +22,8 @@ import numpy
 import OpenImageIO
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / 'pipelines'))
+import output_guard  # noqa: E402
 
 
 def scenes(shared):
@@ -157,6 +159,10 @@ def run_scene(tools, name, scene, defines, only):
     return table
 
 
+TABLE = output_guard.json_kind('a table of bytes.py', lambda table: isinstance(table, dict) and all(
+    isinstance(row, dict) and {'values', 'file'} & set(row) for row in table.values()))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('what', choices=('record', 'compare'))
@@ -168,6 +174,8 @@ def main():
     parser.add_argument('--files', action='store_true', help='compare: whole files too')
     options = parser.parse_intermixed_args()
 
+    if options.what == 'record':
+        output_guard.or_exit(output_guard.check, options.output, TABLE, '-o')
     tools, table = Tools(options.bin), {}
     for name, (scene, defines) in scenes(options.shared.resolve()).items():
         if options.only and not any(options.only in f'{name} {c[0]}' for c in cases(name)):
@@ -175,7 +183,7 @@ def main():
         table.update(run_scene(tools, name, scene, defines, options.only))
         print(f'{name}: {len(table)} files so far', file=sys.stderr)
     if options.what == 'record':
-        Path(options.output).write_text(json.dumps(table, indent=1) + '\n')
+        output_guard.or_exit(output_guard.write, options.output, json.dumps(table, indent=1) + '\n', TABLE, '-o')
         return 0
     kinds = ('values', 'file') if options.files else ('values',)
     expected = json.loads(Path(options.table).read_text())

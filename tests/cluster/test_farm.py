@@ -188,6 +188,26 @@ class Command(unittest.TestCase):
         self.assertEqual(sum(row.tag.endswith("circle") for row in rows), 4)
         self.assertGreaterEqual(sum(row.tag.endswith("polygon") for row in rows), 4)
 
+    def test_the_picture_replaces_only_a_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            picture = Path(folder) / "farm.svg"
+            for text in ("<svg></svg>", "<?xml version='1.0'?>\n<!DOCTYPE svg>\n<svg></svg>", ""):
+                picture.write_text(text)
+                printed("--nodes", "1", "--svg", str(picture))
+                self.assertGreater(len(picture.read_text()), 1000)
+            model = Path(folder) / "model.json"
+            model.write_bytes(cost.MODEL.read_bytes())
+            picture.write_bytes(b"\x89VPL\r\n\x1a\n")
+            for file, problem in ((picture, "is not an SVG picture, which --svg would replace it with; name another"),
+                                  (model, "is the file of --model, which the run reads; name another file for --svg"),
+                                  (Path(folder), "is a folder; name a file for --svg")):
+                before = file.read_bytes() if file.is_file() else None
+                with self.assertRaises(SystemExit) as refused:
+                    printed("--nodes", "1", "--model", str(model), "--svg", str(file))
+                self.assertRegex(str(refused.exception), f"^[^\n]*: {file}: {problem}")
+                self.assertEqual(file.read_bytes() if file.is_file() else None, before)
+            self.assertEqual(len(list(Path(folder).iterdir())), 2)
+
     def test_wrong_options_are_refused(self):
         for words in (["--nodes", "0"], ["--quality", "final"], ["--render-flags=--gather all"], ["--size", "640"], ["--cpus", "64"], ["--frames", "0"]):
             with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):

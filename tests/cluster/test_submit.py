@@ -236,6 +236,26 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(sorted(file.name for file in self.at("run").rglob("*")), before)
         self.assertEqual(self.jobs(), {})
 
+    def test_files_of_others_stay(self):
+        self.submit("--shards", "2")
+        self.assertEqual(self.submit("--shards", "2", "--seed", "3").returncode, 0)  # over its own
+        self.jobs()
+        for name, content in (("jobs.json", '{"asset": {"version": "2.0"}}'), ("jobs.json", "[1"), ("render.job.json", "{}"),
+                              ("place.job.json", "\x89VPL")):
+            file = self.at(f"run/{name}")
+            own = file.read_bytes()
+            file.write_text(content)
+            done = self.submit("--shards", "2", "--seed", "4")
+            self.assertRegex(done.stdout, rf"\Asubmit.py: \S*/{name}: is not a .* of this program, [^\n]*; name another [^\n]*\n\Z")
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(file.read_text(), content)
+            file.write_bytes(own)
+        self.assertEqual(self.jobs(), {})
+        other = self.folder / "other/u-shape/run"
+        other.parent.mkdir(parents=True)
+        other.write_text("a file")
+        self.assertIn("is no folder, which the run needs there", self.submit("--out", str(self.folder / "other")).stdout)
+
     def test_a_run_that_is_queued_is_not_submitted_again(self):
         self.submit("--shards", "1")
         (self.folder / "queued").write_text("101 101")

@@ -38,6 +38,24 @@ TEST_F(Info, DescribesALitFile) {
   EXPECT_TRUE(contains(text, "relative_error")) << text;
 }
 
+// Of images of other programs, and of files that people name.
+TEST_F(Info, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
+  const fs::path file = at("i\xff\n.exr");
+  Image image = flatImage(2, 2, 0.5f, 0.5f, 0.5f);
+  image.attributes["by\n\xfe"] = "a\x1b\nb\xfd";
+  image.channels[0].name = std::string(300, 'c') + "\xfc\n";
+  Json info = describeImage(image);
+  info["file"] = file.string();
+  info["bytes"] = 7;
+  const Json read = Json::parse(jsonText(info));
+  EXPECT_TRUE(read["file"].get<std::string>().ends_with("i\uFFFD\n.exr"));
+  EXPECT_EQ(read["attributes"]["by\n\uFFFD"], "a\x1b\nb\uFFFD");
+  const std::string text = infoText(info);
+  EXPECT_TRUE(contains(text, "i\\xff\\n.exr: OpenEXR, 2 x 2 pixels, 7 bytes\n")) << text;
+  EXPECT_TRUE(contains(text, "\n  by\\n\\xfe = a\\x1b\\nb\\xfd\n")) << text;
+  EXPECT_TRUE(contains(text, "\n  " + std::string(300, 'c') + "\\xfc\\n ")) << text;
+}
+
 TEST_F(Info, PutsTheEmissionPointsOfARowTogether) {
   VplTable table = threeRows(VplStage::Lit);
   table.emitPoints = 2;

@@ -58,5 +58,50 @@ TEST_F(SceneReport, AViewFileReplacesTheCamera) {
   EXPECT_EQ(runInspect("scene --camera 3 " + quoted(at("tiny.toml"))).code, 2);
 }
 
+// A name may hold any bytes but those that end it.
+TEST_F(SceneReport, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
+  writeTinyScene(at("."));
+  std::string obj = readAll(at("tiny.obj"));
+  obj.replace(obj.find("usemtl white"), 12, "usemtl w\xff\x1b[1m");
+  writeAll(at("tiny.obj"), obj);
+  writeAll(at("tiny.mtl"), "newmtl w\xff\x1b[1m\nKd 0.7 0.7 0.7\n");
+  fs::rename(at("tiny.toml"), at("tiny\xfe\n0.toml"));
+  const std::string scene = quoted(at("tiny\xfe\n0.toml"));
+
+  const Outcome json = runInspect("scene --json " + scene);
+  EXPECT_EQ(json.code, 0) << json.output;
+  const Json read = Json::parse(json.output);
+  EXPECT_EQ(read["materials"][0]["name"], "w\uFFFD\x1b[1m");
+  EXPECT_TRUE(read["scene"].get<std::string>().ends_with("tiny\uFFFD\n0.toml"));
+  EXPECT_EQ(runInspect("scene --stats " + quoted(at("s.json")) + " " + scene).code, 0);
+  EXPECT_EQ(Json::parse(readAll(at("s.json")))["scene"]["materials"][0]["name"], "w\uFFFD\x1b[1m");
+
+  const Outcome text = runInspect("scene " + scene);
+  EXPECT_TRUE(contains(text.output, "tiny\\xfe\\n0.toml, content ")) << text.output;
+  EXPECT_TRUE(contains(text.output, "\n  'w\\xff\\x1b[1m': phong")) << text.output;
+  EXPECT_EQ(runInspect("scene --to-toml " + quoted(at("copy")) + " " + scene).code, 0);
+}
+
+// Also those of what occurs many times, each of which is stored once.
+TEST_F(SceneReport, CountsMaskedTriangles) {
+  writeTinyScene(at("."));
+  writeAll(at("tiny.mtl"), "newmtl white\nKd 0.7 0.7 0.7\nnewmtl gone\nKd 1 1 1\nd 0.2\n");
+  std::string obj = readAll(at("tiny.obj"));
+  obj.insert(obj.find("f 5 6 7 8"), "usemtl gone\n");
+  writeAll(at("tiny.obj"), obj);
+  const auto count = [&] {
+    return Json::parse(runInspect("scene --json " + quoted(at("tiny.toml"))).output)
+        .at("masked_triangles");
+  };
+  EXPECT_EQ(count(), 2);
+  std::string toml = readAll(at("tiny.toml"));
+  toml.insert(
+      toml.find("[[light]]"),
+      "[[mesh.instance]]\ntranslate = [0, 0, 0]\n[[mesh.instance]]\ntranslate = [0, 9, 0]\n");
+  writeAll(at("tiny.toml"), toml);
+  EXPECT_EQ(count(), 2);
+  EXPECT_EQ(loadScene(at("tiny.toml")).prototypes.size(), 1u);
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -1,6 +1,7 @@
 // What a stage leaves behind besides its product: summary, JSON, depfile, layers and pixel types.
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "formats/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
@@ -45,6 +46,44 @@ TEST_F(Output, WarningsGoToStderrOnce) {
     textures += contains(line, "missing.png") ? 1 : 0;
   }
   EXPECT_EQ(textures, 1) << r.err;
+}
+
+// They may tell why it follows. What the tool before has said comes again with an error only.
+TEST_F(Output, WarningsComeBeforeTheErrorThatFollows) {
+  makeStages(scene_);
+  const std::string view =
+      "[film]\nwidth = 4\nheight = 4\n[camera]\nposition = [0, 1, 3]\nlook_at = [0, 0, 0]\n"
+      "vertical_fov_deg = 40\n[[mesh]]\nfile = \"a.obj\"\n";
+  write("a.obj", "mtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("dark.toml", view);
+  write("broken.toml", view + "[[mesh]]\nfile = \"gone.obj\"\n");
+  const auto expect = [&](const std::string& name, const std::string& arguments,
+                          const std::string& error) {
+    const Outcome r = tool(name, arguments);
+    EXPECT_EQ(r.code, kExitInput) << r.err;
+    std::istringstream lines(r.err);
+    std::string line, before, warnings;
+    for (; std::getline(lines, line); before = line)
+      warnings += before.empty() ? "" : before + "\n";
+    EXPECT_TRUE(contains(warnings, name + ": warning: ") &&
+                contains(warnings, "gone.mtl: no such material library"))
+        << name << ": " << r.err;
+    EXPECT_TRUE(before.starts_with(name + ": ") && contains(before, error)) << r.err;
+    EXPECT_FALSE(contains(warnings, error)) << r.err;
+  };
+  const std::string noLight = "has no light", noObj = "no such OBJ file", other = "made from ";
+  for (const auto& [scene, light, stale] :
+       {std::tuple{path("dark.toml"), noLight, other}, {path("broken.toml"), noObj, noObj}}) {
+    expect("vpl-place", scene + " --method light -n 9 -o " + path("o.vpl"), light);
+    expect("vpl-estimate", scene + " " + path("vpls.vpl") + " -o " + path("o.vpl"), light);
+    expect("vpl-render", scene + " " + path("lit.vpl") + " -o " + path("o.exr"), stale);
+    expect("vpl-inspect", "plot " + path("lit.vpl") + " --scene " + scene + " -o " + path("o.png"),
+           stale);
+    expect("vpl-inspect", "check " + path("lit.vpl") + " --scene " + scene, stale);
+  }
+  expect("vpl-render", path("broken.toml") + " --integrator path --spp 1 -o " + path("o.exr"),
+         noObj);
+  expect("vpl-inspect", "scene " + path("broken.toml"), noObj);
 }
 
 TEST_F(Output, StatsAreJson) {

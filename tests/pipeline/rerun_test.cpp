@@ -163,7 +163,7 @@ TEST_F(Rerun, NinjasGraphReplacesNoOther) {
   const Outcome r = shell("pipelines/generate_ninja.py " + path("veach-door/scene.toml") +
                           " --bin " BNVPL_BIN_FROM_SOURCE " --out " + path(""));
   EXPECT_EQ(r.code, 1);
-  EXPECT_TRUE(contains(r.err, "was not made by this program")) << r.err;
+  EXPECT_TRUE(contains(r.err, "is not a graph of this program")) << r.err;
   EXPECT_EQ(readAll(at("build.ninja")), "# of CMake\n");
 }
 

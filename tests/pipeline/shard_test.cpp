@@ -101,6 +101,9 @@ TEST_F(ShardRun, PreviewsComeFromTheMerge) {
 
 TEST_F(ShardRun, PassesAreRefused) {
   const std::string render = scene_ + " --integrator path --shard 1/2 -o " + path("x.shard");
+  // The record is JSON; merging loads the scene by the name in it.
+  fail("vpl-render", path("a\xff.toml") + " --integrator path --shard 1/2 -o " + path("x.shard"),
+       kExitUsage, {"a\\xff.toml' is no UTF-8", "rename it"});
   for (const char* budget : {" --time 2s", " --target-error 0.1", " --passes 4"})
     fail("vpl-render", render + budget, kExitUsage, {"--shard", "give --spp"});
 }

@@ -59,6 +59,38 @@ TEST_F(MtlForms, CapitalsCountAsUsual) {
             "map_bump a\nmap_Bump b\nbump c\nxyzzy D\n");
 }
 
+TEST_F(MtlForms, KeysWithoutAMeaningAreNamedOnceTogether) {
+  const Scene s = loadMesh(kSquareObj,
+                           "\xef\xbb\xbf# of some tool\nnewmtl paint\nKdd 1 0 0\nDecal a.png\n"
+                           "newmtl other\nKd 1 1 1\nKdd 1 0 0\nmap_aat on\nSharpness 60\nmap_Kd\n"
+                           "newmtl third\nDecal b.png\n");
+  EXPECT_EQ(countContaining(s.warnings,
+                            "square.mtl: 2 keys have no meaning and are ignored: 'Kdd' "
+                            "(line 3), 'Decal' (line 4); correct those"),
+            1u)
+      << joined(s.warnings);
+  EXPECT_EQ(countContaining(s.warnings, "no meaning"), 1u) << joined(s.warnings);
+  const Scene one = paint("Kd 1 1 1\n" + std::string(100, 'x') + " 1\n");
+  EXPECT_EQ(countContaining(one.warnings, "a key has no meaning and is ignored: '" +
+                                              std::string(40, 'x') + "...' (line 3); correct it"),
+            1u)
+      << joined(one.warnings);
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "key" + std::to_string(i) + " 1\n";
+  EXPECT_EQ(countContaining(paint(many).warnings, "100 keys have no meaning"), 1u);
+  EXPECT_EQ(countContaining(paint(many).warnings, "'key5' (line 7) and 94 more;"), 1u);
+}
+
+TEST_F(MtlForms, KnownKeysThatAreNotReadAreToldWhereTheyWouldChangeThePicture) {
+  for (const char* line : {"map_Ps s.png", "refl r.png", "disp d.png", "map_refl r.png"}) {
+    const std::string key = std::string(line).substr(0, std::string(line).find(' '));
+    const Scene s = paint("Kd 1 1 1\n" + std::string(line) + "\n");
+    EXPECT_EQ(countContaining(s.warnings, key + " is ignored"), 1u) << joined(s.warnings);
+  }
+  const Scene s = paint("Kd 1 1 1\nKa 1 1 1\nmap_Ka a.png\nsharpness 60\nMAP_AAT on\n");
+  EXPECT_EQ(countContaining(s.warnings, "ignored"), 0u) << joined(s.warnings);
+}
+
 TEST_F(MtlForms, WhatIsNoNumberIsToldWithItsLine) {
   const auto expect = [&](const std::string& field, const std::string& part) {
     const std::string error = errorOf(kSquareObj, "newmtl paint\n" + field + "\n");

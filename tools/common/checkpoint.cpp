@@ -22,7 +22,7 @@ std::string difference(const Json& before, const Json& now, const std::string& p
         return difference(before[i], now[i], path + " " + std::to_string(i + 1));
     }
   }
-  const auto named = [](const Json& value) { return value.is_null() ? "absent" : value.dump(); };
+  const auto named = [](const Json& value) { return value.is_null() ? "absent" : jsonText(value); };
   if (!before.is_object() || !now.is_object())
     return path + " was " + named(before) + " and is now " + named(now);
   const auto differing = [&](const std::string& key) {
@@ -101,7 +101,7 @@ void Checkpoint::save(const std::string& state) {
     throw OutputError(options_.file,
                       "is no checkpoint any more: somebody else wrote to it; name another file");
   }
-  writeCheckpoint(options_.file, {run_.dump(), state});
+  writeCheckpoint(options_.file, {jsonText(run_), state});
   if (last) throw Interrupted("the same command goes on from " + options_.file.string());
   nextS_ = nowS() + options_.everyS;
 }

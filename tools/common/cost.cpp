@@ -1,9 +1,9 @@
 #include "tools/common/cost.h"
 
-#include <CLI/CLI.hpp>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -137,7 +137,7 @@ void printCost(const Cost& cost, const CostOptions& options) {
     const Json json{{"tool", runningTool()}, {"memory_MiB", memoryMiB},
                     {"cpu_s", cpuS},         {"setup_cpu_s", cost.setupCpuS},
                     {"probed", cost.probed}, {"threads", threadsInUse()}};
-    return print(json.dump(2) + "\n");
+    return print(jsonText(json, 2) + "\n");
   }
   char text[160];
   std::snprintf(text, sizeof text,

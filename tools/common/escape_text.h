@@ -41,6 +41,15 @@ inline Utf8Character firstCharacter(std::string_view text) {
   return {code, length, true};
 }
 
+inline bool isUtf8(std::string_view text) {
+  while (!text.empty()) {
+    const Utf8Character c = firstCharacter(text);
+    if (!c.valid) return false;
+    text.remove_prefix(c.length);
+  }
+  return true;
+}
+
 // Controls, and characters that reorder or break the line that holds them.
 constexpr bool actsOnTerminals(uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x61c || c == 0x200e || c == 0x200f ||

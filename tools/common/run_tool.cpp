@@ -33,6 +33,7 @@ double peakMemoryMiB() {
 }
 
 std::string toolName;  // before each line on stderr
+std::vector<std::string> heldWarnings;
 char** arguments = nullptr;
 
 // Formats nothing in memory, of which there may be none left.
@@ -53,6 +54,8 @@ int report() {
   } catch (const UsageError& e) {
     return fail(kExitUsage, e.what());
   } catch (const InputError& e) {
+    std::erase(heldWarnings, e.what());
+    printHeldWarnings();
     return fail(kExitInput, e.what());
   } catch (const OutputError& e) {
     return fail(kExitOutput, e.what());
@@ -220,7 +223,7 @@ Processor processorOf(const Json& record) {
 std::string extendProvenance(const std::string& earlier, const Json& record) {
   Json chain = earlier.empty() ? Json::array() : Json::parse(earlier);
   chain.push_back(record);
-  return chain.dump();
+  return jsonText(chain);
 }
 
 Summary::Summary(std::string tool) : tool_(std::move(tool)), startS_(nowS()) {
@@ -246,7 +249,7 @@ Summary::Cost Summary::close(const ToolOptions& options, OutputSet& files) const
   const Cost cost{nowS() - startS_, peakMemoryMiB()};
   values["time_s"] = cost.timeS;
   values["peak_memory_MiB"] = cost.memoryMiB;
-  if (!options.stats.empty()) files.add(options.stats).write(values.dump(2) + "\n");
+  if (!options.stats.empty()) files.add(options.stats).write(jsonText(values, 2) + "\n");
   files.commit();
   return cost;
 }
@@ -266,6 +269,13 @@ void Summary::finish(const ToolOptions& options, OutputSet& files) const {
 
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
   for (const std::string& w : warnings) ErrorLine().add(tool).add(": warning: ").add(w);
+}
+
+void holdWarning(const std::string& text) { heldWarnings.push_back(text); }
+
+void printHeldWarnings() {
+  printWarnings(toolName, heldWarnings);
+  heldWarnings.clear();
 }
 
 std::string formatSi(double value) {

@@ -106,6 +106,12 @@ class Summary {
 // Prints each warning once, by name, to stderr. Warnings are not silenced by --quiet.
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
 
+// A warning about an input, which waits: for printHeldWarnings(), or for an InputError, which
+// runTool() prints behind all that wait. One that the error repeats is left out; those that wait
+// when the tool ends well are never printed. Called by the thread of runTool() alone.
+void holdWarning(const std::string& text);
+void printHeldWarnings();
+
 std::string formatSi(double value);  // 12345678 -> "12.3M"
 
 }  // namespace bnvpl

@@ -69,7 +69,7 @@ SceneOptions sceneOptionsOf(const Json& json) {
   return options;
 }
 
-Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings) {
+Scene loadSceneFor(const SceneOptions& options, Warnings warnings) {
   Defines defines;
   std::set<std::string> names;
   for (const std::string& d : options.defines) {
@@ -82,7 +82,7 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
       throw UsageError("--define " + name + " is given more than once; give each name one value");
     defines.set(name, d.substr(equals + 1));
   }
-  Scene scene = loadScene(options.file, defines);
+  Scene scene = loadScene(options.file, defines, holdWarning);
   for (const std::string& name : defines.unused()) {
     throw UsageError("--define " + name + " has no effect: " + scene.name() +
                      " names no file by ${" + name + "}; leave it out");
@@ -94,8 +94,9 @@ Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warning
   } else if (scene.views.size() > 1) {
     scene.warnings.push_back(scene.name() + ": has several cameras, " + cameraList(scene) +
                              "; the first is taken, another by --camera");
+    holdWarning(scene.warnings.back());
   }
-  if (warnings == Warnings::Print) printWarnings(tool, scene.warnings);
+  if (warnings == Warnings::Print) printHeldWarnings();
   return scene;
 }
 

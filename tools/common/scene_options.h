@@ -28,12 +28,12 @@ CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::strin
 Json toJson(const SceneOptions& options);
 SceneOptions sceneOptionsOf(const Json& json);
 
-// Loads the scene, chooses the camera, and prints its warnings in the tool's name, once for all
-// tools: silent is a tool that reads a file made from this scene, as whoever made that has said
-// them, and one that prints them later.
-enum class Warnings { Print, Silent };
+// Loads the scene, chooses the camera, and prints its warnings, once for all tools: a tool holds
+// them that reads a file made from this scene, as whoever made that has said them, or that says
+// them in a way of its own. They come before an InputError in any case (holdWarning()).
+enum class Warnings { Print, Hold };
 // Of several views the first is the scene's.
-Scene loadSceneFor(const std::string& tool, const SceneOptions& options, Warnings warnings);
+Scene loadSceneFor(const SceneOptions& options, Warnings warnings);
 
 // All views that the options name, or else the scene's own. Their files become the scene's.
 std::vector<View> viewsOf(const SceneOptions& options, Scene& scene);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "tools/common/escape_text.h"
 #include "tools/common/processor_id.h"
 #include "tools/common/shell_text.h"
 
@@ -63,12 +64,18 @@ Json withShard(Json run, const std::optional<Shard>& shard) {
 }
 
 std::string commandOf(const CLI::App& cli) {
+  const bool recorded = cli.get_option("--shard")->count() > 0;
   std::string command = cli.get_name();
   for (const CLI::Option* option : cli.get_options()) {
     const std::string name = nameOf(*option);
     if (option->count() == 0 || std::ranges::find(kOwn, name) != kOwn.end()) continue;
-    for (const std::string& text : option->results())
+    for (const std::string& text : option->results()) {
+      if (recorded && !isUtf8(text)) {
+        throw UsageError(name + " '" + text +
+                         "' is no UTF-8, in which a shard records its command; rename it");
+      }
       command += (option->get_positional() ? " " : " " + name + " ") + shellWord(text);
+    }
   }
   return command;
 }

@@ -15,11 +15,14 @@ std::string textOf(const ShardParts& parts) {
 }
 
 std::string textOf(const ShardInfo& info) {
-  return Json{{"run", info.run.run},         {"given", info.run.given},
-              {"sources", info.run.sources}, {"command", info.run.command},
-              {"history", info.run.history}, {"processor", info.processor},
-              {"parts", info.parts},         {"of", info.of}}
-      .dump();
+  return jsonText({{"run", info.run.run},
+                   {"given", info.run.given},
+                   {"sources", info.run.sources},
+                   {"command", info.run.command},
+                   {"history", info.run.history},
+                   {"processor", info.processor},
+                   {"parts", info.parts},
+                   {"of", info.of}});
 }
 
 ShardInfo parseShardInfo(const fs::path& file, const std::string& text) {

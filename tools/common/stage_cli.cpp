@@ -114,7 +114,7 @@ void addStageOptions(CLI::App& cli, const StageSpec& spec, Given& given) {
   cli.add_flag_callback(
          "--help-json",
          [&spec] {
-           throw CLI::CallForVersion(describeSpec(spec).dump(2), CLI::ExitCodes::Success);
+           throw CLI::CallForVersion(jsonText(describeSpec(spec), 2), CLI::ExitCodes::Success);
          },
          "print methods and options as JSON")
       ->configurable(false);

@@ -1,15 +1,13 @@
 // A stage's options on its command line, in its record and in its machine-readable help.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/common/cli_types.h"
+#include "tools/common/json_text.h"
 #include "tools/common/option.h"
 
 namespace bnvpl {
-
-using Json = nlohmann::ordered_json;
 
 // Adds every option and slot of the stage; what is typed goes to `given`, for resolve(). Also
 // --help-json. Both must outlive the parsing.

@@ -27,9 +27,7 @@ struct Paths {
 // The scene, for methods that ask for it.
 struct World {
   World(const SceneOptions& options, Processor processor, const fs::path& input, uint64_t hash)
-      : scene(loadSceneFor("vpl-eliminate", options, Warnings::Silent)),
-        rays(scene, processor),
-        lights(rays) {
+      : scene(loadSceneFor(options, Warnings::Hold)), rays(scene, processor), lights(rays) {
     requireSameScene(input, hash, scene, "name the scene that it was placed in");
   }
   Scene scene;

@@ -46,7 +46,7 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
                      "keep fewer with vpl-eliminate -n, or lower --threads");
   }
   const VplTable vpls = readVpl(request.input, VplStage::Eliminated);
-  const Scene scene = loadSceneFor("vpl-estimate", request.scene, Warnings::Silent);
+  const Scene scene = loadSceneFor(request.scene, Warnings::Hold);
   scene.requireLight();
   if (!request.cost.estimate) used.ready(scene.files);
   requireSameScene(request.input, vpls.sceneHash, scene,

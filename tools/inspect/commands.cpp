@@ -6,6 +6,7 @@
 #include "formats/png_io.h"
 #include "formats/vpl_io.h"
 #include "tools/common/depfile.h"
+#include "tools/common/escape_text.h"
 #include "tools/common/exit_codes.h"
 #include "tools/common/film_size.h"
 #include "tools/common/run_files.h"
@@ -62,7 +63,7 @@ int runInfo(const InfoCommand& command, const ToolOptions& tool) {
   const Summary summary("vpl-inspect");
   RunFiles().reads("file", command.file).writes(tool).ready();
   const Json description = describeFile(command.file);
-  const std::string text = command.json ? description.dump(2) + "\n" : infoText(description);
+  const std::string text = command.json ? jsonText(description, 2) + "\n" : infoText(description);
   saveStats("info", description, summary, tool);
   print(text);
   return kExitOk;
@@ -75,11 +76,11 @@ int runCheck(const CheckCommand& command, const ToolOptions& tool) {
   for (const fs::path& file : command.files) used.reads("file", file);
   used.reads("--scene", command.scene.file).writes(tool).check();
   Scene scene;
-  if (withScene) scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  if (withScene) scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
 
   const auto say = [&](const std::string& line) {
-    if (!tool.quiet) print(line + "\n");
+    if (!tool.quiet) print(escapedLine(line) + "\n");
   };
   std::vector<CheckedFile> checked;
   for (const fs::path& file : command.files) {
@@ -135,7 +136,7 @@ int runScene(const SceneCommand& command, const ToolOptions& tool) {
     folder.emplace(command.toml);
   }
   // Its warnings are part of the answer.
-  const Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  const Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
   if (folder) requireOutside(command.toml, scene.files, "the run reads");
   const RayScene rays(scene);
@@ -145,7 +146,7 @@ int runScene(const SceneCommand& command, const ToolOptions& tool) {
     folder->commit();
   }
   OutputSet files;
-  const std::string text = command.json ? description.dump(2) + "\n" : sceneText(description);
+  const std::string text = command.json ? jsonText(description, 2) + "\n" : sceneText(description);
   summary.add("scene", std::move(description));
   summary.save(tool, files);
   print(text);
@@ -159,7 +160,7 @@ int runRun(const RunCommand& command, const ToolOptions& tool) {
   const Json description = describeRun(run);
   OutputSet files;
   if (!command.svg.empty()) files.add(command.svg).write(timelineSvg(run));
-  const std::string text = command.json ? description.dump(2) + "\n" : runText(description);
+  const std::string text = command.json ? jsonText(description, 2) + "\n" : runText(description);
   summary.add("run", description);
   summary.save(tool, files);
   print(text);
@@ -172,7 +173,7 @@ int runPlot(const PlotCommand& command, const ToolOptions& tool) {
   used.reads("file", command.file).reads("--scene", command.scene.file);
   used.writes("-o", command.output, {OutputKind::Png}).writes(tool).check();
   const VplTable table = readVpl(command.file);
-  Scene scene = loadSceneFor("vpl-inspect", command.scene, Warnings::Silent);
+  Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
   requireSameScene(command.file, table.sceneHash, scene,
                    "name the scene it was made from, or rerun vpl-place");

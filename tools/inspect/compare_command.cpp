@@ -242,7 +242,7 @@ int runCompare(const CompareCommand& command, const ToolOptions& tool) {
   const Json figures = comparisonJson(c, command.limits);
   summary.add("compare", figures);
   summary.save(tool, files);
-  print(command.json ? figures.dump(2) + "\n" : comparisonText(c, command.limits));
+  print(command.json ? jsonText(figures, 2) + "\n" : comparisonText(c, command.limits));
   return comparisonExitCode(c, command.limits);
 }
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/common/escape_text.h"
 #include "tools/common/exit_codes.h"
+#include "tools/inspect/append_text.h"
 
 namespace bnvpl {
 namespace {
@@ -51,33 +53,19 @@ Json flipJson(const Comparison::Flip& flip) {
           {"hdr_exposures", flip.exposures}};
 }
 
-class Text {
- public:
-  template <typename... Values>
-  void add(const char* format, Values... values) {
-    char line[256];
-    std::snprintf(line, sizeof line, format, values...);
-    text_ += line;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-void addFlipText(const Comparison::Flip& flip, Text& out) {
-  out.add("FLIP           %.6g   (at %+g EV, %.4g pixels per degree)\n", flip.ldr, flip.exposureEv,
-          flip.ppd);
-  out.add("HDR-FLIP       %.6g   (the largest of %zu exposures from %+.4g to %+.4g EV)\n", flip.hdr,
-          flip.exposures, flip.startEv, flip.stopEv);
+void addFlipText(const Comparison::Flip& flip, std::string& out) {
+  append(out, "FLIP           %.6g   (at %+g EV, %.4g pixels per degree)\n", flip.ldr,
+         flip.exposureEv, flip.ppd);
+  append(out, "HDR-FLIP       %.6g   (the largest of %zu exposures from %+.4g to %+.4g EV)\n",
+         flip.hdr, flip.exposures, flip.startEv, flip.stopEv);
 }
 
-void addChannelText(const Comparison& c, Text& out) {
+void addChannelText(const Comparison& c, std::string& out) {
   if (c.channels.size() == 1) return;
-  out.add("%-14s %-12s %-12s %s\n", "of each", "RMSE", "relMSE", "SMAPE");
+  append(out, "%-14s %-12s %-12s %s\n", "of each", "RMSE", "relMSE", "SMAPE");
   const auto row = [&](const Comparison::Channel& k) {
-    out.add("  %-12s %-12.6g %-12s %.6g\n", k.name.c_str(), k.rmse, orUndefined(k.relMse).c_str(),
-            k.smape);
+    append(out, "  %-12s %-12.6g %-12s %.6g\n", escapedLine(k.name).c_str(), k.rmse,
+           orUndefined(k.relMse).c_str(), k.smape);
   };
   for (const Comparison::Channel& k : c.channels) row(k);
   if (c.luminance) row(*c.luminance);
@@ -109,31 +97,31 @@ Json comparisonJson(const Comparison& c, const CompareOptions& options) {
 }
 
 std::string comparisonText(const Comparison& c, const CompareOptions& options) {
-  Text out;
-  out.add("mean ratio     %s   (mean %.6g, reference %.6g)\n", orUndefined(c.meanRatio()).c_str(),
-          c.meanA, c.meanB);
+  std::string out;
+  append(out, "mean ratio     %s   (mean %.6g, reference %.6g)\n",
+         orUndefined(c.meanRatio()).c_str(), c.meanA, c.meanB);
   for (const Comparison::Channel& k : c.channels) {
     if (c.channels.size() == 1) break;
-    out.add("  %-12s %s   (mean %.6g, reference %.6g)\n", k.name.c_str(),
-            orUndefined(k.meanA / k.meanB).c_str(), k.meanA, k.meanB);
+    append(out, "  %-12s %s   (mean %.6g, reference %.6g)\n", escapedLine(k.name).c_str(),
+           orUndefined(k.meanA / k.meanB).c_str(), k.meanA, k.meanB);
   }
   constexpr const char* kBelow = "   (below the reference's noise)";
-  out.add("RMSE           %.6g%s\n", c.rmse, c.rmseBelowNoise ? kBelow : "");
-  out.add("RMSE / mean    %s\n", orUndefined(c.rmseOverMean()).c_str());
-  out.add("relMSE         %s   (epsilon %.6g = %g times the squared mean of the reference)%s\n",
-          orUndefined(c.relMse).c_str(), c.epsilon, options.epsilon,
-          c.relMseBelowNoise ? kBelow : "");
-  out.add("SMAPE          %.6g\n", c.smape);
+  append(out, "RMSE           %.6g%s\n", c.rmse, c.rmseBelowNoise ? kBelow : "");
+  append(out, "RMSE / mean    %s\n", orUndefined(c.rmseOverMean()).c_str());
+  append(out, "relMSE         %s   (epsilon %.6g = %g times the squared mean of the reference)%s\n",
+         orUndefined(c.relMse).c_str(), c.epsilon, options.epsilon,
+         c.relMseBelowNoise ? kBelow : "");
+  append(out, "SMAPE          %.6g\n", c.smape);
   if (c.flip) addFlipText(*c.flip, out);
   addChannelText(c, out);
-  out.add("worst pixel    (%zu, %zu)\n", c.worstPixel[0], c.worstPixel[1]);
-  if (c.maskPixels) out.add("mask           counts %.6g pixels\n", *c.maskPixels);
+  append(out, "worst pixel    (%zu, %zu)\n", c.worstPixel[0], c.worstPixel[1]);
+  if (c.maskPixels) append(out, "mask           counts %.6g pixels\n", *c.maskPixels);
   for (const Limit& limit : limits(c, options)) {
     if (!exceeds(limit)) continue;
-    out.add("DIFFERENT: %s %s exceeds the limit %g\n", limit.what, orUndefined(limit.value).c_str(),
-            limit.most);
+    append(out, "DIFFERENT: %s %s exceeds the limit %g\n", limit.what,
+           orUndefined(limit.value).c_str(), *limit.most);
   }
-  return out.text();
+  return out;
 }
 
 int comparisonExitCode(const Comparison& c, const CompareOptions& options) {

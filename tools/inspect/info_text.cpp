@@ -19,7 +19,7 @@ std::string number(const Json& value) {
 std::string word(const Json& json, const char* key) {
   const auto found = json.find(key);
   if (found == json.end()) return "";
-  return found->is_string() ? found->get<std::string>() : found->dump();
+  return found->is_string() ? found->get<std::string>() : jsonText(*found);
 }
 
 void appendHead(std::string& text, const Json& d) {
@@ -43,7 +43,7 @@ void appendHead(std::string& text, const Json& d) {
 }
 
 void appendProvenance(std::string& text, const Json& d) {
-  const auto chain = parseProvenance(word(d, "file"), d["provenance"].dump());
+  const auto chain = parseProvenance(word(d, "file"), jsonText(d["provenance"]));
   text += chain.empty() ? "made by: no record\n" : "made by:\n";
   for (const StageRecord& record : chain) text += "  " + describeRecord(record) + "\n";
 }
@@ -94,7 +94,8 @@ void appendSpacing(std::string& text, const Json& s) {
 
 }  // namespace
 
-std::string infoText(const Json& description) {
+std::string infoText(const Json& asFound) {
+  const Json description = withEscapedNames(asFound);
   if (description["format"] == "shard") return shardText(description);
   std::string text;
   appendHead(text, description);

@@ -16,7 +16,7 @@ std::string plain(const Json& value) {
     return text;
   }
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
 
 // The record's text under `key`, or an empty one: a chain of another program is shown as far as it

@@ -65,7 +65,7 @@ std::string numberText(double number) {
 std::string valueText(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_float()) return numberText(value.get<double>());
-  if (!value.is_array()) return value.dump();
+  if (!value.is_array()) return jsonText(value);
   std::string list;
   for (const Json& v : value) list += (list.empty() ? "" : " ") + valueText(v);
   return "(" + list + ")";
@@ -90,7 +90,7 @@ Json describeScene(const Scene& scene, const LightSet& lights) {
                     {"upper", placeJson(scene, scene.bounds.upper)}};
   json["origin"] = scene.origin;
   json["triangles"] = scene.triangles.size();
-  json["masked_triangles"] = scene.triangles.size() - scene.maskedBegin;
+  json["masked_triangles"] = scene.maskedTriangles();
   json["vertices"] = scene.positions.size() - 1;
   json["meshes"] = Json::array();
   for (const MeshRecord& m : scene.meshes)
@@ -109,7 +109,8 @@ Json describeScene(const Scene& scene, const LightSet& lights) {
   return json;
 }
 
-std::string sceneText(const Json& d) {
+std::string sceneText(const Json& asFound) {
+  const Json d = withEscapedNames(asFound);
   std::ostringstream out;
   const auto section = [&](const char* key, const auto& line) {
     out << key << ": " << d[key].size() << "\n";
@@ -123,8 +124,8 @@ std::string sceneText(const Json& d) {
       << d["vertices"] << " vertices, from " << valueText(d["bounds"]["lower"]) << " to "
       << valueText(d["bounds"]["upper"]) << " in " << text(d, "lengths") << "\n";
   section("meshes", [&](const Json& m) {
-    return text(m, "name") + ": " + m["triangles"].dump() + " triangles" +
-           (m["instances"] == 1 ? "" : ", " + m["instances"].dump() + " instances");
+    return text(m, "name") + ": " + jsonText(m["triangles"]) + " triangles" +
+           (m["instances"] == 1 ? "" : ", " + jsonText(m["instances"]) + " instances");
   });
   section("materials", [&](const Json& m) {
     return "'" + text(m, "name") + "': " + text(m, "model") + "; " +
@@ -133,11 +134,12 @@ std::string sceneText(const Json& d) {
   section("lights",
           [&](const Json& l) { return text(l, "light") + ": " + valueText(l["power_W"]) + " W"; });
   section("cameras", [&](const Json& c) {
-    return c["number"].dump() + " '" + text(c, "name") + "': " + membersText(c, {"number", "name"});
+    return jsonText(c["number"]) + " '" + text(c, "name") +
+           "': " + membersText(c, {"number", "name"});
   });
   section("textures", [&](const Json& t) {
-    return t["number"].dump() + " " + text(t, "file") + ": " + t["width"].dump() + "x" +
-           t["height"].dump() + ", " + text(t, "colour_space");
+    return jsonText(t["number"]) + " " + text(t, "file") + ": " + jsonText(t["width"]) + "x" +
+           jsonText(t["height"]) + ", " + text(t, "colour_space");
   });
   out << "ignored, approximated or repaired: " << d["warnings"].size() << "\n";
   for (const Json& w : d["warnings"]) out << "  " << w.get<std::string>() << "\n";

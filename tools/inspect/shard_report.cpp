@@ -36,7 +36,7 @@ Json describeWorks(ShardReader& reader) {
 }
 
 std::string word(const Json& json, const char* key) {
-  return json[key].is_string() ? json[key].get<std::string>() : json[key].dump();
+  return json[key].is_string() ? json[key].get<std::string>() : jsonText(json[key]);
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ std::string shardText(const Json& d) {
          word(d, "processor").c_str());
   append(text, "  command %s\n", word(d, "command").c_str());
   text += "made by:\n";
-  for (const StageRecord& record : parseProvenance(word(d, "file"), d["provenance"].dump()))
+  for (const StageRecord& record : parseProvenance(word(d, "file"), jsonText(d["provenance"])))
     text += "  " + describeRecord(record) + "\n";
   append(text, "%-18s %12s %12s %12s\n", "work", "units", "sums", "bytes");
   for (const Json& work : d["works"]) {

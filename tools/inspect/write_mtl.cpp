@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/number_text.h"
+#include "tools/common/json_text.h"
 #include "tools/inspect/write_scene.h"
 
 namespace bnvpl {
@@ -154,8 +154,7 @@ std::string cleanName(std::string name) {
     const auto code = static_cast<unsigned char>(c);
     if (code < 0x20 || code == 0x7f || c == '\\' || c == '#') c = '_';
   }
-  using nlohmann::json;  // replaces what is no UTF-8
-  name = json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace));
+  name = Json::parse(jsonText(name));  // replaces what is no UTF-8
   const size_t first = std::min(name.find_first_not_of(' '), name.size());
   return name.substr(first, name.find_last_not_of(' ') + 1 - first);
 }

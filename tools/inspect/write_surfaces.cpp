@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/number_text.h"
 #include "scene/material_inputs.h"
+#include "tools/common/json_text.h"
 #include "tools/inspect/write_scene.h"
 
 namespace bnvpl {
@@ -14,7 +14,7 @@ std::string listText(Vec3 v) {
 }
 
 // JSON's quotes and escapes are TOML's too.
-std::string inQuotes(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string inQuotes(const std::string& text) { return jsonText(text); }
 
 std::string textureName(uint32_t expression) { return "t" + std::to_string(expression); }
 

@@ -14,8 +14,8 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
   const fs::path input = fieldOf<std::string>(whole.sources, "vpls");
   requireMemoryFor(input, kBytesPerEstimated, "keep fewer with vpl-eliminate -n");
   const VplTable vpls = readVpl(input, VplStage::Eliminated);
-  const Scene scene = loadSceneFor(
-      "vpl-merge", sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Silent);
+  const Scene scene =
+      loadSceneFor(sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Hold);
   requireSameInput(input, vpls.checksum, whole, "vpls");
   requireSameInput(scene.name(), scene.contentHash, whole, "scene");
   const RayScene rays(scene, processorOf(whole.run));

@@ -127,13 +127,11 @@ int runPlace(const Request& request, const ToolOptions& tool) {
     requireMemory(memoryFor(request, count), std::to_string(count) + " VPLs",
                   "ask for fewer with -n");
   }
-  Scene scene = loadSceneFor("vpl-place", request.scene, Warnings::Silent);
+  Scene scene = loadSceneFor(request.scene, Warnings::Hold);
   const PlaceMethod& method = placeMethod(options);
   const PlaceViews views = placeViews(request, method, scene);
-  // Warnings may tell why there is no light, which the error then says in their place.
-  if (method.needsLight) std::erase(scene.warnings, scene.name() + ": " + kNoLight);
-  printWarnings("vpl-place", scene.warnings);
   if (method.needsLight) scene.requireLight();
+  printHeldWarnings();
   if (!request.cost.estimate) used.ready(scene.files);
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);

@@ -119,7 +119,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
   }
   VplTable lit;
   if (vpl) lit = readVpl(request.lit, VplStage::Lit);
-  Scene scene = loadSceneFor("vpl-render", request.scene, vpl ? Warnings::Silent : Warnings::Print);
+  Scene scene = loadSceneFor(request.scene, vpl ? Warnings::Hold : Warnings::Print);
   if (!estimating) used.ready(scene.files);
   if (!options.text("size").empty()) scene.film = parseSize(options.text("size"));
   if (vpl) {

@@ -113,7 +113,11 @@ void warnOfIgnored(const tinyobj::material_t& in, const MtlKeys& keys, const std
   };
   ignored(in.displacement_texname, "disp");
   ignored(in.reflection_texname, "refl");
-  if (!keys.metallicRoughness()) ignored(in.specular_highlight_texname, "map_Ns");
+  ignored(in.sheen_texname, "map_Ps");
+  if (!keys.metallicRoughness()) {
+    ignored(in.specular_highlight_texname, "map_Ns");
+    if (keys.has("map_refl")) builder.warn(where + "map_refl is ignored");
+  }
   if (!in.normal_texname.empty() && !keys.blender) ignored(in.bump_texname, "map_Bump beside norm");
 }
 

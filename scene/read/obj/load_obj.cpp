@@ -100,6 +100,17 @@ void warnOfGrey(const fs::path& obj, const ObjReading& reading, SceneBuilder& bu
                          : " not in " + libraries));
 }
 
+void warnOfStrangeKeys(const MaterialLibraries& libraries, SceneBuilder& builder) {
+  for (const auto& [library, keys] : libraries.strangeKeys) {
+    const bool one = keys.size() == 1;
+    builder.warn(library.string() + ": " +
+                 (one ? "a key has no meaning and is ignored: "
+                      : std::to_string(keys.size()) + " keys have no meaning and are ignored: ") +
+                 listOf(keys, [](const std::string& key) { return key; }) +
+                 (one ? "; correct it if it is misspelt" : "; correct those that are misspelt"));
+  }
+}
+
 }  // namespace
 
 void loadObj(const fs::path& obj, const fs::path& materials, const Affine& transform,
@@ -121,6 +132,7 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
     builder.warn(library.string() + ": no such material library; its materials are grey");
   }
   for (const fs::path& library : reading.libraries.read) builder.addFile(library);
+  warnOfStrangeKeys(reading.libraries, builder);
   const std::vector<uint32_t> numbers = addMaterials(obj, reading, builder);
 
   CutFaces cut = cutFaces(reading.mesh, numbers);

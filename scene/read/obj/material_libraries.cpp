@@ -53,6 +53,7 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
   std::string raw = readText(library);
   requireNoUtf16(library, raw);
   MtlText plain = plainMtl(library, logicalLines(std::move(raw)));
+  if (!plain.strangeKeys.empty()) strangeKeys[library] = plain.strangeKeys;
   const std::map<std::string, MtlKeys> keys = mtlKeys(plain.text);
   std::istringstream in(plain.text);
   std::map<std::string, int> byName;

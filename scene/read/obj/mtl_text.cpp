@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "core/number_text.h"
@@ -22,6 +23,10 @@ constexpr std::array<std::string_view, 17> kMaps{
     "map_Ka",   "map_Kd", "map_Ks", "map_Ns", "map_Ke", "map_Pr", "map_Pm",   "map_Ps",  "map_Bump",
     "map_bump", "bump",   "map_d",  "disp",   "refl",   "norm",   "map_disp", "map_refl"};
 constexpr std::array<std::string_view, 2> kWords{"newmtl", "emission_sides"};
+// The format has them, and they would change no picture: they are of the quality of a lookup, and
+// of a reflection map.
+constexpr std::array<std::string_view, 2> kWithoutEffect{"map_aat", "sharpness"};
+constexpr size_t kLongestKey = 40;  // that is shown
 
 template <size_t N>
 bool isOneOf(const std::array<std::string_view, N>& keys, std::string_view key) {
@@ -46,6 +51,7 @@ std::string_view usualKey(std::string_view key) {
   look(kNumbers);
   look(kMaps);
   look(kWords);
+  look(kWithoutEffect);
   return usual;
 }
 
@@ -67,7 +73,7 @@ class Lines {
     else if (isOneOf(kMaps, key) && !rest.empty())
       addMap(key, rest);
     else
-      write(key, rest);
+      addOther(key, rest);
   }
   MtlText take() { return std::move(out_); }
 
@@ -81,6 +87,16 @@ class Lines {
   }
   void write(std::string_view key, std::string_view rest) {
     out_.text.append(key).append(rest.empty() ? "" : " ").append(rest) += '\n';
+  }
+
+  void addOther(std::string_view key, std::string_view rest) {
+    const bool known = isOneOf(kWords, key) || isOneOf(kMaps, key) || isOneOf(kWithoutEffect, key);
+    if (!known && !key.empty() && !key.starts_with('#') && strange_.emplace(key).second) {
+      const std::string shown(key.substr(0, kLongestKey));
+      out_.strangeKeys.push_back("'" + shown + (shown.size() < key.size() ? "..." : "") +
+                                 "' (line " + std::to_string(number_) + ")");
+    }
+    write(key, rest);
   }
 
   // The words that must be numbers; those that are not finite are 0, with a note.
@@ -149,6 +165,7 @@ class Lines {
   const fs::path& library_;
   size_t number_ = 0;
   std::string material_;
+  std::set<std::string, std::less<>> strange_;
   MtlText out_;
 };
 

@@ -13,6 +13,8 @@ namespace bnvpl {
 struct MtlText {
   std::string text;
   std::map<std::string, std::vector<std::string>> notes;  // by material: what is ignored
+  // Keys that mean nothing here, each once with its first line: "'decal' (line 7)".
+  std::vector<std::string> strangeKeys;
 };
 
 // `lines` are those of logicalLines(). Keys get their usual case; colours three linear sRGB values
