@@ -22,13 +22,17 @@ namespace bnvpl {
 // number of equal photons that would be as noisy. A lamp that does not have kMinPilotPhotons of
 // them is left to the near-field rays: the sun over a wide ground, of which hardly a photon comes
 // in through a window. The photons that count are others than the pilot's, so the mean stays right.
+//
+// No path from the camera can end at a light that no ray can hit, where a perfect mirror or glass
+// lies before it. With `bounces` > 0 photons bring all of that light to what the camera sees
+// directly: they go on from their first rough vertex, and each later one is connected as well.
 // Thread-safe and immutable once made.
 class Caustics {
  public:
   // So many photons, > 0, from lights with power, and rays from each pixel that look for the same
-  // light. Borrows rays and lights.
+  // light. `bounces`: rough vertices after the first one. Borrows rays and lights.
   Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
-           uint64_t seed, const ProgressFn& progress);
+           unsigned bounces, uint64_t seed, const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // How rays share with them that leave a point which the camera sees directly.
@@ -47,6 +51,9 @@ class Caustics {
   // Returns the lamp that sent the photon, which is kNoLamp where no ray can hit it.
   static constexpr uint64_t kNoLamp = UINT64_MAX;
   uint64_t follow(uint64_t key, uint64_t index, Splats& out) const;
+  // The photon's ways on from a rough vertex, by its rough lobes.
+  void followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 towards, Rng& rng,
+                     Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
                Splats& out) const;
 
@@ -54,6 +61,7 @@ class Caustics {
   const LightSet& lights_;
   uint64_t photons_, key_;
   float raysOfPixel_;
+  unsigned bounces_;
   uint32_t width_;
   std::vector<uint64_t> dense_;  // lamps that photons are sent from, ascending
   bool chosen_ = false;          // whether dense_ says so; before, all are

@@ -30,9 +30,9 @@ constexpr Option balanceOption(std::string_view help) {
 // nothing of it is shown.
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& film, unsigned lightRays, TileParts& out);
-// Null where there is nothing for its photons to find.
+// Null where there is nothing for its photons to find. `bounces`: as of Caustics.
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
-                                             uint64_t raysOfPixel);
+                                             uint64_t raysOfPixel, unsigned bounces);
 // By the option, with what the film's points show.
 ControlFn makeControl(const IntegratorInputs& in, const FilmPoints& film);
 // --balance: by the integrator without one.

@@ -118,7 +118,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   }
   if (indirect) tile.sharers = static_cast<unsigned>(options.whole("sharers"));
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * std::min(options.whole("spp"), kMostSpp));
+                               tile.raysEach * std::min(options.whole("spp"), kMostSpp),
+                               /*bounces=*/0);  // VPLs bring them
   const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =
