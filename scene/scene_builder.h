@@ -113,7 +113,8 @@ class SceneBuilder {
   struct Part {  // the triangles of one addMesh()
     fs::path file;
     size_t endTriangle, endPoint;
-    uint32_t prototype;  // kNone: of the world
+    uint32_t prototype;   // kNone: of the world
+    bool pieces = false;  // of faces that reach far away; floats may not hold all of them
   };
   struct KeptMesh {  // of a prototype, until finish()
     fs::path file;
@@ -129,6 +130,9 @@ class SceneBuilder {
   struct Base {  // where the arrays of a mesh begin in the scene's
     size_t position, normal, uv;
   };
+  Corners cornersOf(const Triangle& t) const {
+    return {points_[t.position[0]], points_[t.position[1]], points_[t.position[2]]};
+  }
   Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
   void warnOfNegative(const std::string& image, size_t negative, size_t pixels);
   uint32_t greyMaterial();
@@ -144,6 +148,8 @@ class SceneBuilder {
   void dropUnusable();
   void placeInstances();
   void dropDoubledLamps();
+  void cutFarFaces();
+  void cut(const Triangle& face, std::vector<Triangle>& pieces);
   void sortByMask();
   void extendBounds();
   void placeViews();
