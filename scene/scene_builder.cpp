@@ -140,6 +140,17 @@ uint32_t SceneBuilder::addExpression(const TextureExpression& expression) {
   return static_cast<uint32_t>(scene_.expressions.size() - 1);
 }
 
+std::optional<Vec3> SceneBuilder::constantValue(uint32_t expression) const {
+  if (expression == kNone) return Vec3(1);
+  const TextureExpression& e = scene_.expressions[expression];
+  if (e.kind == TextureExpression::Kind::Checkerboard) return {};
+  if (e.kind == TextureExpression::Kind::Image && e.image != kNone) return {};
+  for (const uint32_t operand : {e.first, e.second, e.amount}) {
+    if (operand != kNone && !constantValue(operand)) return {};
+  }
+  return TextureEvaluator(scene_.expressions, {}).at(expression, 0.0f, 0.0f);
+}
+
 uint32_t SceneBuilder::greyMaterial() {
   if (grey_ == kNone) {
     Material grey;
@@ -334,6 +345,29 @@ void SceneBuilder::resolveTextures() {
   }
 }
 
+// A texture that is the same everywhere counts on faces without texture coordinates, too.
+void SceneBuilder::foldConstants() {
+  std::vector<std::optional<Vec3>> constants;
+  for (uint32_t e = 0; e < scene_.expressions.size(); ++e) constants.push_back(constantValue(e));
+  const auto take = [&](uint32_t& texture, const auto& fold) {
+    if (texture == kNone || !constants[texture]) return;
+    fold(*constants[texture]);
+    texture = kNone;
+  };
+  const auto field = [&]<typename Field>(const char*, Field& f) {
+    if constexpr (Like<Field, Colour>)
+      take(f.texture, [&](Vec3 v) { f.value = f.value * v; });
+    else if constexpr (Like<Field, Scalar>)
+      take(f.texture, [&](Vec3 v) { f.value *= v.x; });
+  };
+  for (Material& m : scene_.materials) {
+    std::visit([&](auto& model) { forEachField(model, field); }, m.model);
+    take(m.emissionTexture, [&](Vec3 v) { m.emission = m.emission * v; });
+    take(m.opacityTexture, [&](Vec3 v) { m.opacity *= v.x; });
+    for (Relief* relief : {&m.relief, &m.coatRelief}) take(relief->bumpMap, [](Vec3) {});
+  }
+}
+
 void SceneBuilder::warnOfMissingUvs() {
   size_t next = 0;
   for (const Part& part : parts_) {
@@ -441,6 +475,8 @@ void SceneBuilder::cut(const Triangle& face, std::vector<Triangle>& pieces) {
     } else {
       first.uv[b] = second.uv[a] = kNone;
     }
+    left.push_back(second);
+    left.push_back(first);
   }
 }
 
@@ -465,8 +501,6 @@ void SceneBuilder::roundPositions() {
   for (const Placed& p : placed_) extend(p.toWorld.point({}));
   if (!scene_.triangles.empty()) scene_.origin = sceneOrigin(lower, upper);
   scene_.positions.reserve(points_.size() + 1);
-    left.push_back(second);
-    left.push_back(first);
   for (const Part& part : parts_) {
     const FilePoint origin = part.prototype == kNone ? scene_.origin : FilePoint{};
     while (scene_.positions.size() < part.endPoint)
@@ -617,6 +651,7 @@ void SceneBuilder::extendBounds() {
     const Vec3 p = scene_.corner(t, c);
     return FilePoint{p.x, p.y, p.z};
   };
+  Bounds near;
   const auto extend = [&](Bounds& box, uint32_t begin, uint32_t end) {
     for (uint32_t t = begin; t < end; ++t) {
       const Corners corners{place(t, 0), place(t, 1), place(t, 2)};
@@ -627,6 +662,7 @@ void SceneBuilder::extendBounds() {
     }
   };
   extend(scene_.bounds, 0, scene_.worldEnd());
+  if (scene_.instances.empty()) scene_.nearSize = near.diagonal();
   for (size_t p = 0; p < boxes.size(); ++p)
     extend(boxes[p], scene_.prototypes[p].begin, scene_.prototypes[p].end);
   for (const Instance& i : scene_.instances) {
@@ -654,7 +690,6 @@ void SceneBuilder::placeViews() {
   if (scene_.views.empty()) {
     scene_.views.push_back({"", cameraThatSees(scene_.bounds), scene_.film});
     warn(scene_.name() + ": has no camera; one is placed that sees the whole scene");
-  Bounds near;
   }
   scene_.camera = scene_.views.front().camera;
   scene_.film = scene_.views.front().film;
@@ -662,7 +697,6 @@ void SceneBuilder::placeViews() {
 
 void SceneBuilder::requireSize() const {
   if (scene_.triangles.empty())
-  if (scene_.instances.empty()) scene_.nearSize = near.diagonal();
     throw InputError(scene_.name() + ": has no triangle; give it a mesh that has an area");
   if (strays_.furthest() > double{kLargestScene}) {
     throw InputError(scene_.name() + ": has a triangle that lies " +
@@ -670,6 +704,11 @@ void SceneBuilder::requireSize() const {
                      shortestText(kLargestScene) + "; remove it");
   }
   const float size = scene_.bounds.diagonal();
+  if (size > kLargestScene && scene_.nearSize <= kLargestScene) {
+    throw InputError(scene_.name() + ": has a triangle that reaches " + shortestText(size) +
+                     " away from the others, beyond " + shortestText(kLargestScene) +
+                     "; mend or remove it");
+  }
   if (size >= kSmallestScene && size <= kLargestScene) return;
   throw InputError(scene_.name() + ": is " + shortestText(size) + " units across, outside " +
                    shortestText(kSmallestScene) + " to " + shortestText(kLargestScene) +
@@ -679,6 +718,7 @@ void SceneBuilder::requireSize() const {
 Scene SceneBuilder::finish() {
   placePrototypes();
   resolveTextures();
+  foldConstants();
   warnOfMissingUvs();
   findStrays();
   roundPositions();
@@ -697,8 +737,3 @@ Scene SceneBuilder::finish() {
 }
 
 }  // namespace bnvpl
-  if (size > kLargestScene && scene_.nearSize <= kLargestScene) {
-    throw InputError(scene_.name() + ": has a triangle that reaches " + shortestText(size) +
-                     " away from the others, beyond " + shortestText(kLargestScene) +
-                     "; mend or remove it");
-  }

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -66,6 +67,8 @@ class SceneBuilder {
   // added before, its image one of addTexture(); an image that turns out to be damaged counts as
   // white.
   uint32_t addExpression(const TextureExpression& expression);
+  // What an expression is everywhere; nothing where it looks at texture coordinates.
+  std::optional<Vec3> constantValue(uint32_t expression) const;
   uint32_t addMaterial(Material material);
   // Stands for every material of its name, which must not be empty, that is added afterwards: their
   // addMaterial() returns its number.
@@ -127,12 +130,12 @@ class SceneBuilder {
     uint32_t prototype;
     Affine toWorld;
   };
-  struct Base {  // where the arrays of a mesh begin in the scene's
-    size_t position, normal, uv;
-  };
   Corners cornersOf(const Triangle& t) const {
     return {points_[t.position[0]], points_[t.position[1]], points_[t.position[2]]};
   }
+  struct Base {  // where the arrays of a mesh begin in the scene's
+    size_t position, normal, uv;
+  };
   Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
   void warnOfNegative(const std::string& image, size_t negative, size_t pixels);
   uint32_t greyMaterial();
@@ -142,14 +145,15 @@ class SceneBuilder {
   // Of finish(), in this order:
   void placePrototypes();
   void resolveTextures();
+  void foldConstants();
   void warnOfMissingUvs();
   void findStrays();
+  void cutFarFaces();
+  void cut(const Triangle& face, std::vector<Triangle>& pieces);
   void roundPositions();
   void dropUnusable();
   void placeInstances();
   void dropDoubledLamps();
-  void cutFarFaces();
-  void cut(const Triangle& face, std::vector<Triangle>& pieces);
   void sortByMask();
   void extendBounds();
   void placeViews();
