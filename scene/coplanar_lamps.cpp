@@ -178,7 +178,7 @@ std::vector<std::string> liftCoplanarLamps(Scene& scene) {
                       "'; the side of its winding is taken to be in front");
     }
     // As RayScene::offsetOrigin().
-    const float by = lamp.reach() * 0x1p-18f + scene.bounds.diagonal() * 0x1p-20f;
+    const float by = lamp.reach() * 0x1p-18f + scene.offsetSize() * 0x1p-20f;
     Triangle& t = scene.triangles[lamps.triangles[i]];
     for (size_t c = 0; c < 3; ++c) {
       t.position[c] = static_cast<uint32_t>(scene.positions.size());

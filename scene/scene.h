@@ -3,7 +3,9 @@
 // Lengths are the scene's own unit (called m below), angles radians in memory, colours linear sRGB.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -128,6 +130,9 @@ struct Scene {
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;
   Bounds bounds;  // of all but strays (scene/strays.h)
+  // Diagonal of the box around what is not far from the rest; offsets of rays follow it.
+  float nearSize = INFINITY;
+  float offsetSize() const { return std::min(nearSize, bounds.diagonal()); }
   // What the coordinates count from, in the coordinates of the files: 0 but for scenes that lie far
   // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).
   std::array<double, 3> origin{};

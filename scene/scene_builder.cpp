@@ -32,6 +32,10 @@ bool isFinite(const FilePoint& p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
+std::string distanceText(double distance) {
+  return distance < 1e30 ? shortestText(static_cast<float>(distance)) : shortestText(distance);
+}
+
 // From above and to the right, looking at the middle.
 Camera cameraThatSees(const Bounds& bounds) {
   Camera c;
@@ -137,6 +141,17 @@ uint32_t SceneBuilder::addExpression(const TextureExpression& expression) {
   scene_.expressions.push_back(expression);
   lookups_.push_back(lookups);
   return static_cast<uint32_t>(scene_.expressions.size() - 1);
+}
+
+std::optional<Vec3> SceneBuilder::constantValue(uint32_t expression) const {
+  if (expression == kNone) return Vec3(1);
+  const TextureExpression& e = scene_.expressions[expression];
+  if (e.kind == TextureExpression::Kind::Checkerboard) return {};
+  if (e.kind == TextureExpression::Kind::Image && e.image != kNone) return {};
+  for (const uint32_t operand : {e.first, e.second, e.amount}) {
+    if (operand != kNone && !constantValue(operand)) return {};
+  }
+  return TextureEvaluator(scene_.expressions, {}).at(expression, 0.0f, 0.0f);
 }
 
 uint32_t SceneBuilder::greyMaterial() {
@@ -335,6 +350,29 @@ void SceneBuilder::resolveTextures() {
   }
 }
 
+// A texture that is the same everywhere counts on faces without texture coordinates, too.
+void SceneBuilder::foldConstants() {
+  std::vector<std::optional<Vec3>> constants;
+  for (uint32_t e = 0; e < scene_.expressions.size(); ++e) constants.push_back(constantValue(e));
+  const auto take = [&](uint32_t& texture, const auto& fold) {
+    if (texture == kNone || !constants[texture]) return;
+    fold(*constants[texture]);
+    texture = kNone;
+  };
+  const auto field = [&]<typename Field>(const char*, Field& f) {
+    if constexpr (Like<Field, Colour>)
+      take(f.texture, [&](Vec3 v) { f.value = f.value * v; });
+    else if constexpr (Like<Field, Scalar>)
+      take(f.texture, [&](Vec3 v) { f.value *= v.x; });
+  };
+  for (Material& m : scene_.materials) {
+    std::visit([&](auto& model) { forEachField(model, field); }, m.model);
+    take(m.emissionTexture, [&](Vec3 v) { m.emission = m.emission * v; });
+    take(m.opacityTexture, [&](Vec3 v) { m.opacity *= v.x; });
+    for (Relief* relief : {&m.relief, &m.coatRelief}) take(relief->bumpMap, [](Vec3) {});
+  }
+}
+
 void SceneBuilder::warnOfMissingUvs() {
   size_t next = 0;
   for (const Part& part : parts_) {
@@ -355,22 +393,96 @@ void SceneBuilder::warnOfMissingUvs() {
 // None in scenes of instances, whose places are few and say nothing of their size.
 void SceneBuilder::findStrays() {
   if (!placed_.empty()) return;
-  std::vector<uint32_t> world;
-  uint32_t next = 0;
-  for (const Part& part : parts_) {
-    for (; next < part.endTriangle; ++next) {
-      if (part.prototype == kNone) world.push_back(next);
-    }
+  const auto corners = [&](size_t i) { return cornersOf(scene_.triangles[i]); };
+  strays_ = Strays(scene_.triangles.size(), corners);
+  if (strays_.count() > 0) {
+    warn(name() + ": " + std::to_string(strays_.count()) +
+         (strays_.count() == 1 ? " triangle lies " : " triangles lie up to ") +
+         distanceText(strays_.furthest()) +
+         " away from the middle of the others; if it is there by mistake, remove it");
   }
-  strays_ = Strays(world.size(), [&](size_t i) {
-    const auto& p = scene_.triangles[world[i]].position;
-    return Corners{points_[p[0]], points_[p[1]], points_[p[2]]};
-  });
-  if (strays_.count() == 0) return;
-  warn(name() + ": " + std::to_string(strays_.count()) +
-       (strays_.count() == 1 ? " triangle lies " : " triangles lie up to ") +
-       shortestText(static_cast<float>(strays_.furthest())) +
-       " away from the middle of the others; if it is there by mistake, remove it");
+  cutFarFaces();
+}
+
+// Faces that reach from the scene to far away are cut into pieces that are small beside their
+// distance, so that floats tell hits on them well, and what is far of them counts as strays.
+void SceneBuilder::cutFarFaces() {
+  std::vector<Triangle> pieces;
+  size_t kept = 0, begin = 0, faces = 0;
+  double furthest = 0.0;
+  fs::path file;
+  for (Part& part : parts_) {
+    for (size_t t = begin; t < part.endTriangle; ++t) {
+      const Triangle face = scene_.triangles[t];
+      const Corners corners = cornersOf(face);
+      if (!strays_.reaches(corners)) {
+        scene_.triangles[kept++] = face;
+        continue;
+      }
+      if (faces++ == 0) file = part.file;
+      furthest = std::max(furthest, strays_.distance(corners));
+      cut(face, pieces);
+    }
+    begin = part.endTriangle;
+    part.endTriangle = kept;
+  }
+  if (faces == 0) return;
+  scene_.triangles.resize(kept);
+  scene_.triangles.insert(scene_.triangles.end(), pieces.begin(), pieces.end());
+  parts_.push_back({file, scene_.triangles.size(), points_.size(), kNone, /*pieces=*/true});
+  strays_.cutAt(scene_.triangles.size(), [&](size_t i) { return cornersOf(scene_.triangles[i]); });
+  warn(file.string() + ": " + std::to_string(faces) +
+       (faces == 1 ? " triangle reaches " : " triangles reach up to ") + distanceText(furthest) +
+       " away from the middle of the others; if a vertex is there by mistake, mend it");
+}
+
+// Halves the longest edge, again and again.
+void SceneBuilder::cut(const Triangle& face, std::vector<Triangle>& pieces) {
+  const auto squaredEdge = [&](const Corners& c, size_t k) {
+    double sum = 0.0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double d = c[k][axis] - c[(k + 1) % 3][axis];
+      sum += d * d;
+    }
+    return sum;
+  };
+  std::vector<Triangle> left{face};
+  while (!left.empty()) {
+    const Triangle t = left.back();
+    left.pop_back();
+    const Corners corners = cornersOf(t);
+    if (strays_.mayStay(corners)) {
+      pieces.push_back(t);
+      continue;
+    }
+    size_t longest = 0;
+    for (size_t k = 1; k < 3; ++k) {
+      if (squaredEdge(corners, k) > squaredEdge(corners, longest)) longest = k;
+    }
+    const size_t a = longest, b = (longest + 1) % 3;
+    Triangle first = t, second = t;
+    first.position[b] = second.position[a] = static_cast<uint32_t>(points_.size());
+    FilePoint middle{};
+    for (size_t axis = 0; axis < 3; ++axis)
+      middle[axis] = 0.5 * corners[a][axis] + 0.5 * corners[b][axis];
+    points_.push_back(middle);
+    if (t.normal[a] != kNone && t.normal[b] != kNone) {
+      first.normal[b] = second.normal[a] = static_cast<uint32_t>(scene_.normals.size());
+      const Vec3 sum = scene_.normals[t.normal[a]] + scene_.normals[t.normal[b]];
+      scene_.normals.push_back(isBlack(sum) ? scene_.normals[t.normal[a]] : normalize(sum));
+    } else {
+      first.normal[b] = second.normal[a] = kNone;
+    }
+    if (t.uv[a] != kNone && t.uv[b] != kNone) {
+      const auto u = scene_.uvs[t.uv[a]], v = scene_.uvs[t.uv[b]];
+      first.uv[b] = second.uv[a] = static_cast<uint32_t>(scene_.uvs.size());
+      scene_.uvs.push_back({0.5f * u[0] + 0.5f * v[0], 0.5f * u[1] + 0.5f * v[1]});
+    } else {
+      first.uv[b] = second.uv[a] = kNone;
+    }
+    left.push_back(second);
+    left.push_back(first);
+  }
 }
 
 // The points of prototypes keep the coordinates that instances are placed by.
@@ -387,8 +499,7 @@ void SceneBuilder::roundPositions() {
   size_t triangle = 0;
   for (const Part& part : parts_) {
     for (; triangle < part.endTriangle; ++triangle) {
-      const auto& p = scene_.triangles[triangle].position;
-      const Corners corners{points_[p[0]], points_[p[1]], points_[p[2]]};
+      const Corners corners = cornersOf(scene_.triangles[triangle]);
       if (part.prototype == kNone && !strays_.has(corners)) std::ranges::for_each(corners, extend);
     }
   }
@@ -430,7 +541,7 @@ void SceneBuilder::dropUnusable() {
       const float length2 = lengthSquared(normal);
       if (std::isnormal(length2)) {
         scene_.triangles[kept++] = t;
-      } else {
+      } else if (!part.pieces) {
         ++(isBlack(normal) ? flat : extreme);
       }
     }
@@ -545,13 +656,18 @@ void SceneBuilder::extendBounds() {
     const Vec3 p = scene_.corner(t, c);
     return FilePoint{p.x, p.y, p.z};
   };
+  Bounds near;
   const auto extend = [&](Bounds& box, uint32_t begin, uint32_t end) {
     for (uint32_t t = begin; t < end; ++t) {
-      if (strays.count() > 0 && strays.has({place(t, 0), place(t, 1), place(t, 2)})) continue;
+      const Corners corners{place(t, 0), place(t, 1), place(t, 2)};
+      if (strays.isNear(corners))
+        for (size_t c = 0; c < 3; ++c) near.extend(scene_.corner(t, c));
+      if (strays.count() > 0 && strays.has(corners)) continue;
       for (size_t c = 0; c < 3; ++c) box.extend(scene_.corner(t, c));
     }
   };
   extend(scene_.bounds, 0, scene_.worldEnd());
+  if (scene_.instances.empty()) scene_.nearSize = near.diagonal();
   for (size_t p = 0; p < boxes.size(); ++p)
     extend(boxes[p], scene_.prototypes[p].begin, scene_.prototypes[p].end);
   for (const Instance& i : scene_.instances) {
@@ -589,11 +705,15 @@ void SceneBuilder::requireSize() const {
     throw InputError(scene_.name() + ": has no triangle; give it a mesh that has an area");
   if (strays_.furthest() > double{kLargestScene}) {
     throw InputError(scene_.name() + ": has a triangle that lies " +
-                     shortestText(static_cast<float>(strays_.furthest())) +
-                     " away from the others, beyond " + shortestText(kLargestScene) +
-                     "; remove it");
+                     distanceText(strays_.furthest()) + " away from the others, beyond " +
+                     shortestText(kLargestScene) + "; remove it");
   }
   const float size = scene_.bounds.diagonal();
+  if (size > kLargestScene && scene_.nearSize <= kLargestScene) {
+    throw InputError(scene_.name() + ": has a triangle that reaches " + shortestText(size) +
+                     " away from the others, beyond " + shortestText(kLargestScene) +
+                     "; mend or remove it");
+  }
   if (size >= kSmallestScene && size <= kLargestScene) return;
   throw InputError(scene_.name() + ": is " + shortestText(size) + " units across, outside " +
                    shortestText(kSmallestScene) + " to " + shortestText(kLargestScene) +
@@ -603,6 +723,7 @@ void SceneBuilder::requireSize() const {
 Scene SceneBuilder::finish() {
   placePrototypes();
   resolveTextures();
+  foldConstants();
   warnOfMissingUvs();
   findStrays();
   roundPositions();

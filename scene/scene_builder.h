@@ -15,6 +15,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -67,6 +68,8 @@ class SceneBuilder {
   // added before, its image one of addTexture(); an image that turns out to be damaged counts as
   // white.
   uint32_t addExpression(const TextureExpression& expression);
+  // What an expression is everywhere; nothing where it looks at texture coordinates.
+  std::optional<Vec3> constantValue(uint32_t expression) const;
   uint32_t addMaterial(Material material);
   // Stands for every material of its name, which must not be empty, that is added afterwards: their
   // addMaterial() returns its number.
@@ -114,7 +117,8 @@ class SceneBuilder {
   struct Part {  // the triangles of one addMesh()
     fs::path file;
     size_t endTriangle, endPoint;
-    uint32_t prototype;  // kNone: of the world
+    uint32_t prototype;   // kNone: of the world
+    bool pieces = false;  // of faces that reach far away; floats may not hold all of them
   };
   struct KeptMesh {  // of a prototype, until finish()
     fs::path file;
@@ -127,6 +131,9 @@ class SceneBuilder {
     uint32_t prototype;
     Affine toWorld;
   };
+  Corners cornersOf(const Triangle& t) const {
+    return {points_[t.position[0]], points_[t.position[1]], points_[t.position[2]]};
+  }
   struct Base {  // where the arrays of a mesh begin in the scene's
     size_t position, normal, uv;
   };
@@ -139,8 +146,11 @@ class SceneBuilder {
   // Of finish(), in this order:
   void placePrototypes();
   void resolveTextures();
+  void foldConstants();
   void warnOfMissingUvs();
   void findStrays();
+  void cutFarFaces();
+  void cut(const Triangle& face, std::vector<Triangle>& pieces);
   void roundPositions();
   void dropUnusable();
   void placeInstances();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace bnvpl {
@@ -9,8 +10,9 @@ namespace bnvpl {
 namespace {
 
 constexpr double kTimesAsFar = 1000.0;
-constexpr double kMaxExtent = 1.0 / 16.0;  // of the distance
-constexpr double kMaxSquares = 0.05;       // sum of the squares of extent by distance
+constexpr double kMaxExtent = 1.0 / 4.0;                           // of the distance
+constexpr double kMaxDirections = 4.0 * std::numbers::pi / 250.0;  // solid angle of all
+constexpr double kFurthestCut = 1e9;                               // beyond, scenes are refused
 constexpr size_t kSamples = size_t{1} << 16;
 
 double extentOf(const Corners& c) {
@@ -44,17 +46,48 @@ Strays::Strays(size_t count, const std::function<Corners(size_t)>& corners) {
   for (size_t i = 0; i < count; i += step) values.push_back(distance(corners(i)));
   const double usual = takeQuantile(values, 0.75);
   if (!(usual > 0.0)) return;
-  beyond_ = kTimesAsFar * usual;
-  double squares = 0.0;
+  far_ = kTimesAsFar * usual;
+  double within = 0.0, directions = 0.0;
+  beyond_ = far_;
+  bool any = false;
   for (size_t i = 0; i < count; ++i) {
     const Corners c = corners(i);
+    const double d = distance(c);
+    if (d > far_)
+      any = true;
+    else
+      within = std::max(within, d);
     if (!has(c)) continue;
-    const double d = distance(c), size = extentOf(c) / d;
     ++count_;
     furthest_ = std::max(furthest_, d);
-    squares += size * size;
+    directions += solidAngle(c);
   }
-  if (squares > kMaxSquares) *this = {};
+  if (any) near_ = within;
+  if (directions <= kMaxDirections) return;
+  beyond_ = HUGE_VAL;
+  count_ = 0;
+  furthest_ = 0.0;
+}
+
+void Strays::cutAt(size_t count, const std::function<Corners(size_t)>& corners) {
+  count_ = 0;
+  furthest_ = 0.0;
+  for (beyond_ = std::min(far_, 2.0 * near_); beyond_ <= far_; beyond_ *= 2.0) {
+    double directions = 0.0, furthest = 0.0;
+    size_t strays = 0;
+    for (size_t i = 0; i < count; ++i) {
+      const Corners c = corners(i);
+      if (!has(c)) continue;
+      ++strays;
+      directions += solidAngle(c);
+      furthest = std::max(furthest, distance(c));
+    }
+    if (directions > kMaxDirections) continue;
+    count_ = strays;
+    furthest_ = furthest;
+    return;
+  }
+  beyond_ = HUGE_VAL;
 }
 
 double Strays::distance(const Corners& triangle) const {
@@ -66,9 +99,42 @@ double Strays::distance(const Corners& triangle) const {
   return most;
 }
 
+// That of its box, which is not beyond that of the triangle.
+double Strays::leastDistance(const Corners& c) const {
+  double most = 0.0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({c[0][axis], c[1][axis], c[2][axis]});
+    most = std::max({most, low - middle_[axis], middle_[axis] - high});
+  }
+  return most;
+}
+
+// As seen from the middle, for what is small beside its distance.
+double Strays::solidAngle(const Corners& c) const {
+  FilePoint to{}, a{}, b{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    to[axis] = (c[0][axis] + c[1][axis] + c[2][axis]) / 3.0 - middle_[axis];
+    a[axis] = c[1][axis] - c[0][axis];
+    b[axis] = c[2][axis] - c[0][axis];
+  }
+  const double volume = to[0] * (a[1] * b[2] - a[2] * b[1]) + to[1] * (a[2] * b[0] - a[0] * b[2]) +
+                        to[2] * (a[0] * b[1] - a[1] * b[0]);
+  const double d = std::hypot(to[0], to[1], to[2]);
+  return 0.5 * std::fabs(volume) / (d * d * d);
+}
+
 bool Strays::has(const Corners& triangle) const {
   const double d = distance(triangle);
   return d > beyond_ && extentOf(triangle) <= kMaxExtent * d;
+}
+
+bool Strays::mayStay(const Corners& piece) const {
+  return extentOf(piece) <= std::max(2.0 * near_, kMaxExtent * leastDistance(piece));
+}
+
+bool Strays::reaches(const Corners& triangle) const {
+  const double d = distance(triangle);
+  return d > far_ && d <= kFurthestCut && extentOf(triangle) > leastDistance(triangle);
 }
 
 Strays Strays::from(const FilePoint& origin) const {

@@ -45,7 +45,7 @@ void LightSet::requireSquares() const {
     if (!(sent / across / across > kStrongest)) continue;
     throw InputError(scene_.name() + ": the " + name(i) + " sends out " + shortestText(sent) +
                      " W, more than 1e17 W over the square of the scene's diagonal, " +
-                     shortestText(across) + "; make it weaker, or use --integrator path");
+                     shortestText(across) + "; make it weaker, or use --integrator path or light");
   }
 }
 

@@ -146,7 +146,7 @@ RayScene::RayScene(const Scene& scene, Processor processor)
   impl_->attach(impl_->scene, scene, scene.maskedBegin, scene.worldEnd(), Impl::kMasked);
   impl_->addInstances(scene);
   impl_->commit(impl_->scene);
-  offsetBase_ = scene.bounds.diagonal() * 0x1p-20f;
+  offsetBase_ = scene.offsetSize() * 0x1p-20f;
 }
 
 RayScene::~RayScene() = default;

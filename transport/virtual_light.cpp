@@ -11,7 +11,7 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
   VplLights vpls;
   vpls.kind = kind;
   // Nothing nearer than rays can tell apart: 1/d^2 stays finite without a clamp too.
-  const float nearest = rays.scene().bounds.diagonal() * 0x1p-20f;
+  const float nearest = rays.scene().offsetSize() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
     // Each point sends an equal part; equal points are one light.

@@ -63,6 +63,17 @@ TEST_F(Units, OtherUnitsAndPlacesGiveTheSameImage) {
   }
 }
 
+// A face that covers nearly nothing takes no light, however far it reaches.
+TEST_F(Units, AFaceThatReachesFarAwayTakesNoLight) {
+  const Images alone = renderBoth(room({"alone"}));
+  for (const char* corner : {"0 1e4 0", "2e6 1e6 -1e6", "-1e8 3e8 0"}) {
+    const Images far = renderBoth(room({"far"}, std::string("v -1 2.6 -1.5\nv -0.9 2.6 -1.5\nv ") +
+                                                    corner + "\nusemtl white\nf -3 -2 -1\n"));
+    EXPECT_NEAR(meanOf(far.path) / meanOf(alone.path), 1.0, 0.01) << corner;
+    EXPECT_NEAR(meanOf(far.vpl) / meanOf(alone.vpl), 1.0, 0.02) << corner;
+  }
+}
+
 // Coordinates count from a place of the scene's own where it is far away, and only there.
 TEST_F(Units, FarScenesHaveAnOriginOfTheirOwn) {
   EXPECT_EQ(room({"here"}).origin, FilePoint{});

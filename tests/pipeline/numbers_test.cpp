@@ -98,6 +98,28 @@ TEST_F(Numbers, LightsThatAreTooStrongForFloatsAreRefused) {
   EXPECT_FALSE(fs::exists(at("i.exr")));
 }
 
+// Their squares are in the choices of all integrators that take VPLs.
+TEST_F(Numbers, LightsThatAreTooStrongForVplsAreRefused) {
+  write("two.obj",
+        "mtllib s.mtl\nusemtl grey\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3 4\n"
+        "v -1 1 -1\nv 1 1 -1\nf 1 4 6 5\n");
+  write("s.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  write("two.toml",
+        "[film]\nwidth = 16\nheight = 16\n[camera]\nposition = [0, 1, 3]\nlook_at = [0, 0, 0]\n"
+        "vertical_fov_deg = 40\n[[mesh]]\nfile = \"two.obj\"\n"
+        "[[light]]\ntype = \"environment\"\nradiance = [1e20, 1e20, 1e20]\n");
+  makeStages(path("two.toml"));
+  const std::string image = " --spp 1 -o " + path("i.exr");
+  for (const std::string integrator : {"vpl", "guided"}) {
+    fail("vpl-render",
+         path("two.toml") + " " + path("lit.vpl") + " --integrator " + integrator + image,
+         kExitInput,
+         {"the environment sends out", "more than 1e17 W", "--integrator path or light"});
+  }
+  for (const std::string integrator : {"path", "light"})
+    succeed("vpl-render", path("two.toml") + " --integrator " + integrator + image);
+}
+
 TEST_F(Numbers, EveryStageCountsNonFiniteSamples) {
   const std::string stats = " --stats " + path("s.json");
   const auto count = [&] { return Json::parse(readAll(at("s.json"))).at("non_finite_samples"); };

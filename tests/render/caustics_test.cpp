@@ -185,7 +185,7 @@ TEST(Caustics, LampsWithTooFewPhotonsAreLeftToRays) {
       world.scene.camera.position,
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
-    const Caustics caustics(world.rays, world.lights, photons, 8.0f, 3, {});
+    const Caustics caustics(world.rays, world.lights, photons, 8.0f, 0, 3, {});
     EXPECT_GT(caustics.lamps(), 0u);
     EXPECT_EQ(caustics.sparseLamps() == caustics.lamps(), left) << photons;
     return caustics.shared(seen).ofRays(lamp, {0, 1, 0});

@@ -310,12 +310,46 @@ TEST_F(Builder, StraysFarAwayLeaveTheBoundsAlone) {
       loadMesh(kSquareObj + "f 1 2 3\nv 1e6 0 0\nv 1e6 1e-3 0\nv 1e6 0 1e-3\nf -3 -2 -1\n", mtl,
                "translate = [-1e6, 0, 0]\n");
   EXPECT_NEAR(origin.origin[0], -1e6, 10.0);
-  // A ground plane and a dome are no strays, however large.
+}
+
+// Faces that reach from the scene to far away are cut: what is far of them is stray, and offsets
+// follow what is near.
+TEST_F(Builder, FacesThatReachFarAwayAreCut) {
+  const std::string mtl = "newmtl paint\nKd 1 1 1\n";
   std::string detail;
   for (int i = 0; i < 100; ++i) detail += "f 1 2 3\n";
+  const float size = loadMesh(kSquareObj, mtl).bounds.diagonal();
+  double area = 0.0;
+  for (const std::string x : {"1e4", "1e6", "1e8"}) {
+    const Scene s = loadMesh(
+        kSquareObj + detail + "v 0 0 -1\nv 1 0 -1\nv " + x + " " + x + " " + x + "\nf -3 -2 -1\n",
+        mtl);
+    EXPECT_EQ(countContaining(s.warnings, "1 triangle reaches "), 1u) << x;
+    EXPECT_EQ(countContaining(s.warnings, "left out"), 0u) << x;
+    EXPECT_LT(s.triangles.size(), 5000u) << x;
+    EXPECT_LT(s.bounds.diagonal(), 20.0f * size) << x;
+    EXPECT_FLOAT_EQ(s.offsetSize(), size) << x;
+    for (const Triangle& t : s.triangles) {
+      Vec3 c[3];
+      for (size_t k = 0; k < 3; ++k) c[k] = s.positions[t.position[k]];
+      if (x == "1e4") area += 0.5 * double{length(cross(c[1] - c[0], c[2] - c[0]))};
+    }
+  }
+  EXPECT_NEAR(area, 4.0 + 100 * 2.0 + 0.5 * std::hypot(1e4, 1e4 + 1), 2.0);
+  // Of a ground plane what is far is seen from the side. A dome is no stray, but offsets do not
+  // follow it.
   const Scene plane =
       loadMesh(kSquareObj + detail + "v -1e5 0 -1e5\nv 1e5 0 -1e5\nv 1e5 0 1e5\nf -3 -2 -1\n", mtl);
-  EXPECT_EQ(plane.bounds.upper.x, 1e5f);
+  EXPECT_LT(plane.bounds.diagonal(), 200.0f * size);
+  EXPECT_FLOAT_EQ(plane.offsetSize(), size);
+  std::string dome = "v 0 1e5 0\nv 0 -1e5 0\nv 1e5 0 0\nv -1e5 0 0\nv 0 0 1e5\nv 0 0 -1e5\n";
+  for (const char* side : {"-6", "-5"}) {
+    for (const auto& [a, b] : {std::pair{"-4", "-2"}, {"-2", "-3"}, {"-3", "-1"}, {"-1", "-4"}})
+      dome += std::string("f ") + side + " " + a + " " + b + "\n";
+  }
+  const Scene domed = loadMesh(kSquareObj + detail + dome, mtl);
+  EXPECT_EQ(domed.bounds.upper.x, 1e5f);
+  EXPECT_FLOAT_EQ(domed.offsetSize(), size);
 }
 
 TEST_F(Builder, WhatLiesBeyondFloatsIsRefused) {

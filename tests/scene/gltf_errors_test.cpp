@@ -34,6 +34,16 @@ TEST_F(GltfErrors, NameThePlaceInTheFile) {
   EXPECT_NE(loadError("{\"asset\":{\"version\":\"2.1\",\"minVersion\":\"2.1\"}}")
                 .find("/asset/minVersion: is '2.1'; glTF 2.0 is read"),
             std::string::npos);
+  for (const std::string least : {"3.0", "2.10", "2", "2.0.1", "two", "-1.0"}) {
+    const std::string error =
+        loadError("{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"" + least + "\"}}");
+    EXPECT_NE(error.find("/asset/minVersion: is '" + least), std::string::npos) << error;
+  }
+  for (const std::string least : {"1.0", "1.1", "2.0"}) {
+    const std::string error =
+        loadError("{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"" + least + "\"}}");
+    EXPECT_EQ(error.find("minVersion"), std::string::npos) << error;
+  }
   EXPECT_NE(loadError("{\"meshes\":[]}").find("needs 'asset'"), std::string::npos);
 }
 

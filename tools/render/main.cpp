@@ -133,7 +133,7 @@ int runRender(const Request& request, const ToolOptions& tool) {
   }
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
-  if (integratorOf(options).name == "vpl") lights.requireSquares();
+  if (vpl) lights.requireSquares();
   const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
   if (!missed.empty()) printWarnings("vpl-render", {missed});
   if (estimating) {

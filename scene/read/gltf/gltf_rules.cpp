@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string_view>
 
@@ -315,7 +316,14 @@ void requireValid(GltfDocument& document, const std::function<void(const std::st
                     "is '" + version + "'; glTF 2.0 is read, so export it as that");
   }
   const std::string least = asset.value("minVersion", "2.0");
-  if (least != "2.0") {
+  unsigned major = 0, minor = 0;
+  int end = -1;
+  if (std::sscanf(least.c_str(), "%4u.%4u%n", &major, &minor, &end) != 2 ||
+      end != static_cast<int>(least.size())) {
+    throw GltfError(document.file, "/asset/minVersion",
+                    "is '" + least + "', not two numbers such as 2.0; mend or remove it");
+  }
+  if (major > 2 || (major == 2 && minor > 0)) {
     throw GltfError(document.file, "/asset/minVersion",
                     "is '" + least + "'; glTF 2.0 is read, so export it as that");
   }

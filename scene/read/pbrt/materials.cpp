@@ -3,6 +3,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/number_text.h"
 #include "scene/read/pbrt/textures.h"
 
 namespace bnvpl::pbrt {
@@ -242,15 +243,22 @@ void Materials::Maker::setAlpha(const Shape& shape, Material& m) {
   if (!alpha) return;
   if (alpha->type != ParamType::Texture) {
     m.opacity = textures_.scalar(shape.params, "alpha", 1.0f).value;
-    if (m.opacity > 0.0f && m.opacity < 1.0f)
-      r_.notes.add(alpha->place, "'alpha' between 0 and 1: from 0.5 on the surface is opaque");
-    if (m.opacity == 0.0f && !isBlack(m.emission))
-      r_.notes.add(alpha->place, "a lamp of 'alpha' 0, which shines unseen, is left out");
   } else if (const auto mask = textures_.mask(shape.params, "alpha")) {
     m.opacityMap = *mask;
+    return;
   } else {
     m.opacityTexture = textures_.floatTexture(shape.params, "alpha");
+    const auto constant = builder_.constantValue(m.opacityTexture);
+    if (!constant) return;
+    m.opacity = constant->x;
+    m.opacityTexture = kNone;
   }
+  if (m.opacity > 0.0f && m.opacity < 1.0f) {
+    r_.notes.add(alpha->place, "'alpha' " + shortestText(m.opacity) +
+                                   ": from 0.5 on the surface is opaque, below it is not there");
+  }
+  if (m.opacity <= 0.0f && !isBlack(m.emission))
+    r_.notes.add(alpha->place, "a lamp of 'alpha' 0, which shines unseen, is left out");
 }
 
 uint32_t Materials::Maker::of(const Shape& shape, const Emission& emission) {

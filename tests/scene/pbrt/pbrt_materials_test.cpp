@@ -141,6 +141,36 @@ TEST_F(PbrtMaterials, Graphs) {
   expectNear(at(mixed, 0, 0), Vec3(0.1f, 0.2f, 0.4f) * 0.75f + Vec3{0.25f}, 1e-5f);
 }
 
+// A number, a constant texture, and one made of such.
+TEST_F(PbrtMaterials, ConstantAlphaNeedsNoTextureCoordinates) {
+  for (const std::string alpha : {"0", "0.2", "0.5", "0.7", "1"}) {
+    const std::string constant = "Texture \"c\" \"float\" \"constant\" \"float value\" " + alpha;
+    for (const std::string& by :
+         {"Attribute \"shape\" \"float alpha\" " + alpha,
+          constant + " Attribute \"shape\" \"texture alpha\" \"c\"",
+          constant + " Texture \"s\" \"float\" \"scale\" \"texture tex\" \"c\" \"float scale\" 1 "
+                     "Attribute \"shape\" \"texture alpha\" \"s\""}) {
+      const Scene s = loadPbrt("WorldBegin\n" + by + "\n" + kSquareShape);
+      EXPECT_EQ(s.maskedBegin, std::stod(alpha) < 0.5 ? 0u : 2u) << by;
+      const bool partial = alpha.size() > 1;
+      EXPECT_EQ(joined(s.warnings).find("from 0.5 on the surface is opaque") != std::string::npos,
+                partial)
+          << by << joined(s.warnings);
+      EXPECT_EQ(joined(s.warnings).find("without texture coordinates"), std::string::npos) << by;
+    }
+  }
+}
+
+TEST_F(PbrtMaterials, ConstantTexturesNeedNoTextureCoordinates) {
+  const Scene s = loadPbrt(
+      "WorldBegin\nTexture \"c\" \"spectrum\" \"constant\" \"rgb value\" [0.2 0.4 0.6]\n"
+      "Material \"diffuse\" \"texture reflectance\" \"c\"\n" +
+      kSquareShape);
+  const auto& m = std::get<DiffuseModel>(s.materials.at(s.triangles[0].material).model);
+  EXPECT_EQ(m.reflectance.texture, kNone);
+  expectNear(m.reflectance.value, {0.2f, 0.4f, 0.6f}, 1e-3f);
+}
+
 TEST_F(PbrtMaterials, AlphaCutsAway) {
   const std::string texture =
       "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"t.tga\"\n"
@@ -198,7 +228,8 @@ TEST_F(PbrtMaterials, TexturesThatCannotBeReadAreGrey) {
       const Scene s = loadWorld(image + twice + "Material \"diffuse\" \"texture reflectance\" \"" +
                                 name + "\"\n");
       const auto& m = std::get<DiffuseModel>(s.materials.back().model);
-      EXPECT_EQ(s.expressionAt(m.reflectance.texture, 0.3f, 0.7f), Vec3(0.5f)) << file << name;
+      EXPECT_EQ(m.reflectance.value * s.expressionAt(m.reflectance.texture, 0.3f, 0.7f), Vec3(0.5f))
+          << file << name;
       EXPECT_EQ(countContaining(s.warnings, file), 1u) << joined(s.warnings);
       EXPECT_EQ(countContaining(s.warnings, "; it is grey"), 1u) << joined(s.warnings);
     }

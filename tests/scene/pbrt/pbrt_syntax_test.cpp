@@ -141,6 +141,18 @@ TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
   expectNear(scene.bounds.upper, {6, 2, 2}, 1e-5f);
 }
 
+// As in pbrt; once, however often they are placed.
+TEST_F(PbrtSyntax, LampsInObjectsDoNotShine) {
+  for (const std::string places :
+       {"ObjectInstance \"o\"", "ObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\""}) {
+    const Scene scene = loadPbrt("WorldBegin ObjectBegin \"o\"\nAreaLightSource \"diffuse\"\n" +
+                                 kSquareShape + "ObjectEnd\n" + places);
+    EXPECT_FALSE(scene.hasLight());
+    EXPECT_NE(joined(scene.warnings).find("a lamp within an object does not shine"),
+              std::string::npos);
+  }
+}
+
 TEST_F(PbrtSyntax, AttributesHoldUntilTheirBlockEnds) {
   const Scene scene = loadWorld("AttributeBegin Attribute \"shape\" \"float alpha\" 0\n" +
                                 kSquareShape + "AttributeEnd\n");

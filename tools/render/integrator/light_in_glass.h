@@ -1,5 +1,5 @@
 // Light of points, spots and parallel beams that lies behind glass: shadow rays end at the glass,
-// and no other ray can meet such a light.
+// and no other ray can meet such a light. Photons bring it to what the camera sees directly.
 #pragma once
 
 #include <string>

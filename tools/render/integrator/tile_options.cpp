@@ -22,13 +22,14 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
 }
 
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
-                                             uint64_t raysOfPixel) {
+                                             uint64_t raysOfPixel, unsigned bounces) {
   if (photons == 0 || in.only == Only::Direct || !hasSpecularLobes(in.rays.scene()) ||
       !in.lights.hasPower()) {
     return {};
   }
   return std::make_unique<const Caustics>(in.rays, in.lights, photons,
-                                          static_cast<float>(raysOfPixel), in.seed, in.progress);
+                                          static_cast<float>(raysOfPixel), bounces, in.seed,
+                                          in.progress);
 }
 
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film) {

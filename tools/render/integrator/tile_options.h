@@ -31,9 +31,9 @@ constexpr Option allocateOption(std::string_view help) {
 // image shows indirect light alone.
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& film, unsigned lightRays, TileParts& out);
-// Null where the scene has nothing that makes caustics.
+// Null where the scene has nothing that makes caustics. `bounces`: see Caustics.
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
-                                             uint64_t raysOfPixel);
+                                             uint64_t raysOfPixel, unsigned bounces);
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film);
 // --allocate: runs the pilot.
 SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,

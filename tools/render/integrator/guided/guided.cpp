@@ -79,7 +79,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
-                               tile.raysEach * options.whole("spp"));
+                               tile.raysEach * options.whole("spp"), maxBouncesOf(options));
   const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scene/scene_builder.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
 #include "tools/render/integrator/guided/guide.h"
@@ -135,6 +136,57 @@ TEST(Guided, HasThePathTracersImage) {
     EXPECT_TRUE(sameExpectation(paths(world, direct),
                                 guided(world, lit, with(direct, {{"direct-samples", "1"}}))));
   }
+}
+
+// A closed room with a bulb in a box of glass, which the camera does not see, and a wall that is half
+// a mirror.
+Scene bulbInGlass() {
+  SceneBuilder builder("bulb in glass");
+  builder.setFilm({10, 10});
+  Camera camera;
+  camera.verticalFovRad = 1.0f;
+  builder.setCamera({0, 0, 0.9}, camera);
+  Material paint, halfMirror, glass;
+  paint.model = DiffuseModel{};
+  halfMirror.phong().diffuse = Vec3{0.4f};
+  halfMirror.phong().mirror = Vec3{0.4f};
+  glass.model = DielectricModel{};
+  const uint32_t matt = builder.addMaterial(paint), shiny = builder.addMaterial(halfMirror),
+                 clear = builder.addMaterial(glass);
+  const auto box = [&](double y, double half, uint32_t left, uint32_t others) {
+    std::vector<double> positions;
+    for (uint32_t k = 0; k < 8; ++k) {
+      for (const double side : {k & 1 ? half : -half, k & 2 ? y + half : y - half,
+                                k & 4 ? half : -half})
+        positions.push_back(side);
+    }
+    Mesh mesh{positions, {}, {}, {}};
+    // Counter-clockwise from outside.
+    const uint32_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (size_t s = 0; s < 6; ++s) {
+      const uint32_t* c = sides[s];
+      for (const auto& corners : {std::array{c[0], c[1], c[2]}, std::array{c[0], c[2], c[3]}})
+        mesh.triangles.push_back({corners, kNoCorners, kNoCorners, s == 0 ? left : others});
+    }
+    builder.addMesh("box", std::move(mesh));
+  };
+  box(0.0, 1.0, shiny, matt);
+  box(0.6, 0.1, clear, clear);
+  LightSpec bulb;
+  bulb.emission = Vec3(1.0f);
+  builder.addLight(bulb, {0.02, 0.6, -0.03});
+  return builder.finish();
+}
+
+// What walls reflect again of light that came through glass, photons bring.
+TEST(Guided, HasAllLightOfABulbInGlass) {
+  const World world(bulbInGlass());
+  const VplTable lit = fewLit(world);
+  const auto light = [&](uint64_t seed) {
+    return renderWithout(world, "light", {{"spp", "64"}, {"seed", typed(seed)}}).image;
+  };
+  EXPECT_TRUE(sameExpectation(light, guided(world, lit, {{"spp", "16"}})));
 }
 
 // Light that a path finds is shared: all of it from matt walls, bare or coated, the matt part of it

@@ -119,7 +119,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options.whole("reuse"));
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * std::min(options.whole("spp"), kMaxSpp));
+                               tile.raysEach * std::min(options.whole("spp"), kMaxSpp),
+                               /*bounces=*/0);  // VPLs carry the light of further bounces
   const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =

@@ -7,17 +7,19 @@
 #include "tools/common/streams.h"
 #include "tools/render/splat/add_splats.h"
 #include "tools/render/splat/film_connection.h"
+#include "transport/photon_walk.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
 
 Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons,
-                   float raysOfPixel, uint64_t seed, const ProgressFn& progress)
+                   float raysOfPixel, unsigned bounces, uint64_t seed, const ProgressFn& progress)
     : rays_(rays),
       lights_(lights),
       photons_(photons),
       key_(streamKey(seed, Stream::Caustics)),
       raysOfPixel_(raysOfPixel),
+      bounces_(bounces),
       width_(rays.scene().film.width),
       light_(size_t{width_} * rays.scene().film.height) {
   chooseLamps(streamKey(seed, Stream::CausticPilot), progress);
@@ -93,16 +95,21 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
   const PhotonStart start = lights_.emit(light, rng);
   const uint64_t lamp =
       lights_.hittable(light) ? lampOf(lights_, light, -start.direction) : kNoLamp;
-  if (chosen_ && lamp != kNoLamp && !std::ranges::binary_search(dense_, lamp)) return lamp;
+  if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
+    return lamp;  // nothing is to be learned of it, or its light is left to rays
   Vec3 flux = start.flux * static_cast<float>(1.0 / (double{probability} * double(photons_)));
   Ray next{start.origin, start.direction};
   SurfacePoint hit;
+  bool hidden = false;  // from paths that begin at the camera
   for (unsigned links = 0; links <= kMaxSpecular && isFinite(flux); ++links) {
     rays_.closestHit(next.origin, next.direction, hit);
     if (hit.triangle == kNone) return lamp;
     const Bsdf bsdf(rays_.scene(), hit);
-    if (links > 0 && bsdf.hasRough())
+    if (links == 0) hidden = lamp == kNoLamp && bsdf.specularIsDelta();
+    if (links > 0 && bsdf.hasRough()) {
       connect(bsdf.point(), flux * bsdf.photonShadingFactor(), light, -start.direction, out);
+      if (hidden && bounces_ > 0) followBounces(bsdf, flux, light, -start.direction, rng, out);
+    }
     if (!(bsdf.specularProbability() > 0.0f)) return lamp;
     BsdfSample sample;
     if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
@@ -114,6 +121,24 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
     flux *= 1.0f / survive;
   }
   return lamp;
+}
+
+void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 towards, Rng& rng,
+                             Splats& out) const {
+  BsdfSample sample;
+  Ray next;
+  if (!scatter(rays_, bsdf, LobeGroup::Rough, Transport::Photons, rng, sample, next)) return;
+  const float survive = std::min(1.0f, maxComponent(sample.weight));
+  if (rng.next() >= survive) return;
+  PhotonWalk walk({next.origin, next.direction, flux * sample.weight * (1.0f / survive)}, bounces_,
+                  rng);
+  for (SurfacePoint hit; walk.goesOn();) {
+    rays_.closestHit(walk.next().origin, walk.next().direction, hit);
+    walk.advance(rays_, hit, [&](const Bsdf& at, Vec3 arriving, bool) {
+      connect(at.point(), arriving, light, towards, out);
+    });
+  }
+  rng = walk.rng();
 }
 
 void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,

@@ -22,13 +22,17 @@ namespace bnvpl {
 // splats that would be as noisy. A lamp with fewer than kMinPilotPhotons of them is left to
 // near-field rays, such as a sun above wide ground, of whose photons hardly one enters the window.
 // The photons of the image are independent of the pilot's, so that it stays unbiased.
+//
+// No path from the camera can end at a light that no ray can hit if a perfect mirror or glass lies
+// before it. With `bounces` > 0 photons carry all of that light to directly visible surfaces: they
+// go on from their first rough vertex, and each later one is connected with the camera as well.
 // Thread-safe and immutable once made.
 class Caustics {
  public:
   // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
-  // find the same light. Borrows rays and lights.
+  // find the same light. `bounces`: rough vertices after the first. Borrows rays and lights.
   Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
-           uint64_t seed, const ProgressFn& progress);
+           unsigned bounces, uint64_t seed, const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // MIS with rays that leave a directly visible point.
@@ -47,6 +51,9 @@ class Caustics {
   // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
   static constexpr uint64_t kNoLamp = UINT64_MAX;
   uint64_t follow(uint64_t key, uint64_t index, Splats& out) const;
+  // Goes on from a rough vertex, by its rough lobes.
+  void followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 towards, Rng& rng,
+                     Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
                Splats& out) const;
 
@@ -54,6 +61,7 @@ class Caustics {
   const LightSet& lights_;
   uint64_t photons_, key_;
   float raysOfPixel_;
+  unsigned bounces_;
   uint32_t width_;
   std::vector<uint64_t> dense_;  // lamps with enough photons, ascending
   bool chosen_ = false;          // whether the pilot is done; until then all lamps send photons
