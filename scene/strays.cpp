@@ -72,7 +72,7 @@ Strays::Strays(size_t count, const std::function<Corners(size_t)>& corners) {
 void Strays::cutAt(size_t count, const std::function<Corners(size_t)>& corners) {
   count_ = 0;
   furthest_ = 0.0;
-  for (beyond_ = std::min(far_, 2.0 * near_); beyond_ <= far_; beyond_ *= 2.0) {
+  for (beyond_ = near_; beyond_ <= far_; beyond_ *= 2.0) {
     double directions = 0.0, furthest = 0.0;
     size_t strays = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -129,7 +129,8 @@ bool Strays::has(const Corners& triangle) const {
 }
 
 bool Strays::mayStay(const Corners& piece) const {
-  return extentOf(piece) <= std::max(2.0 * near_, kMaxExtent * leastDistance(piece));
+  return distance(piece) <= near_ ||
+         extentOf(piece) <= kMaxExtent * std::max(near_, leastDistance(piece));
 }
 
 bool Strays::reaches(const Corners& triangle) const {

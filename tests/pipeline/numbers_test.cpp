@@ -79,8 +79,8 @@ TEST_F(Numbers, CountsBeyond32Bits) {
   fail("vpl-render", scene_ + " " + path("lit.vpl") + out + " --spp 5G", kExitUsage, {"2^32"});
 }
 
-// A sky that floats hold, though not what a path adds up of it.
-TEST_F(Numbers, LightsThatAreTooStrongForFloatsAreRefused) {
+// A sky as strong as floats hold, without VPLs.
+TEST_F(Numbers, PathsBearLightOfAnyStrength) {
   write("small.obj",
         "mtllib s.mtl\nusemtl grey\nv -0.01 0 -0.01\nv -0.01 0 0.01\nv 0.01 0 0.01\nf 1 2 3\n");
   write("s.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
@@ -88,14 +88,8 @@ TEST_F(Numbers, LightsThatAreTooStrongForFloatsAreRefused) {
         "[film]\nwidth = 16\nheight = 16\n[camera]\nposition = [0, 1, 0]\nlook_at = [0, 2, -1]\n"
         "vertical_fov_deg = 40\n[[mesh]]\nfile = \"small.obj\"\n"
         "[[light]]\ntype = \"environment\"\nradiance = [1e30, 1e30, 1e30]\nscale = 1e8\n");
-  succeed("vpl-render", path("small.toml") + " --integrator path --spp 2 -o " + path("p.exr"));
-  succeed("vpl-place", path("small.toml") + " --method uniform -n 20 -o " + path("c.vpl"));
-  succeed("vpl-eliminate", path("c.vpl") + " -n 5 -o " + path("v.vpl"));
-  succeed("vpl-estimate",
-          path("small.toml") + " " + path("v.vpl") + " --photons 1k -o " + path("l.vpl"));
-  fail("vpl-render", path("small.toml") + " " + path("l.vpl") + " --spp 2 -o " + path("i.exr"),
-       kExitInput, {"small.toml: the environment sends out", "more than 1e17 W", "make it weaker"});
-  EXPECT_FALSE(fs::exists(at("i.exr")));
+  succeed("vpl-render", path("small.toml") + " --integrator path --spp 2 -o " + path("i.exr"));
+  expectFinite(at("i.exr"));
 }
 
 // Their squares are in the choices of all integrators that take VPLs.

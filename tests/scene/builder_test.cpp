@@ -327,8 +327,8 @@ TEST_F(Builder, FacesThatReachFarAwayAreCut) {
     EXPECT_EQ(countContaining(s.warnings, "1 triangle reaches "), 1u) << x;
     EXPECT_EQ(countContaining(s.warnings, "left out"), 0u) << x;
     EXPECT_LT(s.triangles.size(), 5000u) << x;
-    EXPECT_LT(s.bounds.diagonal(), 20.0f * size) << x;
-    EXPECT_FLOAT_EQ(s.offsetSize(), size) << x;
+    EXPECT_LT(s.bounds.diagonal(), 3.0f * size) << x;
+    EXPECT_LT(s.offsetSize(), 2.0f * size) << x;
     for (const Triangle& t : s.triangles) {
       Vec3 c[3];
       for (size_t k = 0; k < 3; ++k) c[k] = s.positions[t.position[k]];
@@ -341,7 +341,7 @@ TEST_F(Builder, FacesThatReachFarAwayAreCut) {
   const Scene plane =
       loadMesh(kSquareObj + detail + "v -1e5 0 -1e5\nv 1e5 0 -1e5\nv 1e5 0 1e5\nf -3 -2 -1\n", mtl);
   EXPECT_LT(plane.bounds.diagonal(), 200.0f * size);
-  EXPECT_FLOAT_EQ(plane.offsetSize(), size);
+  EXPECT_LT(plane.offsetSize(), 2.0f * size);
   std::string dome = "v 0 1e5 0\nv 0 -1e5 0\nv 1e5 0 0\nv -1e5 0 0\nv 0 0 1e5\nv 0 0 -1e5\n";
   for (const char* side : {"-6", "-5"}) {
     for (const auto& [a, b] : {std::pair{"-4", "-2"}, {"-2", "-3"}, {"-3", "-1"}, {"-1", "-4"}})
