@@ -96,7 +96,7 @@ TEST_F(Effect, FirefliesAreRedistributedOrKept) {
   std::string shards;
   for (const char* shard : {"1", "2"}) {
     const std::string file = path(std::string("s") + shard + ".shard");
-    succeed("vpl-render", paths + file + " --fireflies spread --shard " + shard + "/2");
+    succeed("vpl-render", paths + file + " --fireflies redistribute --shard " + shard + "/2");
     shards += " " + file;
   }
   succeed("vpl-merge", shards + " -o " + path("merged.exr"));
