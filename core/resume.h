@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/cost_probe.h"
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/shard.h"
@@ -27,6 +28,8 @@ struct Resume {
   Shard shard = {};                     // the units to do
   const ShardSink* sink = nullptr;      // where what they brought goes, in place of a result
   const ShardSource* source = nullptr;  // what all units brought, elsewhere
+  CostProbe* probe = nullptr;           // where nothing but the cost is asked for
+  double times = 1.0;                   // a unit of the probe stands for what takes so many times
 };
 
 // Of so many units, those to do: 0, or kElsewhere for those of other shards.
@@ -47,7 +50,10 @@ void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& 
     std::atomic<bool> paused{false};
     parallelFor(done.size(), 1, [&](size_t i) {
       if (done[i] || paused.load(std::memory_order_relaxed)) return;
-      unit(i);
+      {
+        const CostProbe::Unit timed(resume.probe, resume.times);
+        unit(i);
+      }
       done[i] = 1;
       // Asked after the unit, so that every round gets on, however short the time between pauses.
       if (resume.pause && resume.pause()) paused.store(true, std::memory_order_relaxed);

@@ -36,7 +36,8 @@ class CostRun : public PipelineTest {
         "/" +
         name + "' " + arguments + " --quiet");
     EXPECT_EQ(r.code, kExitOk) << r.err;
-    std::istringstream text(r.out);
+    const size_t before = r.out.empty() ? 0 : r.out.rfind('\n', r.out.size() - 2);
+    std::istringstream text(before == std::string::npos ? r.out : r.out.substr(before + 1));
     Need need{};
     text >> need.cpuS >> need.memoryMiB;
     return need;
@@ -78,6 +79,45 @@ TEST_F(CostRun, ShardsTakeTheirPart) {
   const Need tenth = estimated("vpl-render", render + path("x.shard") + " --shard 3/10");
   EXPECT_LT(tenth.cpuS, 0.3 * whole.cpuS);
   EXPECT_GT(tenth.cpuS, 0.03 * whole.cpuS);
+}
+
+// Nobody could wait for these. CPU seconds of the estimate itself, which load hardly changes.
+TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
+  makeStages(scene_);
+  const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),
+                    lit = scene_ + " " + path("lit.vpl"), image = " -o " + path("x.exr");
+  for (const auto& [name, arguments] : std::initializer_list<std::pair<std::string, std::string>>{
+           {"vpl-place", scene_ + " -n 2G -o " + path("x.vpl")},
+           {"vpl-estimate", vpls + " --photons 1G"},
+           {"vpl-estimate", vpls + " --photons 60G --irradiance-error 0"},
+           {"vpl-estimate", vpls + " --method guarded --photons 60G"},
+           {"vpl-estimate", vpls + " --method paths --points 1M --paths 1M"},
+           {"vpl-render", lit + image + " --spp 1M"},
+           {"vpl-render", lit + image + " --size 16384x16384 --caustic-photons 4096"},
+           {"vpl-render", lit + image + " --integrator guided --spp 1M --guide-rays 1024"},
+           {"vpl-render", scene_ + image + " --integrator path --size 16384x16384 --spp 1M"},
+           {"vpl-render", scene_ + image + " --integrator light --spp 1M"}}) {
+    const Need probe = taken(name, arguments + " --estimate");
+    EXPECT_LT(probe.cpuS, 30.0) << name << " " << arguments;
+  }
+}
+
+// What is asked for grows, and so does what is told, by preparations that a probe does in part.
+TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
+  makeStages(scene_);
+  const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),
+                    lit = scene_ + " " + path("lit.vpl") + " -o " + path("x.exr");
+  const auto grows = [&](const std::string& name, const std::string& few, const std::string& many,
+                         double times) {
+    const double a = estimated(name, few).cpuS, b = estimated(name, many).cpuS;
+    EXPECT_GT(b, times / 1.6 * a) << many;
+    EXPECT_LT(b, times * 1.6 * a) << many;
+  };
+  const std::string all = vpls + " --irradiance-error 0 --photons ";
+  grows("vpl-estimate", all + "10M", all + "1G", 100.0);
+  grows("vpl-render", lit + " --integrator guided --size 64x48 --spp 256",
+        lit + " --integrator guided --size 64x48 --spp 4096", 16.0);
+  grows("vpl-render", lit + " --size 2000x1500 --spp 64", lit + " --size 4000x3000 --spp 64", 4.0);
 }
 
 TEST_F(CostRun, OneLineTellsIt) {

@@ -15,9 +15,8 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kMinCpuS = 0.5;     // that a probe takes, where there is so much to do
-constexpr double kMinUnits = 32.0;  // that it does: they differ
-constexpr uint64_t kFirstRows = 1 << 17;
+constexpr double kMinCpuS = 0.5;   // that a probe takes, where there is so much to do
+constexpr double kMaxCpuS = 10.0;  // that all probes take, as far as units are short
 
 double bytesIn(const char* key) {  // of /proc/self/status: "VmHWM:     12345 kB"
   std::ifstream in("/proc/self/status");
@@ -33,21 +32,24 @@ struct Probe {
   double cpuS = 0.0, units = 0.0;
 };
 
-Probe probe(const std::function<void(const Resume&)>& part, const Shard& shard) {
+Probe tryUnits(const std::function<void(const Resume&)>& part, const Shard& shard, CostProbe& probe,
+               bool apart) {
   std::atomic<uint64_t> units{0};
   const ShardSink nowhere{[](std::string_view, uint64_t, std::string_view) {},
                           [](std::string_view, std::span<const int64_t>) {}};
   Resume resume;
   resume.shard = shard;
   resume.sink = &nowhere;
+  resume.probe = &probe;
   resume.pause = [&] {  // asked once after each unit
     units.fetch_add(1, std::memory_order_relaxed);
     return false;
   };
   resume.save = [](const std::string&) {};
-  const double before = cpuSecondsSoFar();
+  probe.share = apart ? 1.0 : static_cast<double>(shard.parts()) / static_cast<double>(shard.of);
+  const double before = cpuSecondsSoFar() + probe.skippedCpuS();
   part(resume);
-  return {cpuSecondsSoFar() - before, static_cast<double>(units)};
+  return {cpuSecondsSoFar() + probe.skippedCpuS() - before, static_cast<double>(units)};
 }
 
 // The middle one of so many parts, whose units are those of all over so many, rounded. Odd, since
@@ -87,63 +89,83 @@ Cost Cost::ofShard(const std::optional<Shard>& shard) const {
   return cost;
 }
 
-Cost costOfUnits(const std::function<void(const Resume&)>& part) {
+Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& probe,
+                 const UnitsToTry& units) {
   constexpr uint64_t kNone = uint64_t{1} << 40;  // no work has so many units
-  const double startS = cpuSecondsSoFar();
-  const double setupS = probe(part, {kNone - 1, kNone, kNone}).cpuS;
+  const double startS = cpuSecondsSoFar() + probe.skippedCpuS();
+  const double setupS = tryUnits(part, {kNone - 1, kNone, kNone}, probe, units.apart).cpuS;
+  // What is made once for all of them counts once: of the first time, in setupS.
+  const double begunS = cpuSecondsSoFar();
+  const Probe base = tryUnits(part, {kNone - 1, kNone, kNone}, probe, units.apart);
+  const double baseS = cpuSecondsSoFar() - begunS, enoughS = std::max(kMinCpuS, 0.5 * baseS);
   // The first units may prepare what is not of the units: their cost is the slope between two
   // probes that had any.
-  Probe fewer{setupS, 0.0};
+  Probe fewer{base.cpuS, 0.0};
   double fewerShare = 0.0;
   for (double parts = 4096.0;;) {
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
-    const Probe some = probe(part, shard);
+    const double beforeS = cpuSecondsSoFar();
+    const Probe some = tryUnits(part, shard, probe, units.apart);
+    const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // of its units
+        leftS = kMaxCpuS - (cpuSecondsSoFar() - begunS) - baseS;
     const double share = 1.0 / static_cast<double>(shard.of);
-    const double cpuS = some.cpuS - setupS, enoughS = std::max(kMinCpuS, setupS);
-    if (shard.whole() || (some.units >= kMinUnits && cpuS >= enoughS)) {
+    const bool enough = some.units >= units.fewest && ownS >= enoughS;
+    if (shard.whole() || enough || leftS <= 0.0) {
       const double workS = std::max(0.0, some.cpuS - fewer.cpuS) / (share - fewerShare);
-      const double beforeS = std::max(setupS, some.cpuS - workS * share);
-      return {bytesIn("VmHWM"), startS + beforeS, workS, share};
+      const double firstS = std::max(0.0, some.cpuS - workS * share - base.cpuS);
+      const bool sure = some.units >= units.fewest && ownS >= 0.2 * enoughS;
+      return {bytesIn("VmHWM"), startS + setupS + firstS, workS, share, sure || shard.whole()};
     }
-    const double more = std::max(kMinUnits / std::max(some.units, 0.5),
-                                 enoughS / std::max(cpuS, 0.01 * enoughS));
+    const double measuredS = std::max(ownS, 0.03 * std::max(baseS, kMinCpuS));  // or below noise
+    double more = 1.3 * std::max(units.fewest / std::max(some.units, 0.5), enoughS / measuredS);
+    more = std::clamp(more, 2.0, 64.0);
     if (some.units > 0.0) {
+      more = std::min(more, std::max(1.5, leftS / measuredS));
       fewer = some;
       fewerShare = share;
     }
-    parts /= std::clamp(1.3 * more, 2.0, 64.0);
+    parts /= more;
     if (parts < 3.0) parts = 1.0;
   }
 }
 
-Cost costOfRows(uint64_t rows, const std::function<void(uint64_t)>& part,
+Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t)>& part,
                 const std::function<double(uint64_t)>& growth) {
   const double startS = cpuSecondsSoFar();
-  for (uint64_t some = std::min(rows, kFirstRows);; some = std::min(rows, 4 * some)) {
+  double fewerS = 0.0, fewer = 0.0;  // of the probe before
+  for (uint64_t some = std::min(rows, first);; some = std::min(rows, 4 * some)) {
     const MemoryWatch memory;
     const double before = cpuSecondsSoFar();
     part(some);
-    const double cpuS = cpuSecondsSoFar() - before;
-    if (some < rows && cpuS < kMinCpuS) continue;
+    const double cpuS = cpuSecondsSoFar() - before, grown = growth(some);
+    if (some < rows && cpuS < kMinCpuS) {
+      fewerS = cpuS, fewer = grown;
+      continue;
+    }
     const double all = static_cast<double>(rows) / static_cast<double>(some);
+    const double slope =
+        grown > fewer && cpuS > fewerS ? (cpuS - fewerS) / (grown - fewer) : cpuS / grown;
     return {memory.before() + all * (memory.peak() - memory.before()), startS,
-            cpuS * growth(rows) / growth(some), 1.0 / all};
+            cpuS + slope * (growth(rows) - grown), 1.0 / all,
+            some == rows || fewer > 0.0};  // two sizes show how it grows
   }
 }
 
 void printCost(const Cost& cost, const CostOptions& options) {
   const double memoryMiB = cost.memoryBytes / 0x1p20, cpuS = cost.setupCpuS + cost.workCpuS;
   if (options.json) {
-    const Json json{{"tool", runningTool()}, {"memory_MiB", memoryMiB},
-                    {"cpu_s", cpuS},         {"setup_cpu_s", cost.setupCpuS},
-                    {"probed", cost.probed}, {"threads", threadsInUse()}};
+    const Json json{{"tool", runningTool()},         {"memory_MiB", memoryMiB}, {"cpu_s", cpuS},
+                    {"setup_cpu_s", cost.setupCpuS}, {"probed", cost.probed},   {"sure", cost.sure},
+                    {"threads", threadsInUse()}};
     return print(jsonText(json, 2) + "\n");
   }
-  char text[160];
+  char text[240], part[32];
+  std::snprintf(part, sizeof part, cost.probed < 1.0 ? "%.2g %%" : "all", 100.0 * cost.probed);
   std::snprintf(text, sizeof text,
-                ": about %.0f MiB of memory and %.3g CPU seconds, %.3g of them before the work "
-                "that shards share out; from %.2g %% of it\n",
-                memoryMiB, cpuS, cost.setupCpuS, 100.0 * cost.probed);
+                ": %s %.0f MiB of memory and %.3g CPU seconds, %.3g of them before the work "
+                "that shards share out; from %s of it%s\n",
+                cost.sure ? "about" : "roughly", memoryMiB, cpuS, cost.setupCpuS, part,
+                cost.sure ? "" : ", which is too little to be sure of");
   print(runningTool() + text);
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/cost_probe.h"
 #include "core/resume.h"
 #include "tools/common/run_tool.h"
 
@@ -35,18 +36,25 @@ struct Cost {
   double setupCpuS = 0.0;  // what each shard does again: loading, and all that goes before units
   double workCpuS = 0.0;   // what shards share out
   double probed = 1.0;     // of the work, that was done to know this
+  bool sure = true;        // else that was too little: units of the work take too long
 
   Cost ofShard(const std::optional<Shard>& shard) const;  // none: all of it
 };
 
+struct UnitsToTry {
+  double fewest = 32.0;  // they differ
+  bool apart = false;    // they will be done in shards, where neighbours share nothing
+};
 // Of work in units, by `part`, which does those of resume.shard: first of none, then of more and
-// more, until what they take can be told from the rest.
-Cost costOfUnits(const std::function<void(const Resume&)>& part);
+// more, until what they take can be told from the rest, or takes seconds. Preparations that go by
+// resume.probe count in full.
+Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& probe,
+                 const UnitsToTry& units = {});
 
-// Of work on rows, by `part`, which does it for so many of them: of more and more, until that can
-// be measured. `growth` tells how the CPU time goes with rows, but for a factor; it is asked after
-// `part`. Memory goes with the rows.
-Cost costOfRows(uint64_t rows, const std::function<void(uint64_t)>& part,
+// Of work on rows, by `part`, which does it for so many of them: of `first`, then more and more,
+// until that can be measured. `growth` tells how the CPU time goes with rows, but for a factor and
+// what is the same for any number; it is asked after `part`. Memory goes with the rows.
+Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t)>& part,
                 const std::function<double(uint64_t)>& growth);
 
 // One line, or with --json an object.

@@ -46,21 +46,28 @@ void report(const EliminateResult& kept, size_t candidates, Summary& summary) {
 }
 
 // Evenly spaced candidates, of which the same share is kept: elimination takes time in proportion.
-Cost costOfEliminating(const VplTable& candidates, const Values& options, const World* world) {
+Cost costOfEliminating(const VplTable& candidates, const Values& options, const World* world,
+                       const ProgressFn& progress) {
+  constexpr uint64_t kFirst = 1 << 14, kFewPoints = 400;
   const RayScene* rays = world ? &world->rays : nullptr;
   const LightSet* lights = world ? &world->lights : nullptr;
   if (candidates.size() < options.whole("count"))
     eliminate(candidates, options, rays, lights);  // refuses
+  // Each candidate is judged by all of them.
+  const uint64_t points = options.has("camera-points") ? options.whole("camera-points") : 0,
+                 judges = std::min(points, kFewPoints);
   const auto part = [&](uint64_t count) {
     std::vector<uint32_t> rows(count);
     for (uint64_t i = 0; i < count; ++i)
       rows[i] = static_cast<uint32_t>(i * candidates.size() / count);
     Values some = options;
     some.set("count", std::max<uint64_t>(1, options.whole("count") * count / candidates.size()));
-    eliminate(keepRows(candidates, rows), some, rays, lights);
+    if (points > 0) some.set("camera-points", judges);
+    eliminate(keepRows(candidates, rows), some, rays, lights, progress);
   };
-  Cost cost =
-      costOfRows(candidates.size(), part, [](uint64_t rows) { return static_cast<double>(rows); });
+  Cost cost = costOfRows(candidates.size(), kFirst, part,
+                         [](uint64_t rows) { return static_cast<double>(rows); });
+  if (points > 0) cost.workCpuS *= static_cast<double>(points) / static_cast<double>(judges);
   cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the probe's copy
   return cost;
 }
@@ -87,7 +94,9 @@ int runEliminate(const Paths& paths, const Given& given, const CostOptions& cost
   std::optional<World> world;
   if (sceneGiven) world.emplace(paths.scene, tool.processor, paths.input, candidates.sceneHash);
   if (cost.estimate) {
-    printCost(costOfEliminating(candidates, options, world ? &*world : nullptr), cost);
+    ProgressMeter meter("estimate: candidates,", 0, tool.quiet);
+    printCost(costOfEliminating(candidates, options, world ? &*world : nullptr, meter.callback()),
+              cost);
     return kExitOk;
   }
   used.ready(world ? world->scene.files : std::vector<fs::path>{});

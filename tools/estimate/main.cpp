@@ -55,10 +55,13 @@ int runEstimate(const Request& request, const ToolOptions& tool) {
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
   if (request.cost.estimate) {
-    printCost(costOfUnits([&](const Resume& resume) {
-                estimate(vpls, rays, lights, options, {}, resume);
-              }).ofShard(shard),
-              request.cost);
+    ProgressMeter meter("estimate: " + std::string(estimateWork(vpls, options).unit), 0,
+                        tool.quiet);
+    const auto part = [&](const Resume& resume) {
+      estimate(vpls, rays, lights, options, meter.callback(), resume);
+    };
+    CostProbe probe(cpuSecondsSoFar);
+    printCost(costOfUnits(part, probe, {.fewest = 64.0}).ofShard(shard), request.cost);
     return kExitOk;
   }
 

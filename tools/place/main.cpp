@@ -95,17 +95,18 @@ double memoryFor(const Request& request, uint64_t count) {
 }
 
 // Paths are traced in waves, of which the last is traced to its end.
-Cost costOfPlacing(const PlaceInputs& inputs, const Values& options) {
+Cost costOfPlacing(const PlaceInputs& inputs, const Values& options, const ProgressFn& progress) {
+  constexpr uint64_t kFirst = 1 << 17;
   double paths = 0.0, besideRows = 0.0;
   const auto part = [&](uint64_t count) {
     Values some = options;
     some.set("count", count);
     const MemoryWatch memory;
-    const PlaceResult placed = place(inputs, some);
+    const PlaceResult placed = place(inputs, some, progress);
     paths = static_cast<double>(placed.paths) / static_cast<double>(count);
     besideRows = memory.peak() - kBytesPerPlaced * static_cast<double>(count);
   };
-  Cost cost = costOfRows(options.whole("count"), part, [&](uint64_t count) {
+  Cost cost = costOfRows(options.whole("count"), kFirst, part, [&](uint64_t count) {
     const auto wave = static_cast<double>(kChunksPerWave * kPathsPerChunk);
     return std::ceil(paths * static_cast<double>(count) / wave);
   });
@@ -137,7 +138,8 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   const LightSet lights(rays);
   const PlaceInputs inputs{rays, lights, views};
   if (request.cost.estimate) {
-    Cost cost = costOfPlacing(inputs, options).ofShard(request.shard);
+    ProgressMeter meter("estimate: VPLs placed,", 0, tool.quiet);
+    Cost cost = costOfPlacing(inputs, options, meter.callback()).ofShard(request.shard);
     cost.memoryBytes += memoryFor(request, count);
     printCost(cost, request.cost);
     return kExitOk;

@@ -1,6 +1,7 @@
 // vpl-render: direct light plus all VPLs, or a reference, traced from the camera or the lights.
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "core/memory.h"
 #include "formats/vpl_io.h"
@@ -88,13 +89,57 @@ Given withoutPasses(const Given& given, const Values& options) {
   return plain;
 }
 
+// A film that probes can hold, of the same shape and view.
+Film filmToTry(const Film& film) {
+  constexpr double kMaxPixels = 1 << 20;
+  const double pixels = double(film.width) * film.height;
+  if (pixels <= kMaxPixels) return film;
+  const double scale = std::sqrt(kMaxPixels / pixels);
+  const auto scaled = [&](uint32_t side) {
+    return std::max(1u, static_cast<uint32_t>(std::lround(side * scale)));
+  };
+  return {scaled(film.width), scaled(film.height)};
+}
+
+// By fewer pixels and samples than are asked for, where these are many. `film`: what is asked for;
+// the scene has filmToTry().
 Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTable& lit,
-                     const Request& request, const Values& options) {
+                     const Film& film, const Request& request, const Values& options,
+                     const ProgressFn& progress) {
+  constexpr uint64_t kMaxSpp = 64;  // as many as are taken together: more are more of the same
   const Values plain = resolveRender(withoutPasses(request.given, options));
-  Cost cost =
-      costOfUnits([&](const Resume& resume) { render(rays, lights, lit, plain, {}, resume); });
-  const Film& film = rays.scene().film;
-  cost.memoryBytes += (budgetOf(options) ? 160.0 : 60.0) * film.width * film.height;  // the image
+  const uint64_t spp = plain.whole("spp"), tried = std::min(spp, kMaxSpp);
+  const Film& small = rays.scene().film;
+  const double pixels = double(film.width) * film.height,
+               fewPixels = double(small.width) * small.height;
+  CostProbe probe(cpuSecondsSoFar);
+  probe.pixels = uint64_t{film.width} * film.height;
+  probe.repeats = double(spp) / double(tried);
+  const MemoryWatch memory;
+  const Integrator integrator = makeIntegrator(rays, lights, lit, plain, progress, &probe);
+  UnitsToTry units;
+  units.apart = request.shard.has_value();
+  // Photons go in rounds of as many samples as 64 tiles have, of each of which some are to be
+  // tried.
+  if (integrator.photons) units.fewest *= 1.0 + 64.0 / double(tried);
+  Cost cost = costOfUnits(
+      [&](const Resume& resume) {
+        renderSamples(rays, integrator, plain, static_cast<uint32_t>(tried), progress, resume);
+      },
+      probe, units);
+  constexpr double kDevelopS = 5e-7;  // a pixel, its file included (measured)
+  cost.workCpuS *= pixels / fewPixels * (double(spp) / double(tried));
+  if (!request.shard) cost.workCpuS += kDevelopS * pixels;
+  cost.probed *= fewPixels / pixels * (double(tried) / double(spp));
+  // What the film takes, and what an image that is developed takes besides (measured).
+  cost.memoryBytes += (cost.memoryBytes - memory.before()) * (pixels / fewPixels - 1.0);
+  cost.memoryBytes += pixels * (60.0 + (redistributesFireflies(plain) ? 170.0 : 0.0) +
+                                (budgetOf(options) ? 100.0 : 0.0));
+  if (integrator.wholePixels) {
+    constexpr double kTilePixels = kTileSide * kTileSide;
+    cost.memoryBytes +=
+        kTilePixels * threadsInUse() * double(spp - tried) * double(sizeof(CameraSample));
+  }
   return cost.ofShard(request.shard);
 }
 
@@ -131,13 +176,17 @@ int runRender(const Request& request, const ToolOptions& tool) {
     requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
                   "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   }
+  const Film film = scene.film;
+  if (estimating) scene.film = filmToTry(film);
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
   if (vpl) lights.requireSquares();
   const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
   if (!missed.empty()) printWarnings("vpl-render", {missed});
   if (estimating) {
-    printCost(costOfRendering(rays, lights, lit, request, options), request.cost);
+    ProgressMeter meter("estimate: samples,", 0, tool.quiet);
+    printCost(costOfRendering(rays, lights, lit, film, request, options, meter.callback()),
+              request.cost);
     return kExitOk;
   }
 

@@ -139,12 +139,26 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
   return result;
 }
 
+Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+                          const Values& options, const ProgressFn& progress, CostProbe* probe) {
+  const FilmOptions film = filmOptionsOf(options);
+  return integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress, probe},
+                                    options);
+}
+
+void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
+                   uint32_t spp, const ProgressFn& progress, const Resume& resume) {
+  FilmOptions film = filmOptionsOf(options);
+  film.spp = spp;
+  FilmStats stats;
+  renderFilm(rays.scene(), integrator, film, stats, progress, resume);
+}
+
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress, const Resume& resume,
                     const PreviewFn& preview) {
   const FilmOptions film = filmOptionsOf(options);
-  const Integrator integrator =
-      integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress}, options);
+  const Integrator integrator = makeIntegrator(rays, lights, lit, options, progress);
   RenderResult result;
   result.vpls = integrator.vpls;
   result.lamps = integrator.lamps;

@@ -35,6 +35,14 @@ struct RenderResult {
   std::optional<PassesDone> passes;   // of a budget
 };
 
+// What finds the light of render(); `probe`: where nothing but the cost is asked for.
+Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+                          const Values& options, const ProgressFn& progress,
+                          CostProbe* probe = nullptr);
+// Its samples alone, `spp` a pixel, for who asks what they cost.
+void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
+                   uint32_t spp, const ProgressFn& progress, const Resume& resume);
+
 // The image that shards have made together, `film` being theirs; the summary's `vpls` stays 0.
 RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source);
 

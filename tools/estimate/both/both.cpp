@@ -35,6 +35,10 @@ constexpr double kGuessedRays = 10.0;
 constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
 // Pilots of paths that would take more than this share of the work are not worth it.
 constexpr double kDearPilot = 0.25;
+// What is enough to know the cost: photons and paths of the pilots, points of each VPL afterwards.
+constexpr uint64_t kProbePhotons = 1 << 18, kProbeVpls = 8192;
+constexpr double kProbePaths = 1 << 18, kProbePoints = 8.0;
+constexpr uint64_t kPhotonsOfUnit = 4096, kVplsOfUnit = 16, kMinUnits = 256;
 // The phases that shards divide; those before are pilots.
 constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
 // Of the split, in shards.
@@ -69,10 +73,19 @@ class Estimator {
 
   EstimateResult run() {
     in_.lights.requirePower();
-    const Split split = in_.resume.source ? splitOfShards() : pilot();
+    const Split split = in_.resume.probe    ? splitOfProbe()
+                        : in_.resume.source ? splitOfShards()
+                                            : pilot();
     if (in_.resume.sink && in_.resume.shard.has(0)) give(split);
-    const PhotonWork photons = trace(kPhotonPhase, Stream::Photons, split.photons, split.share);
-    const PathResult paths = gather(kPathPhase, Stream::VplPaths, split.points, work_ - told_);
+    // A probe sends as many ranges of photons as there are units of paths, so that a part of all
+    // has some of both.
+    const uint64_t sent =
+        unitsToTry(in_.resume.probe, split.photons,
+                   kPhotonsOfUnit * std::max(kMinUnits, in_.vpls.size() / kVplsOfUnit));
+    const PhotonWork photons =
+        trace(kPhotonPhase, Stream::Photons, sent, split.share,
+              static_cast<double>(split.photons) / static_cast<double>(sent));
+    const PathResult paths = gatherPaths(split);
     return combine(split, photons, paths);
   }
 
@@ -104,15 +117,15 @@ class Estimator {
     return phase < kPhotonPhase ? 0 : options_.whole("emit-points");
   }
 
-  PhotonWork trace(size_t phase, Stream stream, uint64_t count,
-                   std::span<const double> share = {}) {
+  PhotonWork trace(size_t phase, Stream stream, uint64_t count, std::span<const double> share = {},
+                   double times = 1.0) {
     PhotonWork work(in_, options_, count);
     work.scatter.setShare(share);
     const PhotonRun run{streamKey(options_.whole("seed"), stream), emitPointsOf(phase),
                         maxBounces(), work.shares, work.scatter};
     const auto worth = static_cast<uint64_t>(scale_ * static_cast<double>(count));
     work.sums = phases_.run(
-        phase,
+        phase, times,
         [&](const Resume& resume) {
           return told(worth, work.shares.total(), [&](const ProgressFn& progress) {
             return tracePhotons({in_.vpls, in_.rays, in_.lights, progress, resume}, run,
@@ -123,13 +136,14 @@ class Estimator {
     return work;
   }
 
-  PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points, uint64_t worth) {
+  PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points, uint64_t worth,
+                    double times = 1.0) {
     if (!where_) where_ = lightsOfPaths(in_, options_.whole("seed"));
     const VplPaths gatherer(
         in_, {streamKey(options_.whole("seed"), stream), options_.whole("paths"), maxBounces(),
               options_.real32("radius"), emitPointsOf(phase), where_.get()});
     return phases_.run(
-        phase,
+        phase, times,
         [&](const Resume& resume) {
           uint64_t all = 0;
           for (const uint64_t n : points) all += gatherer.pathsOf(n);
@@ -140,11 +154,38 @@ class Estimator {
         [](const PathResult& result) { return finishedState(result); });
   }
 
+  // A probe takes fewer points of each VPL, in proportion; what rounding leaves goes to the next.
+  PathResult gatherPaths(const Split& split) {
+    std::vector<uint64_t> points = split.points;
+    double all = 0.0, few = 0.0, left = 0.0;
+    for (const uint64_t n : points) all += static_cast<double>(n);
+    const double most = kProbePoints * static_cast<double>(points.size());
+    const double share = in_.resume.probe && all > most ? most / all : 1.0;
+    for (uint64_t& n : points) {
+      left += share * static_cast<double>(n);
+      n = share < 1.0 ? static_cast<uint64_t>(left) : n;
+      left -= static_cast<double>(n);
+      few += static_cast<double>(n);
+    }
+    return gather(kPathPhase, Stream::VplPaths, points, work_ - told_, few > 0.0 ? all / few : 1.0);
+  }
+
   unsigned maxBounces() const { return static_cast<unsigned>(options_.whole("max-bounces")); }
 
+  // Once for all of its parts.
+  const Split& splitOfProbe() {
+    std::any& kept = in_.resume.probe->kept;
+    if (!kept.has_value()) kept = pilot();
+    return std::any_cast<const Split&>(kept);
+  }
+
   Split pilot() {
+    CostProbe* const probe = in_.resume.probe;
     const auto few = static_cast<uint64_t>(std::ceil(kPilot * static_cast<double>(work_)));
-    const PhotonWork photons = trace(0, Stream::PilotPhotons, few);
+    const uint64_t sent = unitsToTry(probe, few, kProbePhotons);
+    const PhotonWork photons = trace(0, Stream::PilotPhotons, sent, {},
+                                     static_cast<double>(few) / static_cast<double>(sent));
+    if (sent < few) told_ = few;
     Pilots pilots;
     pilots.photons = static_cast<double>(photons.shares.total());
     pilots.photonPower = photons.scatter.photonPower();
@@ -155,12 +196,19 @@ class Estimator {
     const auto vpls = static_cast<double>(in_.vpls.size());
     const double guess = vpls * kGuessedRays * static_cast<double>(options_.whole("paths"));
     if (guess * kMinPoints > kDearPilot * whole) return photonsAlone(work_ - told_);
-    const uint64_t points = std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess),
-                                                 kMinPoints, kMaxPoints);
-    const std::vector<uint64_t> pointsOf(in_.vpls.size(), points);
-    const std::vector<PathSums> paths = gather(1, Stream::PilotPaths, pointsOf, few).sums;
+    const uint64_t points =
+        std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess), kMinPoints, kMaxPoints);
+    // A probe asks some VPLs, whose neighbours in the file are taken to be alike.
+    const double pathsOf = vpls * static_cast<double>(points * options_.whole("paths"));
+    const auto step = static_cast<size_t>(probe ? std::ceil(pathsOf / kProbePaths) : 1.0);
+    std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
+    for (size_t i = 0; i < pointsOf.size(); i += step) pointsOf[i] = points;
+    const std::vector<PathSums> some =
+        gather(1, Stream::PilotPaths, pointsOf, few, static_cast<double>(step)).sums;
+    std::vector<PathSums> paths(some.size());
+    for (size_t i = 0; i < paths.size(); ++i) paths[i] = some[i - i % step];
     pilots.points = static_cast<double>(points);
-    double spent = pilots.photonCost * pilots.photons;
+    double spent = pilots.photonCost * (probe ? static_cast<double>(few) : pilots.photons);
     for (size_t i = 0; i < in_.vpls.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
       pilots.byPhotons.push_back(
@@ -170,10 +218,39 @@ class Estimator {
       pilots.pointCost.push_back(cost / pilots.points);
       spent += cost;
     }
+    const Budget budget{std::max(whole - spent, 0.5 * whole), options_.real("irradiance-error")};
     const Split split =
-        splitWork(in_.vpls, in_.rays, pilots,
-                  {std::max(whole - spent, 0.5 * whole), options_.real("irradiance-error")});
+        probe ? splitOfSome(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
     scale_ = static_cast<double>(work_ - told_) * pilots.photonCost / split.cost;
+    return split;
+  }
+
+  // The split for one of `step` VPLs, which stands for those after it. Photons serve all of them,
+  // and the light of fewer VPLs has a larger error.
+  Split splitOfSome(Pilots pilots, Budget budget) const {
+    const size_t count = in_.vpls.size(), step = (count + kProbeVpls - 1) / kProbeVpls;
+    const auto times = static_cast<double>(step);
+    std::vector<uint32_t> rows;
+    for (size_t i = 0; i < count; i += step) rows.push_back(static_cast<uint32_t>(i));
+    const auto keep = [&](auto& all) {
+      for (size_t k = 0; k < rows.size(); ++k) all[k] = all[rows[k]];
+      all.resize(rows.size());
+    };
+    keep(pilots.byPhotons);
+    keep(pilots.byPaths);
+    keep(pilots.pointCost);
+    pilots.photonCost /= times;
+    const CostProbe::Part part(in_.resume.probe, times);
+    const Split some = splitWork(keepRows(in_.vpls, rows), in_.rays, pilots,
+                                 {budget.cost / times, budget.error * std::sqrt(times)});
+    Split split = some;
+    split.cost *= times;
+    split.points.resize(count);
+    split.share.resize(count);
+    for (size_t i = 0; i < count; ++i) {
+      split.points[i] = some.points[i / step];
+      split.share[i] = some.share[i / step];
+    }
     return split;
   }
 

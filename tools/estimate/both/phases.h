@@ -25,13 +25,15 @@ class Phases {
   }
 
   // The k-th: body(resume) gives its result. finished(result) is the state with which it, resumed,
-  // is at its end.
+  // is at its end. `times`: as of Resume.
   template <typename Body, typename Finished>
-  auto run(size_t k, const Body& body, const Finished& finished) {
+  auto run(size_t k, double times, const Body& body, const Finished& finished) {
     Resume part{states_[k], whole_.pause, [&](const std::string& state) {
                   states_[k] = state;
                   whole_.save(encoded());
                 }};
+    part.probe = whole_.probe;
+    part.times = times;
     if (k >= kFirstShared)
       part.shard = whole_.shard, part.sink = whole_.sink, part.source = whole_.source;
     auto result = body(part);

@@ -22,12 +22,20 @@ constexpr std::array kOptions{
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
   const auto where = lightsOfPaths(in, options.whole("seed"));
+  // To know the cost, fewer are enough.
+  CostProbe* const probe = in.resume.probe;
+  const uint64_t each = options.whole("points"), fewPoints = unitsToTry(probe, each, 8),
+                 paths = options.whole("paths"), fewPaths = unitsToTry(probe, paths, 8);
   const VplPaths gatherer(
-      in, {streamKey(options.whole("seed"), Stream::VplPaths), options.whole("paths"),
+      in, {streamKey(options.whole("seed"), Stream::VplPaths), fewPaths,
            static_cast<unsigned>(options.whole("max-bounces")), options.real32("radius"),
            options.whole("emit-points"), where.get()});
-  const std::vector<uint64_t> points(in.vpls.size(), options.whole("points"));
-  const PathResult received = gatherAll(in, gatherer, points);
+  const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
+  Resume resume = in.resume;
+  resume.times = static_cast<double>(each) * static_cast<double>(paths) /
+                 static_cast<double>(fewPoints * fewPaths);
+  const PathResult received =
+      gatherAll({in.vpls, in.rays, in.lights, in.progress, resume}, gatherer, points);
   EstimateResult result{in.vpls, {}, 0};
   VplTable& lit = result.table;
   beginLit(lit, options.real32("radius"));

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "core/cost_probe.h"
 #include "core/progress.h"
 #include "formats/vpl_table.h"
 #include "tools/common/method.h"
@@ -21,6 +22,12 @@ struct IntegratorInputs {
   uint64_t seed;
   Only only;
   const ProgressFn& progress;  // of preparations
+  CostProbe* probe = nullptr;  // where nothing but the cost is asked for
+
+  uint64_t pixels() const {
+    const Film& film = rays.scene().film;
+    return probe ? probe->pixels : uint64_t{film.width} * film.height;
+  }
 };
 
 // For integrators that find light by camera samples.

@@ -12,7 +12,7 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
     out.lightRays = lightRays;
     out.lights = std::make_unique<const TileLights>(
         in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
-        in.seed);
+        in.seed, in.probe);
     out.visibleEmission = std::make_unique<const VisibleEmission>(in.rays, in.lights, film);
   }
   if (options.whole("direct-samples") == 1) return;
@@ -27,9 +27,11 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
       !in.lights.hasPower()) {
     return {};
   }
-  return std::make_unique<const Caustics>(in.rays, in.lights, photons,
-                                          static_cast<float>(raysOfPixel), bounces, in.seed,
-                                          in.progress);
+  constexpr uint64_t kProbePhotons = 1 << 18;  // to know the cost
+  const uint64_t sent = unitsToTry(in.probe, photons, kProbePhotons);
+  const CostProbe::Part part(in.probe, static_cast<double>(photons) / static_cast<double>(sent));
+  return std::make_unique<const Caustics>(in.rays, in.lights, sent, static_cast<float>(raysOfPixel),
+                                          bounces, in.seed, in.progress);
 }
 
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film) {

@@ -36,8 +36,7 @@ constexpr std::array kOptions{
 constexpr uint64_t kPathsPerRay = 2;
 
 uint64_t samplesOf(const IntegratorInputs& in, const Values& options) {
-  const Film& film = in.rays.scene().film;
-  return uint64_t{film.width} * film.height * options.whole("spp");
+  return in.pixels() * options.whole("spp");
 }
 
 uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
@@ -57,7 +56,9 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   constexpr unsigned kLightRays = 8;  // by which goes how much tiles learn
   constexpr uint64_t kCausticPhotons =
       4;  // of each sample: so their noise goes as that of all else
+  constexpr uint64_t kProbeRays = 1 << 18;  // to know the cost
   const bool indirect = in.only != Only::Direct;
+  const auto vpls = std::max<uint64_t>(1, in.lit.size());
   const auto parts = std::make_shared<Parts>();
   parts->surfaceLights = std::make_unique<const SurfaceLights>(
       in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
@@ -66,9 +67,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   tile.surfaceLights = parts->surfaceLights.get();
   if (options.has("paths")) {
     tile.raysEach = static_cast<unsigned>(options.whole("paths"));
+    const uint64_t each = raysEach(in, options),
+                   few = unitsToTry(in.probe, each, std::max<uint64_t>(64, kProbeRays / vpls));
+    const CostProbe::Part part(in.probe, static_cast<double>(std::max<uint64_t>(1, each)) /
+                                             static_cast<double>(std::max<uint64_t>(1, few)));
     tile.rays = std::make_unique<const GuidedRays>(
-        in.rays, in.lights,
-        Guide(in.lit, in.rays, in.lights, in.seed, raysEach(in, options), in.progress),
+        in.rays, in.lights, Guide(in.lit, in.rays, in.lights, in.seed, few, in.progress),
         *parts->surfaceLights, options.real32("guide-share"), tile.raysEach, maxBouncesOf(options),
         in.only);
   }

@@ -74,10 +74,9 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
 
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
   constexpr uint64_t kMaxPhotons = 16000000;  // seconds, for each shard
-  const Film& film = in.rays.scene().film;
-  return in.only == Only::Direct ? 0
-                                 : std::min(kMaxPhotons, uint64_t{film.width} * film.height *
-                                                             options.whole("caustic-photons"));
+  return in.only == Only::Direct
+             ? 0
+             : std::min(kMaxPhotons, in.pixels() * options.whole("caustic-photons"));
 }
 
 Integrator make(const IntegratorInputs& in, const Values& options) {

@@ -16,7 +16,7 @@ constexpr size_t kFilmTiles = 256;  // tiles, evenly spaced, whose mean stands f
 
 TileLights::TileLights(const RayScene& rays, const LightSet& lights,
                        std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
-                       uint64_t seed)
+                       uint64_t seed, CostProbe* cost)
     : rays_(rays),
       lights_(lights),
       shadingPoint_(std::move(shadingPoint)),
@@ -26,6 +26,7 @@ TileLights::TileLights(const RayScene& rays, const LightSet& lights,
       key_(streamKey(seed, Stream::TileLights)),
       tilesX_((rays.scene().film.width + kTileSide - 1) / kTileSide),
       tilesY_((rays.scene().film.height + kTileSide - 1) / kTileSide),
+      cost_(cost),
       tiles_(tilesX_ * tilesY_) {
   if (strata_.size() < 2) return;
   std::vector<StrataValues> some(std::min(tiles_.size(), kFilmTiles));
@@ -36,6 +37,7 @@ TileLights::TileLights(const RayScene& rays, const LightSet& lights,
 const StrataValues& TileLights::probe(size_t tile) const {
   Tile& t = tiles_[tile];
   std::call_once(t.probed, [&] {
+    const CostProbe::Unit part(cost_, cost_ ? cost_->partOfShared(9.0) : 1.0);
     const Film& film = rays_.scene().film;
     const auto x0 = static_cast<uint32_t>(tile % tilesX_) * kTileSide,
                y0 = static_cast<uint32_t>(tile / tilesX_) * kTileSide;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/cost_probe.h"
 #include "tools/render/gather/gather.h"
 #include "transport/light_probes.h"
 
@@ -14,10 +15,11 @@ namespace bnvpl {
 class TileLights {
  public:
   // `raysOfTile`: shadow rays that the samples of a tile will send; learning takes half as many,
-  // within bounds. `shadingPoint`: of a pixel of the film. Borrows rays and lights.
+  // within bounds. `shadingPoint`: of a pixel of the film. `cost`: where nothing but the cost is
+  // asked for. Borrows rays and lights.
   TileLights(const RayScene& rays, const LightSet& lights,
              std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
-             uint64_t seed);
+             uint64_t seed, CostProbe* cost = nullptr);
 
   // Strata of the tile that has the pixel. Thread-safe.
   LearnedStrata at(uint32_t x, uint32_t y) const;
@@ -39,6 +41,7 @@ class TileLights {
   size_t probes_;  // for each stratum
   uint64_t key_;
   size_t tilesX_, tilesY_;
+  CostProbe* cost_;
   mutable std::vector<Tile> tiles_;
   StrataValues everywhere_;
 };
