@@ -1,5 +1,6 @@
 // --estimate: what a stage will need, told before it is run, against what it then takes.
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
