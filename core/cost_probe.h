@@ -1,5 +1,5 @@
-// Where a work is begun only to know what all of it costs: long preparations do a part of theirs,
-// and tell what the rest would take.
+// --estimate runs a part of the work to predict the cost of all of it. A CostProbe tells long
+// preparations that a part of them is enough, and counts the CPU time of the rest.
 #pragma once
 
 #include <any>
@@ -17,23 +17,24 @@ class CostProbe {
   // `cpuS`: CPU seconds of this process so far.
   explicit CostProbe(std::function<double()> cpuS) : cpuS_(std::move(cpuS)) {}
 
-  // What else the preparations, and the units, would have taken.
+  // CPU time that preparations and units left out would have taken.
   double skippedCpuS() const { return skippedCpuS_; }
-  // What preparations made, for the same work begun again.
+  // Results of the preparations, kept for the next part of the same work.
   std::any kept;
-  // Pixels of the film that is asked for; the one at hand may be smaller.
+  // Pixels of the whole film; a probe may render a smaller one.
   uint64_t pixels = 0;
-  // The part of the units that is being done; 1 where all of it is in shards that stay apart.
+  // Share of the units that this part does; 1 if the shards of the work share no units.
   double share = 1.0;
-  // How often what the units take will be counted.
+  // How often the time of a unit will count.
   double repeats = 1.0;
-  // Neighbouring units share what is made once for each: of `around` such things that one unit
-  // needs, its own included, the part that it would make if all units were done.
+  // Units share results with their neighbours: each needs `around` of them, its own included, and
+  // computes those that no other unit has yet. Returns the ratio of the number that a unit computes
+  // when all units run to the number that it computes in this part.
   double partOfShared(double around) const {
     return share / (1.0 - std::pow(1.0 - share, around)) / repeats;
   }
 
-  // The same of one unit on one thread, by that thread's CPU time.
+  // Counts, for as long as it lives, one unit on one thread that stands for `times` such units.
   class [[nodiscard]] Unit {
    public:
     Unit(CostProbe* probe, double times)
@@ -53,7 +54,8 @@ class CostProbe {
     CostProbe* probe_;
     double times_, beforeS_;
   };
-  // While it lives a part is done of what would take `times` as long. Null: no probe.
+  // Counts, for as long as it lives, a part of work that would take `times` as long. `probe` may be
+  // null.
   class [[nodiscard]] Part {
    public:
     Part(CostProbe* probe, double times) : probe_(probe), times_(times) {
@@ -75,7 +77,7 @@ class CostProbe {
   std::atomic<double> skippedCpuS_{0.0};
 };
 
-// Of `count` units that a preparation wants, how many to do: all, unless a probe has few do.
+// The number of units that a preparation does: all `count` of them, or at most `few` for a probe.
 inline uint64_t unitsToTry(const CostProbe* probe, uint64_t count, uint64_t few) {
   return probe && count > few ? few : count;
 }

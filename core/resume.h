@@ -28,8 +28,8 @@ struct Resume {
   Shard shard = {};                     // the units to do
   const ShardSink* sink = nullptr;      // where what they brought goes, in place of a result
   const ShardSource* source = nullptr;  // what all units brought, elsewhere
-  CostProbe* probe = nullptr;           // where nothing but the cost is asked for
-  double times = 1.0;                   // a unit of the probe stands for what takes so many times
+  CostProbe* probe = nullptr;           // set by --estimate
+  double times = 1.0;                   // a unit of the probe stands for so many
 };
 
 // Of so many units, those to do: 0, or kElsewhere for those of other shards.

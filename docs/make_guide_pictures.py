@@ -38,7 +38,7 @@ CASES = {
     'leaks': Case('scenes/u-shape/scene.toml', '480x360', 3,
                   ('-n 60k', '-n 3k', '--photons 2M --method even --emit-points 0', '--compensate none --spp 16'),
                   ('-n 60k', '-n 3k', '--photons 2M', '--spp 16')),
-    'specks': Case('scenes/veach-door/table.toml', '320x180', 2.5,
+    'fireflies': Case('scenes/veach-door/table.toml', '320x180', 2.5,
                    ('-n 60k', '-n 3k', '--photons 2M', '--spp 8 --fireflies keep'),
                    ('-n 60k', '-n 3k', '--photons 2M', '--spp 8'), (100, 70, 140, 90), 3),
     'gloss': Case('scenes/gltf-room/room.glb', '320x180', 1.2,

@@ -204,7 +204,7 @@ def main() -> int:
                         "with seeds of their own, which have less noise, or the path tracer, which shares nothing with them")
     parser.add_argument("--reference-spp", type=int, default=64, help="of each half")
     parser.add_argument("--also", nargs="*", default=[], choices=("light", "guided", *VARIANTS, "cycles"), metavar="OTHER",
-                        help="light, guided, unlit-path (without light sampling), spread-path (its specks spread), cycles")
+                        help="light, guided, unlit-path (without light sampling), spread-path (its fireflies redistributed), cycles")
     parser.add_argument("--path-length", type=int, default=0, metavar="L",
                         help="segments from the camera to a light, those at mirrors and glass not counted")
     parser.add_argument("--reference-bin", type=Path, metavar="FOLDER",

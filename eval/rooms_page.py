@@ -14,7 +14,7 @@ from bnvpl_eval.output import plt
 RESULTS = write_docs.DOCS / "rooms.csv"
 GUIDED = write_docs.DOCS.parent / "tools/render/integrator/guided/theory.md"
 OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs",
-          "spread-path": "path tracer with specks spread", "cycles": "Cycles"}
+          "spread-path": "path tracer with fireflies redistributed", "cycles": "Cycles"}
 COLOURS = {"path": "#0b62a3", "light": "#c77700", "guided": "#3a7d34", "spread-path": "#7fb2dd", "cycles": "#8b2f8f"}
 KEY = ("room", "setting", "light", "beside", "path_length")
 

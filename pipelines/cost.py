@@ -57,7 +57,7 @@ def pairs(c):
 
 
 def pilots(c):
-    """Samples by which --allocate finds its price, the same of any film that has so many tiles."""
+    """Samples by which --allocate finds its marginal cost, the same of any film that has so many tiles."""
     return 4 * min(c.pixels, 48 * 64)
 
 

@@ -118,7 +118,7 @@ class SceneBuilder {
     fs::path file;
     size_t endTriangle, endPoint;
     uint32_t prototype;   // kNone: of the world
-    bool pieces = false;  // of faces that reach far away; floats may not hold all of them
+    bool pieces = false;  // cut from faces that reach far away; floats may not hold all
   };
   struct KeptMesh {  // of a prototype, until finish()
     fs::path file;

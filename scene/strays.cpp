@@ -10,7 +10,7 @@ namespace bnvpl {
 namespace {
 
 constexpr double kTimesAsFar = 1000.0;
-constexpr double kMaxExtent = 1.0 / 4.0;                           // of the distance
+constexpr double kMaxExtent = 1.0 / 4.0;                           // extent over distance
 constexpr double kMaxDirections = 4.0 * std::numbers::pi / 250.0;  // solid angle of all
 constexpr double kFurthestCut = 1e9;                               // beyond, scenes are refused
 constexpr size_t kSamples = size_t{1} << 16;
@@ -99,7 +99,7 @@ double Strays::distance(const Corners& triangle) const {
   return most;
 }
 
-// That of its box, which is not beyond that of the triangle.
+// Distance of its box: a lower bound of the triangle's.
 double Strays::leastDistance(const Corners& c) const {
   double most = 0.0;
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -109,7 +109,8 @@ double Strays::leastDistance(const Corners& c) const {
   return most;
 }
 
-// As seen from the middle, for what is small beside its distance.
+// Solid angle from the middle of the scene; exact for triangles that are small beside their
+// distance.
 double Strays::solidAngle(const Corners& c) const {
   FilePoint to{}, a{}, b{};
   for (size_t axis = 0; axis < 3; ++axis) {

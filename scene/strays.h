@@ -20,8 +20,8 @@ class Strays {
   // `corners(i)` of `count` triangles. Together strays cover at most a 250th of the directions:
   // a dome around the scene is none.
   Strays(size_t count, const std::function<Corners(size_t)>& corners);
-  // Of the same scene, after triangles that reach far away were cut: their pieces are strays nearer
-  // to the middle, too, as long as they cover as little.
+  // Classifies the scene again after triangles that reach far away were cut. Pieces become strays
+  // at smaller distances, too, as long as all strays together cover as little.
   void cutAt(size_t count, const std::function<Corners(size_t)>& corners);
 
   bool has(const Corners& triangle) const;

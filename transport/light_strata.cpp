@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kMin = 0.1;  // of an even share
+constexpr double kMin = 0.1;  // least weight, over an even share
 
 }  // namespace
 

@@ -38,7 +38,7 @@ void LightSet::requireSquares() const {
   const float across = scene_.bounds.diagonal();
   for (size_t i = 0; i < lights_.size(); ++i) {
     const Light& l = lights_[i];
-    // As a spot lights what is in its cone.
+    // A spot lights only what is in its cone.
     const bool local =
         !l.area && (l.spec.type == LightType::Point || l.spec.type == LightType::Spot);
     const float sent = local ? maxComponent(l.spec.emission) * (4.0f * kPi) : maxComponent(l.power);

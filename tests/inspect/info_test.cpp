@@ -38,7 +38,7 @@ TEST_F(Info, DescribesALitFile) {
   EXPECT_TRUE(contains(text, "relative_error")) << text;
 }
 
-// Of images of other programs, and of files that people name.
+// Texts come from images of other programs and from names of files.
 TEST_F(Info, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
   const fs::path file = at("i\xff\n.exr");
   Image image = flatImage(2, 2, 0.5f, 0.5f, 0.5f);

@@ -95,7 +95,7 @@ TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
 }
 
 // What is seen over a sharp lobe has other lights than the tile, which sees all of it.
-TEST(SurfaceLights, WhatIsSeenOverSharpLobesLooksForItsOwnLights) {
+TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesLookForTheirOwnLights) {
   const World world(cellsBeforeMetal(/*seesMetal=*/true));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   const auto direct = [&](const Given& options) -> Render {

@@ -326,7 +326,7 @@ Scene coatedCornellBox() {
 
 // Few VPLs leave gaps and short rays. What pixels found decides by the marginalCost how many rays
 // follow, and which clusters are traced; what a ray has found lights others, below a coat, too.
-TEST(SameExpectation, WorkByAPriceAndSharedHits) {
+TEST(SameExpectation, SampleAllocationAndPathReuse) {
   const std::array scenes{sceneOf("cornell/scene.toml", 16, 12),
                           sceneOf("u-shape/scene.toml", 16, 12), coatedCornellBox()};
   for (const Scene& scene : scenes) {

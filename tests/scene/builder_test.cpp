@@ -336,7 +336,7 @@ TEST_F(Builder, FacesThatReachFarAwayAreCut) {
     }
   }
   EXPECT_NEAR(area, 4.0 + 100 * 2.0 + 0.5 * std::hypot(1e4, 1e4 + 1), 2.0);
-  // Of a ground plane what is far is seen from the side. A dome is no stray, but offsets do not
+  // The far part of a ground plane is seen from the side. A dome is no stray, but offsets do not
   // follow it.
   const Scene plane =
       loadMesh(kSquareObj + detail + "v -1e5 0 -1e5\nv 1e5 0 -1e5\nv 1e5 0 1e5\nf -3 -2 -1\n", mtl);

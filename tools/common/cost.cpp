@@ -106,7 +106,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
     const double beforeS = cpuSecondsSoFar();
     const Probe some = tryUnits(part, shard, probe, units.apart);
-    const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // of its units
+    const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // of the units
         leftS = kMaxCpuS - (cpuSecondsSoFar() - begunS) - baseS;
     const double share = 1.0 / static_cast<double>(shard.of);
     const bool enough = some.units >= units.fewest && ownS >= enoughS;
@@ -132,7 +132,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
 Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t)>& part,
                 const std::function<double(uint64_t)>& growth) {
   const double startS = cpuSecondsSoFar();
-  double fewerS = 0.0, fewer = 0.0;  // of the probe before
+  double fewerS = 0.0, fewer = 0.0;  // CPU seconds and growth of the probe before
   for (uint64_t some = std::min(rows, first);; some = std::min(rows, 4 * some)) {
     const MemoryWatch memory;
     const double before = cpuSecondsSoFar();

@@ -8,7 +8,7 @@
 
 namespace bnvpl {
 
-// Of any length.
+// The text may have any length.
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif

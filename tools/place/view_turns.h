@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-inline constexpr uint64_t kMaxViewTurns = 1 << 16;  // of all shares together
+inline constexpr uint64_t kMaxViewTurns = 1 << 16;  // over all shares together
 
 // Paths take turns among the views by their shares, whole numbers: of any paths in a row, each view
 // has as nearly its share as whole numbers allow. With one view every path is its own.

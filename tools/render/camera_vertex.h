@@ -2,7 +2,9 @@
 // integrators.
 #pragma once
 
+#include "core/sampling.h"
 #include "tools/render/sample.h"
+#include "transport/camera.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {
@@ -19,6 +21,17 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
     out.depth = path.firstDistance * dot(direction, rays.scene().camera.forward);
   }
   return path;
+}
+
+// The same for the camera ray through a pixel, at a point of the pixel's unit square.
+inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
+                                    uint32_t y, Point2 at, Rng& rng, RadianceSample& out,
+                                    const LightsBehind& behind = {}) {
+  const Scene& scene = rays.scene();
+  const Vec3 direction = cameraDirection(scene.camera, scene.film,
+                                         (static_cast<float>(x) + at.x) / float(scene.film.width),
+                                         (static_cast<float>(y) + at.y) / float(scene.film.height));
+  return traceCameraPath(rays, lights, scene.camera.position, direction, rng, out, behind);
 }
 
 // Albedo and normal of the shading point.

@@ -31,8 +31,8 @@ struct RenderResult {
   Image image;
   FilmStats stats;
   size_t vpls = 0;                    // with flux
-  size_t lamps = 0, sparseLamps = 0;  // as of Integrator
-  std::optional<PassesDone> passes;   // of a budget
+  size_t lamps = 0, sparseLamps = 0;  // see Integrator
+  std::optional<PassesDone> passes;   // if there is a budget
 };
 
 // What finds the light of render(); `probe`: where nothing but the cost is asked for.

@@ -25,11 +25,11 @@ struct RadianceSample {
   Vec3 direct;          // light that scatters at most at the shading point and on the way to it
   Vec3 emission;        // directly visible emission; part of `direct`
   Vec3 indirect;        // all other light
-  PhotonLight photons;  // of the pixel; part of `indirect`
+  PhotonLight photons;  // in the whole pixel; part of `indirect`
   Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
   Vec3 compensated;     // indirect light by sampled rays instead of VPLs; part of `indirect`
-  Vec3 albedo, normal;  // of the shading point
-  float depth = 0.0f;   // of the first hit along the viewing axis; 0: the ray hit nothing
+  Vec3 albedo, normal;  // at the shading point
+  float depth = 0.0f;   // first hit, along the viewing axis; 0: the ray hit nothing
   uint32_t cut = 0, shadowRays = 0;
 };
 
@@ -48,11 +48,11 @@ inline constexpr uint32_t kBlockSide = 4;
 // each pixel.
 struct TileSlots {
   uint32_t pixels = 0;     // in each slot
-  uint32_t width = 1;      // of a row
+  uint32_t width = 1;      // pixels in a row
   uint32_t x = 0, y = 0;   // the first pixel, on the film
   uint32_t firstSlot = 0;  // index of the first slot among all
   uint32_t allSlots = 1;   // samples per pixel
-  uint64_t key = 0;        // of the tile's random numbers
+  uint64_t key = 0;        // keys the tile's random numbers
   uint32_t turn = 0;       // offset of slot 0 in sequences that the whole film shares; random for
                            // each pass over the film
 };

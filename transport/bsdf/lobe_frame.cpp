@@ -7,7 +7,7 @@ namespace {
 // The mirror image of wo lies at least so far above the geometric surface, as a cosine.
 constexpr float kAboveSurface = 0.01f;
 
-constexpr float kMinCosine = 1e-5f;  // of wo: lobes divide by it
+constexpr float kMinCosine = 1e-5f;  // least cosine of wo, by which lobes divide
 
 float leastAbove(Vec3 ng, Vec3 wo) { return std::min(kAboveSurface, 0.9f * dot(ng, wo)); }
 

@@ -14,9 +14,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMax = 1e30;  // of a coordinate, a factor or a power, as in scene.toml
+constexpr double kMax = 1e30;  // largest coordinate, factor or power, as in scene.toml
 constexpr double kAny = std::numeric_limits<double>::max();
-constexpr double kMaxBytes = 0x1p40;  // of a size or an offset: sums of two do not overflow
+constexpr double kMaxBytes = 0x1p40;  // largest size or offset: sums of two do not overflow
 
 struct Rule {
   enum class Kind { Object, Text, Flag, Number, Numbers, Whole, Index };

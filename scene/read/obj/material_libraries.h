@@ -33,7 +33,7 @@ class MaterialLibraries {
   std::vector<MtlKeys> keysOf;         // of each
   std::map<std::string, int> numbers;  // of the materials, by their names as one word: obj_text.h
   std::vector<fs::path> read;
-  std::map<fs::path, std::vector<std::string>> strangeKeys;  // of those that were read: MtlText
+  std::map<fs::path, std::vector<std::string>> strangeKeys;  // MtlText::strangeKeys of each library
   std::set<fs::path> missing;
 
  private:

@@ -7,7 +7,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kMaxParams = 256;  // of one directive
+constexpr size_t kMaxParams = 256;  // parameters in one directive
 
 bool isTruth(std::string_view text) { return text == "true" || text == "false"; }
 

@@ -10,7 +10,8 @@ namespace bnvpl {
 namespace {
 
 constexpr double kMax = TomlSection::kMaxMagnitude;
-constexpr double kMaxFactor = 1e6;  // of a texture: light times some of them stays finite
+constexpr double kMaxFactor =
+    1e6;  // largest factor of a texture: light times a few of them stays finite
 
 float number(const TomlSection& s, const std::string& key, float otherwise) {
   return static_cast<float>(s.number(key.c_str(), -kMax, kMax, double{otherwise}));

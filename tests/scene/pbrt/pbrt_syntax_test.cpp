@@ -141,7 +141,7 @@ TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
   expectNear(scene.bounds.upper, {6, 2, 2}, 1e-5f);
 }
 
-// As in pbrt; once, however often they are placed.
+// pbrt refuses them, too. One warning names them, however often they are placed.
 TEST_F(PbrtSyntax, LampsInObjectsDoNotShine) {
   for (const std::string places :
        {"ObjectInstance \"o\"", "ObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\""}) {

@@ -20,7 +20,7 @@ namespace bnvpl {
 // whose light is found by further rays.
 struct UncoveredShare {
   float within = 0.0f;           // distance from which it is 0, world units; may be INFINITY
-  float clampRadius = INFINITY;  // of the VPL that covers the point; INFINITY: no VPL does
+  float clampRadius = INFINITY;  // the covering VPL's; INFINITY: no VPL covers the point
   LightKind kind = {};
 
   float at(float distance) const {
@@ -31,7 +31,7 @@ struct UncoveredShare {
 
 // What VPLs leave out of the light from a point to the receiver whose ray found it.
 struct Uncovered {
-  float share = 0.0f;  // of the point's light, 0..1
+  float share = 0.0f;  // part of the point's light, 0..1
   // Radiance that leaves the point of light that arrived there from other surfaces, W/(m2 sr), as
   // the VPL knows it. Empty: further rays find it. First-bounce light is always found by shadow
   // rays, as a VPL does not know the edges of shadows.

@@ -15,7 +15,7 @@ struct FilmSums {
   std::span<const PixelCounts> counts;
   double perSample;  // of `sums`: one over what they are sums of, samples or passes
   std::span<const PixelPasses> passes = {};        // without passes empty
-  std::span<const BothLights> redistributed = {};  // of redistributeFireflies(), or empty
+  std::span<const BothLights> redistributed = {};  // by redistributeFireflies(), or empty
 
   BothLights redistributedOf(size_t pixel) const {
     return redistributed.empty() ? BothLights{} : redistributed[pixel];

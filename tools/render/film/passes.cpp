@@ -227,7 +227,7 @@ class Passes {
     error_ = relativeError(variances_);
   }
 
-  static constexpr uint64_t kMaxSlots = uint64_t{1} << 20;  // of a pixel in a pass
+  static constexpr uint64_t kMaxSlots = uint64_t{1} << 20;  // samples of a pixel in a pass
   enum Draw : uint32_t { kDrawPass, kDrawSlots, kDrawTurn };
 
   const Scene& scene_;

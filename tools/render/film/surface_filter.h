@@ -25,7 +25,8 @@ using FilmValues = std::vector<float>;
 class SurfaceFilter {
  public:
   // The surface that each pixel sees, by the means of its samples.
-  enum class Edges { Stop, Ignore };  // of surfaces; the void stops it in any case
+  // Whether the filter stops at edges of surfaces. It always stops at the void.
+  enum class Edges { Stop, Ignore };
   SurfaceFilter(std::span<const PixelSums> sums, size_t width, Edges edges);
 
   size_t pixels() const { return surfaces_.size(); }

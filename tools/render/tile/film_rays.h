@@ -5,7 +5,6 @@
 #include "tools/common/streams.h"
 #include "tools/render/camera_vertex.h"
 #include "tools/render/gather/gather.h"
-#include "transport/camera.h"
 
 namespace bnvpl {
 
@@ -21,16 +20,13 @@ class FilmRays {
 
   // The shading point; its triangle is kNone if there is none. `emission`: mean of the channels.
   SurfacePoint point(size_t pixel, float* emission = nullptr) const {
-    const Scene& scene = rays_.scene();
-    const uint32_t width = scene.film.width;
+    const uint32_t width = rays_.scene().film.width;
     Rng rng(key_, pixel);
-    const float x = (static_cast<float>(pixel % width) + rng.next()) / static_cast<float>(width);
-    const float y =
-        (static_cast<float>(pixel / width) + rng.next()) / static_cast<float>(scene.film.height);
+    const float x = rng.next(), y = rng.next();
     RadianceSample sample;
-    SpecularPath path = traceCameraPath(rays_, lights_, scene.camera.position,
-                                        cameraDirection(scene.camera, scene.film, x, y), rng,
-                                        sample, {nullptr, surfaceLights_});
+    SpecularPath path = traceCameraPath(rays_, lights_, static_cast<uint32_t>(pixel % width),
+                                        static_cast<uint32_t>(pixel / width), {x, y}, rng, sample,
+                                        {nullptr, surfaceLights_});
     if (!path.rough) path.hit.triangle = kNone;
     if (emission) *emission = mean(sample.direct);
     return path.hit;

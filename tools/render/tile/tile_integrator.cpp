@@ -24,8 +24,8 @@ uint32_t slotOf(const TileSlots& tile, size_t sample) {
 // Where the camera paths of a tile's samples end.
 struct TileIntegrator::ShadingPoints {
   std::vector<SpecularPath> paths;
-  std::vector<Bsdf> bsdfs;        // of samples that have a shading point
-  std::vector<const Bsdf*> bsdf;  // of each sample, in `bsdfs`; null: nothing to light
+  std::vector<Bsdf> bsdfs;        // one for each shading point
+  std::vector<const Bsdf*> bsdf;  // for each sample, in `bsdfs`; null: no shading point
   size_t indexOf(size_t sample) const { return static_cast<size_t>(bsdf[sample] - bsdfs.data()); }
 };
 
@@ -191,7 +191,7 @@ class TileIntegrator::RayTracing {
   // Light of reused vertices at a sample.
   struct ReusedLight {
     Vec3 radiance;
-    double squares = 0.0;  // of each vertex's light, channels added up
+    double squares = 0.0;  // sum over vertices of their squared light, channels added
   };
 
   void sendFrom(size_t sample, unsigned rays, uint64_t key) {
@@ -257,7 +257,7 @@ class TileIntegrator::RayTracing {
   const ShadingPoints& points_;
   const LearnedLight& learned_;
   ParityPattern pattern_;
-  std::vector<Directions> directions_;  // of each of points_.bsdfs
+  std::vector<Directions> directions_;  // parallel to points_.bsdfs
   std::vector<RayContributions> found_;
   std::vector<ReusedLight> reused_;
   size_t reuseRays_ = 0;

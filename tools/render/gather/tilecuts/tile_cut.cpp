@@ -19,9 +19,9 @@ using Probes = std::array<const Bsdf*, kProbes>;
 constexpr float kBlockedShare = 0.01f;
 // A probe that is darker than this share of the tile's mean counts as if it were not.
 constexpr float kDarkest = 0.2f;
-// Of the variance that the model foresees, where a marginalCost asks what it is worth. A sixteenth
-// of it is measured (theory.md); but sixteen pixels share the error, which a person sees as grain.
-constexpr double kWorth = 0.5;
+// Share of the model's variance that counts against the marginal cost. The measured variance is a
+// sixteenth (theory.md), but sixteen pixels share the error, which is visible as grain.
+constexpr double kVarianceShare = 0.5;
 // Roulette on small contributions may add this share to the variance that is allowed.
 constexpr float kRouletteShare = 0.5f;
 
@@ -128,19 +128,19 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
   std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
   for (float& l : light) {
     l += tile.otherLight;
-    if (l > tile.filmLight) l = std::sqrt(l * tile.filmLight);  // as SampleAllocation::over
+    if (l > tile.filmLight) l = std::sqrt(l * tile.filmLight);  // see SampleAllocation::relative
   }
   const ProbeLanes all(probes, light);
   TileCut cut;
   const double most =
       double{options.error} * double{options.error} * double(tile.allSlots) * double{kProbes};
   // Opening a cluster leaves about half of its variance and costs a ray.
-  const double least = 2.0 * tile.marginalCost * double{kProbes} / kWorth;
+  const double least = 2.0 * tile.marginalCost * double{kProbes} / kVarianceShare;
   const auto allowed = static_cast<float>(std::max(most, least) / double{kProbes});
   const float darkest = *std::min_element(light.begin(), light.end());
   cut.allowed = std::sqrt(allowed) * darkest;
-  // A ray that is traced with probability q leaves c^2 (1/q - 1) of what brings c: worth the
-  // marginalCost is q = c / sqrt(marginalCost).
+  // Tracing a ray of contribution c with probability q adds the variance c^2 (1/q - 1). At the
+  // marginal cost m, q = c / sqrt(m) is efficient.
   cut.negligible =
       std::max(kRouletteShare * allowed, static_cast<float>(std::sqrt(tile.marginalCost))) *
       darkest;

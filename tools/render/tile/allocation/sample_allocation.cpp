@@ -20,7 +20,7 @@ constexpr uint32_t kPilotSlots = 4;
 constexpr double kFloor = 0.05;
 
 struct PilotTile {
-  double variance = 0.0, cost = 0.0;  // of a sample, means over the tile
+  double variance = 0.0, cost = 0.0;  // per sample, means over the tile
   Vec3 light;
 };
 

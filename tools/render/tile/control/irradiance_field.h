@@ -23,7 +23,7 @@ class IrradianceField {
 
  private:
   RegionGrid regions_;
-  std::vector<Vec3> indirect_;  // of each VPL
+  std::vector<Vec3> indirect_;  // for each VPL
 };
 
 }  // namespace bnvpl

@@ -11,7 +11,6 @@
 #include "tools/render/gather/gather.h"
 #include "tools/render/sample.h"
 #include "tools/render/tile_dimensions.h"
-#include "transport/camera.h"
 
 namespace bnvpl {
 
@@ -33,18 +32,13 @@ class PixelRays {
                const Fn& fn) const {
     const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
     const unsigned rays = count(tile, pixel);
-    const Scene& scene = rays_.scene();
     const uint64_t key = random64(tile.key, pixel, dimension_);
     for (unsigned k = 0; k < rays; ++k) {
       const uint64_t index = uint64_t{slot} * rays + k;
       Rng rng = Rng::spread(key, static_cast<uint32_t>(index));
       const Point2 at = rng.nextPoint();
       RadianceSample sample;
-      const SpecularPath path = traceCameraPath(
-          rays_, lights_, scene.camera.position,
-          cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
-                          (float(y) + at.y) / float(scene.film.height)),
-          rng, sample, behind);
+      const SpecularPath path = traceCameraPath(rays_, lights_, x, y, at, rng, sample, behind);
       fn(path, sample);
     }
   }
@@ -54,7 +48,7 @@ class PixelRays {
   const LightSet& lights_;
   uint32_t width_;
   TileDimension dimension_;
-  std::vector<uint8_t> raysEach_;  // of each pixel
+  std::vector<uint8_t> raysEach_;  // for each pixel
 };
 
 }  // namespace bnvpl

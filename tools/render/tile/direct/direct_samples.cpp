@@ -5,7 +5,6 @@
 
 #include "tools/render/camera_vertex.h"
 #include "tools/render/tile/allocation/parity_pattern.h"
-#include "transport/camera.h"
 #include "transport/surface_lights.h"
 #include "transport/walk.h"
 
@@ -38,19 +37,15 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
                                            RadianceSample* layers) const {
-  const Scene& scene = rays_.scene();
   Rng rng = Rng::spread(numbers.path, index);
   const Point2 at = rng.nextPoint();
   RadianceSample seen;
-  const SpecularPath path = traceCameraPath(
-      rays_, lights_, scene.camera.position,
-      cameraDirection(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
-                      (float(y) + at.y) / float(scene.film.height)),
-      rng, seen, {rays.lights.strata, surfaceLights_});
+  const SpecularPath path =
+      traceCameraPath(rays_, lights_, x, y, at, rng, seen, {rays.lights.strata, surfaceLights_});
   Light light{seen.emission, seen.direct, {}, {}};
   if (layers) *layers = seen;
   if (!path.rough) return light;
-  const Bsdf bsdf(scene, path.hit);
+  const Bsdf bsdf(rays_.scene(), path.hit);
   if (layers) describeShadingPoint(bsdf, *layers);
   LearnedLight learned = rays.lights;
   LearnedStrata around;
@@ -181,7 +176,7 @@ unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, do
 
 // The direct samples of a pixel so far.
 struct DirectSamples::Pixel {
-  std::vector<Light> sums;  // of its slots
+  std::vector<Light> sums;  // for each slot
   unsigned count = 0;       // in each slot
 };
 

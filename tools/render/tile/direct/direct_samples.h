@@ -28,7 +28,7 @@ class DirectSamples {
         alone_(alone) {}
 
   struct Pilot {
-    double variance = 0.0;  // of one direct sample, mean over the tile
+    double variance = 0.0;  // per direct sample, mean over the tile
     Vec3 light;             // mean over the tile
     float bsdfRays = 1.0f;  // efficient mean number from each shading point, at most 1
   };
@@ -45,7 +45,7 @@ class DirectSamples {
   // The direct light of a sample, or a sum over samples.
   struct Light {
     Vec3 emission;  // directly visible
-    Vec3 met;       // by the camera path: `emission`, and light at specular vertices
+    Vec3 met;       // on the camera path: `emission`, and light at specular vertices
     // Light that the shading point scatters, by shadow rays and by BSDF rays.
     Vec3 byLight, byBsdf;
     Vec3 all() const { return met + byLight + byBsdf; }
@@ -56,7 +56,7 @@ class DirectSamples {
     LearnedLight lights;
     float bsdf = 1.0f;  // mean number, at most 1
   };
-  struct RandomNumbers;  // of a pixel
+  struct RandomNumbers;
   // One direct sample. `layers`: receives depth, normal and albedo; may be null.
   Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
                uint32_t index, RadianceSample* layers = nullptr) const;

@@ -27,8 +27,8 @@ class TileLights {
  private:
   struct Tile {
     std::once_flag probed, learned;
-    StrataValues found;  // by the tile's own probes
-    StrataValues light;  // by those of the 3 x 3 tiles around it
+    StrataValues found;  // from the tile's own probes
+    StrataValues light;  // from the probes of the 3 x 3 tiles around
   };
 
   const StrataValues& probe(size_t tile) const;
