@@ -19,6 +19,7 @@ import ctypes
 import json
 import os
 import pathlib
+import select
 import signal
 import socket
 import subprocess
@@ -96,15 +97,26 @@ class Attempt:
         # Whoever stops a task tells all its processes: the command saves its work, and this waits for it.
         for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(each, self.on_stop)
+        woken, wake = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
         try:
             self.process = subprocess.Popen(command, preexec_fn=die_with_parent)
             self.tell_to_stop()
         except OSError as error:
             print(f"{pathlib.Path(sys.argv[0]).name}: {command[0]}: {error.strerror}", file=sys.stderr)
             return self.close(127, None)
+        self.wait_until_ended(woken)
         _, status, usage = os.wait4(self.process.pid, 0)
         code = os.waitstatus_to_exitcode(status)
         return self.close(code if code >= 0 else 128 - code, usage)
+
+    def wait_until_ended(self, woken):
+        """Python runs handlers of signals between its instructions only. A signal that comes just before a plain wait4()
+        blocks would not be heard until the command ends; here its byte in the pipe ends the wait."""
+        ended = os.pidfd_open(self.process.pid)
+        while ended not in select.select([ended, woken], [], [])[0]:
+            os.read(woken, 4096)
+        os.close(ended)
 
     stopped = False
     asked_to_stop = told_to_stop = False
