@@ -34,8 +34,8 @@ void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
   ObjReading whole, pieces;
   const auto ignore = [](const fs::path&, const tinyobj::material_t&, const MtlKeys&) {};
   constexpr size_t kPiece = 16, kAll = size_t{1} << 30;
-  const bool asWhole = accepted([&] { whole = readObj(obj, materials, ignore, kAll); });
-  const bool asPieces = accepted([&] { pieces = readObj(obj, materials, ignore, kPiece); });
+  const bool asWhole = accepted([&] { readObj(obj, materials, ignore, whole, kAll); });
+  const bool asPieces = accepted([&] { readObj(obj, materials, ignore, pieces, kPiece); });
   require(asWhole == asPieces, "pieces are accepted where the whole is");
   if (!asWhole) return;
   require(whole.mesh.positions.size() == pieces.mesh.positions.size() &&

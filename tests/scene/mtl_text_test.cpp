@@ -52,7 +52,8 @@ TEST_F(MtlForms, WithoutAnyColourIsGreyWithAWord) {
 }
 
 TEST_F(MtlForms, CapitalsCountAsUsual) {
-  const auto keys = [](const std::string& text) { return plainMtl("m", text).text; };
+  MtlNotes notes;
+  const auto keys = [&](const std::string& text) { return plainMtl("m", text, notes); };
   EXPECT_EQ(keys("NEWMTL My Paint\nKD 1 1 1\nks 0 0 0\nMAP_KD T.png\nD 1\nILLUM 2\n"),
             "newmtl My Paint\nKd 1 1 1\nKs 0 0 0\nmap_Kd T.png\nd 1\nillum 2\n");
   EXPECT_EQ(keys("map_bump a\rmap_Bump b\r\nbump c\nxyzzy D\n"),
@@ -79,6 +80,17 @@ TEST_F(MtlForms, KeysWithoutAMeaningAreNamedOnceTogether) {
   for (int i = 0; i < 100; ++i) many += "key" + std::to_string(i) + " 1\n";
   EXPECT_EQ(countContaining(paint(many).warnings, "100 keys have no meaning"), 1u);
   EXPECT_EQ(countContaining(paint(many).warnings, "'key5' (line 7) and 94 more;"), 1u);
+}
+
+TEST_F(MtlForms, WhatIsIgnoredBeforeAnErrorIsToldBeforeIt) {
+  write("square.obj", kSquareObj);
+  write("square.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd -foo 3 a.png\nKdd 1\nd -halo 1\nNs many\n");
+  write("scene.toml", kFilmAndCamera + "[[mesh]]\nfile = \"square.obj\"\n");
+  std::vector<std::string> told;
+  EXPECT_THROW(loadScene(at("scene.toml"), {}, [&](const std::string& w) { told.push_back(w); }),
+               InputError);
+  EXPECT_EQ(countContaining(told, "option -halo is ignored"), 1u) << joined(told);
+  EXPECT_EQ(countContaining(told, "'Kdd' (line 4)"), 1u) << joined(told);
 }
 
 TEST_F(MtlForms, KnownKeysThatAreNotReadAreToldWhereTheyWouldChangeThePicture) {

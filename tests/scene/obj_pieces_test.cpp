@@ -42,6 +42,12 @@ std::vector<std::string> startsOf(const MeshLines& lines) {
 
 const auto kIgnore = [](const fs::path&, const tinyobj::material_t&, const MtlKeys&) {};
 
+ObjReading readSquare(const fs::path& obj, size_t pieceBytes = kObjPiece) {
+  ObjReading out;
+  readObj(obj, {}, kIgnore, out, pieceBytes);
+  return out;
+}
+
 void expectSame(const ObjReading& pieces, const ObjReading& whole) {
   const auto bits = [](const std::vector<double>& v) {
     std::vector<uint64_t> out;
@@ -61,10 +67,10 @@ TEST_F(Pieces, AreReadAsTheWhole) {
   const std::string obj = tower(20'000);
   ASSERT_GT(meshLines("a.obj", obj).pieces.size(), 2u);
   const Scene pieces = loadMesh(obj, kLibrary);
-  const ObjReading inOneGo = readObj(at("square.obj"), {}, kIgnore, obj.size());
+  const ObjReading inOneGo = readSquare(at("square.obj"), obj.size());
   ASSERT_EQ(pieces.triangles.size(), 20'000u - 26u);
   EXPECT_EQ(pieces.materials.size(), 3u);  // and grey, for the first 500
-  expectSame(readObj(at("square.obj"), {}, kIgnore), inOneGo);
+  expectSame(readSquare(at("square.obj")), inOneGo);
 }
 
 // Numbers that count back, and polygons.
@@ -75,12 +81,11 @@ TEST_F(Pieces, NeedNothingFromEachOther) {
            "\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n"
            "f -4/-1/-1 -3/-1/-1 -2//-1 -1/-1\n";
   write("square.obj", obj);
-  const ObjReading whole = readObj(at("square.obj"), {}, kIgnore, obj.size());
+  const ObjReading whole = readSquare(at("square.obj"), obj.size());
   ASSERT_EQ(whole.mesh.corners.size(), 200u);
   EXPECT_EQ(whole.mesh.corners[196], (ObjCorner{196, 49, 49}));
   EXPECT_EQ(whole.mesh.corners[198], (ObjCorner{198, 49, kNone}));
-  for (const size_t bytes : {1u, 20u, 400u})
-    expectSame(readObj(at("square.obj"), {}, kIgnore, bytes), whole);
+  for (const size_t bytes : {1u, 20u, 400u}) expectSame(readSquare(at("square.obj"), bytes), whole);
 }
 
 TEST_F(Pieces, StartWithTheMaterialOfThePieceBefore) {
@@ -123,9 +128,9 @@ TEST_F(Pieces, OddLinesAreReadAsInTheWhole) {
   };
   for (const std::string& text : texts) {
     write("square.obj", text);
-    const ObjReading whole = readObj(at("square.obj"), {}, kIgnore, text.size());
+    const ObjReading whole = readSquare(at("square.obj"), text.size());
     for (const size_t bytes : {1u, 20u, 40u})
-      expectSame(readObj(at("square.obj"), {}, kIgnore, bytes), whole);
+      expectSame(readSquare(at("square.obj"), bytes), whole);
   }
 }
 

@@ -101,7 +101,9 @@ void warnOfGrey(const fs::path& obj, const ObjReading& reading, SceneBuilder& bu
 }
 
 void warnOfStrangeKeys(const MaterialLibraries& libraries, SceneBuilder& builder) {
-  for (const auto& [library, keys] : libraries.strangeKeys) {
+  for (const auto& [library, notes] : libraries.notes) {
+    const std::vector<std::string>& keys = notes.strangeKeys;
+    if (keys.empty()) continue;
     const bool one = keys.size() == 1;
     builder.warn(library.string() + ": " +
                  (one ? "a key has no meaning and is ignored: "
@@ -109,6 +111,27 @@ void warnOfStrangeKeys(const MaterialLibraries& libraries, SceneBuilder& builder
                  listOf(keys, [](const std::string& key) { return key; }) +
                  (one ? "; correct it if it is misspelt" : "; correct those that are misspelt"));
   }
+}
+
+// Reads the OBJ. What the lines before an error ignore is told before it, of any material.
+ObjReading readOrWarn(const fs::path& obj, const fs::path& materials, SceneBuilder& builder) {
+  const auto expect = [&](const fs::path& library, const tinyobj::material_t& material,
+                          const MtlKeys& keys) {
+    expectTextures({library, obj, keys}, material, builder);
+  };
+  ObjReading reading;
+  try {
+    readObj(obj, materials, expect, reading);
+  } catch (const InputError&) {
+    for (const auto& [library, notes] : reading.libraries.notes) {
+      for (const auto& [material, lines] : notes.byMaterial) {
+        for (const std::string& line : lines) builder.warn(line);
+      }
+    }
+    warnOfStrangeKeys(reading.libraries, builder);
+    throw;
+  }
+  return reading;
 }
 
 }  // namespace
@@ -122,11 +145,7 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
     throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
   }
   builder.addFile(obj);
-  ObjReading reading = readObj(
-      obj, materials,
-      [&](const fs::path& library, const tinyobj::material_t& material, const MtlKeys& keys) {
-        expectTextures({library, obj, keys}, material, builder);
-      });
+  ObjReading reading = readOrWarn(obj, materials, builder);
   for (const fs::path& library : reading.libraries.missing) {
     builder.addFile(library);
     builder.warn(library.string() + ": no such material library; its materials are grey");

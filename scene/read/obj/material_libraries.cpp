@@ -6,7 +6,6 @@
 
 #include "core/files.h"
 #include "core/read_file.h"
-#include "scene/read/obj/mtl_text.h"
 #include "scene/read/obj/obj_text.h"
 
 namespace bnvpl {
@@ -52,10 +51,10 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
   read.push_back(library);
   std::string raw = readText(library);
   requireNoUtf16(library, raw);
-  MtlText plain = plainMtl(library, logicalLines(std::move(raw)));
-  if (!plain.strangeKeys.empty()) strangeKeys[library] = plain.strangeKeys;
-  const std::map<std::string, MtlKeys> keys = mtlKeys(plain.text);
-  std::istringstream in(plain.text);
+  MtlNotes& ignored = notes[library];
+  const std::string plain = plainMtl(library, logicalLines(std::move(raw)), ignored);
+  const std::map<std::string, MtlKeys> keys = mtlKeys(plain);
+  std::istringstream in(plain);
   std::map<std::string, int> byName;
   std::string warnings, errors;
   tinyobj::LoadMtl(&byName, &materials, &in, &warnings, &errors);
@@ -64,7 +63,7 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
     m.name = std::string(trimmed(m.name));
     const auto stated = keys.find(m.name);
     keysOf.push_back(stated == keys.end() ? MtlKeys{} : stated->second);
-    keysOf.back().notes = plain.notes[m.name];
+    keysOf.back().notes = ignored.byMaterial[m.name];
     if (numbers.try_emplace(oneWord(m.name), static_cast<int>(i)).second)  // the first of a name
       onMaterial(library, m, keysOf.back());
   }

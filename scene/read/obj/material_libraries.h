@@ -9,6 +9,7 @@
 
 #include "core/errors.h"
 #include "scene/read/obj/mtl_keys.h"
+#include "scene/read/obj/mtl_text.h"
 #include "scene/read/obj/tinyobj.h"
 
 namespace bnvpl {
@@ -21,7 +22,8 @@ class MaterialLibraries {
   // What follows an mtllib: one library whose name may hold blanks, if there is such a file in the
   // folder; else several, each a word. Each library is read once.
   void readLine(const fs::path& folder, const std::string& names, const OnMaterial& onMaterial);
-  // Throws InputError when the file cannot be read to its end.
+  // Throws InputError when the file cannot be read to its end; `notes` has those of the lines
+  // before.
   void readFile(const fs::path& library, const OnMaterial& onMaterial);
 
   // Lets names that faces ask for and that end in a comment stand for what precedes it, and returns
@@ -33,7 +35,7 @@ class MaterialLibraries {
   std::vector<MtlKeys> keysOf;         // of each
   std::map<std::string, int> numbers;  // of the materials, by their names as one word: obj_text.h
   std::vector<fs::path> read;
-  std::map<fs::path, std::vector<std::string>> strangeKeys;  // MtlText::strangeKeys of each library
+  std::map<fs::path, MtlNotes> notes;  // of each library that was read
   std::set<fs::path> missing;
 
  private:

@@ -12,7 +12,7 @@ namespace bnvpl {
 
 struct MtlKeys {
   std::set<std::string, std::less<>> keys;
-  std::vector<std::string> notes;  // what of its lines is ignored: MtlText
+  std::vector<std::string> notes;  // what of its lines is ignored: MtlNotes
   bool blender = false;            // the library says that Blender wrote it
 
   bool has(std::string_view key) const { return keys.contains(key); }

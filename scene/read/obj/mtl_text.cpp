@@ -57,7 +57,7 @@ std::string_view usualKey(std::string_view key) {
 
 class Lines {
  public:
-  explicit Lines(const fs::path& library) : library_(library) {}
+  Lines(const fs::path& library, MtlNotes& notes) : library_(library), notes_(notes) {}
 
   void add(std::string_view line) {
     ++number_;
@@ -75,7 +75,7 @@ class Lines {
     else
       addOther(key, rest);
   }
-  MtlText take() { return std::move(out_); }
+  std::string take() { return std::move(text_); }
 
  private:
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const {
@@ -83,18 +83,18 @@ class Lines {
                      ": " + problem);
   }
   void note(std::string_view key, const std::string& text) {
-    out_.notes[material_].push_back(library_.string() + ": " + std::string(key) + text);
+    notes_.byMaterial[material_].push_back(library_.string() + ": " + std::string(key) + text);
   }
   void write(std::string_view key, std::string_view rest) {
-    out_.text.append(key).append(rest.empty() ? "" : " ").append(rest) += '\n';
+    text_.append(key).append(rest.empty() ? "" : " ").append(rest) += '\n';
   }
 
   void addOther(std::string_view key, std::string_view rest) {
     const bool known = isOneOf(kWords, key) || isOneOf(kMaps, key) || isOneOf(kWithoutEffect, key);
     if (!known && !key.empty() && !key.starts_with('#') && strange_.emplace(key).second) {
       const std::string shown(key.substr(0, kLongestKey));
-      out_.strangeKeys.push_back("'" + shown + (shown.size() < key.size() ? "..." : "") +
-                                 "' (line " + std::to_string(number_) + ")");
+      notes_.strangeKeys.push_back("'" + shown + (shown.size() < key.size() ? "..." : "") +
+                                   "' (line " + std::to_string(number_) + ")");
     }
     write(key, rest);
   }
@@ -163,16 +163,17 @@ class Lines {
   }
 
   const fs::path& library_;
+  MtlNotes& notes_;
   size_t number_ = 0;
   std::string material_;
   std::set<std::string, std::less<>> strange_;
-  MtlText out_;
+  std::string text_;
 };
 
 }  // namespace
 
-MtlText plainMtl(const fs::path& library, std::string_view lines) {
-  Lines out(library);
+std::string plainMtl(const fs::path& library, std::string_view lines, MtlNotes& notes) {
+  Lines out(library, notes);
   while (!lines.empty()) {
     const size_t end = std::min(lines.find_first_of("\r\n"), lines.size());
     out.add(lines.substr(0, end));

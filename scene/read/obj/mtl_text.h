@@ -10,9 +10,9 @@
 
 namespace bnvpl {
 
-struct MtlText {
-  std::string text;
-  std::map<std::string, std::vector<std::string>> notes;  // by material: what is ignored
+// What a library says and the renderer ignores.
+struct MtlNotes {
+  std::map<std::string, std::vector<std::string>> byMaterial;
   // Keys that mean nothing here, each once with its first line: "'decal' (line 7)".
   std::vector<std::string> strangeKeys;
 };
@@ -20,7 +20,8 @@ struct MtlText {
 // `lines` are those of logicalLines(). Keys get their usual case; colours three linear sRGB values
 // (one value is grey, CIE XYZ is converted, spectral files are ignored); options of maps stand
 // before the name, with all their values, and those that mean nothing here are left out. Throws
-// InputError with the line at what should be a number and is none.
-MtlText plainMtl(const fs::path& library, std::string_view lines);
+// InputError with the line where a number is expected and something else stands; `notes` then has
+// those of the lines before it.
+std::string plainMtl(const fs::path& library, std::string_view lines, MtlNotes& notes);
 
 }  // namespace bnvpl

@@ -126,8 +126,8 @@ double bytesOf(const MeshLines& lines) {
 
 }  // namespace
 
-ObjReading readObj(const fs::path& obj, const fs::path& materials,
-                   const MaterialLibraries::OnMaterial& expect, size_t pieceBytes) {
+void readObj(const fs::path& obj, const fs::path& materials,
+             const MaterialLibraries::OnMaterial& expect, ObjReading& out, size_t pieceBytes) {
   std::error_code vanished;  // is readText's to report
   const auto size = static_cast<double>(fs::file_size(obj, vanished));
   if (!vanished) requireMemory(size, obj.string() + ": reading it", kTooLarge);
@@ -138,7 +138,6 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
                 obj.string() + ": a mesh of " + std::to_string(lines.triangles) + " triangles",
                 kTooLarge);
 
-  ObjReading out;
   const auto ifAsked = [&](const fs::path& library, const tinyobj::material_t& material,
                            const MtlKeys& keys) {
     if (std::ranges::binary_search(lines.materials, material.name)) expect(library, material, keys);
@@ -155,7 +154,6 @@ ObjReading readObj(const fs::path& obj, const fs::path& materials,
   out.lostTriangles = lines.lostTriangles;
   out.unusableFaces = lines.unusableFaces;
   for (const size_t vertex : lines.verticesOfWords) out.mesh.positions.at(3 * vertex) = NAN;
-  return out;
 }
 
 }  // namespace bnvpl

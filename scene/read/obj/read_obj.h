@@ -35,8 +35,10 @@ struct ObjReading {
 // `materials` replaces the libraries that the OBJ names; empty: those are used, and hold for the
 // whole file. Calls expect(library, material) for each material that faces may use, while the faces
 // are still to be read. Large files are read by all threads, in pieces of `pieceBytes` (for tests).
-// Throws InputError when the OBJ cannot be read, MemoryError when it cannot fit.
-ObjReading readObj(const fs::path& obj, const fs::path& materials,
-                   const MaterialLibraries::OnMaterial& expect, size_t pieceBytes = kObjPiece);
+// Throws InputError when the OBJ or a library cannot be read, MemoryError when it cannot fit;
+// out.libraries.notes then has what was ignored before the error.
+void readObj(const fs::path& obj, const fs::path& materials,
+             const MaterialLibraries::OnMaterial& expect, ObjReading& out,
+             size_t pieceBytes = kObjPiece);
 
 }  // namespace bnvpl
