@@ -2,17 +2,9 @@
 //   vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 10M
 #include <CLI/CLI.hpp>
 
-#include "core/memory.h"
 #include "formats/vpl_io.h"
-#include "tools/common/checkpoint.h"
-#include "tools/common/cost.h"
-#include "tools/common/depfile.h"
-#include "tools/common/exit_codes.h"
 #include "tools/common/memory.h"
-#include "tools/common/progress_meter.h"
-#include "tools/common/run_files.h"
-#include "tools/common/scene_options.h"
-#include "tools/common/shard.h"
+#include "tools/common/stage_run.h"
 #include "tools/estimate/report.h"
 
 namespace bnvpl {
@@ -21,83 +13,53 @@ namespace {
 // Measured: 600 a VPL; each thread adds up sums of its own.
 constexpr double kBytesPerVplAndThread = 112;
 
-struct Request {
-  SceneOptions scene;
-  fs::path input, output;
-  CheckpointOptions checkpoint;
-  std::optional<Shard> shard;
-  CostOptions cost;
-  Given given;
-  std::string command;  // without --shard and -o
-};
-
-int runEstimate(const Request& request, const ToolOptions& tool) {
-  Summary summary("vpl-estimate");
+int runEstimate(const StageRequest& request, const fs::path& input, const ToolOptions& tool) {
+  StageRun run("vpl-estimate", request, tool);
   const Values options = resolve(estimateSpec(), request.given);
-  const auto& shard = request.shard;
-  RunFiles used;
-  used.reads("scene", request.scene.file).reads("vpls", request.input);
-  used.writes("-o", request.output, {shard ? OutputKind::Shard : OutputKind::Vpl});
-  used.writes("--checkpoint", request.checkpoint.file);
-  used.writes(tool);
-  if (!request.cost.estimate) {
-    used.check();
-    requireMemoryFor(request.input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),
+  run.used.reads("scene", request.scene.file).reads("vpls", input);
+  run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Vpl});
+  run.checkFiles();
+  if (!run.estimating()) {
+    requireMemoryFor(input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),
                      "keep fewer with vpl-eliminate -n, or lower --threads");
   }
-  const VplTable vpls = readVpl(request.input, VplStage::Eliminated);
+  const VplTable vpls = readVpl(input, VplStage::Eliminated);
   const Scene scene = loadSceneFor(request.scene, Warnings::Hold);
   scene.requireLight();
-  if (!request.cost.estimate) used.ready(scene.files);
-  requireSameScene(request.input, vpls.sceneHash, scene,
-                   "rerun vpl-place and vpl-eliminate on this scene");
-  requireRadiiWithin(request.input, vpls.radius, scene);
+  run.filesReady(scene.files);
+  requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
+  requireRadiiWithin(input, vpls.radius, scene);
   const RayScene rays(scene, tool.processor);
   const LightSet lights(rays);
-  if (request.cost.estimate) {
-    ProgressMeter meter("estimate: " + std::string(estimateWork(vpls, options).unit), 0,
-                        tool.quiet);
-    const auto part = [&](const Resume& resume) {
-      estimate(vpls, rays, lights, options, meter.callback(), resume);
-    };
-    CostProbe probe(cpuSecondsSoFar);
-    printCost(costOfUnits(part, probe, {.fewest = 64.0}).ofShard(shard), request.cost);
-    return kExitOk;
+  const Work work = estimateWork(vpls, options);
+  const auto result = [&](const ProgressFn& progress, const Resume& resume) {
+    return estimate(vpls, rays, lights, options, progress, resume);
+  };
+  if (run.estimating()) {
+    return run.tell(std::string(work.unit), [&](const ProgressFn& progress) {
+      CostProbe probe(cpuSecondsSoFar);
+      return costOfUnits([&](const Resume& resume) { result(progress, resume); }, probe,
+                         {.fewest = 64.0});
+    });
   }
 
   const Json record = stageRecord(
       "vpl-estimate", recordOf(estimateSpec(), options),
       {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}}, tool.processor);
-  Checkpoint checkpoint(request.checkpoint, withShard(record, shard));
-  const Work work = estimateWork(vpls, options);
-  ProgressMeter meter(std::string(work.unit), shard ? shard->shareOf(work.count) : work.count,
-                      tool.quiet);
-  const auto result = [&](const Resume& resume) {
-    return estimate(vpls, rays, lights, options, meter.callback(), resume);
+  const auto whole = [&](const StageTask& task) {
+    EstimateResult all = result(task.progress, task.resume);
+    all.table.provenance = extendProvenance(vpls.provenance, record);
+    writeVpl(task.files.add(request.output), all.table);
+    reportEstimate(all, task.summary);
   };
-  OutputSet files;
-  AtomicFile& output = files.add(request.output);
-  if (shard) {
-    const ShardRun run{record,
-                       request.given,
-                       {{"scene", toJson(request.scene)}, {"vpls", request.input.string()}},
-                       request.command,
-                       ""};
-    ShardOutput part(output, *shard);
-    reportShard(result(part.only(checkpoint.resume())), summary);
-    part.finish(run, summary);
-  } else {
-    EstimateResult whole = result(checkpoint.resume());
-    whole.table.provenance = extendProvenance(vpls.provenance, record);
-    writeVpl(output, whole.table);
-    reportEstimate(whole, summary);
-  }
+  const auto part = [&](const StageTask& task) -> ShardRun {
+    reportShard(result(task.progress, task.resume), task.summary);
+    const Json sources{{"scene", toJson(request.scene)}, {"vpls", input.string()}};
+    return {record, request.given, sources, request.command, ""};
+  };
   std::vector<fs::path> read = scene.files;
-  read.push_back(request.input);
-  addDepfile(files, tool.depfile, request.output, read);
-  summary.finish(tool, files);
-  checkpoint.remove();
-  return kExitOk;
+  read.push_back(input);
+  return run.make({record, std::string(work.unit), work.count, read, whole, part});
 }
 
 }  // namespace
@@ -108,19 +70,14 @@ int main(int argc, char** argv) {
   using namespace bnvpl;
   CLI::App cli{"Find the flux that leaves each VPL's share of the surface.", "vpl-estimate"};
   ToolOptions tool;
-  Request request;
+  StageRequest request;
+  fs::path input;
   addSceneOptions(cli, request.scene, ViewCount::None);
-  addFile(cli, "vpls", request.input, "from vpl-eliminate (.vpl)")->required();
+  addFile(cli, "vpls", input, "from vpl-eliminate (.vpl)")->required();
   addFile(cli, "-o,--output", request.output, "lit VPLs (.vpl)")->required();
-  addStageOptions(cli, estimateSpec(), request.given);
-  addCheckpointOptions(cli, request.checkpoint);
-  addShardOption(cli, request.shard, "photons, or of the VPLs for paths");
-  addCostOptions(cli, request.cost);
-  addToolOptions(cli, tool);
-  addProcessorOption(cli, tool);
-  addDepfileOption(cli, tool);
+  addStageRequest(cli, estimateSpec(), request, tool, "photons, or of the VPLs for paths");
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);
-    return runEstimate(request, tool);
+    return runEstimate(request, input, tool);
   });
 }

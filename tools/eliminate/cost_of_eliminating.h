@@ -1,0 +1,13 @@
+// --estimate of vpl-eliminate.
+#pragma once
+
+#include "tools/common/cost.h"
+#include "tools/eliminate/eliminate.h"
+
+namespace bnvpl {
+
+// What eliminate() will take, found by eliminating some of the candidates.
+Cost costOfEliminating(const VplTable& candidates, const Values& options, const RayScene* rays,
+                       const LightSet* lights, const ProgressFn& progress);
+
+}  // namespace bnvpl

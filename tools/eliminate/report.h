@@ -1,0 +1,11 @@
+// The summary of vpl-eliminate.
+#pragma once
+
+#include "tools/common/run_tool.h"
+#include "tools/eliminate/eliminate.h"
+
+namespace bnvpl {
+
+void reportEliminated(const EliminateResult& kept, size_t candidates, Summary& summary);
+
+}  // namespace bnvpl

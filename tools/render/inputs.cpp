@@ -1,0 +1,74 @@
+#include "tools/render/inputs.h"
+
+#include <algorithm>
+
+#include "formats/vpl_io.h"
+#include "tools/common/exposure.h"
+#include "tools/common/memory.h"
+#include "tools/render/integrator/light_in_glass.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Measured: 140 and, with the light tree, the near field and what lights its hits, 1,400 to 2,600.
+constexpr double kBytesPerVpl = 140, kBytesPerVplWithNearField = 1400;
+
+// "--integrator light or path".
+std::string withoutVpls() {
+  std::string names;
+  for (const IntegratorMethod* m : integratorMethods()) {
+    if (!m->needsVpls) names += (names.empty() ? "--integrator " : " or ") + std::string(m->name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void requireConsistent(const Values& options, const Given& given, const RenderFiles& files,
+                       bool inShards) {
+  const IntegratorMethod& integrator = integratorOf(options);
+  layersOf(options);
+  parseExposure(options.text("exposure"));
+  if (inShards && budgetOf(options)) {
+    throw UsageError(
+        "--shard has no passes over the whole film, by which --time, --target-error and --passes "
+        "go; leave them out and give --spp");
+  }
+  if (inShards && !files.png.empty())
+    throw UsageError("--png is of a whole image; leave it out and give it to vpl-merge");
+  const bool exposure =
+      std::ranges::any_of(given, [](const auto& g) { return g.first == "exposure"; });
+  if (exposure && files.png.empty())
+    throw UsageError("--exposure has no effect without --png; it is the preview's");
+  if (integrator.needsVpls && files.lit.empty())
+    throw UsageError("needs the lit VPLs (from vpl-estimate), or " + withoutVpls());
+  if (!integrator.needsVpls && !files.lit.empty()) {
+    throw UsageError("--integrator " + std::string(integrator.name) + " takes no VPLs; leave " +
+                     files.lit.string() + " out");
+  }
+}
+
+VplTable readLit(const fs::path& lit, const Values& options, bool estimating) {
+  if (lit.empty()) return {};
+  const bool nearField = options.has("compensate") && options.text("compensate") == "near-field";
+  if (!estimating) {
+    requireMemoryFor(lit, nearField ? kBytesPerVplWithNearField : kBytesPerVpl,
+                     "keep fewer VPLs with vpl-eliminate -n");
+  }
+  return readVpl(lit, VplStage::Lit);
+}
+
+void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file) {
+  requireSameScene(file, lit.sceneHash, scene, "rerun the pipeline from vpl-place on this scene");
+  requireRadiiWithin(file, lit.radius, scene);
+}
+
+void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values& options,
+                       const RenderFiles& files) {
+  if (!files.lit.empty()) lights.requireSquares();
+  const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
+  if (!missed.empty()) printWarnings("vpl-render", {missed});
+}
+
+}  // namespace bnvpl

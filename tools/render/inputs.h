@@ -1,0 +1,31 @@
+// What vpl-render reads, and whether files and options fit together.
+#pragma once
+
+#include "formats/vpl_table.h"
+#include "tools/common/scene_options.h"
+#include "tools/render/render.h"
+
+namespace bnvpl {
+
+struct RenderFiles {
+  fs::path lit;  // empty for integrators that take no VPLs
+  fs::path png;  // empty: no preview
+};
+
+// Checks, before any work, what the command line says together. Throws UsageError.
+void requireConsistent(const Values& options, const Given& given, const RenderFiles& files,
+                       bool inShards);
+
+// The lit VPLs; no rows where there is no file. Throws MemoryError where rendering them cannot fit,
+// unless the run only estimates.
+VplTable readLit(const fs::path& lit, const Values& options, bool estimating);
+
+// Throws InputError where the VPLs were not made on this scene.
+void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file);
+
+// Warns of light that the chosen integrator cannot find. Throws InputError for lights that do not
+// fit VPLs.
+void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values& options,
+                       const RenderFiles& files);
+
+}  // namespace bnvpl
