@@ -22,7 +22,7 @@ namespace bnvpl {
 namespace {
 
 constexpr float kHalfMax = 65504.0f;
-constexpr int kMaxSide = 1 << 16;
+constexpr int kMaxExrSide = 1 << 16;
 // A file that claims more pixel bytes than this is damaged, whatever its compression: ZIP reaches
 // 1032.
 constexpr double kMaxExpansion = 4096.0;
@@ -32,7 +32,7 @@ constexpr double kMaxPixelBytes = 0x1p34;
 constexpr int kNoThreads = 0;
 
 void refuseMalformed(const fs::path& file, const Image& image) {
-  if (image.width < 1 || image.height < 1 || image.width > kMaxSide || image.height > kMaxSide) {
+  if (image.width < 1 || image.height < 1 || image.width > kMaxExrSide || image.height > kMaxExrSide) {
     throw OutputError(file, "an image of " + std::to_string(image.width) + " x " +
                                 std::to_string(image.height) + " pixels cannot be written");
   }
@@ -98,9 +98,9 @@ void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
   const double height = side(display.min.y, display.max.y);
   const double dataWidth = side(data.min.x, data.max.x);
   const double dataHeight = side(data.min.y, data.max.y);
-  if (std::max({width, height, dataWidth, dataHeight}) > kMaxSide ||
+  if (std::max({width, height, dataWidth, dataHeight}) > kMaxExrSide ||
       std::min({width, height, dataWidth, dataHeight}) < 1.0) {
-    throw InputError(file, "claims a side of more than " + std::to_string(kMaxSide) +
+    throw InputError(file, "claims a side of more than " + std::to_string(kMaxExrSide) +
                                " pixels or none; make it again");
   }
   size_t channels = 0;
@@ -148,7 +148,7 @@ void readPixels(Imf::InputPart& in, Image& image) {
 
 Image readChecked(const fs::path& file) {
   refuseDishonestAttributes(file);
-  Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // or OpenEXR allocates its line table first
+  Imf::Header::setMaxImageSize(kMaxExrSide, kMaxExrSide);  // or OpenEXR allocates its line table first
   // Not Imf::InputFile: that allocates lines and tiles of any size as it opens the file, and takes
   // deep images.
   Imf::MultiPartInputFile parts(file.c_str(), kNoThreads, /*reconstructChunkOffsetTable=*/false);

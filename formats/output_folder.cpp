@@ -83,7 +83,7 @@ fs::path withoutSlash(const fs::path& path) {
 // The head of the list of the youngest partial folder, of which a tool has one: a signal handler
 // can neither lock nor allocate.
 std::atomic<const OutputFolder::Path*> partialPaths{nullptr};
-std::atomic<bool> removing{false};
+std::atomic<bool> foldersBeingRemoved{false};
 static_assert(std::atomic<const OutputFolder::Path*>::is_always_lock_free);
 
 }  // namespace
@@ -137,7 +137,7 @@ void OutputFolder::remember(const fs::path& path) {
 
 void OutputFolder::forget() {
   partialPaths = nullptr;
-  while (removing && !paths_.empty()) ::pause();  // a handler reads them, and is about to end all
+  while (foldersBeingRemoved && !paths_.empty()) ::pause();  // a handler reads them, and is about to end all
   paths_.clear();
 }
 
@@ -182,7 +182,7 @@ void OutputFolder::commit() {
 }
 
 void removePartialFolder() noexcept {
-  removing = true;
+  foldersBeingRemoved = true;
   for (const auto* p = partialPaths.exchange(nullptr); p; p = p->older) {
     if (::unlink(p->name.c_str()) != 0) ::rmdir(p->name.c_str());
   }

@@ -15,7 +15,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr int kMaxSide = 1 << 16;
+constexpr int kMaxPngSide = 1 << 16;
 constexpr size_t kMaxBytes = std::numeric_limits<int>::max();  // in which stb counts them
 
 void appendBytes(void* to, void* bytes, int count) {
@@ -27,7 +27,7 @@ void appendBytes(void* to, void* bytes, int count) {
 
 void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8,
               int channels) {
-  if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide ||
+  if (width < 1 || height < 1 || width > kMaxPngSide || height > kMaxPngSide ||
       rgb8.size() != static_cast<size_t>(channels) * static_cast<size_t>(width) *
                          static_cast<size_t>(height) ||
       rgb8.size() + static_cast<size_t>(height) > kMaxBytes) {

@@ -15,14 +15,14 @@ constexpr double kK0 = 0.6 * 0.6 * 2.51, kK1 = 0.6 * 0.03, kK3 = 0.6 * 0.6 * 2.4
                  kK5 = 0.14;
 constexpr double kBright = 0.85;  // [A21]: t_max and t_min
 
-constexpr size_t kPixelsEach = 4096;
+constexpr size_t kHdrPixelsEach = 4096;
 
 template <typename Curve>
 RgbImage mapped(const RgbImage& image, double ev, const Curve& curve) {
   RgbImage result{image.width, image.height, image.rgb};
   const double scale = std::exp2(ev);
   for (std::vector<float>& channel : result.rgb) {
-    parallelFor(channel.size(), kPixelsEach,
+    parallelFor(channel.size(), kHdrPixelsEach,
                 [&](size_t i) { channel[i] = curve(scale * double{channel[i]}); });
   }
   return result;

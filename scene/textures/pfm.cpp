@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kMaxPixels = size_t{1} << 28;  // as of other images
+constexpr size_t kMaxPfmPixels = size_t{1} << 28;  // as of other images
 
 // A word of the header, and the one blank behind it.
 std::string_view takeWord(std::string_view& bytes) {
@@ -44,7 +44,7 @@ EnvironmentImage readPfm(const fs::path& file, std::string_view bytes) {
   image.height = takeNumber<uint32_t>(file, bytes, "height");
   const float scale = takeNumber<float>(file, bytes, "byte order");
   const size_t pixels = size_t{image.width} * image.height;
-  if (pixels == 0 || pixels > kMaxPixels || bytes.size() < pixels * channels * sizeof(float))
+  if (pixels == 0 || pixels > kMaxPfmPixels || bytes.size() < pixels * channels * sizeof(float))
     throw InputError(file, "is no whole PFM image: pixels are missing; make it again");
   image.radiance.resize(pixels);
   const bool swap = (scale < 0.0f) != (std::endian::native == std::endian::little);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr uint32_t kMaxSide = 32767;            // of rows in runs
 constexpr uint32_t kMinRunSide = 8;             // narrower rows are always flat
-constexpr size_t kMaxPixels = size_t{1} << 28;  // as of other images
+constexpr size_t kMaxHdrPixels = size_t{1} << 28;  // as of other images
 
 using Rgbe = std::array<uint8_t, 4>;
 
@@ -90,7 +90,7 @@ EnvironmentImage readRadianceHdr(const fs::path& file, std::string_view bytes) {
   std::string_view size = in.line();
   image.height = side(in, size, "-Y ");
   image.width = side(in, size, " +X ");
-  if (size_t{image.width} * image.height > kMaxPixels) in.fail("its size is out of range");
+  if (size_t{image.width} * image.height > kMaxHdrPixels) in.fail("its size is out of range");
 
   std::vector<Rgbe> row(image.width);
   for (uint32_t y = 0; y < image.height; ++y) {  // grows with what the file really holds

@@ -5,6 +5,7 @@
 
 #include "formats/vpl_io.h"
 #include "tests/formats/test_files.h"
+#include "tests/support/messages.h"
 
 namespace bnvpl {
 namespace {
@@ -46,12 +47,6 @@ class VplDamage : public TestFolder {
   std::string good_;
 };
 
-bool says(const std::string& complaint, const std::string& what) {
-  return complaint.find(what) != std::string::npos;
-}
-// Prints both on failure.
-#define EXPECT_SAYS(complaint, what) EXPECT_PRED2(says, complaint, what)
-
 TEST_F(VplDamage, ChecksumIsPlainXxh3OfTheFile) {
   EXPECT_EQ(complaintDespiteChecksum(good_), "");
   writeAll(at("bad.vpl"), good_);
@@ -60,7 +55,8 @@ TEST_F(VplDamage, ChecksumIsPlainXxh3OfTheFile) {
 
 TEST_F(VplDamage, EveryTruncationIsRefusedWhereItEnds) {
   for (size_t size = 0; size < good_.size(); ++size) {
-    ASSERT_PRED2(says, complaint(good_.substr(0, size)), "byte " + std::to_string(size) + ": cut");
+    ASSERT_PRED2(contains, complaint(good_.substr(0, size)),
+                 "byte " + std::to_string(size) + ": cut");
   }
 }
 
@@ -146,7 +142,7 @@ TEST_F(VplDamage, TheDirectoryMustBeTheWriters) {
   for (size_t i = sizeof(VplHeader); i < 832; ++i) {
     const size_t entry = (i - sizeof(VplHeader)) / 64;
     const char changed = static_cast<char>(good_[i] ^ 1);
-    ASSERT_PRED2(says, complaintAbout(i, changed),
+    ASSERT_PRED2(contains, complaintAbout(i, changed),
                  "byte " + std::to_string(128 + 64 * entry) + ": directory entry");
   }
 }

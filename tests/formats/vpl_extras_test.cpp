@@ -6,6 +6,7 @@
 #include "formats/vpl_io.h"
 #include "formats/vpl_layout.h"
 #include "tests/formats/test_files.h"
+#include "tests/support/messages.h"
 
 namespace bnvpl {
 namespace {
@@ -63,12 +64,6 @@ class VplExtras : public TestFolder {
   VplTable table_;
   std::string good_;
 };
-
-bool says(const std::string& complaint, const std::string& what) {
-  return complaint.find(what) != std::string::npos;
-}
-// Prints both on failure.
-#define EXPECT_SAYS(complaint, what) EXPECT_PRED2(says, complaint, what)
 
 TEST_F(VplExtras, EveryStageAndSizeSurvivesTheRoundTrip) {
   for (const VplStage stage : {VplStage::Candidates, VplStage::Eliminated, VplStage::Lit}) {

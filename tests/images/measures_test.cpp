@@ -10,8 +10,8 @@
 namespace bnvpl {
 namespace {
 
-Comparison compare(const Image& a, const Image& b, const Mask& mask = {},
-                   const Image* second = nullptr) {
+Comparison compareMasked(const Image& a, const Image& b, const Mask& mask = {},
+                         const Image* second = nullptr) {
   const Layer la = findLayer("a.exr", a, ""), lb = findLayer("b.exr", b, "");
   if (second == nullptr) return compareLayers("a.exr", la, "b.exr", lb, 0.25, nullptr, mask);
   const Layer ls = findLayer("s.exr", *second, "");
@@ -27,7 +27,7 @@ Image twoPixels() {
 }
 
 TEST(Measures, OfEachChannelByHand) {
-  const Comparison c = compare(twoPixels(), flatImage(2, 1, 1, 1, 1));
+  const Comparison c = compareMasked(twoPixels(), flatImage(2, 1, 1, 1, 1));
   EXPECT_DOUBLE_EQ(c.channels[0].rmse, std::sqrt(2.0));
   EXPECT_DOUBLE_EQ(c.channels[1].rmse, std::sqrt(0.5));
   EXPECT_EQ(c.channels[2].rmse, 0.0);
@@ -39,7 +39,7 @@ TEST(Measures, OfEachChannelByHand) {
 }
 
 TEST(Measures, LuminanceByHand) {
-  const Comparison c = compare(twoPixels(), flatImage(2, 1, 1, 1, 1));
+  const Comparison c = compareMasked(twoPixels(), flatImage(2, 1, 1, 1, 1));
   ASSERT_TRUE(c.luminance);
   const double y1 = 1.0 + 2.0 * 0.2126, y2 = 1.0 - 0.7152;
   EXPECT_NEAR(c.luminance->meanA, (y1 + y2) / 2.0, 1e-12);
@@ -60,53 +60,53 @@ TEST(Measures, OnlyLightHasALuminance) {
 
 TEST(Measures, SmapeIsSymmetricBoundedAndWithoutAUnit) {
   const Image a = twoPixels(), b = flatImage(2, 1, 1, 1, 1), black = flatImage(2, 1, 0, 0, 0);
-  EXPECT_EQ(compare(a, b).smape, compare(b, a).smape);
-  EXPECT_EQ(compare(b, black).smape, 1.0);
-  EXPECT_EQ(compare(black, black).smape, 0.0);
+  EXPECT_EQ(compareMasked(a, b).smape, compareMasked(b, a).smape);
+  EXPECT_EQ(compareMasked(b, black).smape, 1.0);
+  EXPECT_EQ(compareMasked(black, black).smape, 0.0);
   Image a8 = a, b8 = b;
   for (Image* image : {&a8, &b8}) {
     for (ImageChannel& channel : image->channels) {
       for (float& v : channel.data) v *= 8.0f;
     }
   }
-  EXPECT_DOUBLE_EQ(compare(a8, b8).smape, compare(a, b).smape);
-  EXPECT_EQ(compare(b, flatImage(2, 1, -1, -1, -1)).smape, 1.0);  // signs that differ
+  EXPECT_DOUBLE_EQ(compareMasked(a8, b8).smape, compareMasked(a, b).smape);
+  EXPECT_EQ(compareMasked(b, flatImage(2, 1, -1, -1, -1)).smape, 1.0);  // signs that differ
 }
 
 // Against halves of 3 and 5, an image of 4 is exact: their mean is the reference.
 TEST(Measures, SmapeTakesTheMeanOfBothHalves) {
   const Image a = flatImage(2, 1, 4, 4, 4), b = flatImage(2, 1, 3, 3, 3),
               second = flatImage(2, 1, 5, 5, 5);
-  EXPECT_EQ(compare(a, b, {}, &second).smape, 0.0);
-  EXPECT_DOUBLE_EQ(compare(a, b).smape, 1.0 / 7.0);
+  EXPECT_EQ(compareMasked(a, b, {}, &second).smape, 0.0);
+  EXPECT_DOUBLE_EQ(compareMasked(a, b).smape, 1.0 / 7.0);
 }
 
 TEST(Measures, AMaskWeighsEveryMean) {
   const Image a = twoPixels(), b = flatImage(2, 1, 1, 1, 1);
-  const Comparison first = compare(a, b, Mask{{1.0, 0.0}});
+  const Comparison first = compareMasked(a, b, Mask{{1.0, 0.0}});
   EXPECT_DOUBLE_EQ(first.channels[0].meanA, 3.0);
   EXPECT_DOUBLE_EQ(first.channels[0].rmse, 2.0);
   EXPECT_DOUBLE_EQ(first.rmse, std::sqrt(4.0 / 3.0));
   EXPECT_EQ(first.channels[1].rmse, 0.0);
   EXPECT_EQ(first.worstPixel[0], 0u);
   EXPECT_EQ(first.maskPixels, 1.0);
-  const Comparison second = compare(a, b, Mask{{0.0, 1.0}});
+  const Comparison second = compareMasked(a, b, Mask{{0.0, 1.0}});
   EXPECT_EQ(second.worstPixel[0], 1u);
   EXPECT_DOUBLE_EQ(second.rmse, std::sqrt(1.0 / 3.0));
-  const Comparison part = compare(a, b, Mask{{1.0, 0.25}});
+  const Comparison part = compareMasked(a, b, Mask{{1.0, 0.25}});
   EXPECT_DOUBLE_EQ(part.channels[0].meanA, (3.0 + 0.25) / 1.25);
   EXPECT_DOUBLE_EQ(part.channels[1].smape, 0.25 / 1.25);
   EXPECT_DOUBLE_EQ(part.channels[1].rmse, std::sqrt(0.25 / 1.25));
   EXPECT_DOUBLE_EQ(part.channels[1].relMse, 0.25 / (1.0 + part.epsilon) / 1.25);
   EXPECT_DOUBLE_EQ(part.rmse, std::sqrt((4.0 + 0.25) / 1.25 / 3.0));
   EXPECT_DOUBLE_EQ(weightedMean({2.0f, 7.0f}, Mask{{1.0, 0.25}}), 3.0);
-  EXPECT_DOUBLE_EQ(compare(a, b, Mask{{1.0, 1.0}}).rmse, compare(a, b).rmse);
+  EXPECT_DOUBLE_EQ(compareMasked(a, b, Mask{{1.0, 1.0}}).rmse, compareMasked(a, b).rmse);
 }
 
 TEST(Measures, AnEqualImageInsideTheMaskIsExact) {
   Image a = flatImage(2, 1, 1, 1, 1);
   a.channels[2].data[1] = 100.0f;
-  const Comparison c = compare(a, flatImage(2, 1, 1, 1, 1), Mask{{1.0, 0.0}});
+  const Comparison c = compareMasked(a, flatImage(2, 1, 1, 1, 1), Mask{{1.0, 0.0}});
   EXPECT_EQ(c.rmse, 0.0);
   EXPECT_EQ(c.relMse, 0.0);
   EXPECT_EQ(c.smape, 0.0);

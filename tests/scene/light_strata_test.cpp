@@ -1,6 +1,7 @@
 // Strata of lights: that each point of a light has one, and densities are those of the drawing.
 #include "transport/light_strata.h"
 
+#include "tests/scene/lit_scene.h"
 #include "tests/scene/plain_scene.h"
 
 namespace bnvpl {
@@ -34,13 +35,6 @@ Scene manyLights() {
   add(LightType::Point).position = {0, 1, 0};
   return scene;
 }
-
-struct Lit {
-  Scene scene;
-  RayScene rays;
-  LightSet lights;
-  explicit Lit(Scene s) : scene(std::move(s)), rays(scene), lights(rays) {}
-};
 
 // What is drawn by a point, and then hit, is drawn by that point.
 TEST(LightStrata, DrawnByTurnsDrawingAround) {

@@ -1,4 +1,5 @@
 // Direct light samples against irradiances that are known in closed form.
+#include "tests/scene/lit_scene.h"
 #include "tests/scene/plain_scene.h"
 
 namespace bnvpl {
@@ -23,12 +24,6 @@ Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
   return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
 }
 
-struct Lit {  // a floor scene with one light, ready to ask
-  Scene scene;
-  RayScene rays;
-  LightSet lights;
-  explicit Lit(Scene s) : scene(std::move(s)), rays(scene), lights(rays) {}
-};
 Scene withLight(const LightSpec& spec) {
   Scene scene = floorScene();
   scene.lights.push_back(spec);
@@ -108,19 +103,20 @@ Scene texelScene(const std::array<std::array<float, 2>, 4>& uv, Wrap wrap = Wrap
 TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   using Uv = std::array<std::array<float, 2>, 4>;
   const double texel = 1.0 / 4096;
-  struct Case {
+  struct TexelCase {
     Uv uv;
     Wrap wrap;
     double share;  // of the lamp's area
   };
-  for (const Case& c :
-       {Case{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
-        Case{Uv{{{3, 1}, {2, 1}, {2, 0}, {3, 0}}}, Wrap::Repeat, texel},            // mirrored
-        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},            // tiles
-        Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // very many
-        Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Black, texel / 9},
-        Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Clamp, texel / 9},
-        Case{Uv{{{0.5f, 0}, {0.5f, 1}, {1.5f, 1}, {1.5f, 0}}}, Wrap::Repeat, texel}}) {
+  for (const TexelCase& c :
+       {TexelCase{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
+        TexelCase{Uv{{{3, 1}, {2, 1}, {2, 0}, {3, 0}}}, Wrap::Repeat, texel},  // mirrored
+        TexelCase{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},  // tiles
+        TexelCase{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror,
+                  texel},  // very many
+        TexelCase{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Black, texel / 9},
+        TexelCase{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Clamp, texel / 9},
+        TexelCase{Uv{{{0.5f, 0}, {0.5f, 1}, {1.5f, 1}, {1.5f, 0}}}, Wrap::Repeat, texel}}) {
     const Lit lit(texelScene(c.uv, c.wrap));
     const Vec3 expected = Vec3(10, 5, 1) * (2.0f * kPi * float(c.share));
     expectClose(lit.lights.power(0), expected, 2e-3f);

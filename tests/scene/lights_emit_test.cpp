@@ -35,21 +35,21 @@ LightSpec sky() {
   return s;
 }
 
-struct Case {
+struct EmitCase {
   const char* name;
   LightSpec spec;
 };
-const std::vector<Case>& cases() {
-  static const std::vector<Case> all{{"point", point()},
-                                     {"spot", spot()},
-                                     {"parallel sun", sun(0)},
-                                     {"sun", sun(0.53f)},
-                                     {"sky", sky()}};
+const std::vector<EmitCase>& cases() {
+  static const std::vector<EmitCase> all{{"point", point()},
+                                         {"spot", spot()},
+                                         {"parallel sun", sun(0)},
+                                         {"sun", sun(0.53f)},
+                                         {"sky", sky()}};
   return all;
 }
 
 TEST(Emission, MeanFluxIsThePower) {
-  for (const Case& c : cases()) {
+  for (const EmitCase& c : cases()) {
     Scene scene = floorScene();
     scene.lights.push_back(c.spec);
     const RayScene rays(scene);
@@ -66,7 +66,7 @@ TEST(Emission, MeanFluxIsThePower) {
 
 // Floats would not hold the squares of their light.
 TEST(Emission, LightsThatAreTooStrongForVplsAreRefused) {
-  for (Case c : cases()) {
+  for (EmitCase c : cases()) {
     c.spec.emission = Vec3(1e16f);
     for (const bool strong : {false, true}) {
       Scene scene = floorScene();
@@ -132,7 +132,7 @@ void expectFloorAgrees(const LightSpec& spec, const std::string& name, float tol
 }
 
 TEST(Emission, PhotonsLightTheFloorAsDirectLightDoes) {
-  for (const Case& c : cases()) expectFloorAgrees(c.spec, c.name, 0.01f);
+  for (const EmitCase& c : cases()) expectFloorAgrees(c.spec, c.name, 0.01f);
   expectFloorAgrees(sun(40), "wide sun", 0.01f);
 }
 

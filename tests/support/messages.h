@@ -19,5 +19,7 @@ std::string messageOf(const Work& work) {
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
+// Prints both on failure.
+#define EXPECT_SAYS(text, part) EXPECT_PRED2(contains, std::string(text), std::string(part))
 
 }  // namespace bnvpl

@@ -15,7 +15,7 @@ namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsPerRange = 4096;
-constexpr std::string_view kWork = "photons", kPointsWork = "emit-points";
+constexpr std::string_view kPhotonWork = "photons", kPhotonPointsWork = "emit-points";
 constexpr uint64_t rangesOf(uint64_t photons) {
   return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
 }
@@ -124,8 +124,8 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scat
 EmitPoints pointsOfShards(const ShardSource& source, EmitPoints all) {
   std::vector<EmitPoint> some(all.winners().size());
   for (uint64_t part = 0; part < source.parts; ++part) {
-    if (!source.record(kPointsWork, part)) continue;
-    takeRecord(source, kPointsWork, part, some);
+    if (!source.record(kPhotonPointsWork, part)) continue;
+    takeRecord(source, kPhotonPointsWork, part, some);
     all.add(some);
   }
   return all;
@@ -158,7 +158,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   const Resume& resume = in.resume;
   if (resume.source) {
     const size_t vpls = in.vpls.size();
-    PhotonSums sums = sumsOf(resume.source->sums(kWork, integersFor(vpls)), vpls);
+    PhotonSums sums = sumsOf(resume.source->sums(kPhotonWork, integersFor(vpls)), vpls);
     sums.points =
         pointsOfShards(*resume.source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
     return sums;
@@ -211,8 +211,8 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
       [&] { return encode(done, soFar()); });
   PhotonSums sums = soFar();
   if (resume.sink) {
-    resume.sink->sums(kWork, integersOf(sums));
-    giveRecord(*resume.sink, kPointsWork, resume.shard.first, sums.points.winners());
+    resume.sink->sums(kPhotonWork, integersOf(sums));
+    giveRecord(*resume.sink, kPhotonPointsWork, resume.shard.first, sums.points.winners());
   }
   return sums;
 }

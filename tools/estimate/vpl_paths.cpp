@@ -10,7 +10,7 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kVplsPerUnit = 16;
-constexpr std::string_view kWork = "paths", kPointsWork = "paths.points";
+constexpr std::string_view kPathWork = "paths", kPathPointsWork = "paths.points";
 constexpr size_t unitsOf(size_t vpls) { return (vpls + kVplsPerUnit - 1) / kVplsPerUnit; }
 
 std::string encode(const std::vector<uint8_t>& done, const PathResult& result) {
@@ -113,8 +113,8 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
   };
   if (resume.source) {
     for (size_t unit = 0; unit < done.size(); ++unit) {
-      takeRecord(*resume.source, kWork, unit, ofUnit(unit));
-      takeRecord(*resume.source, kPointsWork, unit, pointsOfUnit(unit));
+      takeRecord(*resume.source, kPathWork, unit, ofUnit(unit));
+      takeRecord(*resume.source, kPathPointsWork, unit, pointsOfUnit(unit));
     }
     return result;
   }
@@ -138,8 +138,8 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
       [&] { return encode(done, result); });
   for (size_t unit = 0; resume.sink && unit < done.size(); ++unit) {
     if (!resume.shard.has(unit)) continue;
-    giveRecord(*resume.sink, kWork, unit, ofUnit(unit));
-    giveRecord(*resume.sink, kPointsWork, unit, pointsOfUnit(unit));
+    giveRecord(*resume.sink, kPathWork, unit, ofUnit(unit));
+    giveRecord(*resume.sink, kPathPointsWork, unit, pointsOfUnit(unit));
   }
   return result;
 }

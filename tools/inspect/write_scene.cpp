@@ -13,13 +13,14 @@
 
 namespace bnvpl {
 
+std::string listText(Vec3 v) {
+  return "[" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + "]";
+}
+
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-std::string listText(Vec3 v) {
-  return "[" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + "]";
-}
 std::string placeText(const Scene& scene, Vec3 p) {
   const auto [x, y, z] = scene.origin;
   if (x == 0.0 && y == 0.0 && z == 0.0) return listText(p);

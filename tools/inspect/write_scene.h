@@ -20,6 +20,8 @@ struct WrittenMaterials {
   std::set<uint32_t> materials, textures;
 };
 
+// "[1, 0.5, 2]"
+std::string listText(Vec3 v);
 // The file of a texture, relative to the scene's folder.
 std::string textureFile(uint32_t texture);
 // Of each material in MTL, OBJ and TOML: unlike any other, one line of UTF-8.

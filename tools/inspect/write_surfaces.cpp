@@ -9,10 +9,6 @@ namespace bnvpl {
 
 namespace {
 
-std::string listText(Vec3 v) {
-  return "[" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + "]";
-}
-
 // JSON's quotes and escapes are TOML's too.
 std::string inQuotes(const std::string& text) { return jsonText(text); }
 

@@ -7,7 +7,6 @@ namespace bnvpl {
 
 namespace {
 
-constexpr const char* kAgain = "; export the file again";
 
 // Without a buffer view all elements are 0: a few bytes of JSON could ask for any amount of memory.
 constexpr size_t kMaxZeros = size_t{1} << 16;
@@ -59,17 +58,17 @@ double numberAt(const char* bytes, int componentType, bool normalized) {
 // Throws where they are not within the view.
 Elements elementsIn(const GltfModel& model, const std::string& pointer, int bufferView,
                     size_t offset, size_t count, size_t components, int componentType) {
-  if (bufferView < 0) model.fail(pointer, std::string("needs a 'bufferView'") + kAgain);
+  if (bufferView < 0) model.fail(pointer, std::string("needs a 'bufferView'") + kExportAgain);
   const GltfModel::View view = model.view(static_cast<size_t>(bufferView));
   const size_t size = components * bytesOf(componentType);
   const size_t stride = view.stride > 0 ? view.stride : size;
   if (stride < size) {
     model.fail(pointer, "elements of " + std::to_string(size) + " bytes lie " +
-                            std::to_string(stride) + " bytes apart" + kAgain);
+                            std::to_string(stride) + " bytes apart" + kExportAgain);
   }
   if (offset > view.bytes.size() || size > view.bytes.size() - offset ||
       (count - 1) > (view.bytes.size() - offset - size) / stride) {
-    model.fail(pointer, std::string("reaches beyond the end of its buffer view") + kAgain);
+    model.fail(pointer, std::string("reaches beyond the end of its buffer view") + kExportAgain);
   }
   return {view.bytes.data() + offset, stride, count, components, componentType};
 }
@@ -90,7 +89,7 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
   const int has = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type));
   if (has < 0 || static_cast<size_t>(has) != components) {
     model.fail(pointer, "has " + std::to_string(has) + " numbers an element where " +
-                            std::to_string(components) + " are wanted" + kAgain);
+                            std::to_string(components) + " are wanted" + kExportAgain);
   }
   const size_t count = accessor.count;
   std::vector<T> out;
@@ -110,7 +109,7 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
   const auto& sparse = accessor.sparse;
   const auto changed = static_cast<size_t>(sparse.count);
   if (changed > count)
-    model.fail(pointer + "/sparse/count", std::string("exceeds 'count'") + kAgain);
+    model.fail(pointer + "/sparse/count", std::string("exceeds 'count'") + kExportAgain);
   const Elements places = elementsIn(model, pointer + "/sparse/indices", sparse.indices.bufferView,
                                      static_cast<size_t>(sparse.indices.byteOffset), changed, 1,
                                      sparse.indices.componentType);
@@ -121,7 +120,7 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
     const double place = numberAt(places.first + i * places.stride, places.componentType, false);
     if (!(place >= 0.0 && place < static_cast<double>(count))) {
       model.fail(pointer + "/sparse/indices",
-                 std::string("names an element that is not there") + kAgain);
+                 std::string("names an element that is not there") + kExportAgain);
     }
     copyElement(values, i, read, &out[static_cast<size_t>(place) * components]);
   }
@@ -145,7 +144,7 @@ std::vector<uint32_t> readIndices(const GltfModel& model, int accessor) {
       break;
     default:
       model.fail(gltfPointer("accessors", static_cast<size_t>(accessor)) + "/componentType",
-                 std::string("indices must be unsigned integers") + kAgain);
+                 std::string("indices must be unsigned integers") + kExportAgain);
   }
   return readElements<uint32_t>(model, accessor, 1, [](const char* bytes, int type) {
     return static_cast<uint32_t>(numberAt(bytes, type, false));

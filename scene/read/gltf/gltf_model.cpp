@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kAgain = "; export the file again";
 
 bool isDataUri(const std::string& uri) { return uri.starts_with("data:"); }
 
@@ -45,7 +44,7 @@ std::string decodeData(const fs::path& file, const std::string& pointer, const s
   std::string type;
   if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false)) {
     throw GltfError(file, pointer,
-                    std::string("is no base64 data of a type that glTF allows") + kAgain);
+                    std::string("is no base64 data of a type that glTF allows") + kExportAgain);
   }
   return {bytes.begin(), bytes.end()};
 }
@@ -105,7 +104,7 @@ GltfModel::GltfModel(const fs::path& file, SceneBuilder& builder) : file_(file),
   if (!parser.LoadASCIIFromString(&model_, &problem, &warnings, text.data(),
                                   static_cast<unsigned>(text.size()), "")) {
     throw InputError(file,
-                     "cannot read the glTF: " + problem.substr(0, problem.find('\n')) + kAgain);
+                     "cannot read the glTF: " + problem.substr(0, problem.find('\n')) + kExportAgain);
   }
 }
 
@@ -113,7 +112,7 @@ fs::path GltfModel::pathOf(const std::string& uri, const std::string& pointer) c
   const std::string name = decodedUri(uri);
   const size_t colon = name.find(':');
   if (colon != std::string::npos && colon < name.find('/'))
-    fail(pointer, "names '" + name.substr(0, 60) + "', which is no file beside the scene" + kAgain);
+    fail(pointer, "names '" + name.substr(0, 60) + "', which is no file beside the scene" + kExportAgain);
   return (file_.parent_path() / name).lexically_normal();
 }
 
@@ -139,14 +138,14 @@ void GltfModel::readBuffers(GltfDocument& document) {
     } else if (i == 0 && document.hasBinary) {
       bytes = std::move(document.binary);
     } else if (!extensionOf(buffer, "EXT_meshopt_compression")) {  // else nobody reads it
-      fail(pointer, std::string("has neither a uri nor a BIN chunk") + kAgain);
+      fail(pointer, std::string("has neither a uri nor a BIN chunk") + kExportAgain);
     } else {
       buffers_.emplace_back();
       continue;
     }
     if (bytes.size() < length) {
       fail(pointer, "holds " + std::to_string(bytes.size()) + " of its " + std::to_string(length) +
-                        " bytes" + kAgain);
+                        " bytes" + kExportAgain);
     }
     bytes.resize(length);
     buffers_.push_back(std::move(bytes));
@@ -165,7 +164,7 @@ void GltfModel::openViews(const Json& json) {
       const auto offset = compressed->value("byteOffset", size_t{0});
       const auto length = (*compressed)["byteLength"].get<size_t>();
       if (offset > from.size() || length > from.size() - offset)
-        fail(at, std::string("reaches beyond the end of its buffer") + kAgain);
+        fail(at, std::string("reaches beyond the end of its buffer") + kExportAgain);
       decompressed_.push_back(std::make_unique<std::string>(
           decodeMeshopt(file_, at, *compressed, from.substr(offset, length))));
       views_[i] = {*decompressed_.back(), (*compressed)["byteStride"].get<size_t>()};
@@ -175,7 +174,7 @@ void GltfModel::openViews(const Json& json) {
     const auto offset = list[i].value("byteOffset", size_t{0});
     const auto length = list[i]["byteLength"].get<size_t>();
     if (offset > from.size() || length > from.size() - offset)
-      fail(pointer, std::string("reaches beyond the end of its buffer") + kAgain);
+      fail(pointer, std::string("reaches beyond the end of its buffer") + kExportAgain);
     views_[i] = {from.substr(offset, length), list[i].value("byteStride", size_t{0})};
   }
 }
@@ -191,7 +190,7 @@ void GltfModel::openImages(const Json& json) {
       const std::string_view bytes = views_[view->get<size_t>()].bytes;
       images_.push_back({embedded, std::make_shared<const std::string>(bytes)});
     } else if (uri == list[i].end()) {
-      fail(pointer, std::string("has neither a uri nor a bufferView") + kAgain);
+      fail(pointer, std::string("has neither a uri nor a bufferView") + kExportAgain);
     } else if (isDataUri(*uri)) {
       images_.push_back({embedded, std::make_shared<const std::string>(
                                        decodeData(file_, pointer + "/uri", *uri))});

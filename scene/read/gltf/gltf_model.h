@@ -11,6 +11,9 @@
 
 namespace bnvpl {
 
+// Cure at the end of a message about a file that no exporter should write.
+inline constexpr const char* kExportAgain = "; export the file again";
+
 // An image of the file, still as PNG, JPEG or the like.
 struct GltfImage {
   fs::path file;                             // where it lies, or a name for what is embedded

@@ -14,7 +14,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kAtOnce = 256;                  // shapes that are in memory beside the scene
+constexpr size_t kAtOnce = 256;                 // shapes that are in memory beside the scene
 constexpr size_t kMaxCopied = size_t{1} << 27;  // triangles that lamps of objects may become
 
 // A shape and where it stands: once in the world, or as often as its object is placed.

@@ -11,8 +11,6 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
-
 class Builder {
  public:
   Builder(const LightReader& r, const Light& light, SceneBuilder& builder)
@@ -80,7 +78,7 @@ class Builder {
 
   void point() {
     LightSpec spec;
-    spec.emission = emission("I", scale() * aimedAt("power", 4.0 * kPiD));
+    spec.emission = emission("I", scale() * aimedAt("power", 4.0 * std::numbers::pi));
     builder_.addLight(spec, from());
   }
 
@@ -90,11 +88,11 @@ class Builder {
     LightSpec spec;
     spec.type = LightType::Spot;
     spec.direction = towards({0, 0, 1});
-    spec.coneRad = float(cone * kPiD / 180.0);
-    spec.falloffRad = std::min(float(delta * kPiD / 180.0), spec.coneRad);
-    const double outer = std::cos(cone * kPiD / 180.0),
-                 inner = std::cos((cone - std::min(delta, cone)) * kPiD / 180.0);
-    const double has = 2.0 * kPiD * ((1.0 - inner) + 0.5 * (inner - outer));
+    spec.coneRad = float(cone * std::numbers::pi / 180.0);
+    spec.falloffRad = std::min(float(delta * std::numbers::pi / 180.0), spec.coneRad);
+    const double outer = std::cos(cone * std::numbers::pi / 180.0),
+                 inner = std::cos((cone - std::min(delta, cone)) * std::numbers::pi / 180.0);
+    const double has = 2.0 * std::numbers::pi * ((1.0 - inner) + 0.5 * (inner - outer));
     spec.emission = emission("I", scale() * aimedAt("power", has));
     builder_.addLight(spec, from());
   }
@@ -116,7 +114,7 @@ class Builder {
                    "the light's portal is not used; light from elsewhere counts too");
     }
     if (file.empty()) {
-      spec.emission = emission("L", scale() * aimedAt("illuminance", kPiD));
+      spec.emission = emission("L", scale() * aimedAt("illuminance", std::numbers::pi));
     } else {
       if (p_.has("L")) failAt(*p_.placeOf("L"), "the light has an 'L' and an image; use one");
       const std::optional<Affine> lightFromWorld = inverse(light_.worldFromLight);
@@ -143,7 +141,7 @@ class Builder {
       const double z = 1.0 - (x + y) * (x + y);
       if (z > 0.0) sum += z * double{luminance(square.radiance[i])};
     }
-    return 2.0 * kPiD * sum / double(square.radiance.size());
+    return 2.0 * std::numbers::pi * sum / double(square.radiance.size());
   }
 
   void goniometric() {
@@ -159,7 +157,8 @@ class Builder {
                    "the goniometric light shines evenly to all sides, with the same power");
     }
     LightSpec spec;
-    spec.emission = emission("I", scale() * share * aimedAt("power", 4.0 * kPiD * share));
+    spec.emission =
+        emission("I", scale() * share * aimedAt("power", 4.0 * std::numbers::pi * share));
     builder_.addLight(spec, from());
   }
 
@@ -184,7 +183,7 @@ Emission emissionOf(const LightReader& reader, const Entity& light, double areaM
   Emission e;
   e.twoSided = p.boolean("twosided", false);
   double factor = p.number("scale", 1.0, 0.0);
-  double has = areaM2 * kPiD * (e.twoSided ? 2.0 : 1.0);
+  double has = areaM2 * std::numbers::pi * (e.twoSided ? 2.0 : 1.0);
   const std::string image = p.text("filename");
   if (!image.empty()) {
     if (p.has("L")) failAt(*p.placeOf("L"), "the light has an 'L' and an image; use one");

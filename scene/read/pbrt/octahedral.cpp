@@ -11,7 +11,6 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr size_t kSamples = 3;  // of a texel in each direction
 
 struct Rgb {
@@ -46,7 +45,7 @@ Rgb meanOfSquare(const EnvironmentImage& image) {
 }
 
 double rowShare(size_t row, size_t rows) {
-  const double step = kPiD / double(rows);
+  const double step = std::numbers::pi / double(rows);
   return 0.5 * (std::cos(step * double(row)) - std::cos(step * double(row + 1)));
 }
 
@@ -63,7 +62,7 @@ std::array<double, 2> squareOf(const FilePoint& d) {
   const double x = std::fabs(d[0]), y = std::fabs(d[1]), z = std::min(1.0, std::fabs(d[2]));
   const double r = std::sqrt(1.0 - z);
   const double most = std::max(x, y);
-  double turn = most > 0.0 ? quickArcTangent(std::min(x, y) / most) * 2.0 / kPiD : 0.0;
+  double turn = most > 0.0 ? quickArcTangent(std::min(x, y) / most) * 2.0 / std::numbers::pi : 0.0;
   if (y > x) turn = 1.0 - turn;
   double v = r * turn, u = r - v;
   if (d[2] < 0.0) {
@@ -81,11 +80,11 @@ EnvironmentImage latLongOf(const EnvironmentImage& square, const Affine& lightFr
   out.radiance.resize(size_t{out.width} * out.height);
   std::vector<std::array<double, 2>> around(kSamples * out.width);  // sine and cosine
   for (size_t i = 0; i < around.size(); ++i) {
-    const double phi = 2.0 * kPiD * ((double(i) + 0.5) / double(around.size()) - 0.5);
+    const double phi = 2.0 * std::numbers::pi * ((double(i) + 0.5) / double(around.size()) - 0.5);
     around[i] = {std::sin(phi), std::cos(phi)};
   }
   parallelFor(out.height, 8, [&](size_t row) {
-    const double step = kPiD / double(out.height);
+    const double step = std::numbers::pi / double(out.height);
     const double top = std::cos(step * double(row)), bottom = std::cos(step * double(row + 1));
     std::vector<Rgb> sums(out.width);
     for (size_t sample = 0; sample < kSamples; ++sample) {

@@ -9,7 +9,6 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr size_t kAround = 96;  // steps of a whole turn
 constexpr size_t kAlong = 48;   // steps from pole to pole
 
@@ -82,10 +81,11 @@ void correctArea(MeshData& mesh, double exact, bool square, bool z) {
 }
 
 double phiMax(const Params& params) {
-  return params.number("phimax", 360.0, 0.0, 360.0) * kPiD / 180.0;
+  return params.number("phimax", 360.0, 0.0, 360.0) * std::numbers::pi / 180.0;
 }
 size_t stepsAround(double phi) {
-  return std::max<size_t>(1, static_cast<size_t>(std::ceil(double(kAround) * phi / (2.0 * kPiD))));
+  return std::max<size_t>(
+      1, static_cast<size_t>(std::ceil(double(kAround) * phi / (2.0 * std::numbers::pi))));
 }
 
 }  // namespace
@@ -98,7 +98,8 @@ MeshData sphere(const Params& params) {
   };
   const double bottom = polar(std::min(z0, z1)), top = polar(std::max(z0, z1));
   const size_t rows = std::max<size_t>(
-      1, static_cast<size_t>(std::ceil(double(kAlong) * std::fabs(bottom - top) / kPiD)));
+      1,
+      static_cast<size_t>(std::ceil(double(kAlong) * std::fabs(bottom - top) / std::numbers::pi)));
   MeshData mesh = grid(stepsAround(phi), rows, [&](double u, double v) {
     const double theta = bottom + v * (top - bottom);
     const FilePoint n{std::sin(theta) * std::cos(u * phi), std::sin(theta) * std::sin(u * phi),

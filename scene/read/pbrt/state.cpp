@@ -3,11 +3,11 @@
 namespace bnvpl::pbrt {
 
 namespace {
-constexpr size_t kDeepest = 1000;  // of AttributeBegin and the like
+constexpr size_t kMaxAttributeDepth = 1000;  // of AttributeBegin and the like
 }
 
 void States::push(const Place& place, bool transformOnly) {
-  if (stack_.size() == kDeepest)
+  if (stack_.size() == kMaxAttributeDepth)
     failAt(place, "more than 1000 blocks lie within each other; close some");
   stack_.push_back({now_, transformOnly, place});
 }

@@ -6,7 +6,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kDeepest = 64;  // textures of textures
+constexpr size_t kMaxTextureDepth = 64;  // textures of textures
 
 float one(const Param& p, float most) {
   if (p.numbers.size() != 1) failAt(p.place, "'" + p.name + "' must be one number or a texture");
@@ -31,7 +31,8 @@ uint32_t Textures::named(const Param& p, bool isSpectrum) {
   const auto known = made_.find(t);
   if (known != made_.end()) return known->second;
   if (!making_.insert(t).second) failAt(p.place, "texture '" + p.strings[0] + "' contains itself");
-  if (making_.size() > kDeepest) failAt(p.place, "textures lie more than 64 deep in each other");
+  if (making_.size() > kMaxTextureDepth)
+    failAt(p.place, "textures lie more than 64 deep in each other");
   const uint32_t expression = make(*t);
   making_.erase(t);
   made_[t] = expression;

@@ -1,5 +1,6 @@
 // Lights and lamps: their radiance in the scene's units, and environment images.
 #include <cstring>
+#include <numbers>
 
 #include "scene/read/pbrt/octahedral.h"
 #include "tests/scene/pbrt/pbrt_files.h"
@@ -7,8 +8,6 @@
 
 namespace bnvpl {
 namespace {
-
-constexpr double kPi64 = 3.14159265358979;
 
 class PbrtLights : public PbrtFiles {
  protected:
@@ -38,11 +37,13 @@ TEST_F(PbrtLights, SpectraHaveLuminanceOneTimesScale) {
 
 TEST_F(PbrtLights, PowerIsThatOfEachShapeOfPbrt) {
   // The square is two triangles, each a lamp of area 2.
-  EXPECT_NEAR(lamp("\"float power\" 10").y, 10.0 / (2.0 * kPi64), 1e-4);
-  EXPECT_NEAR(lamp("\"float power\" 10 \"bool twosided\" true").y, 5.0 / (2.0 * kPi64), 1e-4);
+  EXPECT_NEAR(lamp("\"float power\" 10").y, 10.0 / (2.0 * std::numbers::pi), 1e-4);
+  EXPECT_NEAR(lamp("\"float power\" 10 \"bool twosided\" true").y, 5.0 / (2.0 * std::numbers::pi),
+              1e-4);
   const Scene sphere = loadPbrt(
       "WorldBegin AreaLightSource \"diffuse\" \"float power\" 10 Scale 2 2 2 Shape \"sphere\"");
-  EXPECT_NEAR(sphere.materials.back().emission.x, 10.0 / (16.0 * kPi64 * kPi64), 1e-5);
+  EXPECT_NEAR(sphere.materials.back().emission.x,
+              10.0 / (16.0 * std::numbers::pi * std::numbers::pi), 1e-5);
 }
 
 TEST_F(PbrtLights, LampsShineOnTheirOutside) {
@@ -58,13 +59,14 @@ TEST_F(PbrtLights, PointSpotAndDistant) {
   EXPECT_EQ(point.type, LightType::Point);
   expectNear(point.position, {1, 4, 0}, 1e-6f);
   EXPECT_EQ(point.emission, Vec3(1, 2, 3));
-  EXPECT_NEAR(light("LightSource \"point\" \"float power\" 4").emission.x, 1.0 / kPi64, 1e-5);
+  EXPECT_NEAR(light("LightSource \"point\" \"float power\" 4").emission.x, 1.0 / std::numbers::pi,
+              1e-5);
   const LightSpec spot = light(
       "LightSource \"spot\" \"point3 from\" [0 0 5] \"point3 to\" [0 0 0] \"float coneangle\" 40 "
       "\"float conedeltaangle\" 10");
   expectNear(spot.direction, {0, 0, -1}, 1e-6f);
-  EXPECT_NEAR(spot.coneRad, 40.0 * kPi64 / 180.0, 1e-5);
-  EXPECT_NEAR(spot.falloffRad, 10.0 * kPi64 / 180.0, 1e-5);
+  EXPECT_NEAR(spot.coneRad, 40.0 * std::numbers::pi / 180.0, 1e-5);
+  EXPECT_NEAR(spot.falloffRad, 10.0 * std::numbers::pi / 180.0, 1e-5);
   const LightSpec sun =
       light("Rotate 90 1 0 0 LightSource \"distant\" \"rgb L\" [2 2 2] \"float illuminance\" 3");
   expectNear(sun.direction, {0, -1, 0}, 1e-6f);  // +z, turned
@@ -82,7 +84,7 @@ TEST_F(PbrtLights, TheFilmsSensorScales) {
       "Film \"rgb\" \"float iso\" 200 WorldBegin\n"
       "LightSource \"infinite\" \"float illuminance\" 3\n" +
       kSquareShape);
-  EXPECT_NEAR(bright.lights[0].emission.x, 6.0 / kPi64, 1e-4);
+  EXPECT_NEAR(bright.lights[0].emission.x, 6.0 / std::numbers::pi, 1e-4);
 }
 
 TEST_F(PbrtLights, GoniometricShinesEvenlyAndProjectionIsLeftOut) {
@@ -135,7 +137,7 @@ TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
         sum +=
             double(texelSolidAngle(image, row)) * double(image.radiance[row * image.width + x].x);
     }
-    EXPECT_NEAR(sum, 8.0 * kPi64, 0.01);  // 8 over a quarter of the sphere
+    EXPECT_NEAR(sum, 8.0 * std::numbers::pi, 0.01);  // 8 over a quarter of the sphere
     float u, v;
     texelOf(s.lights[0], normalize(d), u, v);
     return image.lookup(u, v).x;

@@ -1,13 +1,12 @@
 // Shapes by their geometry, PLY files, and which side is outside.
 #include <cstring>
+#include <numbers>
 
 #include "scene/read/pbrt/ply.h"
 #include "tests/scene/pbrt/pbrt_files.h"
 
 namespace bnvpl {
 namespace {
-
-constexpr double kPi64 = 3.14159265358979;
 
 class PbrtShapes : public PbrtFiles {
  protected:
@@ -24,7 +23,7 @@ class PbrtShapes : public PbrtFiles {
 
 TEST_F(PbrtShapes, SpheresHaveTheirAreaAndFaceOutwards) {
   const Scene scene = shape("Translate 1 2 3 Shape \"sphere\" \"float radius\" 2");
-  EXPECT_NEAR(area(scene), 16.0 * kPi64, 1e-3);
+  EXPECT_NEAR(area(scene), 16.0 * std::numbers::pi, 1e-3);
   expectNear(scene.bounds.center(), {1, 2, 3}, 1e-4f);
   EXPECT_NEAR(scene.bounds.extent().x, 4.0, 0.01);
   EXPECT_EQ(outward(scene, {1, 2, 3}), 1.0);
@@ -33,9 +32,9 @@ TEST_F(PbrtShapes, SpheresHaveTheirAreaAndFaceOutwards) {
 
 TEST_F(PbrtShapes, PartsOfSpheres) {
   const Scene cap = shape("Shape \"sphere\" \"float zmin\" 0.5");
-  EXPECT_NEAR(area(cap), kPi64, 1e-4);
+  EXPECT_NEAR(area(cap), std::numbers::pi, 1e-4);
   const Scene half = shape("Shape \"sphere\" \"float phimax\" 180");
-  EXPECT_NEAR(area(half), 2.0 * kPi64, 1e-4);
+  EXPECT_NEAR(area(half), 2.0 * std::numbers::pi, 1e-4);
   EXPECT_GE(half.bounds.lower.y, -1e-6f);
 }
 
@@ -50,12 +49,12 @@ TEST_F(PbrtShapes, DisksAndCylinders) {
   const Scene ring = shape(
       "Shape \"disk\" \"float radius\" 2 \"float innerradius\" 1 "
       "\"float height\" 3");
-  EXPECT_NEAR(area(ring), 3.0 * kPi64, 1e-4);
+  EXPECT_NEAR(area(ring), 3.0 * std::numbers::pi, 1e-4);
   EXPECT_EQ(ring.bounds.lower.z, 3.0f);
   EXPECT_NEAR(geometricNormal(ring, 0).z, 1.0, 1e-6);
   const Scene tube =
       shape("Shape \"cylinder\" \"float radius\" 2 \"float zmin\" 0 \"float zmax\" 5");
-  EXPECT_NEAR(area(tube), 20.0 * kPi64, 1e-3);
+  EXPECT_NEAR(area(tube), 20.0 * std::numbers::pi, 1e-3);
   EXPECT_EQ(outward(tube, {0, 0, 2.5f}), 1.0);
 }
 

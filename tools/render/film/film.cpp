@@ -19,12 +19,12 @@ constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons";
 
 // What samples and photons have brought, and of a checkpoint how far they are: passes, the tiles of
 // one, then photons.
-struct State {
+struct FilmState {
   struct Progress {
     uint64_t pass = 0;
     SplatProgress splats;
   };
-  State(const Film& film, bool photons, const Shard& of)
+  FilmState(const Film& film, bool photons, const Shard& of)
       : tiles(film),
         pixels(size_t{film.width} * film.height),
         counts(pixels.size()),
@@ -107,7 +107,7 @@ Image blankImage(const Film& film) {
   return image;
 }
 
-Image develop(const Film& size, const FilmOptions& options, State& state, FilmStats& stats) {
+Image develop(const Film& size, const FilmOptions& options, FilmState& state, FilmStats& stats) {
   Image image = blankImage(size);
   if (state.splats.pixels() > 0) {
     for (size_t i = 0; i < state.pixels.size(); ++i) {
@@ -131,7 +131,7 @@ Image develop(const Film& size, const FilmOptions& options, State& state, FilmSt
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
-  State film(scene.film, static_cast<bool>(integrator.photons), resume.shard);
+  FilmState film(scene.film, static_cast<bool>(integrator.photons), resume.shard);
   const Tiles& tiles = film.tiles;
   if (!resume.state.empty()) film.decode(resume.state);
   const uint64_t perPass = integrator.wholePixels ? options.spp : kSlotsPerPass;
@@ -179,7 +179,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
 
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
                const ShardSource& source) {
-  State state(film, photons, {});
+  FilmState state(film, photons, {});
   state.takeFrom(source);
   return develop(film, options, state, stats);
 }

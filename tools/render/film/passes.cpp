@@ -19,13 +19,13 @@ constexpr double kPreviewEveryS = 5.0;
 using Rgb = std::array<double, 3>;
 
 // What is known so far; all of it goes into a checkpoint, which is always in the middle of a pass.
-struct State {
+struct PassesState {
   struct Progress {
     uint64_t pass = 0;  // under way
     double spentS = 0.0;
     SplatProgress splats;
   };
-  State(size_t pixels, size_t tiles)
+  PassesState(size_t pixels, size_t tiles)
       : done(tiles),
         slots(tiles),
         samples(tiles),
@@ -236,7 +236,7 @@ class Passes {
   const Budget& budget_;
   Tiles tiles_;
   uint64_t key_;
-  State state_;
+  PassesState state_;
   std::vector<PixelPasses> known_;  // of the passes that are done
   std::vector<double> variances_;   // relative
   double error_ = 0.0, startS_ = 0.0;

@@ -19,7 +19,7 @@ std::array<float, 4> store(__m128 v) {
 }
 
 // From a point to four spheres.
-struct Directions {
+struct SphereDirections {
   __m128 x, y, z;               // unit, to the centres
   __m128 cosSphere, sinSphere;  // of half the angle that each takes
   __m128 radius2, d2;           // of the spheres, to the centres
@@ -104,7 +104,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   const __m128 x = load(f.x) - all(at_.x), y = load(f.y) - all(at_.y), z = load(f.z) - all(at_.z);
   const __m128 d2 = x * x + y * y + z * z, radius2 = load(f.radius2);
   const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only inside
-  Directions to;
+  SphereDirections to;
   to.radius2 = radius2, to.d2 = d2;
   to.x = x * inverse, to.y = y * inverse, to.z = z * inverse;
   to.sinSphere = _mm_sqrt_ps(radius2) * inverse;

@@ -7,7 +7,6 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kLargestIor = 3.0f;  // of the tables
 
 // A cosine outside, refracted into the coat.
 float within(float cosine, float ior) {
@@ -48,7 +47,7 @@ Vec3 CoatedMetal::albedo(Vec3 wo) const {
 void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
               LobeSum& out) {
   const Ggx coat = ggxOf(model.coatRoughness, inputs);
-  const float ior = std::min(kLargestIor, inputs.ior(model.coatIor));
+  const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.coatIor));
   const GgxReflection metal{ggxOf(model.roughness, inputs),
                             metalFresnel(model.fresnel, ior, inputs)};
   out.add(weight, GgxReflection{coat, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});

@@ -6,14 +6,13 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kLargestIor = 3.0f;  // of the tables
 
 }  // namespace
 
 void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
               LobeSum& out) {
   const Ggx ggx = ggxOf(model.roughness, inputs);
-  const float ior = std::min(kLargestIor, inputs.ior(model.ior));
+  const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.ior));
   const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();
   const Vec3 base = inputs.share(model.reflectance);
   const float in = 1.0f - dielectricMeanAlbedo(alpha, ior);  // of diffuse light from outside

@@ -13,10 +13,10 @@ namespace {
 
 // Nodes are denser where cosine and alpha are small.
 constexpr size_t kCosines = 24, kAlphas = 28, kIors = 13;
-constexpr float kMinCosine = 1e-4f, kLargestIor = 3.0f;
+constexpr float kMinCosine = 1e-4f;
 BetweenNodes ofCosine(float c) { return betweenSquared(c, kCosines); }
 BetweenNodes ofAlpha(float a) { return betweenSquared(a, kAlphas); }
-BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kLargestIor - 1.0f), kIors); }
+BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kMaxAlbedoIor - 1.0f), kIors); }
 
 // Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all. The
 // facets on either side of the plane of incidence mirror each other.
@@ -104,7 +104,7 @@ struct DielectricTable {
   DielectricTable() {
     std::array<float, kIors> iors;
     for (size_t k = 0; k < kIors; ++k)
-      iors[k] = 1.0f + (kLargestIor - 1.0f) * nodeSquared(k, kIors);
+      iors[k] = 1.0f + (kMaxAlbedoIor - 1.0f) * nodeSquared(k, kIors);
     for (size_t i = 0; i < kAlphas; ++i) {
       const float alpha = nodeSquared(i, kAlphas);
       for (size_t j = 0; j < kCosines; ++j) {
