@@ -1,0 +1,146 @@
+"""The structure of the sources: who includes whom, and how long files and functions are.
+
+A folder includes only what stands before it in its list, itself, and what every list may use.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+
+LAYERS = ["core", "formats", "spatial", "scene", "transport", "images", "tools"]
+STAGES = ["place", "eliminate", "estimate", "render"]
+# What vpl-render is made of, from the record of a sample up to the integrators.
+RENDER = [
+    ["sample.h", "camera_vertex.h", "tile_dimensions.h"],
+    ["splat"],
+    ["film"],
+    ["light_tree"],
+    ["gather"],
+    ["compensate"],
+    ["tile"],
+    ["integrator"],
+]
+TILE = [["allocation"], ["reuse"], ["direct"], ["caustics"], ["control"]]
+
+MAX_MAIN_LINES = 90
+MAX_FILE_LINES = 350
+MAX_FUNCTION_LINES = 60
+
+
+def sources(*folders: str) -> list[Path]:
+    listed = subprocess.run(
+        ["git", "ls-files", "*.h", "*.cpp", "*.py"],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.split()
+    return [Path(name) for name in listed if not folders or name.startswith(tuple(folders))]
+
+
+def includes_of(path: Path) -> list[str]:
+    return re.findall(r'^#include "([^"]+)"', (ROOT / path).read_text(), re.MULTILINE)
+
+
+def rank(name: str, order: list[list[str]]) -> int | None:
+    """Position of the first part of a path in the order; None where it is not listed."""
+    first = name.split("/")[0]
+    return next((i for i, names in enumerate(order) if first in names), None)
+
+
+class Includes(unittest.TestCase):
+    def expect_order(self, folder: str, order: list[list[str]]) -> None:
+        prefix = folder + "/" if folder else ""
+        for path in sources(prefix):
+            if path.suffix == ".py" or "test" in path.name:
+                continue
+            own = rank(str(path).removeprefix(prefix), order)
+            if own is None:
+                continue
+            for include in includes_of(path):
+                if not include.startswith(prefix):
+                    continue
+                other = rank(include.removeprefix(prefix), order)
+                self.assertTrue(
+                    other is None or other <= own, f"{path} includes {include}, which stands above"
+                )
+
+    def test_layers_of_the_project(self) -> None:
+        self.expect_order("", [[name] for name in LAYERS])
+
+    def test_folders_of_the_renderer(self) -> None:
+        self.expect_order("tools/render", RENDER)
+
+    def test_no_tool_of_the_renderer_is_included_below_its_frame(self) -> None:
+        for path in sources("tools/render/"):
+            if path.parent == Path("tools/render") and path.name not in RENDER[0]:
+                continue
+            for include in includes_of(path):
+                if include.startswith("tools/render/"):
+                    inner = include.removeprefix("tools/render/")
+                    self.assertIsNotNone(rank(inner, RENDER), f"{path} includes {include}")
+
+    def test_stages_do_not_include_each_other(self) -> None:
+        for stage in STAGES:
+            for path in sources(f"tools/{stage}/"):
+                for include in includes_of(path):
+                    for other in STAGES:
+                        self.assertFalse(
+                            other != stage and include.startswith(f"tools/{other}/"),
+                            f"{path} includes {include} of another stage",
+                        )
+
+
+def functions_of(text: str) -> list[tuple[int, int]]:
+    """First line and length of each function of C++ that begins at the margin."""
+    found = []
+    start = None
+    for number, line in enumerate(text.splitlines(), 1):
+        if start is None and re.match(r"[A-Za-z_].*\)[^;]*\{$|^\S.*\) (const|override|noexcept).*\{$", line):
+            start = number
+        elif start is not None and line == "}":
+            found.append((start, number - start + 1))
+            start = None
+    return found
+
+
+class Sizes(unittest.TestCase):
+    def test_mains_are_short(self) -> None:
+        for path in sources("tools/"):
+            if path.name == "main.cpp":
+                lines = len((ROOT / path).read_text().splitlines())
+                self.assertLessEqual(lines, MAX_MAIN_LINES, str(path))
+
+    def test_files_are_short(self) -> None:
+        for path in sources():
+            lines = len((ROOT / path).read_text().splitlines())
+            self.assertLessEqual(lines, MAX_FILE_LINES, str(path))
+
+    def test_functions_are_short(self) -> None:
+        for path in sources():
+            if path.suffix == ".py":
+                continue
+            for start, length in functions_of((ROOT / path).read_text()):
+                self.assertLessEqual(length, MAX_FUNCTION_LINES, f"{path}:{start}")
+
+
+class Prose(unittest.TestCase):
+    def test_comments_and_pages(self) -> None:
+        done = subprocess.run(
+            [sys.executable, str(ROOT / "scripts/check_prose.py")],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        self.assertEqual(done.returncode, 0, done.stdout[-4000:] + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
