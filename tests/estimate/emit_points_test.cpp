@@ -1,4 +1,4 @@
-// The points from which VPLs shine, drawn in proportion to what they receive.
+// Emission points of VPLs are drawn in proportion to the light that arrives at them.
 #include "tools/estimate/emit_points.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ const VplTable& manyVpls() {
   return vpls;
 }
 
-// One race for each of many VPLs, all of the same four hits, those with index from `begin` to
-// `end`.
+// Draws one emission point for each of many VPLs, all from the hits `begin` to `end` of the same
+// four.
 EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7) {
   EmitPoints points(manyVpls(), 1, key);
   for (size_t vpl = 0; vpl < kDraws; ++vpl) {
@@ -63,7 +63,7 @@ TEST(EmitPoints, OfPartsAreThoseOfTheWhole) {
   }
 }
 
-// As if all hits of the others had that share of their weight: 3/4 of 2.5 against 1.5 in full.
+// Weights of added hits are scaled by the given share: 3/4 of 2.5 competes with 1.5 in full.
 TEST(EmitPoints, OfOthersCountByTheirShare) {
   EmitPoints points = raced(3, 4);
   points.add(raced(0, 3, 8), std::vector<double>(kDraws, 0.75));

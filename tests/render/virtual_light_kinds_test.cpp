@@ -1,4 +1,4 @@
-// What each kind of virtual light promises to gathers, bounds and compensation.
+// Guarantees of each kind of virtual light to gathers, bounds and compensation.
 #include "transport/virtual_light_kinds.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TYPED_TEST(EachLightKind, FourAtOnceAreFourSingleOnes) {
   }
 }
 
-// Over a cone of axes: never below what any of them emits, and not above what one could.
+// Over a cone of axes, the bound is never below the emission of any axis, and never above 1.
 TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
   Rng rng(streamKey(3, Stream::PixelSamples), 0);
   for (int i = 0; i < 300; ++i) {
@@ -81,7 +81,7 @@ TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
   }
 }
 
-// What one kind removes is reported: with it every kind shows the same image.
+// The removed light is reported: with it, every kind gives the same image.
 TEST(LightKindsOfImages, DifferInWhatTheyRemoveAlone) {
   const World world("furnace/scene.toml");
   const VplTable lit = litVpls(world, {{"count", "300"}});
@@ -89,11 +89,11 @@ TEST(LightKindsOfImages, DifferInWhatTheyRemoveAlone) {
     return renderVpls(world, lit, with(kPlainRender, {{"gather", "all"}, {"light", light}})).stats;
   };
   const FilmStats point = statsOf("point"), disk = statsOf("disk");
-  EXPECT_LT(disk.indirect, 0.98 * point.indirect);  // it is never the brighter one
+  EXPECT_LT(disk.indirect, 0.98 * point.indirect);  // a disk is never brighter
   EXPECT_NEAR(disk.indirect + disk.clamped, point.indirect + point.clamped, 1e-3 * point.indirect);
 }
 
-// In a furnace every pixel is known: what disks remove the near field brings.
+// In a furnace every pixel is known: the near field restores what disks remove.
 TEST(LightKindsOfImages, HaveTheirEnergyBroughtBack) {
   World world("furnace/scene.toml");
   world.scene.film = {24, 24};
