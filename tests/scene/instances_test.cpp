@@ -1,4 +1,4 @@
-// Instances against the same triangles, each stored where it stands.
+// Instances against copies of the same triangles, each stored at its place.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace bnvpl {
 namespace {
 
-// A tent of four faces with shading normals and texture coordinates, one of them cut away, and a
-// lamp on top.
+// A tent of four faces with shading normals and texture coordinates, one of them cut away, and an
+// area light on top.
 struct Tent {
   std::vector<double> positions{-1, 0,   -1, 1, 0, -1, 1, 0, 1, -1, 0, 1,
                                 0,  1.5, 0,  0, 2, 0,  1, 2, 0, 0,  2, 1};

@@ -1,10 +1,10 @@
-// Direct light samples against irradiances that are known in closed form.
+// Direct light samples against irradiances known in closed form.
 #include "tests/scene/plain_scene.h"
 
 namespace bnvpl {
 namespace {
 
-// Unoccluded irradiance at `at` (normal n) from one light by its direct samples, on a grid of (u,
+// Unoccluded irradiance at `at` (normal n) from one light, from its direct samples on a grid of (u,
 // v).
 Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
   constexpr int kSide = 300;
@@ -23,7 +23,7 @@ Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
   return {float(sum[0] / count), float(sum[1] / count), float(sum[2] / count)};
 }
 
-struct Lit {  // a floor scene with one light, ready to ask
+struct Lit {  // a scene with the structures that queries need
   Scene scene;
   RayScene rays;
   LightSet lights;
@@ -35,8 +35,8 @@ Scene withLight(const LightSpec& spec) {
   return scene;
 }
 
-// Form factor from a surface element to a rectangle a x b parallel to it, one corner of which lies
-// at distance c along its normal (any table of view factors).
+// Form factor from a surface element to a parallel rectangle a x b, one corner of which lies at
+// distance c along the element's normal (any table of view factors).
 double cornerFormFactor(double a, double b, double c) {
   const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2.0 * double{kPi});
@@ -62,7 +62,7 @@ TEST(DirectLight, SquareLampMatchesTheFormFactor) {
               Vec3(10, 5, 1) * (kPi * float(aside)), 2e-3f);
 }
 
-// The left half of the lamp is dark, by a texture: samples, rays and photons agree on it.
+// A texture darkens the left half of the lamp; samples, rays and photons agree on it.
 TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
   Scene scene = lampScene(false);
   for (size_t i = 0; i < 4; ++i)
@@ -86,7 +86,7 @@ TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
   }
 }
 
-// One texel of 64 x 64 shines. `uv`: of the lamp's corners; the square is 2 x 1.
+// One texel of 64 x 64 emits. `uv` are the coordinates of the lamp's corners; the square is 2 x 1.
 Scene texelScene(const std::array<std::array<float, 2>, 4>& uv, Wrap wrap = Wrap::Repeat) {
   Scene scene = lampScene(false);
   scene.uvs.assign(uv.begin(), uv.end());
@@ -103,21 +103,21 @@ Scene texelScene(const std::array<std::array<float, 2>, 4>& uv, Wrap wrap = Wrap
   return scene;
 }
 
-// Whatever the texture coordinates are: the power is the integral of the texture, and points of the
-// lamp are drawn where it shines.
+// For any texture coordinates, the power is the integral of the texture, and sampled points of the
+// lamp lie where it emits.
 TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   using Uv = std::array<std::array<float, 2>, 4>;
   const double texel = 1.0 / 4096;
   struct Case {
     Uv uv;
     Wrap wrap;
-    double share;  // of the lamp's area
+    double share;  // share of the lamp's area
   };
   for (const Case& c :
        {Case{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
         Case{Uv{{{3, 1}, {2, 1}, {2, 0}, {3, 0}}}, Wrap::Repeat, texel},            // mirrored
-        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},            // tiles
-        Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // very many
+        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},  // repeated
+        Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // very often
         Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Black, texel / 9},
         Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Clamp, texel / 9},
         Case{Uv{{{0.5f, 0}, {0.5f, 1}, {1.5f, 1}, {1.5f, 0}}}, Wrap::Repeat, texel}}) {
@@ -130,7 +130,7 @@ TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   }
 }
 
-// Half a texel of the lamp may lie outside: by many points.
+// Half a texel may lie outside the lamp, so the reference averages over many points.
 TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
   const std::array<std::array<float, 2>, 4> uv{
       {{0.6f, 0.68f}, {0.64f, 0.66f}, {0.65f, 0.7f}, {0.61f, 0.69f}}};
@@ -155,11 +155,11 @@ TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
 TEST(DirectLight, CutAwayPartsOfALampDoNotShine) {
   Scene scene = texelScene({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
   scene.materials[0].emissionTexture = kNone;
-  scene.materials[0].opacityTexture = 0;  // there from half a texel's light on
+  scene.materials[0].opacityTexture = 0;  // opaque where the texture is at least 1/2
   scene.maskedBegin = 0;
   const Lit lit(std::move(scene));
   const Vec3 power = lit.lights.power(0);
-  // Where (1 - |x|) (1 - |y|) >= 1/2: 4 (1 - ln 2) / 2 of a texel, or 0.614.
+  // The lamp remains where (1 - |x|) (1 - |y|) >= 1/2: 4 (1 - ln 2) / 2 of a texel, or 0.614.
   expectClose(power, Vec3(10, 5, 1) * (2.0f * kPi * 0.6137f / 4096), 0.1f);
   expectClose(irradiance(lit.lights, 0, {0.25f, 0, 0.18f}, {0, 1, 0}) / (kPi * 2.0f),
               Vec3(10, 5, 1) * (0.6137f / 4096 / (kPi * 2.25f)), 0.5f);
@@ -187,7 +187,7 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
       const float u = rng.next(), v = rng.next();
       DirectSample s;
       if (!lit.lights.sampleDirect(0, from, u, v, s)) {
-        ASSERT_FALSE(lit.scene.textures.empty());  // a black point of a cell that is not
+        ASSERT_FALSE(lit.scene.textures.empty());  // a black point in a cell that is not black
         continue;
       }
       EXPECT_FALSE(lit.rays.occluded(from, s.target));
@@ -260,7 +260,7 @@ TEST(DirectLight, SpotFadesAcrossItsRim) {
     before = share;
   }
   DirectSample s;
-  EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind it
+  EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind the spot
 }
 
 TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
@@ -280,7 +280,7 @@ TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
   }
 }
 
-// A ray that looks along a sample of the sun sees what the sample says.
+// A ray along a sample of the sun sees the radiance and density of the sample.
 TEST(DirectLight, SunSampleIsWhatARayFinds) {
   for (const float diameterDeg : {0.1f, 0.53f, 5.0f, 60.0f}) {
     LightSpec spec;
@@ -292,7 +292,7 @@ TEST(DirectLight, SunSampleIsWhatARayFinds) {
     int seen = 0;
     for (int i = 0; i < 1000; ++i) {
       Rng rng(4, uint64_t(i));
-      const float u = 0.97f * rng.next(), v = rng.next();  // rounding may put the very rim outside
+      const float u = 0.97f * rng.next(), v = rng.next();  // rounding may move the rim outside
       DirectSample s;
       ASSERT_TRUE(lit.lights.sampleDirect(0, {}, u, v, s));
       lit.lights.forEachAtInfinity(s.wi, [&](size_t, Vec3 radiance, float pdf) {

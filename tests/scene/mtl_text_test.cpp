@@ -1,5 +1,5 @@
-// MTL in its many forms: colours, options of maps, keys in capitals; and what is wrong with OBJ and
-// MTL is told with its line.
+// Forms of MTL: colours, options of maps, upper-case keys. Errors in OBJ and MTL files are reported
+// with their line.
 #include "scene/read/obj/mtl_text.h"
 
 #include "scene/read/obj/map_options.h"
