@@ -1,4 +1,4 @@
-// Columns that strategies add: they survive, and no file can lie about them.
+// Extra columns of methods survive a round trip, and inconsistent ones are refused.
 #include <xxhash.h>
 
 #include <limits>
@@ -23,7 +23,7 @@ class VplExtras : public TestFolder {
   static size_t entry(size_t extra, size_t field) {
     return sizeof(VplHeader) + (kStandard + extra) * sizeof(VplColumnEntry) + field;
   }
-  // What the reader says when `value` stands at `offset` and the checksum is right.
+  // The reader's error message when `value` stands at `offset` and the checksum is right.
   template <typename T>
   std::string complaintAbout(size_t offset, const T& value) const {
     std::string bytes = good_;
@@ -41,7 +41,7 @@ class VplExtras : public TestFolder {
     }
     return {};
   }
-  // What the writer says of a table with this column behind the good ones.
+  // The writer's error message for a table with this column appended.
   std::string refusal(const VplExtraColumn& column) const {
     VplTable table = table_;
     table.extras.push_back(column);
@@ -67,7 +67,7 @@ class VplExtras : public TestFolder {
 bool says(const std::string& complaint, const std::string& what) {
   return complaint.find(what) != std::string::npos;
 }
-// Prints both on failure.
+// Prints both strings on failure.
 #define EXPECT_SAYS(complaint, what) EXPECT_PRED2(says, complaint, what)
 
 TEST_F(VplExtras, EveryStageAndSizeSurvivesTheRoundTrip) {
@@ -136,7 +136,7 @@ TEST_F(VplExtras, EveryFieldOfTheDirectoryIsChecked) {
     bad(1, 28, components, "column light-slice.cluster has " + std::to_string(components));
   bad(1, 48, '\0', "the unit of column light-slice.cluster");
   bad(1, 48, '\x1b', "the unit of column light-slice.cluster");
-  // Another type or width of the same size makes no difference to the layout, and is another
+  // Another type or width of the same size has the same layout; the file is valid and holds another
   // column.
   EXPECT_EQ(complaintAbout(entry(1, 24), 1u), "");
   EXPECT_SAYS(complaintAbout(entry(0, 28), 5u),
@@ -156,7 +156,8 @@ TEST_F(VplExtras, ColumnsNeitherOverlapNorLeaveAGap) {
     EXPECT_SAYS(complaintAbout(entry(1, 40), bytes),
                 "byte " + std::to_string(entry(1, 40)) + ": bytes of column light-slice.cluster");
   }
-  // A column fewer than the directory was written for: the provenance would begin in its entry.
+  // With one column fewer than the directory was written for, the provenance would begin in its
+  // entry.
   EXPECT_NE(complaintAbout(56, static_cast<uint32_t>(kStandard + 2)), "");
   EXPECT_SAYS(complaintAbout(28 + entry(1, 0), 1024u), "byte 16: 2 rows");
 }
