@@ -70,7 +70,7 @@ TEST(Random, SobolPointsFillEveryBoxOnce) {
 
 // Point i of one key is independent of point i of another. With one common order, one half of the
 // first set would always meet the same half of the second.
-TEST(Random, SobolPointsOfTwoKeysMeetEverywhere) {
+TEST(Random, SobolPointsOfTwoKeysAreIndependent) {
   constexpr uint32_t kPoints = 256, kKeys = 64;
   double together = 0.0, squares = 0.0;
   for (uint64_t key = 0; key < kKeys; ++key) {

@@ -113,7 +113,7 @@ TEST(Eliminate, EstimatesTheAreaOfMany) {
 }
 
 // Every preparation before the first removal reports its progress and counts to its end.
-TEST(Eliminate, TellsOfItsPreparations) {
+TEST(Eliminate, ReportsItsPreparations) {
   const Cloud flat = plane(20000, 3.0f, 2.0f, 4);
   std::vector<std::string> names;
   uint64_t total = 0;

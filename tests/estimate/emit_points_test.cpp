@@ -52,7 +52,7 @@ TEST(EmitPoints, AreDrawnInProportionToTheLight) {
   }
 }
 
-TEST(EmitPoints, OfPartsAreThoseOfTheWhole) {
+TEST(EmitPoints, MergeLikeTheWhole) {
   const EmitPoints whole = raced();
   for (const size_t middle : {1u, 3u}) {
     EmitPoints behind = raced(middle, 4);
@@ -64,14 +64,14 @@ TEST(EmitPoints, OfPartsAreThoseOfTheWhole) {
 }
 
 // Weights of added hits are scaled by the given share: 3/4 of 2.5 competes with 1.5 in full.
-TEST(EmitPoints, OfOthersCountByTheirShare) {
+TEST(EmitPoints, OfOthersAreScaledByTheirShare) {
   EmitPoints points = raced(3, 4);
   points.add(raced(0, 3, 8), std::vector<double>(kDraws, 0.75));
   const double expected = 1.5 / (1.5 + 0.75 * 2.5);
   EXPECT_NEAR(sharesOf(points)[3], expected, 4.0 * std::sqrt(0.25 / kDraws));
 }
 
-TEST(EmitPoints, WithoutLightAreThePlaceOfTheVpl) {
+TEST(EmitPoints, WithoutLightAreThePositionOfTheVpl) {
   VplTable lit;
   lit.position = {{1, 2, 3}, {4, 5, 6}};
   lit.normal = {{0, 0, 1}, {1, 0, 0}};

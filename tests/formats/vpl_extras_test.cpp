@@ -143,7 +143,7 @@ TEST_F(VplExtras, EveryFieldOfTheDirectoryIsChecked) {
               at(0, 40) + "bytes of column rich.lobes 32, expected 40");
 }
 
-TEST_F(VplExtras, ColumnsNeitherOverlapNorLeaveAGap) {
+TEST_F(VplExtras, ColumnsAreContiguous) {
   const auto offsetField = [](size_t extra) { return entry(extra, 32); };
   for (const uint64_t offset :
        {uint64_t{0}, columnOffset(0), columnOffset(1) + 4, columnOffset(2), ~uint64_t{0}}) {

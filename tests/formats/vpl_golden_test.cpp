@@ -123,7 +123,7 @@ TEST_P(VplGolden, ReaderReadsTheCommittedFile) {
 }
 
 // Extra columns of methods follow the columns of the stage.
-TEST_F(TestFolder, AFileWithStrategiesColumnsIsPinned) {
+TEST_F(TestFolder, AFileWithMethodsColumnsIsPinned) {
   const fs::path golden = fs::path(BNVPL_GOLDEN_DIR) / "strategies.vpl";
   VplTable table = smallTable(VplStage::Eliminated);
   table.extras = someExtras(2);

@@ -122,7 +122,7 @@ TEST(DifferencePicture, ColoursAreMonotoneAndClamped) {
 }
 
 // Errors of +1 and -1 in the two halves cancel: the image equals the mean of the halves.
-TEST(Compare, ASecondHalfTakesTheNoiseOut) {
+TEST(Compare, ASecondHalfRemovesTheNoise) {
   Image a, b, second;
   for (Image* image : {&a, &b, &second}) {
     image->width = 2;

@@ -155,7 +155,7 @@ TEST_F(CompareCli, TheSecondHalfHasNoiseOfItsOwn) {
 }
 
 // The halves lie on both sides of the image: (2 - 1) (2 - 3) < 0.
-TEST_F(CompareCli, AnErrorBelowTheNoiseIsSaidToBe) {
+TEST_F(CompareCli, AnErrorBelowTheNoiseIsReportedAsSuch) {
   for (const auto& [name, value] : {std::pair{"x.exr", 2.0f}, {"y.exr", 1.0f}, {"z.exr", 3.0f}})
     writeExr(at(name), flatImage(4, 3, value, value, value), ExrPixelType::Float);
   const std::string files = "compare " + path("x.exr") + " " + path("y.exr");

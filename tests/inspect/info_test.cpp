@@ -68,7 +68,7 @@ TEST_F(Info, PutsTheEmissionPointsOfARowTogether) {
   EXPECT_EQ(columnOf(info, "emit_normal.z")["min"], 1.0);
 }
 
-TEST_F(Info, ListsTheColumnsOfStrategies) {
+TEST_F(Info, ListsTheColumnsOfMethods) {
   VplTable table = threeRows(VplStage::Eliminated);
   table.extras = {{"rich.lobes", "W", 2, std::vector<float>{0, 1, 2, 3, 4, 5}},
                   {"rich.basis", "1", 6, std::vector<uint32_t>(18, 7)},

@@ -40,7 +40,7 @@ TEST(Lobes, OfAnyExponent) {
 }
 
 // The mirror lobe beside a diffuse one is too faint to be sampled, even by the random number 0.
-TEST(Lobes, OfNoStrengthAreNotThere) {
+TEST(Lobes, WithoutStrengthAreIgnored) {
   Material m = lambert(Vec3(0.5f));
   m.phong().mirror = Vec3(1e-40f);
   const Scene scene = sceneOf(m);

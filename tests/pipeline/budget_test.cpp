@@ -95,7 +95,7 @@ TEST_F(BudgetRun, ThePreviewIsThereBeforeTheImage) {
   EXPECT_FALSE(fs::exists(at("x.exr")));
 }
 
-TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
+TEST_F(BudgetRun, ACheckpointKeepsTheTimeSpentAndMayGetAnother) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
   stop("--time 1h" + work);
@@ -108,7 +108,7 @@ TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
   EXPECT_FALSE(fs::exists(at("c")));
 }
 
-TEST_F(BudgetRun, ACheckpointGoesOnByAnyBudget) {
+TEST_F(BudgetRun, ACheckpointContinuesWithAnyBudget) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
   stop("--time 1h" + work);

@@ -25,7 +25,7 @@ TEST_F(Chain, AWholeOnePasses) {
 }
 
 // The commands in the message, run literally, repair the chain and change nothing that was right.
-TEST_F(Chain, TheCommandsOfTheMessageMendIt) {
+TEST_F(Chain, TheCommandsOfTheMessageRepairIt) {
   const std::string image = readAll(at("image.exr"));
   succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300 --seed 2");
   Outcome r = tool("vpl-inspect", all() + " --quiet --scene " + scene_);
@@ -45,7 +45,7 @@ TEST_F(Chain, TheCommandsOfTheMessageMendIt) {
   EXPECT_EQ(readAll(at("image.exr")), image);
 }
 
-TEST_F(Chain, AnotherSceneAGapAndATwinAreRefused) {
+TEST_F(Chain, AnotherSceneAMissingStageAndATwinAreRefused) {
   fail("vpl-inspect",
        all() + " --quiet --scene " + "'" BNVPL_SOURCE "/scenes/veach-door/scene.toml'", kExitInput,
        {"candidates.vpl: made from scene", "; run: vpl-place "});

@@ -108,7 +108,7 @@ TEST_F(Options, UnknownAndMissingOptions) {
 }
 
 // Messages of the option library are replaced by messages for people.
-TEST_F(Options, MistakesAreToldInSentences) {
+TEST_F(Options, MistakesAreReportedInSentences) {
   const std::string out = " -o " + path("x.vpl");
   fail("vpl-place", scene_ + out + " -n 1 -n 2", kExitUsage, {"--count is given more than once"});
   fail("vpl-place", scene_ + " one two" + out, kExitUsage, {"'one', 'two' have no meaning here"});

@@ -66,11 +66,11 @@ class CostRun : public PipelineTest {
   }
 };
 
-TEST_F(CostRun, StagesTakeWhatTheyToldInTheUShape) {
+TEST_F(CostRun, StagesTakeWhatTheyPredictInTheUShape) {
   expectAllPredicted("'" BNVPL_SOURCE "/scenes/u-shape/scene.toml'");
 }
 
-TEST_F(CostRun, StagesTakeWhatTheyToldInACornellBox) {
+TEST_F(CostRun, StagesTakeWhatTheyPredictInACornellBox) {
   expectAllPredicted("'" BNVPL_SOURCE "/scenes/cornell/scene.toml'");
 }
 
@@ -130,7 +130,7 @@ TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
   grows("vpl-render", lit + " --size 2000x1500 --spp 64", lit + " --size 4000x3000 --spp 64", 4.0);
 }
 
-TEST_F(CostRun, OneLineTellsIt) {
+TEST_F(CostRun, OneLinePrintsIt) {
   const Outcome r = tool("vpl-place", scene_ + " -n 2k --estimate -o " + path("x.vpl"));
   EXPECT_EQ(r.code, kExitOk) << r.err;
   EXPECT_EQ(r.out.rfind("vpl-place: about ", 0), 0u) << r.out;

@@ -148,7 +148,7 @@ TEST_F(Damage, UnwritablePreviewLeavesNoImage) {
   EXPECT_TRUE(listing().empty());
 }
 
-TEST_F(Damage, AViewIntoTheVoidIsRefusedInBoundedTime) {
+TEST_F(Damage, AViewOfNothingIsRefusedInBoundedTime) {
   fs::copy(BNVPL_SOURCE "/scenes/test", at("test"), fs::copy_options::recursive);
   std::string toml = readAll(at("test/one-bounce.toml"));
   const size_t where = toml.find("look_at = [-0.2, 0.4, 0.0]");

@@ -52,7 +52,7 @@ TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
 }
 
 // With --only direct, options of indirect light are refused.
-TEST_F(Effect, DirectLightAloneAsksNoVpls) {
+TEST_F(Effect, DirectLightAloneNeedsNoVpls) {
   makeStages(scene_);
   const std::string lit = scene_ + " " + path("lit.vpl") +
                           " --spp 1 --only direct --direct-samples 1 --near-field-rays 2 -o ";
@@ -250,7 +250,7 @@ TEST_F(Effect, MeansOfWhatIsNotShownAreNotPrinted) {
 }
 
 // Only the first stage that reads a scene prints its warnings.
-TEST_F(Effect, WarningsOfTheSceneAreSaidOnce) {
+TEST_F(Effect, WarningsOfTheSceneArePrintedOnce) {
   const std::string odd = "scenes/test/quirks.toml";
   const auto warned = [&](const std::string& name, const std::string& arguments) {
     const Outcome r = tool(name, arguments);

@@ -62,7 +62,7 @@ TEST_F(Inspect, CheckNoticesAChangedMaterial) {
        {"candidates.vpl: made from scene "});
 }
 
-TEST_F(Inspect, TheWrongFileIsToldWithItsCure) {
+TEST_F(Inspect, TheWrongFileIsReportedWithItsRemedy) {
   fail("vpl-inspect", "info " + path("nix"), kExitInput,
        {"nix: cannot open: No such file or directory; check the name, or run the stage"});
   fail("vpl-inspect", "info " + path(""), kExitInput, {": is a folder; name a .vpl"});

@@ -104,7 +104,7 @@ TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
 
 // Tools that read both the scene and files made from it leave the warnings to the tool that made
 // these.
-TEST_F(SceneFilesOfOthers, WarningsAreToldOnceForAllTools) {
+TEST_F(SceneFilesOfOthers, WarningsArePrintedOnceForAllTools) {
   replaceAll("von Blender/my room.mtl", "my_left", "my_right");
   const auto warns = [&](const std::string& name, const std::string& arguments) {
     const Outcome r = tool(name, arguments);

@@ -33,7 +33,7 @@ class VplFiles : public PipelineTest {
   }
 };
 
-TEST_F(VplFiles, ColumnsOfStrategiesSurviveTheStages) {
+TEST_F(VplFiles, ColumnsOfMethodsSurviveTheStages) {
   addLobes("vpls.vpl", "v.vpl");
   succeed("vpl-estimate", scene_ + " " + path("v.vpl") + " -o " + path("l.vpl") + " --photons 5k");
   expectLobes("l.vpl");
@@ -48,7 +48,7 @@ TEST_F(VplFiles, ColumnsOfStrategiesSurviveTheStages) {
 }
 
 // Extra columns do not change what the stages compute.
-TEST_F(VplFiles, ColumnsOfStrategiesLeaveTheOthersAlone) {
+TEST_F(VplFiles, ColumnsOfMethodsLeaveTheOthersAlone) {
   addLobes("vpls.vpl", "v.vpl");
   for (const char* name : {"v", "vpls"}) {
     succeed("vpl-estimate", scene_ + " " + path(name + std::string(".vpl")) + " -o " +
@@ -75,7 +75,7 @@ TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
   }
 }
 
-TEST_F(VplFiles, TheWrongStageIsToldWithItsMakerAndTheRightTools) {
+TEST_F(VplFiles, TheWrongStageIsReportedWithItsMakerAndTheRightTools) {
   succeed("vpl-place", scene_ + " -o " + path("light.vpl") + " -n 20 --method light");
   fail("vpl-estimate", scene_ + " " + path("light.vpl") + " -o " + path("x.vpl"), kExitInput,
        {"is of stage lit (by vpl-place --method light): its VPLs have their flux; pass it to "

@@ -72,7 +72,7 @@ NearFieldRays nearField(const World& world, const VplTable& lit, const char* com
 
 // The points that rays hit behind a near-specular lobe lie near a VPL that knows their light. They
 // need neither a gather nor a further ray.
-TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
+TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
   const World world(cellsBeforeMetal(/*seesMetal=*/false));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   SurfacePoint cover;
@@ -97,7 +97,7 @@ TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
 
 // VPLs carry what a far wall reflects by its rough lobes; rays that hit it follow its faint
 // near-specular lobe.
-TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
+TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
   Scene scene = manyLights();
   for (Material& m : scene.materials) {
     if (m.name != "Red") continue;
@@ -126,7 +126,7 @@ TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
   EXPECT_GT(bring, kRays / 20);  // 31 if rays chose lobes by reflectance alone
 }
 
-TEST(Caustics, PhotonsTakeTheFirefliesOfSmallLamps) {
+TEST(Caustics, PhotonsRemoveTheFirefliesOfSmallLights) {
   const World world = shiny(bulbs(0), false);
   const VplTable lit = fewVpls(world);
   // Fireflies are rare: a single pair of images may have none.
@@ -177,7 +177,7 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
 }
 
 // Light of an emitter with too few photons is left to the rays entirely.
-TEST(Caustics, LampsWithTooFewPhotonsAreLeftToRays) {
+TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
   const World world = shiny(manyLights(), false);
   size_t lamp = 0;
   while (!world.lights.hittable(lamp)) ++lamp;
@@ -196,7 +196,7 @@ TEST(Caustics, LampsWithTooFewPhotonsAreLeftToRays) {
 }
 
 // No ray can hit a point light over a mirror.
-TEST(Caustics, PhotonsBringWhatNoRayCanHit) {
+TEST(Caustics, PhotonsCarryWhatNoRayCanHit) {
   const World world = shiny(bulbs(0), true);
   const VplTable lit = fewVpls(world);
   const auto indirect = [&](const char* photons) {

@@ -36,7 +36,7 @@ LightNode cluster(Rng& rng) {
 
 // Clusters near and far, receivers with small and large BSDF values. Where the quick test says far,
 // no receiver in the box gets more light than allowed.
-TEST(Expectation, WhatIsSurelyFarExceedsNowhere) {
+TEST(Expectation, TheFarTestIsConservative) {
   Rng rng(streamKey(11, Stream::Plot), 0);
   int far = 0, exceeded = 0;
   for (int i = 0; i < 20000; ++i) {

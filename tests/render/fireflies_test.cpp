@@ -64,7 +64,7 @@ Brought firefly(Vec3 light) {
   };
 }
 
-TEST(Fireflies, GoWhereNobodySeesThemAndKeepTheirEnergy) {
+TEST(Fireflies, AreHiddenAndKeepTheirEnergy) {
   const Vec3 light(300, 100, 50);
   for (const uint64_t passes : {0u, 6u}) {
     const Shown film{.passes = passes};
@@ -99,7 +99,7 @@ TEST(Fireflies, AreSpreadAsWidelyAsTheyAreBright) {
 }
 
 // Eight pixels of a block find the same light by one sample each; they are hidden together.
-TEST(Fireflies, OfASharedFindAreHiddenTogether) {
+TEST(Fireflies, OfSeveralPixelsAreHiddenTogether) {
   const Shown film;
   const auto finds = [](uint32_t x, uint32_t y) {
     return x / 4 == kX / 4 && y / 4 == kY / 4 && (x + y) % 2 == 0;
@@ -116,7 +116,7 @@ TEST(Fireflies, OfASharedFindAreHiddenTogether) {
   }
 }
 
-TEST(Fireflies, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
+TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
   const Shown film;
   for (const bool seen : {false, true}) {
     const Brought brought = [seen](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
@@ -170,7 +170,7 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
 }
 
 // The camera sees no surface to the left.
-TEST(Fireflies, LeaveTheVoidBlack) {
+TEST(Fireflies, LeavePixelsWithoutSurfaceBlack) {
   const Shown film;
   const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     if (x < kX - 1) {
@@ -190,7 +190,7 @@ TEST(Fireflies, LeaveTheVoidBlack) {
 }
 
 // Integrators report the visible area light, and all of it, as emission.
-TEST(Fireflies, IntegratorsKnowWhatTheCameraSeesStraight) {
+TEST(Fireflies, IntegratorsReportVisibleEmission) {
   test::World world("cornell/scene.toml");
   world.scene.film = {96, 96};
   float lamp = 0.0f;
@@ -262,7 +262,7 @@ TEST(Fireflies, TwoOfAPixelAreSpread) {
 
 // Nothing hides a firefly in the dark. One that is too bright for a small film becomes at least no
 // dot.
-TEST(Fireflies, StayInTheDarkAlone) {
+TEST(Fireflies, StayWhereAllElseIsDark) {
   const Shown film;
   const Brought dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     if (there(x, y, slot)) out.indirect = Vec3(16.0f);

@@ -24,7 +24,7 @@ TEST(LearnedLight, IsTheLightOfAllLights) {
                               directBy(world, {{"direct", "each"}, {"spp", "16"}})));
 }
 
-TEST(LearnedLight, FindsTheFewLightsThatAreSeen) {
+TEST(LearnedLight, FindsTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(1200));
   const Render learned = directBy(many, {{"direct", "learned"}}),
                each = directBy(many, {{"direct", "each"}});

@@ -240,7 +240,7 @@ TEST(Passes, EndByTimeErrorOrNumber) {
   EXPECT_NEAR(double(fine.passes) / double(coarse.passes), 4.0, 0.8);
 }
 
-TEST(Passes, SppIsTheMostOfThem) {
+TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
   EXPECT_EQ(resolveRender({}).whole("spp"), 16u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->passes, 0xffffffffu / kPassSpp);

@@ -24,7 +24,7 @@ TEST(IrradianceField, KnowsTheLightOfAFurnace) {
 }
 
 // Every pixel contains edges of boxes and walls.
-TEST(PixelControlVariate, TakesNoiseAndNoLight) {
+TEST(PixelControlVariate, ReducesNoiseAndKeepsTheMean) {
   const World world(room(16, 16));
   const VplTable lit = litVpls(world, {{"count", "400"}}, {}, {{"count", "8k"}});
   const auto by = [&](const char* control, const char* spp) -> Render {
@@ -45,7 +45,7 @@ TEST(PixelControlVariate, TakesNoiseAndNoLight) {
 
 // Where a VPL's surface lies partly in the dark, its irradiance must not make darker samples
 // strongly negative.
-TEST(PixelControlVariate, TakesNoMoreThanThereIs) {
+TEST(PixelControlVariate, SubtractsNoMoreThanThereIs) {
   World world("veach-door/scene.toml");
   world.scene.film = {80, 45};
   const VplTable lit = litVpls(world, {{"count", "1000"}});

@@ -20,7 +20,7 @@ SurfaceLights learned(const World& world, const VplTable& vpls) {
   return {world.rays, world.lights, vpls.position, vpls.normal, vpls.radius, 7, {}};
 }
 
-TEST(SurfaceLights, FewOfTheRaysGoToLightsThatNobodySees) {
+TEST(SurfaceLights, FewRaysGoToHiddenLights) {
   const World world(bulbs(kHidden));
   const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
   const SurfaceLights lights = learned(world, vpls);
@@ -63,7 +63,7 @@ TEST(SurfaceLights, OneLightLeavesNothingToChoose) {
 }
 
 // Point lights that light no visible surface change nothing, and hardly the noise.
-TEST(SurfaceLights, NearFieldRaysFindTheFewLightsThatAreSeen) {
+TEST(SurfaceLights, NearFieldRaysFindTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(kHidden));
   const VplTable lit = litBy(few);
   const auto by = [&](const World& world) -> Render {
@@ -95,7 +95,7 @@ TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
 }
 
 // Points seen over a near-specular lobe see other lights than their tile, which covers all cells.
-TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesLookForTheirOwnLights) {
+TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesSampleTheirOwnLights) {
   const World world(cellsBeforeMetal(/*seesMetal=*/true));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   const auto direct = [&](const Given& options) -> Render {
@@ -115,7 +115,7 @@ TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesLookForTheirOwnLights) {
   EXPECT_LT(noiseOf(learned, 4), 2.0 * noiseOf(each, 4));  // 3.5 times with the tile's lights
 }
 
-TEST(SurfaceLights, PathsFromVplsFindTheFewLightsThatAreSeen) {
+TEST(SurfaceLights, PathsFromVplsFindTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(kHidden));
   const VplTable vpls = keptVpls(few, {{"count", "150"}}, {{"count", "3k"}});
   const auto fluxes = [&](const World& world, const char* seed) {

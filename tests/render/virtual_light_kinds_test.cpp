@@ -42,7 +42,7 @@ TYPED_TEST(EachLightKind, FallOffWithDistanceAndNeverExceedAPoint) {
   EXPECT_NEAR(TypeParam::spread(1e6f, kSize2), 1e6f, 1.0f);
 }
 
-TYPED_TEST(EachLightKind, RemoveWhatTheyDoNotBring) {
+TYPED_TEST(EachLightKind, RemoveWhatTheyDoNotEmit) {
   for (float d = 0.01f; d < 3.0f; d += 0.01f) {
     EXPECT_NEAR(TypeParam::removed(d / 0.2f), 1.0f - d * d / TypeParam::spread(d * d, 0.04f),
                 1e-5f);
@@ -82,7 +82,7 @@ TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
 }
 
 // The removed light is reported: with it, every kind gives the same image.
-TEST(LightKindsOfImages, DifferInWhatTheyRemoveAlone) {
+TEST(LightKindsOfImages, DifferOnlyInWhatTheyRemove) {
   const World world("furnace/scene.toml");
   const VplTable lit = litVpls(world, {{"count", "300"}});
   const auto statsOf = [&](const char* light) {
@@ -94,7 +94,7 @@ TEST(LightKindsOfImages, DifferInWhatTheyRemoveAlone) {
 }
 
 // In a furnace every pixel is known: the near field restores what disks remove.
-TEST(LightKindsOfImages, HaveTheirEnergyBroughtBack) {
+TEST(LightKindsOfImages, HaveTheirEnergyRestored) {
   World world("furnace/scene.toml");
   world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});

@@ -280,7 +280,7 @@ TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
 
 // Two estimators of direct light: one light sampled with one ray, and every light with BSDF rays
 // besides.
-TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
+TEST(SameExpectation, DirectLightOfPathsAndOfVplsFromSeveralLights) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {28, 16};
   scene.lights.assign(2, LightSpec{});
@@ -358,7 +358,7 @@ TEST(SameExpectation, SampleAllocationAndPathReuse) {
 
 // Near-specular lobes sample lights from distributions learned by tiles and surfaces; the path
 // tracer does not. Most of the power is the sky's, of which the box sees little.
-TEST(SameExpectation, SharpLobesAndWhatIsLearned) {
+TEST(SameExpectation, NearSpecularLobesAndLearnedLights) {
   Scene scene = coatedCornellBox();
   scene.lights.emplace_back().type = LightType::Environment;
   scene.lights.back().emission = Vec3{2.0f, 1.0f, 0.5f};

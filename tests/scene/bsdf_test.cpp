@@ -232,7 +232,7 @@ TEST(Bsdf, MirrorReturnsTheOneDirection) {
   }
 }
 
-TEST(Bsdf, ExponentPartsRoughFromChain) {
+TEST(Bsdf, ExponentSeparatesRoughFromSpecular) {
   for (const float exponent : {kNearSpecularExponent, kNearSpecularExponent + 1.0f}) {
     const Scene scene = sceneOf(phong(Vec3(0.2f), Vec3(0.5f), exponent));
     const SurfacePoint p = pointSeenFrom({0, 0, 1});

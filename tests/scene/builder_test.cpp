@@ -223,7 +223,7 @@ TEST_F(Builder, NothingToSeeIsRefused) {
   }
 }
 
-TEST_F(Builder, SaysWhenNothingShines) {
+TEST_F(Builder, ReportsASceneWithoutLight) {
   const auto warned = [](const Scene& scene) {
     EXPECT_EQ(countContaining(scene.warnings, "s: has no light with power"),
               scene.hasLight() ? 0u : 1u)

@@ -12,7 +12,7 @@ namespace {
 using ExactRays = SceneFiles;
 
 // Masks, slivers and coincident triangles: both give the same hits up to the last digits.
-TEST_F(ExactRays, MeetWhatEmbreeMeets) {
+TEST_F(ExactRays, HitWhatEmbreeHits) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
   ASSERT_LT(scene.maskedBegin, scene.worldEnd());
   const RayScene embree(scene), exact(scene, Processor::Any);
@@ -46,7 +46,7 @@ TEST_F(ExactRays, MeetWhatEmbreeMeets) {
 }
 
 // The result does not depend on the order of the traversal.
-TEST_F(ExactRays, OfTrianglesAtOneDistanceTheFirstIsMet) {
+TEST_F(ExactRays, TheFirstOfTrianglesAtOneDistanceIsHit) {
   const Scene scene =
       loadMesh(kSquareObj + "f 3 4 1 2\nf 2 3 4 1\nf 4 1 2 3\n", "newmtl paint\nKd 0.5 0.5 0.5\n");
   const RayScene rays(scene, Processor::Any);

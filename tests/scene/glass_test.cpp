@@ -70,7 +70,7 @@ TEST(Glass, WeightsOfPhotonsSumToOne) {
 }
 
 // Radiance is scaled by 1/eta^2 on one way through the surface and back on the other.
-TEST(Glass, RadianceIsSqueezedInsideAndRestoredOutside) {
+TEST(Glass, RadianceIsScaledByEtaSquared) {
   const Scene scene = sceneOf(glass(1.5f));
   const SurfacePoint outside = pointSeenFrom(at(30)),
                      inside = pointSeenFrom(at(10), {0, 0, 1}, {0, 0, 1}, false);
@@ -92,7 +92,7 @@ TEST(Glass, ReflectsTotallyBeyondTheCriticalAngle) {
   }
 }
 
-TEST(Glass, IsChainOnly) {
+TEST(Glass, IsSpecularOnly) {
   const Scene scene = sceneOf(glass(1.5f));
   const SurfacePoint p = pointSeenFrom(at(20));
   const Bsdf bsdf(scene, p);

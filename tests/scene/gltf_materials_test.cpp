@@ -122,7 +122,7 @@ TEST_F(GltfMaterials, NumbersOutOfRangeAreMovedIntoItWithAWarning) {
     EXPECT_EQ(countContaining(s.warnings, name), 1u) << name << joined(s.warnings);
 }
 
-TEST_F(GltfMaterials, UnlitShines) {
+TEST_F(GltfMaterials, UnlitEmits) {
   const Scene s = load(withMaterial(
       "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0,1]},\"extensions\":{"
       "\"KHR_materials_unlit\":{}}}"));

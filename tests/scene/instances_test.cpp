@@ -104,9 +104,9 @@ void expectSameHits(const Scene& one, const Scene& other, float tolerance,
   EXPECT_GT(occluded, 2000);
 }
 
-TEST(Instances, AreMetAsIfEachWereStored) { expectSameHits(tents(true), tents(false), 1e-4f); }
+TEST(Instances, AreHitAsIfEachWereStored) { expectSameHits(tents(true), tents(false), 1e-4f); }
 
-TEST(Instances, AreMetForAnyProcessorToo) {
+TEST(Instances, AreHitForAnyProcessorToo) {
   expectSameHits(tents(true), tents(false), 1e-4f, Processor::Any);
 }
 
@@ -128,7 +128,7 @@ TEST(Instances, AreStoredOnce) {
   }
 }
 
-TEST(Instances, ShineWhereTheyStand) {
+TEST(Instances, EmitWhereTheyStand) {
   const Scene shared = tents(true), flat = tents(false);
   const RayScene a(shared), b(flat);
   const LightSet lamps(a), same(b);

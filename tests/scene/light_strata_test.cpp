@@ -44,7 +44,7 @@ struct Lit {
 };
 
 // drawnBy() inverts the sampling: the point that a sample hits gives the sample's random numbers.
-TEST(LightStrata, DrawnByTurnsDrawingAround) {
+TEST(LightStrata, DrawnByInvertsSampling) {
   const Lit lit(manyLights());
   const Vec3 at{0.1f, 0.01f, 0.2f};
   size_t areas = 0, skies = 0;
@@ -136,7 +136,7 @@ TEST(LightStrata, AreDrawnWithTheirProbabilities) {
 
 // At a border between parts of the probability, rounding must not move the remaining number out of
 // the unit interval, where a sun has no directions.
-TEST(LightStrata, WhatIsLeftOfANumberStaysInTheUnitInterval) {
+TEST(LightStrata, ReusedNumbersStayInTheUnitInterval) {
   const Lit lit(manyLights());
   const LightStrata strata(lit.lights);
   const std::vector<uint32_t> some{0, 2};

@@ -152,7 +152,7 @@ TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
   expectClose(lit.lights.power(0), Vec3(10, 5, 1) * (2.0f * kPi * float(sum)), 1e-3f);
 }
 
-TEST(DirectLight, CutAwayPartsOfALampDoNotShine) {
+TEST(DirectLight, CutAwayPartsOfALampDoNotEmit) {
   Scene scene = texelScene({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
   scene.materials[0].emissionTexture = kNone;
   scene.materials[0].opacityTexture = 0;  // opaque where the texture is at least 1/2
@@ -165,7 +165,7 @@ TEST(DirectLight, CutAwayPartsOfALampDoNotShine) {
               Vec3(10, 5, 1) * (0.6137f / 4096 / (kPi * 2.25f)), 0.5f);
 }
 
-TEST(DirectLight, LampShinesOnItsSidesOnly) {
+TEST(DirectLight, LampEmitsOnItsSidesOnly) {
   const Lit one(lampScene(false)), two(lampScene(true));
   EXPECT_EQ(irradiance(one.lights, 0, {0, 3, 0}, {0, -1, 0}), Vec3());
   const Vec3 above = irradiance(two.lights, 0, {0, 3, 0}, {0, -1, 0});

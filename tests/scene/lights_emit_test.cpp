@@ -82,7 +82,7 @@ TEST(Emission, LightsThatAreTooStrongForVplsAreRefused) {
   }
 }
 
-TEST(Emission, LampsSendEvenlyFromTheirLitSides) {
+TEST(Emission, LampsEmitUniformlyFromTheirLitSides) {
   for (const bool twoSided : {false, true}) {
     Scene scene;
     addSquare(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 3},

@@ -32,7 +32,7 @@ TEST_F(MtlForms, OneValueIsGrey) {
   EXPECT_EQ(paint("illum 4\nNi 1.5\nTf 0.5\n").materials.at(0).phong().transmission, Vec3(0.5f));
 }
 
-TEST_F(MtlForms, CieIsConvertedAndSpectraAreToldToBeIgnored) {
+TEST_F(MtlForms, CieIsConvertedAndIgnoredSpectraAreReported) {
   const Vec3 white = diffuse("Kd xyz 0.9505 1 1.089\n");
   EXPECT_LT(length(white - Vec3(1)), 1e-3f);
   const Scene spectral = paint("Kd spectral white.rfl 0.5\n");
@@ -81,7 +81,7 @@ TEST_F(MtlForms, KeysWithoutAMeaningAreNamedOnceTogether) {
   EXPECT_EQ(countContaining(paint(many).warnings, "'key5' (line 7) and 94 more;"), 1u);
 }
 
-TEST_F(MtlForms, KnownKeysThatAreNotReadAreToldWhereTheyWouldChangeThePicture) {
+TEST_F(MtlForms, KnownKeysThatAreNotReadAreReportedWhereTheyMatter) {
   for (const char* line : {"map_Ps s.png", "refl r.png", "disp d.png", "map_refl r.png"}) {
     const std::string key = std::string(line).substr(0, std::string(line).find(' '));
     const Scene s = paint("Kd 1 1 1\n" + std::string(line) + "\n");
@@ -91,7 +91,7 @@ TEST_F(MtlForms, KnownKeysThatAreNotReadAreToldWhereTheyWouldChangeThePicture) {
   EXPECT_EQ(countContaining(s.warnings, "ignored"), 0u) << joined(s.warnings);
 }
 
-TEST_F(MtlForms, WhatIsNoNumberIsToldWithItsLine) {
+TEST_F(MtlForms, MalformedNumbersAreReportedWithTheirLine) {
   const auto expect = [&](const std::string& field, const std::string& part) {
     const std::string error = errorOf(kSquareObj, "newmtl paint\n" + field + "\n");
     EXPECT_NE(error.find("square.mtl:2: " + part), error.npos) << error;
@@ -157,7 +157,7 @@ TEST_F(MtlForms, LinesOfAnObjThatAreWrongAreNamed) {
     EXPECT_EQ(errorOf(corners + fine + "\nf 1 2 3\n", mtl), "") << fine;
 }
 
-TEST_F(MtlForms, Utf16IsToldByName) {
+TEST_F(MtlForms, Utf16IsReportedByName) {
   const auto wide = [](const std::string& text) {
     std::string out = "\xff\xfe";
     for (const char c : text) out += {c, '\0'};

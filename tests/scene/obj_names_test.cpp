@@ -155,7 +155,7 @@ TEST_F(ObjNames, ByteOrderMarksAreNoPartOfTheFirstWord) {
   EXPECT_EQ(reds(kMark + kCorners + "mtllib a.mtl\nusemtl p\n" + kFace), (Reds{.25f}));
 }
 
-TEST_F(ObjNames, LinesGoOnBehindABackslash) {
+TEST_F(ObjNames, LinesContinueAfterABackslash) {
   write("a.mtl", "newmtl \\\n p\nKd .25 \\\r\n 0 0\n");
   for (const std::string end : {"\\\n", "\\\r\n", "\\  \n"}) {
     EXPECT_EQ(reds("mtllib " + end + " a.mtl\nv 0 " + end + "0 0\nv 1" + end + "0 0\nv 0 1 0\n" +

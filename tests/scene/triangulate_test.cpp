@@ -137,7 +137,7 @@ TEST(Triangulate, CornersInLineAndDoubledOnesCostNothing) {
   for (int i = 0; i < 100; ++i) expectCovered(random, square, "square");
 }
 
-TEST(Triangulate, CrossingOutlinesAreTold) {
+TEST(Triangulate, CrossingOutlinesAreReported) {
   const auto cut = [](const std::vector<FilePoint>& corners) {
     Triangles triangles;
     const bool whole = triangulate(corners, QuadCut::ShorterDiagonal, triangles);

@@ -45,7 +45,7 @@ TEST_F(PbrtLights, PowerIsThatOfEachShapeOfPbrt) {
   EXPECT_NEAR(sphere.materials.back().emission.x, 10.0 / (16.0 * kPi64 * kPi64), 1e-5);
 }
 
-TEST_F(PbrtLights, LampsShineOnTheirOutside) {
+TEST_F(PbrtLights, LampsEmitOnTheirOutside) {
   const Scene s = loadWorld("AreaLightSource \"diffuse\" \"bool twosided\" true\n");
   EXPECT_TRUE(s.materials.back().twoSidedEmission);
   const Scene none = loadWorld("AttributeBegin AreaLightSource \"diffuse\" AttributeEnd\n");
@@ -85,7 +85,7 @@ TEST_F(PbrtLights, TheFilmsSensorScales) {
   EXPECT_NEAR(bright.lights[0].emission.x, 6.0 / kPi64, 1e-4);
 }
 
-TEST_F(PbrtLights, GoniometricShinesEvenlyAndProjectionIsLeftOut) {
+TEST_F(PbrtLights, GoniometricEmitsUniformlyAndProjectionIsLeftOut) {
   const Scene s = loadWorld("LightSource \"projection\"\nLightSource \"goniometric\"\n");
   EXPECT_EQ(s.lights.size(), 1u);
   EXPECT_EQ(countContaining(s.warnings, "'projection'"), 1u);

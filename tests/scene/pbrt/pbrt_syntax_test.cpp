@@ -142,7 +142,7 @@ TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
 }
 
 // pbrt refuses such area lights, too. One warning names them, however often they are instanced.
-TEST_F(PbrtSyntax, LampsInObjectsDoNotShine) {
+TEST_F(PbrtSyntax, LampsInObjectsDoNotEmit) {
   for (const std::string places :
        {"ObjectInstance \"o\"", "ObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\""}) {
     const Scene scene = loadPbrt("WorldBegin ObjectBegin \"o\"\nAreaLightSource \"diffuse\"\n" +

@@ -76,7 +76,7 @@ TEST(Rejection, IsTheSameForAnyThreads) {
   EXPECT_EQ(tables[0].flux, tables[1].flux);
 }
 
-TEST(Rejection, TellsOfItsPreparations) {
+TEST(Rejection, ReportsItsPreparations) {
   const FromLights& c = cornell();
   Preparations told;
   const Values options = resolve(eliminateSpec(), {{"count", "200"}, {"method", "rejection"}});

@@ -73,7 +73,7 @@ TEST(Both, HasNoBias) {
 
 // At equal work, the method is better than photons where these rarely hit, and hardly worse where
 // only photons find the area light.
-TEST(Both, TakesTheBetterOfTheTwo) {
+TEST(Both, IsAsGoodAsTheBetterOfTheTwo) {
   const auto errorOverThatOfPhotons = [](const World& world, const Given& truth) {
     const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
     const VplTable right = lightVpls(world, vpls, with({{"emit-points", "0"}}, truth)).table;
@@ -168,7 +168,7 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
   }
 }
 
-TEST(Both, TellsProgressOnceForAllItsWork) {
+TEST(Both, ReportsProgressOnceForAllItsWork) {
   const World world = lampAndSky();
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
   for (const char* error : {"0", "0.02"}) {

@@ -73,7 +73,7 @@ TEST(Conductor, MultipleScatteringReturnsWhatFacetsLose) {
   }
 }
 
-TEST(Conductor, AlphaPartsRoughFromSpecular) {
+TEST(Conductor, AlphaSeparatesRoughFromSpecular) {
   for (const float alpha : {0.29f, kRoughAlpha}) {
     const Scene scene = sceneOf(materialOf(metal(0.6f, alpha)));
     const SurfacePoint p = seenFrom({0, 0, 1});

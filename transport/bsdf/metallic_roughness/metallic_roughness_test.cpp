@@ -96,7 +96,7 @@ TEST(MetallicRoughness, IsAppendixB) {
 }
 
 // The base of a VPL's material reflects its albedo (theory.md, eq. 4).
-TEST(MetallicRoughness, BaseSendsOnItsAlbedo) {
+TEST(MetallicRoughness, BaseReflectsItsAlbedo) {
   for (const float ior : {1.2f, 1.5f, 2.5f})
     for (const float specular : {0.0f, 0.3f, 1.0f})
       for (const float roughness : {0.0f, 0.2f, 0.7f, 0.95f})

@@ -29,7 +29,7 @@ VplTable withoutThoseThatLookLeft(const VplTable& vpls) {
 
 // A wide clamp removes much of the light, and rays restore it. Where VPLs are missing altogether,
 // here on every surface that faces left, rays carry all light.
-TEST(NearField, GivesBackWhatClampAndGapsTake) {
+TEST(NearField, RestoresClampedAndUncoveredLight) {
   World world("cornell/scene.toml");
   world.scene.film = {48, 48};
   const double path = indirectByPaths(world, {{"spp", "256"}});
@@ -143,7 +143,7 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
 
 // A VPL stands in the middle of a board that is narrower than its disk. Its area is that of the
 // board under the disk; where points of the disk rarely hit the board, its radiance is unknown.
-TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
+TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
   const auto radianceOfBoard = [](float width) {
     Scene scene;
     addSquare(scene, {-2, 0, width / 2}, {4, 0, 0}, {0, 0, -width}, lambert(Vec3(0.5f)));
@@ -206,7 +206,7 @@ TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
 }
 
 // Few shadow rays find a sky through a window; the rays that compensate for VPLs find it too.
-TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
+TEST(NearField, ItsRaysReduceTheNoiseOfDirectLight) {
   Scene sky = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   sky.film = {32, 32};
   sky.lights.assign(1, LightSpec{});

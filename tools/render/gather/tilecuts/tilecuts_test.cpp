@@ -106,7 +106,7 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
 
 // A tile that shows an area light may have a larger error than others, but by less than the ratio
 // of brightness.
-TEST(TileCuts, LampsInSightHideHalfOfTheError) {
+TEST(TileCuts, VisibleLightsHideHalfOfTheError) {
   const GatherCase c("cornell/scene.toml", {96, 96}, {{"count", "1000"}});
   const auto render = [&](const char* gather) {
     return renderVpls(c.world, c.lit,

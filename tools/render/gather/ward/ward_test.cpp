@@ -27,7 +27,7 @@ TEST(Ward, SavesShadowRays) {
   EXPECT_LT(rays("ward"), 0.6 * rays("all"));
 }
 
-TEST(Ward, TellsOfItsPreparations) {
+TEST(Ward, ReportsItsPreparations) {
   const GatherCase& c = *gatherCases().front();
   Preparations told;
   const Values options =

@@ -180,7 +180,7 @@ Scene bulbInGlass() {
 }
 
 // Photons contribute the light that walls reflect after it came through glass.
-TEST(Guided, HasAllLightOfABulbInGlass) {
+TEST(Guided, HasAllLightOfAPointLightInGlass) {
   const World world(bulbInGlass());
   const VplTable lit = fewLit(world);
   const auto light = [&](uint64_t seed) {

@@ -54,7 +54,7 @@ TEST(LightTracer, AgreesWithThePathTracerBlockByBlock) {
   for (const unsigned bounces : {1u, 32u}) expectTheSameImage(world, bounces, 0.06, 0.01);
 }
 
-TEST(LightTracer, AgreesInAFilmThatIsNotSquareByLampSkyAndPointLight) {
+TEST(LightTracer, AgreesInAFilmThatIsNotSquareWithSeveralLights) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {48, 24};
   scene.lights.assign(2, LightSpec{});
@@ -76,7 +76,7 @@ TEST(LightTracer, DirectLightIsThePathTracers) {
 }
 
 // The run is stopped after every round and continued from the saved bytes.
-TEST(LightTracer, GoesOnFromEveryRound) {
+TEST(LightTracer, ContinuesFromEveryRound) {
   World world("cornell/scene.toml");
   world.scene.film = {40, 40};
   const Given options{{"spp", "8"}};  // 12800 photons
