@@ -163,10 +163,10 @@ TEST(EscapedText, KeepsWhatIsReadAndSpellsOutWhatActs) {
       {"plain \xc3\xa4\xe6\xb0\xb4\xf0\x9f\x92\xa1", "plain \xc3\xa4\xe6\xb0\xb4\xf0\x9f\x92\xa1"},
       {"\x1b]0;title\a\x1b[31m", "\\x1b]0;title\\x07\\x1b[31m"},
       {"\x7f\r", "\\u007f\\x0d"},
-      {"\xc2\x9b", "\\u009b"},  // C1 control: CSI in one character
+      {"\xc2\x9b", "\\u009b"},      // C1 control: CSI in one character
       {"\xe2\x80\xae", "\\u202e"},  // right-to-left override
       {"\xef\xbb\xbf", "\\ufeff"},
-      {"\x9b\xff", "\\x9b\\xff"},  // not UTF-8
+      {"\x9b\xff", "\\x9b\\xff"},           // not UTF-8
       {"\xc0\xaf", "\\xc0\\xaf"},           // overlong
       {"\xed\xa0\x80", "\\xed\\xa0\\x80"},  // surrogate
       {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},

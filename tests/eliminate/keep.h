@@ -11,7 +11,7 @@ namespace bnvpl {
 
 struct KeptRows {
   std::vector<uint32_t> rows;  // ascending
-  std::vector<float> radius;  // radius of each row
+  std::vector<float> radius;   // radius of each row
   double rMax = 0.0, area = 0.0;
 };
 

@@ -32,8 +32,7 @@ std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vecto
   return weight;
 }
 
-// Repeatedly removes the heaviest remaining candidate and subtracts its weights from the others'
-// sums.
+// Repeatedly removes the heaviest remaining candidate and updates the sums of the others.
 std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>& radius,
                                    size_t keep, float limit = 0.0f) {
   const size_t n = cloud.size();
@@ -130,8 +129,7 @@ TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
             greedyOracle(cloud, radius, 100, 0.0f));
 }
 
-// The candidates fill many blocks and cells of many sizes, and removed nodes are dropped on the
-// way.
+// The candidates fill many blocks and cells of many sizes; removed nodes are dropped meanwhile.
 TEST(Oracle, ManyCandidatesOfDensitiesFarApart) {
   Cloud cloud = unevenPlane(3000, 13);
   for (size_t i = 0; i < 500; ++i) {  // a dense cluster of them

@@ -28,8 +28,7 @@ const VplTable& manyVpls() {
   return vpls;
 }
 
-// Draws one emission point for each of many VPLs, all from the hits `begin` to `end` of the same
-// four.
+// Draws one emission point for each of many VPLs, from hits `begin` to `end` of the same four.
 EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7) {
   EmitPoints points(manyVpls(), 1, key);
   for (size_t vpl = 0; vpl < kDraws; ++vpl) {

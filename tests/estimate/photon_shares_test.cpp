@@ -52,8 +52,8 @@ TEST(PhotonShares, AreInProportionToPower) {
 
 TEST(PhotonShares, WhatIsLeftGoesToTheLargestRemainders) {
   EXPECT_EQ(countsOf({1, 1, 1}, 100), (Counts{34, 33, 33}));  // among equals the first
-  EXPECT_EQ(countsOf({26, 37, 37}, 10), (Counts{2, 4, 4}));  // shares 2.6, 3.7, 3.7
-  EXPECT_EQ(countsOf({51, 53, 56}, 16), (Counts{5, 5, 6}));  // shares 5.1, 5.3, 5.6
+  EXPECT_EQ(countsOf({26, 37, 37}, 10), (Counts{2, 4, 4}));   // shares 2.6, 3.7, 3.7
+  EXPECT_EQ(countsOf({51, 53, 56}, 16), (Counts{5, 5, 6}));   // shares 5.1, 5.3, 5.6
 }
 
 // One photon already exceeds such a light's share, whatever its remainder.

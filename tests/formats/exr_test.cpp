@@ -138,8 +138,7 @@ TEST_F(Exr, DataWindowInsideTheDisplayWindowIsPlaced) {
   const Image image = layeredImage();
   writeExr(at("a.exr"), image, ExrPixelType::Float);
   std::string bytes = readAll(at("a.exr"));
-  // The display window grows by 2 columns and 3 lines before the data, and shrinks by 4 and 5 after
-  // it.
+  // The display window has 2 columns and 3 lines more before the data, and 4 and 5 fewer after.
   const int window[4] = {-2, -3, 32, 15};
   poke(bytes, attributeOffset(bytes, "displayWindow", "box2i"), window);
   writeAll(at("b.exr"), bytes);

@@ -136,8 +136,7 @@ TEST_F(VplExtras, EveryFieldOfTheDirectoryIsChecked) {
     bad(1, 28, components, "column light-slice.cluster has " + std::to_string(components));
   bad(1, 48, '\0', "the unit of column light-slice.cluster");
   bad(1, 48, '\x1b', "the unit of column light-slice.cluster");
-  // Another type or width of the same size has the same layout; the file is valid and holds another
-  // column.
+  // Another type or width of the same size has the same layout; the file is valid.
   EXPECT_EQ(complaintAbout(entry(1, 24), 1u), "");
   EXPECT_SAYS(complaintAbout(entry(0, 28), 5u),
               at(0, 40) + "bytes of column rich.lobes 32, expected 40");
@@ -156,8 +155,7 @@ TEST_F(VplExtras, ColumnsAreContiguous) {
     EXPECT_SAYS(complaintAbout(entry(1, 40), bytes),
                 "byte " + std::to_string(entry(1, 40)) + ": bytes of column light-slice.cluster");
   }
-  // With one column fewer than the directory was written for, the provenance would begin in its
-  // entry.
+  // With one column fewer in the header, the provenance would begin in the last column's entry.
   EXPECT_NE(complaintAbout(56, static_cast<uint32_t>(kStandard + 2)), "");
   EXPECT_SAYS(complaintAbout(28 + entry(1, 0), 1024u), "byte 16: 2 rows");
 }

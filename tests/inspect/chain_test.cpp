@@ -14,8 +14,7 @@ class DeepCheck : public InspectTest {
     lit_ = threeRows(VplStage::Lit);
     lit_.reach = 2.0;
   }
-  // Writes the three tables as a chain with correct histories, and returns the problem found in the
-  // rows.
+  // Writes the tables as a chain with correct histories; returns the problem found in the rows.
   std::string problem() {
     writeVpl(at("c.vpl"), candidates_);
     kept_.provenance = extendProvenance(

@@ -42,8 +42,7 @@ inline void writeAll(const fs::path& file, const std::string& bytes) {
   ASSERT_TRUE(out.good()) << file;
 }
 
-// Three rows on the plane z = 0 with distances of one and three units; every value is exact in
-// binary.
+// Three rows on the plane z = 0, one and three units apart; every value is exact in binary.
 inline VplTable threeRows(VplStage stage) {
   VplTable table;
   table.stage = stage;

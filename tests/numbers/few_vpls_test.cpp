@@ -115,8 +115,7 @@ TEST(FewVpls, RadiiBeyondFloatsAreRefused) {
   EXPECT_THROW(keepWithin("1e-80"), InputError);
 }
 
-// VPLs stand exactly at the point, a rounding error above it, and at a distance; only the last one
-// contributes.
+// VPLs at the point, a rounding error above it, and at a distance; only the last contributes.
 TEST(FewVpls, AVplAtTheShadedPoint) {
   const World world = smallCornell();
   SurfacePoint at;

@@ -180,7 +180,7 @@ TEST_F(OddScenes, BlackSurfaces) {
 }
 
 TEST_F(OddScenes, ACameraInsideAWall) {
-  for (const Vec3 position : {Vec3(-0.7f, 0.3f, -0.9f),  // inside the box
+  for (const Vec3 position : {Vec3(-0.7f, 0.3f, -0.9f),     // inside the box
                               Vec3(-2.0f, 1.0f, 0.5f),      // in the plane of a wall
                               Vec3(-2.0f, 0.0f, -2.0f)}) {  // in a corner
     Scene scene = room(metres_);

@@ -104,8 +104,7 @@ TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
   }
 }
 
-// The predicted cost grows with the requested work, including preparations that a probe does only
-// in part.
+// The predicted cost grows with the work, including preparations that a probe does only in part.
 TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),

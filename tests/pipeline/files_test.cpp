@@ -137,8 +137,7 @@ TEST_F(Files, TwoOutputsOfOneName) {
           {"--diff", "--stats"});
 }
 
-// The kind of an existing file is determined by its content, so a mistyped name destroys no file of
-// another kind.
+// The content of a file determines its kind, so a mistyped name destroys no file of another kind.
 TEST_F(Files, AnOutputReplacesNoFileOfAnotherKind) {
   write("notes", "of somebody\n");
   write("package.json", "{\"name\": \"x\"}\n");

@@ -7,8 +7,7 @@ namespace {
 
 class Limits : public PipelineTest {
  protected:
-  // A scene with the given film and a missing mesh. An error about the mesh means that the film was
-  // accepted.
+  // A scene with the given film and a missing mesh; an error about the mesh accepts the film.
   std::string film(const std::string& width, const std::string& height) const {
     write("film.toml", "[film]\nwidth = " + width + "\nheight = " + height +
                            "\n[camera]\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\n"

@@ -14,8 +14,7 @@ class Memory : public PipelineTest {
 #endif
     makeStages(scene_);
   }
-  // Two threads bound the noise: each thread has its own buffers, and which of many get work is
-  // random.
+  // Each thread has its own buffers, and which of many threads get work is random; so two are used.
   double peakMiB(const std::string& name, const std::string& arguments) const {
     succeed(name, arguments + " --quiet --threads 2 --stats " + path("s.json"));
     return nlohmann::json::parse(readAll(at("s.json"))).at("peak_memory_MiB").get<double>();

@@ -1,5 +1,4 @@
-// Extreme films, counts and intensities through the executables. What the stages compute is tested
-// in tests/numbers.
+// Extreme films, counts and intensities through the executables; the stages are in tests/numbers.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

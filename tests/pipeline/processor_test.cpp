@@ -1,5 +1,4 @@
-// --processor any gives the same bytes on all processors. tests/bytes/processors.py emulates other
-// processors.
+// --processor any gives the same bytes on all processors; tests/bytes/processors.py emulates some.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -70,8 +69,7 @@ TEST_F(ProcessorRun, TunablesOfTheUserStay) {
   }
 }
 
-// The restarted tool keeps its process and name, and ends as usual: by signals, and with errors in
-// one line.
+// The restarted tool keeps its process and name, and ends as usual, on signals and on errors.
 TEST_F(ProcessorRun, TheToolThatIsStartedAnewIsTheSame) {
   fail("vpl-place", scene_ + " -n 1k --processor 486 -o " + path("x.vpl"), kExitUsage,
        {"--processor", "this", "any"});

@@ -121,8 +121,7 @@ std::vector<std::string> screenOf(const std::string& typed) {
   return lines;
 }
 
-// Every stage in a terminal erases its progress line before the summary, and uses the field's
-// words.
+// In a terminal every stage erases its progress line before it prints the summary.
 TEST_F(ProgressOfTools, IsErasedFromATerminalBeforeAnythingElseIsPrinted) {
   makeStages(scene_);
   const std::pair<std::string, std::string> lines[] = {

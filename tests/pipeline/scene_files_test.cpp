@@ -102,8 +102,7 @@ TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
   EXPECT_FALSE(fs::exists(at("l.vpl")));
 }
 
-// Tools that read both the scene and files made from it leave the warnings to the tool that made
-// these.
+// A tool that also reads files made from the scene leaves its warnings to the tool that made them.
 TEST_F(SceneFilesOfOthers, WarningsArePrintedOnceForAllTools) {
   replaceAll("von Blender/my room.mtl", "my_left", "my_right");
   const auto warns = [&](const std::string& name, const std::string& arguments) {

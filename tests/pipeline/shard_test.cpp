@@ -35,8 +35,7 @@ class ShardRun : public PipelineTest {
     succeed(name, arguments + " --quiet -o " + path(whole));
     for (const int of : counts) expectTheSame(name, arguments, of, whole);
   }
-  // Makes a copy with `to` in place of `from` in its text and changed records, but with valid
-  // checksums.
+  // Copies a shard with `to` in place of `from` and changed records, but with valid checksums.
   void forge(const std::string& source, const std::string& copy, const std::string& from,
              const std::string& to, const std::function<void(std::string&)>& change = {}) const {
     ShardReader reader(at(source));

@@ -44,8 +44,7 @@ class PipelineTest : public ::testing::Test {
 
   // Makes small candidates.vpl, vpls.vpl and lit.vpl of a scene (quoted) in the test's folder.
   void makeStages(const std::string& scene) const;
-  // Copies scenes/veach-door and the teapot with a film of 48 x 27; returns the path of scene.toml,
-  // quoted.
+  // Copies scenes/veach-door and the teapot with a film of 48 x 27; returns its scene.toml, quoted.
   std::string copyVeachDoor() const;
 
   // A scene of 64 x 48 pixels without textures.

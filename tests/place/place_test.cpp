@@ -63,8 +63,8 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   }
 }
 
-// After any number of paths, each view has its share to within one path. Each view numbers its own
-// paths consecutively.
+// After any number of paths, each view has its share to within one path. Its paths have consecutive
+// numbers of its own.
 TEST(Place, ViewsTakeTurnsByTheirShares) {
   const std::vector<uint64_t> shares{5, 1, 3};
   const ViewTurns turns(shares);

@@ -95,8 +95,7 @@ TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
   EXPECT_LT(gathers("near-field"), 120u);  // 176 if VPLs served direct hits only
 }
 
-// VPLs carry what a far wall reflects by its rough lobes; rays that hit it follow its faint
-// near-specular lobe.
+// VPLs carry the rough lobes of a far wall; rays that hit it follow its faint near-specular lobe.
 TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
   Scene scene = manyLights();
   for (Material& m : scene.materials) {

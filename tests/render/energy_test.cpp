@@ -6,8 +6,8 @@
 namespace bnvpl::test {
 namespace {
 
-// Every wall emits radiance 1 and reflects rho: direct light is 1 + rho, and VPLs carry rho^2 / (1
-// - rho), for any number of VPLs, radius and density.
+// Every wall emits radiance 1 and reflects rho. For any number of VPLs, radius and density, direct
+// light is 1 + rho, and VPLs carry rho^2 / (1 - rho).
 struct FurnaceCase {
   const char* scene;
   double rho;

@@ -75,8 +75,7 @@ TEST(Fireflies, AreHiddenAndKeepTheirEnergy) {
       EXPECT_GT((*kept.find(channel))[index(film)], 2.0f) << channel;
       EXPECT_NEAR(sumOf(spread, channel) / before, 1.0, 1e-5) << channel << ' ' << passes;
       for (const float v : *spread.find(channel)) {
-        // The limit is an eighth of the surroundings, twice as much in red, plus the visible
-        // contrast.
+        // At most an eighth of the surroundings (twice that in red) plus the visible contrast.
         ASSERT_LE(v, 1.0f + 2.0f * 0.125f + 0.05f) << channel;
         ASSERT_GE(v, 0.45f);
       }
@@ -260,8 +259,7 @@ TEST(Fireflies, TwoOfAPixelAreSpread) {
   }
 }
 
-// Nothing hides a firefly in the dark. One that is too bright for a small film becomes at least no
-// dot.
+// Nothing hides a firefly in the dark; one too bright for a small film is at least no dot.
 TEST(Fireflies, StayWhereAllElseIsDark) {
   const Shown film;
   const Brought dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {

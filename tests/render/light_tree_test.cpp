@@ -85,8 +85,7 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
         sum += radiance * (1.0f / kTimes);
         squares += std::pow(double{mean(radiance)} / double{mean(all)}, 2) / kTimes;
       }
-      // Relative standard deviation of one gather; the tree reduces it because it knows where the
-      // light is.
+      // Relative standard deviation of one gather; the tree directs samples to bright VPLs.
       const double deviation = std::sqrt(std::max(0.0, squares - 1.0));
       const double ofBlind = deviation * std::sqrt(draws) / blind;
       EXPECT_LT(ofBlind, 1.0);

@@ -13,8 +13,7 @@ inline Scene room(uint32_t width, uint32_t height) {
   return scene;
 }
 
-// A box that is open to the viewer, with an area light, a sky with an image, a sun and a point
-// light.
+// A box open to the viewer, with an area light, a sky with an image, a sun and a point light.
 inline Scene manyLights() {
   Scene scene = room(24, 24);
   EnvironmentImage sky;
@@ -35,8 +34,7 @@ inline Scene manyLights() {
   return scene;
 }
 
-// The box without its area light, with three point lights inside and `hidden` more above its
-// ceiling.
+// The box without its area light: three point lights inside and `hidden` more above its ceiling.
 inline Scene bulbs(uint32_t hidden) {
   Scene scene = room(24, 24);
   const Vec3 centre = scene.bounds.center(), extent = scene.bounds.extent();

@@ -43,8 +43,7 @@ TEST(PixelControlVariate, ReducesNoiseAndKeepsTheMean) {
   EXPECT_LT(noiseOf(by("vpls", "2")), 0.92 * noiseOf(by("none", "2")));
 }
 
-// Where a VPL's surface lies partly in the dark, its irradiance must not make darker samples
-// strongly negative.
+// Where a VPL's surface is partly dark, the control variate must not make pixels negative.
 TEST(PixelControlVariate, SubtractsNoMoreThanThereIs) {
   World world("veach-door/scene.toml");
   world.scene.film = {80, 45};

@@ -1,5 +1,4 @@
-// Renderers that must have the same expected image, pixel by pixel, and images known in closed
-// form.
+// Renderers whose expected images must be equal, pixel by pixel, or equal known images.
 #include "tests/support/z_test.h"
 
 #include "core/sampling.h"
@@ -34,8 +33,7 @@ Image noise(uint64_t seed, double mean, double deviation) {
   return image;
 }
 
-// If both expectations are equal, p is uniform in 0..1, except for the correlation of blocks with
-// their pixels.
+// If both expectations are equal, p is uniform in 0..1 up to the correlation of nested blocks.
 TEST(ZTest, EqualExpectationsAreSeldomTakenForDifferent) {
   int below = 0;
   for (uint64_t round = 0; round < 60; ++round) {
@@ -117,8 +115,7 @@ TEST(SameExpectation, FurnaceIsKnownAtEveryPixel) {
   EXPECT_TRUE(sameExpectation(paths(world, oneBounce), flat(world, 0.25f)));
   EXPECT_TRUE(sameExpectation(photons(world, indirect), flat(world, 0.5f)));
   EXPECT_TRUE(sameExpectation(photons(world, oneBounce), flat(world, 0.25f)));
-  // Rays are sent besides light samples, which alone have no variance near an edge of two area
-  // lights.
+  // Rays complement light samples, which have no variance near an edge of two area lights.
   const Given direct{
       {"spp", "16"}, {"only", "direct"}, {"compensate", "near-field"}, {"near-field-rays", "4"}};
   EXPECT_TRUE(sameExpectation(vpls(world, {}, direct), flat(world, 1.5f)));
@@ -278,8 +275,7 @@ TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
                               photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}));
 }
 
-// Two estimators of direct light: one light sampled with one ray, and every light with BSDF rays
-// besides.
+// Two estimators of direct light: one light and one ray, and all lights with BSDF rays besides.
 TEST(SameExpectation, DirectLightOfPathsAndOfVplsFromSeveralLights) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {28, 16};
@@ -294,7 +290,7 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsFromSeveralLights) {
                                                                  {"compensate", "near-field"},
                                                                  {"near-field-rays", "2"}};
   EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, byVpls)));
-  // Without VPLs all light is direct. Its own camera samples follow noise and cost, or are three.
+  // Without VPLs all light is direct. Its samples follow noise and cost, or are three.
   for (const char* count : {"0", "3"}) {
     const Given own{{"spp", "8"}, {"compensate", "none"}, {"direct-samples", count}};
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;

@@ -120,8 +120,7 @@ TEST(Bsdf, SampledWeightsMeanTheIntegral) {
   }
 }
 
-// Over the upper hemisphere, the density integrates to the share of samples that are not lost below
-// it.
+// Above the surface, the density integrates to the share of samples that are not lost below it.
 TEST(Bsdf, DensityHoldsTheShareOfSamplesThatLeave) {
   for (const Case& c : materials()) {
     const Scene scene = sceneOf(c.material);

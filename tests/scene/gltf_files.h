@@ -105,7 +105,7 @@ class Gltf {
   const std::string& bytes() const { return bytes_; }
 
   std::string more;        // members of the root: ",\"extensionsUsed\":[...]"
-  std::string roots;  // indices of the root nodes of scene 0
+  std::string roots;       // indices of the root nodes of scene 0
   bool withScenes = true;  // else the file has no scenes, or those in `more`
 
  private:

@@ -155,8 +155,7 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
 TEST_F(GltfGeometry, PlacesNodesUnderTheirParents) {
   Gltf g = cornerGltf();
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
-  // The child is rotated by a quarter turn about z, doubled and moved; its parent's matrix moves it
-  // along x.
+  // The child is rotated by a quarter turn about z, doubled and moved; its parent moves it along x.
   const size_t child = g.add("nodes",
                              "{\"mesh\":0,\"translation\":[0,0,3],\"scale\":[2,2,2],"
                              "\"rotation\":[0,0,0.70710678,0.70710678]}");

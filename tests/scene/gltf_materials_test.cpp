@@ -46,7 +46,7 @@ TEST_F(GltfMaterials, MetallicRoughnessHasItsFactorsAndTextures) {
   ASSERT_LT(m.baseColour.texture, s.expressions.size());
   EXPECT_EQ(lookUp(s, m.baseColour.texture, 0.25f, 0.75f), Vec3(1, 0, 0));  // the upper row
   EXPECT_EQ(lookUp(s, m.baseColour.texture, 0.25f, 0.25f), Vec3(0, 0, 1));
-  EXPECT_NEAR(lookUp(s, m.metallic.texture, 0.25f, 0.25f).x, 1.0f, 1e-6f);  // blue channel
+  EXPECT_NEAR(lookUp(s, m.metallic.texture, 0.25f, 0.25f).x, 1.0f, 1e-6f);   // blue channel
   EXPECT_NEAR(lookUp(s, m.roughness.texture, 0.25f, 0.25f).x, 0.0f, 1e-6f);  // green channel
   EXPECT_EQ(s.expressions[m.metallic.texture].wrapU, Wrap::Clamp);
   EXPECT_EQ(s.expressions[m.metallic.texture].wrapV, Wrap::Mirror);

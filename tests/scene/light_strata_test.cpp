@@ -6,8 +6,7 @@
 namespace bnvpl {
 namespace {
 
-// An area light of two unequal triangles, a sky with an image, one without, a sun, and a point
-// light.
+// An area light of two unequal triangles, a sky with an image, one without, a sun, a point light.
 Scene manyLights() {
   Scene scene;
   addSquare(scene, {-2, 0, 3}, {4, 0, 0}, {0, 0, -6}, lambert(Vec3(0.5f)));

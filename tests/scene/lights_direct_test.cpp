@@ -4,8 +4,7 @@
 namespace bnvpl {
 namespace {
 
-// Unoccluded irradiance at `at` (normal n) from one light, from its direct samples on a grid of (u,
-// v).
+// Unoccluded irradiance at `at` (normal n) from one light, by direct samples on a grid of (u, v).
 Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
   constexpr int kSide = 300;
   double sum[3] = {0, 0, 0};
@@ -116,7 +115,7 @@ TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   for (const Case& c :
        {Case{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
         Case{Uv{{{3, 1}, {2, 1}, {2, 0}, {3, 0}}}, Wrap::Repeat, texel},            // mirrored
-        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},  // repeated
+        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},            // repeated
         Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // very often
         Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Black, texel / 9},
         Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Clamp, texel / 9},

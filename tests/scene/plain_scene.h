@@ -14,8 +14,7 @@
 
 namespace bnvpl {
 
-// Adds a square of two triangles from a corner and two sides; their cross product points to the lit
-// side.
+// Adds a square of two triangles: a corner and two sides whose cross product is the lit side.
 inline void addSquare(Scene& scene, Vec3 corner, Vec3 a, Vec3 b, const Material& material) {
   const auto first = static_cast<uint32_t>(scene.positions.size());
   for (const Vec3 p : {corner, corner + a, corner + a + b, corner + b})

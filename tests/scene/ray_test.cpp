@@ -30,8 +30,7 @@ TEST_F(Rays, HitsAreDescribedFromTheSideOfTheRay) {
   EXPECT_FALSE(rays.closestHit({1.5f, 0, 2}, {0, 0, -1}, hit));
 }
 
-// The scene has normals, texture coordinates and a texture, so that batches prefetch all kinds of
-// data.
+// With normals, texture coordinates and a texture, batches prefetch all kinds of data.
 TEST_F(Rays, ManyAtOnceAreWhatTheyAreOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
   const RayScene rays(scene);

@@ -67,8 +67,7 @@ class SceneFiles : public ::testing::Test {
   fs::path folder_;
 };
 
-// An uncompressed 32-bit TGA file with rows from the top: the simplest format with an alpha
-// channel.
+// An uncompressed 32-bit TGA file, rows from the top: the simplest format with an alpha channel.
 inline std::string tga(uint8_t width, uint8_t height,
                        const std::vector<std::array<uint8_t, 4>>& rgba) {
   std::string bytes(18, '\0');

@@ -1,5 +1,4 @@
-// Real models where they are available: in BNVPL_SHARED_SCENES, else in shared/scenes beside the
-// project.
+// Real models, where available: in BNVPL_SHARED_SCENES, else in shared/scenes beside the project.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -156,8 +156,7 @@ void checkBound(const Bsdf& bsdf, const std::string& name) {
   }
 }
 
-// Checks that hold for any material. `tolerance` applies to the furnace and to the stated rough
-// albedo.
+// Checks for any material. `tolerance` applies to the furnace and to the stated rough albedo.
 void check(const Material& m, const std::string& material, float tolerance) {
   const Scene scene = sceneOf(m);
   for (const Vec3 wo : views()) {

@@ -36,8 +36,7 @@ inline SurfacePoint seenFrom(Vec3 w, Vec3 ns = {0, 0, 1}, bool insideOut = false
   return p;
 }
 
-// Cells of the sphere of directions, with the number of samples and the integral of the density in
-// each.
+// Cells of the sphere of directions, with the samples drawn in each and the density's integral.
 class SphereCells {
  public:
   static constexpr int kRows = 20, kColumns = 24;
@@ -45,8 +44,7 @@ class SphereCells {
   // Integrates the density by the midpoint rule within each cell, for `count` samples in total.
   void integrate(const std::function<float(Vec3)>& pdf, double count);
   double sumExpected() const;
-  // Chi-square over cells (small ones pooled), converted to a standard normal deviate (Wilson &
-  // Hilferty).
+  // Chi-square over cells (small ones pooled) as a standard normal deviate (Wilson & Hilferty).
   double deviate() const;
 
  private:
@@ -71,8 +69,7 @@ void checkDensity(const Bsdf& bsdf, LobeGroup group, const std::string& name);
 void checkSamples(const Scene& scene, Vec3 wo, Vec3 ns, LobeGroup group, const std::string& name);
 // roughUpperBound() holds for cones of directions.
 void checkBound(const Bsdf& bsdf, const std::string& name);
-// Checks that hold for any material. `tolerance` applies to the furnace and to the stated rough
-// albedo.
+// Checks for any material. `tolerance` applies to the furnace and to the stated rough albedo.
 void check(const Material& m, const std::string& material, float tolerance = 0.01f);
 
 }  // namespace bnvpl::test

@@ -13,8 +13,7 @@
 
 namespace bnvpl::test {
 
-// A scene of the project with its acceleration structure; the order of members keeps references
-// valid.
+// A scene with its acceleration structure; the order of the members keeps references valid.
 struct World {
   explicit World(const std::string& name) : World(loadScene(fs::path(BNVPL_SCENES_DIR) / name)) {}
   explicit World(Scene given) : scene(std::move(given)), rays(scene), lights(rays) {}

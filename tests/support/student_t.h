@@ -35,8 +35,7 @@ inline double incompleteBeta(double a, double b, double x) {
   return 1.0 - front * betaFraction(b, a, 1.0 - x) / b;
 }
 
-// Probability of |T| > |t| for T with `freedom` degrees; accurate in the far tails. 0 for infinite
-// t.
+// Probability of |T| > |t| for `freedom` degrees; accurate in the far tails, 0 for infinite t.
 inline double studentTwoSided(double t, double freedom) {
   if (std::isinf(t)) return 0.0;
   return incompleteBeta(0.5 * freedom, 0.5, freedom / (freedom + t * t));

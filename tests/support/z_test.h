@@ -5,8 +5,7 @@
 // sqrt(n)) follows Student's t with n - 1 degrees of freedom, as far as pixels are nearly normal.
 // The same is done with means over blocks of 2 x 2, 4 x 4, ... pixels up to the whole image, which
 // reveal small errors that are everywhere. The smallest p value decides, after Sidak's correction
-// for the number of tests. Renderers that share random numbers for a seed only make the test
-// sharper.
+// for the number of tests. Random numbers shared for a seed only make the test sharper.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,8 +21,7 @@ using Render = std::function<Image(uint64_t seed)>;
 
 struct ZTest {
   unsigned seeds = 24;
-  // Probability that the whole test fails where both agree; small, since pixels are only nearly
-  // normal.
+  // Probability of failure where both agree; small, since pixels are only nearly normal.
   double significance = 1e-5;
   std::string layer = {};  // such as "indirect."; empty: R, G, B
 };
@@ -36,8 +34,8 @@ struct ZResult {
   int block = 1, x = 0, y = 0;  // side and first pixel of the block, in pixels
   char channel = 'R';
   double meanA = 0.0, meanB = 0.0;  // means over the block and all seeds
-  size_t nonFinite = 0;  // count over both renderers
-  Image image;  // means "a" and "b", and "t", for each pixel
+  size_t nonFinite = 0;             // count over both renderers
+  Image image;                      // means "a" and "b", and "t", for each pixel
 };
 
 ZResult zTest(const Render& a, const Render& b, const ZTest& options = {});
@@ -46,8 +44,8 @@ ZResult zTest(const Render& a, const Render& b, const ZTest& options = {});
 testing::AssertionResult sameExpectation(const Render& a, const Render& b,
                                          const ZTest& options = {});
 
-// Noise from the differences of images with seeds 1 and 2, 3 and 4, and so on: the root of the mean
-// square over pixels and R, G, B, averaged over the pairs.
+// Noise of the images with seeds 1 and 2, 3 and 4, and so on: the root of the squared differences,
+// summed over pixels and R, G, B and averaged over the pairs.
 double noiseOf(const Render& render, uint64_t pairs = 1);
 
 }  // namespace bnvpl::test

@@ -91,8 +91,7 @@ TEST_F(PbrtLights, GoniometricEmitsUniformlyAndProjectionIsLeftOut) {
   EXPECT_EQ(countContaining(s.warnings, "'projection'"), 1u);
 }
 
-// The mapping preserves area: +z is in the middle, -z in the corners, the equator on the diamond
-// between.
+// The mapping preserves area: +z is the middle, -z the corners, the equator the diamond between.
 TEST(Octahedral, Square) {
   const auto expectAt = [](FilePoint d, double u, double v) {
     const auto p = pbrt::squareOf(d);

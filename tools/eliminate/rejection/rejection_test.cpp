@@ -51,8 +51,7 @@ TEST(Rejection, KeepsAboutTheCount) {
   EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // a count of independent choices
 }
 
-// A VPL that contributes nothing to the view is kept with probability 1/100, at a hundred times its
-// flux.
+// A VPL without contribution to the view is kept with probability 1/100 and 100 times its flux.
 TEST(Rejection, WeighsByOneOverTheProbability) {
   const VplTable& all = cornell().all;
   const VplTable kept = cornell().keep({});

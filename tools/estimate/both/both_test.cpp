@@ -88,8 +88,7 @@ TEST(Both, IsAsGoodAsTheBetterOfTheTwo) {
   EXPECT_LT(errorOverThatOfPhotons(World("u-shape/scene.toml"), {{"photons", "1M"}}), 1.3);
 }
 
-// A point light above a mirror: no path finds its reflected light, and photons contribute all of
-// it.
+// A point light above a mirror: no path finds its reflected light, so photons contribute it all.
 TEST(Both, KeepsLightThatOnlyPhotonsFind) {
   Scene scene;
   Material mirror = lambert(Vec3(0.0f));

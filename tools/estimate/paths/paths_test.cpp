@@ -20,8 +20,7 @@ void expectAgreement(const World& world, const VplTable& vpls, const char* name)
     const double ea = a * double{photons.relativeError[i]}, eb = b * double{paths.relativeError[i]};
     squares += (a - b) * (a - b) / (ea * ea + eb * eb + 1e-30);
   }
-  // The value is 1 if the errors are as stated; points are stratified, which makes their errors
-  // smaller.
+  // The value is 1 if the errors are as stated; stratified points have smaller errors.
   EXPECT_LT(std::sqrt(squares / double(vpls.size())), 1.3) << name;
 }
 

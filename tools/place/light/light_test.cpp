@@ -41,8 +41,7 @@ TEST(PlaceLight, CarriesThePowerOfEachLight) {
     EXPECT_NEAR(totalOf(placed.table.firstBounceFlux, c) / power, 0.5, 0.5 * error);
   }
   EXPECT_EQ(totalOf(placed.table.flux, 1), 0.0);
-  // Every VPL represents a share of the surface, six squares; a hexagon around a circle of radius r
-  // has this area.
+  // Hexagons around circles of the VPLs' radii cover the surface, six unit squares.
   double area = 0.0;
   for (const float r : placed.table.radius) area += 2.0 * std::sqrt(3.0) * double{r} * double{r};
   EXPECT_NEAR(area, 6.0, 0.3);

@@ -34,8 +34,7 @@ TEST(Diffuse, TexturesScaleTheConstant) {
   expectClose(Bsdf(scene, p).roughAlbedo(), Vec3(0.8f), 1e-6f);
 }
 
-// Lambertian reflection does not depend on wo, even below the shading normal's horizon: no black
-// seams.
+// Lambertian reflection ignores wo, even below the shading normal's horizon: no black seams.
 TEST(Diffuse, HasNoSeamsWhereTheShadingNormalTurnsAway) {
   const Scene scene = sceneOf(materialOf(DiffuseModel{Vec3(0.5f)}));
   const Vec3 ns = normalize({0.8f, 0, 0.6f});

@@ -84,8 +84,7 @@ TEST(MetallicRoughness, IsAppendixB) {
       const Bsdf bsdf(scene, p);
       const Vec3 value =
           (bsdf.eval(LobeGroup::Rough, wi) + bsdf.eval(LobeGroup::Specular, wi)) / wi.z;
-      // For metallic 0.5 the appendix is ambiguous: it mixes the two materials, or their
-      // parameters.
+      // For metallic 0.5 the appendix is ambiguous: it mixes two materials, or their parameters.
       const Vec3 expected = metallic == 0.5f ? 0.5f * (appendixB(base, 0, roughness, wi, wo) +
                                                        appendixB(base, 1, roughness, wi, wo))
                                              : appendixB(base, metallic, roughness, wi, wo);
@@ -159,8 +158,7 @@ TEST(MetallicRoughness, ThinWallLetsStraightThrough) {
   EXPECT_FALSE(Bsdf(scene, p).hasRough());
 }
 
-// A clearcoat has its own normal: it mirrors about another normal than the base, and energy is
-// preserved.
+// A clearcoat mirrors about its own normal instead of the base's, and energy is preserved.
 TEST(MetallicRoughness, CoatReflectsAboutItsOwnNormal) {
   MetallicRoughnessModel m = gltf(0, 1, Vec3(0.5f));
   m.clearcoat = 1.0f;

@@ -33,8 +33,7 @@ TEST(NearField, RestoresClampedAndUncoveredLight) {
   World world("cornell/scene.toml");
   world.scene.film = {48, 48};
   const double path = indirectByPaths(world, {{"spp", "256"}});
-  // The VPLs are numerous enough to keep the blur of their energy small; it falls with their
-  // spacing.
+  // Many VPLs keep the blur of their energy small; it falls with their spacing.
   const VplTable all = keptVpls(world, {{"count", "2000"}}, {{"count", "40k"}});
   const VplTable rest = withoutThoseThatLookLeft(all);
   ASSERT_LT(rest.size(), all.size());

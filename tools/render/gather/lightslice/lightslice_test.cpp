@@ -29,8 +29,7 @@ TEST(LightSlice, MoreColumnsAreNearerToAllVpls) {
   }
 }
 
-// Clusters of each slice's own are better than the same number for all points (Ou & Pellacini
-// 2011).
+// Clusters per slice are better than as many for all points (Ou & Pellacini 2011).
 TEST(LightSlice, SlicesAreBetterThanOneForAll) {
   for (const GatherCase* c : gatherCases()) {
     const double slices = errorOf(*c, {{"columns", "100"}});

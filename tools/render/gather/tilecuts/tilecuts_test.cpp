@@ -104,8 +104,7 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
   }
 }
 
-// A tile that shows an area light may have a larger error than others, but by less than the ratio
-// of brightness.
+// A tile with a visible light may have a larger error, but less so than the light is brighter.
 TEST(TileCuts, VisibleLightsHideHalfOfTheError) {
   const GatherCase c("cornell/scene.toml", {96, 96}, {{"count", "1000"}});
   const auto render = [&](const char* gather) {

@@ -26,8 +26,7 @@ TEST(PathTracer, TwoPatchFormFactor) {
   for (const Material& m : world.scene.materials) (isBlack(m.emission) ? receiver : emitter) = &m;
   const Given options{{"spp", "64"}, {"layers", "albedo"}, {"max-bounces", "0"}};
   const Image image = renderWithout(world, "path", options).image;
-  // Mean over the pixels that the receiver covers completely; its irradiance varies by less than 2
-  // %.
+  // Mean over the pixels inside the receiver; its irradiance varies by less than 2 %.
   const std::vector<float>&r = *image.find("R"), &albedo = *image.find("albedo.R");
   double sum = 0.0;
   size_t covered = 0;
@@ -53,8 +52,7 @@ TEST(PathTracer, SplitsDirectAndIndirectWithoutRest) {
   EXPECT_NEAR(indirect.indirect, all.indirect, 0.02 * all.indirect);
 }
 
-// The Cornell box in daylight: its area light, a sky through the open front, a low sun and a point
-// light.
+// The Cornell box in daylight: area light, sky through the open front, low sun and point light.
 Scene boxInDaylight() {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {32, 32};
