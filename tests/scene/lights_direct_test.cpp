@@ -115,8 +115,8 @@ TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   for (const Case& c :
        {Case{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
         Case{Uv{{{3, 1}, {2, 1}, {2, 0}, {3, 0}}}, Wrap::Repeat, texel},            // mirrored
-        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},            // repeated
-        Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // very often
+        Case{Uv{{{0, 0}, {6, 0}, {6, 4}, {0, 4}}}, Wrap::Repeat, texel},            // tiled
+        Case{Uv{{{0, 0}, {1000, 0}, {1000, 500}, {0, 500}}}, Wrap::Mirror, texel},  // many tiles
         Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Black, texel / 9},
         Case{Uv{{{-1, -1}, {2, -1}, {2, 2}, {-1, 2}}}, Wrap::Clamp, texel / 9},
         Case{Uv{{{0.5f, 0}, {0.5f, 1}, {1.5f, 1}, {1.5f, 0}}}, Wrap::Repeat, texel}}) {
