@@ -1,4 +1,4 @@
-// Options and methods: one table each, from which everything follows.
+// Options and methods: one table each, from which everything else is derived.
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
@@ -57,7 +57,7 @@ TEST(Options, WithoutEffectAreRefusedWithWhatTheyNeed) {
   EXPECT_EQ(refusal({}), "--count is required");
 }
 
-// "-1", 2^64, nothing, octal and hexadecimal digits: refused or read as what they say.
+// "-1", 2^64, empty text, octal and hexadecimal digits are refused or read literally.
 TEST(Options, WholeNumbersAreWhatIsTyped) {
   const auto seed = [](const std::string& text) {
     return resolve(spec(), {{"count", "1"}, {"seed", text}}).whole("seed");
@@ -105,7 +105,7 @@ TEST(Options, DurationsAreSeconds) {
   for (const char* text : {"60", "", "m", "1d", "0s", "-1s", "1 s", "infs", "1s2"}) {
     EXPECT_THROW(seconds(text), UsageError) << text;
   }
-  // Without a value unless given, and what needs it.
+  // The option has no value unless it is given, and neither has an option that needs it.
   EXPECT_FALSE(resolve(timed).has("time"));
   EXPECT_FALSE(resolve(timed).has("k"));
   EXPECT_TRUE(resolve(timed, {{"time", "1s"}}).has("k"));
@@ -163,12 +163,12 @@ TEST(EscapedText, KeepsWhatIsReadAndSpellsOutWhatActs) {
       {"plain \xc3\xa4\xe6\xb0\xb4\xf0\x9f\x92\xa1", "plain \xc3\xa4\xe6\xb0\xb4\xf0\x9f\x92\xa1"},
       {"\x1b]0;title\a\x1b[31m", "\\x1b]0;title\\x07\\x1b[31m"},
       {"\x7f\r", "\\u007f\\x0d"},
-      {"\xc2\x9b", "\\u009b"},      // C1: CSI in one character
+      {"\xc2\x9b", "\\u009b"},      // C1 control: CSI in one character
       {"\xe2\x80\xae", "\\u202e"},  // right-to-left override
       {"\xef\xbb\xbf", "\\ufeff"},
-      {"\x9b\xff", "\\x9b\\xff"},           // no UTF-8
+      {"\x9b\xff", "\\x9b\\xff"},           // not UTF-8
       {"\xc0\xaf", "\\xc0\\xaf"},           // overlong
-      {"\xed\xa0\x80", "\\xed\\xa0\\x80"},  // a surrogate
+      {"\xed\xa0\x80", "\\xed\\xa0\\x80"},  // surrogate
       {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},
       {"\xe2\x80", "\\xe2\\x80"},  // cut short
       {"", ""}};

@@ -16,7 +16,7 @@ TEST(Parallel, EveryIndexOnce) {
   parallelFor(0, 1, [&](size_t) { FAIL(); });
 }
 
-// Terms of very different size: any other order of addition gives another sum.
+// The terms differ so much in size that any other order of addition gives another sum.
 TEST(Parallel, SumDoesNotDependOnThreads) {
   const auto term = [](size_t i) { return std::sin(double(i)) * std::pow(10.0, double(i % 17)); };
   std::vector<double> sums;

@@ -46,8 +46,8 @@ TEST(Random, StreamsAndSeedsShareNoKey) {
   EXPECT_EQ(keys.size(), 11000u);
 }
 
-// One point in each box of area 1/256, whatever its shape, for any 256 points in a row from a
-// multiple of that and any key.
+// Any 256 consecutive points, counted from a multiple of 256, put one point into each elementary
+// interval of area 1/256, for any key.
 TEST(Random, SobolPointsFillEveryBoxOnce) {
   std::set<float> firsts;
   for (const uint64_t key : {0u, 1u, 77u}) {
@@ -68,9 +68,9 @@ TEST(Random, SobolPointsFillEveryBoxOnce) {
   EXPECT_EQ(firsts.size(), 3u);
 }
 
-// Points of two keys meet in all pairs of places: in one order, halves of one would always meet the
-// same halves of the other.
-TEST(Random, SobolPointsOfTwoKeysMeetEverywhere) {
+// Point i of one key is independent of point i of another. With one common order, one half of the
+// first set would always meet the same half of the second.
+TEST(Random, SobolPointsOfTwoKeysAreIndependent) {
   constexpr uint32_t kPoints = 256, kKeys = 64;
   double together = 0.0, squares = 0.0;
   for (uint64_t key = 0; key < kKeys; ++key) {
@@ -83,7 +83,8 @@ TEST(Random, SobolPointsOfTwoKeysMeetEverywhere) {
   EXPECT_LT(std::sqrt(squares / kKeys), 2.0 / std::sqrt(double{kPoints}));
 }
 
-// Each number of such a path, single or as a point, lies in another interval for each of 2^k paths.
+// Each number of a spread path, single or part of a point, falls into a different interval of
+// length 1/2^k for each of 2^k paths.
 TEST(Random, SpreadNumbersFillEveryIntervalOnce) {
   constexpr uint32_t kPaths = 64, kNumbers = 6;
   std::array<std::set<uint32_t>, kNumbers + 2> intervals;
@@ -97,7 +98,7 @@ TEST(Random, SpreadNumbersFillEveryIntervalOnce) {
   for (const auto& found : intervals) EXPECT_EQ(found.size(), size_t{kPaths});
 }
 
-// Chi-square of counts that should be equal; its mean is the cells less one.
+// Chi-square statistic of counts that should be equal; its mean is the number of cells minus one.
 double chiSquare(const std::vector<int>& cells, double expected) {
   double sum = 0.0;
   for (const int n : cells) sum += (n - expected) * (n - expected) / expected;
@@ -112,7 +113,7 @@ TEST(Random, ConsecutiveNumbersFillTheSquareEvenly) {
     const auto x = size_t(rng.next() * kSide), y = size_t(rng.next() * kSide);
     ++cells[y * kSide + x];
   }
-  // 255 degrees of freedom: standard deviation 22.6; five of them is 113.
+  // 255 degrees of freedom have a standard deviation of 22.6; the tolerance is five of them.
   EXPECT_NEAR(chiSquare(cells, 400.0), 255.0, 113.0);
 }
 
@@ -127,8 +128,8 @@ TEST(Random, NeighbouringIndicesAreUncorrelated) {
   EXPECT_NEAR(correlation, 0.0, 5.0 / std::sqrt(double(kDraws)));
 }
 
-// Every prefix is spread far more evenly than random points: a random count in a cell that expects
-// 4 has a standard deviation of 2, so its variance over 4 is 1; the sequence stays far below that.
+// Every prefix is spread far more evenly than random points. A random count in a cell that expects
+// 4 has variance 4, so their ratio is 1; the sequence stays far below that.
 TEST(R2Sequence, EveryPrefixIsStratified) {
   for (const int side : {4, 8, 16, 32}) {
     const int count = side * side * 4;

@@ -45,7 +45,7 @@ TEST(Resume, SavingSeesWhatIsDoneAndMayEndTheWork) {
 TEST(Resume, NothingLeftSavesNothing) {
   std::vector<uint8_t> done(5);
   Resume resume;
-  std::atomic<size_t> ran = 0;  // pause() is asked by every thread
+  std::atomic<size_t> ran = 0;  // every thread calls pause()
   resume.pause = [&] { return ++ran == 5; };
   resume.save = [](const std::string&) { FAIL(); };
   forUnitsLeft(

@@ -1,4 +1,4 @@
-// Each warp against its density: the density integrates to 1, and the drawn directions follow it.
+// Each warp is tested against its density: the density integrates to 1, and the samples follow it.
 #include "core/sampling.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace bnvpl {
 namespace {
 
-// Integral over the sphere of a function of z = cos(theta) alone, by the midpoint rule.
+// Integrates a function of z = cos(theta) over the sphere by the midpoint rule.
 double overSphere(const std::function<double(double)>& f) {
   constexpr int kSteps = 200000;
   double sum = 0.0;
@@ -26,8 +26,8 @@ double overSphere(const std::function<double(double)>& f) {
 using Warp = std::function<Vec3(float, float)>;
 using Density = std::function<double(double)>;
 
-// The drawn directions have unit length, an even azimuth, and as many of them in each of `kBands`
-// bands of z as the density says (within five standard deviations).
+// Expects unit directions with uniform azimuth. Each of `kBands` bands of z must hold as many as
+// the density predicts, within five standard deviations.
 void expectFollows(const Warp& warp, const Density& pdf, double zLow, double zHigh) {
   constexpr int kBands = 20, kDraws = 160000;
   std::vector<int> bands(kBands), sectors(8);
@@ -143,8 +143,8 @@ TEST(Sampling, PowerHeuristicSharesSumToOne) {
   EXPECT_EQ(powerHeuristic(INFINITY, 1.0f), 1.0f);
 }
 
-// What a guide finds is what a search of all finds, to the last bit: steep rows, rows with nothing
-// at their ends, rows of one entry, and black ones.
+// A guide table finds the same entry as the full search, to the last bit: in steep rows, rows that
+// are zero at both ends, rows of one entry, and black rows.
 TEST(Cdf, AGuideFindsTheSame) {
   Rng rng(1, 0);
   for (const size_t size : {1u, 2u, 100u, 2048u}) {

@@ -7,7 +7,7 @@
 namespace bnvpl {
 namespace {
 
-// Directions that cover the sphere, the poles and their neighbours included.
+// Directions that cover the sphere, including the poles and their neighbourhoods.
 std::vector<Vec3> manyDirections() {
   std::vector<Vec3> d{{0, 0, 1},         {0, 0, -1},          {1, 0, 0},
                       {0, -1, 0},        {1e-4f, 0, -1.0f},   {0, 1e-6f, -1.0f},

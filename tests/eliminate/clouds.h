@@ -17,13 +17,13 @@ struct Cloud {
   size_t size() const { return position.size(); }
 };
 
-// Uniform on the rectangle width x depth at z = 0, facing +z.
+// Points uniformly distributed on the rectangle width x depth at z = 0, facing +z.
 Cloud plane(size_t count, float width, float depth, uint64_t seed);
 
-// Uniform on the surface of the cube [0, edge]^3, facing outwards.
+// Points uniformly distributed on the surface of the cube [0, edge]^3, facing outwards.
 Cloud cube(size_t count, float edge, uint64_t seed);
 
-// On the unit square; the density falls about 100:1 from one side to the other.
+// Points on the unit square whose density falls by about 100:1 from one side to the other.
 Cloud unevenPlane(size_t count, uint64_t seed);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// What the elimination stage promises about its result.
+// Guarantees of the elimination stage about its result.
 #include "tools/eliminate/eliminate.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ void expectSubset(const KeptRows& result, size_t count, size_t candidates) {
   ASSERT_EQ(result.radius.size(), count);
   for (size_t i = 0; i < count; ++i) {
     ASSERT_LT(result.rows[i], candidates);
-    // ascending, so unique too
+    // The rows ascend, so they are unique.
     ASSERT_TRUE(i == 0 || result.rows[i - 1] < result.rows[i]);
     ASSERT_TRUE(std::isfinite(result.radius[i]) && result.radius[i] > 0.0f);
   }
@@ -62,8 +62,7 @@ TEST(Eliminate, SpacingFarBetterThanRandom) {
   EXPECT_LT(smallestDistance(cloud, random.rows) / (2.0 * random.rMax), 0.1);
 }
 
-// Relative to the local radius, the spacing is as good where candidates are dense as where they are
-// not.
+// Relative to the local radius, the spacing is equally good in dense and in sparse regions.
 TEST(Eliminate, LocalDensitySpacesRelativeToTheRadius) {
   const Cloud cloud = unevenPlane(4000, 3);
   const KeptRows result = keepRowsOf(cloud, with(keep(800, "local"), {{"uniform-share", "0"}}));
@@ -78,7 +77,7 @@ TEST(Eliminate, LocalDensitySpacesRelativeToTheRadius) {
   EXPECT_NEAR(static_cast<double>(dense), 400.0, 40.0);  // half of the candidates lie there
 }
 
-// A tenth of the area holds half of the candidates: 0.8 * 400 + 0.2 * 80 of 800 VPLs.
+// A tenth of the area holds half of the candidates: of 800 VPLs it gets 0.8 * 400 + 0.2 * 80.
 TEST(Eliminate, AShareOfTheVplsIsSpentEvenly) {
   const Cloud cloud = unevenPlane(4000, 3);
   const KeptRows result = keepRowsOf(cloud, with(keep(800, "local"), {{"uniform-share", "0.2"}}));
@@ -100,7 +99,7 @@ TEST(Eliminate, EstimatesTheArea) {
   }
 }
 
-// Of which a random part is looked at; in any order of theirs.
+// The area is estimated from a random part of many candidates; their order does not matter.
 TEST(Eliminate, EstimatesTheAreaOfMany) {
   const Cloud flat = plane(500000, 3.0f, 2.0f, 4);
   const Values options = resolve(eliminateSpec(), keep(1000));
@@ -113,8 +112,8 @@ TEST(Eliminate, EstimatesTheAreaOfMany) {
   EXPECT_NEAR(candidateRadii(sorted.position, sorted.normal, 1000, options).area, 6.0, 0.1);
 }
 
-// All that comes before the first removal is told of, and counted to its end.
-TEST(Eliminate, TellsOfItsPreparations) {
+// Every preparation before the first removal reports its progress and counts to its end.
+TEST(Eliminate, ReportsItsPreparations) {
   const Cloud flat = plane(20000, 3.0f, 2.0f, 4);
   std::vector<std::string> names;
   uint64_t total = 0;
@@ -147,7 +146,7 @@ TEST(Eliminate, RadiiStandForTheArea) {
   }
 }
 
-// Both sides are kept as if the other was not there, although they are much nearer than r_max.
+// Each side keeps what it would keep alone, although the sides are much nearer than r_max.
 TEST(Eliminate, TwoSidesOfAThinSheetDoNotCompete) {
   Cloud sheet = plane(2000, 1.0f, 1.0f, 7);
   const Cloud alone = sheet;
@@ -157,7 +156,7 @@ TEST(Eliminate, TwoSidesOfAThinSheetDoNotCompete) {
     EXPECT_NEAR(result.area / keepRowsOf(alone, keep(400, density)).area, 2.0, 0.01);
     size_t front = 0;
     for (const uint32_t row : result.rows) front += row < 2000;
-    // The two sides are equal but for the numbers that break ties.
+    // The sides differ only in the random numbers that break ties.
     EXPECT_NEAR(static_cast<double>(front), 400.0, 1.0);
   }
 }
@@ -200,7 +199,7 @@ TEST(Eliminate, AllCandidatesAtOnePlace) {
   for (const char* density : kDensities) {
     const KeptRows result = keepRowsOf(cloud, keep(50, density));
     expectSubset(result, 50, 500);
-    EXPECT_EQ(result.rows.back(), 49u);  // of equals, the lower rows stay
+    EXPECT_EQ(result.rows.back(), 49u);  // among equals, the lower rows stay
   }
 }
 
@@ -245,8 +244,8 @@ TEST(Eliminate, TooManyWantedSaysWhatToRerun) {
   EXPECT_THROW(keepRowsOf(cloud, keep(0)), UsageError);
 }
 
-// The work of one step grows as candidates^2 / kept: without steps, 75 times as much for the
-// second.
+// A single step costs candidates^2 / kept: 75 times as much for 20 as for 1500. Keeping few in
+// several steps bounds the time.
 TEST(Eliminate, TimeDoesNotRiseAsFewerAreKept) {
   const Cloud cloud = cube(60000, 1.0f, 12);
   const auto cpuTicks = [&](uint64_t count) {
@@ -258,7 +257,7 @@ TEST(Eliminate, TimeDoesNotRiseAsFewerAreKept) {
   for (const uint64_t count : {200u, 20u, 1u}) EXPECT_LT(cpuTicks(count), 4.0 * many) << count;
 }
 
-// Steps cost little of the spacing.
+// Keeping few of many in several steps costs little of the spacing.
 TEST(Eliminate, SpacingOfFewOfMany) {
   const Cloud cloud = plane(60000, 1.0f, 1.0f, 13);
   const KeptRows result = keepRowsOf(cloud, with(keep(200), {{"area", "1"}}));

@@ -1,4 +1,4 @@
-// The stage on a cloud of points.
+// Runs the elimination stage on a cloud of points.
 #pragma once
 
 #include <numeric>
@@ -11,7 +11,7 @@ namespace bnvpl {
 
 struct KeptRows {
   std::vector<uint32_t> rows;  // ascending
-  std::vector<float> radius;   // of each
+  std::vector<float> radius;   // radius of each row
   double rMax = 0.0, area = 0.0;
 };
 
@@ -32,11 +32,11 @@ inline KeptRows keepRowsOf(const Cloud& cloud, const Given& options) {
 
 inline const char* const kDensities[] = {"uniform", "local"};
 
-// Options for keeping that many.
+// Options that keep `count` candidates.
 inline Given keep(uint64_t count, const std::string& density = "uniform") {
   return {{"count", std::to_string(count)}, {"density", density}};
 }
-// The same and more; of two that are equal in name, the later counts.
+// `options` followed by `more`; a later option overrides an earlier one of the same name.
 inline Given with(Given options, const Given& more) {
   options.insert(options.end(), more.begin(), more.end());
   return options;

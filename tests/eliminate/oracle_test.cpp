@@ -1,4 +1,4 @@
-// Elimination against the sequential greedy algorithm, written here in the plainest way.
+// Elimination against the sequential greedy algorithm in its plainest form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace bnvpl {
 namespace {
 
-// The weight of every pair, in units of 2^-40, straight from the definition.
+// The weight of every pair, in units of 2^-40, computed straight from the definition.
 std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vector<float>& radius,
                                             float limit) {
   const size_t n = cloud.size();
@@ -32,7 +32,7 @@ std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vecto
   return weight;
 }
 
-// Looks for the heaviest among all that are left, and takes it from the sums of the others.
+// Repeatedly removes the heaviest remaining candidate and updates the sums of the others.
 std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>& radius,
                                    size_t keep, float limit = 0.0f) {
   const size_t n = cloud.size();
@@ -44,7 +44,7 @@ std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>&
   std::vector<bool> alive(n, true);
   for (size_t left = n; left > keep; --left) {
     size_t heaviest = n;
-    for (size_t i = 0; i < n; ++i) {  // of equal sums, the later row
+    for (size_t i = 0; i < n; ++i) {  // among equal sums, the later row is removed
       if (alive[i] && (heaviest == n || sum[i] >= sum[heaviest])) heaviest = i;
     }
     alive[heaviest] = false;
@@ -57,7 +57,7 @@ std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>&
   return rows;
 }
 
-// Every candidate's radius: what the stage says when it keeps them at random, for each of them.
+// Radius of every candidate when `count` are kept, derived from a run that keeps all of them.
 std::vector<float> radiusOfAll(const Cloud& cloud, size_t count) {
   std::vector<float> radius =
       keepRowsOf(cloud, with(keep(cloud.size(), "local"), {{"method", "random"}})).radius;
@@ -104,7 +104,7 @@ TEST(Oracle, TiesGoToTheLowerRow) {
   }
 }
 
-// On a lattice nearly every weight is equal to many others.
+// On a lattice nearly every weight occurs many times, so ties are frequent.
 TEST(Oracle, RegularLattice) {
   Cloud cloud;
   for (int x = 0; x < 20; ++x) {
@@ -129,10 +129,10 @@ TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
             greedyOracle(cloud, radius, 100, 0.0f));
 }
 
-// Enough candidates for many blocks, cells of many sizes and removed nodes dropped on the way.
+// The candidates fill many blocks and cells of many sizes; removed nodes are dropped meanwhile.
 TEST(Oracle, ManyCandidatesOfDensitiesFarApart) {
   Cloud cloud = unevenPlane(3000, 13);
-  for (size_t i = 0; i < 500; ++i) {  // and a knot of them
+  for (size_t i = 0; i < 500; ++i) {  // a dense cluster of them
     cloud.add(cloud.position[7] + (cloud.position[i] - cloud.position[7]) * 1e-3f, cloud.normal[i]);
   }
   for (const std::string density : kDensities) {

@@ -1,4 +1,4 @@
-// The points from which VPLs shine, drawn in proportion to what they receive.
+// Emission points of VPLs are drawn in proportion to the light that arrives at them.
 #include "tools/estimate/emit_points.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,7 @@ const VplTable& manyVpls() {
   return vpls;
 }
 
-// One race for each of many VPLs, all of the same four hits, those with index from `begin` to
-// `end`.
+// Draws one emission point for each of many VPLs, from hits `begin` to `end` of the same four.
 EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7) {
   EmitPoints points(manyVpls(), 1, key);
   for (size_t vpl = 0; vpl < kDraws; ++vpl) {
@@ -52,7 +51,7 @@ TEST(EmitPoints, AreDrawnInProportionToTheLight) {
   }
 }
 
-TEST(EmitPoints, OfPartsAreThoseOfTheWhole) {
+TEST(EmitPoints, MergeLikeTheWhole) {
   const EmitPoints whole = raced();
   for (const size_t middle : {1u, 3u}) {
     EmitPoints behind = raced(middle, 4);
@@ -63,15 +62,15 @@ TEST(EmitPoints, OfPartsAreThoseOfTheWhole) {
   }
 }
 
-// As if all hits of the others had that share of their weight: 3/4 of 2.5 against 1.5 in full.
-TEST(EmitPoints, OfOthersCountByTheirShare) {
+// Weights of added hits are scaled by the given share: 3/4 of 2.5 competes with 1.5 in full.
+TEST(EmitPoints, OfOthersAreScaledByTheirShare) {
   EmitPoints points = raced(3, 4);
   points.add(raced(0, 3, 8), std::vector<double>(kDraws, 0.75));
   const double expected = 1.5 / (1.5 + 0.75 * 2.5);
   EXPECT_NEAR(sharesOf(points)[3], expected, 4.0 * std::sqrt(0.25 / kDraws));
 }
 
-TEST(EmitPoints, WithoutLightAreThePlaceOfTheVpl) {
+TEST(EmitPoints, WithoutLightAreThePositionOfTheVpl) {
   VplTable lit;
   lit.position = {{1, 2, 3}, {4, 5, 6}};
   lit.normal = {{0, 0, 1}, {1, 0, 0}};

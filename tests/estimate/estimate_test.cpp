@@ -39,7 +39,7 @@ TEST(Estimate, AnyThreadCountGivesTheSameBits) {
   }
 }
 
-// Over independent seeds, a VPL's flux must scatter about as much as it says.
+// Over independent seeds, a VPL's flux scatters about as much as its stated error.
 TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
   const World world("cornell/scene.toml");
   const VplTable start = keptVpls(world, {{"count", "50"}}, {{"count", "4000"}});
@@ -62,7 +62,7 @@ TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
   EXPECT_NEAR(ratio, 1.0, 0.2);
 }
 
-// VPLs shine from points of their own surface, and stay where they are.
+// VPLs emit from points on their own surface, and their positions stay.
 TEST(Estimate, EmissionPointsLieOnTheVplsSurface) {
   const World world("furnace/scene.toml");
   const VplTable start = keptVpls(world, {{"count", "300"}}, {{"count", "6000"}});
@@ -81,13 +81,13 @@ TEST(Estimate, EmissionPointsLieOnTheVplsSurface) {
     EXPECT_LT(length(lit.emitPosition[k] - start.position[i]), 1.7f * start.radius[i]);
     apart += lit.emitPosition[k] != lit.emitPosition[4 * i];
   }
-  EXPECT_GT(apart, 850u);  // of 900
+  EXPECT_GT(apart, 850u);  // 900 points in all
   EXPECT_EQ(totalFlux(lit), totalFlux(still));
 }
 
-// A VPL at the middle of a floor's rim, under a sun in the zenith: it stands for the half disk of
-// its reach R, whose centroid lies 4 R / (3 pi) from the rim, and shines from points that are
-// spread evenly over it.
+// A VPL stands in the middle of a floor's edge under a sun in the zenith. It represents the half
+// disk of radius R, its reach, whose centroid lies 4 R / (3 pi) from the edge. Its emission points
+// are spread uniformly over that half disk.
 TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   Scene scene;
   addSquare(scene, {0, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
@@ -115,7 +115,7 @@ TEST(Estimate, OneVplAtTheRimOfASunnyFloor) {
   const double reach = 0.5, area = 0.5 * double{kPi} * reach * reach;
   const auto photons = double(lit.photons[0]);
   EXPECT_NEAR(photons, 400000 * area / 16.0, 5.0 * std::sqrt(400000 * area / 16.0));
-  EXPECT_NEAR(lit.relativeError[0] * std::sqrt(photons), 1.0, 1e-3);  // all bring the same
+  EXPECT_NEAR(lit.relativeError[0] * std::sqrt(photons), 1.0, 1e-3);  // equal deposits
   for (size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(double{lit.flux[0][c]}, 0.5 * double{world.scene.lights[0].emission[c]} * area,
                 5.0 / std::sqrt(photons) * double{lit.flux[0][c]});

@@ -1,4 +1,4 @@
-// How photons are shared among lights of any power, and that their weights keep the energy.
+// Photons are shared among lights of any power, and their weights preserve the energy.
 #include "tools/estimate/photon_shares.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using Counts = std::vector<uint64_t>;
 
-// A point light of each intensity, W/sr in all channels.
+// A scene with a point light of each intensity, in W/sr in all channels.
 World lampsOf(const std::vector<float>& intensities) {
   Scene scene = floorScene();
   for (const float intensity : intensities) {
@@ -23,7 +23,7 @@ World lampsOf(const std::vector<float>& intensities) {
   return World(std::move(scene));
 }
 
-// The photons of each light, one by one; they must come light by light, and weigh one together.
+// Counts the photons of each light. Photons are ordered by light, and their weights sum to 1.
 Counts countsOf(const World& world, const PhotonShares& shares) {
   Counts counts(world.lights.size(), 0);
   size_t before = 0;
@@ -51,14 +51,14 @@ TEST(PhotonShares, AreInProportionToPower) {
 }
 
 TEST(PhotonShares, WhatIsLeftGoesToTheLargestRemainders) {
-  EXPECT_EQ(countsOf({1, 1, 1}, 100), (Counts{34, 33, 33}));  // of equals the first
-  EXPECT_EQ(countsOf({26, 37, 37}, 10), (Counts{2, 4, 4}));   // of 2.6, 3.7, 3.7
-  EXPECT_EQ(countsOf({51, 53, 56}, 16), (Counts{5, 5, 6}));   // of 5.1, 5.3, 5.6
+  EXPECT_EQ(countsOf({1, 1, 1}, 100), (Counts{34, 33, 33}));  // among equals the first
+  EXPECT_EQ(countsOf({26, 37, 37}, 10), (Counts{2, 4, 4}));   // shares 2.6, 3.7, 3.7
+  EXPECT_EQ(countsOf({51, 53, 56}, 16), (Counts{5, 5, 6}));   // shares 5.1, 5.3, 5.6
 }
 
-// Its one photon is more than its share already, whatever its remainder.
+// One photon already exceeds such a light's share, whatever its remainder.
 TEST(PhotonShares, ALightWithAShareBelowOneGetsExactlyOne) {
-  EXPECT_EQ(countsOf({555, 555, 90}, 12), (Counts{6, 5, 1}));  // of 5.55, 5.55, 0.9
+  EXPECT_EQ(countsOf({555, 555, 90}, 12), (Counts{6, 5, 1}));  // shares 5.55, 5.55, 0.9
   EXPECT_EQ(countsOf({1e-6f, 1, 1e-9f}, 1000), (Counts{1, 999, 1}));
   EXPECT_EQ(countsOf({1, 1, 1, 1, 1}, 2), (Counts{1, 1, 1, 1, 1}));
 }
@@ -68,7 +68,7 @@ TEST(PhotonShares, ALightWithoutPowerGetsNone) {
   EXPECT_EQ(countsOf({0, 3, 0, 1, 0}, 1), (Counts{0, 1, 0, 1, 0}));
 }
 
-// No share is off by a photon or more, and all photons are given out.
+// Every light's count is within one photon of its share, and all photons are distributed.
 TEST(PhotonShares, ManyLightsOfAnyPower) {
   std::vector<float> intensities;
   Rng rng(3, 0);
@@ -88,8 +88,8 @@ TEST(PhotonShares, ManyLightsOfAnyPower) {
   EXPECT_EQ(total, kPhotons);
 }
 
-// A closed box that reflects half: each photon reflects half of its flux a hit, at a number of hits
-// with mean 2 and variance 2, so that n photons reflect the flux they bring to within 0.71/sqrt(n).
+// In a closed box of albedo 0.5 each photon reflects half of its flux at every hit. The number of
+// hits has mean 2 and variance 2, so n photons reflect their emitted flux to within 0.71/sqrt(n).
 TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
   const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4000"}});

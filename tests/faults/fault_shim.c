@@ -1,9 +1,9 @@
-// LD_PRELOAD: a disk that is slow, or that fails at a chosen call.
-//   FAULT_CALL=write FAULT_AT=3 FAULT_ERRNO=28   the third write to a file, and every later one, fails so
-//   FAULT_DELAY_US=5000                          every write, fsync and rename takes so much longer
-//   FAULT_READ_DELAY_US=1000                     every read does
-//   FAULT_READ_BYTES=4096                        and it gives at most so much
-// Standard streams and what the kernel tells under /proc and /sys are left alone.
+// LD_PRELOAD library that simulates a disk that is slow or that fails at a chosen call.
+//   FAULT_CALL=write FAULT_AT=3 FAULT_ERRNO=28   the third write to a file and all later ones fail
+//   FAULT_DELAY_US=5000                          delays every write, fsync and rename
+//   FAULT_READ_DELAY_US=1000                     delays every read
+//   FAULT_READ_BYTES=4096                        limits the bytes that a read returns
+// Standard streams and files under /proc and /sys are left alone.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

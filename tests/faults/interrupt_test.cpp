@@ -1,4 +1,4 @@
-// The signals that ask a tool to stop: at once, or when a loop has saved what it has done.
+// Signals that ask a tool to stop, either at once or after a loop has saved its work.
 #include "tools/common/interrupt.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST(Interrupt, TheSameSignalASecondLaterDoesNotWait) {
   }
 }
 
-// Make answers Ctrl-C, which the tool gets too, with a SIGTERM to the tool; wrappers may send more.
+// On Ctrl-C the tool gets a SIGINT and then a SIGTERM from Make; wrappers may send more.
 TEST(Interrupt, OneRequestMayComeAsSeveralSignals) {
   const auto run = [] {
     catchInterrupts("tool");
@@ -106,7 +106,7 @@ TEST(Interrupt, WhatNobodyActedUponEndsTheToolAfterTheLoop) {
 
 TEST(Interrupt, IgnoredSignalsStayIgnored) {
   const auto run = [] {
-    std::signal(SIGHUP, SIG_IGN);  // as nohup does
+    std::signal(SIGHUP, SIG_IGN);  // nohup does this
     catchInterrupts("tool");
     std::raise(SIGHUP);
     std::exit(0);

@@ -1,4 +1,4 @@
-// Output that is whole or absent, and what killed runs left beside it.
+// Output is whole or absent; leftovers of killed runs are removed.
 #include "formats/atomic_file.h"
 
 #include <fcntl.h>
@@ -87,7 +87,7 @@ TEST_F(AtomicOutput, ReadOnlyFilesAreKept) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
-// The end of the links is replaced, and the links stay.
+// The file at the end of a chain of links is replaced, and the links stay.
 TEST_F(AtomicOutput, LinksAreFollowed) {
   fs::create_directories(at("far"));
   writeAll(at("far/a"), "old");
@@ -124,7 +124,7 @@ TEST_F(AtomicOutput, TheModeStaysAndTheUmaskDecidesOfNewFiles) {
     ASSERT_EQ(::chmod(at("a").c_str(), mode), 0);
     AtomicFile file(at("a"));
     for (const auto& entry : fs::directory_iterator(at(""))) {
-      EXPECT_EQ(modeOf(entry.path()), mode) << entry.path();  // the partial one too
+      EXPECT_EQ(modeOf(entry.path()), mode) << entry.path();  // the partial file too
     }
     file.commit();
     EXPECT_EQ(modeOf(at("a")), mode);
@@ -135,7 +135,8 @@ TEST_F(AtomicOutput, TheModeStaysAndTheUmaskDecidesOfNewFiles) {
   EXPECT_EQ(modeOf(at("b")), 0640u);
 }
 
-// Among them a stream that leads to a regular file: a rename would take it from who holds it open.
+// One of these is a stream that leads to a regular file: a rename would detach it from the process
+// that holds it open.
 TEST_F(AtomicOutput, WhatIsNoFileIsRefusedAndStays) {
   writeAll(at("open"), "old");
   const int fd = ::open(at("open").c_str(), O_RDWR);

@@ -12,7 +12,7 @@ using Exr = TestFolder;
 
 Image layeredImage() {
   Image image;
-  image.width = 37;  // no multiple of anything, and more lines than one ZIP block
+  image.width = 37;  // no multiple of a block, and more lines than one ZIP block
   image.height = 21;
   for (const char* name : {"R", "G", "B", "direct.R", "albedo.R", "N.X", "Z", "cutsize"}) {
     const float scale = static_cast<float>(image.channels.size()) + 1.0f;
@@ -73,7 +73,8 @@ TEST_F(Exr, HalfOverflowIsClampedAndCounted) {
   EXPECT_EQ((*readExr(at("float.exr")).find("R"))[2], 1e9f);
 }
 
-// The void is infinitely far, in half files too; anything else that is not finite is our bug.
+// Depth is infinite where a ray hits nothing, in half files too. Any other non-finite value is a
+// bug of the caller.
 TEST_F(Exr, NonFiniteValuesAreRefusedButForInfiniteDepth) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::nanf("");
   Image image = layeredImage();
@@ -119,7 +120,7 @@ TEST_F(Exr, EqualImagesGiveEqualBytes) {
   EXPECT_TRUE(readAll(at("a.exr")) == readAll(at("b.exr")));
 }
 
-// Where the payload of a header attribute starts: name, type, then a 32-bit size.
+// Offset of a header attribute's payload, which follows its name, its type and a 32-bit size.
 size_t attributeOffset(const std::string& bytes, const std::string& name, const std::string& type) {
   const std::string key = name + '\0' + type + '\0';
   return bytes.find(key) + key.size() + 4;
@@ -137,7 +138,7 @@ TEST_F(Exr, DataWindowInsideTheDisplayWindowIsPlaced) {
   const Image image = layeredImage();
   writeExr(at("a.exr"), image, ExrPixelType::Float);
   std::string bytes = readAll(at("a.exr"));
-  // The display window grows by 2 columns and 3 lines before, and loses 4 and 5 after.
+  // The display window has 2 columns and 3 lines more before the data, and 4 and 5 fewer after.
   const int window[4] = {-2, -3, 32, 15};
   poke(bytes, attributeOffset(bytes, "displayWindow", "box2i"), window);
   writeAll(at("b.exr"), bytes);
@@ -223,8 +224,8 @@ TEST_F(Exr, AttributesThatClaimTooMuchAreRefusedBeforeTheyAreAllocated) {
   }
 }
 
-// Attributes that OpenEXR reads on from another place than their size says: what follows is then a
-// claim of 1.7 GB, the letters "stri" taken for a number.
+// OpenEXR continues reading such attributes at another place than their size states. It would then
+// take the letters "stri" for a size and allocate 1.7 GB.
 TEST_F(Exr, AttributesThatHideTheNextAreRefused) {
   const auto attribute = [](const std::string& name, const std::string& type,
                             const std::string& value) {

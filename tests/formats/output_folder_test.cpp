@@ -1,4 +1,4 @@
-// A folder of outputs: whole or absent, and never over what somebody else put there.
+// A folder of outputs is whole or absent, and never replaces files that others put there.
 #include "formats/output_folder.h"
 
 #include <sys/wait.h>
@@ -30,7 +30,7 @@ TEST_F(OutputFolderTest, StandsThereWholeAndIsReplacedWhole) {
   put(at("made/extra"), "");
   EXPECT_THROW(make("two"), OutputError);
   fs::remove(at("made/extra"));
-  fs::remove(at("made/a.txt"));  // nothing is lost by replacing the rest
+  fs::remove(at("made/a.txt"));  // replacing the rest loses nothing
   make("two");
   EXPECT_EQ(get(at("made/a.txt")), "two");
   EXPECT_EQ(fileCount(), 1u);
@@ -58,7 +58,7 @@ TEST_F(OutputFolderTest, AFileThatAppearsMeanwhileStays) {
 TEST_F(OutputFolderTest, LinksAndChangedFilesAreOthers) {
   make("one");
   fs::rename(at("made/a.txt"), at("elsewhere"));
-  fs::create_symlink(at("elsewhere"), at("made/a.txt"));  // of the same content
+  fs::create_symlink(at("elsewhere"), at("made/a.txt"));  // a link to the same content
   EXPECT_THROW(make("two"), OutputError);
   fs::remove(at("made/a.txt"));
   put(at("made/a.txt"), "mine");
@@ -66,7 +66,7 @@ TEST_F(OutputFolderTest, LinksAndChangedFilesAreOthers) {
   EXPECT_EQ(get(at("made/a.txt")), "mine");
 }
 
-// Runs fn in a process of its own that ends as if it were killed.
+// Runs `fn` in its own process, which ends as if it were killed.
 template <typename Fn>
 void inProcess(const Fn& fn) {
   const pid_t child = ::fork();
@@ -86,7 +86,7 @@ TEST_F(OutputFolderTest, TheNextRunRemovesWhatAKilledOneLeft) {
   EXPECT_EQ(fileCount(), 1u);
   make("two");
   EXPECT_EQ(fileCount(), 1u);
-  OutputFolder open(at("other"));  // of a process that lives
+  OutputFolder open(at("other"));  // belongs to a process that is alive
   make("three");
   EXPECT_TRUE(fs::exists(open.partial()));
 }

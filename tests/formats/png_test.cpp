@@ -27,7 +27,7 @@ TEST_F(Png, WrongSizesAndTargetsAreRefused) {
   EXPECT_THROW(writePng(at("missing") / "a.png", 2, 2, pixels), OutputError);
 }
 
-// As the difference of two images of 1 x 16384, with a frame around it.
+// The difference of two images of 1 x 16384 with a frame around it has such sides.
 TEST_F(Png, LongSides) {
   for (const auto& [width, height] : {std::pair{3, 17000}, std::pair{17000, 3}}) {
     const std::vector<uint8_t> pixels(size_t{3} * 3 * 17000, 128);

@@ -1,4 +1,4 @@
-// What the format tests share: a folder of their own, whole files as strings, and small tables.
+// Shared by the format tests: a temporary folder, whole files as strings, and small tables.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ inline std::string readAll(const fs::path& file) {
 }
 
 inline void writeAll(const fs::path& file, const std::string& bytes) {
-  fs::remove(file);  // cutting an old file to 0 makes some file systems write it out at once
+  fs::remove(file);  // truncating an old file makes some file systems flush it at once
   std::ofstream out(file, std::ios::binary);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   ASSERT_TRUE(out.good()) << file;
@@ -54,7 +54,7 @@ void poke(std::string& bytes, size_t offset, const T& value) {
   std::memcpy(bytes.data() + offset, &value, sizeof(value));
 }
 
-// A value that the column may hold, another one for each column and row as far as its check allows.
+// A valid value of the column that varies with column and row as far as the column's check allows.
 inline Vec3 validValue(const VplColumn& column, size_t index, const VplTable& table, size_t row) {
   const auto x = static_cast<float>(row), c = static_cast<float>(index);
   const Vec3 choices[] = {Vec3(x, c - x, 0.1f * x + c), Vec3(x + c, 2.0f * x + 0.5f, c * x + 0.5f),
@@ -89,7 +89,7 @@ inline VplTable validRows(VplStage stage, size_t count) {
   return table;
 }
 
-// Columns of two strategies, of every type.
+// Extra columns of two methods, covering every type.
 inline std::vector<VplExtraColumn> someExtras(size_t rows) {
   VplExtraColumn lobes{"rich.lobes", "W", 4, std::vector<float>()};
   VplExtraColumn cluster{"light-slice.cluster", "-", 1, std::vector<uint32_t>()};
@@ -103,7 +103,7 @@ inline std::vector<VplExtraColumn> someExtras(size_t rows) {
   return {lobes, cluster, seeds};
 }
 
-// All columns hold the same values, and the tables say the same of themselves; not the checksum.
+// Expects equal columns and metadata; the checksums may differ.
 inline void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.stage, b.stage);
   EXPECT_EQ(a.rMax, b.rMax);
@@ -119,7 +119,7 @@ inline void expectSame(const VplTable& a, const VplTable& b) {
   }
 }
 
-// Two rows, every value exact in binary, so that the bytes can be checked by hand.
+// Two rows whose values are exact in binary, so that the bytes can be checked by hand.
 inline VplTable smallTable(VplStage stage) {
   VplTable table;
   table.stage = stage;

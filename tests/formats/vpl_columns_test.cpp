@@ -1,4 +1,4 @@
-// The list of columns, and what follows from it.
+// The list of columns and everything derived from it.
 #include "formats/vpl_columns.h"
 
 #include "formats/vpl_io.h"
@@ -70,7 +70,7 @@ TEST(VplColumns, KeptRowsHaveAllTheirColumns) {
   }
 }
 
-// The table in README.md is made from the list. On a difference, paste what this prints.
+// The table in README.md is generated from the list. If they differ, paste what this test prints.
 TEST(VplColumns, TheReadmeHasTheList) {
   std::string table =
       "| Column | Type | Unit | Since | Meaning | Valid |\n|---|---|---|---|---|---|\n";

@@ -1,4 +1,4 @@
-// Every way a file can be damaged must be noticed, at the right byte, before anything is allocated.
+// Any damage to a file is reported with the right byte offset before anything is allocated.
 #include <xxhash.h>
 
 #include <limits>
@@ -16,7 +16,7 @@ class VplDamage : public TestFolder {
     writeVpl(at("good.vpl"), smallTable(VplStage::Lit));
     good_ = readAll(at("good.vpl"));
   }
-  // What the reader says about these bytes; empty when it accepts them.
+  // The reader's error message for these bytes; empty when it accepts them.
   std::string complaint(const std::string& bytes) const {
     writeAll(at("bad.vpl"), bytes);
     try {
@@ -26,7 +26,7 @@ class VplDamage : public TestFolder {
     }
     return {};
   }
-  // The same after the checksum has been made right for the damaged bytes.
+  // The error message after the checksum has been recomputed for the damaged bytes.
   std::string complaintDespiteChecksum(std::string bytes) const {
     poke(bytes, offsetof(VplHeader, checksum), uint64_t{0});
     poke(bytes, offsetof(VplHeader, checksum), XXH3_64bits(bytes.data(), bytes.size()));
@@ -117,7 +117,7 @@ TEST_F(VplDamage, NoClaimedCountIsAllocatedOrOverflows) {
     EXPECT_SAYS(complaintAbout(16, count),
                 "byte 16: " + std::to_string(count) + " rows do not fit");
   }
-  // One row less makes a file of the same size, thanks to the padding: the directory tells.
+  // Thanks to the padding, a file with one row less has the same size; the directory reveals it.
   EXPECT_SAYS(complaintAbout(16, uint64_t{1}), "byte 128: directory entry");
   EXPECT_SAYS(complaintAbout(16, uint64_t{6}), "byte 16: 6 rows make a file of");
 }
@@ -193,7 +193,7 @@ TEST_F(VplDamage, HeaderAloneIsReadWithoutTheContent) {
   writeAll(at("bad.vpl"), bytes);
   EXPECT_EQ(readVplHeader(at("bad.vpl")).count, 2u);
   EXPECT_THROW(readVpl(at("bad.vpl")), FileError);
-  // The wrong stage is said first: the cure is another tool, not another copy.
+  // The wrong stage is reported first, since another copy of the file would not help.
   EXPECT_THROW(readVpl(at("bad.vpl"), VplStage::Candidates), InputError);
 }
 

@@ -1,4 +1,4 @@
-// Columns that strategies add: they survive, and no file can lie about them.
+// Extra columns of methods survive a round trip, and inconsistent ones are refused.
 #include <xxhash.h>
 
 #include <limits>
@@ -24,7 +24,7 @@ class VplExtras : public TestFolder {
   static size_t entry(size_t extra, size_t field) {
     return sizeof(VplHeader) + (kStandard + extra) * sizeof(VplColumnEntry) + field;
   }
-  // What the reader says when `value` stands at `offset` and the checksum is right.
+  // The reader's error message when `value` stands at `offset` and the checksum is right.
   template <typename T>
   std::string complaintAbout(size_t offset, const T& value) const {
     std::string bytes = good_;
@@ -42,7 +42,7 @@ class VplExtras : public TestFolder {
     }
     return {};
   }
-  // What the writer says of a table with this column behind the good ones.
+  // The writer's error message for a table with this column appended.
   std::string refusal(const VplExtraColumn& column) const {
     VplTable table = table_;
     table.extras.push_back(column);
@@ -131,14 +131,13 @@ TEST_F(VplExtras, EveryFieldOfTheDirectoryIsChecked) {
     bad(1, 28, components, "column light-slice.cluster has " + std::to_string(components));
   bad(1, 48, '\0', "the unit of column light-slice.cluster");
   bad(1, 48, '\x1b', "the unit of column light-slice.cluster");
-  // Another type or width of the same size makes no difference to the layout, and is another
-  // column.
+  // Another type or width of the same size has the same layout; the file is valid.
   EXPECT_EQ(complaintAbout(entry(1, 24), 1u), "");
   EXPECT_SAYS(complaintAbout(entry(0, 28), 5u),
               at(0, 40) + "bytes of column rich.lobes 32, expected 40");
 }
 
-TEST_F(VplExtras, ColumnsNeitherOverlapNorLeaveAGap) {
+TEST_F(VplExtras, ColumnsAreContiguous) {
   const auto offsetField = [](size_t extra) { return entry(extra, 32); };
   for (const uint64_t offset :
        {uint64_t{0}, columnOffset(0), columnOffset(1) + 4, columnOffset(2), ~uint64_t{0}}) {
@@ -151,7 +150,7 @@ TEST_F(VplExtras, ColumnsNeitherOverlapNorLeaveAGap) {
     EXPECT_SAYS(complaintAbout(entry(1, 40), bytes),
                 "byte " + std::to_string(entry(1, 40)) + ": bytes of column light-slice.cluster");
   }
-  // A column fewer than the directory was written for: the provenance would begin in its entry.
+  // With one column fewer in the header, the provenance would begin in the last column's entry.
   EXPECT_NE(complaintAbout(56, static_cast<uint32_t>(kStandard + 2)), "");
   EXPECT_SAYS(complaintAbout(28 + entry(1, 0), 1024u), "byte 16: 2 rows");
 }

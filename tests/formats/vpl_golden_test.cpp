@@ -1,4 +1,4 @@
-// The bytes of version 4, pinned: a change here is a new version of the format.
+// Pins the bytes of version 4 of the format: any change here requires a new version.
 #include <sstream>
 
 #include "formats/vpl_io.h"
@@ -7,7 +7,7 @@
 namespace bnvpl {
 namespace {
 
-// smallTable(VplStage::Lit), 16 bytes a line; lines of zeros are left out.
+// smallTable(VplStage::Lit) with 16 bytes per line; lines of zeros are left out.
 constexpr size_t kLitBytes = 1608;
 constexpr const char* kLitDump = R"(
 0000: 89 56 50 4c 0d 0a 1a 0a 04 00 00 00 03 00 00 00
@@ -122,8 +122,8 @@ TEST_P(VplGolden, ReaderReadsTheCommittedFile) {
   expectSame(readVpl(golden(), GetParam()), smallTable(GetParam()));
 }
 
-// Strategies' columns behind those of the stage.
-TEST_F(TestFolder, AFileWithStrategiesColumnsIsPinned) {
+// Extra columns of methods follow the columns of the stage.
+TEST_F(TestFolder, AFileWithMethodsColumnsIsPinned) {
   const fs::path golden = fs::path(BNVPL_GOLDEN_DIR) / "strategies.vpl";
   VplTable table = smallTable(VplStage::Eliminated);
   table.extras = someExtras(2);

@@ -1,4 +1,4 @@
-// What goes in comes out, and what must not go in leaves the old file alone.
+// What is written is read back unchanged; refused input leaves the old file alone.
 #include <sys/resource.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ VplTable manyRows(VplStage stage, size_t count) {
 
 TEST_F(VplWrite, EveryStageAndSizeSurvivesTheRoundTrip) {
   for (const VplStage stage : {VplStage::Candidates, VplStage::Eliminated, VplStage::Lit}) {
-    // Up to enough rows that columns span many alignment blocks; counts that leave padding.
+    // The counts leave padding, and the largest makes columns span many alignment blocks.
     for (const size_t count : {0, 1, 5, 16, 17, 1000}) {
       const VplTable table = manyRows(stage, count);
       writeVpl(at("a.vpl"), table);
@@ -62,8 +62,8 @@ TEST_F(VplWrite, EmptyProvenanceIsAnEmptyArray) {
   EXPECT_EQ(readVpl(at("a.vpl")).provenance, "[]");
 }
 
-// Runs `change` on a table of stage Lit, writes it over a good file, and expects a refusal that
-// says `what` and leaves the good file.
+// Writes a table of stage Lit, modified by `change`, over a good file. Expects an error that
+// contains `what`, and an unchanged file.
 template <typename Change>
 void expectRefused(const fs::path& file, const std::string& what, const Change& change) {
   writeVpl(file, smallTable(VplStage::Lit));
@@ -111,10 +111,10 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });
   expectRefused(f, "provenance", [](VplTable& t) { t.provenance = "{}"; });
-  EXPECT_EQ(fileCount(), 1u);  // nothing partial stays behind
+  EXPECT_EQ(fileCount(), 1u);  // no partial file remains
 }
 
-// Programs that print JSON call themselves once a level: a million of them overflow the stack.
+// Typical JSON printers recurse once per level, so a million levels overflow the stack.
 TEST_F(VplWrite, DeepProvenanceIsRefused) {
   const auto nested = [](size_t depth) {
     return "[{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}]";
@@ -141,14 +141,14 @@ TEST_F(VplWrite, UnevenOrSurplusColumnsAreOurBug) {
 TEST_F(VplWrite, FailedWriteLeavesTheOldFile) {
   writeVpl(at("a.vpl"), smallTable(VplStage::Candidates));
   const std::string before = readAll(at("a.vpl"));
-  // A limit on file size fails the write itself, for root too.
+  // A limit on file size makes the write itself fail, for root too.
   rlimit old{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old), 0);
   const auto oldHandler = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit tight{4096, old.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tight), 0);
   EXPECT_THROW(writeVpl(at("a.vpl"), manyRows(VplStage::Lit, 1000)), OutputError);
-  // Small enough to sit in the stream's buffer until it is closed.
+  // The table is small enough to stay in the stream's buffer until it is closed.
   const rlimit tighter{256, old.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &tighter), 0);
   EXPECT_THROW(writeVpl(at("a.vpl"), smallTable(VplStage::Lit)), OutputError);
@@ -185,7 +185,7 @@ TEST_F(VplWrite, WrongStageIsRefusedNamingTheTool) {
   EXPECT_NO_THROW(readVpl(at("c.vpl"), VplStage::Candidates));
 }
 
-// A lit file need not be vpl-estimate's: the message says who made it, when the file tells.
+// A lit file need not come from vpl-estimate: the message names its maker if the file records it.
 TEST_F(VplWrite, WrongStageNamesTheMakerByTheProvenance) {
   const auto complaint = [&](const std::string& provenance) {
     VplTable table = smallTable(VplStage::Lit);

@@ -43,7 +43,7 @@ TEST(Compare, EpsilonFollowsTheReferenceOnly) {
   EXPECT_DOUBLE_EQ(ab.rmseOverMean(), 2.0);
 }
 
-// Scaling both images must change no relative measure.
+// Scaling both images changes no relative measure.
 TEST(Compare, RelativeMeasuresDoNotDependOnTheUnit) {
   Image a = flatImage(2, 2, 1, 2, 3), b = flatImage(2, 2, 1, 2, 2);
   const Comparison before = compare(a, b);
@@ -121,8 +121,8 @@ TEST(DifferencePicture, ColoursAreMonotoneAndClamped) {
   }
 }
 
-// Errors of +1 and -1 in the two halves cancel: against their mean the image is exact.
-TEST(Compare, ASecondHalfTakesTheNoiseOut) {
+// Errors of +1 and -1 in the two halves cancel: the image equals the mean of the halves.
+TEST(Compare, ASecondHalfRemovesTheNoise) {
   Image a, b, second;
   for (Image* image : {&a, &b, &second}) {
     image->width = 2;

@@ -1,4 +1,4 @@
-// The false-colour pictures of a measure.
+// False-colour pictures of an error measure.
 #include "images/error_map.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ Rgb8 pixel(const Picture& picture, int x, int y) {
   return {picture.rgb8[at], picture.rgb8[at + 1], picture.rgb8[at + 2]};
 }
 
-double lightness(Rgb8 colour) {  // luminance orders as CIE lightness does
+double lightness(Rgb8 colour) {  // luminance has the same order as CIE lightness
   const auto linear = [](uint8_t v) { return std::pow(v / 255.0, 2.2); };
   return 0.2126 * linear(colour[0]) + 0.7152 * linear(colour[1]) + 0.0722 * linear(colour[2]);
 }
@@ -59,7 +59,7 @@ TEST(ErrorMap, ColoursFollowTheScaleAndMaskedPixelsAreGrey) {
   EXPECT_EQ(pixel(straight, 1, 0), errorColour(0.25));
   EXPECT_EQ(pixel(straight, 2, 0), errorColour(1.0));
   EXPECT_EQ(pixel(straight, 3, 0), kLeftOut);
-  map.logarithmic = true;  // four decades: 0.0002 at the left end
+  map.logarithmic = true;  // four decades; 0.0002 is at the left end
   map.values[4] = 0.02f;
   const Picture decades = errorPicture(map, 200, 2, mask);
   EXPECT_EQ(pixel(decades, 0, 0), errorColour(0.0));
@@ -82,7 +82,7 @@ TEST(ErrorMap, TheLegendHasTheBarNumbersAndTheName) {
     }
     return count;
   };
-  EXPECT_GT(ink(2 + 15, 2 + 22), 100);  // 0 0.25 0.5 0.75 1
+  EXPECT_GT(ink(2 + 15, 2 + 22), 100);  // labels 0 0.25 0.5 0.75 1
   EXPECT_GT(ink(2 + 26, 2 + 33), 150);  // the title
 }
 

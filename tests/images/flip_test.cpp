@@ -1,4 +1,4 @@
-// FLIP: what the papers promise, values worked out by hand, and those of flip_oracle.py.
+// FLIP against the claims of the papers, values computed by hand, and flip_oracle.py.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -26,7 +26,7 @@ double meanOf(const std::vector<float>& map) {
 }
 double flipOf(const RgbImage& a, const RgbImage& b) { return meanOf(ldrFlip(a, b, kPpd)); }
 
-// The pattern of flip_oracle.py; every value is exact in binary.
+// The test pattern of flip_oracle.py; every value is exact in binary.
 RgbImage pattern(bool crossed) {
   RgbImage image = flat(40, 24, Vec3(0.0f));
   for (int y = 0; y < 24; ++y) {
@@ -49,18 +49,18 @@ TEST(Flip, EqualPicturesDifferByExactlyNothing) {
   }
 }
 
-// The paper's 1 is green against blue, the colours farthest apart. Black against white is 100 in
-// HyAB, beyond the knee: with CIELAB of the primaries from tables, green (87.735, -86.183, 83.179)
-// and blue (32.297, 79.188, -107.860), the largest is 203.30^0.7 = 41.275, the knee 16.510, and
-// 0.95 + 0.05 (100^0.7 - 16.510) / (41.275 - 16.510) = 0.96738.
+// FLIP is 1 for green against blue, the colours farthest apart. Black against white has a HyAB
+// distance of 100, beyond the knee. CIELAB of the primaries from tables, green (87.735, -86.183,
+// 83.179) and blue (32.297, 79.188, -107.860), gives the maximum 203.30^0.7 = 41.275, the knee
+// 16.510, and 0.95 + 0.05 (100^0.7 - 16.510) / (41.275 - 16.510) = 0.96738.
 TEST(Flip, TheLargestDifferences) {
   EXPECT_NEAR(flipOf(flat(8, 6, {0, 1, 0}), flat(8, 6, {0, 0, 1})), 1.0, 1e-6);
   EXPECT_NEAR(flipOf(grey(0.0f), grey(1.0f)), 0.96738, 2e-5);
 }
 
-// Flat pictures have no features and pass the filters unchanged. L* = 50 against 60 is 10 in HyAB:
-// 0.95 * 10^0.7 / 16.510 = 0.28838. The features' sums are 0 but for rounding, 1e-8, which shows
-// as its square root.
+// Flat pictures have no features and pass the filters unchanged. L* = 50 against 60 has a HyAB
+// distance of 10: 0.95 * 10^0.7 / 16.510 = 0.28838. The feature sums vanish up to rounding, 1e-8,
+// whose square root remains visible.
 TEST(Flip, FlatGreysAsByHand) {
   const auto luminance = [](double lightness) {
     return static_cast<float>(std::pow((lightness + 16.0) / 116.0, 3.0));
@@ -84,13 +84,13 @@ TEST(Flip, AsTheOracleOfFullTwoDimensionalSums) {
   const FlipMaps maps = flipMaps(pattern(false), pattern(true), options);
   EXPECT_NEAR(meanOf(maps.ldr), 0.3505296, 2e-6);
   EXPECT_NEAR(maps.ldr[5 * 40 + 7], 0.1659315, 1e-5);
-  EXPECT_NEAR(maps.ldr[39], 0.3072509, 1e-5);  // a corner
+  EXPECT_NEAR(maps.ldr[39], 0.3072509, 1e-5);  // pixel in a corner
   EXPECT_EQ(maps.exposures, 5u);
   EXPECT_NEAR(meanOf(maps.hdr), 0.4201921, 2e-6);
   EXPECT_NEAR(maps.hdr[5 * 40 + 7], 0.2849515, 1e-5);
 }
 
-// Noise of one pixel blurs away for an eye that sees more pixels in a degree.
+// Noise of single pixels blurs away for an observer with more pixels per degree.
 TEST(Flip, FineNoiseMattersLessFromFartherAway) {
   RgbImage noisy = flat(40, 40, Vec3(0.5f));
   for (std::vector<float>& channel : noisy.rgb) {
@@ -175,7 +175,7 @@ TEST(HdrFlip, AcesCurveByHand) {
   EXPECT_NEAR(acesCurve(1.0), 0.9216 / 1.3688, 1e-6);
 }
 
-// A difference that one exposure burns out or drowns is seen at another.
+// A difference that is overexposed or too dark at one exposure is visible at another.
 TEST(HdrFlip, SeesWhatOneExposureHides) {
   FlipOptions options;
   options.exposureEv = 0.0;

@@ -1,4 +1,4 @@
-// SMAPE, measures of each channel and of the luminance, and masks.
+// SMAPE, measures per channel and of luminance, and masks.
 #include <cmath>
 
 #include "formats/png_io.h"
@@ -31,7 +31,7 @@ TEST(Measures, OfEachChannelByHand) {
   EXPECT_DOUBLE_EQ(c.channels[0].rmse, std::sqrt(2.0));
   EXPECT_DOUBLE_EQ(c.channels[1].rmse, std::sqrt(0.5));
   EXPECT_EQ(c.channels[2].rmse, 0.0);
-  EXPECT_DOUBLE_EQ(c.channels[0].relMse, 2.0 / 1.25);  // epsilon 0.25, of the mean of all channels
+  EXPECT_DOUBLE_EQ(c.channels[0].relMse, 2.0 / 1.25);  // epsilon 0.25 from the mean of all
   EXPECT_DOUBLE_EQ(c.channels[1].relMse, 0.5 / 1.25);
   EXPECT_DOUBLE_EQ(c.channels[0].smape, 0.25);  // 2 / 4 and 0
   EXPECT_DOUBLE_EQ(c.channels[1].smape, 0.5);   // 0 and 1 / 1
@@ -73,7 +73,7 @@ TEST(Measures, SmapeIsSymmetricBoundedAndWithoutAUnit) {
   EXPECT_EQ(compareMasked(b, flatImage(2, 1, -1, -1, -1)).smape, 1.0);  // signs that differ
 }
 
-// Against halves of 3 and 5, an image of 4 is exact: their mean is the reference.
+// Halves of 3 and 5 have the mean 4, so an image of 4 has no error.
 TEST(Measures, SmapeTakesTheMeanOfBothHalves) {
   const Image a = flatImage(2, 1, 4, 4, 4), b = flatImage(2, 1, 3, 3, 3),
               second = flatImage(2, 1, 5, 5, 5);
@@ -115,7 +115,7 @@ TEST(Measures, AnEqualImageInsideTheMaskIsExact) {
 
 class MaskFile : public TestFolder {
  protected:
-  // A PNG of pixels that are each three bytes.
+  // A PNG file of pixels with three bytes each.
   fs::path png(int width, int height, const std::vector<uint8_t>& rgb8) const {
     writePng(at("mask.png"), width, height, rgb8);
     return at("mask.png");

@@ -1,4 +1,4 @@
-// What the stages never write: files whose contents were changed and hashed again.
+// Files that no stage writes: their contents were changed and hashed again.
 #include "tools/inspect/chain.h"
 
 #include "tests/inspect/inspect_files.h"
@@ -14,7 +14,7 @@ class DeepCheck : public InspectTest {
     lit_ = threeRows(VplStage::Lit);
     lit_.reach = 2.0;
   }
-  // Writes the three as a chain whose histories are right, and returns what is wrong with the rows.
+  // Writes the tables as a chain with correct histories; returns the problem found in the rows.
   std::string problem() {
     writeVpl(at("c.vpl"), candidates_);
     kept_.provenance = extendProvenance(
@@ -52,7 +52,7 @@ TEST_F(DeepCheck, ChangedRowsAreRefused) {
   lit_.position[0].y += 0.001f;
   EXPECT_TRUE(contains(problem(), "l.vpl: row 0 (id 7)"));
   lit_.position[0] = kept_.position[0];
-  lit_.emitPosition[0].y = 0.9f;  // within its reach of 2 * 0.5
+  lit_.emitPosition[0].y = 0.9f;  // within the reach of 2 * 0.5
   EXPECT_EQ(problem(), "");
   lit_.emitPosition[0].y = 1.1f;
   EXPECT_TRUE(contains(problem(), "l.vpl: row 0 (id 7)"));

@@ -6,7 +6,7 @@
 namespace bnvpl {
 namespace {
 
-// A whole chain of files as the stages write it; `seed` makes two chains differ.
+// Writes a whole chain of files like the stages do; `seed` makes two chains differ.
 class Check : public InspectTest {
  protected:
   void writeChain(const std::string& prefix, int seed, uint64_t scene = 0x1234) {
@@ -61,7 +61,7 @@ TEST_F(Check, AMixedChainNamesTheStageToRerun) {
   EXPECT_TRUE(contains(problem({"a-vpls.vpl", "b-lit.vpl"}), "rerun vpl-estimate"));
   EXPECT_TRUE(contains(problem({"a-lit.vpl", "b-image.exr"}), "rerun vpl-render"));
   EXPECT_TRUE(contains(problem({"a-candidates.vpl", "b-image.exr"}), "rerun vpl-eliminate"));
-  // The earliest stage that is out of date, though the image is named first.
+  // The message names the earliest stage that is out of date, although the image comes first.
   EXPECT_TRUE(
       contains(problem({"b-image.exr", "a-lit.vpl", "a-candidates.vpl"}), "rerun vpl-eliminate"));
 }
@@ -103,8 +103,7 @@ TEST_F(Check, DamageIsFound) {
   EXPECT_TRUE(contains(problem({"text.exr"}), "provenance"));
 }
 
-// Files of other programs and later versions: keys of other types are shown or skipped, never a
-// crash.
+// Other programs and later versions may write keys of other types: these are shown or skipped.
 TEST_F(Check, StrangeRecordsPass) {
   VplTable table = threeRows(VplStage::Candidates);
   table.provenance = R"([{"tool":5,"options":[1],"inputs":"x"},{},{"inputs":{"lit":7}}])";

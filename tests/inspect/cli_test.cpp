@@ -1,4 +1,4 @@
-// The executable itself: exit codes, files, what it prints.
+// The executable itself: its exit codes, files and printed output.
 #include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
@@ -46,7 +46,7 @@ TEST_F(Cli, UsageErrorsExitWith2) {
   EXPECT_EQ(runInspect("info --nothing " + path("lit.vpl")).code, kExitUsage);
   EXPECT_EQ(runInspect("export " + path("lit.vpl") + " -o " + path("a.stl")).code, kExitUsage);
   EXPECT_EQ(runInspect("export /absent.vpl -o " + path("a.stl")).code,
-            kExitUsage);  // before it is read
+            kExitUsage);  // refused before the input is read
   EXPECT_EQ(runInspect("--help").code, kExitOk);
   EXPECT_EQ(runInspect("compare --help").code, kExitOk);
   EXPECT_TRUE(contains(runInspect("--version").output, "vpl-inspect " BNVPL_VERSION));

@@ -1,4 +1,4 @@
-// `vpl-inspect compare` itself: masks, FLIP and pictures from the command line.
+// `vpl-inspect compare` on the command line: masks, FLIP and pictures.
 #include "formats/png_io.h"
 #include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/run_inspect.h"
@@ -45,10 +45,10 @@ TEST_F(CompareCli, ExposuresMayComeFromTheReference) {
   const Json flip = json("--flip-exposures auto");
   EXPECT_LT(flip["flip_settings"]["hdr_start_ev"].get<double>(), 0.1);
   EXPECT_NE(flip["flip_settings"]["hdr_start_ev"], -4.0);
-  EXPECT_EQ(flip["flip_settings"]["exposure_ev"], -3.5);  // log2(0.18 / 2) to a quarter
+  EXPECT_EQ(flip["flip_settings"]["exposure_ev"], -3.5);  // log2(0.18 / 2), rounded to a quarter
 }
 
-// What only FLIP asks for has no effect where none is measured.
+// Options of FLIP alone have no effect where no FLIP is computed.
 TEST_F(CompareCli, OptionsOfFlipNeedColours) {
   for (const char* option : {"--exposure 3", "--ppd 3", "--flip-exposures 0:1"}) {
     const Outcome result = runInspect(both() + "--layer N " + option);
@@ -132,7 +132,7 @@ TEST_F(CompareCli, EveryMapIsAnotherPicture) {
 }
 
 TEST_F(CompareCli, BothHalvesMakeTheReferenceOfFlipAndMaps) {
-  writeExr(at("s.exr"), flatImage(4, 3, 4, 4, 4), ExrPixelType::Float);  // mean with b: 3, but one
+  writeExr(at("s.exr"), flatImage(4, 3, 4, 4, 4), ExrPixelType::Float);  // mean with c: 3, as in a
   writeExr(at("c.exr"), flatImage(4, 3, 2, 2, 2), ExrPixelType::Float);
   const Outcome result = runInspect("compare " + path("a.exr") + " " + path("c.exr") +
                                     " --second-half " + path("s.exr") + " --json --exposure -3");
@@ -155,7 +155,7 @@ TEST_F(CompareCli, TheSecondHalfHasNoiseOfItsOwn) {
 }
 
 // The halves lie on both sides of the image: (2 - 1) (2 - 3) < 0.
-TEST_F(CompareCli, AnErrorBelowTheNoiseIsSaidToBe) {
+TEST_F(CompareCli, AnErrorBelowTheNoiseIsReportedAsSuch) {
   for (const auto& [name, value] : {std::pair{"x.exr", 2.0f}, {"y.exr", 1.0f}, {"z.exr", 3.0f}})
     writeExr(at(name), flatImage(4, 3, value, value, value), ExrPixelType::Float);
   const std::string files = "compare " + path("x.exr") + " " + path("y.exr");

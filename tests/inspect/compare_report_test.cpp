@@ -1,4 +1,4 @@
-// What `compare` prints of a comparison, and how it exits.
+// What `compare` prints, and its exit codes.
 #include "tools/inspect/compare_report.h"
 
 #include <gtest/gtest.h>

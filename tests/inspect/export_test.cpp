@@ -13,7 +13,7 @@ namespace {
 
 class Export : public InspectTest {
  protected:
-  // Exports and reads back.
+  // Exports the table and reads the file back.
   std::string exported(const std::string& name, const VplTable& table) const {
     AtomicFile file(at(name));
     exportTable(table, file);
@@ -22,13 +22,12 @@ class Export : public InspectTest {
   }
 };
 
-// A PLY file as its header describes it: name -> value for each vertex, and three indices for each
-// face.
+// A PLY file read by its header: name -> value for each vertex, and three indices for each face.
 struct Ply {
   explicit Ply(const std::string& bytes) {
     std::istringstream in(bytes);
     std::string line, first, second, third;
-    std::vector<std::pair<std::string, std::string>> properties;  // type and name of a vertex's
+    std::vector<std::pair<std::string, std::string>> properties;  // types and names
     size_t vertexCount = 0, faceCount = 0;
     while (std::getline(in, line) && line != "end_header") {
       header.push_back(line);
@@ -83,7 +82,7 @@ TEST_F(Export, PlyHasEveryColumnOfLitRows) {
   ASSERT_EQ(ply.header[0], "ply");
   ASSERT_EQ(ply.header[1], "format binary_little_endian 1.0");
   const auto number = [&](size_t row, const char* name) { return ply.vertices[row].at(name); };
-  EXPECT_EQ(ply.place(0), Vec3(0, 0.25f, 0));  // emit_position
+  EXPECT_EQ(ply.place(0), Vec3(0, 0.25f, 0));  // taken from emit_position
   EXPECT_EQ(number(0, "nz"), 1.0);
   EXPECT_EQ(number(0, "position_y"), 0.0);
   EXPECT_EQ(number(2, "position_x"), 4.0);
@@ -98,9 +97,9 @@ TEST_F(Export, PlyHasEveryColumnOfLitRows) {
   EXPECT_EQ(number(1, "rich.lobes_1"), 3.0);
   EXPECT_EQ(number(1, "rich.seed"), 8.0);
   EXPECT_EQ(number(0, "blue"), 255.0);   // the strongest flux
-  EXPECT_EQ(number(0, "green"), 188.0);  // half of it, sRGB encoded
+  EXPECT_EQ(number(0, "green"), 188.0);  // half of the strongest, sRGB encoded
   EXPECT_EQ(number(2, "red"), 0.0);
-  size_t numbers = 3;  // the colours
+  size_t numbers = 3;  // the three colours
   for (const VplColumnView& column : columnsOf(withLobes(VplStage::Lit)))
     numbers += column.components;
   EXPECT_EQ(ply.vertices[0].size(), numbers);
@@ -123,13 +122,13 @@ TEST_F(Export, PlyOfCandidatesShowsTheAlbedo) {
   const Ply ply(exported("a.ply", threeRows(VplStage::Candidates)));
   EXPECT_EQ(ply.place(2), Vec3(4, 0, 0));
   EXPECT_EQ(ply.vertices[0].count("radius"), 0u);
-  EXPECT_EQ(ply.vertices[0].size(), 3u + 3 + 3 + 3 + 1);  // albedo twice: as colour, and exact
+  EXPECT_EQ(ply.vertices[0].size(), 3u + 3 + 3 + 3 + 1);  // albedo twice: as colour and exact
   EXPECT_EQ(ply.vertices[0].at("red"), 188.0);            // albedo 0.5
 }
 
-// Blender 3.4 reads colours from red, green, blue of type uchar, gives them to corners of faces,
-// takes normals from the faces' geometry, and knows faces by a list vertex_indices. MeshLab reads
-// nx, ny, nz.
+// Blender 3.4 reads colours from red, green and blue of type uchar, assigns them to face corners,
+// derives normals from the faces' geometry, and finds faces in the list vertex_indices. MeshLab
+// reads nx, ny and nz.
 TEST_F(Export, PlyHasWhatBlenderAndMeshLabRead) {
   for (const VplStage stage : {VplStage::Candidates, VplStage::Eliminated, VplStage::Lit}) {
     VplTable table = threeRows(stage);
@@ -163,7 +162,7 @@ TEST_F(Export, PlyHasWhatBlenderAndMeshLabRead) {
   }
 }
 
-// Coordinates far from 0 have few digits: facets grow as much as their normals need.
+// Coordinates far from 0 have a coarse resolution: facets grow until their normals are accurate.
 TEST_F(Export, PlyFacetsHaveADirectionEverywhere) {
   VplTable table = threeRows(VplStage::Eliminated);
   table.position = {{1e6f, -2e6f, 3e6f}, {0, 0, 0}, {1e-6f, 0, 0}};
@@ -198,7 +197,7 @@ TEST_F(Export, CsvGivesEveryValueBack) {
   for (size_t row = 0; row < table.size(); ++row) {
     ASSERT_TRUE(std::getline(in, line));
     if (row == 0) {
-      EXPECT_TRUE(line.ends_with(",9007199254740993"));  // beyond what a double holds
+      EXPECT_TRUE(line.ends_with(",9007199254740993"));  // needs more digits than a double holds
     }
     std::istringstream cells(line);
     std::string cell;

@@ -1,4 +1,4 @@
-// Images with values that the project's own writer refuses.
+// Writes images with values that the project's own writer refuses.
 #pragma once
 
 #include <OpenEXR/ImfChannelList.h>

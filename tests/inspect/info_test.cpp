@@ -38,7 +38,7 @@ TEST_F(Info, DescribesALitFile) {
   EXPECT_TRUE(contains(text, "relative_error")) << text;
 }
 
-// Texts come from images of other programs and from names of files.
+// Such texts come from images of other programs and from file names.
 TEST_F(Info, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
   const fs::path file = at("i\xff\n.exr");
   Image image = flatImage(2, 2, 0.5f, 0.5f, 0.5f);
@@ -68,7 +68,7 @@ TEST_F(Info, PutsTheEmissionPointsOfARowTogether) {
   EXPECT_EQ(columnOf(info, "emit_normal.z")["min"], 1.0);
 }
 
-TEST_F(Info, ListsTheColumnsOfStrategies) {
+TEST_F(Info, ListsTheColumnsOfMethods) {
   VplTable table = threeRows(VplStage::Eliminated);
   table.extras = {{"rich.lobes", "W", 2, std::vector<float>{0, 1, 2, 3, 4, 5}},
                   {"rich.basis", "1", 6, std::vector<uint32_t>(18, 7)},
@@ -129,7 +129,7 @@ TEST(Spacing, DistancesByHand) {
   const Spacing s = measureSpacing(threeRows(VplStage::Eliminated));
   EXPECT_EQ(s.measured, 3u);
   EXPECT_DOUBLE_EQ(s.minDistance, 1.0);
-  EXPECT_DOUBLE_EQ(s.meanDistance, 5.0 / 3.0);  // 1, 1, 3
+  EXPECT_DOUBLE_EQ(s.meanDistance, 5.0 / 3.0);  // distances 1, 1, 3
   EXPECT_DOUBLE_EQ(s.minRelative, 1.0);
   EXPECT_DOUBLE_EQ(s.meanRelative, 5.0 / 3.0);
   EXPECT_FLOAT_EQ(float(s.minOwn), 1.0f / 1.5f);  // 1 / (0.5 + 1)
@@ -147,8 +147,7 @@ TEST(Spacing, TheOtherSideOfAWallIsNoNeighbour) {
   EXPECT_EQ(measureSpacing(table).measured, 0u);
 }
 
-// The partner stands behind many points of the other side, so that the first query does not find
-// it.
+// The neighbour lies behind many points of the other side, so the first query does not find it.
 TEST(Spacing, LooksFurtherThanTheFirstNeighbours) {
   VplTable table;
   for (int i = 0; i < 100; ++i) {

@@ -1,4 +1,4 @@
-// What the inspect tests share: a folder, small tables with a history, images, and a tiny scene.
+// Shared by the inspect tests: a folder, small tables with a history, images, and a tiny scene.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ inline void writeAll(const fs::path& file, const std::string& bytes) {
   ASSERT_TRUE(out.good()) << file;
 }
 
-// Three rows on the plane z = 0, one unit and three units apart; every value exact in binary.
+// Three rows on the plane z = 0, one and three units apart; every value is exact in binary.
 inline VplTable threeRows(VplStage stage) {
   VplTable table;
   table.stage = stage;

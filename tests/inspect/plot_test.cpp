@@ -13,7 +13,7 @@ class Plot : public InspectTest {
     writeTinyScene(at(""));
     scene_ = loadScene(at("tiny.toml"));
   }
-  // Pixels that the dots changed.
+  // Indices of the pixels that the dots changed.
   std::vector<size_t> changed(const RayScene& rays, const std::vector<Dot>& dots, float diameter) {
     Canvas canvas = shadeView(rays, 2);
     const std::vector<uint8_t> before = canvas.rgb8();
@@ -65,7 +65,7 @@ TEST_F(Plot, ShowBackDrawsRings) {
   const std::vector<size_t> ring = changed(rays, {dots[1]}, 9.0f);
   ASSERT_FALSE(ring.empty());
   const size_t centre = static_cast<size_t>(dots[1].y) * 80 + static_cast<size_t>(dots[1].x);
-  EXPECT_EQ(std::count(ring.begin(), ring.end(), centre), 0);  // hollow
+  EXPECT_EQ(std::count(ring.begin(), ring.end(), centre), 0);  // the ring is hollow
 }
 
 TEST_F(Plot, NearDotsCoverFarOnes) {

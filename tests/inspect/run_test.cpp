@@ -1,4 +1,4 @@
-// vpl-inspect run: records of tasks, the report over them, the picture, and hostile records.
+// vpl-inspect run: task records, the report over them, the timeline, and malformed records.
 #include <sys/stat.h>
 
 #include "tests/inspect/run_inspect.h"
@@ -11,7 +11,7 @@ namespace {
 
 class Run : public InspectTest {
  protected:
-  // Adds an attempt of a task of a stage; `more` are further fields, or others than these.
+  // Adds a record of one attempt at a task of a stage; `more` adds or replaces fields.
   void record(const std::string& task, const std::string& stage, unsigned number, double startS,
               double endS, int exit, const Json& more = Json::object()) const {
     Json json{{"task", task},
@@ -34,7 +34,7 @@ class Run : public InspectTest {
   void write(const std::string& name, const std::string& text) const {
     writeAll(at(name + ".task.json"), text);
   }
-  // Two shards, of which the second lost its machine once, and their merge.
+  // Two shards, the second of which lost its machine once, and their merge.
   void recordPlace() const {
     record("place-1-of-2", "place", 1, 1000, 1010, 0);
     record("place-2-of-2", "place", 1, 1000, 0, 0,
@@ -71,7 +71,7 @@ TEST_F(Run, SumsUpStagesHostsAndTheCriticalPath) {
   EXPECT_EQ(place["hosts"], 2);
   EXPECT_EQ(place["wall_s"], 18);
   EXPECT_EQ(place["peak_memory_MiB"], 20);
-  EXPECT_EQ(place["longest_task"], "place-2-of-2");  // with the wait between its attempts
+  EXPECT_EQ(place["longest_task"], "place-2-of-2");  // includes the wait between its attempts
   EXPECT_EQ(place["longest_s"], 18);
   ASSERT_EQ(d["hosts"].size(), 2u);
   EXPECT_EQ(d["hosts"][0]["host"], "n1");
@@ -97,7 +97,7 @@ TEST_F(Run, TheCriticalPathTakesTheLongerBranch) {
 TEST_F(Run, CountsTheLatestRunOfATask) {
   record("place", "place", 1, 100, 200, 0);
   record("place", "place", 2, 900, 910, 137);
-  record("place", "place", 10, 920, 930, 0);  // after 2, not before
+  record("place", "place", 10, 920, 930, 0);  // sorts after 2
   const RunRecords run = readRunRecords(at(""));
   ASSERT_EQ(run.attempts.size(), 2u);
   EXPECT_EQ(run.attempts[0].number, 2u);

@@ -1,4 +1,4 @@
-// vpl-inspect scene: what it says, and that what it writes is the scene again.
+// vpl-inspect scene: its report, and the scene that it writes, which equals the original.
 #include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
@@ -58,7 +58,7 @@ TEST_F(SceneReport, AViewFileReplacesTheCamera) {
   EXPECT_EQ(runInspect("scene --camera 3 " + quoted(at("tiny.toml"))).code, 2);
 }
 
-// A name may hold any bytes but those that end it.
+// A name may hold any bytes except those that end it.
 TEST_F(SceneReport, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
   writeTinyScene(at("."));
   std::string obj = readAll(at("tiny.obj"));
@@ -82,7 +82,7 @@ TEST_F(SceneReport, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
   EXPECT_EQ(runInspect("scene --to-toml " + quoted(at("copy")) + " " + scene).code, 0);
 }
 
-// Also those of what occurs many times, each of which is stored once.
+// Triangles of instances count too, although each mesh is stored once.
 TEST_F(SceneReport, CountsMaskedTriangles) {
   writeTinyScene(at("."));
   writeAll(at("tiny.mtl"), "newmtl white\nKd 0.7 0.7 0.7\nnewmtl gone\nKd 1 1 1\nd 0.2\n");

@@ -1,4 +1,4 @@
-// A wall at z = 0 seen from (0, 0, 4), and a small board at z = 1 that hides the right part of it.
+// A wall at z = 0 seen from (0, 0, 4), and a small board at z = 1 that hides its right part.
 #pragma once
 
 #include "tests/inspect/inspect_files.h"
@@ -21,7 +21,7 @@ inline void writeTinyScene(const fs::path& folder) {
       "[[light]]\ntype = \"point\"\nposition = [0.0, 2.0, 3.0]\nintensity = [1.0, 1.0, 1.0]\n");
 }
 
-// In sight; hidden by the board; facing away on the board; behind the camera.
+// The rows are visible, hidden by the board, facing away on the board, and behind the camera.
 inline VplTable tinyRows(uint64_t sceneHash) {
   VplTable table;
   table.position = {{-0.5f, 0.25f, 0}, {0.8f, 0, 0}, {0.6f, 0.1f, 1}, {0, 0, 9}};

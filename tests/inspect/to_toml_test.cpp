@@ -1,4 +1,4 @@
-// vpl-inspect scene --to-toml: what it writes is the scene again, and nothing else is replaced.
+// vpl-inspect scene --to-toml writes a scene equal to the original, and replaces no other files.
 #include "formats/png_io.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
@@ -26,7 +26,7 @@ class ToToml : public InspectTest {
   Outcome convert(const std::string& name, const std::string& to, const std::string& more = "") {
     return runInspect("scene " + quoted(at(name)) + " --to-toml " + quoted(at(to)) + " " + more);
   }
-  // What was written, and the same of what that becomes.
+  // Converts the scene, converts the result again, and expects both copies to equal the original.
   Scene copyOf(const std::string& name) {
     for (const char* folder : {"copy", "copy of copy"}) {
       const Outcome done =
@@ -84,7 +84,7 @@ TEST_F(ToToml, AViewMirrorsAsTheScenesCameraDoes) {
   EXPECT_EQ(scene.camera.right, Vec3(-1, 0, 0));
   useViewFile(at("plain.toml"), scene);
   EXPECT_EQ(scene.camera.right, Vec3(1, 0, 0));
-  useViewFile(at("view.toml"), scene);  // not as the view before it
+  useViewFile(at("view.toml"), scene);  // not mirrored as in the view before
   EXPECT_EQ(scene.camera.right, Vec3(-1, 0, 0));
 }
 
@@ -243,7 +243,7 @@ TEST_F(ToToml, EachPartCountsInTheComparison) {
 }
 
 TEST_F(ToToml, WhatTheReaderWouldRefuseIsRefusedWhole) {
-  std::string narrow = kPbrtView;  // 0.0008 degrees
+  std::string narrow = kPbrtView;  // a field of view of 0.0008 degrees
   narrow.replace(narrow.find("fov\" 40"), 7, "fov\" .004");
   narrow.replace(narrow.find("\nWorld"), 1, " \"float cropwindow\" [0 1 .4 .6]\n");
   writeAll(at("s.pbrt"), narrow + kSquare);

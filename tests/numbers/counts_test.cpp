@@ -1,4 +1,4 @@
-// Counts beyond 2^31 and 2^32: nothing wraps around.
+// Counts beyond 2^31 and 2^32 do not wrap around.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -11,7 +11,7 @@
 namespace bnvpl::test {
 namespace {
 
-constexpr uint64_t kMaxPhotons = uint64_t{1} << 36;  // of vpl-estimate --photons
+constexpr uint64_t kMaxPhotons = uint64_t{1} << 36;  // maximum of vpl-estimate --photons
 
 TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
   const uint64_t key = streamKey(1, Stream::Photons);
@@ -28,7 +28,7 @@ TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
   EXPECT_EQ(seen.size(), drawn);
 }
 
-// Two lamps, a millionth of the power apart.
+// Two point lights whose powers have a ratio of 1e-6.
 TEST(Counts, SharesOfManyPhotonsAreExact) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   for (Material& m : scene.materials) m.emission = {};
@@ -50,7 +50,7 @@ TEST(Counts, SharesOfManyPhotonsAreExact) {
   }
 }
 
-// Far too many to trace: the first range shows that sums and ranges hold them.
+// These are far too many photons to trace: the first range shows that sums and ranges hold them.
 TEST(Counts, BillionsOfPhotonsCanBegin) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keepVpls(placeVpls(world, {{"count", "2000"}}).table, {{"count", "50"}});
@@ -64,7 +64,7 @@ TEST(Counts, BillionsOfPhotonsCanBegin) {
   EXPECT_THROW(resolve(estimateSpec(), {{"photons", std::to_string(kMaxPhotons + 1)}}), UsageError);
 }
 
-// Slots of samples are counted in 32 bits: their last step must not wrap around.
+// Slots of samples are counted in 32 bits: their last increment must not wrap around.
 TEST(Counts, SamplesOfAPixelEndAtTheLargestCount) {
   World world("cornell/scene.toml");
   world.scene.film = {1, 1};

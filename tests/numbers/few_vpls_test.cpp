@@ -1,5 +1,5 @@
-// One VPL, one candidate, as many VPLs as candidates, all at one place, and a VPL at the very point
-// that it lights.
+// One VPL, one candidate, as many VPLs as candidates, all at one position, and a VPL exactly at the
+// point that it lights.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -23,7 +23,7 @@ VplTable keepOf(const World& world, uint64_t candidates, uint64_t count,
   return keepVpls(all, {{"count", std::to_string(count)}, {"density", density}});
 }
 
-// Lights the VPLs and renders them by every method.
+// Estimates the flux of the VPLs and renders them by every gather method.
 void expectWholeImages(const World& world, const VplTable& vpls) {
   const VplTable lit = lightVpls(world, vpls, {{"photons", "5000"}}).table;
   for (const std::string& gather : gathers()) {
@@ -85,7 +85,7 @@ VplTable tableOf(const std::vector<Vec3>& position, const std::vector<Vec3>& nor
   return table;
 }
 
-// Nothing tells them apart but their rows: the lowest stay. The radius follows the unit.
+// Only their rows distinguish the candidates: the lowest stay. The radius scales with the unit.
 TEST(FewVpls, AllCandidatesAtOnePlace) {
   for (const float unit : {1.0f, 1e-3f, 1e4f}) {
     const std::vector<Vec3> position(800, Vec3(0.3f, 0.2f, 0.6f) * unit), normal(800, {0, 1, 0});
@@ -115,11 +115,11 @@ TEST(FewVpls, RadiiBeyondFloatsAreRefused) {
   EXPECT_THROW(keepWithin("1e-80"), InputError);
 }
 
-// Exactly at the point, a rounding above it, and at a distance: the last alone gives light.
+// VPLs at the point, a rounding error above it, and at a distance; only the last contributes.
 TEST(FewVpls, AVplAtTheShadedPoint) {
   const World world = smallCornell();
   SurfacePoint at;
-  ASSERT_TRUE(world.rays.closestHit({0.278f, 0.3f, 0.28f}, {0, -1, 0}, at));  // the floor, or a box
+  ASSERT_TRUE(world.rays.closestHit({0.278f, 0.3f, 0.28f}, {0, -1, 0}, at));  // floor or box
   const Bsdf bsdf(world.scene, at);
   bool seesNothing = false;
   const auto gathered = [&](const std::vector<Vec3>& offsets, const std::string& method,
@@ -156,7 +156,7 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
   }
 }
 
-// Flux so faint that its mean is no float, beside one that is 1e30 times as strong.
+// Some fluxes are so faint that their mean underflows, beside others that are 1e30 times stronger.
 TEST(FewVpls, FluxesOfAnyStrength) {
   const World world = smallCornell();
   VplTable vpls = lightVpls(world, keepOf(world, 300, 30), {{"photons", "20k"}}).table;

@@ -1,4 +1,4 @@
-// Where NaN and infinity arose, and what becomes of those that still do.
+// Sources of NaN and infinity, and the handling of samples that are still not finite.
 #include "formats/exr_io.h"
 #include "tests/numbers/room.h"
 #include "tests/scene/plain_scene.h"
@@ -39,8 +39,8 @@ TEST(Lobes, OfAnyExponent) {
   }
 }
 
-// A mirror beside a diffuse surface, too faint to be drawn: not by the number 0 either.
-TEST(Lobes, OfNoStrengthAreNotThere) {
+// The mirror lobe beside a diffuse one is too faint to be sampled, even by the random number 0.
+TEST(Lobes, WithoutStrengthAreIgnored) {
   Material m = lambert(Vec3(0.5f));
   m.phong().mirror = Vec3(1e-40f);
   const Scene scene = sceneOf(m);
@@ -50,7 +50,7 @@ TEST(Lobes, OfNoStrengthAreNotThere) {
   EXPECT_EQ(Bsdf(dark, at).reflectance(), 0.0f);
 }
 
-// At 16,384 rows and more the cosines that bound the rows at the poles are the same float.
+// With 16,384 rows or more, the cosines that bound the rows at the poles are the same float.
 TEST(Sky, PolesOfAFineImage) {
   Scene scene = floorScene();
   EnvironmentImage image;
@@ -69,7 +69,7 @@ TEST(Sky, PolesOfAFineImage) {
     lights.forEachAtInfinity(direction, [&](size_t, Vec3 radiance, float pdf) {
       EXPECT_TRUE(isFinite(radiance));
       EXPECT_TRUE(std::isfinite(pdf));
-      EXPECT_NEAR(pdf * 4 * kPi, 1.0f, 0.6f);  // of a constant sky; texels are rounded
+      EXPECT_NEAR(pdf * 4 * kPi, 1.0f, 0.6f);  // constant sky, but its texels are rounded
     });
   }
   for (uint64_t i = 0; i < 1000; ++i) {
@@ -127,11 +127,11 @@ TEST_F(NonFinite, MaterialsOfAbsurdSize) {
     const World world(std::move(scene));
     const RenderResult result = renderWithout(world, "path", {{"spp", "64"}});
     EXPECT_EQ(result.stats.nonFinite, 0u) << fields;
-    EXPECT_LT(meanOf(result.image), 1.01) << fields;  // a white sky, never more
+    EXPECT_LT(meanOf(result.image), 1.01) << fields;  // under a white sky nothing is brighter
   }
 }
 
-// The last resort in the film: such a sample is black, and counted.
+// The film's last resort: a sample that is not finite becomes black and is counted.
 TEST_F(NonFinite, SamplesAreCountedAsZero) {
   const World world(room({"metres"}));
   const float bad[] = {std::nanf(""), kInf, -kInf, 3e38f};
@@ -154,7 +154,7 @@ TEST_F(NonFinite, SamplesAreCountedAsZero) {
   }
 }
 
-// So is light that a photon brings to a pixel, and a photon that was dropped on its way.
+// The same holds for splats and for photons that were cut off on their way.
 TEST_F(NonFinite, SplatsAreCountedAsZero) {
   World world(room({"metres"}));
   world.scene.film = {4, 4};
@@ -171,10 +171,10 @@ TEST_F(NonFinite, SplatsAreCountedAsZero) {
                   }},
                  {.spp = 2, .layers = {}}, stats);
   EXPECT_EQ(stats.nonFinite, 16u + 32u);
-  EXPECT_FLOAT_EQ(image.find("R")->front(), 0.5f);  // of two samples
+  EXPECT_FLOAT_EQ(image.find("R")->front(), 0.5f);  // mean of two samples
 }
 
-// A photon whose flux overflows ends there: it is counted, and the account stays whole.
+// A photon whose flux overflows ends there. It is counted, and the energy account still closes.
 TEST_F(NonFinite, PhotonsAreCutOffAndCounted) {
   const World world(room({"metres"}));
   for (const float flux : {std::nanf(""), kInf}) {

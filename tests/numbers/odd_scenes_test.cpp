@@ -1,5 +1,5 @@
-// Degenerate geometry, dark scenes and odd cameras: the image is that of the rest of the scene, or
-// the message says what is wrong.
+// Degenerate geometry, dark scenes and odd cameras: the image shows the rest of the scene, or the
+// error names the problem.
 #include "tests/numbers/room.h"
 
 namespace bnvpl::test {
@@ -20,7 +20,7 @@ class OddScenes : public RoomTest {
     return *a.find("R") == *b.find("R") && *a.find("G") == *b.find("G") &&
            *a.find("B") == *b.find("B");
   }
-  // What vpl-place says of the scene; empty when it finds enough.
+  // The error of vpl-place for the scene; empty when it finds enough candidates.
   std::string placeError(const Scene& scene) const {
     const World world(scene);
     try {
@@ -43,8 +43,8 @@ class OddScenes : public RoomTest {
   const Placement metres_{"metres"};
 };
 
-// Vertices that are no numbers, infinite, denormal; triangles without area; one smaller and one
-// larger than floats can compute normals of.
+// Vertices that are missing, infinite or denormal; triangles without area; one triangle too small
+// and one too large for a normal in floats.
 TEST_F(OddScenes, UnusableTrianglesAreLeftOutAndCounted) {
   const Scene whole = room(metres_);
   const Scene odd = room(metres_,
@@ -77,10 +77,10 @@ TEST_F(OddScenes, WordsInPlaceOfNumbersAreNamedWithTheirLine) {
     EXPECT_THROW(room(metres_, std::string(vertex) + "\n"), InputError) << vertex;
 }
 
-// Each face twice: a ray meets one of them, and a lamp does not shine twice.
+// Each face exists twice: a ray hits one of them, and an area light does not emit twice.
 TEST_F(OddScenes, DuplicateTrianglesChangeNothing) {
   const Scene whole = room(metres_);
-  // Absolute indices, so that the copies name the same vertices.
+  // Absolute indices make the copies name the same vertices.
   std::ifstream lines(at("room.obj"));
   std::string faces;
   int vertices = 0;
@@ -101,7 +101,7 @@ TEST_F(OddScenes, DuplicateTrianglesChangeNothing) {
   EXPECT_NEAR(meanOf(doubled) / meanOf(once), 1.0, 1e-3);
 }
 
-// Which of two surfaces at one place a ray meets is not defined, but the same in every run.
+// Which of two coincident surfaces a ray hits is undefined, but equal in every run.
 TEST_F(OddScenes, CoincidentSurfacesOfDifferentMaterials) {
   const std::string carpet =
       "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nusemtl red\nf -4 -3 -2 -1\nusemtl lamp\nf -4 -3 "
@@ -154,7 +154,7 @@ TEST_F(OddScenes, LightsBeyondFloatsAreRefusedByName) {
   }
 }
 
-// Light so faint that its floats are denormal still adds up.
+// Light whose floats are denormal still adds up.
 TEST_F(OddScenes, FaintLight) {
   Scene scene = room(metres_);
   for (LightSpec& l : scene.lights) l.emission *= 1e-34f;
@@ -180,7 +180,7 @@ TEST_F(OddScenes, BlackSurfaces) {
 }
 
 TEST_F(OddScenes, ACameraInsideAWall) {
-  for (const Vec3 position : {Vec3(-0.7f, 0.3f, -0.9f),     // in the box
+  for (const Vec3 position : {Vec3(-0.7f, 0.3f, -0.9f),     // inside the box
                               Vec3(-2.0f, 1.0f, 0.5f),      // in the plane of a wall
                               Vec3(-2.0f, 0.0f, -2.0f)}) {  // in a corner
     Scene scene = room(metres_);
@@ -196,7 +196,7 @@ TEST_F(OddScenes, AViewOfNothingButSky) {
   scene.camera.position = {0.0f, 1.0f, 50.0f};
   scene.camera.forward = {0, 0, 1};
   scene.camera.right = {-1, 0, 0};
-  scene.lights.pop_back();  // the sun, which is in the view
+  scene.lights.pop_back();  // the sun, which is visible
   const std::string error = placeError(scene);
   EXPECT_NE(error.find("scene.toml: only 0 of 20 VPLs"), std::string::npos) << error;
   EXPECT_NE(error.find("100 % left the scene"), std::string::npos) << error;
@@ -205,7 +205,7 @@ TEST_F(OddScenes, AViewOfNothingButSky) {
   for (const float v : *sky.find("B")) EXPECT_FLOAT_EQ(v, 0.8f);
   for (const float z : *sky.find("Z")) EXPECT_EQ(z, INFINITY);
   scene.lights.clear();
-  EXPECT_EQ(meanOf(paths(scene)), 0.0);  // the void
+  EXPECT_EQ(meanOf(paths(scene)), 0.0);  // nothing is hit
 }
 
 TEST_F(OddScenes, SizesBeyondFloatsAreRefused) {

@@ -1,4 +1,4 @@
-// A room with a light of every kind and a surface of every kind, in any unit and at any place.
+// A room with every kind of light and every kind of surface, in any unit and at any position.
 #pragma once
 
 #include <sstream>
@@ -9,7 +9,7 @@
 
 namespace bnvpl::test {
 
-// Lengths in metres are multiplied by `scale`, then moved by `move` along every axis.
+// Multiplies lengths in metres by `scale`, then moves them by `move` along every axis.
 struct Placement {
   const char* name;
   double scale = 1.0, move = 0.0;
@@ -18,7 +18,7 @@ struct Placement {
 
 class RoomTest : public SceneFiles {
  protected:
-  // Open towards +z, where sky and sun come in; the camera stands in the opening.
+  // A room open towards +z, where sky and sun come in; the camera stands in the opening.
   Scene room(const Placement& p, const std::string& moreFaces = "") const {
     write("room.mtl",
           "newmtl white\nKd 0.7 0.7 0.7\nnewmtl red\nKd 0.6 0.1 0.1\n"

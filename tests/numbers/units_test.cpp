@@ -1,4 +1,4 @@
-// The same room in other units and at other places must give the same image.
+// The same room in other units and at other positions gives the same image.
 #include "tests/numbers/room.h"
 
 namespace bnvpl::test {
@@ -21,7 +21,7 @@ Images renderBoth(Scene scene) {
   return {vpl.image, path.image};
 }
 
-// Root mean square difference over the mean of the first.
+// Root mean square difference over the mean of the first image.
 double difference(const Image& a, const Image& b) {
   double squared = 0.0;
   for (const char* c : {"R", "G", "B"}) {
@@ -36,8 +36,8 @@ bool sameBits(const Image& a, const Image& b) {
          *a.find("B") == *b.find("B");
 }
 
-// Floats of another power of two round alike: any difference comes from a length, an area or a
-// power that is written as a plain number somewhere.
+// Scaling by a power of two does not change rounding. A difference would come from a constant that
+// has the unit of a length, an area or a power.
 TEST_F(Units, PowersOfTwoGiveTheSameBits) {
   const Images metres = renderBoth(room({"metres"}));
   for (const Placement& p : {Placement{"2^-10", 0x1p-10}, Placement{"2^13", 0x1p13}}) {
@@ -57,13 +57,13 @@ TEST_F(Units, OtherUnitsAndPlacesGiveTheSameImage) {
     const Images other = renderBoth(room(p));
     EXPECT_NEAR(meanOf(other.path) / meanOf(metres.path), 1.0, 0.003) << p.name;
     EXPECT_LT(difference(metres.path, other.path), 0.1) << p.name;
-    // A weight that rounds otherwise changes who is eliminated, and so which VPLs there are.
+    // A weight that rounds differently changes which candidates are eliminated, and thus the VPLs.
     EXPECT_NEAR(meanOf(other.vpl) / meanOf(metres.vpl), 1.0, 0.015) << p.name;
     EXPECT_LT(difference(metres.vpl, other.vpl), 0.15) << p.name;
   }
 }
 
-// A face that covers nearly nothing takes no light, however far it reaches.
+// A face that covers nearly nothing takes no light, however far it extends.
 TEST_F(Units, AFaceThatReachesFarAwayTakesNoLight) {
   const auto render = [&](const std::string& more, bool sky) {
     Scene scene = room({"room"}, more);
@@ -83,7 +83,7 @@ TEST_F(Units, AFaceThatReachesFarAwayTakesNoLight) {
   }
 }
 
-// Coordinates count from a place of the scene's own where it is far away, and only there.
+// Coordinates are stored relative to an origin of the scene's own only where the scene is far away.
 TEST_F(Units, FarScenesHaveAnOriginOfTheirOwn) {
   EXPECT_EQ(room({"here"}).origin, FilePoint{});
   EXPECT_EQ(room({"10 sizes away", 1.0, 60.0}).origin, FilePoint{});
@@ -96,9 +96,9 @@ TEST_F(Units, FarScenesHaveAnOriginOfTheirOwn) {
   EXPECT_EQ(far.contentHash, room({"here"}).contentHash);  // so VPLs of the one suit the other
 }
 
-// What is left: a scene as large as its distance, such as a room beside a triangle that was left at
-// the origin. Offsets of rays grow with coordinates, to 4 mm at a distance of 1000. Without sky and
-// sun, whose share of the shadow rays grows with the scene.
+// One case remains: a scene as large as its distance, such as a room with a stray triangle at the
+// origin. Ray offsets grow with the coordinates, to 4 mm at a distance of 1000. Sky and sun are
+// left out because their share of the shadow rays grows with the scene.
 TEST_F(Units, AnOutlierAtTheOriginCoarsensWhatIsFarAway) {
   const auto render = [&](const Placement& p, const std::string& more) {
     Scene scene = room(p, more);

@@ -13,7 +13,7 @@ class BudgetRun : public PipelineTest {
     return scene_ + " --integrator path --size 32x24 " + more;
   }
   nlohmann::json stats() const { return nlohmann::json::parse(readAll(at("s.json"))); }
-  // Of a run by `budget`, which does not end by itself, the checkpoint c is left.
+  // Interrupts a run by `budget`, which does not end by itself, so that the checkpoint c remains.
   void stop(const std::string& budget) const {
     for (const char* seconds : {"2", "6", "18"}) {  // a busy machine may take long to begin
       if (fs::exists(at("c"))) break;
@@ -47,7 +47,7 @@ TEST_F(BudgetRun, NonsenseIsRefusedOnOneLine) {
   EXPECT_FALSE(fs::exists(at("x.exr")));
 }
 
-// What a time happened to make is made again by the number of its passes.
+// --passes with the number of passes of a run by --time repeats its image.
 TEST_F(BudgetRun, ATimeIsKeptAndItsImageRepeated) {
   const std::string more = "--layers all --stats " + path("s.json");
   const Outcome r = tool("vpl-render", paths("--time 2s " + more + " -o " + path("a.exr")));
@@ -82,7 +82,7 @@ TEST_F(BudgetRun, AnErrorIsReached) {
   EXPECT_LT(std::stoul(passesDone()), std::stoul(reached));
 }
 
-// Waits for a file of a run in the background, and stops that.
+// Waits for the preview of a background run, then stops the run.
 TEST_F(BudgetRun, ThePreviewIsThereBeforeTheImage) {
   const Outcome r =
       shell("'" BNVPL_BIN "/vpl-render' " +
@@ -95,12 +95,12 @@ TEST_F(BudgetRun, ThePreviewIsThereBeforeTheImage) {
   EXPECT_FALSE(fs::exists(at("x.exr")));
 }
 
-TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
+TEST_F(BudgetRun, ACheckpointKeepsTheTimeSpentAndMayGetAnother) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
   stop("--time 1h" + work);
   fail("vpl-render", paths("--time 1h --seed 2" + work), kExitInput, {"seed was 1 and is now 2"});
-  succeed("vpl-render", paths("--time 1s" + work));  // spent already: the pass under way ends
+  succeed("vpl-render", paths("--time 1s" + work));  // already spent: the current pass ends
   EXPECT_GT(stats()["passes_time_s"].get<double>(), 1.0);
   EXPECT_LT(stats()["time_s"].get<double>(), stats()["passes_time_s"].get<double>());
   succeed("vpl-render", paths("--passes " + passesDone() + " --quiet -o " + path("b.exr")));
@@ -108,7 +108,7 @@ TEST_F(BudgetRun, ACheckpointGoesOnWithTheTimeSpentAndMayGetAnother) {
   EXPECT_FALSE(fs::exists(at("c")));
 }
 
-TEST_F(BudgetRun, ACheckpointGoesOnByAnyBudget) {
+TEST_F(BudgetRun, ACheckpointContinuesWithAnyBudget) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
   stop("--time 1h" + work);

@@ -1,4 +1,4 @@
-// vpl-inspect check --deep on what the stages really write.
+// vpl-inspect check --deep on files that the stages wrote.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -24,8 +24,8 @@ TEST_F(Chain, AWholeOnePasses) {
   EXPECT_TRUE(contains(r.out, "one whole chain")) << r.out;
 }
 
-// The message's commands, run as they are, make it whole, and change nothing that was right.
-TEST_F(Chain, TheCommandsOfTheMessageMendIt) {
+// The commands in the message, run literally, repair the chain and change nothing that was right.
+TEST_F(Chain, TheCommandsOfTheMessageRepairIt) {
   const std::string image = readAll(at("image.exr"));
   succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300 --seed 2");
   Outcome r = tool("vpl-inspect", all() + " --quiet --scene " + scene_);
@@ -39,13 +39,13 @@ TEST_F(Chain, TheCommandsOfTheMessageMendIt) {
   ASSERT_EQ(r.code, 0) << commands << r.err;
   EXPECT_EQ(tool("vpl-inspect", all() + " --scene " + scene_).code, kExitOk);
   EXPECT_NE(readAll(at("image.exr")), image);
-  // Back to the first candidates, everything else again by the same commands: the first image.
+  // With the first candidates and the same commands for the rest, the first image returns.
   succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300");
   ASSERT_EQ(shell("bash -e " + path("mend.sh")).code, 0);
   EXPECT_EQ(readAll(at("image.exr")), image);
 }
 
-TEST_F(Chain, AnotherSceneAGapAndATwinAreRefused) {
+TEST_F(Chain, AnotherSceneAMissingStageAndATwinAreRefused) {
   fail("vpl-inspect",
        all() + " --quiet --scene " + "'" BNVPL_SOURCE "/scenes/veach-door/scene.toml'", kExitInput,
        {"candidates.vpl: made from scene", "; run: vpl-place "});

@@ -1,4 +1,4 @@
-// Options of every tool, and what they refuse.
+// Options of every tool, and the values that they refuse.
 #include <nlohmann/json.hpp>
 
 #include "tests/pipeline/tool_runner.h"
@@ -9,7 +9,7 @@ namespace {
 
 class Options : public PipelineTest {
  protected:
-  // What --help has to tell of the methods and options that a stage names.
+  // Names of the methods and options of a stage, which --help must mention.
   std::vector<std::string> toldByJson(const std::string& name) const {
     const auto spec = nlohmann::json::parse(tool(name, "--help-json").out);
     std::vector<std::string> texts;
@@ -56,7 +56,7 @@ TEST_F(Options, HelpListsEveryOption) {
   }
 }
 
-// One way to show a kind of value, and ranges in plain numbers.
+// Each kind of value has one notation, and ranges are plain numbers.
 TEST_F(Options, HelpIsPlain) {
   std::string all;
   for (const char* command : {"info", "check", "scene", "export", "plot", "compare"})
@@ -107,14 +107,14 @@ TEST_F(Options, UnknownAndMissingOptions) {
   fail("vpl-eliminate", "a.vpl -o b.vpl", kExitUsage, {"--count"});
 }
 
-// What the library of options says is not for people.
-TEST_F(Options, MistakesAreToldInSentences) {
+// Messages of the option library are replaced by messages for people.
+TEST_F(Options, MistakesAreReportedInSentences) {
   const std::string out = " -o " + path("x.vpl");
   fail("vpl-place", scene_ + out + " -n 1 -n 2", kExitUsage, {"--count is given more than once"});
   fail("vpl-place", scene_ + " one two" + out, kExitUsage, {"'one', 'two' have no meaning here"});
   fail("vpl-place", scene_ + out + " --thread 3", kExitUsage,
        {"'--thread', '3' have no meaning here; check how the option is written"});
-  // Options of former versions name what they are today.
+  // Removed options name their replacement.
   fail("vpl-render", scene_ + " " + path("lit.vpl") + " --specks keep" + out, kExitUsage,
        {"--specks is --fireflies redistribute or keep today"});
   fail("vpl-place", scene_ + " -o", kExitUsage, {"--output needs a value: FILE"});
@@ -128,7 +128,7 @@ TEST_F(Options, MistakesAreToldInSentences) {
        {"--map: 'flup' is none of difference|flip|", "see vpl-inspect compare --help"});
 }
 
-// VPLs are lit for any view; of direct light alone nothing indirect is known.
+// VPLs are lit for any view. With --only direct nothing indirect is computed.
 TEST_F(Options, WhatWouldHaveNoEffectIsRefused) {
   fail("vpl-estimate", scene_ + " a.vpl -o x.vpl --view " + scene_, kExitUsage, {"'--view'"});
   fail("vpl-estimate", scene_ + " a.vpl -o x.vpl --camera 1", kExitUsage, {"'--camera'"});
@@ -166,7 +166,7 @@ TEST_F(Options, UnknownChoices) {
   EXPECT_TRUE(listing().empty());
 }
 
-// As of a variable that a script forgot to set; before any work.
+// A script's unset variable gives an empty file name, which is refused before any work.
 TEST_F(Options, EmptyFileNames) {
   const std::pair<const char*, std::string> lines[] = {
       {"vpl-place", "'' -o x"},
@@ -237,7 +237,7 @@ TEST_F(Options, VplsAndReferencesExcludeEachOther) {
   fail("vpl-render", scene_ + " a.vpl -o x --integrator light", kExitUsage, {"light", "a.vpl"});
 }
 
-// A script gives every stage the same seed; a method that draws no numbers ignores it.
+// A script gives every stage the same seed; a method without random numbers ignores it.
 TEST_F(Options, ASeedThatNothingDrawsByIsAccepted) {
   makeStages(scene_);
   const std::string keep = path("candidates.vpl") + " -n 60 -o ";
@@ -253,7 +253,7 @@ TEST_F(Options, ListsTakeOneWord) {
           "--layers direct,Z " + scene_ + " " + path("lit.vpl") + " --spp 1 -o " + path("i.exr"));
 }
 
-// --define takes one word and leaves the scene's name alone, wherever it stands.
+// --define takes one word and leaves the scene's name alone wherever it stands.
 TEST_F(Options, DefinesMayStandAnywhere) {
   fs::copy(BNVPL_SOURCE "/scenes/test", at("far"), fs::copy_options::recursive);
   std::string toml = readAll(at("far/one-bounce.toml"));

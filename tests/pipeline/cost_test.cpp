@@ -1,4 +1,4 @@
-// --estimate: what a stage will need, told before it is run, against what it then takes.
+// --estimate predicts what a stage will need; the prediction is compared with the actual run.
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ class CostRun : public PipelineTest {
     EXPECT_LE(json["setup_cpu_s"], json["cpu_s"]);
     return {json["cpu_s"], json["memory_MiB"]};
   }
-  // CPU time of all threads, as the kernel counts it: load of the machine hardly matters.
+  // CPU time of all threads as counted by the kernel; load of the machine hardly matters.
   Need taken(const std::string& name, const std::string& arguments) const {
     const Outcome r = shell(
         "python3 -c 'import resource, subprocess, sys; code = subprocess.call(sys.argv[1:]); "
@@ -55,7 +55,7 @@ class CostRun : public PipelineTest {
     EXPECT_LT(told.memoryMiB, 1.5 * took.memoryMiB) << what;
     EXPECT_GT(told.memoryMiB, took.memoryMiB / 1.5) << what;
   }
-  // Each so long that its probe is a part of it.
+  // Each run is so long that its probe is only a part of it.
   void expectAllPredicted(const std::string& scene) const {
     expectPredicted("vpl-place", scene + " -n 200k -o " + path("candidates.vpl"));
     expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 20k -o " + path("vpls.vpl"));
@@ -66,11 +66,11 @@ class CostRun : public PipelineTest {
   }
 };
 
-TEST_F(CostRun, StagesTakeWhatTheyToldInTheUShape) {
+TEST_F(CostRun, StagesTakeWhatTheyPredictInTheUShape) {
   expectAllPredicted("'" BNVPL_SOURCE "/scenes/u-shape/scene.toml'");
 }
 
-TEST_F(CostRun, StagesTakeWhatTheyToldInACornellBox) {
+TEST_F(CostRun, StagesTakeWhatTheyPredictInACornellBox) {
   expectAllPredicted("'" BNVPL_SOURCE "/scenes/cornell/scene.toml'");
 }
 
@@ -82,7 +82,8 @@ TEST_F(CostRun, ShardsTakeTheirPart) {
   EXPECT_GT(tenth.cpuS, 0.03 * whole.cpuS);
 }
 
-// Nobody could wait for these. CPU seconds of the estimate itself, which load hardly changes.
+// These runs would never end in practice. The limit is on CPU seconds of the estimate itself, which
+// load hardly changes.
 TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),
@@ -103,14 +104,14 @@ TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
   }
 }
 
-// What is asked for grows, and so does what is told, by preparations that a probe does in part.
+// The predicted cost grows with the work, including preparations that a probe does only in part.
 TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),
                     lit = scene_ + " " + path("lit.vpl") + " -o " + path("x.exr");
   const auto grows = [&](const std::string& name, const std::string& few, const std::string& many,
                          double times) {
-    // The median of three, as a probe that the machine disturbs is off.
+    // The median of three estimates is robust against a probe that the machine disturbs.
     const auto cpuS = [&](const std::string& arguments) {
       std::array<double, 3> s;
       for (double& one : s) one = estimated(name, arguments).cpuS;
@@ -128,7 +129,7 @@ TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
   grows("vpl-render", lit + " --size 2000x1500 --spp 64", lit + " --size 4000x3000 --spp 64", 4.0);
 }
 
-TEST_F(CostRun, OneLineTellsIt) {
+TEST_F(CostRun, OneLinePrintsIt) {
   const Outcome r = tool("vpl-place", scene_ + " -n 2k --estimate -o " + path("x.vpl"));
   EXPECT_EQ(r.code, kExitOk) << r.err;
   EXPECT_EQ(r.out.rfind("vpl-place: about ", 0), 0u) << r.out;

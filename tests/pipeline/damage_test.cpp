@@ -1,4 +1,4 @@
-// Missing, foreign and damaged input; output that cannot be written.
+// Missing, foreign and damaged input, and output that cannot be written.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -115,12 +115,12 @@ TEST_F(Damage, UnwritableOutputLeavesNothing) {
   }
 }
 
-// A disk that fills up while the file is written: the file that was there stays as it was.
+// The disk fills up during the write: the old file stays.
 TEST_F(Damage, OldOutputSurvivesAFailedWrite) {
   makeStages(scene_);
   for (const auto& [name, arguments] :
        writers(scene_, path("candidates.vpl"), path("vpls.vpl"), path("lit.vpl"))) {
-    write("old", "");  // as mktemp makes it
+    write("old", "");  // empty, like a file of mktemp
     const std::vector<std::string> before = listing();
     fail(name, arguments + " -o " + path("old"), kExitOutput, {"old"},
          "trap '' XFSZ; ulimit -f 1;");
@@ -140,7 +140,7 @@ TEST_F(Damage, OldOutputSurvivesBadInput) {
   EXPECT_EQ(readAll(at("lit.vpl")), lit);
 }
 
-// An image and its preview belong together: neither is left behind alone.
+// An image and its preview belong together: neither is left without the other.
 TEST_F(Damage, UnwritablePreviewLeavesNoImage) {
   fail("vpl-render",
        scene_ + " --integrator path --spp 1 -o " + path("x.exr") + " --png " + path("absent/x.png"),
@@ -148,7 +148,7 @@ TEST_F(Damage, UnwritablePreviewLeavesNoImage) {
   EXPECT_TRUE(listing().empty());
 }
 
-TEST_F(Damage, AViewIntoTheVoidIsRefusedInBoundedTime) {
+TEST_F(Damage, AViewOfNothingIsRefusedInBoundedTime) {
   fs::copy(BNVPL_SOURCE "/scenes/test", at("test"), fs::copy_options::recursive);
   std::string toml = readAll(at("test/one-bounce.toml"));
   const size_t where = toml.find("look_at = [-0.2, 0.4, 0.0]");

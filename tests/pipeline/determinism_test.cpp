@@ -1,4 +1,4 @@
-// The same bytes from every stage for any number of threads.
+// Every stage writes the same bytes for any number of threads.
 #include "tests/pipeline/tool_runner.h"
 
 namespace bnvpl {
@@ -6,7 +6,7 @@ namespace {
 
 class Determinism : public PipelineTest {
  protected:
-  // The scene with glossy, mirror and textured surfaces, and a light of every type on top.
+  // The scene with glossy, mirror and textured surfaces, plus a light of every type.
   void SetUp() override {
     copyVeachDoor();
     write("veach-door/scene.toml",
@@ -74,7 +74,7 @@ TEST_F(Determinism, LightPlacementAndReferencesForAnyThreads) {
   }
 }
 
-// Otherwise the tests above would pass for programs that ignore the seed.
+// Without this test, a program that ignores the seed would pass those above.
 TEST_F(Determinism, AnotherSeedIsAnotherFile) {
   const auto pair = [&](const std::string& name, const std::string& arguments) {
     const std::string a = "a-" + name, b = "b-" + name;
@@ -89,7 +89,7 @@ TEST_F(Determinism, AnotherSeedIsAnotherFile) {
   pair("vpl-render", door_ + " " + path("lit.vpl") + " --spp 1");
 }
 
-// Neither the folder nor the day gets into a file.
+// Neither the folder nor the date gets into a file.
 TEST_F(Determinism, FilesDoNotDependOnTheFolder) {
   makeStages(door_);
   fs::rename(at("veach-door"), at("moved"));

@@ -1,4 +1,4 @@
-// Options that would have no effect, numbers that are none, and what records say.
+// Options without effect, malformed numbers, and the contents of records.
 #include <nlohmann/json.hpp>
 
 #include "formats/checkpoint.h"
@@ -36,7 +36,7 @@ TEST_F(Effect, OptionsWithoutEffectAreRefused) {
   EXPECT_FALSE(fs::exists(at("i.exr")) || fs::exists(at("v.vpl")) || fs::exists(at("c.vpl")));
 }
 
-// Why VPLs are dark, and what helps.
+// The warning says why VPLs are dark, and what helps.
 TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
   makeStages(scene_);
   const auto warning = [&](const std::string& options) {
@@ -51,8 +51,8 @@ TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
   EXPECT_EQ(warning("--photons 10k"), "");
 }
 
-// Where the image shows direct light alone, nothing that shapes indirect light is taken.
-TEST_F(Effect, DirectLightAloneAsksNoVpls) {
+// With --only direct, options of indirect light are refused.
+TEST_F(Effect, DirectLightAloneNeedsNoVpls) {
   makeStages(scene_);
   const std::string lit = scene_ + " " + path("lit.vpl") +
                           " --spp 1 --only direct --direct-samples 1 --near-field-rays 2 -o ";
@@ -75,7 +75,7 @@ TEST_F(Effect, DirectLightAloneAsksNoVpls) {
       {"--near-field-rays has no effect", "it needs --only all or indirect or --direct-samples 1"});
 }
 
-// The same light in other places; and so in the merge of shards.
+// Redistribution moves light within the image; a merge of shards does the same.
 TEST_F(Effect, FirefliesAreRedistributedOrKept) {
   const std::string paths = scene_ + " --spp 2 --size 32x24 --integrator path --layers all -o ";
   succeed("vpl-render", paths + path("kept.exr"));
@@ -101,7 +101,7 @@ TEST_F(Effect, FirefliesAreRedistributedOrKept) {
   }
   succeed("vpl-merge", shards + " -o " + path("merged.exr"));
   EXPECT_EQ(readAll(at("merged.exr")), readAll(at("spread.exr")));
-  // With VPLs they are spread unless told.
+  // With VPLs, fireflies are redistributed by default.
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("lit.vpl") + " --spp 2 --size 32x24 -o ";
   succeed("vpl-render", vpls + path("v.exr"));
@@ -117,15 +117,14 @@ TEST_F(Effect, FirefliesAreRedistributedOrKept) {
   };
   EXPECT_EQ(recorded("v.exr"), "redistribute");
   EXPECT_EQ(recorded("v-kept.exr"), "keep");
-  // Direct light alone asks no VPLs for compensation, nor sample allocation where the samples are
-  // told.
+  // --only direct needs no compensation, and no sample allocation where --direct-samples is given.
   for (const char* option : {"--compensate none", "--allocate off --direct-samples 3"}) {
     fail("vpl-render", scene_ + " --only direct -o " + path("i.exr") + " " + option, kExitUsage,
          {"has no effect", "--direct-samples"});
   }
 }
 
-// Layers of gathered VPLs mean nothing in an image without any.
+// Layers of gathered VPLs mean nothing in an image without VPLs.
 TEST_F(Effect, LayersOfVplsNeedVpls) {
   const std::string paths = scene_ + " --spp 1 --size 8x6 --integrator path -o " + path("p.exr");
   for (const char* layer : {"clamped", "cutsize", "shadowrays"}) {
@@ -164,7 +163,7 @@ TEST_F(Effect, DefinesThatTheSceneDoesNotUseAreRefused) {
   EXPECT_TRUE(listing().empty());
 }
 
-// An empty text is a script's variable without a value.
+// A script's variable without a value gives an empty text.
 TEST_F(Effect, EmptyValuesAreRefusedByName) {
   const std::string render = scene_ + " --integrator path --spp 1 -o " + path("i.exr");
   for (const char* option : {"--size", "--stats", "--png", "--layers", "--exposure", "--depfile",
@@ -202,7 +201,7 @@ TEST_F(Effect, NumbersAreWhatTheySay) {
        {"--clamp: 'big' is not a number from 0 to 1000"});
 }
 
-// Rays of the near field serve specular paths as well: two images, two histories.
+// Rays of the near field serve specular paths as well, so the option changes image and record.
 TEST_F(Effect, TheRecordHoldsEverythingThatCounts) {
   makeStages(scene_);
   const std::string render = scene_ + " " + path("lit.vpl") + " --spp 1 --compensate none -o ";
@@ -215,13 +214,13 @@ TEST_F(Effect, TheRecordHoldsEverythingThatCounts) {
 
   const Json placed = lastRecord(readVpl(at("candidates.vpl")).provenance);
   EXPECT_EQ(placed["view"]["size"], "64x48");
-  // Version and a hash of the sources.
+  // The version ends with a hash of the sources.
   const std::string version = placed["version"];
   EXPECT_TRUE(version.starts_with(BNVPL_VERSION "+")) << version;
   EXPECT_EQ(version.size(), std::string(BNVPL_VERSION "+").size() + 12);
 }
 
-// What another build of the tools has begun is not gone on with, nor that of another view.
+// A checkpoint of another build or another view is not continued.
 TEST_F(Effect, ACheckpointOfAnotherBuildIsRefused) {
   makeStages(scene_);
   const std::string command = scene_ + " " + path("vpls.vpl") + " -o " + path("again.vpl") +
@@ -250,8 +249,8 @@ TEST_F(Effect, MeansOfWhatIsNotShownAreNotPrinted) {
   EXPECT_FALSE(contains(direct, "indirect")) << direct;
 }
 
-// A scene's warnings are said once: by the stage that meets it first.
-TEST_F(Effect, WarningsOfTheSceneAreSaidOnce) {
+// Only the first stage that reads a scene prints its warnings.
+TEST_F(Effect, WarningsOfTheSceneArePrintedOnce) {
   const std::string odd = "scenes/test/quirks.toml";
   const auto warned = [&](const std::string& name, const std::string& arguments) {
     const Outcome r = tool(name, arguments);
@@ -279,7 +278,7 @@ TEST_F(Effect, VplsWithoutPhotonsAreAWarningWithItsCure) {
   EXPECT_TRUE(contains(few.err, "raise --photons")) << few.err;
 }
 
-// Paths that no light without a size can end.
+// A path tracer cannot hit a light without extent through glass.
 TEST_F(Effect, PathsThatMissThePointLightBehindGlassSayIt) {
   write("m.obj",
         "mtllib m.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 1 -1\nv 1 1 -1\nv 1 1 1\n"

@@ -1,4 +1,4 @@
-// No run overwrites or removes a file that it reads, or writes two outputs to one name.
+// No run overwrites or removes a file that it reads, or writes two outputs to one file.
 #include <map>
 
 #include "tests/pipeline/tool_runner.h"
@@ -16,7 +16,7 @@ class Files : public PipelineTest {
     succeed("vpl-render",
             toml_ + lit_ + " --spp 1 -o " + path("image.exr") + " --png " + path("image.png"));
   }
-  // The content of every file, and what every link leads to.
+  // The content of every file and the target of every link.
   std::map<std::string, std::string> everything() const {
     std::map<std::string, std::string> contents;
     for (const std::string& name : listing()) {
@@ -27,7 +27,7 @@ class Files : public PipelineTest {
     }
     return contents;
   }
-  // Refused before anything was touched, in one line that holds every part.
+  // Expects an error before anything is touched, in one line that holds every part.
   void refused(const std::string& name, const std::string& arguments,
                const std::vector<std::string>& parts, int code = kExitUsage) const {
     const auto before = everything();
@@ -72,10 +72,10 @@ TEST_F(Files, OutputsOfInspectThatAreInputs) {
   refused("vpl-inspect", "check " + vpls_ + lit_ + "--stats " + lit_, {"--stats", "file '"});
   refused("vpl-inspect", "check --quiet " + lit_ + "--scene " + toml_ + "--stats " + toml_,
           {"--stats", "--scene '"});
-  succeed("vpl-inspect", both);  // inputs may be equal
+  succeed("vpl-inspect", both);  // two inputs may be equal
 }
 
-// Meshes, libraries and textures are known only when the scene has been read.
+// Meshes, material libraries and textures are known only after the scene has been read.
 TEST_F(Files, OutputsThatAreFilesOfTheScene) {
   const std::string obj = path("scene/one-bounce.obj"), mtl = path("scene/one-bounce.mtl");
   refused("vpl-place", toml_ + "-n 9 -o " + obj, {"-o", "one-bounce.obj"});
@@ -137,7 +137,7 @@ TEST_F(Files, TwoOutputsOfOneName) {
           {"--diff", "--stats"});
 }
 
-// Told by content: a slip of the name costs no file of another kind, whoever made it.
+// The content of a file determines its kind, so a mistyped name destroys no file of another kind.
 TEST_F(Files, AnOutputReplacesNoFileOfAnotherKind) {
   write("notes", "of somebody\n");
   write("package.json", "{\"name\": \"x\"}\n");
@@ -211,7 +211,7 @@ TEST_F(Files, ACheckpointIsNoOtherFile) {
           {"-o", "--checkpoint"});
 }
 
-// Neither at the start nor, when the work is done, at the end.
+// Such a file is removed neither at the start nor at the end of the work.
 TEST_F(Files, WhatIsNoCheckpointIsNeverRemoved) {
   write("notes", "of somebody");
   write("empty", "");
@@ -225,7 +225,7 @@ TEST_F(Files, WhatIsNoCheckpointIsNeverRemoved) {
   }
 }
 
-// A checkpoint through a link: its end is written and removed, the link stays.
+// A checkpoint through a link is written and removed at the link's target; the link stays.
 TEST_F(Files, ACheckpointMayBeALink) {
   fs::create_symlink("sub/real", at("work"));
   const std::string estimate =
@@ -239,7 +239,7 @@ TEST_F(Files, ACheckpointMayBeALink) {
   EXPECT_FALSE(fs::exists(at("sub/real")));
 }
 
-// Beside an output, what has the name of an unfinished one is removed.
+// Files beside an output that are named like its unfinished versions are removed.
 TEST_F(Files, InputsNamedAsUnfinishedOutputs) {
   fs::copy(at("candidates.vpl"), at("v.vpl.partial-12-3"));
   refused("vpl-eliminate", path("v.vpl.partial-12-3") + " -n 9 -o " + path("v.vpl"),

@@ -1,4 +1,4 @@
-// Shards and views in the graphs of Make, ninja and Snakemake: the same files, byte for byte.
+// Shards and views in the graphs of Make, ninja and Snakemake give the same files, byte for byte.
 #include "tests/pipeline/tool_runner.h"
 
 namespace bnvpl {
@@ -14,7 +14,7 @@ class Graph : public PipelineTest {
     const Outcome r = shell(command);
     ASSERT_EQ(r.code, 0) << command << "\n" << r.out << r.err;
   }
-  // What make printed.
+  // Runs Make and returns what it printed.
   std::string made(const std::string& out, const std::string& more) const {
     const Outcome r =
         shell(std::string("make -f pipelines/Makefile SCENE=") + kScene + " OUT=" + path(out) +
@@ -98,7 +98,7 @@ TEST_F(Graph, NinjaMakesTheSameShardsAsMake) {
 TEST_F(Graph, SnakemakeMakesTheSameFiles) {
   if (!have("snakemake")) GTEST_SKIP() << "snakemake is not installed";
   made("m", "");
-  // In a folder of its own, where Snakemake keeps its notes, and whose paths hold no space.
+  // Snakemake gets its own folder, where it keeps its metadata and whose paths hold no space.
   fs::create_directory(at("work"));
   fs::create_directory_symlink(BNVPL_SOURCE "/scenes", at("work/scenes"));
   fs::create_directory_symlink(BNVPL_BIN, at("work/bin"));
@@ -132,7 +132,7 @@ TEST_F(Graph, ViewsShareTheirVpls) {
   built("s");
   for (const char* file : {"lit.vpl", "views/one.exr", "views/two.exr", "views/two.png"})
     expectTheSame(dir + file, "s/test-one-bounce/" + std::string(file));
-  // A frame more, for which nothing is placed: the lit file stays.
+  // One more frame needs no placement: the lit file stays.
   generate("n", "--views " + two + "," + path("three.toml") + " --place-views " + two);
   const std::string more = built("n");
   EXPECT_EQ(countOf(more, "/vpl-place "), 0u) << more;

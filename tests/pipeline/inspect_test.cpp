@@ -1,4 +1,4 @@
-// vpl-inspect on what the stages write: check --scene, and --stats of what prints its answer.
+// vpl-inspect on files that the stages wrote: check --scene, and --stats of commands that print.
 #include <nlohmann/json.hpp>
 
 #include "tests/pipeline/tool_runner.h"
@@ -15,7 +15,7 @@ class Inspect : public PipelineTest {
     makeStages(scene_);
     succeed("vpl-render", scene_ + " " + path("lit.vpl") + " --spp 1 -o " + path("image.exr"));
   }
-  // The summary of a command that succeeds, or ends with `code`, and prints the same as without it.
+  // The --stats summary of a command that ends with `code`; expects the same output as without it.
   Json stats(const std::string& command, int code = kExitOk) const {
     const Outcome with = tool("vpl-inspect", command + " --stats " + path("s.json"));
     EXPECT_EQ(with.code, code) << with.err;
@@ -52,7 +52,7 @@ TEST_F(Inspect, CheckNoticesAChangedMaterial) {
   const std::string copy = path("scene/one-bounce.toml");
   succeed("vpl-inspect", "check " + files_ + " --scene " + copy);
   write("scene/one-bounce.mtl", readAll(at("scene/one-bounce.mtl")) + "newmtl last\nKd 1 0 0\n");
-  succeed("vpl-inspect", "check " + files_ + " --scene " + copy);  // of no face
+  succeed("vpl-inspect", "check " + files_ + " --scene " + copy);  // a material of no face
   std::string mtl = readAll(at("scene/one-bounce.mtl"));
   const size_t where = mtl.find("Kd 0.");
   ASSERT_NE(where, std::string::npos);
@@ -62,7 +62,7 @@ TEST_F(Inspect, CheckNoticesAChangedMaterial) {
        {"candidates.vpl: made from scene "});
 }
 
-TEST_F(Inspect, TheWrongFileIsToldWithItsCure) {
+TEST_F(Inspect, TheWrongFileIsReportedWithItsRemedy) {
   fail("vpl-inspect", "info " + path("nix"), kExitInput,
        {"nix: cannot open: No such file or directory; check the name, or run the stage"});
   fail("vpl-inspect", "info " + path(""), kExitInput, {": is a folder; name a .vpl"});
@@ -114,7 +114,7 @@ TEST_F(Inspect, StatsOfCompare) {
   EXPECT_EQ(stats(unlike + " --max-rmse 0", kExitDifferent)["compare"]["within_limits"], false);
 }
 
-// A failure leaves no summary, nor a picture.
+// A failure leaves neither a summary nor a picture.
 TEST_F(Inspect, FailuresWriteNothing) {
   write("bad.vpl", "bad");
   const std::vector<std::string> before = listing();

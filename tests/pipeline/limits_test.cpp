@@ -1,4 +1,4 @@
-// One limit of a film's sides, whoever asks.
+// The sides of a film have one limit, wherever they are given.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 class Limits : public PipelineTest {
  protected:
-  // A scene of the given film, whose mesh is not there: read, its film is accepted.
+  // A scene with the given film and a missing mesh; an error about the mesh accepts the film.
   std::string film(const std::string& width, const std::string& height) const {
     write("film.toml", "[film]\nwidth = " + width + "\nheight = " + height +
                            "\n[camera]\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\n"

@@ -14,13 +14,13 @@ class Memory : public PipelineTest {
 #endif
     makeStages(scene_);
   }
-  // Two threads: every thread has buffers of its own, and which of many get work is chance.
+  // Each thread has its own buffers, and which of many threads get work is random; so two are used.
   double peakMiB(const std::string& name, const std::string& arguments) const {
     succeed(name, arguments + " --quiet --threads 2 --stats " + path("s.json"));
     return nlohmann::json::parse(readAll(at("s.json"))).at("peak_memory_MiB").get<double>();
   }
-  // 2 MiB: peaks differ by 0.2 from run to run; eight bytes left behind by each photon are 2.3. On
-  // a busy machine an allocator may keep more now and then, so that three may try.
+  // The limit is 2 MiB. Peaks differ by 0.2 MiB between runs; eight bytes leaked per photon are 2.3
+  // MiB. On a busy machine an allocator occasionally keeps more, so three attempts are allowed.
   void expectSamePeak(const std::string& name, const std::string& few,
                       const std::string& many) const {
     const double least = peakMiB(name, few);
@@ -41,7 +41,7 @@ TEST_F(Memory, PhotonsLeaveNothingBehind) {
   }
 }
 
-// From 16 samples up: so many of each pixel are held at once.
+// The film holds up to 16 samples per pixel at once, so the comparison starts there.
 TEST_F(Memory, SamplesLeaveNothingBehind) {
   for (const std::string& input :
        {path("lit.vpl"), path("lit.vpl") + " --gather lightcuts", std::string("--integrator path"),

@@ -1,5 +1,4 @@
-// Extreme films, counts and strengths through the executables. What the stages compute of them is
-// in tests/numbers.
+// Extreme films, counts and intensities through the executables; the stages are in tests/numbers.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -44,7 +43,7 @@ TEST_F(Numbers, FilmsOfOnePixelAndOfOneRow) {
   }
 }
 
-// One candidate, one VPL, through every tool.
+// One candidate and one VPL pass through every tool.
 TEST_F(Numbers, OneVpl) {
   succeed("vpl-place", scene_ + " -n 1 -o " + path("c.vpl"));
   succeed("vpl-eliminate", path("c.vpl") + " -n 1 -o " + path("v.vpl"));
@@ -71,7 +70,7 @@ TEST_F(Numbers, CountsBeyond32Bits) {
   fail("vpl-eliminate", path("candidates.vpl") + out + " -n 5G", kExitInput, {"5000000000 of 300"});
   fail("vpl-estimate", scene_ + " " + path("vpls.vpl") + out + " --photons 100G", kExitUsage,
        {"2^36"});
-  // Still busy after a second, and nothing was said against it but that it was stopped.
+  // The run is still busy after a second and reports nothing except the interruption.
   const Outcome busy = shell("timeout 1 '" BNVPL_BIN "/vpl-estimate' " + scene_ + " " +
                              path("vpls.vpl") + out + " --photons 5G");
   EXPECT_EQ(busy.code, 124) << busy.err;
@@ -79,7 +78,7 @@ TEST_F(Numbers, CountsBeyond32Bits) {
   fail("vpl-render", scene_ + " " + path("lit.vpl") + out + " --spp 5G", kExitUsage, {"2^32"});
 }
 
-// A sky as strong as floats hold, without VPLs.
+// The sky is nearly as bright as floats allow; no VPLs are used.
 TEST_F(Numbers, PathsBearLightOfAnyStrength) {
   write("small.obj",
         "mtllib s.mtl\nusemtl grey\nv -0.01 0 -0.01\nv -0.01 0 0.01\nv 0.01 0 0.01\nf 1 2 3\n");
@@ -92,7 +91,7 @@ TEST_F(Numbers, PathsBearLightOfAnyStrength) {
   expectFinite(at("i.exr"));
 }
 
-// Their squares are in the choices of all integrators that take VPLs.
+// All integrators that use VPLs square the intensities when they choose among VPLs.
 TEST_F(Numbers, LightsThatAreTooStrongForVplsAreRefused) {
   write("two.obj",
         "mtllib s.mtl\nusemtl grey\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3 4\n"
@@ -127,7 +126,7 @@ TEST_F(Numbers, EveryStageCountsNonFiniteSamples) {
   EXPECT_EQ(count(), 0);
 }
 
-// Half holds 65504: what is brighter is clamped, counted and said.
+// A half stores at most 65504: brighter values are clamped, counted and reported.
 TEST_F(Numbers, LightBeyondHalf) {
   write("sky.obj", "mtllib s.mtl\nusemtl grey\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nf 1 2 3\n");
   write("s.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");

@@ -13,7 +13,7 @@ namespace {
 using Output = PipelineTest;
 using Json = nlohmann::ordered_json;
 
-// Every stage's command, to be run in this order.
+// Every stage's command, in order.
 std::vector<std::pair<std::string, std::string>> allStages(const std::string& scene,
                                                            const std::string& folder) {
   return {
@@ -48,7 +48,7 @@ TEST_F(Output, WarningsGoToStderrOnce) {
   EXPECT_EQ(textures, 1) << r.err;
 }
 
-// They may tell why it follows. What the tool before has said comes again with an error only.
+// Warnings may explain the error. Warnings of an earlier tool are repeated only with an error.
 TEST_F(Output, WarningsComeBeforeTheErrorThatFollows) {
   makeStages(scene_);
   const std::string view =
@@ -221,7 +221,7 @@ TEST_F(Output, OnlyDirectAndOnlyIndirectAddUp) {
   EXPECT_NEAR(sums[0], sums[1] + sums[2], 0.02 * sums[0]);
 }
 
-// Direct light alone has camera rays of its own, which the other layers show.
+// With --only direct, the camera rays of the direct light fill the other layers.
 TEST_F(Output, OnlyDirectShowsTheOtherLayers) {
   makeStages(scene_);
   const std::string command = scene_ + " " + path("lit.vpl") + " --spp 4 --layers albedo,N,Z -o ";
@@ -232,7 +232,7 @@ TEST_F(Output, OnlyDirectShowsTheOtherLayers) {
     double difference = 0.0, size = 0.0;
     for (size_t i = 0; i < all.pixelCount(); ++i) {
       const double a = double{(*all.find(channel))[i]}, b = double{(*direct.find(channel))[i]};
-      if (std::isinf(a) || std::isinf(b)) continue;  // the void
+      if (std::isinf(a) || std::isinf(b)) continue;  // pixels that see nothing
       difference += std::abs(a - b), size += std::abs(a);
     }
     EXPECT_GT(size, 0.0) << channel;

@@ -1,5 +1,4 @@
-// --processor any: the same bytes on all processors. What others compute is
-// tests/bytes/processors.py.
+// --processor any gives the same bytes on all processors; tests/bytes/processors.py emulates some.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -29,7 +28,7 @@ TEST_F(ProcessorRun, ShardsForAnyMergeToTheBytesOfOneRun) {
   }
 }
 
-// Their bits are not those of one run.
+// Such shards differ in bits from those of one run.
 TEST_F(ProcessorRun, ShardsForAnyAndForThisAreNotMixed) {
   const std::string place = scene_ + " -n 2k --quiet --shard ";
   succeed("vpl-place", place + "1/2 -o " + path("this.shard"));
@@ -52,7 +51,7 @@ TEST_F(ProcessorRun, AnyIsAnotherRunForACheckpoint) {
   fail("vpl-estimate", estimate + kAny.substr(8), kExitInput, {"another run", "is now \"any\""});
 }
 
-// The tool starts itself anew with what is missing in GLIBC_TUNABLES. A shard holds the processor
+// The tool restarts itself with the missing settings in GLIBC_TUNABLES. A shard holds the processor
 // id, and so the digits of every function.
 TEST_F(ProcessorRun, TunablesOfTheUserStay) {
   const std::string place =
@@ -70,7 +69,7 @@ TEST_F(ProcessorRun, TunablesOfTheUserStay) {
   }
 }
 
-// One process, by its name, that ends as ever: by signals, and with errors in one line.
+// The restarted tool keeps its process and name, and ends as usual, on signals and on errors.
 TEST_F(ProcessorRun, TheToolThatIsStartedAnewIsTheSame) {
   fail("vpl-place", scene_ + " -n 1k --processor 486 -o " + path("x.vpl"), kExitUsage,
        {"--processor", "this", "any"});

@@ -1,4 +1,4 @@
-// What a tool says of its progress.
+// What a tool prints about its progress.
 #include <algorithm>
 #include <cmath>
 
@@ -38,12 +38,12 @@ TEST(TimeLeft, OfASteadyWorkIsExact) {
   TimeLeft left;
   for (int s = 0; s <= 30; ++s) left.report(100.0 + s, uint64_t(10 * s));
   EXPECT_NEAR(left.seconds(1000).value(), 70.0, 1e-9);
-  left.skip(500.0);  // of another work
+  left.skip(500.0);  // another task
   left.report(631.0, 310);
   EXPECT_NEAR(left.seconds(1000).value(), 69.0, 1e-9);
 }
 
-// A minute of loading before the first unit, and a checkpoint's units at once.
+// A minute of loading precedes the first unit, and the units of a checkpoint arrive at once.
 TEST(TimeLeft, CountsOnlyTheWorkItself) {
   TimeLeft left;
   left.report(60.0, 0);
@@ -52,7 +52,7 @@ TEST(TimeLeft, CountsOnlyTheWorkItself) {
   EXPECT_NEAR(left.seconds(6000).value(), 80.0, 1.0);
 }
 
-// The first units of a work may take far longer than the others.
+// The first units may take far longer than the others.
 TEST(TimeLeft, FollowsAWorkThatBecomesFasterAndDoesNotJump) {
   TimeLeft left;
   uint64_t done = 0;
@@ -98,8 +98,8 @@ TEST_F(ProgressOfTools, BeginsWithTheToolsNameOffATerminal) {
   EXPECT_TRUE(contains(r.err, " left\n")) << r.err;
 }
 
-// What a terminal of so many columns shows in the end: \r goes to the start of the line, and
-// ESC [ K erases the rest of it.
+// The final content of a terminal: \\r returns to the start of the line, and ESC [ K erases the
+// rest of the line.
 std::vector<std::string> screenOf(const std::string& typed) {
   std::vector<std::string> lines{""};
   size_t column = 0;
@@ -121,8 +121,7 @@ std::vector<std::string> screenOf(const std::string& typed) {
   return lines;
 }
 
-// Every stage in a terminal: the line of progress is gone before the summary, and uses the field's
-// words.
+// In a terminal every stage erases its progress line before it prints the summary.
 TEST_F(ProgressOfTools, IsErasedFromATerminalBeforeAnythingElseIsPrinted) {
   makeStages(scene_);
   const std::pair<std::string, std::string> lines[] = {

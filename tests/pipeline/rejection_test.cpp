@@ -1,4 +1,4 @@
-// VPLs from the lights, and rejection, which looks at the view: no vpl-estimate, two lit files.
+// VPLs from the lights and view-dependent rejection: no vpl-estimate, two lit files.
 #include "formats/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
@@ -16,7 +16,7 @@ class RejectionChain : public PipelineTest {
     succeed("vpl-render",
             mine_ + " " + path("rj.vpl") + " --size 24x16 --spp 1 -o " + path("rj.exr"));
   }
-  // As an editor would: the same scene, another place of the camera.
+  // Edits the scene file so that only its camera changes.
   void turnCamera() const {
     std::string toml = readAll(at("s/one-bounce.toml"));
     const size_t where = toml.find("vertical_fov_deg = ");
@@ -33,10 +33,10 @@ TEST_F(RejectionChain, IsOneWholeChain) {
   EXPECT_TRUE(contains(r.out, "one whole chain")) << r.out;
   succeed("vpl-inspect", "check " + files_);
   succeed("vpl-inspect",
-          "check " + path("light.vpl") + " " + path("rj.exr"));  // the middle is away
+          "check " + path("light.vpl") + " " + path("rj.exr"));  // the file between them is missing
 }
 
-// Its flux may have been scaled, as a whole, and nothing else.
+// Rejection may scale the flux of a VPL by one factor; any other change is refused.
 TEST_F(RejectionChain, RowsThatWereTouchedAreRefused) {
   const VplTable right = readVpl(at("rj.vpl"));
   const auto refused = [&](const VplTable& table) {
@@ -49,7 +49,7 @@ TEST_F(RejectionChain, RowsThatWereTouchedAreRefused) {
   wrong.firstBounceFlux[0] = {};
   refused(wrong);
   wrong = right;
-  wrong.flux[0] *= 1e-4f;  // rejection never takes light away
+  wrong.flux[0] *= 1e-4f;  // rejection never reduces flux
   wrong.firstBounceFlux[0] *= 1e-4f;
   refused(wrong);
   wrong = right;
@@ -64,7 +64,7 @@ TEST_F(RejectionChain, AnotherViewIsRefused) {
        {"rj.exr: vpl-eliminate" + problem, "; rerun vpl-eliminate and every later stage"});
   fail("vpl-inspect", "check --deep --quiet " + files_ + by, kExitInput,
        {"rj.vpl: vpl-eliminate" + problem, "; run: vpl-eliminate ", " && vpl-render "});
-  // Photons do not ask where the camera is.
+  // Photons do not depend on the camera.
   const Outcome r = tool("vpl-inspect", "check " + path("light.vpl") + by);
   EXPECT_EQ(r.code, kExitOk) << r.err;
   EXPECT_FALSE(contains(r.out, "another view")) << r.out;
@@ -94,7 +94,7 @@ TEST_F(RejectionChain, InfoShowsTheView) {
   EXPECT_FALSE(contains(tool("vpl-inspect", "info " + path("light.vpl")).out, "view"));
 }
 
-// Neither has anything left for vpl-estimate to do.
+// Neither method leaves work to vpl-estimate.
 TEST_F(RejectionChain, ThePipelinesRefuseIt) {
   const std::string out = path("out");
   for (const char* flags : {"PLACE_FLAGS='--depth 3 --method light'", "PLACE_FLAGS=--method=light",

@@ -1,5 +1,4 @@
-// The Makefile and the ninja file run a stage again when its own inputs or options change, and only
-// then.
+// The Makefile and the ninja file rerun a stage only when its own inputs or options change.
 #include <unistd.h>
 
 #include <map>
@@ -15,7 +14,7 @@ class Rerun : public PipelineTest {
  protected:
   void SetUp() override { copyVeachDoor(); }
 
-  // "place eliminate ...": the stages whose commands make printed.
+  // Runs Make and returns the stages whose commands it printed, such as "place eliminate ".
   std::string made(const std::string& more = "") const {
     const Outcome r =
         shell("make -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +
@@ -38,7 +37,7 @@ class Rerun : public PipelineTest {
     EXPECT_EQ(r.code, 0) << r.out << r.err;
     return stagesIn(r.out, "/vpl-", " ");
   }
-  // Later than everything that was made so far, as a file system with coarse times sees it too.
+  // Sets a time later than everything made so far, even on a file system with coarse times.
   void touch(const std::string& name) const {
     ::usleep(20000);
     fs::last_write_time(at(name), fs::file_time_type::clock::now());
@@ -89,7 +88,7 @@ TEST_F(Rerun, MakeFollowsEveryFileOfTheScene) {
   EXPECT_EQ(made(), "");
 }
 
-// Also with the time that it had, as mv keeps it; its name is of words.
+// This holds even if the file keeps its old time, as with mv, and if its name holds spaces.
 TEST_F(Rerun, AMissingTextureIsSeenWhenItArrives) {
   const fs::path texture = at("veach-door/wood (1) floor.png"), away = at("away.png");
   fs::rename(at("veach-door/landscape.png"), away);
@@ -141,7 +140,7 @@ TEST_F(Rerun, NamesThatMakeOrNinjaMisreadAreRefusedAtOnce) {
   EXPECT_FALSE(fs::exists(at("c.vpl")));
 }
 
-// Also where it made them among files of others.
+// This also holds where the output folder contains files of others.
 TEST_F(Rerun, CleanRemovesWhatMakeMade) {
   const std::vector<std::string> others{"package.json", "notes.d",        "run.cmd", "image.png",
                                         "x.checkpoint", "shards/a.shard", "place.d"};
@@ -179,8 +178,8 @@ TEST_F(Rerun, MakeStopsAtAFailureAndKeepsTheOldFiles) {
   EXPECT_EQ(made("VPLS=100"), "eliminate estimate render");
 }
 
-// Also those of the very stage that fails, or is interrupted, the preview among them; and it runs
-// again, with other options or the same.
+// This holds for the failing or interrupted stage itself and its preview. The stage runs again,
+// with other options or the same.
 TEST_F(Rerun, AFailedRenderLeavesTheGoodImageAndPreview) {
   EXPECT_EQ(made(), all_);
   const std::string image = readAll(at("out/image.exr")), preview = readAll(at("out/image.png"));
@@ -203,7 +202,7 @@ TEST_F(Rerun, AFailedRenderLeavesTheGoodImageAndPreview) {
   EXPECT_TRUE(kept());
   EXPECT_EQ(made(), "render");
   EXPECT_EQ(made(), "");
-  EXPECT_TRUE(kept());  // the same bytes again
+  EXPECT_TRUE(kept());  // identical bytes
 }
 
 TEST_F(Rerun, NinjaLeavesTheGoodImageAndPreviewOfAFailedRender) {
@@ -238,7 +237,7 @@ TEST_F(Rerun, NinjaRunsWhatChanged) {
   EXPECT_EQ(built(), "");
 }
 
-// What quality.mk says is what both run, and nothing else says it.
+// Make and ninja both take their presets from quality.mk alone.
 TEST_F(Rerun, QualitiesAreThoseOfOneFile) {
   std::map<std::string, std::map<std::string, std::string>> presets;
   std::istringstream lines(readAll(BNVPL_SOURCE "/pipelines/quality.mk"));
@@ -280,7 +279,7 @@ TEST_F(Rerun, MakeAndNinjaAgree) {
   EXPECT_TRUE(readAll(at("out/image.exr")) == readAll(at("n/veach-door/image.exr")));
 }
 
-// In shards, by a launcher: the same files, and shards go on from where they were stopped.
+// Shards with a launcher give the same files and continue where they were stopped.
 TEST_F(Rerun, ShardsMakeTheSameFilesAndRunAgainWhereSomethingChanged) {
   if (!haveNinja()) GTEST_SKIP() << "ninja is not installed";
   generate("20k");

@@ -8,8 +8,8 @@ namespace {
 
 class ResumeRun : public PipelineTest {
  protected:
-  // Stops the command with SIGINT, first early and then ever later, and starts it again until it
-  // ends by itself. Returns how often it was stopped.
+  // Stops the command with SIGINT after ever longer times and restarts it until it ends by itself.
+  // Returns how often it was stopped.
   int runInPieces(const std::string& name, const std::string& arguments) const {
     double seconds = 0.2;
     for (int stopped = 0; stopped < 30; ++stopped, seconds *= 1.3) {
@@ -17,8 +17,8 @@ class ResumeRun : public PipelineTest {
           shell("timeout --foreground -s INT " + std::to_string(seconds) + " '" BNVPL_BIN "/" +
                 name + "' " + arguments + " --quiet --checkpoint " + path("work.checkpoint"));
       if (r.code == kExitOk) return stopped;
-      EXPECT_EQ(r.code, 124) << r.err;          // what `timeout` says of a command that it stopped
-      if (fs::exists(at("work.checkpoint"))) {  // else stopped before it had begun
+      EXPECT_EQ(r.code, 124) << r.err;  // exit code of `timeout` when it stopped the command
+      if (fs::exists(at("work.checkpoint"))) {  // else it was stopped before it had begun
         EXPECT_TRUE(contains(r.err, "same command goes on from")) << r.err;
       }
     }
@@ -51,7 +51,7 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   succeed("vpl-render", photons + " -o " + path("whole.exr"));
   EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);
   EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
-  // Enough for a third to take longer than the first stop.
+  // The work is large enough that a third of it takes longer than the first stop.
   const std::string more = scene_ + " " + path("vpls.vpl") + " --photons 9M --irradiance-error 0",
                     morePhotons = scene_ + " --integrator light --size 64x48 --spp 4096";
   for (const auto& [name, work] : {std::pair{"vpl-estimate", more}, {"vpl-render", morePhotons}}) {
@@ -60,7 +60,7 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
     EXPECT_GE(runInPieces(name, shard + " -o " + path("pieces.shard")), 1);
     EXPECT_EQ(readAll(at("pieces.shard")), readAll(at("whole.shard")));
   }
-  EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to go on from
+  EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to continue
 }
 
 TEST_F(ResumeRun, SavingAllTheTimeGivesTheSameBytes) {

@@ -1,4 +1,4 @@
-// Scene files as other programs write them, and what the tools say of those that lack something.
+// Scene files written by other programs, and messages about those that lack something.
 #include <algorithm>
 
 #include "formats/vpl_io.h"
@@ -10,7 +10,7 @@ namespace {
 
 class SceneFilesOfOthers : public PipelineTest {
  protected:
-  // Blender's room in a folder of the test's, and a scene.toml for it.
+  // Copies Blender's room into the test's folder and adds a scene.toml.
   void SetUp() override {
     fs::copy(BNVPL_SOURCE "/tests/scene/blender", at("von Blender"), fs::copy_options::recursive);
     write("von Blender/my room.toml",
@@ -27,7 +27,7 @@ class SceneFilesOfOthers : public PipelineTest {
     EXPECT_GT(count, 0u) << from;
     write(name, text);
   }
-  // What vpl-place says, and the colours that it finds.
+  // Returns the messages of vpl-place and the colours that it finds.
   std::string place(std::vector<Vec3>& colours) const {
     const Outcome r = tool("vpl-place", room_ + " --quiet -n 300 -o " + path("c.vpl"));
     EXPECT_EQ(r.code, kExitOk) << r.err;
@@ -37,7 +37,7 @@ class SceneFilesOfOthers : public PipelineTest {
   static size_t count(const std::vector<Vec3>& colours, Vec3 colour) {
     return size_t(std::count(colours.begin(), colours.end(), colour));
   }
-  // Red and green walls, and a floor whose texture is blue.
+  // The room has red and green walls, and a floor with a blue texture.
   static void expectRoom(const std::vector<Vec3>& colours) {
     EXPECT_GT(count(colours, {.8f, .1f, .1f}), 0u);
     EXPECT_GT(count(colours, {.1f, .8f, .1f}), 0u);
@@ -53,7 +53,7 @@ TEST_F(SceneFilesOfOthers, BlendersNamesAreFound) {
   expectRoom(colours);
 }
 
-// Blender writes underscores for blanks; other programs do not. Windows adds a byte order mark.
+// Blender writes underscores for spaces; other programs do not. Windows adds a byte order mark.
 TEST_F(SceneFilesOfOthers, BlanksMarksAndContinuedLinesAreRead) {
   for (const std::string name : {"von Blender/my room.obj", "von Blender/my room.mtl"}) {
     replaceAll(name, "my_left", "my left");
@@ -81,7 +81,7 @@ TEST_F(SceneFilesOfOthers, MissingMaterialsAreNamed) {
   EXPECT_GT(count(colours, Vec3(.5f)), 0u);
 }
 
-// The stages that need light refuse; the others say why all will be black.
+// Stages that need light refuse the scene; the others explain why the image will be black.
 TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
   replaceAll("von Blender/my room.mtl", "Ke 10.000000 10.000000 10.000000", "Ke 0 0 0");
   const std::string problem = "my room.toml: has no light with power", cure = "add a [[light]]";
@@ -102,8 +102,8 @@ TEST_F(SceneFilesOfOthers, ASceneWithoutLightSaysSo) {
   EXPECT_FALSE(fs::exists(at("l.vpl")));
 }
 
-// Whoever reads what was made from the scene leaves them to the tool that made it.
-TEST_F(SceneFilesOfOthers, WarningsAreToldOnceForAllTools) {
+// A tool that also reads files made from the scene leaves its warnings to the tool that made them.
+TEST_F(SceneFilesOfOthers, WarningsArePrintedOnceForAllTools) {
   replaceAll("von Blender/my room.mtl", "my_left", "my_right");
   const auto warns = [&](const std::string& name, const std::string& arguments) {
     const Outcome r = tool(name, arguments);

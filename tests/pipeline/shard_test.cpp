@@ -12,7 +12,7 @@ namespace {
 
 class ShardRun : public PipelineTest {
  protected:
-  // The shards I/N of a command, as I.shard; returns their names, last first.
+  // Makes the shards I/N of a command as I.shard; returns their names, last first.
   std::string makeShards(const std::string& name, const std::string& arguments, int of) const {
     std::string all;
     for (int i = 1; i <= of; ++i) {
@@ -23,7 +23,7 @@ class ShardRun : public PipelineTest {
     }
     return all;
   }
-  // The command in so many shards gives the bytes of `whole`.
+  // The command in this many shards gives the bytes of `whole`.
   void expectTheSame(const std::string& name, const std::string& arguments, int of,
                      const std::string& whole) const {
     const std::string merged = "merged" + fs::path(whole).extension().string();
@@ -35,7 +35,7 @@ class ShardRun : public PipelineTest {
     succeed(name, arguments + " --quiet -o " + path(whole));
     for (const int of : counts) expectTheSame(name, arguments, of, whole);
   }
-  // A copy whose text has `to` for `from` and whose records are changed, with right checksums.
+  // Copies a shard with `to` in place of `from` and changed records, but with valid checksums.
   void forge(const std::string& source, const std::string& copy, const std::string& from,
              const std::string& to, const std::function<void(std::string&)>& change = {}) const {
     ShardReader reader(at(source));
@@ -101,7 +101,7 @@ TEST_F(ShardRun, PreviewsComeFromTheMerge) {
 
 TEST_F(ShardRun, PassesAreRefused) {
   const std::string render = scene_ + " --integrator path --shard 1/2 -o " + path("x.shard");
-  // The record is JSON; merging loads the scene by the name in it.
+  // The shard's header is JSON, and merging loads the scene by the name in it.
   fail("vpl-render", path("a\xff.toml") + " --integrator path --shard 1/2 -o " + path("x.shard"),
        kExitUsage, {"a\\xff.toml' is no UTF-8", "rename it"});
   for (const char* budget : {" --time 2s", " --target-error 0.1", " --passes 4"})
@@ -161,7 +161,7 @@ TEST_F(ShardRun, RangesAndMergesOfMergesGiveTheSameBytes) {
   }
 }
 
-// What the message names makes the set complete.
+// The shards that the message names complete the set.
 TEST_F(ShardRun, MissingShardsAreNamedWithTheCommandThatMakesThem) {
   const std::string place = scene_ + " -n 2k";
   succeed("vpl-place", place + " -o " + path("whole.vpl") + " --quiet");
@@ -222,7 +222,7 @@ TEST_F(ShardRun, DamagedShardsAreRefusedByName) {
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 
-// Whole, with right checksums, and yet not what a stage writes.
+// These shards are whole and have valid checksums, but no stage would write them.
 TEST_F(ShardRun, ForgedShardsAreRefused) {
   makeShards("vpl-place", scene_ + " -n 2k", 1);
   const auto refused = [&](const std::string& from, const std::string& to,
@@ -255,7 +255,7 @@ TEST_F(ShardRun, ForgedShardsAreRefused) {
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 
-// Their bits are not those that one processor would have computed.
+// Such shards differ in bits from those of one processor.
 TEST_F(ShardRun, ShardsOfAnotherProcessorAreRefusedByName) {
   makeShards("vpl-place", scene_ + " -n 2k", 2);
   forge("2.shard", "other.shard", "\"processor\":\"", "\"processor\":\"0");

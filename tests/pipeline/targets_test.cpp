@@ -1,4 +1,4 @@
-// What an output may be named, and what is done where a link, a device or an old file stands.
+// Allowed names of outputs, and what happens where a link, a device or an old file exists.
 #include <sys/stat.h>
 
 #include "tests/pipeline/tool_runner.h"
@@ -9,7 +9,7 @@ namespace {
 
 using Targets = PipelineTest;
 
-// Each tool with its arguments, and the option whose value follows them.
+// A tool with its arguments and the option whose value follows them.
 struct Writer {
   std::string tool, arguments, option;
 };
@@ -81,7 +81,7 @@ TEST_F(Targets, LinksStayAndModesToo) {
                                                  "p.png", "s.json"}));
 }
 
-// Also where stdout is a regular file, which somebody holds open.
+// This includes a stdout that is a regular file held open by another process.
 TEST_F(Targets, DevicesAndStreamsAreRefused) {
   const std::string place = scene_ + " -n 9 -o ", file = place + path("c.vpl") + " --stats ";
   fail("vpl-place", place + "/dev/null", kExitOutput, {"/dev/null: is a device", "name a file"});

@@ -17,7 +17,7 @@ class TooLarge : public PipelineTest {
     GTEST_SKIP() << "sanitizers reserve terabytes of addresses";
 #endif
   }
-  // Header and directory of a file of a thousand million rows, the rest a hole.
+  // Header and directory of a file of a thousand million rows; the rest is a hole.
   void writeHuge(const std::string& name, VplStage stage) const {
     VplHeader header;
     header.stage = stage;
@@ -57,7 +57,7 @@ TEST_F(TooLarge, Files) {
        {"l.vpl", "vpl-eliminate -n"}, kFourGib);
 }
 
-// An OBJ by its size before it is read, a mesh by its faces before it is made.
+// An OBJ file is judged by its size before it is read, a mesh by its faces before it is built.
 TEST_F(TooLarge, Scenes) {
   write("scene.toml",
         "[film]\nwidth = 4\nheight = 4\n[camera]\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\n"

@@ -1,4 +1,4 @@
-// Runs the built executables in a folder of the test's own.
+// Runs the built executables in a temporary folder of the test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,31 +24,30 @@ class PipelineTest : public ::testing::Test {
   ~PipelineTest() override;
 
   fs::path at(const std::string& name) const { return folder_ / name; }
-  // Of a file in the test's folder, quoted for the shell.
+  // Path of a file in the test's folder, quoted for the shell.
   std::string path(const std::string& name) const { return "'" + at(name).string() + "'"; }
   void write(const std::string& name, const std::string& bytes) const;
-  // What the folder holds, sorted; the files that the runner itself makes are left out.
+  // Names of the files in the folder, sorted, without those that the runner itself makes.
   std::vector<std::string> listing() const;
 
-  // A shell command, run from the project's root. `limits` goes before it, such as "ulimit -f 1;".
+  // Runs a shell command from the project's root. `limits` goes before it, such as "ulimit -f 1;".
   Outcome shell(const std::string& command, const std::string& limits = "") const;
-  // vpl-place and so on, with arguments for the shell.
+  // Runs a tool such as vpl-place with arguments for the shell.
   Outcome tool(const std::string& name, const std::string& arguments,
                const std::string& limits = "") const;
-  // The same, expected to work in silence.
+  // Runs the tool and expects success without output.
   void succeed(const std::string& name, const std::string& arguments) const;
-  // The same, expected to fail with the code and one line on stderr that begins with the tool's
-  // name and holds every part.
+  // Runs the tool and expects the exit code and one line on stderr that begins with the tool's name
+  // and holds every part.
   void fail(const std::string& name, const std::string& arguments, int code,
             const std::vector<std::string>& parts = {}, const std::string& limits = "") const;
 
-  // candidates.vpl, vpls.vpl and lit.vpl of a scene (quoted), in the test's folder; small and fast.
+  // Makes small candidates.vpl, vpls.vpl and lit.vpl of a scene (quoted) in the test's folder.
   void makeStages(const std::string& scene) const;
-  // A copy of scenes/veach-door and the teapot with a film of 48 x 27; returns the scene.toml,
-  // quoted.
+  // Copies scenes/veach-door and the teapot with a film of 48 x 27; returns its scene.toml, quoted.
   std::string copyVeachDoor() const;
 
-  // 64 x 48 pixels, no textures.
+  // A scene of 64 x 48 pixels without textures.
   const std::string scene_;
   static const std::vector<std::string> kStages;
 

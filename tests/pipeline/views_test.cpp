@@ -1,5 +1,5 @@
-// VPLs that serve several views of one scene: placing them, and the checks of what was made for
-// whom.
+// VPLs that serve several views of one scene: their placement, and checks of the views that they
+// were placed for.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
 
@@ -57,7 +57,7 @@ TEST_F(Views, GiveTheSameBytesInShardsWithThreadsAndCheckpoints) {
   const Outcome r =
       tool("vpl-place", place.substr(0, place.find(" --quiet")) + " -o " + path("x.vpl"));
   EXPECT_TRUE(contains(r.out, "3 views, of each ")) << r.out;
-  // Shares count by their ratio, and views by their order.
+  // Shares are relative, and the order of views matters.
   succeed("vpl-place", scene_ + by("ab") + " --view-shares 1,3 -n 3k --quiet -o " + path("ab.vpl"));
   succeed("vpl-place", scene_ + by("ba") + " --view-shares 1,3 -n 3k --quiet -o " + path("ba.vpl"));
   EXPECT_FALSE(readAll(at("ab.vpl")) == readAll(at("ba.vpl")));
@@ -90,7 +90,7 @@ TEST_F(Views, WhatMeansNothingIsRefused) {
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 
-// The VPLs are of every view that they were placed for; an image is of one.
+// VPLs belong to every view that they were placed for; an image belongs to one.
 TEST_F(Views, ChecksKnowWhomVplsWerePlacedFor) {
   succeed("vpl-place", scene_ + by("ab") + " -n 300 --quiet -o " + path("candidates.vpl"));
   succeed("vpl-eliminate", path("candidates.vpl") + " -n 60 --quiet -o " + path("vpls.vpl"));

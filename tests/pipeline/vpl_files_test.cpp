@@ -1,4 +1,4 @@
-// .vpl files between the executables: columns of strategies, other versions, who made a file.
+// .vpl files between the executables: extra columns, other versions, and the maker of a file.
 #include "formats/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/exit_codes.h"
@@ -9,7 +9,7 @@ namespace {
 class VplFiles : public PipelineTest {
  protected:
   void SetUp() override { makeStages(scene_); }
-  // The file with a column of a strategy that no tool knows.
+  // Copies a file and adds a column that no tool knows.
   void addLobes(const std::string& from, const std::string& to) const {
     VplTable table = readVpl(at(from));
     std::vector<float> lobes;
@@ -33,7 +33,7 @@ class VplFiles : public PipelineTest {
   }
 };
 
-TEST_F(VplFiles, ColumnsOfStrategiesSurviveTheStages) {
+TEST_F(VplFiles, ColumnsOfMethodsSurviveTheStages) {
   addLobes("vpls.vpl", "v.vpl");
   succeed("vpl-estimate", scene_ + " " + path("v.vpl") + " -o " + path("l.vpl") + " --photons 5k");
   expectLobes("l.vpl");
@@ -47,8 +47,8 @@ TEST_F(VplFiles, ColumnsOfStrategiesSurviveTheStages) {
   EXPECT_TRUE(contains(readAll(at("l.csv")), ",rich.lobes_0,rich.lobes_1\n"));
 }
 
-// They change nothing of what the stages compute.
-TEST_F(VplFiles, ColumnsOfStrategiesLeaveTheOthersAlone) {
+// Extra columns do not change what the stages compute.
+TEST_F(VplFiles, ColumnsOfMethodsLeaveTheOthersAlone) {
   addLobes("vpls.vpl", "v.vpl");
   for (const char* name : {"v", "vpls"}) {
     succeed("vpl-estimate", scene_ + " " + path(name + std::string(".vpl")) + " -o " +
@@ -75,7 +75,7 @@ TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
   }
 }
 
-TEST_F(VplFiles, TheWrongStageIsToldWithItsMakerAndTheRightTools) {
+TEST_F(VplFiles, TheWrongStageIsReportedWithItsMakerAndTheRightTools) {
   succeed("vpl-place", scene_ + " -o " + path("light.vpl") + " -n 20 --method light");
   fail("vpl-estimate", scene_ + " " + path("light.vpl") + " -o " + path("x.vpl"), kExitInput,
        {"is of stage lit (by vpl-place --method light): its VPLs have their flux; pass it to "

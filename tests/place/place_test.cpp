@@ -14,7 +14,7 @@ Given count(uint64_t vpls) { return {{"count", typed(vpls)}}; }
 
 TEST(Place, GivesExactlyTheCountInPathOrder) {
   const World world("u-shape/scene.toml");
-  // Two waves of paths and three: one is joined while the next is traced.
+  // The runs take two and three waves of paths: one wave is joined while the next is traced.
   const VplTable few = placeVpls(world, count(70000)).table;
   const VplTable more = placeVpls(world, count(140000)).table;
   ASSERT_EQ(few.size(), 70000u);
@@ -25,7 +25,7 @@ TEST(Place, GivesExactlyTheCountInPathOrder) {
   }
 }
 
-// The rows of shards: what a merge lacks is asked for by its unit.
+// Rows of shards; the merge asks for missing ones by their unit.
 TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   const World world("u-shape/scene.toml");
   const Values options = resolve(placeSpec(), count(60000));
@@ -63,7 +63,8 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   }
 }
 
-// Of any paths in a row, a view has its share, to within one; its own paths are counted on.
+// After any number of paths, each view has its share to within one path. Its paths have consecutive
+// numbers of its own.
 TEST(Place, ViewsTakeTurnsByTheirShares) {
   const std::vector<uint64_t> shares{5, 1, 3};
   const ViewTurns turns(shares);
@@ -77,8 +78,8 @@ TEST(Place, ViewsTakeTurnsByTheirShares) {
   }
 }
 
-// A camera in each room of the U-shape, and the VPLs of both by their shares: the density is the
-// mean of theirs, which tells the rooms apart.
+// One camera in each room of the U-shape. VPLs for both, by shares, have the mean of the two
+// densities, which differ between the rooms.
 class TwoRooms : public ::testing::Test {
  protected:
   const World world{"u-shape/scene.toml"};
@@ -114,8 +115,8 @@ TEST_F(TwoRooms, CandidatesHaveTheDensityOfTheViewsByTheirShares) {
   EXPECT_NEAR(inTheRight(both.table), (1.0 - share) * ofLeft + share * ofRight, 0.02);
 }
 
-// The VPLs of both views light each as its own do, also VPLs alone, without compensation: a region
-// that stood for one view only would leave the other dark.
+// VPLs placed for both views light each as well as its own VPLs do, even without compensation. A
+// region that represented one view only would leave the other dark.
 TEST_F(TwoRooms, OneSetOfVplsLightsEachView) {
   World seen{"u-shape/scene.toml"};
   const VplTable vpls = keepVpls(placed({left(), right()}, {1, 1}, kFewCandidates),
@@ -134,8 +135,7 @@ TEST_F(TwoRooms, OneSetOfVplsLightsEachView) {
   }
 }
 
-// Each candidate lies on a surface and faces free space: a ray down onto its lit side comes back to
-// it.
+// Each candidate lies on a surface and faces free space: a ray onto its lit side hits it.
 TEST(Place, CandidatesLieOnSurfacesAndFaceTheSideTheyWereSeenFrom) {
   const World world("u-shape/scene.toml");
   const VplTable t = placeVpls(world, count(2000)).table;

@@ -1,4 +1,4 @@
-// Light over mirrors and sharp lobes, by photons and near-field rays together.
+// Light over mirrors and near-specular lobes, computed by photons and near-field rays together.
 #include "tools/render/tile/caustics/caustics.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace bnvpl::test {
 namespace {
 
-// The walls to the left and right, one of which is a perfect mirror if so wanted, the other sharp.
+// Makes the red wall near-specular and, if requested, the green wall a perfect mirror.
 World shiny(Scene scene, bool mirror) {
   for (Material& m : scene.materials) {
     PhongModel& phong = m.phong();
@@ -42,14 +42,14 @@ Render by(const World& world, const VplTable& lit, const char* photons, const ch
                        {"spp", spp},
                        {"caustic-photons", photons},
                        {"fireflies", "keep"},
-                       {"allocate", "off"},  // few rays are noisier than a z-test bears
+                       {"allocate", "off"},  // few rays are noisier than a z-test tolerates
                        {"seed", typed(seed)}})
         .image;
   };
 }
 
-// Lamp, sky, sun and bulb over a sharp lobe; and the lamp over a mirror besides, where rays find no
-// bulb.
+// A near-specular lobe under every kind of light, and a mirror under the area light alone, because
+// rays over a mirror hit no point light.
 TEST(Caustics, PhotonsAndRaysShareTheLight) {
   const World sharp = shiny(manyLights(), false), mirror = shiny(room(16, 16), true);
   for (const World* world : {&sharp, &mirror}) {
@@ -70,9 +70,9 @@ NearFieldRays nearField(const World& world, const VplTable& lit, const char* com
       Only::Indirect};
 }
 
-// What a ray finds over a sharp lobe lies around a VPL, which knows the light there: nothing has to
-// be gathered, and no further ray to be sent.
-TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
+// The points that rays hit behind a near-specular lobe lie near a VPL that knows their light. They
+// need neither a gather nor a further ray.
+TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
   const World world(cellsBeforeMetal(/*seesMetal=*/false));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   SurfacePoint cover;
@@ -92,11 +92,11 @@ TEST(Caustics, VplsKnowTheLightBehindSharpLobes) {
     return points;
   };
   EXPECT_GT(gathers("none"), 50u);
-  EXPECT_LT(gathers("near-field"), 120u);  // 176 were VPLs asked where rays end straight alone
+  EXPECT_LT(gathers("near-field"), 120u);  // 176 if VPLs served direct hits only
 }
 
-// VPLs bring what a far wall reflects by its rough lobes: rays that meet it follow its faint gloss.
-TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
+// VPLs carry the rough lobes of a far wall; rays that hit it follow its faint near-specular lobe.
+TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
   Scene scene = manyLights();
   for (Material& m : scene.materials) {
     if (m.name != "Red") continue;
@@ -105,7 +105,7 @@ TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
   }
   const World world(std::move(scene));
   const VplTable lit = litVpls(world, {{"count", "800"}});
-  SurfacePoint seen;  // above the blocks, looking at that wall
+  SurfacePoint seen;  // above the blocks, facing that wall
   seen.position = {0.14f, 0.4f, 0.28f};
   for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}}) {
     SurfacePoint wall;
@@ -122,23 +122,23 @@ TEST(Caustics, RaysTakeTheLobesThatVplsDoNotBring) {
     rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1, k, 7, brought);
     bring += mean(brought.indirect) > 0.0f;
   }
-  EXPECT_GT(bring, kRays / 20);  // 31 where lobes are taken by what they reflect alone
+  EXPECT_GT(bring, kRays / 20);  // 31 if rays chose lobes by reflectance alone
 }
 
-TEST(Caustics, PhotonsTakeTheFirefliesOfSmallLamps) {
+TEST(Caustics, PhotonsRemoveTheFirefliesOfSmallLights) {
   const World world = shiny(bulbs(0), false);
   const VplTable lit = fewVpls(world);
-  // Fireflies are few: one pair of images may have none.
+  // Fireflies are rare: a single pair of images may have none.
   EXPECT_LT(noiseOf(by(world, lit, "16", "4"), 4), 0.6 * noiseOf(by(world, lit, "0", "4"), 4));
 }
 
-// A photon alone in its surroundings is a firefly; redistributed over the surface it brings the
-// same light, and none to the void.
+// A photon alone in its surroundings is a firefly. Redistribution over the surface keeps its light
+// and gives none to pixels that see nothing.
 TEST(Caustics, SinglePhotonsAreRedistributed) {
   constexpr uint32_t kSide = 48;
   Scene scene = bulbs(0);
   scene.film = {kSide, kSide};
-  scene.camera.verticalFovRad = 1.2f;  // more than the box
+  scene.camera.verticalFovRad = 1.2f;  // wider than the box
   const World world = shiny(std::move(scene), false);
   const VplTable lit = fewVpls(world);
   const auto image = [&](const char* photons, const char* fireflies) {
@@ -175,8 +175,8 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
   EXPECT_GT(isVoid, 100u);
 }
 
-// A lamp that too few photons come from is left to the rays, all of its light.
-TEST(Caustics, LampsWithTooFewPhotonsAreLeftToRays) {
+// Light of an emitter with too few photons is left to the rays entirely.
+TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
   const World world = shiny(manyLights(), false);
   size_t lamp = 0;
   while (!world.lights.hittable(lamp)) ++lamp;
@@ -194,8 +194,8 @@ TEST(Caustics, LampsWithTooFewPhotonsAreLeftToRays) {
   EXPECT_LT(share(400000, false), 1.0f);
 }
 
-// No ray meets a point over a mirror.
-TEST(Caustics, PhotonsBringWhatNoRayCanHit) {
+// No ray can hit a point light over a mirror.
+TEST(Caustics, PhotonsCarryWhatNoRayCanHit) {
   const World world = shiny(bulbs(0), true);
   const VplTable lit = fewVpls(world);
   const auto indirect = [&](const char* photons) {

@@ -1,4 +1,4 @@
-// Energy and leaks of the whole method, against numbers that are known without it.
+// Energy and light leaks of the whole method against independently known numbers.
 #include <gtest/gtest.h>
 
 #include "tests/support/pipeline.h"
@@ -6,8 +6,8 @@
 namespace bnvpl::test {
 namespace {
 
-// Every wall shines with radiance 1 and reflects rho: direct light is 1 + rho, and what VPLs carry
-// is rho^2 / (1 - rho), for any number of VPLs, radius and density.
+// Every wall emits radiance 1 and reflects rho. For any number of VPLs, radius and density, direct
+// light is 1 + rho, and VPLs carry rho^2 / (1 - rho).
 struct FurnaceCase {
   const char* scene;
   double rho;
@@ -30,7 +30,7 @@ TEST_P(Furnace, IndirectLightIsTheGeometricSeries) {
   const Image whole = renderVpls(world, lit, nearField).image;
   EXPECT_NEAR(meanOf(whole, "direct."), 1.0 + c.rho, 0.01 * (1.0 + c.rho));
   EXPECT_NEAR(meanOf(whole, "indirect."), expected, 0.01 * expected);
-  // The clamp's own loss is another test's.
+  // Another test measures the loss by the clamp.
   const Image byVpls = renderVpls(world, lit, with(plain, {{"clamp", "0.05"}})).image;
   EXPECT_NEAR(meanOf(byVpls, "indirect."), expected, 0.03 * expected);
 }
@@ -47,8 +47,8 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(int(10 * c.radius));
     });
 
-// A wall that alone sees the lamp and a floor that sees the wall: one bounce, known from the path
-// tracer.
+// Only the wall sees the area light, and the floor sees the wall. The path tracer provides the
+// reference for this single bounce.
 TEST(OneBounce, VplsAgreeWithThePathTracer) {
   const World world("test/one-bounce.toml");
   const double vpl = indirectByVpls(world, litVpls(world, {}, {{"max-bounces", "1"}}),
@@ -58,7 +58,7 @@ TEST(OneBounce, VplsAgreeWithThePathTracer) {
   EXPECT_NEAR(vpl / path, 1.0, 0.03);
 }
 
-// With more bounces between the same surfaces, the two must count alike.
+// With more bounces between the same surfaces, both must count bounces alike.
 TEST(ManyBounces, VplsAgreeWithThePathTracer) {
   const World world("cornell/scene.toml");
   World small("cornell/scene.toml");

@@ -1,4 +1,4 @@
-// What tile cuts expect of a cluster, and the quick test that spares asking.
+// Expected light of a cluster in tile cuts, and the quick test that avoids computing it.
 #include "tools/render/light_tree/expected_light.h"
 
 #include <gtest/gtest.h>
@@ -34,9 +34,9 @@ LightNode cluster(Rng& rng) {
   return n;
 }
 
-// Near and far, as dull as chalk and as bright as a Phong lobe: where the quick test says far, the
-// light of no receiver in the box exceeds what is allowed.
-TEST(Expectation, WhatIsSurelyFarExceedsNowhere) {
+// Clusters near and far, receivers with small and large BSDF values. Where the quick test says far,
+// no receiver in the box gets more light than allowed.
+TEST(Expectation, TheFarTestIsConservative) {
   Rng rng(streamKey(11, Stream::Plot), 0);
   int far = 0, exceeded = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -60,7 +60,7 @@ TEST(Expectation, WhatIsSurelyFarExceedsNowhere) {
   EXPECT_GT(exceeded, 2000);
 }
 
-// Nothing arrives behind either side, and light falls with the square of the distance.
+// No light arrives behind either side, and light falls with the square of the distance.
 TEST(Expectation, KnowsSidesAndDistance) {
   LightNode n;
   n.bounds.extend({-0.01f, -0.01f, 0.0f});

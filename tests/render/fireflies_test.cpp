@@ -1,5 +1,5 @@
-// Fireflies are spread: the energy stays, what many samples agree on stays where it is, and more
-// samples need less of it.
+// Redistribution of fireflies preserves energy, keeps what many samples agree on in place, and
+// decreases with more samples.
 #include "tools/render/film/fireflies.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace bnvpl {
 namespace {
 
-// What a sample brings at a pixel of the film.
+// Sets the radiance of a sample at a pixel of the film.
 using Brought = std::function<void(uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out)>;
 
 struct Shown {
@@ -51,11 +51,11 @@ double sumOf(const Image& image, const char* channel) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-constexpr uint32_t kX = 20, kY = 30;  // where one sample finds something
+constexpr uint32_t kX = 20, kY = 30;  // the pixel where one sample finds extra light
 bool there(uint32_t x, uint32_t y, uint32_t slot) { return x == kX && y == kY && slot == 3; }
 size_t index(const Shown& film) { return size_t{kY} * film.width + kX; }
 
-// A grey room, where one sample, of the first pass, finds light of another colour.
+// A grey room where one sample of the first pass finds light of another colour.
 Brought firefly(Vec3 light) {
   return [light, found = std::make_shared<std::atomic<bool>>()](
              uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
@@ -64,7 +64,7 @@ Brought firefly(Vec3 light) {
   };
 }
 
-TEST(Fireflies, GoWhereNobodySeesThemAndKeepTheirEnergy) {
+TEST(Fireflies, AreHiddenAndKeepTheirEnergy) {
   const Vec3 light(300, 100, 50);
   for (const uint64_t passes : {0u, 6u}) {
     const Shown film{.passes = passes};
@@ -75,7 +75,7 @@ TEST(Fireflies, GoWhereNobodySeesThemAndKeepTheirEnergy) {
       EXPECT_GT((*kept.find(channel))[index(film)], 2.0f) << channel;
       EXPECT_NEAR(sumOf(spread, channel) / before, 1.0, 1e-5) << channel << ' ' << passes;
       for (const float v : *spread.find(channel)) {
-        // An eighth of what is around, twice as much in red, and what is visible besides.
+        // At most an eighth of the surroundings (twice that in red) plus the visible contrast.
         ASSERT_LE(v, 1.0f + 2.0f * 0.125f + 0.05f) << channel;
         ASSERT_GE(v, 0.45f);
       }
@@ -84,7 +84,7 @@ TEST(Fireflies, GoWhereNobodySeesThemAndKeepTheirEnergy) {
   }
 }
 
-// But the pixel itself none becomes brighter by more than the contrast that one sees.
+// Except for the pixel itself, none becomes brighter by more than the visible contrast.
 TEST(Fireflies, AreSpreadAsWidelyAsTheyAreBright) {
   const Shown film;
   for (const float light : {20.0f, 200.0f}) {
@@ -97,8 +97,8 @@ TEST(Fireflies, AreSpreadAsWidelyAsTheyAreBright) {
   }
 }
 
-// Eight pixels of a block find the same by one sample each: together they are no more to be seen.
-TEST(Fireflies, OfASharedFindAreHiddenTogether) {
+// Eight pixels of a block find the same light by one sample each; they are hidden together.
+TEST(Fireflies, OfSeveralPixelsAreHiddenTogether) {
   const Shown film;
   const auto finds = [](uint32_t x, uint32_t y) {
     return x / 4 == kX / 4 && y / 4 == kY / 4 && (x + y) % 2 == 0;
@@ -110,12 +110,12 @@ TEST(Fireflies, OfASharedFindAreHiddenTogether) {
   EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6);
   for (uint32_t i = 0; i < spread.pixelCount(); ++i) {
     if (!finds(i % film.width, i / film.width)) {
-      ASSERT_LT((*spread.find("G"))[i], 1.03f);  // not so were each hidden alone
+      ASSERT_LT((*spread.find("G"))[i], 1.03f);  // fails if each is hidden alone
     }
   }
 }
 
-TEST(Fireflies, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
+TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
   const Shown film;
   for (const bool seen : {false, true}) {
     const Brought brought = [seen](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
@@ -135,7 +135,7 @@ TEST(Fireflies, OfDirectLightAreSpreadButNotLightsThatTheCameraSees) {
   }
 }
 
-// What is not shown stays.
+// Light that is not shown stays.
 TEST(Fireflies, OfOneKindOfLightAlone) {
   for (const Only only : {Only::Direct, Only::Indirect}) {
     const Shown film{.only = only};
@@ -168,8 +168,8 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
   }
 }
 
-// The camera sees nothing to the left.
-TEST(Fireflies, LeaveTheVoidBlack) {
+// The camera sees no surface to the left.
+TEST(Fireflies, LeavePixelsWithoutSurfaceBlack) {
   const Shown film;
   const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     if (x < kX - 1) {
@@ -188,8 +188,8 @@ TEST(Fireflies, LeaveTheVoidBlack) {
   }
 }
 
-// What integrators call seen is the lamp in sight, and all of it.
-TEST(Fireflies, IntegratorsKnowWhatTheCameraSeesStraight) {
+// Integrators report the visible area light, and all of it, as emission.
+TEST(Fireflies, IntegratorsReportVisibleEmission) {
   test::World world("cornell/scene.toml");
   world.scene.film = {96, 96};
   float lamp = 0.0f;
@@ -217,7 +217,7 @@ TEST(Fireflies, IntegratorsKnowWhatTheCameraSeesStraight) {
   }
 }
 
-// A bright half, whose edge lies in a pixel.
+// The edge of a bright half lies inside a pixel.
 TEST(Fireflies, AreNotEdgesNorNoiseThatAllPixelsShare) {
   const Shown film;
   const Brought edge = [](uint32_t x, uint32_t, uint32_t slot, RadianceSample& out) {
@@ -244,7 +244,7 @@ TEST(Fireflies, MoreSamplesLeaveThemWhereTheyAre) {
   EXPECT_EQ(at(256, true), at(256, false));
 }
 
-// Two samples of a pixel, of one pass or of two, are two fireflies.
+// Two samples of a pixel, in one pass or in two, are two fireflies.
 TEST(Fireflies, TwoOfAPixelAreSpread) {
   const Brought twice = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     const bool found = x == kX && y == kY && (slot == 3 || slot == 7);
@@ -259,8 +259,8 @@ TEST(Fireflies, TwoOfAPixelAreSpread) {
   }
 }
 
-// Nothing hides a light in the dark; what a film is too small to hide is no dot at least.
-TEST(Fireflies, StayInTheDarkAlone) {
+// Nothing hides a firefly in the dark; one too bright for a small film is at least no dot.
+TEST(Fireflies, StayWhereAllElseIsDark) {
   const Shown film;
   const Brought dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     if (there(x, y, slot)) out.indirect = Vec3(16.0f);
@@ -274,8 +274,8 @@ TEST(Fireflies, StayInTheDarkAlone) {
   EXPECT_NEAR(light[index(film)] / light[index(film) + 1], 1.0, 0.05);
 }
 
-// Fireflies of a wall brighten neither the floor before it nor a pillar of another colour, as long
-// as the wall can hide them.
+// Fireflies of a wall brighten neither the floor in front of it nor a pillar of another colour, as
+// long as the wall can hide them.
 TEST(Fireflies, StopAtEdges) {
   const Shown film;
   enum class Edge { Normal, Depth, Albedo };
@@ -298,7 +298,7 @@ TEST(Fireflies, StopAtEdges) {
   }
 }
 
-// On a bumpy surface no pixel is like its neighbours; what it finds goes over the edges.
+// On a bumpy surface no pixel resembles its neighbours, so fireflies are spread across edges.
 TEST(Fireflies, AreHiddenOnBumpySurfaces) {
   const Shown film;
   const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {

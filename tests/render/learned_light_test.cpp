@@ -1,4 +1,4 @@
-// Direct light by what tiles learned, against one ray to each light: one mean, less noise.
+// Direct light from learned distributions against one ray per light: equal means, less noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ TEST(LearnedLight, IsTheLightOfAllLights) {
                               directBy(world, {{"direct", "each"}, {"spp", "16"}})));
 }
 
-TEST(LearnedLight, FindsTheFewLightsThatAreSeen) {
+TEST(LearnedLight, FindsTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(1200));
   const Render learned = directBy(many, {{"direct", "learned"}}),
                each = directBy(many, {{"direct", "each"}});
@@ -32,11 +32,11 @@ TEST(LearnedLight, FindsTheFewLightsThatAreSeen) {
   EXPECT_LT(noiseOf(learned), 0.3 * noiseOf(each));
 }
 
-// A lamp that the camera sees: its border is as sharp as many rays make it.
+// The border of a visible area light is as smooth as with many rays.
 TEST(LearnedLight, BordersOfVisibleEmissionHaveLessNoise) {
   Scene scene = room(32, 32);
   for (Material& m : scene.materials) {
-    m.phong().diffuse = {};  // what is left is what the camera sees
+    m.phong().diffuse = {};  // only visible emission remains
     if (!isBlack(m.emission)) m.twoSidedEmission = true;
   }
   const World world(std::move(scene));

@@ -1,4 +1,4 @@
-// The light tree, and the VPLs that are drawn from it.
+// The light tree, and VPLs sampled from it.
 #include <gtest/gtest.h>
 
 #include "tests/support/gather_checks.h"
@@ -20,7 +20,7 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
   const VplLights vpls = makeVplLights(lit().lit, lit().world.rays, 1.0f);
   const LightTree tree = buildLightTree(vpls, 1);
   ASSERT_EQ(tree.nodes.size(), 2 * vpls.size() - 1);
-  // From the leaves up (children come after their parent): collect each node's lights.
+  // From the leaves up (children come after their parent), collect each node's lights.
   std::vector<std::vector<uint32_t>> below(tree.nodes.size());
   for (size_t n = tree.nodes.size(); n-- > 0;) {
     const LightNode& node = tree.nodes[n];
@@ -45,7 +45,7 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
   EXPECT_EQ(below[0].size(), vpls.size());
 }
 
-// The relative standard deviation of a gather of one VPL that is drawn without regard to the point.
+// Relative standard deviation of a gather of one VPL that is drawn uniformly.
 double deviationOfAnyVpl(const World& world, const VplLights& vpls, const Bsdf& bsdf) {
   const ShadowTest one(world.rays, vpls, bsdf);
   double sum = 0.0, squares = 0.0;
@@ -57,8 +57,7 @@ double deviationOfAnyVpl(const World& world, const VplLights& vpls, const Bsdf& 
   return std::sqrt(std::max(0.0, static_cast<double>(vpls.size()) * squares / (sum * sum) - 1.0));
 }
 
-// The sampled gather and the sum over all VPLs agree on the mean, point by point and channel by
-// channel.
+// The mean of the sampled gather equals the sum over all VPLs at every point and in every channel.
 TEST(SampledGather, IsTheSumOverAllOnAverage) {
   const World& world = lit().world;
   const VplLights vpls = makeVplLights(lit().lit, world.rays, 1.0f);
@@ -86,7 +85,7 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
         sum += radiance * (1.0f / kTimes);
         squares += std::pow(double{mean(radiance)} / double{mean(all)}, 2) / kTimes;
       }
-      // Of one gather, relative: the tree knows where the light is.
+      // Relative standard deviation of one gather; the tree directs samples to bright VPLs.
       const double deviation = std::sqrt(std::max(0.0, squares - 1.0));
       const double ofBlind = deviation * std::sqrt(draws) / blind;
       EXPECT_LT(ofBlind, 1.0);

@@ -13,7 +13,7 @@ inline Scene room(uint32_t width, uint32_t height) {
   return scene;
 }
 
-// A box that is open to the viewer, under lamp, sky with an image, sun and bulb.
+// A box open to the viewer, with an area light, a sky with an image, a sun and a point light.
 inline Scene manyLights() {
   Scene scene = room(24, 24);
   EnvironmentImage sky;
@@ -34,8 +34,7 @@ inline Scene manyLights() {
   return scene;
 }
 
-// The box without its lamp, with three bulbs inside and more above its ceiling than there are
-// strata.
+// The box without its area light: three point lights inside and `hidden` more above its ceiling.
 inline Scene bulbs(uint32_t hidden) {
   Scene scene = room(24, 24);
   const Vec3 centre = scene.bounds.center(), extent = scene.bounds.extent();
@@ -49,13 +48,13 @@ inline Scene bulbs(uint32_t hidden) {
   return scene;
 }
 
-// Eight cells in a row, open towards a sheet of metal, each with a bulb behind a cover, so that it
-// lights its cell alone. The camera looks from between at the sheet, or at the covers, which get
-// all their light over it.
+// Eight cells in a row, open towards a metal sheet. Each holds a point light behind a cover, so
+// that it lights its own cell alone. The camera looks from between at the sheet, or at the covers,
+// whose light all comes via the sheet.
 inline Scene cellsBeforeMetal(bool seesMetal) {
   constexpr int kCells = 8;
   SceneBuilder builder("cells");
-  builder.setFilm({8, 8});  // one tile, which sees all cells
+  builder.setFilm({8, 8});  // a single tile sees all cells
   Camera camera;
   camera.verticalFovRad = 1.6f;
   if (seesMetal) camera.forward = {0, 0, 1}, camera.right = {-1, 0, 0};

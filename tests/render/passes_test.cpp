@@ -1,4 +1,4 @@
-// Passes over the film: their error is the true one, and adaptive samples bring no bias.
+// Passes over the film: the estimated error is the true one, and adaptive passes are unbiased.
 #include "tools/render/film/passes.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ struct Made {
   PassesDone passes;
 };
 
-// A camera over nothing, as the integrator alone says what is seen.
+// The camera sees nothing; the integrator alone provides the radiance.
 struct Film {
   explicit Film(uint32_t width, uint32_t height) { scene.film = {width, height}; }
   Made operator()(const Integrator& integrator, uint64_t passes, uint64_t seed, bool adaptive,
@@ -31,7 +31,8 @@ struct Film {
   Scene scene;
 };
 
-// fn(pixel of the tile, the tile's own number in [0, 1), the sample's) -> what is seen.
+// Integrator whose radiance is fn(pixel within the tile, a number of the tile in [0, 1), a number
+// of the sample in [0, 1)).
 template <typename Fn>
 Integrator seen(const Fn& fn) {
   return {[fn](const TileSamples& tile) {
@@ -49,8 +50,8 @@ double meanSquare(const std::vector<float>& values, double about) {
   return sum / double(values.size());
 }
 
-// Samples of a tile share a number, as they share a cut: twelve passes of four such samples know
-// far less than 48 that are independent.
+// Samples of a tile share a number, as they share a cut: twelve passes of four such samples are far
+// less accurate than 48 independent samples.
 TEST(PassError, IsTheTrueOneThoughSamplesOfATileAreCorrelated) {
   const Film film(256, 256);
   const auto noise =
@@ -63,7 +64,7 @@ TEST(PassError, IsTheTrueOneThoughSamplesOfATileAreCorrelated) {
   EXPECT_EQ(m.stats.samples, 256u * 256u * 12u * kPassSpp);
 }
 
-// With tiles that get more samples, and others less.
+// Adaptive passes give some tiles more samples than others.
 TEST(PassError, IsTheTrueOneOfAdaptivePasses) {
   const Film film(128, 96);
   const auto noise = seen([](uint32_t p, float, float own) {
@@ -80,7 +81,7 @@ TEST(PassError, IsTheTrueOneOfAdaptivePasses) {
   EXPECT_NEAR(known / error, 1.0, 0.15);
 }
 
-// Mean of a channel over the 3 x 3 pixels about one.
+// Mean of a channel over the 3 x 3 pixels around one.
 double around(const Image& image, const std::string& channel, int x, int y) {
   double sum = 0.0;
   int count = 0;
@@ -92,7 +93,7 @@ double around(const Image& image, const std::string& channel, int x, int y) {
   return sum / count;
 }
 
-// Two seeds are apart by the errors of both: of each pixel, and of the image as a whole.
+// Images of two seeds differ by the errors of both, per pixel and as a whole.
 TEST(PassError, IsTheTrueOneOfARealScene) {
   World world("cornell/scene.toml");
   world.scene.film = {40, 40};
@@ -117,8 +118,8 @@ TEST(PassError, IsTheTrueOneOfARealScene) {
   EXPECT_NEAR(b.passes->error / std::sqrt(0.5 * apart), 1.0, 0.15);
 }
 
-// Rare bright samples: of a tile that met none in the first passes nothing is known, and it gets
-// few more. Weighted by their numbers, samples would have a mean of 0.75 here (measured).
+// Bright samples are rare: a tile that found none in the first passes appears free of noise and
+// gets few more. Weighted by their numbers, samples would have a mean of 0.75 here (measured).
 TEST(AdaptivePasses, HaveNoBiasWhereBrightSamplesAreRare) {
   const Film film(64, 64);
   constexpr float kRare = 1.0f / 4096.0f;
@@ -169,7 +170,8 @@ TEST(AdaptivePasses, GoWhereTheErrorIs) {
   for (const float n : *uniform.image.find("samples")) ASSERT_EQ(n, 24.0f * kPassSpp);
 }
 
-// Camera samples and photons, with any threads, and from every state that a checkpoint may hold.
+// Camera samples and photons give the same bytes with any threads, and from every state that a
+// checkpoint may hold.
 TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
   const Film film(40, 24);
   Integrator both =
@@ -203,7 +205,7 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
   }
 }
 
-// Photons bring half of the light, and their share of the error.
+// Photons contribute half of the light and all of its error.
 TEST(Passes, CountThePhotonsOfEachPass) {
   const Film film(16, 16);
   Integrator both = seen([](uint32_t, float, float) { return 1.0f; });
@@ -214,7 +216,7 @@ TEST(Passes, CountThePhotonsOfEachPass) {
   };
   const Made m = film(both, 16, 1, true);
   EXPECT_NEAR(meanOf(m.image), 2.0, 1e-6);
-  const double variance = 1.0 / (kPassSpp * 16.0);  // of Poisson's number of photons
+  const double variance = 1.0 / (kPassSpp * 16.0);  // variance of a Poisson count
   EXPECT_NEAR(meanSquare(*m.image.find("error.R"), 0.0) / variance, 1.0, 0.1);
   EXPECT_NEAR(meanSquare(*m.image.find("R"), 2.0) / variance, 1.0, 0.25);
 }
@@ -234,11 +236,11 @@ TEST(Passes, EndByTimeErrorOrNumber) {
   const PassesDone fine = ended({.error = 0.05}), coarse = ended({.error = 0.1});
   EXPECT_EQ(fine.endedBy, "error");
   EXPECT_LE(fine.error, 0.05);
-  EXPECT_GT(fine.error, 0.045);  // and not by much more than was asked for
+  EXPECT_GT(fine.error, 0.045);  // the error is only little below the target
   EXPECT_NEAR(double(fine.passes) / double(coarse.passes), 4.0, 0.8);
 }
 
-TEST(Passes, SppIsTheMostOfThem) {
+TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
   EXPECT_EQ(resolveRender({}).whole("spp"), 16u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->passes, 0xffffffffu / kPassSpp);

@@ -1,4 +1,4 @@
-// The control variate of pixels: it changes no mean, and takes the noise of edges.
+// The control variate of pixels preserves the mean and reduces noise at edges.
 #include <gtest/gtest.h>
 
 #include "tests/render/lit_rooms.h"
@@ -9,7 +9,7 @@
 namespace bnvpl::test {
 namespace {
 
-// A matt surface under even light reflects albedo times irradiance over pi.
+// A diffuse surface under uniform light reflects albedo times irradiance over pi.
 TEST(IrradianceField, KnowsTheLightOfAFurnace) {
   const World world("furnace/scene.toml");
   const VplTable lit =
@@ -18,13 +18,13 @@ TEST(IrradianceField, KnowsTheLightOfAFurnace) {
   double sum = 0.0;
   for (size_t i = 0; i < lit.size(); ++i)
     sum += double{mean(field.indirectAt(lit.position[i], lit.normal[i]))};
-  // Radiance 1 leaves the walls by emission, 1 by reflection of all: the first bounce is half.
+  // The walls emit radiance 1 and reflect 1, the indirect light, half of it after one bounce.
   EXPECT_NEAR(sum / double(lit.size()), 1.0, 0.2);
   EXPECT_EQ(mean(field.indirectAt(world.scene.bounds.upper * 50.0f, {0, 1, 0})), 0.0f);
 }
 
-// Edges of boxes and walls in every pixel.
-TEST(PixelControlVariate, TakesNoiseAndNoLight) {
+// Every pixel contains edges of boxes and walls.
+TEST(PixelControlVariate, ReducesNoiseAndKeepsTheMean) {
   const World world(room(16, 16));
   const VplTable lit = litVpls(world, {{"count", "400"}}, {}, {{"count", "8k"}});
   const auto by = [&](const char* control, const char* spp) -> Render {
@@ -43,9 +43,8 @@ TEST(PixelControlVariate, TakesNoiseAndNoLight) {
   EXPECT_LT(noiseOf(by("vpls", "2")), 0.92 * noiseOf(by("none", "2")));
 }
 
-// Where a VPL's surface lies half in the dark, what it says is not taken from samples that saw
-// less.
-TEST(PixelControlVariate, TakesNoMoreThanThereIs) {
+// Where a VPL's surface is partly dark, the control variate must not make pixels negative.
+TEST(PixelControlVariate, SubtractsNoMoreThanThereIs) {
   World world("veach-door/scene.toml");
   world.scene.film = {80, 45};
   const VplTable lit = litVpls(world, {{"count", "1000"}});

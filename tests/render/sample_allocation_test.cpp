@@ -1,4 +1,4 @@
-// Sample allocation: which parts get samples, and that the image stays unbiased.
+// Sample allocation: where samples go, and that the image stays unbiased.
 #include "tools/render/tile/allocation/sample_allocation.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ TEST(SampleAllocation, SamplesGrowWithDeviationAndFallWithTheRootOfCost) {
   EXPECT_EQ(samplesFor(0.0, 1.0, 0.01, 3, 7), 3u);
 }
 
-// The samples of a pixel decide on the number of samples of the other parity alone.
+// The samples of a pixel affect only the number of samples of the other parity.
 TEST(SampleAllocation, APixelDoesNotDecideOnItsOwnSamples) {
   const TileSlots tile{64, 8};
   const SampleAllocation allocation{0.01, 0.0, 1e6};
@@ -27,12 +27,12 @@ TEST(SampleAllocation, APixelDoesNotDecideOnItsOwnSamples) {
   }
   const auto samples = [&] { return samplesByParity(pixels, tile, 0.01, allocation, 1, 1000); };
   const auto before = samples();
-  pixels[27].add(Vec3(40.0f));  // of parity 0
+  pixels[27].add(Vec3(40.0f));  // a pixel of parity 0
   EXPECT_EQ(samples()[0], before[0]);
   EXPECT_GT(samples()[1], 2 * before[1]);
 }
 
-// Twice the light makes the relative variance a quarter in dark tiles, and half in bright ones.
+// Doubling the light quarters the relative variance in dark tiles and halves it in bright ones.
 TEST(SampleAllocation, VarianceIsRelativeAndInBrightTilesHalfWayToAbsolute) {
   const SampleAllocation allocation{0.01, 0.0, 3.0};
   EXPECT_DOUBLE_EQ(allocation.relative(1.0, Vec3(0.25f)),
@@ -42,7 +42,7 @@ TEST(SampleAllocation, VarianceIsRelativeAndInBrightTilesHalfWayToAbsolute) {
   EXPECT_EQ(SampleAllocation{}.relative(1.0, Vec3{}), 0.0);
 }
 
-// Light through a door, and direct light of a lamp that is hidden from most of the film.
+// Light comes through a door, and direct light from an emitter hidden from most of the film.
 TEST(SampleAllocation, ImagesKeepTheirMean) {
   World world("veach-door/scene.toml");
   world.scene.film = {48, 27};

@@ -18,7 +18,7 @@ TEST(SplatSums, AreExactWhateverTheirSize) {
   for (const float value : {-0x1.fffffep127f, 0x1.8p100f, -3.0f, -0x1p-126f})
     sums.add(splatOf(1, value));
   for (size_t c = 0; c < 3; ++c) {
-    EXPECT_EQ(sums.sum(1, c), 0x1p-149);  // all but the smallest have left again
+    EXPECT_EQ(sums.sum(1, c), 0x1p-149);  // all but the smallest have cancelled
     EXPECT_EQ(sums.sum(0, c), 0.0);
   }
 }
@@ -38,7 +38,7 @@ TEST(SplatSums, CountWhatIsNotFinite) {
   EXPECT_EQ(sums.sum(0, 2), 2.0);
 }
 
-// In another order, and in two parts that are added up as integers.
+// The splats are added in another order, and in two parts whose integers are summed.
 TEST(SplatSums, DoNotDependOnOrderOrParts) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> exponent(-40.0f, 40.0f);

@@ -1,4 +1,4 @@
-// Where vertices far from the camera look for lights: what the VPLs around them see.
+// Vertices far from the camera sample the lights that the VPLs around them see.
 #include "transport/surface_lights.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace bnvpl::test {
 namespace {
 
-constexpr uint32_t kHidden = 1200;  // bulbs above the ceiling
+constexpr uint32_t kHidden = 1200;  // point lights above the ceiling
 
 VplTable litBy(const World& world) {
   return litVpls(world, {{"count", "150"}}, {{"photons", "100k"}}, {{"count", "3k"}});
@@ -20,7 +20,7 @@ SurfaceLights learned(const World& world, const VplTable& vpls) {
   return {world.rays, world.lights, vpls.position, vpls.normal, vpls.radius, 7, {}};
 }
 
-TEST(SurfaceLights, FewOfTheRaysGoToLightsThatNobodySees) {
+TEST(SurfaceLights, FewRaysGoToHiddenLights) {
   const World world(bulbs(kHidden));
   const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
   const SurfaceLights lights = learned(world, vpls);
@@ -43,7 +43,7 @@ TEST(SurfaceLights, ProbabilitiesOfAPlaceSumToOne) {
   const World world(manyLights());
   const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
   const SurfaceLights lights = learned(world, vpls);
-  for (size_t i = 0; i <= vpls.size(); ++i) {  // the last lies far from all of them
+  for (size_t i = 0; i <= vpls.size(); ++i) {  // the last lies far from all VPLs
     const LearnedStrata strata = i < vpls.size()
                                      ? lights.at(vpls.position[i], vpls.normal[i])
                                      : lights.at(world.scene.bounds.upper * 9.0f, {0, 1, 0});
@@ -62,8 +62,8 @@ TEST(SurfaceLights, OneLightLeavesNothingToChoose) {
   EXPECT_EQ(learned(world, vpls).at(vpls.position[0], vpls.normal[0]).all, nullptr);
 }
 
-// Bulbs that no surface in sight receives from change nothing, and hardly the noise.
-TEST(SurfaceLights, NearFieldRaysFindTheFewLightsThatAreSeen) {
+// Point lights that light no visible surface change nothing, and hardly the noise.
+TEST(SurfaceLights, NearFieldRaysFindTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(kHidden));
   const VplTable lit = litBy(few);
   const auto by = [&](const World& world) -> Render {
@@ -78,7 +78,7 @@ TEST(SurfaceLights, NearFieldRaysFindTheFewLightsThatAreSeen) {
     };
   };
   EXPECT_TRUE(sameExpectation(by(many), by(few)));
-  EXPECT_LT(noiseOf(by(many)), 2.0 * noiseOf(by(few)));  // 7 times where lights are drawn by power
+  EXPECT_LT(noiseOf(by(many)), 2.0 * noiseOf(by(few)));  // 7 times if lights were sampled by power
 }
 
 TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
@@ -94,8 +94,8 @@ TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
   EXPECT_TRUE(sameExpectation(of("path", 0), of("guided", 100)));
 }
 
-// What is seen over a sharp lobe has other lights than the tile, which sees all of it.
-TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesLookForTheirOwnLights) {
+// Points seen over a near-specular lobe see other lights than their tile, which covers all cells.
+TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesSampleTheirOwnLights) {
   const World world(cellsBeforeMetal(/*seesMetal=*/true));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   const auto direct = [&](const Given& options) -> Render {
@@ -112,10 +112,10 @@ TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesLookForTheirOwnLights) {
   };
   const Render learned = direct({{"integrator", "guided"}}), each = direct({{"direct", "each"}});
   EXPECT_TRUE(sameExpectation(learned, each));
-  EXPECT_LT(noiseOf(learned, 4), 2.0 * noiseOf(each, 4));  // 3.5 times by the tile's lights
+  EXPECT_LT(noiseOf(learned, 4), 2.0 * noiseOf(each, 4));  // 3.5 times with the tile's lights
 }
 
-TEST(SurfaceLights, PathsFromVplsFindTheFewLightsThatAreSeen) {
+TEST(SurfaceLights, PathsFromVplsFindTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(kHidden));
   const VplTable vpls = keptVpls(few, {{"count", "150"}}, {{"count", "3k"}});
   const auto fluxes = [&](const World& world, const char* seed) {
@@ -126,7 +126,7 @@ TEST(SurfaceLights, PathsFromVplsFindTheFewLightsThatAreSeen) {
   const VplTable a = fluxes(few, "1"), b = fluxes(many, "2"), c = fluxes(many, "3");
   double right = 0.0, found = 0.0, squares = 0.0, all = 0.0;
   for (size_t i = 0; i < vpls.size(); ++i) {
-    // On top of the lamp, whose disk reaches the outside of the ceiling.
+    // Such VPLs lie on top of the area light, and their disks reach the outside of the ceiling.
     if (vpls.normal[i].y > 0.9f && vpls.position[i].y > few.scene.bounds.upper.y * 0.9f) continue;
     right += double{mean(a.flux[i])}, found += double{mean(b.flux[i])};
     squares += std::pow(double{mean(b.flux[i])} - double{mean(c.flux[i])}, 2);

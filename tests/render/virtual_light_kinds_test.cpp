@@ -1,4 +1,4 @@
-// What each kind of virtual light promises to gathers, bounds and compensation.
+// Guarantees of each kind of virtual light to gathers, bounds and compensation.
 #include "transport/virtual_light_kinds.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TYPED_TEST(EachLightKind, FallOffWithDistanceAndNeverExceedAPoint) {
   EXPECT_NEAR(TypeParam::spread(1e6f, kSize2), 1e6f, 1.0f);
 }
 
-TYPED_TEST(EachLightKind, RemoveWhatTheyDoNotBring) {
+TYPED_TEST(EachLightKind, RemoveWhatTheyDoNotEmit) {
   for (float d = 0.01f; d < 3.0f; d += 0.01f) {
     EXPECT_NEAR(TypeParam::removed(d / 0.2f), 1.0f - d * d / TypeParam::spread(d * d, 0.04f),
                 1e-5f);
@@ -62,7 +62,7 @@ TYPED_TEST(EachLightKind, FourAtOnceAreFourSingleOnes) {
   }
 }
 
-// Over a cone of axes: never below what any of them emits, and not above what one could.
+// Over a cone of axes, the bound is never below the emission of any axis, and never above 1.
 TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
   Rng rng(streamKey(3, Stream::PixelSamples), 0);
   for (int i = 0; i < 300; ++i) {
@@ -81,20 +81,20 @@ TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
   }
 }
 
-// What one kind removes is reported: with it every kind shows the same image.
-TEST(LightKindsOfImages, DifferInWhatTheyRemoveAlone) {
+// The removed light is reported: with it, every kind gives the same image.
+TEST(LightKindsOfImages, DifferOnlyInWhatTheyRemove) {
   const World world("furnace/scene.toml");
   const VplTable lit = litVpls(world, {{"count", "300"}});
   const auto statsOf = [&](const char* light) {
     return renderVpls(world, lit, with(kPlainRender, {{"gather", "all"}, {"light", light}})).stats;
   };
   const FilmStats point = statsOf("point"), disk = statsOf("disk");
-  EXPECT_LT(disk.indirect, 0.98 * point.indirect);  // it is never the brighter one
+  EXPECT_LT(disk.indirect, 0.98 * point.indirect);  // a disk is never brighter
   EXPECT_NEAR(disk.indirect + disk.clamped, point.indirect + point.clamped, 1e-3 * point.indirect);
 }
 
-// In a furnace every pixel is known: what disks remove the near field brings.
-TEST(LightKindsOfImages, HaveTheirEnergyBroughtBack) {
+// In a furnace every pixel is known: the near field restores what disks remove.
+TEST(LightKindsOfImages, HaveTheirEnergyRestored) {
   World world("furnace/scene.toml");
   world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});

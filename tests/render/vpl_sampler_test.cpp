@@ -1,4 +1,4 @@
-// VPLs drawn one at a time: none that lights a point is left out, and the probabilities are right.
+// VPLs drawn one at a time: every VPL that lights a point can be drawn, with the right probability.
 #include "tools/render/light_tree/vpl_sampler.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 VplLights lightsAbout(size_t count, Rng& rng) {
   VplLights lights;
   for (size_t i = 0; i < count; ++i) {
-    // Some on one wall, some anywhere; a few bright ones.
+    // Some lie on one wall and some anywhere; a few are bright.
     const bool wall = rng.next() < 0.5f;
     const float x = rng.next(), y = rng.next(), z = rng.next();
     lights.position.emplace_back(x, wall ? 0.0f : y, z);
@@ -54,13 +54,13 @@ struct Mean {
   double sum = 0.0, squares = 0.0;
   void add(double value) { sum += value, squares += value * value; }
   double over(int n) const { return sum / n; }
-  double deviation(int n) const {  // of the mean
+  double deviation(int n) const {  // standard deviation of the mean
     return std::sqrt(std::max(0.0, squares / n - over(n) * over(n)) / n);
   }
 };
 
-// Each VPL that can light the point counts one over its probability wherever it is drawn: together
-// as many as there are.
+// A drawn VPL that can light the point counts one over its probability: the expected count is the
+// number of such VPLs.
 void requireRightProbabilities(size_t count, bool glossy) {
   Rng rng(streamKey(count, Stream::Plot), glossy);
   const VplLights lights = lightsAbout(count, rng);
@@ -71,7 +71,7 @@ void requireRightProbabilities(size_t count, bool glossy) {
   for (int k = 0; k < 40; ++k) {
     const SurfacePoint at = pointIn(rng);
     const Bsdf bsdf(scene, at);
-    std::map<uint32_t, double> sends;  // those that can light the point
+    std::map<uint32_t, double> sends;  // light of the VPLs that can light the point
     double all = 0.0;
     Coupling c;
     for (uint32_t i = 0; i < count; ++i) {
@@ -85,7 +85,7 @@ void requireRightProbabilities(size_t count, bool glossy) {
     }
     ++lit;
     constexpr int kDraws = 40000;
-    Mean number, light;  // one over the probability: of VPLs, and of what they send
+    Mean number, light;  // estimated number of VPLs and their light
     std::set<uint32_t> drawn;
     const float shift = rng.next();
     for (int d = 0; d < kDraws; ++d) {

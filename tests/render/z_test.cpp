@@ -1,4 +1,4 @@
-// Renderers that must have the same expected image, pixel by pixel, and images that are known.
+// Renderers whose expected images must be equal, pixel by pixel, or equal known images.
 #include "tests/support/z_test.h"
 
 #include "core/sampling.h"
@@ -33,7 +33,7 @@ Image noise(uint64_t seed, double mean, double deviation) {
   return image;
 }
 
-// Where both agree, p is even in 0..1 but for the correlation of blocks with their pixels.
+// If both expectations are equal, p is uniform in 0..1 up to the correlation of nested blocks.
 TEST(ZTest, EqualExpectationsAreSeldomTakenForDifferent) {
   int below = 0;
   for (uint64_t round = 0; round < 60; ++round) {
@@ -41,7 +41,7 @@ TEST(ZTest, EqualExpectationsAreSeldomTakenForDifferent) {
     const auto b = [&](uint64_t seed) { return noise(1000 * round + seed + 500, 1.0, 0.3); };
     below += zTest(a, b, {.seeds = 8}).p < 0.1;
   }
-  EXPECT_LE(below, 14);  // of 6; 3.4 deviations
+  EXPECT_LE(below, 14);  // expected: 6; 3.4 standard deviations
 }
 
 TEST(ZTest, FindsOnePixelThatIsWrong) {
@@ -73,7 +73,7 @@ TEST(ZTest, WithoutNoiseOnlyRoundingIsForgiven) {
   EXPECT_FALSE(sameExpectation(flat(1.0f), flat(NAN)));
 }
 
-// A film of the given size over a scene of the project.
+// A scene of the project with a film of the given size.
 Scene sceneOf(const std::string& name, uint32_t width, uint32_t height) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / name);
   scene.film = {width, height};
@@ -115,13 +115,13 @@ TEST(SameExpectation, FurnaceIsKnownAtEveryPixel) {
   EXPECT_TRUE(sameExpectation(paths(world, oneBounce), flat(world, 0.25f)));
   EXPECT_TRUE(sameExpectation(photons(world, indirect), flat(world, 0.5f)));
   EXPECT_TRUE(sameExpectation(photons(world, oneBounce), flat(world, 0.25f)));
-  // With rays beside the light samples, which alone have no variance near an edge of two lamps.
+  // Rays complement light samples, which have no variance near an edge of two area lights.
   const Given direct{
       {"spp", "16"}, {"only", "direct"}, {"compensate", "near-field"}, {"near-field-rays", "4"}};
   EXPECT_TRUE(sameExpectation(vpls(world, {}, direct), flat(world, 1.5f)));
 }
 
-// Lamp, sky and sun by rays of the BSDF alone, beside a point light that none can hit.
+// BSDF rays alone sample area light, sky and sun, beside a point light that none can hit.
 TEST(SameExpectation, PathsWithAndWithoutLightSampling) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {12, 12};
@@ -139,8 +139,8 @@ TEST(SameExpectation, PathsWithAndWithoutLightSampling) {
                               paths(world, {{"spp", "256"}, {"light-sampling", "off"}})));
 }
 
-// Irradiance over radiance of the horizontal square at height 1 and of side 0.2 about the origin,
-// at a point below it, from its outline (Lambert 1760).
+// Irradiance over radiance, at a point below, from a horizontal square of side 0.2 centred over the
+// origin at height 1, computed from its outline (Lambert 1760).
 double irradianceBelowSquare(Vec3 at) {
   const std::array<Vec3, 4> corners{
       {{-0.1f, 1, -0.1f}, {0.1f, 1, -0.1f}, {0.1f, 1, 0.1f}, {-0.1f, 1, 0.1f}}};
@@ -153,15 +153,15 @@ double irradianceBelowSquare(Vec3 at) {
   return 0.5 * std::fabs(sum);
 }
 
-// The pixels that see the patch at height 0 alone, and what they see of it.
+// Radiance of the pixels that see only the patch at height 0; 0 at all others.
 Image twoPatchesByFormFactors(const Scene& scene) {
   Image image = flatImage(int(scene.film.width), int(scene.film.height), 0, 0, 0);
-  constexpr int kAcross = 8;  // points of a pixel, each way
+  constexpr int kAcross = 8;  // points per pixel along each axis
   for (size_t i = 0; i < image.pixelCount(); ++i) {
     double sum = 0.0;
     bool inside = true;
     for (int k = 0; k < kAcross * kAcross && inside; ++k) {
-      // From border to border, so that a pixel is inside where all of it is.
+      // The points span the pixel from border to border, so a pixel is inside only as a whole.
       const float u = float(k % kAcross) / (kAcross - 1), v = float(k / kAcross) / (kAcross - 1);
       const Vec3 d = cameraDirection(scene.camera, scene.film,
                                      (float(i % scene.film.width) + u) / float(scene.film.width),
@@ -170,7 +170,7 @@ Image twoPatchesByFormFactors(const Scene& scene) {
       inside = std::max(std::fabs(at.x), std::fabs(at.z)) < 0.1f;
       sum += irradianceBelowSquare(at) / (kAcross * kAcross);
     }
-    const double radiance = 10.0 * 0.5 / double{kPi} * sum;  // Le, rho
+    const double radiance = 10.0 * 0.5 / double{kPi} * sum;  // Le = 10, rho = 0.5
     for (ImageChannel& c : image.channels) c.data[i] = inside ? float(radiance) : 0.0f;
   }
   return image;
@@ -211,7 +211,7 @@ TEST(SameExpectation, PathsAndPhotonsInTheCornellBox) {
   }
 }
 
-// The green wall of another material, and the red one: light goes both ways over each model.
+// The green and the red wall get two models each time; light is scattered in both directions.
 TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
   const auto ggx = [](float alpha) { return Roughness(Scalar(alpha), Roughness::Alpha::Same); };
   ConductorModel rough, sharp;
@@ -250,8 +250,8 @@ TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
   }
 }
 
-// Walls whose normals stand askew, so that eyes bend them in every corner (LobeFrame): photons
-// leave as they are seen, be it from below the shading normal's horizon.
+// The walls' shading normals are tilted, so that views from every corner bend them (LobeFrame).
+// Photons leave as radiance is seen, even from below the shading normal's horizon.
 TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {16, 16};
@@ -275,8 +275,8 @@ TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
                               photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}));
 }
 
-// The two estimators of direct light: one lamp picked and one ray, and each lamp with rays besides.
-TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
+// Two estimators of direct light: one light and one ray, and all lights with BSDF rays besides.
+TEST(SameExpectation, DirectLightOfPathsAndOfVplsFromSeveralLights) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {28, 16};
   scene.lights.assign(2, LightSpec{});
@@ -290,12 +290,12 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsByLampSkyAndPointLight) {
                                                                  {"compensate", "near-field"},
                                                                  {"near-field-rays", "2"}};
   EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, byVpls)));
-  // Without VPLs all light is direct; its own camera samples, by noise and cost or three.
+  // Without VPLs all light is direct. Its samples follow noise and cost, or are three.
   for (const char* count : {"0", "3"}) {
     const Given own{{"spp", "8"}, {"compensate", "none"}, {"direct-samples", count}};
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;
   }
-  // And where no other is shown.
+  // The same holds where only direct light is shown.
   const Given few{{"spp", "4"}, {"only", "direct"}, {"fireflies", "keep"}};
   for (const Given& more : {Given{}, Given{{"allocate", "off"}}, Given{{"direct-samples", "3"}}}) {
     EXPECT_TRUE(sameExpectation(paths(world, byPaths), [&](uint64_t seed) {
@@ -310,7 +310,7 @@ MaterialModel sharpMetal() {
   return metal;
 }
 
-// Plastic with sharp gloss, and a wall of metal with nothing else.
+// Plastic with a near-specular coat, and a wall of near-specular metal alone.
 Scene coatedCornellBox() {
   Scene scene = sceneOf("cornell/scene.toml", 16, 12);
   for (Material& m : scene.materials) {
@@ -324,8 +324,8 @@ Scene coatedCornellBox() {
   return scene;
 }
 
-// Few VPLs leave gaps and short rays. What pixels found decides by the marginalCost how many rays
-// follow, and which clusters are traced; what a ray has found lights others, below a coat, too.
+// Few VPLs leave uncovered areas and short rays. Allocated samples and rays reused by other
+// receivers, also below a coat, must not change the expected image.
 TEST(SameExpectation, SampleAllocationAndPathReuse) {
   const std::array scenes{sceneOf("cornell/scene.toml", 16, 12),
                           sceneOf("u-shape/scene.toml", 16, 12), coatedCornellBox()};
@@ -352,9 +352,9 @@ TEST(SameExpectation, SampleAllocationAndPathReuse) {
   }
 }
 
-// Sharp lobes look for lights by what tiles and surfaces have learned; the path tracer does not.
-// Most of the power is the sky's, of which the box sees little.
-TEST(SameExpectation, SharpLobesAndWhatIsLearned) {
+// Near-specular lobes sample lights from distributions learned by tiles and surfaces; the path
+// tracer does not. Most of the power is the sky's, of which the box sees little.
+TEST(SameExpectation, NearSpecularLobesAndLearnedLights) {
   Scene scene = coatedCornellBox();
   scene.lights.emplace_back().type = LightType::Environment;
   scene.lights.back().emission = Vec3{2.0f, 1.0f, 0.5f};

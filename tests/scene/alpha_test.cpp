@@ -7,7 +7,7 @@ namespace {
 
 using Alpha = SceneFiles;
 
-// Whether a ray along -z at x meets the square; all queries must agree.
+// Whether a ray along -z at x hits the square; all queries must agree.
 bool blocks(const RayScene& rays, float x) {
   SurfacePoint hit;
   const Vec3 from{x, 0.1f, 3}, to{x, 0.1f, -3}, direction{0, 0, -1};
@@ -22,7 +22,7 @@ bool blocks(const RayScene& rays, float x) {
   return closest;
 }
 
-// Left half cut away. Textures repeat, so the outermost texels blend with the other side.
+// The left half is cut away. Textures repeat, so the outermost texels blend with the other side.
 void expectLeftHalfOpen(const Scene& scene) {
   EXPECT_EQ(scene.maskedBegin, 0u);
   const RayScene rays(scene);
@@ -66,7 +66,7 @@ TEST_F(Alpha, WhatLiesBehindAHoleIsSeen) {
   EXPECT_TRUE(rays.occluded({0.5f, 0, 3}, {0.5f, 0, -0.5f}));
 }
 
-// Enough of them, and near enough to each other, that they are traced as packets.
+// The segments are numerous and close enough to be traced as packets.
 TEST_F(Alpha, PacketsMeetTheSameHolesAsSingleRays) {
   write("mask.tga", tga(2, 1, {{255, 255, 255, 0}, {0, 0, 0, 255}}));
   const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\nmap_d mask.tga\n");

@@ -1,4 +1,4 @@
-// Lambert, Phong and mirror: energy, reciprocity, and sample(), pdf() and eval() that agree.
+// Lambert, Phong and mirror: energy, reciprocity, and consistency of sample(), pdf() and eval().
 #include "transport/bsdf.h"
 
 #include "tests/scene/plain_scene.h"
@@ -41,7 +41,7 @@ const std::vector<Vec3>& views() {
 }
 constexpr LobeGroup kGroups[] = {LobeGroup::Rough, LobeGroup::Specular};
 
-// Integral of f over the hemisphere about +z by the midpoint rule in (cosine, azimuth).
+// Integrates f over the hemisphere about +z by the midpoint rule in (cosine, azimuth).
 Vec3 overHemisphere(const std::function<Vec3(Vec3)>& f) {
   constexpr int kRows = 400, kColumns = 800;
   double sum[3] = {0, 0, 0};
@@ -99,7 +99,7 @@ TEST(Bsdf, NeverReflectsMoreThanArrives) {
       EXPECT_LE(maxComponent(bsdf.roughAlbedo()), 1.0f) << c.name;
       EXPECT_LE(bsdf.reflectance(), 1.0f) << c.name;
       EXPECT_GE(bsdf.reflectance(), maxComponent(sum) * 0.99f)
-          << c.name;  // else roulette would brighten
+          << c.name;  // else Russian roulette would brighten
     }
   }
 }
@@ -120,7 +120,7 @@ TEST(Bsdf, SampledWeightsMeanTheIntegral) {
   }
 }
 
-// The density over the upper hemisphere holds exactly the samples that are not lost below it.
+// Above the surface, the density integrates to the share of samples that are not lost below it.
 TEST(Bsdf, DensityHoldsTheShareOfSamplesThatLeave) {
   for (const Case& c : materials()) {
     const Scene scene = sceneOf(c.material);
@@ -196,8 +196,8 @@ TEST(Bsdf, PhotonsAndRadianceReflectAlikeOnFlatNormals) {
   }
 }
 
-// Veach 1997, section 5.3: with a shading normal, photons are scaled by the ratio of the cosines at
-// the side they come from, and leave by the geometric cosine.
+// With a shading normal, photons are scaled by the ratio of cosines on the incident side and leave
+// by the geometric cosine (Veach 1997, section 5.3).
 TEST(Bsdf, ShadingNormalsScalePhotons) {
   const Scene scene = sceneOf(lambert(Vec3(0.6f)));
   const SurfacePoint p = pointSeenFrom({0.6f, 0, 0.8f}, {0, 0, 1}, {0.3f, 0, 1});
@@ -231,7 +231,7 @@ TEST(Bsdf, MirrorReturnsTheOneDirection) {
   }
 }
 
-TEST(Bsdf, ExponentPartsRoughFromChain) {
+TEST(Bsdf, ExponentSeparatesRoughFromSpecular) {
   for (const float exponent : {kNearSpecularExponent, kNearSpecularExponent + 1.0f}) {
     const Scene scene = sceneOf(phong(Vec3(0.2f), Vec3(0.5f), exponent));
     const SurfacePoint p = pointSeenFrom({0, 0, 1});

@@ -1,4 +1,4 @@
-// What a loader of any format may count on: SceneBuilder, and the choice of a loader.
+// Guarantees of SceneBuilder to loaders of any format, and the choice of a loader.
 #include <algorithm>
 
 #include "core/random.h"
@@ -44,7 +44,7 @@ TEST_F(Builder, MakesWhatAFileSays) {
   paint.name = "paint";
   paint.phong().diffuse = Vec3(.5f);
   paint.phong().diffuseMap = builder.addTexture({.file = at("square.tga")});
-  paint.phong().exponent = 1.0f;  // of an MTL without Ns
+  paint.phong().exponent = 1.0f;  // default of an MTL without Ns
   const uint32_t number = builder.addMaterial(paint);
   const std::vector<double> positions{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   const std::vector<double> uvs{0, 0, 1, 0, 1, 1, 0, 1};
@@ -102,7 +102,7 @@ TEST_F(Builder, LeavesOutWhatHasNoPlace) {
   for (const auto& c : {std::array<uint32_t, 3>{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 1, kNone}})
     mesh.triangles.push_back(corners(c, lamp));
   mesh.triangles.push_back(corners({0, 1, 99}, kNone));
-  EXPECT_EQ(builder.addMesh("m.obj", mesh), 0u);  // the one without a material is not there
+  EXPECT_EQ(builder.addMesh("m.obj", mesh), 0u);  // the triangle without a material is left out
   const Scene scene = builder.finish();
   EXPECT_EQ(scene.triangles.size(), 1u);
   EXPECT_EQ(scene.materials.size(), 1u);
@@ -126,7 +126,7 @@ TEST_F(Builder, NormalsAreUnitVectorsOrNone) {
 
 TEST_F(Builder, GreyIsOneMaterialOfItsOwn) {
   SceneBuilder builder("s");
-  builder.addMaterial(lampOf(1));  // without a name too
+  builder.addMaterial(lampOf(1));  // unnamed, too
   EXPECT_EQ(builder.addMesh("a", {kCorners, {}, {}, {corners({0, 1, 2}, kNone)}}), 1u);
   EXPECT_EQ(builder.addMesh("b", {kCorners, {}, {}, {corners({0, 1, 2}, kNone)}}), 1u);
   const Scene scene = builder.finish();
@@ -196,7 +196,7 @@ TEST_F(Builder, FarScenesCountFromTheirOwnOriginWithCameraAndLights) {
   EXPECT_EQ(scene.corner(0, 0).x, x(1e6));
   EXPECT_EQ(scene.camera.position, Vec3(x(1e6), 1, 3));
   EXPECT_EQ(scene.lights.at(0).position, Vec3(x(1e6 + 1), 0.25f, 0));
-  EXPECT_EQ(scene.lights.at(1).position, Vec3());  // it has none
+  EXPECT_EQ(scene.lights.at(1).position, Vec3());  // a light without a position
 }
 
 TEST_F(Builder, WarningsAndFilesAreNamedOnce) {
@@ -223,7 +223,7 @@ TEST_F(Builder, NothingToSeeIsRefused) {
   }
 }
 
-TEST_F(Builder, SaysWhenNothingShines) {
+TEST_F(Builder, ReportsASceneWithoutLight) {
   const auto warned = [](const Scene& scene) {
     EXPECT_EQ(countContaining(scene.warnings, "s: has no light with power"),
               scene.hasLight() ? 0u : 1u)
@@ -289,7 +289,7 @@ TEST_F(Builder, TheExtensionSaysTheFormat) {
   EXPECT_NE(error("").find("is a folder"), std::string::npos);
 }
 
-// Unused vertices mean nothing; a stray face does not blow up what offsets of rays follow.
+// Unused vertices have no effect; a stray face does not enlarge ray offsets.
 TEST_F(Builder, StraysFarAwayLeaveTheBoundsAlone) {
   const std::string mtl = "newmtl paint\nKd 1 1 1\n";
   const Bounds bounds = loadMesh(kSquareObj, mtl).bounds;
@@ -305,15 +305,15 @@ TEST_F(Builder, StraysFarAwayLeaveTheBoundsAlone) {
     EXPECT_EQ(s.bounds.upper, bounds.upper) << x;
     EXPECT_EQ(countContaining(s.warnings, "away from the middle of the others"), 1u) << x;
   }
-  // The scene that lies far away from one face at the origin counts from where it is.
+  // A scene far away from a single face at the origin gets its own origin.
   const Scene origin =
       loadMesh(kSquareObj + "f 1 2 3\nv 1e6 0 0\nv 1e6 1e-3 0\nv 1e6 0 1e-3\nf -3 -2 -1\n", mtl,
                "translate = [-1e6, 0, 0]\n");
   EXPECT_NEAR(origin.origin[0], -1e6, 10.0);
 }
 
-// Faces that reach from the scene to far away are cut: what is far of them is stray, and offsets
-// follow what is near.
+// Faces that extend from the scene to far away are cut: their far parts are strays, and ray offsets
+// follow the near parts.
 TEST_F(Builder, FacesThatReachFarAwayAreCut) {
   const std::string mtl = "newmtl paint\nKd 1 1 1\n";
   std::string detail;
@@ -336,8 +336,8 @@ TEST_F(Builder, FacesThatReachFarAwayAreCut) {
     }
   }
   EXPECT_NEAR(area, 4.0 + 100 * 2.0 + 0.5 * std::hypot(1e4, 1e4 + 1), 2.0);
-  // The far part of a ground plane is seen from the side. A dome is no stray, but offsets do not
-  // follow it.
+  // The bounds leave out the far part of a ground plane. A dome is no stray, but it does not
+  // enlarge ray offsets.
   const Scene plane =
       loadMesh(kSquareObj + detail + "v -1e5 0 -1e5\nv 1e5 0 -1e5\nv 1e5 0 1e5\nf -3 -2 -1\n", mtl);
   EXPECT_LT(plane.bounds.diagonal(), 200.0f * size);
@@ -371,7 +371,7 @@ TEST_F(Builder, WhatLiesBeyondFloatsIsRefused) {
             std::string::npos);
 }
 
-// Which of two coplanar faces a ray meets is not left to rounding where one of them shines.
+// Where one of two coplanar faces emits, rays hit that face; the choice is not left to rounding.
 TEST_F(Builder, LampsInTheirWallsPlaneAreInFront) {
   write("m.mtl", "newmtl wall\nKd .5 .5 .5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
   const std::string wall = "usemtl wall\nf 1 2 3 4\n", lamp = "usemtl lamp\nf 5 6 7 8\n";

@@ -1,10 +1,10 @@
-// Environment images: where each pixel lies in the sky, and that sampling and looking agree.
+// Environment images: the direction of each pixel, and consistency of sampling and lookup.
 #include "tests/scene/plain_scene.h"
 
 namespace bnvpl {
 namespace {
 
-// A sky of noise over three decades with a dark half, so that importance matters.
+// A sky of noise over three decades with a dark quarter, so that importance sampling matters.
 EnvironmentImage noisySky(uint32_t width, uint32_t height) {
   EnvironmentImage e;
   e.width = width;
@@ -41,7 +41,7 @@ struct Sky {
   }
 };
 
-// One bright pixel at column x, row y of an 8 x 4 image.
+// A single bright pixel at column x, row y of an 8 x 4 image.
 EnvironmentImage onePixel(uint32_t x, uint32_t y) {
   EnvironmentImage e;
   e.width = 8;
@@ -57,7 +57,7 @@ Vec3 towards(const Sky& sky) {
 }
 
 TEST(Environment, ImageCentreLooksAlongMinusZAndTopRowIsUp) {
-  // Columns 3 and 4 meet at u = 0.5; rows 1 and 2 at the horizon.
+  // Columns 3 and 4 meet at u = 0.5; rows 1 and 2 meet at the horizon.
   EXPECT_LT(towards(Sky(onePixel(3, 1))).z, -0.8f);
   EXPECT_LT(towards(Sky(onePixel(4, 1))).z, -0.8f);
   EXPECT_LT(towards(Sky(onePixel(3, 1))).x, 0.0f);  // left half of the image lies to the left of -z
@@ -68,7 +68,7 @@ TEST(Environment, ImageCentreLooksAlongMinusZAndTopRowIsUp) {
   EXPECT_EQ(Sky(onePixel(5, 1)).look({1, 0.2f, -0.5f}), Vec3(1, 2, 3));
 }
 
-// rotate_deg turns the sky as the rotate_deg of a mesh about y turns a mesh: z towards x.
+// rotate_deg turns the sky like it turns a mesh about y: z towards x.
 TEST(Environment, RotatesAsMeshesDo) {
   const Vec3 before = towards(Sky(onePixel(4, 1)));
   const Vec3 after = towards(Sky(onePixel(4, 1), 90));
@@ -89,7 +89,7 @@ TEST(Environment, SampleIsWhatARayFinds) {
       EXPECT_NEAR(length(s.wi), 1.0f, 1e-5f);
       float pdf = 0.0f;
       const Vec3 radiance = sky.look(s.wi, &pdf);
-      // At the edge of a texel, rounding may find its neighbour.
+      // At the edge of a texel, rounding may return its neighbour.
       const bool same = std::fabs(pdf - s.pdf) < 1e-3f * s.pdf &&
                         length(radiance - s.radianceOverPdf * s.pdf) < 1e-3f * length(radiance);
       differ += same ? 0 : 1;
@@ -98,7 +98,7 @@ TEST(Environment, SampleIsWhatARayFinds) {
   }
 }
 
-// Sums over the sphere on a fine grid of latitudes (even in cosine) and longitudes.
+// Sums over the sphere on a fine grid that is uniform in cosine and longitude.
 TEST(Environment, DensityIntegratesToOneAndSamplesToTheImage) {
   const Sky sky(noisySky(16, 8), 30.0f);
   constexpr int kRows = 800, kColumns = 1600;
@@ -132,7 +132,7 @@ TEST(Environment, PhotonsCarryThePowerOfTheImage) {
   const Sky sky(noisySky(32, 16), 45.0f, 0.5f);
   const Vec3 flux = meanOver(400000, [&](Rng& rng) { return sky.lights->emit(0, rng).flux; });
   expectClose(flux, sky.lights->power(0), 0.02f);
-  // And the floor gets what direct light gives it: 24 m2 that nothing shades.
+  // The floor receives the same as from direct light: 24 m2 without occlusion.
   const Vec3 arriving = meanOver(400000, [&](Rng& rng) {
     const PhotonStart s = sky.lights->emit(0, rng);
     SurfacePoint hit;

@@ -1,4 +1,4 @@
-// RayScene for Processor::Any: its own hits in Embree's traversal.
+// RayScene for Processor::Any computes its own hits in Embree's traversal.
 #include "core/random.h"
 #include "core/sampling.h"
 #include "scene/scene_builder.h"
@@ -11,8 +11,8 @@ namespace {
 
 using ExactRays = SceneFiles;
 
-// Masks, slivers and triangles in one place: both meet the same, but for last digits.
-TEST_F(ExactRays, MeetWhatEmbreeMeets) {
+// Masks, slivers and coincident triangles: both give the same hits up to the last digits.
+TEST_F(ExactRays, HitWhatEmbreeHits) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
   ASSERT_LT(scene.maskedBegin, scene.worldEnd());
   const RayScene embree(scene), exact(scene, Processor::Any);
@@ -32,7 +32,7 @@ TEST_F(ExactRays, MeetWhatEmbreeMeets) {
     differ += met != exact.closestHit(from, to, b);
     if (!met || b.triangle == kNone) continue;
     ++found;
-    other += a.triangle != b.triangle;  // of those that meet, or lie in one place
+    other += a.triangle != b.triangle;  // triangles that meet or coincide
     EXPECT_NEAR(a.distance, b.distance, 1e-5f * size) << i;
     EXPECT_LT(length(a.position - b.position), 1e-5f * size) << i;
   }
@@ -45,8 +45,8 @@ TEST_F(ExactRays, MeetWhatEmbreeMeets) {
     EXPECT_EQ(hidden[i] != 0, exact.occluded(segments[i].from, segments[i].to)) << i;
 }
 
-// In whatever order the traversal comes by them.
-TEST_F(ExactRays, OfTrianglesAtOneDistanceTheFirstIsMet) {
+// The result does not depend on the order of the traversal.
+TEST_F(ExactRays, TheFirstOfTrianglesAtOneDistanceIsHit) {
   const Scene scene =
       loadMesh(kSquareObj + "f 3 4 1 2\nf 2 3 4 1\nf 4 1 2 3\n", "newmtl paint\nKd 0.5 0.5 0.5\n");
   const RayScene rays(scene, Processor::Any);
@@ -62,7 +62,7 @@ TEST_F(ExactRays, OfTrianglesAtOneDistanceTheFirstIsMet) {
   }
 }
 
-// A shadow ray reaches Embree longer than it is; what lies beyond its end hides nothing.
+// A shadow ray is passed to Embree longer than it is; nothing beyond its end occludes it.
 TEST_F(ExactRays, EndWhereTheyEnd) {
   const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 0.5 0.5 0.5\n");
   const RayScene rays(scene, Processor::Any);

@@ -1,4 +1,4 @@
-// Expressions over textures: what materials look up.
+// Expressions over textures, which materials evaluate.
 #include "scene/textures/expression.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Expression, ImagesGiveChannels) {
   expectNear(of(Channel::Mean), Vec3(0.4f));
 }
 
-// As Texture::lookup, whose pixels are those of MTL's maps.
+// The lookups equal Texture::lookup, whose pixels are those of MTL's maps.
 TEST(Expression, RepeatedImagesAreTextures) {
   Expressions e;
   const uint32_t image = e.add(imageExpression(0));
@@ -64,10 +64,10 @@ TEST(Expression, WrapsAsAsked) {
   EXPECT_NEAR(at(Wrap::Clamp, 1.25f), 0.0f, 1e-5f);
   EXPECT_NEAR(at(Wrap::Clamp, -5.0f), 1.0f, 1e-5f);
   EXPECT_NEAR(at(Wrap::Black, -0.75f), 0.0f, 1e-5f);
-  EXPECT_NEAR(at(Wrap::Black, 0.0f), 0.5f, 1e-5f);  // half way to nothing
+  EXPECT_NEAR(at(Wrap::Black, 0.0f), 0.5f, 1e-5f);  // half way to black
 }
 
-// pbrt: scaled, then inverted, then not below 0.
+// pbrt scales, then inverts, then clamps negative values to 0.
 TEST(Expression, ScalesThenInverts) {
   Expressions e;
   TextureExpression image = imageExpression(0);
@@ -79,7 +79,7 @@ TEST(Expression, ScalesThenInverts) {
 TEST(Expression, TransformsCoordinates) {
   Expressions e;
   TextureExpression image = imageExpression(0, Channel::Red);
-  image.uv = {0, 1, 0, 1, 0, 0};  // turned
+  image.uv = {0, 1, 0, 1, 0, 0};  // rotated
   const uint32_t turned = e.add(image);
   EXPECT_NEAR(e.at(turned, 0.5f, 0.25f).x, 1.0f, 1e-5f);
   EXPECT_NEAR(e.at(turned, 0.5f, 0.75f).x, 0.0f, 1e-5f);
@@ -108,7 +108,7 @@ TEST(Expression, TakesAnyCoordinate) {
     EXPECT_TRUE(isFinite(e.at(board, u)) && isFinite(e.at(image, u))) << u;
 }
 
-// Each level asks for the one below twice: 2^40 lookups, and as many mixes.
+// Each level evaluates the one below twice: 2^40 lookups, and as many mixes.
 TEST(Expression, BuilderRefusesWhatTakesForEver) {
   SceneBuilder builder("a.toml");
   uint32_t e = builder.addExpression(constantExpression(Vec3(1))), m = builder.addMaterial({});

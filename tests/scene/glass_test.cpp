@@ -1,4 +1,4 @@
-// Glass against Fresnel's and Snell's laws, written here by angles instead of cosines.
+// Glass against the laws of Fresnel and Snell, written here with angles instead of cosines.
 #include "tests/scene/plain_scene.h"
 
 namespace bnvpl {
@@ -69,8 +69,8 @@ TEST(Glass, WeightsOfPhotonsSumToOne) {
   }
 }
 
-// What is squeezed on the way in is spread again on the way out.
-TEST(Glass, RadianceIsSqueezedInsideAndRestoredOutside) {
+// Radiance is scaled by 1/eta^2 on one way through the surface and back on the other.
+TEST(Glass, RadianceIsScaledByEtaSquared) {
   const Scene scene = sceneOf(glass(1.5f));
   const SurfacePoint outside = pointSeenFrom(at(30)),
                      inside = pointSeenFrom(at(10), {0, 0, 1}, {0, 0, 1}, false);
@@ -78,7 +78,7 @@ TEST(Glass, RadianceIsSqueezedInsideAndRestoredOutside) {
               out = split(Bsdf(scene, inside), Transport::Radiance);
   expectClose(in.weightUp, Vec3(1), 1e-6f);
   expectClose(in.weightDown * out.weightDown, Vec3(1), 1e-5f);
-  // A camera path that enters from air: radiance there is that inside over eta squared.
+  // A camera path enters from air, where radiance is the inside radiance over eta squared.
   expectClose(in.weightDown, Vec3(1.0f / 2.25f), 1e-5f);
   EXPECT_NEAR(out.down.x, -inside.wo.x * 1.5f, 1e-5f);
 }
@@ -92,7 +92,7 @@ TEST(Glass, ReflectsTotallyBeyondTheCriticalAngle) {
   }
 }
 
-TEST(Glass, IsChainOnly) {
+TEST(Glass, IsSpecularOnly) {
   const Scene scene = sceneOf(glass(1.5f));
   const SurfacePoint p = pointSeenFrom(at(20));
   const Bsdf bsdf(scene, p);

@@ -1,4 +1,4 @@
-// A room that Blender's own exporter wrote (blender/make_gltf.py).
+// A room written by Blender's own exporter (blender/make_gltf.py).
 #include <set>
 
 #include "core/sampling.h"
@@ -27,7 +27,7 @@ TEST(GltfByBlender, HasItsCameras) {
   }
 }
 
-// 40 W in Blender are 40 / (4 pi) W/sr; a panel of strength 10 shines to one side.
+// 40 W in Blender are 40 / (4 pi) W/sr; a panel of strength 10 emits on one side.
 TEST(GltfByBlender, LampsHaveTheirWatts) {
   const Scene s = room();
   ASSERT_EQ(s.lights.size(), 1u);

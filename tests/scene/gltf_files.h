@@ -1,4 +1,4 @@
-// What the tests of glTF share: buffers as data URIs, small files around a triangle.
+// Shared by the glTF tests: buffers as data URIs, and small files around a triangle.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::string bytesOf(const std::vector<T>& values) {
 }
 inline std::string floats(const std::vector<float>& values) { return bytesOf(values); }
 
-// The members that positions must have, of triples of floats.
+// The "min" and "max" members that an accessor of positions must have.
 inline std::string bounds(const std::string& bytes) {
   std::vector<float> v(bytes.size() / sizeof(float));
   std::memcpy(v.data(), bytes.data(), v.size() * sizeof(float));
@@ -44,7 +44,7 @@ inline std::string bounds(const std::string& bytes) {
     float low = INFINITY, high = -INFINITY;
     for (size_t i = axis; i < v.size(); i += 3)
       low = std::min(low, v[i]), high = std::max(high, v[i]);
-    const auto text = [](float x) {  // the shortest that reads back
+    const auto text = [](float x) {  // the shortest text that reads back equal
       char digits[32];
       return std::string(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
     };
@@ -54,10 +54,10 @@ inline std::string bounds(const std::string& bytes) {
   return ",\"min\":[" + least + "],\"max\":[" + most + "]";
 }
 
-// A glTF in the making: parts by their JSON, bytes by buffer views of one buffer.
+// Builds a glTF file: parts from their JSON, bytes in buffer views of one buffer.
 class Gltf {
  public:
-  // The number of the new part of an array such as "nodes".
+  // Appends a part to an array such as "nodes" and returns its index.
   size_t add(const std::string& array, const std::string& json) {
     std::vector<std::string>& list = listOf(array);
     list.push_back(json);
@@ -83,13 +83,13 @@ class Gltf {
   size_t addMesh(const std::string& primitives) {
     return add("meshes", "{\"primitives\":[" + primitives + "]}");
   }
-  // As a root of scene 0.
+  // Adds the node as a root of scene 0.
   void show(const std::string& node) {
     const size_t number = add("nodes", node);
     roots += (roots.empty() ? "" : ",") + std::to_string(number);
   }
 
-  // With the bytes as a data URI; `uri` replaces it.
+  // The file with its bytes as a data URI, or with `uri` in its place.
   std::string text(const std::string& uri = "") const {
     return json("{\"byteLength\":" + std::to_string(bytes_.size()) + ",\"uri\":\"" +
                 (uri.empty() ? "data:application/octet-stream;base64," + base64(bytes_) : uri) +
@@ -105,8 +105,8 @@ class Gltf {
   const std::string& bytes() const { return bytes_; }
 
   std::string more;        // members of the root: ",\"extensionsUsed\":[...]"
-  std::string roots;       // of scene 0
-  bool withScenes = true;  // else the file has none, or those in `more`
+  std::string roots;       // indices of the root nodes of scene 0
+  bool withScenes = true;  // else the file has no scenes, or those in `more`
 
  private:
   // The list of all extensions that the text names.
@@ -150,18 +150,18 @@ class Gltf {
   std::vector<std::pair<std::string, std::vector<std::string>>> arrays_;
 };
 
-// A right angle at the origin in the plane z = 0 that faces +z, legs of length 1.
+// A right triangle in the plane z = 0 that faces +z, with legs of length 1 that meet at the origin.
 inline const std::vector<float> kCorner{0, 0, 0, 1, 0, 0, 0, 1, 0};
 
 inline const std::string kCornerBounds = bounds(floats(kCorner));
 
-// With one accessor, 0: the positions of kCorner.
+// A file with one accessor, 0: the positions of kCorner.
 inline Gltf cornerGltf() {
   Gltf g;
   g.addAccessor(floats(kCorner), 3, "VEC3");
   return g;
 }
-// And mesh 0, a triangle, shown by node 0. `members` are the primitive's.
+// A file whose node 0 shows mesh 0, a triangle. `members` belong to its primitive.
 inline Gltf triangleGltf(const std::string& members = "") {
   Gltf g = cornerGltf();
   g.addMesh("{\"attributes\":{\"POSITION\":0}" + members + "}");

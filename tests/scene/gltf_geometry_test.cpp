@@ -48,7 +48,7 @@ TEST_F(GltfGeometry, ReadsIndicesOfAllTypesAndStrides) {
     g.show("{\"mesh\":0}");
     expectCorners(load(g), 0, {kAsWritten[2], kAsWritten[1], kAsWritten[0]});
   }
-  Gltf g;  // positions that lie 16 bytes apart, behind an offset
+  Gltf g;  // positions are 16 bytes apart and start at an offset
   const size_t view = g.addView(floats({9, 0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0}), ",\"byteStride\":16");
   g.add("accessors", "{\"bufferView\":" + std::to_string(view) +
                          ",\"byteOffset\":4,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" +
@@ -103,7 +103,7 @@ TEST_F(GltfGeometry, ReadsNormalsAndTurnsTextureCoordinatesOver) {
   EXPECT_EQ(s.uvs.at(t.uv[0])[1], 1.0f);
   EXPECT_EQ(s.uvs.at(t.uv[1])[0], 1.0f);
   EXPECT_EQ(s.uvs.at(t.uv[1])[1], 0.75f);
-  // Without normals a face is flat, as the specification wants it.
+  // Without normals a face is flat, as the specification requires.
   EXPECT_EQ(load(triangleGltf()).triangles.at(0).normal, kNoCorners);
 }
 
@@ -139,7 +139,7 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
   g.show("{\"mesh\":0}");
   expectCorners(load(g), 0, kAsWritten);
 
-  Gltf zeros;  // over nothing: 0 but for what is sparse
+  Gltf zeros;  // no base values: 0 except for the sparse ones
   zeros.addView(bytesOf(std::vector<uint8_t>{1, 2}));
   zeros.addView(floats({1, 0, 0, 0, 1, 0}));
   zeros.add(
@@ -155,7 +155,7 @@ TEST_F(GltfGeometry, PutsSparseValuesInPlace) {
 TEST_F(GltfGeometry, PlacesNodesUnderTheirParents) {
   Gltf g = cornerGltf();
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
-  // A quarter turn about z, then twice as large, then moved; the parent's matrix moves along x.
+  // The child is rotated by a quarter turn about z, doubled and moved; its parent moves it along x.
   const size_t child = g.add("nodes",
                              "{\"mesh\":0,\"translation\":[0,0,3],\"scale\":[2,2,2],"
                              "\"rotation\":[0,0,0.70710678,0.70710678]}");
@@ -206,7 +206,7 @@ TEST_F(GltfGeometry, ReadsTheDefaultSceneAndSaysSo) {
 }
 
 // The joint has moved by (0, 0, 2) since the mesh was bound to it at (0, 0, 1); half of the last
-// vertex stays with the other joint. The transform of the mesh's own node has no meaning.
+// vertex stays with the other joint. The transform of the mesh's own node is ignored.
 TEST_F(GltfGeometry, JointsPlaceASkinnedMesh) {
   Gltf g = cornerGltf();
   const size_t joints = g.addAccessor(

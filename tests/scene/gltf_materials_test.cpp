@@ -3,13 +3,13 @@
 namespace bnvpl {
 namespace {
 
-// Red above blue, the lower right corner half transparent.
+// Red above blue; the lower right corner is half transparent.
 const std::string kImage =
     tga(2, 2, {{255, 0, 0, 255}, {255, 0, 0, 255}, {0, 0, 255, 255}, {0, 0, 255, 128}});
 
 class GltfMaterials : public GltfFiles {
  protected:
-  // A textured triangle of the material.
+  // A textured triangle with the material.
   static Gltf withMaterial(const std::string& material) {
     Gltf g = cornerGltf();
     const size_t uvs = g.addAccessor(floats({0, 0, 1, 0, 0, 1}), 3, "VEC2");
@@ -42,12 +42,12 @@ TEST_F(GltfMaterials, MetallicRoughnessHasItsFactorsAndTextures) {
   EXPECT_EQ(m.baseColour.value, Vec3(0.5f, 0.25f, 1));
   EXPECT_EQ(m.metallic.value, 0.75f);
   EXPECT_EQ(m.roughness.value, 0.5f);
-  EXPECT_EQ(s.textures.size(), 2u);  // colours are decoded, data are not
+  EXPECT_EQ(s.textures.size(), 2u);  // colours are decoded from sRGB, data are not
   ASSERT_LT(m.baseColour.texture, s.expressions.size());
   EXPECT_EQ(lookUp(s, m.baseColour.texture, 0.25f, 0.75f), Vec3(1, 0, 0));  // the upper row
   EXPECT_EQ(lookUp(s, m.baseColour.texture, 0.25f, 0.25f), Vec3(0, 0, 1));
-  EXPECT_NEAR(lookUp(s, m.metallic.texture, 0.25f, 0.25f).x, 1.0f, 1e-6f);   // blue
-  EXPECT_NEAR(lookUp(s, m.roughness.texture, 0.25f, 0.25f).x, 0.0f, 1e-6f);  // green
+  EXPECT_NEAR(lookUp(s, m.metallic.texture, 0.25f, 0.25f).x, 1.0f, 1e-6f);   // blue channel
+  EXPECT_NEAR(lookUp(s, m.roughness.texture, 0.25f, 0.25f).x, 0.0f, 1e-6f);  // green channel
   EXPECT_EQ(s.expressions[m.metallic.texture].wrapU, Wrap::Clamp);
   EXPECT_EQ(s.expressions[m.metallic.texture].wrapV, Wrap::Mirror);
   const Material& a = materialNamed(s, "a");
@@ -98,7 +98,7 @@ TEST_F(GltfMaterials, ExtensionsSetTheirParameters) {
   EXPECT_EQ(m.specularColour.value, Vec3(1, 0, 1));
 }
 
-// As rounding, Blender and other exporters write them.
+// Rounding, Blender and other exporters produce such numbers.
 TEST_F(GltfMaterials, NumbersOutOfRangeAreMovedIntoItWithAWarning) {
   const Scene s = load(withMaterial(
       "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1.2,0.4,1.0000001192,1],"
@@ -122,7 +122,7 @@ TEST_F(GltfMaterials, NumbersOutOfRangeAreMovedIntoItWithAWarning) {
     EXPECT_EQ(countContaining(s.warnings, name), 1u) << name << joined(s.warnings);
 }
 
-TEST_F(GltfMaterials, UnlitShines) {
+TEST_F(GltfMaterials, UnlitEmits) {
   const Scene s = load(withMaterial(
       "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0,1]},\"extensions\":{"
       "\"KHR_materials_unlit\":{}}}"));
@@ -168,7 +168,7 @@ TEST_F(GltfMaterials, TextureTransformsMoveTurnAndScale) {
   EXPECT_EQ(colourAt("{}", 0.25f, 0.25f), red);
   EXPECT_EQ(colourAt("{\"offset\":[0,0.5]}", 0.25f, 0.25f), blue);
   EXPECT_EQ(colourAt("{\"scale\":[1,3]}", 0.25f, 0.25f), blue);
-  // A quarter turn: (u, v) looks up (v, -u), so that the file's left is the image's top.
+  // A quarter turn: (u, v) looks up (v, -u), so the file's left is the image's top.
   EXPECT_EQ(colourAt("{\"rotation\":1.5707963267948966}", 0.25f, 0.25f), blue);
   EXPECT_EQ(colourAt("{\"rotation\":1.5707963267948966}", 0.75f, 0.25f), red);
 }

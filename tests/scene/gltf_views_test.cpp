@@ -14,7 +14,7 @@ Gltf twoCameras() {
         "\"znear\":0.1}}");
   g.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.5,\"znear\":0.1}}");
   g.show("{\"name\":\"Door\",\"camera\":0,\"translation\":[0,0,5],\"scale\":[3,3,3]}");
-  // Half a turn about y: looks along +z.
+  // Half a turn about y makes the camera look along +z.
   g.show("{\"name\":\"Window\",\"camera\":1,\"translation\":[0,0,-5],\"rotation\":[0,1,0,0]}");
   return g;
 }

@@ -1,5 +1,4 @@
-// The content hash says "another scene" for everything that light transport depends on, and for
-// nothing else.
+// The content hash changes with everything that light transport depends on, and with nothing else.
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {

@@ -1,4 +1,4 @@
-// Files that are made to do harm: what fuzzing found, and what it looks for. docs/security.md.
+// Malicious files: those that fuzzing found, and those that it looks for. See docs/security.md.
 #include <sys/stat.h>
 
 #include "formats/jpeg_guard.h"
@@ -15,7 +15,7 @@ class Hostile : public SceneFiles {
     const std::string error = loadError(toml);
     EXPECT_NE(error.find(part), std::string::npos) << error;
   }
-  // A scene of the square, with more lines.
+  // A scene with the square and `more` lines.
   std::string scene(const std::string& more) const {
     write("square.obj", kSquareObj);
     write("square.mtl", "newmtl paint\nKd 0.5 0.5 0.5\n");
@@ -57,7 +57,7 @@ TEST_F(Hostile, DeepKeysAreRefused) {
 }
 
 TEST_F(Hostile, WhatIsNoRegularFileIsRefusedAndNeverOpened) {
-  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);  // opening it would wait for ever
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);  // opening it would block for ever
   const std::string sky = "[[light]]\ntype = \"environment\"\nimage = ";
   for (const std::string name : {"pipe", ".", "/dev/zero"}) {
     expectError(scene(sky + "\"" + name + "\"\n"), "no such image");
@@ -80,7 +80,7 @@ TEST_F(Hostile, PolygonsThatTakeForEverToCutAreRefused) {
       << error;
 }
 
-// tinyobj keeps lines, points and tags of every shape again for each later one.
+// tinyobj stores lines, points and tags of every shape again for each later shape.
 TEST_F(Hostile, WhatIsNoMeshIsLeftOut) {
   const std::string waste = "l 1 2\np 3\nt a 9000/9000/9000\nvw 0 1e99 nan\nusemtl x\nusemtl y\n";
   const Scene s = loadMesh(repeated("l 1 0\rp 0\r\n", 3) + kSquareObj + repeated(waste, 2'000),
@@ -95,7 +95,7 @@ TEST_F(Hostile, ALibraryIsReadOnce) {
   for (size_t i = 0; i < 100; ++i) obj += "mtllib " + repeated("./", i) + "square.mtl\n";
   const Scene s = loadMesh(obj + kSquareObj, "newmtl paint\n" + repeated("newmtl other\n", 1'000));
   EXPECT_EQ(s.triangles.size(), 2u);
-  EXPECT_EQ(s.files.size(), 3u);  // scene, mesh, and the library that has a hundred names
+  EXPECT_EQ(s.files.size(), 3u);  // scene, mesh, and one library under a hundred names
 }
 
 TEST_F(Hostile, EndlessScalesOfTexturesAreHarmless) {
@@ -140,17 +140,17 @@ TEST_F(Hostile, JpegsThatWriteOutsideOrTakeForEverAreKnown) {
   EXPECT_FALSE(isHarmlessJpeg(jpeg(16 * 255, 0)));
   EXPECT_FALSE(isHarmlessJpeg(jpeg(100, 101)));
   EXPECT_FALSE(isHarmlessJpeg(jpeg(100, 1) + jpeg(257, 0).substr(2)));  // between scans
-  // Text of a comment is passed over; a table behind it is not.
+  // Text in a comment is skipped; a table behind it is not.
   const std::string comment("\xff\xd8\xff\xfe\0\x20", 6), table = jpeg(257, 0).substr(2, 30);
   EXPECT_TRUE(isHarmlessJpeg(comment + table));
   EXPECT_FALSE(isHarmlessJpeg(comment + table + table));
-  EXPECT_TRUE(isHarmlessJpeg(table));  // no JPEG
+  EXPECT_TRUE(isHarmlessJpeg(table));  // not a JPEG
   EXPECT_TRUE(isHarmlessJpeg(""));
 }
 
 TEST_F(Hostile, ChunksThatClaimTooMuchAreRefused) {
   std::string png("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x04\0\0\0\x04\x08\2\0\0\0", 29);
-  png += std::string("\0\0\0\0\x3f\xff\xff\xffIDAT", 12);  // 1 GiB follows, it says
+  png += std::string("\0\0\0\0\x3f\xff\xff\xffIDAT", 12);  // claims that 1 GiB follows
   write("t.png", png);
   EXPECT_THROW(loadTexture(at("t.png"), true, false), InputError);
 }

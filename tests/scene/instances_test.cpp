@@ -1,4 +1,4 @@
-// Instances against the same triangles, each stored where it stands.
+// Instances against copies of the same triangles, each stored at its place.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace bnvpl {
 namespace {
 
-// A tent of four faces with shading normals and texture coordinates, one of them cut away, and a
-// lamp on top.
+// A tent of four faces with shading normals and texture coordinates, one of them cut away, and an
+// area light on top.
 struct Tent {
   std::vector<double> positions{-1, 0,   -1, 1, 0, -1, 1, 0, 1, -1, 0, 1,
                                 0,  1.5, 0,  0, 2, 0,  1, 2, 0, 0,  2, 1};
@@ -104,9 +104,9 @@ void expectSameHits(const Scene& one, const Scene& other, float tolerance,
   EXPECT_GT(occluded, 2000);
 }
 
-TEST(Instances, AreMetAsIfEachWereStored) { expectSameHits(tents(true), tents(false), 1e-4f); }
+TEST(Instances, AreHitAsIfEachWereStored) { expectSameHits(tents(true), tents(false), 1e-4f); }
 
-TEST(Instances, AreMetForAnyProcessorToo) {
+TEST(Instances, AreHitForAnyProcessorToo) {
   expectSameHits(tents(true), tents(false), 1e-4f, Processor::Any);
 }
 
@@ -128,7 +128,7 @@ TEST(Instances, AreStoredOnce) {
   }
 }
 
-TEST(Instances, ShineWhereTheyStand) {
+TEST(Instances, EmitWhereTheyStand) {
   const Scene shared = tents(true), flat = tents(false);
   const RayScene a(shared), b(flat);
   const LightSet lamps(a), same(b);

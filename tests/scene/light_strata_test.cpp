@@ -1,4 +1,4 @@
-// Strata of lights: that each point of a light has one, and densities are those of the drawing.
+// Strata of lights: each point of a light has one, and densities match the sampling.
 #include "transport/light_strata.h"
 
 #include "tests/scene/lit_scene.h"
@@ -7,7 +7,7 @@
 namespace bnvpl {
 namespace {
 
-// A lamp of two triangles with unlike areas, a sky with an image, one without, a sun, and a bulb.
+// An area light of two unequal triangles, a sky with an image, one without, a sun, a point light.
 Scene manyLights() {
   Scene scene;
   addSquare(scene, {-2, 0, 3}, {4, 0, 0}, {0, 0, -6}, lambert(Vec3(0.5f)));
@@ -58,7 +58,7 @@ TEST(LightStrata, DrawnByTurnsDrawingAround) {
         ++areas;
       }
       EXPECT_NEAR(back.x, p.x, 2e-4f) << light;
-      EXPECT_NEAR(back.y, p.y, 2e-3f) << light;  // less is known near a corner of the triangle
+      EXPECT_NEAR(back.y, p.y, 2e-3f) << light;  // less accurate near a corner of the triangle
     }
   }
   EXPECT_EQ(areas, 200u);
@@ -101,10 +101,10 @@ TEST(LightStrata, ManyLightsShareThem) {
   EXPECT_LE(strata.size(), LightStrata::kMax);
   EXPECT_GT(strata.size(), LightStrata::kMax / 2);
   expectConsistent(strata, lit.lights);
-  EXPECT_EQ(strata.stratumOf({0, {0.5f, 0.5f}}), kNone);  // without power
+  EXPECT_EQ(strata.stratumOf({0, {0.5f, 0.5f}}), kNone);  // a light without power
 }
 
-// What is learned decides which strata are drawn, and probability() says how often.
+// The learned distribution decides which strata are drawn, and probability() gives their frequency.
 TEST(LightStrata, AreDrawnWithTheirProbabilities) {
   const Lit lit(manyLights());
   const LightStrata strata(lit.lights, 32);
@@ -127,9 +127,9 @@ TEST(LightStrata, AreDrawnWithTheirProbabilities) {
   }
 }
 
-// Next to where one share of the probability ends and another begins, rounding must not lead out of
-// the unit square: there, a sun has no directions.
-TEST(LightStrata, WhatIsLeftOfANumberStaysInTheUnitInterval) {
+// At a border between parts of the probability, rounding must not move the remaining number out of
+// the unit interval, where a sun has no directions.
+TEST(LightStrata, ReusedNumbersStayInTheUnitInterval) {
   const Lit lit(manyLights());
   const LightStrata strata(lit.lights);
   const std::vector<uint32_t> some{0, 2};

@@ -5,8 +5,7 @@
 namespace bnvpl {
 namespace {
 
-// Unoccluded irradiance at `at` (normal n) from one light by its direct samples, on a grid of (u,
-// v).
+// Unoccluded irradiance at `at` (normal n) from one light, by direct samples on a grid of (u, v).
 Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
   constexpr int kSide = 300;
   double sum[3] = {0, 0, 0};
@@ -30,8 +29,8 @@ Scene withLight(const LightSpec& spec) {
   return scene;
 }
 
-// Form factor from a surface element to a rectangle a x b parallel to it, one corner of which lies
-// at distance c along its normal (any table of view factors).
+// Form factor from a surface element to a parallel rectangle a x b, one corner of which lies at
+// distance c along the element's normal (any table of view factors).
 double cornerFormFactor(double a, double b, double c) {
   const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return (x / p * std::atan(y / p) + y / q * std::atan(x / q)) / (2.0 * double{kPi});
@@ -57,7 +56,7 @@ TEST(DirectLight, SquareLampMatchesTheFormFactor) {
               Vec3(10, 5, 1) * (kPi * float(aside)), 2e-3f);
 }
 
-// The left half of the lamp is dark, by a texture: samples, rays and photons agree on it.
+// A texture darkens the left half of the lamp; samples, rays and photons agree on it.
 TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
   Scene scene = lampScene(false);
   for (size_t i = 0; i < 4; ++i)
@@ -81,7 +80,7 @@ TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
   }
 }
 
-// One texel of 64 x 64 shines. `uv`: of the lamp's corners; the square is 2 x 1.
+// One texel of 64 x 64 emits. `uv` are the coordinates of the lamp's corners; the square is 2 x 1.
 Scene texelScene(const std::array<std::array<float, 2>, 4>& uv, Wrap wrap = Wrap::Repeat) {
   Scene scene = lampScene(false);
   scene.uvs.assign(uv.begin(), uv.end());
@@ -98,15 +97,15 @@ Scene texelScene(const std::array<std::array<float, 2>, 4>& uv, Wrap wrap = Wrap
   return scene;
 }
 
-// Whatever the texture coordinates are: the power is the integral of the texture, and points of the
-// lamp are drawn where it shines.
+// For any texture coordinates, the power is the integral of the texture, and sampled points of the
+// lamp lie where it emits.
 TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   using Uv = std::array<std::array<float, 2>, 4>;
   const double texel = 1.0 / 4096;
   struct TexelCase {
     Uv uv;
     Wrap wrap;
-    double share;  // of the lamp's area
+    double share;  // share of the lamp's area
   };
   for (const TexelCase& c :
        {TexelCase{Uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}, Wrap::Repeat, texel},
@@ -126,7 +125,7 @@ TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   }
 }
 
-// Half a texel of the lamp may lie outside: by many points.
+// Half a texel may lie outside the lamp, so the reference averages over many points.
 TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
   const std::array<std::array<float, 2>, 4> uv{
       {{0.6f, 0.68f}, {0.64f, 0.66f}, {0.65f, 0.7f}, {0.61f, 0.69f}}};
@@ -148,20 +147,20 @@ TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
   expectClose(lit.lights.power(0), Vec3(10, 5, 1) * (2.0f * kPi * float(sum)), 1e-3f);
 }
 
-TEST(DirectLight, CutAwayPartsOfALampDoNotShine) {
+TEST(DirectLight, CutAwayPartsOfALampDoNotEmit) {
   Scene scene = texelScene({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
   scene.materials[0].emissionTexture = kNone;
-  scene.materials[0].opacityTexture = 0;  // there from half a texel's light on
+  scene.materials[0].opacityTexture = 0;  // opaque where the texture is at least 1/2
   scene.maskedBegin = 0;
   const Lit lit(std::move(scene));
   const Vec3 power = lit.lights.power(0);
-  // Where (1 - |x|) (1 - |y|) >= 1/2: 4 (1 - ln 2) / 2 of a texel, or 0.614.
+  // The lamp remains where (1 - |x|) (1 - |y|) >= 1/2: 4 (1 - ln 2) / 2 of a texel, or 0.614.
   expectClose(power, Vec3(10, 5, 1) * (2.0f * kPi * 0.6137f / 4096), 0.1f);
   expectClose(irradiance(lit.lights, 0, {0.25f, 0, 0.18f}, {0, 1, 0}) / (kPi * 2.0f),
               Vec3(10, 5, 1) * (0.6137f / 4096 / (kPi * 2.25f)), 0.5f);
 }
 
-TEST(DirectLight, LampShinesOnItsSidesOnly) {
+TEST(DirectLight, LampEmitsOnItsSidesOnly) {
   const Lit one(lampScene(false)), two(lampScene(true));
   EXPECT_EQ(irradiance(one.lights, 0, {0, 3, 0}, {0, -1, 0}), Vec3());
   const Vec3 above = irradiance(two.lights, 0, {0, 3, 0}, {0, -1, 0});
@@ -183,7 +182,7 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
       const float u = rng.next(), v = rng.next();
       DirectSample s;
       if (!lit.lights.sampleDirect(0, from, u, v, s)) {
-        ASSERT_FALSE(lit.scene.textures.empty());  // a black point of a cell that is not
+        ASSERT_FALSE(lit.scene.textures.empty());  // a black point in a cell that is not black
         continue;
       }
       EXPECT_FALSE(lit.rays.occluded(from, s.target));
@@ -256,7 +255,7 @@ TEST(DirectLight, SpotFadesAcrossItsRim) {
     before = share;
   }
   DirectSample s;
-  EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind it
+  EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind the spot
 }
 
 TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
@@ -276,7 +275,7 @@ TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
   }
 }
 
-// A ray that looks along a sample of the sun sees what the sample says.
+// A ray along a sample of the sun sees the radiance and density of the sample.
 TEST(DirectLight, SunSampleIsWhatARayFinds) {
   for (const float diameterDeg : {0.1f, 0.53f, 5.0f, 60.0f}) {
     LightSpec spec;
@@ -288,7 +287,7 @@ TEST(DirectLight, SunSampleIsWhatARayFinds) {
     int seen = 0;
     for (int i = 0; i < 1000; ++i) {
       Rng rng(4, uint64_t(i));
-      const float u = 0.97f * rng.next(), v = rng.next();  // rounding may put the very rim outside
+      const float u = 0.97f * rng.next(), v = rng.next();  // rounding may move the rim outside
       DirectSample s;
       ASSERT_TRUE(lit.lights.sampleDirect(0, {}, u, v, s));
       lit.lights.forEachAtInfinity(s.wi, [&](size_t, Vec3 radiance, float pdf) {

@@ -1,4 +1,4 @@
-// Photons: their flux adds up to the power of the light, and lights the floor as direct light does.
+// Photons carry the power of their light, and light the floor as direct light does.
 #include "tests/scene/plain_scene.h"
 
 namespace bnvpl {
@@ -64,7 +64,7 @@ TEST(Emission, MeanFluxIsThePower) {
   }
 }
 
-// Floats would not hold the squares of their light.
+// Floats cannot hold the squares of such intensities.
 TEST(Emission, LightsThatAreTooStrongForVplsAreRefused) {
   for (EmitCase c : cases()) {
     c.spec.emission = Vec3(1e16f);
@@ -82,7 +82,7 @@ TEST(Emission, LightsThatAreTooStrongForVplsAreRefused) {
   }
 }
 
-TEST(Emission, LampsSendEvenlyFromTheirLitSides) {
+TEST(Emission, LampsEmitUniformlyFromTheirLitSides) {
   for (const bool twoSided : {false, true}) {
     Scene scene;
     addSquare(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 3},
@@ -103,13 +103,13 @@ TEST(Emission, LampsSendEvenlyFromTheirLitSides) {
       down += s.direction.y < 0 ? 1.0 / kDraws : 0.0;
       half += s.origin.z < 0.5f ? 1.0 / kDraws : 0.0;
     }
-    EXPECT_NEAR(cosine, 2.0 / 3.0, 0.005);  // of a cosine-weighted hemisphere
+    EXPECT_NEAR(cosine, 2.0 / 3.0, 0.005);  // cosine-weighted hemisphere
     EXPECT_NEAR(down, twoSided ? 0.5 : 1.0, 0.01);
     EXPECT_NEAR(half, 0.5, 0.01);
   }
 }
 
-// Flux of photons that meet the floor (24 m2), against unoccluded direct light averaged over it.
+// Flux of photons that hit the floor (24 m2), against unoccluded direct light averaged over it.
 void expectFloorAgrees(const LightSpec& spec, const std::string& name, float tolerance) {
   Scene scene = floorScene();
   scene.lights.push_back(spec);

@@ -1,4 +1,4 @@
-// Limits of scene.toml: what a message gives as a limit is accepted, and nothing beyond it.
+// Limits of scene.toml: a value that a message gives as a limit is accepted, and nothing beyond it.
 #include <cmath>
 #include <limits>
 
@@ -23,13 +23,13 @@ class Limits : public SceneFiles {
   }
   const std::string mesh_ = "[[mesh]]\nfile = \"square.obj\"\n";
 
-  // A scene of the text, in which VALUE stands for the number.
+  // Error on loading the text with `value` in place of VALUE; empty when it loads.
   std::string errorWith(const std::string& toml, const std::string& value) const {
     std::string text = toml;
     text.replace(text.find("VALUE"), 5, value);
     return loadError(text);
   }
-  // At, just inside and just outside each limit. `problem`: of what is outside.
+  // Tests values at, just inside and just outside each limit.
   void expectRange(const std::string& toml, double least, double most,
                    const std::string& key) const {
     const auto isRefused = [&](double value) {
@@ -61,7 +61,7 @@ TEST_F(Limits, FieldOfView) {
       "vertical_fov_deg = VALUE\n" +
       mesh_;
   expectRange(toml, 0.001, 179.9, "vertical_fov_deg");
-  // As the message writes them.
+  // The values are written as in the message.
   EXPECT_EQ(errorWith(toml, "0.001"), "");
   EXPECT_EQ(errorWith(toml, "179.9"), "");
   EXPECT_NE(errorWith(toml, "180").find("'vertical_fov_deg' is 180, outside 0.001 to 179.9"),
@@ -141,7 +141,7 @@ TEST_F(Limits, Coordinates) {
               -1e30, 1e30, "transform");
 }
 
-// A square of diagonal 1 is as large as its scale.
+// A triangle with a longest side of 1 is as large as its scale.
 TEST_F(Limits, SizesOfScenes) {
   write("square.obj", "v 0 0 0\nv 0.6 0 0\nv 0.6 0.8 0\nf 1 2 3\n");
   const std::string toml = kFilmAndCamera + mesh_ + "scale = VALUE\n";

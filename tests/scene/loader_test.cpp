@@ -1,4 +1,4 @@
-// Oddities of OBJ and MTL files that the loader survives, and what it says about them.
+// Oddities of OBJ and MTL files that the loader tolerates, and its messages about them.
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {
@@ -73,7 +73,7 @@ TEST_F(Loader, DamagedTextureIsAWarningToo) {
   EXPECT_EQ(scene.materials.at(0).phong().diffuseMap, kNone);
 }
 
-// Which of its two diagonals splits a dart matters: one lies outside it.
+// The choice of the diagonal that splits a dart matters: one lies outside it.
 TEST_F(Loader, ConcaveQuadKeepsItsArea) {
   const std::string corners =
       "mtllib square.mtl\nv 0 0 0\nv 2 -1 0\nv 0.5 0 0\nv 2 1 0\nusemtl paint\n";
@@ -96,7 +96,7 @@ TEST_F(Loader, FacesThatNameAbsentVerticesAreLeftOut) {
       << joined(scene.warnings);
 }
 
-// As a whole, also where most corners are there.
+// Such a polygon is left out as a whole, even where most of its corners exist.
 TEST_F(Loader, PolygonsThatNameAbsentVerticesAreLeftOutAndCounted) {
   const std::pair<std::string, int> cases[] = {
       {"f 1 2 3 99\n", 2},

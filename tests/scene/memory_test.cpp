@@ -1,4 +1,4 @@
-// Loading again and again takes no more memory than loading a few times.
+// Repeated loading takes no more memory than loading a few times.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -33,7 +33,7 @@ TEST(Memory, LoadingAgainTakesNoMore) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers keep what is freed";
 #endif
-  // What is leaked grows in every round; what allocators and thread pools come to keep does not.
+  // A leak grows in every round; memory that allocators and thread pools retain does not.
   double leastGrowth = std::numeric_limits<double>::infinity();
   loadTimes(4);
   for (int round = 0; round < 5; ++round) {

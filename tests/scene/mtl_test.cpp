@@ -5,7 +5,7 @@ namespace bnvpl {
 namespace {
 
 const std::string kBlender = "# Blender 3.4.1 MTL File: 'None'\n# www.blender.org\n\n";
-const std::string kPlain =  // Blender's default material, as it is exported
+const std::string kPlain =  // Blender's default material as exported
     "newmtl paint\nNs 250.000000\nKa 1.000000 1.000000 1.000000\nKd 0.800000 0.800000 0.800000\n"
     "Ks 0.500000 0.500000 0.500000\nKe 0.000000 0.000000 0.000000\nNi 1.450000\nd 1.000000\n"
     "illum 2\n";
@@ -27,10 +27,10 @@ TEST_F(Mtl, BlendersDefaultWallIsNoMirror) {
   const Scene s = paint(kBlender + kPlain);
   const auto& m = facets(s);
   EXPECT_EQ(m.baseColour.value, Vec3(0.8f));
-  EXPECT_NEAR(m.roughness.value, 0.5f, 1e-6f);  // Ns 250
+  EXPECT_NEAR(m.roughness.value, 0.5f, 1e-6f);  // from Ns 250
   EXPECT_EQ(m.metallic.value, 0.0f);
-  EXPECT_EQ(m.specularColour.value, Vec3(1));  // Ks 0.5: a reflectance of 0.04
-  // The same fields by nobody: a Phong lobe.
+  EXPECT_EQ(m.specularColour.value, Vec3(1));  // from Ks 0.5: a reflectance of 0.04
+  // Without Blender's header, the same fields give a Phong lobe.
   EXPECT_EQ(of(paint(kPlain)).phong().glossy, Vec3(0.5f));
 }
 
@@ -84,7 +84,7 @@ TEST_F(Mtl, PartlyTransparentIsSeenThrough) {
   EXPECT_FALSE(of(s).masked());
 }
 
-// Blender leaves out the factor beside a map.
+// Blender omits the factor beside a map.
 TEST_F(Mtl, MapsReplaceFactorsThatAreNotThere) {
   writeImage("r.tga", {255, 0, 0, 255}, {255, 0, 0, 255});
   writeImage("grey.tga", {51, 51, 51, 255}, {51, 51, 51, 255});
@@ -94,7 +94,7 @@ TEST_F(Mtl, MapsReplaceFactorsThatAreNotThere) {
   EXPECT_EQ(m.baseColour.value, Vec3(1));
   EXPECT_LT(length(s.expressionAt(m.baseColour.texture, 0.5f, 0.5f) - Vec3(1, 0, 0)), 1e-5f);
   EXPECT_EQ(m.roughness.value, 1.0f);
-  EXPECT_NEAR(s.expressionAt(m.roughness.texture, 0.5f, 0.5f).x, 0.2f, 1e-5f);  // linear
+  EXPECT_NEAR(s.expressionAt(m.roughness.texture, 0.5f, 0.5f).x, 0.2f, 1e-5f);  // linear, not sRGB
   EXPECT_LT(length(s.emissionAt(of(s), 0.5f, 0.5f) - Vec3(1, 0, 0)), 1e-5f);
   const Scene pbr = paint("newmtl paint\nKd 0.5 0.5 0.5\nmap_Pr grey.tga\nmap_Pm grey.tga\n");
   EXPECT_NEAR(pbr.expressionAt(facets(pbr).metallic.texture, 0.5f, 0.5f).x, 0.2f, 1e-5f);

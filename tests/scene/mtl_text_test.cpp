@@ -1,5 +1,5 @@
-// MTL in its many forms: colours, options of maps, keys in capitals; and what is wrong with OBJ and
-// MTL is told with its line.
+// Forms of MTL: colours, options of maps, upper-case keys. Errors in OBJ and MTL files are reported
+// with their line.
 #include "scene/read/obj/mtl_text.h"
 
 #include "scene/read/obj/map_options.h"
@@ -32,7 +32,7 @@ TEST_F(MtlForms, OneValueIsGrey) {
   EXPECT_EQ(paint("illum 4\nNi 1.5\nTf 0.5\n").materials.at(0).phong().transmission, Vec3(0.5f));
 }
 
-TEST_F(MtlForms, CieIsConvertedAndSpectraAreToldToBeIgnored) {
+TEST_F(MtlForms, CieIsConvertedAndIgnoredSpectraAreReported) {
   const Vec3 white = diffuse("Kd xyz 0.9505 1 1.089\n");
   EXPECT_LT(length(white - Vec3(1)), 1e-3f);
   const Scene spectral = paint("Kd spectral white.rfl 0.5\n");
@@ -103,7 +103,7 @@ TEST_F(MtlForms, KnownKeysThatAreNotReadAreToldWhereTheyWouldChangeThePicture) {
   EXPECT_EQ(countContaining(s.warnings, "ignored"), 0u) << joined(s.warnings);
 }
 
-TEST_F(MtlForms, WhatIsNoNumberIsToldWithItsLine) {
+TEST_F(MtlForms, MalformedNumbersAreReportedWithTheirLine) {
   const auto expect = [&](const std::string& field, const std::string& part) {
     const std::string error = errorOf(kSquareObj, "newmtl paint\n" + field + "\n");
     EXPECT_NE(error.find("square.mtl:2: " + part), error.npos) << error;
@@ -169,7 +169,7 @@ TEST_F(MtlForms, LinesOfAnObjThatAreWrongAreNamed) {
     EXPECT_EQ(errorOf(corners + fine + "\nf 1 2 3\n", mtl), "") << fine;
 }
 
-TEST_F(MtlForms, Utf16IsToldByName) {
+TEST_F(MtlForms, Utf16IsReportedByName) {
   const auto wide = [](const std::string& text) {
     std::string out = "\xff\xfe";
     for (const char c : text) out += {c, '\0'};

@@ -1,5 +1,5 @@
-// Names of materials and libraries as exporters write them: blanks, umlauts, dots, lists, byte
-// order marks, lines that go on.
+// Names of materials and libraries as exporters write them: spaces, umlauts, dots, lists, byte
+// order marks, continued lines.
 #include "scene/read/obj/obj_lines.h"
 #include "scene/read/obj/obj_text.h"
 #include "tests/scene/scene_files.h"
@@ -12,12 +12,12 @@ const std::string kMark = "\xef\xbb\xbf";
 
 class ObjNames : public SceneFiles {
  protected:
-  // A scene of one OBJ without a library of the fixture's.
+  // A scene with one OBJ file and no library of the fixture.
   Scene loadText(const std::string& obj) const {
     write("m.obj", obj);
     return load(kFilmAndCamera + "[[mesh]]\nfile = \"m.obj\"\n");
   }
-  // The red of each triangle's material, in the order of the faces.
+  // The red component of each triangle's material, in the order of the faces.
   std::vector<float> reds(const std::string& obj) const {
     const Scene scene = loadText(obj);
     std::vector<float> out;
@@ -28,7 +28,7 @@ class ObjNames : public SceneFiles {
   static std::string paint(const std::string& name, const std::string& red) {
     return "newmtl " + name + "\nKd " + red + " 0 0\n";
   }
-  // The one warning with the part.
+  // The only warning that contains the part.
   static std::string warning(const Scene& scene, const std::string& part) {
     std::string found;
     for (const std::string& w : scene.warnings) {
@@ -91,7 +91,7 @@ TEST_F(ObjNames, ALineMayListLibraries) {
   write("b.mtl", paint("q", ".5") + paint("r", ".5"));
   const std::string mesh =
       kCorners + "usemtl p\n" + kFace + "usemtl q\n" + kFace + "usemtl r\n" + kFace;
-  const Reds expected{.25f, .25f, .5f};  // the first library that has a name
+  const Reds expected{.25f, .25f, .5f};  // the first library that has the name counts
   EXPECT_EQ(reds("mtllib a.mtl b.mtl\n" + mesh), expected);
   EXPECT_EQ(reds("mtllib  a.mtl \tb.mtl \n" + mesh), expected);
   EXPECT_EQ(reds("mtllib a.mtl\nmtllib b.mtl\n" + mesh), expected);
@@ -155,7 +155,7 @@ TEST_F(ObjNames, ByteOrderMarksAreNoPartOfTheFirstWord) {
   EXPECT_EQ(reds(kMark + kCorners + "mtllib a.mtl\nusemtl p\n" + kFace), (Reds{.25f}));
 }
 
-TEST_F(ObjNames, LinesGoOnBehindABackslash) {
+TEST_F(ObjNames, LinesContinueAfterABackslash) {
   write("a.mtl", "newmtl \\\n p\nKd .25 \\\r\n 0 0\n");
   for (const std::string end : {"\\\n", "\\\r\n", "\\  \n"}) {
     EXPECT_EQ(reds("mtllib " + end + " a.mtl\nv 0 " + end + "0 0\nv 1" + end + "0 0\nv 0 1 0\n" +
@@ -175,7 +175,7 @@ TEST(LogicalLines, KeepTheNumbersOfTheOthers) {
   EXPECT_EQ(logicalLines("a\\b \\ c\n"), "a\\b \\ c\n");
 }
 
-// A path at the end of a comment must not swallow a vertex.
+// A path at the end of a comment must not swallow the vertex on the next line.
 TEST(LogicalLines, EndWithTheirComments) {
   EXPECT_EQ(logicalLines("# C:\\models\\\nv 1 2 3\n"), "# C:\\models\\\nv 1 2 3\n");
   EXPECT_EQ(logicalLines("a \\\nb # c \\\nd\n"), "a  b # c \\\n\nd\n");
@@ -195,7 +195,7 @@ TEST_F(ObjNames, LargeFilesHaveNamesWithBlanksInEachPiece) {
   for (const float red : reds(obj)) ASSERT_EQ(red, .25f);
 }
 
-// tests/scene/blender/make.py wrote it.
+// tests/scene/blender/make.py wrote this room.
 TEST(Blender, RoomIsReadWhole) {
   const fs::path folder = BNVPL_BLENDER_ROOM;
   const fs::path toml =

@@ -1,4 +1,4 @@
-// Large OBJ files are read in pieces, side by side, as if they were read in one go.
+// Large OBJ files are read in parallel pieces with the same result as in one go.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -14,8 +14,8 @@ using Pieces = SceneFiles;
 
 constexpr const char* kLibrary = "newmtl even\nKd .2 .2 .2\nnewmtl odd\nKd .6 .6 .6\n";
 
-// Triangles above each other, `count` of them, in groups of 1000 that change the material; of every
-// 777th, a corner is not a number.
+// `count` triangles above each other, in groups of 1000 that change the material. Every 777th has a
+// corner that is not a number.
 std::string tower(size_t count) {
   std::string obj = "# a tower\nmtllib square.mtl\n";
   for (size_t i = 0; i < count; ++i) {
@@ -73,7 +73,7 @@ TEST_F(Pieces, AreReadAsTheWhole) {
   expectSame(readSquare(at("square.obj")), inOneGo);
 }
 
-// Numbers that count back, and polygons.
+// The text has relative indices and polygons.
 TEST_F(Pieces, NeedNothingFromEachOther) {
   std::string obj;
   for (int i = 0; i < 50; ++i)
@@ -92,7 +92,7 @@ TEST_F(Pieces, StartWithTheMaterialOfThePieceBefore) {
   const MeshLines lines = meshLines(
       "a.obj",
       "mtllib m\nf 1 2 3\nusemtl a\nf 1 2 3\nusemtl  b \nusemtl c\r\nf 4 5 6\nusemtl\nf 4 5 6\n",
-      1);  // line by line
+      1);  // every piece is a line
   EXPECT_EQ(startsOf(lines),
             (std::vector<std::string>{"none", "none", "none", "a", "a", "b", "c", "c", ""}));
   EXPECT_EQ(lines.materials, (std::vector<std::string>{"", "a", "c"}));
@@ -112,9 +112,9 @@ TEST_F(Pieces, ErrorsNameTheLineOfTheFile) {
   }
 }
 
-// Small pieces of odd texts against the whole.
+// Odd texts in small pieces give the same as the whole.
 TEST_F(Pieces, OddLinesAreReadAsInTheWhole) {
-  write("square.mtl", std::string("Kd 1 0 0\n") + kLibrary);  // the first has no name
+  write("square.mtl", std::string("Kd 1 0 0\n") + kLibrary);  // the first material has no name
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 nan\n";
   const std::string texts[] = {
       "f\nv nan 0 0\n" + corners + "f 2 3 4\n",

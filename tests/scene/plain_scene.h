@@ -1,4 +1,4 @@
-// Scenes made in memory, for tests of materials and lights, and averages over many draws.
+// Scenes made in memory for tests of materials and lights, and averages over many draws.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace bnvpl {
 
-// A square in two triangles: corner, and two sides whose cross product is the lit side.
+// Adds a square of two triangles: a corner and two sides whose cross product is the lit side.
 inline void addSquare(Scene& scene, Vec3 corner, Vec3 a, Vec3 b, const Material& material) {
   const auto first = static_cast<uint32_t>(scene.positions.size());
   for (const Vec3 p : {corner, corner + a, corner + a + b, corner + b})
@@ -26,7 +26,7 @@ inline void addSquare(Scene& scene, Vec3 corner, Vec3 a, Vec3 b, const Material&
   scene.triangles.push_back({{first, first + 2, first + 3}, none, none, m});
 }
 
-// Bounds and padding, as after loading. No more squares after this.
+// Sets bounds and padding as loading does. No square may follow.
 inline void finishScene(Scene& scene) {
   scene.maskedBegin = static_cast<uint32_t>(scene.triangles.size());
   for (const Vec3 p : scene.positions) scene.bounds.extend(p);
@@ -47,8 +47,8 @@ inline Material lamp(Vec3 radiance, bool twoSided = false) {
   return m;
 }
 
-// A floor of 4 x 6 and a small dark shelf 3 above it: something with height, so that light from
-// infinity has a box to cover. Floor: material 0, faces +y.
+// A floor of 4 x 6 and a small dark shelf 3 above it, which gives the scene a height and so a box
+// for light from infinity. The floor is material 0 and faces +y.
 inline Scene floorScene() {
   Scene scene;
   addSquare(scene, {-2, 0, 3}, {4, 0, 0}, {0, 0, -6}, lambert(Vec3(0.5f)));
@@ -57,7 +57,7 @@ inline Scene floorScene() {
   return scene;
 }
 
-// The mean of `term(rng)` over `count` draws, each with numbers of its own.
+// The mean of `term(rng)` over `count` draws, each with its own random numbers.
 inline Vec3 meanOver(int count, const std::function<Vec3(Rng&)>& term) {
   double sum[3] = {0, 0, 0};
   for (int i = 0; i < count; ++i) {
@@ -76,7 +76,7 @@ inline void expectClose(Vec3 actual, Vec3 expected, float relative, const std::s
   }
 }
 
-// A point that `wo` sees, with the normals given.
+// A surface point with the given normals, seen from the direction wo.
 inline SurfacePoint pointSeenFrom(Vec3 wo, Vec3 ng = {0, 0, 1}, Vec3 ns = {0, 0, 1},
                                   bool front = true) {
   SurfacePoint p;

@@ -30,7 +30,7 @@ TEST_F(Rays, HitsAreDescribedFromTheSideOfTheRay) {
   EXPECT_FALSE(rays.closestHit({1.5f, 0, 2}, {0, 0, -1}, hit));
 }
 
-// With normals, coordinates and a texture, so that all is asked for ahead that ever is.
+// With normals, texture coordinates and a texture, batches prefetch all kinds of data.
 TEST_F(Rays, ManyAtOnceAreWhatTheyAreOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
   const RayScene rays(scene);
@@ -93,8 +93,8 @@ TEST_F(Rays, ShadingNormalIsInterpolatedAndFacesTheRay) {
   EXPECT_EQ(hit.ng, Vec3(0, 0, -1));
 }
 
-// A walk inside a closed box, near the origin and far from it. Only a hit on an edge, to the last
-// bit, lies in both planes and can leave by the other one.
+// A random walk inside a closed box, near the origin and far from it. Only a hit exactly on an edge
+// lies in both planes and can leave through the other one.
 TEST_F(Rays, LiftedPointsStayOnTheirSide) {
   struct Place {
     const char* keys;
@@ -140,7 +140,7 @@ TEST_F(Rays, OcclusionIsStrictlyBetween) {
   EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, rays.offsetOrigin({0, 0.1f, 0}, {0, 0, -1})));
 }
 
-// In a room with a box, in any number, in neighbourhoods and scattered.
+// A room with a box and any number of rays, close together and scattered.
 TEST_F(Rays, OcclusionOfManyIsWhatItIsOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "cornell/scene.toml");
   const RayScene rays(scene);

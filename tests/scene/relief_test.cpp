@@ -5,7 +5,7 @@
 namespace bnvpl {
 namespace {
 
-// A unit square in the plane z = 0 that faces +z, u along x and v along y, or with u mirrored.
+// A unit square in the plane z = 0 that faces +z, with u along x (or mirrored) and v along y.
 Scene square(const Material& m, bool mirroredU = false) {
   Scene scene;
   addSquare(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, m);
@@ -58,7 +58,7 @@ TEST(Relief, FlatMapChangesNothing) {
   }
 }
 
-// What stands out to the front goes in at the back: one normal, whatever side it is seen from.
+// A bump of the front is a dent of the back: the normal is the same, seen from either side.
 TEST(Relief, BackShowsTheSameRelief) {
   Scene scene = square(mapped(&Relief::normalMap));
   scene.expressions.push_back(colourOf(kTilt));
@@ -67,7 +67,7 @@ TEST(Relief, BackShowsTheSameRelief) {
   expectNear(back.ng, {0, 0, -1});
 }
 
-// glTF: a clearcoat has its own map, and is smooth without one.
+// In glTF, a clearcoat has its own normal map and is smooth without one.
 TEST(Relief, CoatHasItsOwn) {
   Material m = mapped(&Relief::normalMap);
   Scene scene = square(m);
@@ -95,7 +95,7 @@ TEST(Relief, StaysAboveTheSurface) {
   EXPECT_GT(hit.ns.x, 0.9f);
 }
 
-// A ramp of slope 1/2 along u, by a texture of 64 texels that rises from 0 to 1.
+// A ramp of slope 1/2 along u, from a texture of 64 texels that rises from 0 to 1.
 TEST(Relief, BumpMapTiltsByItsSlope) {
   for (const bool mirroredU : {false, true}) {
     Scene scene = square(mapped(&Relief::bumpMap, 0.5f), mirroredU);
@@ -114,7 +114,7 @@ TEST(Relief, BumpMapTiltsByItsSlope) {
   }
 }
 
-// An opacity texture with a cutoff of its own.
+// The opacity texture has its own cutoff.
 TEST(Relief, OpacityTextureCutsAway) {
   for (const float cutoff : {0.2f, 0.4f}) {
     Material m;

@@ -1,4 +1,4 @@
-// What the tests of the loader share: a folder of their own, and texts of small scenes.
+// Shared by the loader tests: a temporary folder and texts of small scenes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ class SceneFiles : public ::testing::Test {
     write("scene.toml", toml);
     return loadScene(at("scene.toml"), defines);
   }
-  // The message with which loading fails; empty when it does not fail.
+  // The error message of loading; empty when loading succeeds.
   std::string loadError(const std::string& toml, const Defines& defines = {}) const {
     try {
       load(toml, defines);
@@ -55,7 +55,7 @@ class SceneFiles : public ::testing::Test {
     }
     return "";
   }
-  // A scene of one OBJ.
+  // Loads a scene with one OBJ file and its material library.
   Scene loadMesh(const std::string& obj, const std::string& mtl, const std::string& meshKeys = "",
                  const std::string& more = "") const {
     write("square.obj", obj);
@@ -67,7 +67,7 @@ class SceneFiles : public ::testing::Test {
   fs::path folder_;
 };
 
-// An uncompressed 32-bit TGA, rows from the top: the simplest file with an alpha channel.
+// An uncompressed 32-bit TGA file, rows from the top: the simplest format with an alpha channel.
 inline std::string tga(uint8_t width, uint8_t height,
                        const std::vector<std::array<uint8_t, 4>>& rgba) {
   std::string bytes(18, '\0');

@@ -1,4 +1,4 @@
-// Every mistake in a scene.toml is one line with file, line, section and cure.
+// Every mistake in a scene.toml is reported in one line with file, line, section and remedy.
 #include "tests/scene/scene_files.h"
 #include "transport/camera.h"
 
@@ -11,7 +11,7 @@ class SceneToml : public SceneFiles {
     write("square.obj", kSquareObj);
     write("square.mtl", "newmtl paint\nKd 1 1 1\n");
   }
-  // The error of the text, which must name the file, the line and every part, on one line.
+  // Expects an error on one line that names the file, the line and every part.
   void expectError(const std::string& toml, int line, const std::vector<std::string>& parts) const {
     const std::string error = loadError(toml);
     EXPECT_NE(error, "") << "no error for:\n" << toml;
@@ -54,7 +54,7 @@ TEST_F(SceneToml, UnknownKeysNameTheNearest) {
   expectError(base_ + "[[light]]\ntype = \"point\"\npositon = [0,0,0]\n", 12,
               {"'positon'", "'position'"});
   expectError("[films]\n" + base_, 0, {"unknown key 'films'", "'film'"});
-  // Nothing is near.
+  // No key is similar.
   expectError(base_ + "[[light]]\ntype = \"point\"\npower = 3\n", 12,
               {"unknown key 'power'; the keys here are ", "intensity"});
   expectError("[camera]\nfov = 3\n" + base_.substr(0, 0) + "[film]\nwidth = 8\nheight = 6\n", 2,
@@ -213,7 +213,7 @@ TEST_F(SceneToml, AMaterialReplacesThatOfItsName) {
 
 TEST_F(SceneToml, AMaterialThatNoFaceHasIsNamed) {
   const Scene scene = load(base_ + "[[material]]\nname = \"pain\"\nmodel = \"diffuse\"\n");
-  ASSERT_EQ(scene.warnings.size(), 2u);  // and there is no light
+  ASSERT_EQ(scene.warnings.size(), 2u);  // the other one: no light
   EXPECT_NE(scene.warnings[0].find("[[material]] 'pain' has no effect"), std::string::npos)
       << scene.warnings[0];
 }

@@ -1,4 +1,4 @@
-// Real models, where they are at hand: BNVPL_SHARED_SCENES, else shared/scenes beside the project.
+// Real models, where available: in BNVPL_SHARED_SCENES, else in shared/scenes beside the project.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -33,7 +33,7 @@ void expectBounds(const Scene& scene, Vec3 lower, Vec3 upper, float tolerance) {
   EXPECT_LT(length(scene.bounds.upper - upper), tolerance);
 }
 
-// The OBJ with its own library, before a camera that does not matter.
+// Loads the OBJ with its own library and an arbitrary camera.
 Scene loadObj(const fs::path& obj) {
   const fs::path toml =
       fs::temp_directory_path() / ("bnvpl-shared-" + std::to_string(::getpid()) + ".toml");
@@ -75,7 +75,7 @@ TEST(SharedScenes, VeachAjar) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "veach-ajar/scene.toml",
                                 {{"VEACH_AJAR_DIR", (sharedScenes() / "veach-ajar").string()}});
   EXPECT_EQ(scene.triangles.size(),
-            382690u - 62u);  // as in the file, but for those without an area
+            382690u - 62u);  // as in the file, except those without an area
   EXPECT_EQ(warningsWith(scene, "62 triangles without area"), 1u);
   expectBounds(scene, {-9.6f, 0, -7.6f}, {7.4f, 3.8f, 0.6f}, 0.2f);
   const RayScene rays(scene);
@@ -87,7 +87,7 @@ TEST(SharedScenes, VeachAjar) {
   EXPECT_EQ(std::count_if(scene.materials.begin(), scene.materials.end(),
                           [](const Material& m) { return m.phong().glass; }),
             1);
-  // Its winding faces -z, into the room.
+  // The winding of the area light faces -z, into the room.
   size_t shining = 0;
   for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
     if (isBlack(scene.materials[scene.triangles[t].material].emission)) continue;
@@ -114,14 +114,14 @@ TEST(SharedScenes, CornellBox) {
   const LightSet lights(rays);
   ASSERT_EQ(lights.size(), 1u);
   EXPECT_NEAR(lights.power(0).x / lights.power(0).z, 17.0f / 4.0f, 1e-4f);
-  // The lamp faces down into the box: a ray from below sees it shine.
+  // The area light faces down into the box: a ray from below sees its emission.
   SurfacePoint hit;
   ASSERT_TRUE(rays.closestHit({-0.005f, 1.0f, -0.03f}, {0, 1, 0}, hit));
   size_t light = kNone;
   EXPECT_EQ(lights.emitted(hit, light), Vec3(17, 12, 4));
 }
 
-// A scene of pbrt, of which nothing is unknown.
+// Loads a pbrt scene and expects that it holds nothing unknown.
 Scene loadPbrt(const std::string& name) {
   Scene scene = loadScene(sharedScenes() / "pbrt" / name);
   EXPECT_EQ(warningsWith(scene, "unknown"), 0u);
@@ -135,7 +135,7 @@ TEST(SharedScenes, PbrtLivingRoom) {
   const Scene scene = loadPbrt("living-room/living-room.pbrt");
   EXPECT_EQ(scene.triangles.size(), 142973u);
   EXPECT_LT(length(scene.camera.position - Vec3(5.10518f, 0.731066f, -2.31789f)), 1e-4f);
-  // Right-handed, as its transform mirrors.
+  // The camera is right-handed because its transform mirrors.
   EXPECT_LT(length(cross(scene.camera.forward, scene.camera.up) - scene.camera.right), 1e-4f);
   ASSERT_EQ(scene.lights.size(), 1u);
   EXPECT_EQ(scene.environments.size(), 1u);
@@ -154,7 +154,7 @@ TEST(SharedScenes, PbrtBathroom) {
 TEST(SharedScenes, PbrtOthers) {
   SKIP_WITHOUT("pbrt/veach-mis/veach-mis.pbrt");
   const Scene mis = loadPbrt("veach-mis/veach-mis.pbrt");
-  EXPECT_EQ(mis.materials.size(), 10u);  // five lamps, four plates, a floor
+  EXPECT_EQ(mis.materials.size(), 10u);  // five area lights, four plates, a floor
   EXPECT_EQ(loadPbrt("veach-ajar/veach-ajar.pbrt").triangles.size(), 382628u);
   EXPECT_EQ(loadPbrt("material-testball/material-testball.pbrt").triangles.size(), 80642u);
 }

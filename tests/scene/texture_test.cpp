@@ -21,7 +21,7 @@ TEST(Srgb, DecodesToLinear) {
   EXPECT_NEAR(srgbToLinear(10), 10.0f / 255.0f / 12.92f, 1e-7f);
 }
 
-// Red and green above, blue and white below: v = 0 is the bottom row.
+// The image has red and green above blue and white: v = 0 is the bottom row.
 TEST_F(Textures, FirstRowOfTheFileIsTheTop) {
   write("t.tga",
         tga(2, 2, {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}}));
@@ -33,7 +33,7 @@ TEST_F(Textures, FirstRowOfTheFileIsTheTop) {
   expectColour(t.lookup(0.5f, 0.75f), {0.5f, 0.5f, 0});    // bilinear, in linear light
   expectColour(t.lookup(-1.75f, 5.75f), {1, 0, 0});        // repeats
   expectColour(t.lookup(0.0f, 0.75f), {0.5f, 0.5f, 0});    // across the seam
-  expectColour(t.lookup(-1e-9f, 0.75f), {0.5f, 0.5f, 0});  // less its floor, a whole 1
+  expectColour(t.lookup(-1e-9f, 0.75f), {0.5f, 0.5f, 0});  // minus its floor, this rounds to 1
   expectColour(t.lookup(3e9f, 0.75f), {0.5f, 0.5f, 0});
   expectColour(t.lookup(NAN, 0.5f), {});
   expectColour(t.lookup(INFINITY, 0.5f), {});

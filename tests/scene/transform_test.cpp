@@ -16,7 +16,7 @@ void expectNear(Vec3 a, Vec3 b, float tolerance = 1e-5f) {
 
 void expectNear(const FilePoint& a, Vec3 b) { expectNear(fromOrigin(a, {}), b); }
 
-// A box around the origin whose faces wind, and whose vertex normals point, outwards.
+// A box around the origin whose winding and vertex normals face outwards.
 std::string boxObj() {
   std::string obj = "mtllib square.mtl\nusemtl paint\n";
   for (int i = 0; i < 8; ++i) {

@@ -1,4 +1,4 @@
-// Polygons of any shape are covered exactly.
+// The triangles cover polygons of any shape exactly.
 #include "scene/triangulate.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ bool isInside(const Flat& polygon, double x, double y) {  // even-odd
   return inside;
 }
 
-// Any order of the angles' radii is a simple polygon around the middle.
+// A star around the middle with a random radius at each angle, which is always a simple polygon.
 Flat star(std::mt19937& random, size_t corners) {
   std::uniform_real_distribution<double> radius(0.05, 1.0);
   Flat out;
@@ -43,7 +43,7 @@ Flat star(std::mt19937& random, size_t corners) {
   return out;
 }
 
-// A comb, whose teeth see little of each other.
+// A comb; from most of its teeth, few others are visible.
 Flat comb(std::mt19937& random, size_t corners) {
   std::uniform_real_distribution<double> height(-0.9, 1.0);
   Flat out;
@@ -55,13 +55,13 @@ Flat comb(std::mt19937& random, size_t corners) {
   return out;
 }
 
-// A star in a star, joined by a bridge from the outline's corner `at`.
+// A star inside a star, joined by a bridge from the outline's corner `at`.
 Flat ring(std::mt19937& random, size_t corners) {
   const double turn = 2.0 * std::numbers::pi / double(corners);
   std::uniform_real_distribution<double> outer(0.7, 1.0), inner(0.1, 0.5);
   const size_t at = random() % corners;
   Flat out;
-  for (size_t i = 0; i <= corners; ++i) {  // the outline comes back to where it began
+  for (size_t i = 0; i <= corners; ++i) {  // the outline returns to its start
     const double angle = turn * double(at + i);
     const double r = i == corners ? std::hypot(out[0][0], out[0][1]) : outer(random);
     out.push_back(i == corners ? out[0] : std::array{r * std::cos(angle), r * std::sin(angle)});
@@ -74,7 +74,7 @@ Flat ring(std::mt19937& random, size_t corners) {
   return out;
 }
 
-// Two orthogonal axes of a plane anywhere, and a point of it.
+// Maps the flat polygon into a random plane.
 std::vector<FilePoint> inPlane(std::mt19937& random, const Flat& flat) {
   std::normal_distribution<double> normal;
   const Affine toWorld =
@@ -137,7 +137,7 @@ TEST(Triangulate, CornersInLineAndDoubledOnesCostNothing) {
   for (int i = 0; i < 100; ++i) expectCovered(random, square, "square");
 }
 
-TEST(Triangulate, CrossingOutlinesAreTold) {
+TEST(Triangulate, CrossingOutlinesAreReported) {
   const auto cut = [](const std::vector<FilePoint>& corners) {
     Triangles triangles;
     const bool whole = triangulate(corners, QuadCut::ShorterDiagonal, triangles);
@@ -149,7 +149,7 @@ TEST(Triangulate, CrossingOutlinesAreTold) {
   for (int i = 0; i < 5; ++i)
     pentagram.push_back({std::cos(i * 2.513274), 0, std::sin(i * 2.513274)});
   EXPECT_FALSE(cut(pentagram));
-  EXPECT_TRUE(cut({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {2, 0, 0}}));  // flat
+  EXPECT_TRUE(cut({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {2, 0, 0}}));  // flat polygon
 }
 
 TEST(Triangulate, AnySizeAndPlaceOfNumbers) {
@@ -164,7 +164,7 @@ TEST(Triangulate, AnySizeAndPlaceOfNumbers) {
   EXPECT_TRUE(triangulate(std::vector<FilePoint>(5, {NAN, 0, 0}), QuadCut::FirstCorner, triangles));
 }
 
-// As Blender writes a wall with a window: two C of eight corners.
+// Blender writes a wall with a window as two C shapes of eight corners.
 using Polygons = SceneFiles;
 TEST_F(Polygons, OfAnObjAreCutByTheirShape) {
   const Scene s = loadMesh(

@@ -7,7 +7,7 @@ namespace {
 
 const Vec3 kUp{0, 0, 1};
 
-TEST(SameSheet, NormalsPartAtTheLimit) {
+TEST(CompatibleSurface, NormalsSeparateAtTheLimit) {
   const auto tilted = [](float degrees) {
     const float a = degrees * 3.14159265f / 180.0f;
     return Vec3{std::sin(a), 0, std::cos(a)};
@@ -17,7 +17,7 @@ TEST(SameSheet, NormalsPartAtTheLimit) {
   EXPECT_FALSE(compatibleSurfaces({}, kUp, {}, -kUp, 1.0f));  // the other side of a wall
 }
 
-TEST(SameSheet, HeightOverEitherPlanePartsThem) {
+TEST(CompatibleSurface, HeightOverEitherPlaneSeparatesThem) {
   EXPECT_TRUE(compatibleSurfaces({}, kUp, {5, 0, 0.1f}, kUp, 0.11f));
   EXPECT_FALSE(compatibleSurfaces({}, kUp, {5, 0, 0.1f}, kUp, 0.09f));
   EXPECT_FALSE(compatibleSurfaces({}, kUp, {5, 0, -0.1f}, kUp, 0.09f));

@@ -1,4 +1,4 @@
-// Neighbour queries against looking at every point.
+// Neighbour queries against a search of all points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::vector<Neighbour> allByDistance(const std::vector<Vec3>& points, Vec3 centr
   return all;
 }
 
-// A lattice has many points at exactly the radius and many equal distances; an offset makes
+// The lattice has many points at exactly the radius and many equal distances; an offset makes
 // coordinates negative or large.
 std::vector<std::vector<Vec3>> clouds() {
   std::vector<std::vector<Vec3>> all{cube(2000, 1.0f, 1).position,
@@ -67,8 +67,8 @@ TEST(Spatial, NoPoints) {
   EXPECT_TRUE(makeCellLists(none, {}).order.empty());
 }
 
-// The pairs nearer than the sum of their radii: none may be missing, from either end, before or
-// after points are left out; and the lists must not hold everything.
+// Every pair nearer than the sum of its radii must be listed exactly once, from either end, before
+// and after points are removed.
 void expectAllPairs(const std::vector<Vec3>& points, const std::vector<float>& radius) {
   CellLists lists = makeCellLists(points, radius);
   std::vector<uint32_t> order = lists.order;
@@ -127,7 +127,7 @@ TEST(Spatial, CellListsLeaveTheFarAway) {
   EXPECT_LT(listed, 6 * pairs);
 }
 
-// Of radii from denormal to larger than everything.
+// The radii range from denormal to larger than the cloud.
 TEST(Spatial, DisksThatReachAreAllFound) {
   for (const std::vector<Vec3>& points : clouds()) {
     std::vector<float> radius(points.size());
@@ -159,8 +159,8 @@ TEST(Spatial, SharesAreTheSameWithTheShortQuery) {
   for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(some[i], all[rows[i]]);
 }
 
-// A point alone on a compatible surface takes the density of all that is near; coincident points a
-// positive share.
+// A point alone on its compatible surface gets the density of everything near it; coincident points
+// get a positive share.
 TEST(Spatial, SharesOfOddPoints) {
   Cloud cloud = plane(1000, 1.0f, 1.0f, 4);
   cloud.add({0.5f, 0.5f, 0.0f}, {1, 0, 0});
@@ -171,7 +171,7 @@ TEST(Spatial, SharesOfOddPoints) {
   EXPECT_GT(share[1050], 0.0f);
   EXPECT_LT(share[1050], 1e-9f);
   EXPECT_EQ(surfaceShares(std::vector<Vec3>(5, Vec3(1.0f)), std::vector<Vec3>(5, Vec3(0, 0, 1)), 3),
-            std::vector<float>(5, 3.0f));  // all in one place: its squared distance from the origin
+            std::vector<float>(5, 3.0f));  // all coincide: the squared distance from the origin
 }
 
 TEST(Spatial, MortonOrderIsAPermutation) {
@@ -181,7 +181,7 @@ TEST(Spatial, MortonOrderIsAPermutation) {
   for (size_t i = 1; i < order.size(); ++i) {
     step += length(cloud.position[order[i]] - cloud.position[order[i - 1]]);
   }
-  EXPECT_LT(step / 5000.0, 0.5);  // at random it would be about 4
+  EXPECT_LT(step / 5000.0, 0.5);  // a random order would give about 4
   std::sort(order.begin(), order.end());
   for (uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
   EXPECT_TRUE(mortonOrder({}).empty());
@@ -194,7 +194,7 @@ TEST(RegionGrid, NamesTheDiskOnThePointsOwnSurface) {
   const RegionGrid grid(points, normals, radii);
   EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, -1}), 0u);
   EXPECT_EQ(grid.at({1.1f, 0.1f, 0.0f}, {0, 0, -1}), 1u);
-  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, 1}), 2u);  // the wall's other side
+  EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 0, 1}), 2u);  // the other side of the wall
   EXPECT_EQ(grid.at({0.1f, 0.1f, 0.0f}, {0, 1, 0}), UINT32_MAX);
   EXPECT_EQ(grid.at({40, 3, -3}, {1, 0, 0}), 3u);
   EXPECT_EQ(grid.at({0, 0, 9}, {0, 0, -1}), UINT32_MAX);

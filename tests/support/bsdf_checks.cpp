@@ -5,7 +5,7 @@
 namespace bnvpl::test {
 
 void SphereCells::integrate(const std::function<float(Vec3)>& pdf, double count) {
-  // By angle, not by cosine: finest where lobes about the poles are.
+  // Rows are uniform in angle, not in cosine: finest at the poles, where lobes are.
   constexpr int kFineRows = 48, kFineColumns = 10;
   for (int i = 0; i < kRows * kFineRows; ++i) {
     const int row = i / kFineRows;
@@ -35,7 +35,7 @@ double SphereCells::deviate() const {
       pooledDrawn += drawn_[i], pooledExpected += expected_[i];
       continue;
     }
-    // The rule's own error, a part in 500 of a cell, is no error of the sampling.
+    // The quadrature error, 1/500 of a cell, is not an error of the sampling.
     const double variance = expected_[i] + std::pow(expected_[i] / 500, 2);
     chi2 += std::pow(drawn_[i] - expected_[i], 2) / variance;
     ++cells;
@@ -44,7 +44,7 @@ double SphereCells::deviate() const {
     chi2 += std::pow(pooledDrawn - pooledExpected, 2) / pooledExpected;
     ++cells;
   } else if (pooledDrawn > 30.0) {
-    return 99.0;  // samples where no density is
+    return 99.0;  // samples where the density is 0
   }
   const double dof = std::max(1, cells);
   return (std::cbrt(chi2 / dof) - (1.0 - 2.0 / (9.0 * dof))) / std::sqrt(2.0 / (9.0 * dof));
@@ -57,7 +57,7 @@ size_t SphereCells::cellOf(Vec3 w) {
   return size_t(row * kColumns + column);
 }
 
-// Stratified over pick and the square.
+// The samples are stratified over the lobe choice and the unit square.
 void forEachSample(const Bsdf& bsdf, LobeGroup group, Transport transport, uint32_t count,
                    const std::function<void(const BsdfSample&)>& fn) {
   for (uint32_t i = 0; i < count; ++i) {
@@ -74,7 +74,7 @@ Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, Transport transport, uint32_t
   });
   return Vec3(float(sum[0] / count), float(sum[1] / count), float(sum[2] / count));
 }
-// What a white furnace shows: all light that leaves, as flux.
+// Reflected and transmitted flux in a white furnace.
 Vec3 furnace(const Material& m, Vec3 wo, bool insideOut) {
   const Scene scene = sceneOf(m);
   const SurfacePoint p = seenFrom(wo, {0, 0, 1}, insideOut);
@@ -83,8 +83,8 @@ Vec3 furnace(const Material& m, Vec3 wo, bool insideOut) {
          meanWeight(bsdf, LobeGroup::Specular, Transport::Photons);
 }
 
-// Chi-square of samples against density, and the density's integral against the share of samples
-// that leave. Independent samples, as the test assumes.
+// Chi-square test of samples against the density, and of the density's integral against the share
+// of samples that leave. The test needs independent samples.
 void checkDensity(const Bsdf& bsdf, LobeGroup group, const std::string& name) {
   constexpr int kCount = 60000;
   SphereCells cells;
@@ -107,9 +107,9 @@ void checkDensity(const Bsdf& bsdf, LobeGroup group, const std::string& name) {
   EXPECT_LT(cells.deviate(), 4.5) << name;
 }
 
-// value * cosine is weight * density of each sample; and a photon that goes from wo to wi is
-// scattered as radiance that goes the same way: reciprocity, with refraction and shading normals
-// accounted for (Veach 1997, sections 5.2 and 5.3).
+// For each sample, value * cosine equals weight * density. A photon that travels from wo to wi is
+// scattered like radiance that travels the same way: reciprocity, with refraction and shading
+// normals taken into account (Veach 1997, sections 5.2 and 5.3).
 void checkSamples(const Scene& scene, Vec3 wo, Vec3 ns, LobeGroup group, const std::string& name) {
   for (const bool insideOut : {false, true}) {
     const SurfacePoint p = seenFrom(wo, ns, insideOut);
@@ -131,14 +131,14 @@ void checkSamples(const Scene& scene, Vec3 wo, Vec3 ns, LobeGroup group, const s
   }
 }
 
-// The bound holds for cones of directions: the axis and the normal are told the cone's largest
-// cosines.
+// The bound holds for cones of directions: it gets the largest cosines of the cone with the axis
+// and with the normal.
 void checkBound(const Bsdf& bsdf, const std::string& name) {
   const Vec3 ns = bsdf.point().ns, axis = bsdf.glossyAxis();
   Rng rng(5, 5);
   for (int i = 0; i < 400; ++i) {
     const float u = rng.next(), v = rng.next(), s = rng.next(), t = rng.next(), near = rng.next();
-    const bool around = i % 2 == 0;  // lobes, where they are highest
+    const bool around = i % 2 == 0;  // near lobes, where they are highest
     const Vec3 middle = Basis(around ? axis : ns)
                             .toWorld(sampleCone(u, v, around ? 1.0f - 0.3f * near * near : 0.0f));
     const float cosHalf = 1.0f - 0.1f * rng.next(), sinHalf = std::sqrt(1.0f - cosHalf * cosHalf);
@@ -156,8 +156,7 @@ void checkBound(const Bsdf& bsdf, const std::string& name) {
   }
 }
 
-// Everything that any material keeps to. `tolerance`: of the furnace and of the stated rough
-// albedo.
+// Checks for any material. `tolerance` applies to the furnace and to the stated rough albedo.
 void check(const Material& m, const std::string& material, float tolerance) {
   const Scene scene = sceneOf(m);
   for (const Vec3 wo : views()) {
@@ -178,11 +177,11 @@ void check(const Material& m, const std::string& material, float tolerance) {
     for (const Vec3 ns : {Vec3{0, 0, 1}, normalize({0.5f, 0, 1}), normalize({-0.7f, 0.2f, 1})}) {
       const SurfacePoint tilted = seenFrom(wo, ns);
       checkBound(Bsdf(scene, tilted), name);
-      // No energy gain where the shading normal is far from the geometric one.
+      // Energy must not grow where the shading normal is far from the geometric one.
       const Bsdf b(scene, tilted);
       Vec3 sum;
       for (const LobeGroup group : kGroups) {
-        // Radiance that crosses is squeezed or stretched: count what stays on this side.
+        // Refraction scales radiance by eta^2, so only what stays on this side is counted.
         double left[3] = {};
         constexpr uint32_t kCount = 1u << 13;
         forEachSample(b, group, Transport::Radiance, kCount, [&](const BsdfSample& s) {

@@ -1,5 +1,5 @@
-// What holds for every model of materials: energy, reciprocity, and value, density and samples that
-// agree. The test of a model calls check() for its materials and adds the numbers that it knows.
+// Checks for every BSDF model: energy, reciprocity, and consistency of value, density and samples.
+// The test of a model calls check() for its materials and adds known numbers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ inline const std::vector<Vec3>& views() {
   return all;
 }
 
-// The same place seen from w: from below, normals and front change sides.
+// The origin seen from w: from below, normals and front change sides.
 inline SurfacePoint seenFrom(Vec3 w, Vec3 ns = {0, 0, 1}, bool insideOut = false) {
   const float side = w.z < 0.0f ? -1.0f : 1.0f;
   SurfacePoint p = pointSeenFrom(w, {0, 0, side}, ns * side, (side > 0.0f) != insideOut);
@@ -36,16 +36,15 @@ inline SurfacePoint seenFrom(Vec3 w, Vec3 ns = {0, 0, 1}, bool insideOut = false
   return p;
 }
 
-// Cells of the sphere of directions, with the samples and the density that fall into each.
+// Cells of the sphere of directions, with the samples drawn in each and the density's integral.
 class SphereCells {
  public:
   static constexpr int kRows = 20, kColumns = 24;
   void draw(Vec3 w) { drawn_[cellOf(w)] += 1.0; }
-  // Midpoint rule within each cell, count samples in all.
+  // Integrates the density by the midpoint rule within each cell, for `count` samples in total.
   void integrate(const std::function<float(Vec3)>& pdf, double count);
   double sumExpected() const;
-  // Chi-square over cells (small ones pooled), as the deviate of a normal variable (Wilson &
-  // Hilferty).
+  // Chi-square over cells (small ones pooled) as a standard normal deviate (Wilson & Hilferty).
   double deviate() const;
 
  private:
@@ -53,25 +52,24 @@ class SphereCells {
   std::vector<double> drawn_ = std::vector<double>(kRows * kColumns), expected_ = drawn_;
 };
 
-// Stratified over pick and the square.
+// Calls fn with `count` samples stratified over the lobe choice and the unit square.
 void forEachSample(const Bsdf& bsdf, LobeGroup group, Transport transport, uint32_t count,
                    const std::function<void(const BsdfSample&)>& fn);
 Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, Transport transport = Transport::Radiance,
                 uint32_t count = 1u << 15);
-// What a white furnace shows: all light that leaves, as flux.
+// Reflected and transmitted flux in a white furnace.
 Vec3 furnace(const Material& m, Vec3 wo, bool insideOut = false);
 
-// Chi-square of samples against density, and the density's integral against the share of samples
-// that leave.
+// Chi-square test of samples against the density, and of the density's integral against the share
+// of samples that leave.
 void checkDensity(const Bsdf& bsdf, LobeGroup group, const std::string& name);
-// value * cosine is weight * density of each sample; and a photon that goes from wo to wi is
-// scattered as radiance that goes the same way: reciprocity, with refraction and shading normals
-// accounted for (Veach 1997, sections 5.2 and 5.3).
+// For each sample, value * cosine equals weight * density. A photon that travels from wo to wi is
+// scattered like radiance that travels the same way: reciprocity, with refraction and shading
+// normals taken into account (Veach 1997, sections 5.2 and 5.3).
 void checkSamples(const Scene& scene, Vec3 wo, Vec3 ns, LobeGroup group, const std::string& name);
 // roughUpperBound() holds for cones of directions.
 void checkBound(const Bsdf& bsdf, const std::string& name);
-// Everything that any material keeps to. `tolerance`: of the furnace and of the stated rough
-// albedo.
+// Checks for any material. `tolerance` applies to the furnace and to the stated rough albedo.
 void check(const Material& m, const std::string& material, float tolerance = 0.01f);
 
 }  // namespace bnvpl::test

@@ -5,7 +5,7 @@
 
 namespace bnvpl {
 
-// The same rows, each with so many emission points, a step apart.
+// The same rows with `count` emission points each, 0.25 apart along x.
 inline VplTable withEmitPoints(VplTable table, uint32_t count) {
   const VplTable one = table;
   table.emitPoints = count;

@@ -5,7 +5,7 @@
 
 namespace bnvpl {
 
-// R, G, B of one value each.
+// Channels R, G and B with one value each.
 inline Image flatImage(int width, int height, float r, float g, float b) {
   Image image;
   image.width = width;

@@ -1,5 +1,4 @@
-// What every gather has to show: the energy of all VPLs, and the same bytes for any number of
-// threads.
+// Checks for every gather: the energy of all VPLs, and the same bytes for any number of threads.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +9,7 @@
 
 namespace bnvpl::test {
 
-// A world, its film and its VPLs.
+// A world with its film and its VPLs.
 struct GatherCase {
   GatherCase(const std::string& name, Film film, const Given& eliminated,
              const Given& estimated = {}, const Given& placed = {})
@@ -18,7 +17,7 @@ struct GatherCase {
     world.scene.film = film;
     lit = litVpls(world, eliminated, estimated, placed);
   }
-  // Nothing but what the VPLs bring.
+  // An image of the VPLs' contribution alone.
   Image indirect(const std::string& gather, const Given& options = {}, uint64_t seed = 1) const {
     return renderVpls(world, lit,
                       with(with(kPlainRender,
@@ -42,8 +41,8 @@ inline const std::vector<const GatherCase*>& gatherCases() {
   return cases;
 }
 
-// For every kind of light, the mean over `seeds` images is that over all VPLs within `tolerance`,
-// as a share; seen at the same points, so that only the gather differs.
+// For every kind of light, the mean over `seeds` images equals that of the sum over all VPLs within
+// the relative `tolerance`. Both images see the same points, so that only the gather differs.
 inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint64_t seeds = 4,
                               const Given& options = {}) {
   for (const GatherCase* c : gatherCases()) {

@@ -1,4 +1,4 @@
-// One gather by itself, for tests at single points.
+// A gather on its own, for tests at single points.
 #pragma once
 
 #include "tests/support/pipeline.h"
@@ -7,8 +7,8 @@
 namespace bnvpl::test {
 
 struct GatherOf {
-  // `options` as of vpl-render; borrows the world and the VPLs. A gather that looks at the film
-  // sees nothing.
+  // Takes `options` like vpl-render; borrows the world and the VPLs. A gather that inspects the
+  // film gets no points.
   GatherOf(const World& world, const VplLights& vpls, const Given& options)
       : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
     const Values values = resolve(renderSpec(), options);

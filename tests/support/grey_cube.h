@@ -1,12 +1,12 @@
-// A closed room whose energy is known.
+// A closed room of known energy.
 #pragma once
 
 #include "tests/support/pipeline.h"
 
 namespace bnvpl::test {
 
-// A closed cube of edge 1 about (1/2, 1/2, 1/2) that reflects half, with point lights at one place,
-// W/sr.
+// A closed cube of edge 1 about (1/2, 1/2, 1/2) with albedo 1/2. It holds a point light for each
+// intensity, in W/sr, all at one position.
 inline World greyCube(const std::vector<Vec3>& intensities) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
   for (Material& m : scene.materials) m.emission = {};

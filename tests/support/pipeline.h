@@ -1,4 +1,4 @@
-// The stages in one process, for tests of what they compute together.
+// The stages in one process, for tests of their combined results.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace bnvpl::test {
 
-// A scene of the project with its acceleration structure, in an order that keeps references valid.
+// A scene with its acceleration structure; the order of the members keeps references valid.
 struct World {
   explicit World(const std::string& name) : World(loadScene(fs::path(BNVPL_SCENES_DIR) / name)) {}
   explicit World(Scene given) : scene(std::move(given)), rays(scene), lights(rays) {}
@@ -22,13 +22,13 @@ struct World {
   LightSet lights;
 };
 
-// The first options and then more: of two that are equal in name, the later counts.
+// `options` followed by `more`; a later option overrides an earlier one of the same name.
 inline Given with(Given options, const Given& more) {
   options.insert(options.end(), more.begin(), more.end());
   return options;
 }
 
-// A number as one would type it: the fewest digits that give it back.
+// A number as a user types it: with the fewest digits that read back the same.
 template <typename Number>
 std::string typed(Number number) {
   std::array<char, 32> text{};
@@ -49,33 +49,33 @@ inline RenderResult renderVpls(const World& world, const VplTable& lit, const Gi
                                const Resume& resume = {}) {
   return render(world.rays, world.lights, lit, resolveRender(options), {}, resume);
 }
-// By paths, or photons that are connected with the camera.
+// Renders without VPLs, by the path tracer or the light tracer.
 inline RenderResult renderWithout(const World& world, const std::string& integrator,
                                   const Given& options, const Resume& resume = {}) {
   return renderVpls(world, {}, with({{"integrator", integrator}}, options), resume);
 }
 
-// The preparations that a stage tells of, by name, as they begin.
+// Collects the names of a stage's preparations in the order in which they begin.
 struct Preparations {
   ProgressFn progress{[](uint64_t) {},
                       [this](std::string_view what, uint64_t) { names.emplace_back(what); }};
   std::vector<std::string> names;
 };
 
-// Few of everything; every VPL is gathered, and only what VPLs bring.
+// Small counts; every VPL is gathered, and only VPLs contribute indirect light.
 inline const Given kFewCandidates{{"count", "20k"}};
 inline const Given kFewVpls{{"count", "1000"}};
 inline const Given kFewPhotons{{"photons", "300k"}};
 inline const Given kPlainRender{{"gather", "all"}, {"compensate", "none"}, {"clamp", "1"},
                                 {"spp", "4"},      {"allocate", "off"},    {"fireflies", "keep"}};
-// The same without what only indirect light takes.
+// The same for direct light alone, without the options of indirect light.
 inline const Given kPlainDirect{{"compensate", "none"},
                                 {"spp", "4"},
                                 {"only", "direct"},
                                 {"direct-samples", "1"},
                                 {"fireflies", "keep"}};
 
-// From the scene to VPLs without flux, and with it; the options go behind those above.
+// The stages from the scene to VPLs without flux, and with it; the options follow those above.
 inline VplTable keptVpls(const World& world, const Given& eliminated, const Given& placed = {}) {
   const VplTable candidates = placeVpls(world, with(kFewCandidates, placed)).table;
   return keepVpls(candidates, with(kFewVpls, eliminated));
@@ -95,7 +95,7 @@ inline double indirectByPaths(const World& world, const Given& options) {
   return renderWithout(world, "path", with({{"only", "indirect"}}, options)).stats.indirect;
 }
 
-// Flux of all VPLs together, W, mean of the channels.
+// Total flux of all VPLs in W, averaged over the channels.
 inline double totalFlux(const VplTable& lit) {
   double sum = 0.0;
   for (const Vec3 f : lit.flux) sum += double{mean(f)};

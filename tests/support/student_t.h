@@ -35,13 +35,13 @@ inline double incompleteBeta(double a, double b, double x) {
   return 1.0 - front * betaFraction(b, a, 1.0 - x) / b;
 }
 
-// How likely |T| > |t| is for T of `freedom` degrees; accurate in the far tails. 0 for infinity.
+// Probability of |T| > |t| for `freedom` degrees; accurate in the far tails, 0 for infinite t.
 inline double studentTwoSided(double t, double freedom) {
   if (std::isinf(t)) return 0.0;
   return incompleteBeta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
 }
 
-// Sidak 1967: the same for the smallest of `tests` probabilities, all of them true.
+// Corrects the smallest of `tests` independent p values (Sidak 1967).
 inline double sidak(double p, double tests) { return -std::expm1(tests * std::log1p(-p)); }
 
 }  // namespace bnvpl::test

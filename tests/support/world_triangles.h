@@ -1,4 +1,4 @@
-// All triangles of a scene where they stand: those of the world, then each instance's.
+// All triangles of a scene at their places: those of the world, then each instance's.
 #pragma once
 
 #include <array>

@@ -34,7 +34,7 @@ Blocks blocksOf(const std::vector<double>& values, int width, int height, int si
   return b;
 }
 
-// Sums over the seeds, of each block.
+// Sums over the seeds for each block.
 struct Sums {
   std::vector<double> a, b, difference, squares;
   void add(const Blocks& blocksA, const Blocks& blocksB) {
@@ -49,7 +49,7 @@ struct Sums {
   double t(size_t i, double seeds) const {
     const double mean = difference[i] / seeds;
     const double variance = std::max(0.0, squares[i] / seeds - mean * mean) * seeds / (seeds - 1.0);
-    // Pixels are floats: two that agree may round differently.
+    // Pixels are floats: equal values may round differently.
     const double rounding = 0x1p-20 * (std::fabs(a[i]) + std::fabs(b[i])) / seeds;
     const double error = std::sqrt(variance / seeds + rounding * rounding);
     return error > 0.0 ? mean / error : 0.0;

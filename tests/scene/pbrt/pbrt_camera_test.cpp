@@ -1,4 +1,4 @@
-// Film and camera: known points fall onto known pixels, the right way round.
+// Film and camera: known points project onto known pixels, with the right orientation.
 #include "tests/scene/pbrt/pbrt_files.h"
 #include "transport/camera.h"
 
@@ -21,13 +21,13 @@ class PbrtCamera : public PbrtFiles {
   }
 };
 
-// pbrt is left-handed: who looks along +z with +y up has +x to the right.
+// pbrt is left-handed: a camera that looks along +z with +y up has +x to the right.
 TEST_F(PbrtCamera, LooksAlongZWithXToTheRight) {
   const Scene s = view("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 90");
   EXPECT_EQ(s.film.width, 200u);
   expectNear(s.camera.position, {0, 0, -5}, 1e-5f);
   const FilmPoint right = pixel(s, {5, 0, 0}), up = pixel(s, {0, 5, 0});
-  // The field of view is that of the shorter side: 90 degrees reach 50 pixels up.
+  // The field of view spans the shorter side: 90 degrees reach 50 pixels up.
   EXPECT_NEAR(right.x, 150.0f, 0.01f);
   EXPECT_NEAR(right.y, 50.0f, 0.01f);
   EXPECT_NEAR(up.x, 100.0f, 0.01f);
@@ -42,7 +42,7 @@ TEST_F(PbrtCamera, ScaleMirrorsTheImage) {
   EXPECT_NEAR(pixel(s, {0, 5, 0}).y, 0.0f, 0.01f);
 }
 
-// The same camera as the matrix that converters write.
+// The same camera as a matrix, the form that converters write.
 TEST_F(PbrtCamera, Matrices) {
   const Scene s = view("Transform [-1 0 0 0  0 1 0 0  0 0 -1 0  0 0 5 1] Camera \"perspective\"");
   expectNear(s.camera.position, {0, 0, 5}, 1e-5f);
@@ -55,7 +55,7 @@ TEST_F(PbrtCamera, FieldOfView) {
   const auto degrees = [](const Scene& s) { return s.camera.verticalFovRad * 57.2957795f; };
   const std::string camera = "Camera \"perspective\" \"float fov\" 60";
   EXPECT_NEAR(degrees(view(camera)), 60.0f, 1e-3f);
-  // Of a film that is higher than wide it is the horizontal one.
+  // On a film that is higher than wide, the field of view is horizontal.
   const Scene tall = view(camera, "100 200");
   EXPECT_NEAR(std::tan(tall.camera.verticalFovRad / 2), 2.0 * std::tan(0.5235988), 1e-4);
   const Scene window = view(camera + " \"float screenwindow\" [-1 1 -0.5 0.5]");
@@ -65,7 +65,7 @@ TEST_F(PbrtCamera, FieldOfView) {
   EXPECT_NEAR(degrees(view("Camera \"perspective\" \"float halffov\" 20")), 40.0f, 1e-3f);
 }
 
-// Pixel (x, y) of a crop looks where pixel (x + left, y + top) of the whole film does.
+// Pixel (x, y) of a crop has the direction of pixel (x + left, y + top) of the whole film.
 TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
   const std::string camera = "Camera \"perspective\" \"float fov\" 60\n";
   const std::string film = "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 80 ";

@@ -1,4 +1,4 @@
-// Spectra -> linear sRGB, and colour spaces.
+// Conversion of spectra to linear sRGB, and colour spaces.
 #include "scene/read/pbrt/spectrum.h"
 #include "tests/scene/pbrt/pbrt_files.h"
 
@@ -9,7 +9,7 @@ using pbrt::Spectrum;
 
 Vec3 light(const Spectrum& s) { return pbrt::srgbOf(pbrt::xyzOfLight(s)); }
 
-// The observer's and daylight's tables agree with the CIE's published chromaticities.
+// The tables of the observer and of daylight agree with the CIE's published chromaticities.
 TEST(PbrtSpectra, DaylightAndBlackbodies) {
   const auto xy = [](const Spectrum& s) {
     const pbrt::Xyz xyz = pbrt::xyzOfLight(s);
@@ -27,7 +27,7 @@ TEST(PbrtSpectra, LightsHaveLuminanceOne) {
   for (const double kelvin : {1000.0, 2700.0, 6504.0, 1e6})
     EXPECT_NEAR(luminance(light(pbrt::blackbody(kelvin))), 1.0, 1e-3) << kelvin;
   expectNear(light(pbrt::daylight(6504)), Vec3{1.0f}, 2e-3f);
-  expectNear(light(pbrt::blackbody(6504)), Vec3{1.0f}, 0.06f);  // about white
+  expectNear(light(pbrt::blackbody(6504)), Vec3{1.0f}, 0.06f);  // nearly white
   const Vec3 bulb = light(pbrt::blackbody(2700));
   EXPECT_NEAR(bulb.x / bulb.y, 2.4, 0.1);
   EXPECT_NEAR(bulb.z / bulb.y, 0.24, 0.05);
@@ -66,7 +66,7 @@ TEST(PbrtSpectra, ColourSpacesHaveTheirWhite) {
   // D60 is yellower than D65.
   const Vec3 d60 = pbrt::srgbOfLight(Vec3{1.0f}, ColorSpace::Aces);
   EXPECT_GT(d60.x, d60.z + 0.05f);
-  // Published matrix of Rec. 2020 to Rec. 709.
+  // The expected values come from the published matrix from Rec. 2020 to Rec. 709.
   expectNear(pbrt::srgbOfLight({1, 0, 0}, ColorSpace::Rec2020), {1.6605f, -0.1246f, -0.0182f},
              2e-3f);
 }

@@ -1,4 +1,4 @@
-// What the tests of the pbrt reader share: small scenes in a folder of their own.
+// Shared by the tests of the pbrt reader: small scenes in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// A square of side 2 in the plane z = 0, whose corners run anti-clockwise seen from +z.
+// A square of side 2 in the plane z = 0 whose corners run anticlockwise seen from +z.
 inline const std::string kSquareShape =
     "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]\n"
     "  \"point3 P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0] \"point2 uv\" [0 0 1 0 1 1 0 1]\n";
@@ -20,7 +20,7 @@ class PbrtFiles : public SceneFiles {
     write("scene.pbrt", text);
     return loadScene(at("scene.pbrt"));
   }
-  // Of a world of these directives and the square.
+  // Loads a world of these directives and the square.
   Scene loadWorld(const std::string& world) const {
     return loadPbrt("WorldBegin\n" + world + kSquareShape);
   }
@@ -32,7 +32,7 @@ class PbrtFiles : public SceneFiles {
     }
     return "";
   }
-  // The error must stand at the place and name every part.
+  // Expects an error at the place that names every part.
   void expectError(const std::string& text, const std::string& place,
                    const std::vector<std::string>& parts) const {
     const std::string error = pbrtError(text);

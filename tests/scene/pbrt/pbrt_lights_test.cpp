@@ -1,4 +1,4 @@
-// Lights and lamps: their radiance in the scene's units, and environment images.
+// Lights and area lights: their radiance in the scene's units, and environment images.
 #include <cstring>
 #include <numbers>
 
@@ -16,7 +16,7 @@ class PbrtLights : public PbrtFiles {
     EXPECT_EQ(s.lights.size(), 1u);
     return s.lights.at(0);
   }
-  // What the square emits.
+  // Emission of the square.
   Vec3 lamp(const std::string& params) const {
     return loadWorld("AreaLightSource \"diffuse\" " + params + "\n").materials.back().emission;
   }
@@ -30,7 +30,7 @@ TEST_F(PbrtLights, RgbIsRadianceItself) {
 
 TEST_F(PbrtLights, SpectraHaveLuminanceOneTimesScale) {
   EXPECT_NEAR(luminance(lamp("\"blackbody L\" 3000 \"float scale\" 5")), 5.0f, 0.01f);
-  EXPECT_NEAR(luminance(lamp("\"blackbody L\" [3000 1.5]")), 1.5f, 3e-3f);  // of pbrt-v3
+  EXPECT_NEAR(luminance(lamp("\"blackbody L\" [3000 1.5]")), 1.5f, 3e-3f);  // form of pbrt-v3
   EXPECT_NEAR(luminance(lamp("\"spectrum L\" [400 70 700 90]")), 1.0f, 1e-3f);
   expectNear(lamp("\"spectrum L\" \"stdillum-D65\""), Vec3{1.0f}, 2e-3f);
 }
@@ -46,7 +46,7 @@ TEST_F(PbrtLights, PowerIsThatOfEachShapeOfPbrt) {
               10.0 / (16.0 * std::numbers::pi * std::numbers::pi), 1e-5);
 }
 
-TEST_F(PbrtLights, LampsShineOnTheirOutside) {
+TEST_F(PbrtLights, LampsEmitOnTheirOutside) {
   const Scene s = loadWorld("AreaLightSource \"diffuse\" \"bool twosided\" true\n");
   EXPECT_TRUE(s.materials.back().twoSidedEmission);
   const Scene none = loadWorld("AttributeBegin AreaLightSource \"diffuse\" AttributeEnd\n");
@@ -69,7 +69,7 @@ TEST_F(PbrtLights, PointSpotAndDistant) {
   EXPECT_NEAR(spot.falloffRad, 10.0 * std::numbers::pi / 180.0, 1e-5);
   const LightSpec sun =
       light("Rotate 90 1 0 0 LightSource \"distant\" \"rgb L\" [2 2 2] \"float illuminance\" 3");
-  expectNear(sun.direction, {0, -1, 0}, 1e-6f);  // +z, turned
+  expectNear(sun.direction, {0, -1, 0}, 1e-6f);  // +z, rotated
   EXPECT_NEAR(sun.emission.x, 6.0f, 1e-5f);
 }
 
@@ -87,13 +87,13 @@ TEST_F(PbrtLights, TheFilmsSensorScales) {
   EXPECT_NEAR(bright.lights[0].emission.x, 6.0 / std::numbers::pi, 1e-4);
 }
 
-TEST_F(PbrtLights, GoniometricShinesEvenlyAndProjectionIsLeftOut) {
+TEST_F(PbrtLights, GoniometricEmitsUniformlyAndProjectionIsLeftOut) {
   const Scene s = loadWorld("LightSource \"projection\"\nLightSource \"goniometric\"\n");
   EXPECT_EQ(s.lights.size(), 1u);
   EXPECT_EQ(countContaining(s.warnings, "'projection'"), 1u);
 }
 
-// Equal areas: +z in the middle, -z in the corners, the equator on the diamond between them.
+// The mapping preserves area: +z is the middle, -z the corners, the equator the diamond between.
 TEST(Octahedral, Square) {
   const auto expectAt = [](FilePoint d, double u, double v) {
     const auto p = pbrt::squareOf(d);
@@ -119,7 +119,7 @@ std::string pfm(uint32_t side, const std::vector<Vec3>& fromTheTop) {
 }
 
 TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
-  // Red where x > 0 and y > 0, at the lower right of the square; elsewhere dark.
+  // The image is red where x > 0 and y > 0, at the lower right of the square, and dark elsewhere.
   constexpr uint32_t kSide = 64;
   std::vector<Vec3> square(kSide * kSide);
   for (uint32_t y = kSide / 2; y < kSide; ++y) {
@@ -153,7 +153,7 @@ TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
               {"2 x 1", "makeequiarea"});
 }
 
-// Images resampled by others have such values.
+// Images resampled by other programs have such values.
 TEST_F(PbrtLights, NegativePixelsAreBlackAndCounted) {
   std::vector<Vec3> square(64, Vec3{1.0f});
   square[9] = {-1e-5f, 1, 1};

@@ -1,4 +1,4 @@
-// Materials and textures become models with the parameters that the file gives them.
+// Materials and textures become models with the parameters of the file.
 #include "tests/scene/pbrt/pbrt_files.h"
 
 namespace bnvpl {
@@ -141,7 +141,7 @@ TEST_F(PbrtMaterials, Graphs) {
   expectNear(at(mixed, 0, 0), Vec3(0.1f, 0.2f, 0.4f) * 0.75f + Vec3{0.25f}, 1e-5f);
 }
 
-// A number, a constant texture, and one made of such.
+// Alpha is given as a number, as a constant texture, and as a texture made of a constant one.
 TEST_F(PbrtMaterials, ConstantAlphaNeedsNoTextureCoordinates) {
   for (const std::string alpha : {"0", "0.2", "0.5", "0.7", "1"}) {
     const std::string constant = "Texture \"c\" \"float\" \"constant\" \"float value\" " + alpha;
@@ -217,7 +217,7 @@ TEST_F(PbrtMaterials, TexturesOfFloatsAreReadAsTheyAre) {
   EXPECT_EQ(countContaining(s.warnings, "t.pfm: 1 of 1 pixels have negative values"), 1u);
 }
 
-// Whether it is missing or damaged, and whatever looks it up.
+// This holds for missing and damaged files, whatever uses the texture.
 TEST_F(PbrtMaterials, TexturesThatCannotBeReadAreGrey) {
   write("damaged.png", "no image");
   for (const std::string file : {"gone.exr", "damaged.png"}) {

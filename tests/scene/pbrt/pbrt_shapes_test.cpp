@@ -1,4 +1,4 @@
-// Shapes by their geometry, PLY files, and which side is outside.
+// Geometry of shapes, PLY files, and the outside of surfaces.
 #include <cstring>
 #include <numbers>
 
@@ -11,7 +11,7 @@ namespace {
 class PbrtShapes : public PbrtFiles {
  protected:
   Scene shape(const std::string& text) const { return loadPbrt("WorldBegin\n" + text); }
-  // How much of the area faces away from the point.
+  // The share of the area that faces away from the point.
   static double outward(const Scene& scene, Vec3 from) {
     double sum = 0.0;
     for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
@@ -27,7 +27,7 @@ TEST_F(PbrtShapes, SpheresHaveTheirAreaAndFaceOutwards) {
   expectNear(scene.bounds.center(), {1, 2, 3}, 1e-4f);
   EXPECT_NEAR(scene.bounds.extent().x, 4.0, 0.01);
   EXPECT_EQ(outward(scene, {1, 2, 3}), 1.0);
-  EXPECT_TRUE(scene.warnings.size() <= 1u) << joined(scene.warnings);  // of light alone
+  EXPECT_TRUE(scene.warnings.size() <= 1u) << joined(scene.warnings);  // about light
 }
 
 TEST_F(PbrtShapes, PartsOfSpheres) {
@@ -71,14 +71,14 @@ TEST_F(PbrtShapes, BilinearPatches) {
   EXPECT_EQ(scene.triangles.size(), 2u);
   EXPECT_NEAR(area(scene), 6.0, 1e-6);
   EXPECT_NEAR(geometricNormal(scene, 0).z, 1.0, 1e-6);
-  // z = u v over the unit square: the integral of sqrt(1 + u^2 + v^2) is 1.2808.
+  // On z = u v over the unit square, the integral of sqrt(1 + u^2 + v^2) is 1.2808.
   const Scene bent = shape("Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1]");
   EXPECT_EQ(bent.triangles.size(), 512u);
   EXPECT_NEAR(area(bent), 1.2808, 1e-3);
   EXPECT_EQ(countContaining(bent.warnings, "512 triangles"), 1u);
 }
 
-// An octahedron comes close to a sphere: every limit vertex of valence 4 lies on its axis.
+// An octahedron approaches a sphere: the limit of every vertex of valence 4 lies on its axis.
 TEST_F(PbrtShapes, LoopSubdivision) {
   const std::string octahedron =
       "Shape \"loopsubdiv\" \"integer levels\" [4] \"point3 P\" [1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 "
@@ -88,8 +88,8 @@ TEST_F(PbrtShapes, LoopSubdivision) {
   EXPECT_EQ(scene.triangles.size(), 8u * 256u);
   EXPECT_EQ(outward(scene, {}), 1.0);
   expectNear(scene.bounds.center(), {}, 1e-6f);
-  // Limit of a vertex: (1 - 4 g) of itself, its neighbours cancel; g = 1 / (4 + 3 / (8 b)), b =
-  // 3/32.
+  // The limit of a vertex has the weight 1 - 4 g for itself, and its neighbours cancel; g = 1 / (4
+  // + 3 / (8 b)), b = 3/32.
   EXPECT_NEAR(scene.bounds.upper.x, 1.0 - 4.0 / 8.0, 1e-5);
   float least = 1.0f;
   for (const Vec3& p : scene.positions) {
@@ -135,7 +135,7 @@ TEST(Ply, EveryFormat) {
   }
 }
 
-// But for its last blank in text.
+// In text, the last blank is not needed.
 TEST(Ply, EveryPrefixIsRefused) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     const std::string whole = plySquare(format);
@@ -155,7 +155,7 @@ TEST(Ply, ClaimsAreCheckedBeforeAnythingIsAllocated) {
   EXPECT_THROW(pbrt::readPly("a.ply", outside), InputError);
 }
 
-// A count in words can be any number; none is taken for a size before it is bounded.
+// A count in text can be any number and is bounded before it is used as a size.
 TEST(Ply, ListsWithoutEndAreCutShort) {
   for (const char* count : {"inf", "1e300", "18446744073709551616"}) {
     for (const char* list : {"vertex_indices", "other"}) {

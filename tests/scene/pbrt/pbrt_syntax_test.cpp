@@ -1,4 +1,4 @@
-// Directives, transforms, files and mistakes.
+// Directives, transforms, files and mistakes in pbrt files.
 #include <zlib.h>
 
 #include "scene/read/pbrt/lexer.h"
@@ -97,12 +97,12 @@ TEST_F(PbrtSyntax, UnknownThingsAreWarningsByNameAndLine) {
 TEST_F(PbrtSyntax, TransformsApplyInTheirOrder) {
   const Scene scene = loadWorld("AttributeBegin\nTranslate 10 0 0 Rotate 90 0 0 1 Scale 2 1 1\n" +
                                 kSquareShape + "AttributeEnd\n");
-  // The square, 2 wide and 2 high, becomes 4 wide, turns into the y direction and moves.
+  // The square, 2 wide and 2 high, becomes 4 wide, is rotated into the y direction and moved.
   expectNear(scene.bounds.lower, {-1, -2, 0}, 1e-5f);
   expectNear(scene.bounds.upper, {11, 2, 0}, 1e-5f);
 }
 
-// Of each axis: x to y to z to x.
+// Rotations about each axis take x to y, y to z and z to x.
 TEST_F(PbrtSyntax, RotationsFollowTheRightHandRule) {
   const auto turned = [&](const std::string& axis, const std::string& point) {
     return loadPbrt("WorldBegin Rotate 90 " + axis +
@@ -141,8 +141,8 @@ TEST_F(PbrtSyntax, ObjectsStandWhereTheirInstancesAre) {
   expectNear(scene.bounds.upper, {6, 2, 2}, 1e-5f);
 }
 
-// pbrt refuses them, too. One warning names them, however often they are placed.
-TEST_F(PbrtSyntax, LampsInObjectsDoNotShine) {
+// pbrt refuses such area lights, too. One warning names them, however often they are instanced.
+TEST_F(PbrtSyntax, LampsInObjectsDoNotEmit) {
   for (const std::string places :
        {"ObjectInstance \"o\"", "ObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\""}) {
     const Scene scene = loadPbrt("WorldBegin ObjectBegin \"o\"\nAreaLightSource \"diffuse\"\n" +
@@ -194,7 +194,7 @@ TEST_F(PbrtSyntax, MediaAreNamedAsNotRendered) {
       "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1]\n"
       "AttributeBegin MediumInterface \"fog\" \"\" Material \"interface\"\n"
       "Shape \"sphere\" AttributeEnd\n");
-  EXPECT_EQ(scene.triangles.size(), 2u);  // an interface is nothing to see
+  EXPECT_EQ(scene.triangles.size(), 2u);  // an interface is not visible
   EXPECT_EQ(countContaining(scene.warnings, "media are not rendered"), 2u);
 }
 

@@ -27,10 +27,10 @@ const FromLights& cornell() {
   return one;
 }
 
-// Each VPL stands for one over its probability: the expected image is that of all.
+// A kept VPL is scaled by one over its probability, so the expected image is that of all VPLs.
 TEST(Rejection, KeepsTheEnergyOnAverage) {
   const auto& c = cornell();
-  // Nothing is clamped, for clamping goes by r_max, which grows as fewer are kept.
+  // Nothing is clamped, because the clamp scales with r_max, which grows as fewer VPLs are kept.
   double sum = 0.0;
   constexpr int kSeeds = 12;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -51,7 +51,7 @@ TEST(Rejection, KeepsAboutTheCount) {
   EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // a count of independent choices
 }
 
-// What brings nothing to the view is kept a hundredth of the time, at a hundred times its flux.
+// A VPL without contribution to the view is kept with probability 1/100 and 100 times its flux.
 TEST(Rejection, WeighsByOneOverTheProbability) {
   const VplTable& all = cornell().all;
   const VplTable kept = cornell().keep({});
@@ -75,7 +75,7 @@ TEST(Rejection, IsTheSameForAnyThreads) {
   EXPECT_EQ(tables[0].flux, tables[1].flux);
 }
 
-TEST(Rejection, TellsOfItsPreparations) {
+TEST(Rejection, ReportsItsPreparations) {
   const FromLights& c = cornell();
   Preparations told;
   const Values options = resolve(eliminateSpec(), {{"count", "200"}, {"method", "rejection"}});

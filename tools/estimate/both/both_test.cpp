@@ -12,8 +12,8 @@ namespace {
 
 using methods::estimate::both::Receivers;
 
-// The Cornell box, lit by its lamp and by a sky whose photons hardly ever find it: they cover a box
-// that is much larger.
+// The Cornell box lit by its area light and by a sky whose photons hardly ever find it, because
+// they cover a much larger box.
 World lampAndSky() {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   LightSpec sky;
@@ -32,7 +32,7 @@ VplTable lit(const World& world, const VplTable& vpls, const char* method, const
   return lightVpls(world, vpls, with(options, more)).table;
 }
 
-// Squared distance of fluxes from those of `truth`.
+// Sum of squared differences of fluxes from those of `truth`.
 double errorOf(const VplTable& vpls, const VplTable& truth) {
   double sum = 0.0;
   for (size_t i = 0; i < vpls.size(); ++i) {
@@ -42,8 +42,8 @@ double errorOf(const VplTable& vpls, const VplTable& truth) {
   return sum;
 }
 
-// The mean of many runs is right for each VPL: what the pilots choose does not depend on what it is
-// chosen for.
+// The mean of many runs is right for each VPL: choices by the pilot runs are independent of the
+// samples that they weight.
 TEST(Both, HasNoBias) {
   const World world = lampAndSky();
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4k"}});
@@ -71,9 +71,9 @@ TEST(Both, HasNoBias) {
   EXPECT_NEAR(z2 / double(vpls.size()), 1.0, 0.35);
 }
 
-// At the same work: better than photons where these go astray, hardly worse where only they find
-// the lamp.
-TEST(Both, TakesTheBetterOfTheTwo) {
+// At equal work, the method is better than photons where these rarely hit, and hardly worse where
+// only photons find the area light.
+TEST(Both, IsAsGoodAsTheBetterOfTheTwo) {
   const auto errorOverThatOfPhotons = [](const World& world, const Given& truth) {
     const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
     const VplTable right = lightVpls(world, vpls, with({{"emit-points", "0"}}, truth)).table;
@@ -88,7 +88,7 @@ TEST(Both, TakesTheBetterOfTheTwo) {
   EXPECT_LT(errorOverThatOfPhotons(World("u-shape/scene.toml"), {{"photons", "1M"}}), 1.3);
 }
 
-// A point light above a mirror: what comes over it no path finds, and photons bring all of it.
+// A point light above a mirror: no path finds its reflected light, so photons contribute it all.
 TEST(Both, KeepsLightThatOnlyPhotonsFind) {
   Scene scene;
   Material mirror = lambert(Vec3(0.0f));
@@ -138,7 +138,7 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
   };
   const VplTable one = made(1, {});
   EXPECT_GT(totalFlux(one), 0.0);
-  // Interrupted again and again, after each unit of work that it got done.
+  // The run is interrupted after each unit of work and continued.
   struct Stopped {};
   std::string state;
   Resume stops{{},
@@ -158,7 +158,7 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
     } catch (const Stopped&) {
     }
   }
-  EXPECT_GT(interruptions, 10);  // in every part of the work
+  EXPECT_GT(interruptions, 10);  // interruptions in every part of the work
   for (const VplTable& t : {made(7, {}), other}) {
     EXPECT_EQ(t.flux, one.flux);
     EXPECT_EQ(t.photons, one.photons);
@@ -167,7 +167,7 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
   }
 }
 
-TEST(Both, TellsProgressOnceForAllItsWork) {
+TEST(Both, ReportsProgressOnceForAllItsWork) {
   const World world = lampAndSky();
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
   for (const char* error : {"0", "0.02"}) {
@@ -181,7 +181,7 @@ TEST(Both, TellsProgressOnceForAllItsWork) {
   }
 }
 
-// As much work as is asked for, and no more: the error stated at the end is the one wanted.
+// The method works until the stated error is the requested one, and then ends.
 TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
@@ -207,8 +207,7 @@ TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   EXPECT_NEAR(totalFlux(few.table) / totalFlux(all.table), 1.0, 0.02);
 }
 
-// What the receivers promise is what repeated runs show: the deviation of irradiances between
-// seeds.
+// The error stated by the receivers matches the deviation of irradiances between seeds.
 TEST(Both, ReceiversStateTheErrorOfIrradiance) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});

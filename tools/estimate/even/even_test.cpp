@@ -5,8 +5,8 @@
 namespace bnvpl::test {
 namespace {
 
-// As the thesis says, and where the guarded method must not: its test would be empty if nothing
-// could leak there.
+// Light leaks here as the thesis describes. The guarded method must not leak in this scene; this
+// test shows that it could.
 TEST(Even, LeaksUnderTheDivider) {
   const World world("test/divider.toml");
   const VplTable vpls = keptVpls(world, {{"count", "500"}}, {{"count", "10k"}});

@@ -1,4 +1,4 @@
-// Metals: what every model keeps to, and numbers that are known.
+// Metals: the checks for every model, and known numbers.
 #include "transport/bsdf/conductor/conductor.h"
 
 #include <complex>
@@ -62,8 +62,7 @@ TEST(Conductor, ReflectanceIsThatAtNormalIncidence) {
   expectClose(furnace(materialOf(m), {0, 0, 1}), {0.9f, 0.5f, 0.1f}, 1e-3f);
 }
 
-// theory.md: what a white metal loses without multiple scattering, and that nothing is missing with
-// it.
+// A white metal loses the energy stated in theory.md without multiple scattering, and none with it.
 TEST(Conductor, MultipleScatteringReturnsWhatFacetsLose) {
   const Vec3 wo = normalize({0.5f, 0, 1});
   EXPECT_NEAR(1.0f - furnace(materialOf(white(0.5f, false)), wo).x, 0.31f, 0.015f);
@@ -74,7 +73,7 @@ TEST(Conductor, MultipleScatteringReturnsWhatFacetsLose) {
   }
 }
 
-TEST(Conductor, AlphaPartsRoughFromSpecular) {
+TEST(Conductor, AlphaSeparatesRoughFromSpecular) {
   for (const float alpha : {0.29f, kRoughAlpha}) {
     const Scene scene = sceneOf(materialOf(metal(0.6f, alpha)));
     const SurfacePoint p = seenFrom({0, 0, 1});
@@ -87,7 +86,7 @@ TEST(Conductor, AlphaPartsRoughFromSpecular) {
   EXPECT_TRUE(hasSpecularLobes(smooth));
 }
 
-// A scratch along x spreads light across it.
+// Scratches along x scatter light along y.
 TEST(Conductor, AnisotropyFollowsTheTangent) {
   const Scene scene = sceneOf(materialOf(metal(0.05f, 0.6f)));
   SurfacePoint p = seenFrom({0, 0, 1});

@@ -1,4 +1,4 @@
-// Lambert on both sides.
+// Lambertian reflection and transmission.
 #include "transport/bsdf/diffuse_transmission/diffuse_transmission.h"
 
 #include "tests/support/bsdf_checks.h"

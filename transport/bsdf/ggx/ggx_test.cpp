@@ -1,4 +1,4 @@
-// The distribution of microfacets: its integrals, its samples, its tables.
+// The GGX distribution of microfacets: its integrals, samples and tables.
 #include "transport/bsdf/ggx/ggx.h"
 
 #include "tests/support/bsdf_checks.h"
@@ -23,8 +23,8 @@ double overHemisphere(const std::function<double(Vec3)>& fn) {
   return sum * double{kPi} * double{kPi} / (double(kRows) * kColumns);
 }
 
-// The facets' projected area is that of the surface, seen from above (D) and from aside (G1 D):
-// Heitz 2014, equations 4 and 16.
+// The projected area of the facets equals that of the surface, seen from above (D) and from any
+// direction (G1 D): Heitz 2014, equations 4 and 16.
 TEST(Ggx, FacetsCoverTheSurface) {
   for (const Ggx& g : kShapes) {
     EXPECT_NEAR(overHemisphere([&](Vec3 h) { return double{g.density(h) * h.z}; }), 1.0, 2e-3);
@@ -50,7 +50,7 @@ TEST(Ggx, SamplesFollowTheVisibleFacets) {
   }
 }
 
-// Of facets that reflect all, by brute force: sum over directions that leave.
+// The albedo of facets is integrated by brute force over the directions of reflection.
 TEST(Ggx, TablesHoldTheAlbedo) {
   for (const float alpha : {0.15f, 0.4f, 0.9f}) {
     const Ggx g{alpha, alpha};
@@ -78,7 +78,7 @@ TEST(Ggx, SmoothTablesAreTheFresnelEquations) {
     EXPECT_FLOAT_EQ(dielectricAlbedo(c, 0.0f, 1.5f), fresnelDielectric(c, 1.5f));
     EXPECT_NEAR(ggxLoss(c, 0.0f), 0.0f, 2e-3f);
   }
-  // 1 - T of diffuse light into glass of index 1.5: 0.0918 (Walsh 1926).
+  // For diffuse light into glass of index 1.5, 1 - T is 0.0918 (Walsh 1926).
   EXPECT_NEAR(dielectricMeanAlbedo(0.0f, 1.5f), 0.0918f, 1e-3f);
 }
 

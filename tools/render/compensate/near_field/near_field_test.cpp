@@ -1,4 +1,4 @@
-// What rays give back of the light that VPLs do not bring.
+// Compensation by rays for the light that VPLs leave out.
 #include "tools/render/compensate/near_field/near_field.h"
 
 #include <gtest/gtest.h>
@@ -27,13 +27,13 @@ VplTable withoutThoseThatLookLeft(const VplTable& vpls) {
   return rest;
 }
 
-// A generous clamp takes much of the light; rays give back what it takes. And where VPLs are
-// uncovered altogether, here on every surface that looks to the left, rays carry all.
-TEST(NearField, GivesBackWhatClampAndGapsTake) {
+// A wide clamp removes much of the light, and rays restore it. Where VPLs are missing altogether,
+// here on every surface that faces left, rays carry all light.
+TEST(NearField, RestoresClampedAndUncoveredLight) {
   World world("cornell/scene.toml");
   world.scene.film = {48, 48};
   const double path = indirectByPaths(world, {{"spp", "256"}});
-  // Enough VPLs for the blur of their energy, which falls with their spacing, to be small.
+  // Many VPLs keep the blur of their energy small; it falls with their spacing.
   const VplTable all = keptVpls(world, {{"count", "2000"}}, {{"count", "40k"}});
   const VplTable rest = withoutThoseThatLookLeft(all);
   ASSERT_LT(rest.size(), all.size());
@@ -47,8 +47,8 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
   }
 }
 
-// A room that is lit from below slats close above its floor. VPLs of the floor shine from one
-// place, in a gap or under a slat, for a surface that is lit most where it is least open.
+// A room lit from below slats close above its floor. VPLs of the floor lie between or under slats,
+// and represent a surface that is brightest where it is most occluded.
 Scene slattedRoom() {
   Scene scene;
   const Material white = lambert(Vec3(0.6f));
@@ -72,8 +72,8 @@ Scene slattedRoom() {
   return scene;
 }
 
-// A VPL shines from points that its light comes from, so that what leaves below the slats does not
-// pass for light in the open: from the places of VPLs the room is a tenth too bright.
+// VPLs emit from points where their light arrives, so light that leaves below the slats stays
+// there. Emission from the VPLs' positions would make the room a tenth too bright.
 TEST(NearField, LightFromBelowSlatsStaysThere) {
   const World world{slattedRoom()};
   const double path = indirectByPaths(world, {{"spp", "256"}});
@@ -88,9 +88,8 @@ TEST(NearField, LightFromBelowSlatsStaysThere) {
   }
 }
 
-// The clamp takes 1 - (distance / (clamp r))^2 of the light of a VPL of radius r, but not less than
-// nothing. How far `share` is from that of the VPL nearest to it, of those whose disk holds the
-// hit.
+// For a VPL of radius r, the clamp removes the share 1 - (distance / (clamp r))^2 of the light, or
+// 0. Returns the smallest difference between `share` and that of a VPL whose disk contains the hit.
 double distanceToAShareOfAVplThatReaches(const VplTable& lit, const SurfacePoint& hit,
                                          float distanceOverClamp, float share) {
   double nearest = INFINITY;
@@ -110,9 +109,8 @@ Uncovered uncoveredAt(const NearField& nearField, const SurfacePoint& hit, float
   return nearField.uncovered(hit, distance, nearField.coverage().lookUp(hit.position), rng);
 }
 
-// In the furnace every surface sends out rho^2 / (1 - rho) of light that came by way of another. So
-// say the VPLs, from their flux and the area that each is found to speak for, on the average over
-// surfaces.
+// In the furnace the radiance of every surface from indirect light is rho^2 / (1 - rho). The VPLs
+// state the same on average over surfaces, from their flux and the area that each covers.
 TEST(NearField, VplsKnowTheRadianceAroundThem) {
   const World world("furnace/scene.toml");  // rho = 0.5
   const VplTable lit = litVpls(world);
@@ -123,7 +121,7 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   Rng rng(streamKey(1, Stream::PixelSamples), 0);
   for (int k = 0; k < 4000; ++k) {
     SurfacePoint hit;
-    // Evenly over the six faces of the unit cube.
+    // Points are uniform on the six faces of the unit cube.
     const float side = rng.next() < 0.5f ? -0.5f : 0.5f;
     const float u = rng.next() - 0.5f, v = rng.next() - 0.5f;
     const Vec3 face = k % 3 == 0   ? Vec3{side, u, v}
@@ -142,9 +140,9 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   EXPECT_NEAR(sum / known, 0.5, 0.015);
 }
 
-// A VPL in the middle of a board that is narrower than its disk: the area is that of the board
-// under the disk, and where points of the disk hardly ever meet the board, nothing is claimed.
-TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
+// A VPL stands in the middle of a board that is narrower than its disk. Its area is that of the
+// board under the disk; where points of the disk rarely hit the board, its radiance is unknown.
+TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
   const auto radianceOfBoard = [](float width) {
     Scene scene;
     addSquare(scene, {-2, 0, width / 2}, {4, 0, 0}, {0, 0, -width}, lambert(Vec3(0.5f)));
@@ -181,7 +179,7 @@ TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
   EXPECT_FALSE(radianceOfBoard(0.01f).has_value());
 }
 
-// More rays bring the same light with less noise.
+// More rays give the same light with less noise.
 TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
@@ -206,8 +204,8 @@ TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   EXPECT_LT(spread[0], 0.7 * spread[1]);
 }
 
-// A sky through a window is found by few shadow rays; the rays that complete the VPLs find it too.
-TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
+// Few shadow rays find a sky through a window; the rays that compensate for VPLs find it too.
+TEST(NearField, ItsRaysReduceTheNoiseOfDirectLight) {
   Scene sky = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   sky.film = {32, 32};
   sky.lights.assign(1, LightSpec{});

@@ -8,10 +8,10 @@ namespace {
 
 const GatherCase& cornell() {
   static const GatherCase c("cornell/scene.toml", {25, 19},
-                            {});  // tiles at the rims: 1 wide, 3 high
+                            {});  // tiles at the edges: 1 wide, 3 high
   return c;
 }
-// Has Phong lobes, a mirror and a door with a slit of light.
+// The scene has Phong lobes, a mirror and light through a door's narrow slit.
 const GatherCase& door() {
   static const GatherCase c("veach-door/scene.toml", {32, 18}, {});
   return c;
@@ -28,7 +28,7 @@ double sumOver(const Image& image, size_t x0, size_t x1, size_t y0, size_t y1) {
   return sum;
 }
 
-// A pixel's error and light, over the channels.
+// Squared error and light of a pixel, summed over the channels.
 double errorAt(const Image& a, const Image& b, size_t i) {
   double e = 0.0;
   for (const char* c : {"R", "G", "B"}) {
@@ -44,7 +44,7 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
   for (const GatherCase* c : {&cornell(), &door()}) {
     const Image all = c->indirect("all");
     const Image cuts = c->indirect("tilecuts", {{"error", "0"}, {"max-cut", "1M"}});
-    size_t different = 0;  // a ray along an edge may be decided otherwise in a packet
+    size_t different = 0;  // a ray along an edge may have another result in a packet
     for (size_t i = 0; i < all.pixelCount(); ++i) {
       const double light = lightAt(all, i);
       different += std::sqrt(errorAt(cuts, all, i)) > 1e-4 * (light + 1e-3);
@@ -55,12 +55,12 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
   }
 }
 
-// The coarsest cut there is: much noise, no bias, in no part of the image, for any number of
-// samples held in memory together.
+// The coarsest cut has much noise but no bias in any part of the image, for any number of samples
+// held in memory together.
 TEST(TileCuts, IsUnbiased) {
   for (const GatherCase* c : {&cornell(), &door()}) {
     const Given spp{{"spp", "17"}};
-    std::array<Image, 6> all, cuts;  // of a seed, both see the same points
+    std::array<Image, 6> all, cuts;  // images of one seed see the same points
     for (uint64_t seed = 0; seed < cuts.size(); ++seed) {
       all[seed] = c->indirect("all", spp, seed + 1);
       cuts[seed] =
@@ -104,9 +104,8 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
   }
 }
 
-// A tile that shows a lamp may have a larger error than others, but not as much larger as the lamp
-// is brighter.
-TEST(TileCuts, LampsInSightHideHalfOfTheError) {
+// A tile with a visible light may have a larger error, but less so than the light is brighter.
+TEST(TileCuts, VisibleLightsHideHalfOfTheError) {
   const GatherCase c("cornell/scene.toml", {96, 96}, {{"count", "1000"}});
   const auto render = [&](const char* gather) {
     return renderVpls(c.world, c.lit,
@@ -128,12 +127,12 @@ TEST(TileCuts, LampsInSightHideHalfOfTheError) {
     lamp += 1.0;
   }
   ASSERT_GT(lamp, 20.0);
-  EXPECT_LT(std::sqrt(squares / lamp) / (light / lamp), 0.12);  // 0.24 where it hides all
+  EXPECT_LT(std::sqrt(squares / lamp) / (light / lamp), 0.12);  // 0.24 if it hid all
 }
 
-// Pixels beside a border of tiles (8 pixels) are not much worse than the others, and the step
-// across a border not much larger than between neighbours inside. Over several widths of the film,
-// so that no edge of the scene is always at a border.
+// Pixels beside a border of tiles (8 pixels) are not much worse than others, and the step across a
+// border is not much larger than between neighbours inside. Several widths of the film are tried,
+// so that no edge of the scene always lies at a border.
 TEST(TileCuts, BordersDoNotShow) {
   double error[2] = {}, step[2] = {};
   size_t pixels[2] = {}, steps[2] = {};
@@ -141,7 +140,7 @@ TEST(TileCuts, BordersDoNotShow) {
   for (uint32_t width = 37; width < 45; ++width) {
     c.world.scene.film = {width, 32};
     const Image reference = c.indirect("all"), cuts = c.indirect("tilecuts", {{"error", "0.05"}});
-    // Relative, and bounded, so that the pixel of an edge does not decide.
+    // The error is relative and bounded, so that a single pixel at an edge does not decide.
     const auto relative = [&](size_t i) {
       const double light = lightAt(reference, i);
       return light > 0.0 ? std::clamp(lightAt(cuts, i) / light - 1.0, -0.1, 0.1) : 0.0;
@@ -164,8 +163,8 @@ TEST(TileCuts, BordersDoNotShow) {
   EXPECT_LT(across / within, 2.2);
 }
 
-// Pixels that share their random VPLs are not neighbours: the error is grain that averages out, and
-// not blocks.
+// Pixels that share their random VPLs are not neighbours: the error is fine grain that averages
+// out, not blocks.
 TEST(TileCuts, NoiseIsFineGrain) {
   GatherCase c("cornell/scene.toml", {40, 32}, {{"count", "2000"}});
   const Image reference = c.indirect("all"), cuts = c.indirect("tilecuts", {{"error", "0.05"}});
@@ -183,7 +182,7 @@ TEST(TileCuts, NoiseIsFineGrain) {
     }
   }
   EXPECT_GT(ofMeans, 0.0);
-  EXPECT_LT(ofMeans / ofPixels, 0.4);  // independent errors: 1/4
+  EXPECT_LT(ofMeans / ofPixels, 0.4);  // 1/4 for independent errors
 }
 
 }  // namespace

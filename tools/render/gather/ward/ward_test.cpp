@@ -3,7 +3,7 @@
 namespace bnvpl::test {
 namespace {
 
-// What is not tested counts with an expected visibility: right on average, up to its own error.
+// Untested VPLs count with an expected visibility, which is right on average up to its own error.
 TEST(Ward, HasTheEnergyOfAllVpls) { expectEnergyOfAll("ward", 0.02, 1); }
 
 TEST(Ward, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("ward"); }
@@ -15,7 +15,7 @@ TEST(Ward, WithoutToleranceEveryVplIsTested) {
   for (size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(y[i], x[i], 1e-5f * (x[i] + 1e-3f)) << i;
 }
 
-// Ward 1994: most of the shadow rays are saved at a small error.
+// Most of the shadow rays are saved at a small error (Ward 1994).
 TEST(Ward, SavesShadowRays) {
   const GatherCase& c = *gatherCases().front();
   const auto rays = [&](const std::string& gather) {
@@ -27,7 +27,7 @@ TEST(Ward, SavesShadowRays) {
   EXPECT_LT(rays("ward"), 0.6 * rays("all"));
 }
 
-TEST(Ward, TellsOfItsPreparations) {
+TEST(Ward, ReportsItsPreparations) {
   const GatherCase& c = *gatherCases().front();
   Preparations told;
   const Values options =

@@ -1,5 +1,5 @@
-// The guided path tracer against the path tracer, whose image it must have whatever the VPLs say,
-// and what its guide promises.
+// The guided path tracer against the path tracer, whose image it must have whatever the VPLs are,
+// and guarantees of its guide.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -47,8 +47,8 @@ TEST(DirectionGrid, FindsTheCellThatADirectionWasDrawnIn) {
   }
 }
 
-// The density over the sphere is that of the draws: its integral is 1, and half of the sphere gets
-// as many draws as it says.
+// The density over the sphere is that of the draws: it integrates to 1, and its integral over half
+// of the sphere is the share of draws there.
 TEST(Guide, DensitiesAreThoseOfTheDraws) {
   const World world("u-shape/scene.toml");
   const VplTable lit = fewLit(world);
@@ -97,7 +97,7 @@ TEST(Guided, ClosedRoomsStayDark) {
   EXPECT_EQ(stats.direct + stats.indirect, 0.0);
 }
 
-// The lamp, a sky through the open front, a sun and a point light; a mirror, gloss.
+// The area light, a sky through the open front, a sun and a point light, with a mirror and gloss.
 TEST(Guided, HasThePathTracersImage) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {18, 18};
@@ -118,7 +118,7 @@ TEST(Guided, HasThePathTracersImage) {
   wall.phong().diffuse = Vec3{0.3f};
   wall.phong().glossy = Vec3{0.5f};
   wall.phong().exponent = 12.0f;
-  // The bulb's light over a mirror is photons', which path tracing has none of.
+  // Only photons find the point light over a mirror; the path tracer has none.
   Scene withoutMirror = scene;
   withoutMirror.materials.at(scene.triangles.back().material).phong().mirror = Vec3{};
   scene.lights.pop_back();
@@ -138,8 +138,8 @@ TEST(Guided, HasThePathTracersImage) {
   }
 }
 
-// A closed room with a bulb in a box of glass, which the camera does not see, and a wall that is half
-// a mirror.
+// A closed room with a point light in a box of glass, which the camera does not see, and a wall
+// that is half a mirror.
 Scene bulbInGlass() {
   SceneBuilder builder("bulb in glass");
   builder.setFilm({10, 10});
@@ -179,8 +179,8 @@ Scene bulbInGlass() {
   return builder.finish();
 }
 
-// What walls reflect again of light that came through glass, photons bring.
-TEST(Guided, HasAllLightOfABulbInGlass) {
+// Photons contribute the light that walls reflect after it came through glass.
+TEST(Guided, HasAllLightOfAPointLightInGlass) {
   const World world(bulbInGlass());
   const VplTable lit = fewLit(world);
   const auto light = [&](uint64_t seed) {
@@ -189,8 +189,8 @@ TEST(Guided, HasAllLightOfABulbInGlass) {
   EXPECT_TRUE(sameExpectation(light, guided(world, lit, {{"spp", "16"}})));
 }
 
-// Light that a path finds is shared: all of it from matt walls, bare or coated, the matt part of it
-// from walls of glTF and of MTL's gloss, and none of it from metal.
+// Path reuse shares the light that a path finds: all of it at diffuse walls, bare or coated, the
+// diffuse part at walls of glTF and of MTL's gloss, and none at metal.
 TEST(Guided, SharedPathsHaveThePathTracersImage) {
   const auto ggx = [](float alpha) { return Roughness(Scalar(alpha), Roughness::Alpha::Same); };
   MetallicRoughnessModel gltf;
@@ -223,7 +223,7 @@ TEST(Guided, SharedPathsHaveThePathTracersImage) {
   }
 }
 
-// Whatever the VPLs say: flux that is not theirs, and a guide that takes nearly all directions.
+// The VPLs have a wrong flux, and the guide takes nearly all directions.
 TEST(Guided, HasThePathTracersImageByWrongVpls) {
   const World world = cornell(18);
   VplTable lit = fewLit(world);
@@ -235,7 +235,7 @@ TEST(Guided, HasThePathTracersImageByWrongVpls) {
   EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, bold)));
 }
 
-// Light comes round a bend, which few paths find.
+// Light comes round a corner, which few paths find.
 TEST(Guided, HasLessNoiseWhereLightComesRoundACorner) {
   World world("u-shape/scene.toml");
   world.scene.film = {32, 24};

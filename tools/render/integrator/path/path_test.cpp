@@ -17,7 +17,7 @@ TEST(PathTracer, TruncatedFurnaceIsThePartialSeries) {
   EXPECT_NEAR(meanOf(image), 1.0 + 0.5 + 0.25, 0.01);  // emitted, direct, one bounce
 }
 
-// Radiance of a diffuse patch under a parallel emitting one, by the form factor of two aligned
+// Radiance of a diffuse patch under a parallel emitting one, from the form factor of two aligned
 // parallel squares (Howell's catalogue, C-11): W = side / distance = 0.2 gives F = 0.012404.
 TEST(PathTracer, TwoPatchFormFactor) {
   const World world("test/two-patches.toml");
@@ -26,7 +26,7 @@ TEST(PathTracer, TwoPatchFormFactor) {
   for (const Material& m : world.scene.materials) (isBlack(m.emission) ? receiver : emitter) = &m;
   const Given options{{"spp", "64"}, {"layers", "albedo"}, {"max-bounces", "0"}};
   const Image image = renderWithout(world, "path", options).image;
-  // Mean over the pixels that the receiver covers wholly; its irradiance varies by less than 2 %.
+  // Mean over the pixels inside the receiver; its irradiance varies by less than 2 %.
   const std::vector<float>&r = *image.find("R"), &albedo = *image.find("albedo.R");
   double sum = 0.0;
   size_t covered = 0;
@@ -52,7 +52,7 @@ TEST(PathTracer, SplitsDirectAndIndirectWithoutRest) {
   EXPECT_NEAR(indirect.indirect, all.indirect, 0.02 * all.indirect);
 }
 
-// The Cornell box in daylight: its lamp, a sky through the open front, a low sun and a point light.
+// The Cornell box in daylight: area light, sky through the open front, low sun and point light.
 Scene boxInDaylight() {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {32, 32};
@@ -69,8 +69,8 @@ Scene boxInDaylight() {
   return scene;
 }
 
-// The VPL renderer's direct light is the path tracer's, by another estimator: by light sampling
-// alone, and together with the rays that complete the VPLs, which must count no light twice.
+// The VPL renderer estimates the same direct light by other means: by light sampling alone, and
+// together with the compensating rays, without counting any light twice.
 TEST(PathTracer, DirectLightAgreesWithTheVplRenderers) {
   for (const bool daylight : {false, true}) {
     World world = daylight ? World(boxInDaylight()) : World("cornell/scene.toml");
