@@ -31,7 +31,8 @@ SceneOptions sceneOptionsOf(const Json& json);
 // Whether loading a scene prints its warnings. Tools hold them (holdWarning()) if an earlier stage
 // has printed them, or if they report them in another way.
 enum class Warnings { Print, Hold };
-// Loads the scene and selects its camera: the first if there are several.
+// Loads the scene. Its camera is the first view that the options name, otherwise the first of the
+// file.
 Scene loadSceneFor(const SceneOptions& options, Warnings warnings);
 
 // All views that the options name, otherwise the scene's own. Adds their files to scene.files.
