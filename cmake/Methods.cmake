@@ -1,9 +1,9 @@
-# Methods are folders. bnvpl_add_methods(render_lib gather) called in tools/render takes every folder F of
-# tools/render/gather that holds F.cpp: compiles its sources into the library, collects its *_test.cpp for
-# bnvpl_methods_test, and makes the function gatherMethods() that the slot's header, gather/gather.h, declares.
-# Each folder defines one constant, bnvpl::methods::gather::F::method, of the type GatherMethod.
+# Each method is a folder. bnvpl_add_methods(render_lib gather), called in tools/render, finds every folder F of
+# tools/render/gather that holds F.cpp. It compiles the folder's sources into the library, collects its *_test.cpp
+# for bnvpl_methods_test, and generates the function gatherMethods(), which gather/gather.h declares.
+# Each folder defines one constant, bnvpl::methods::gather::F::method, of type GatherMethod.
 #
-#   bnvpl_add_methods(LIBRARY SLOT [DIRECTORY])   # DIRECTORY: where the folders lie, SLOT unless given
+#   bnvpl_add_methods(LIBRARY SLOT [DIRECTORY])   # DIRECTORY: parent of the folders; default: SLOT
 function(bnvpl_add_methods library slot)
   set(directory ${slot})
   if(ARGC GREATER 2)

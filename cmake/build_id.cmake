@@ -1,5 +1,5 @@
-# Writes HEADER with a hash of the sources that decide what the tools compute, so that equal sources have equal
-# build identities and others have others. Run at each build: cmake -DSOURCE=... -DHEADER=... -P build_id.cmake
+# Writes HEADER with a hash of FLAVOUR and of all sources that determine what the tools compute: the build id.
+# Runs at each build: cmake -DSOURCE=... -DHEADER=... -DFLAVOUR=... -P build_id.cmake
 file(GLOB_RECURSE files RELATIVE ${SOURCE}
      ${SOURCE}/core/* ${SOURCE}/formats/* ${SOURCE}/spatial/* ${SOURCE}/scene/* ${SOURCE}/transport/* ${SOURCE}/images/*
      ${SOURCE}/tools/* ${SOURCE}/cmake/*)

@@ -4,8 +4,8 @@
 
 namespace bnvpl {
 
-// Version and a hash of the sources: "0.2.0+3f9c0a1b2c4d". The same for equal sources and compile
-// options; what another build has begun is not gone on with.
+// Version and a hash of sources and compile options: "0.2.0+<12 hex digits>". A run does not
+// resume checkpoints or merge shards of another build.
 std::string buildId();
 
 }  // namespace bnvpl

@@ -10,7 +10,7 @@
 namespace bnvpl {
 namespace {
 
-// Of what stands at `path` in the two.
+// Describes the first difference between two values that stand at `path`.
 std::string difference(const Json& before, const Json& now, const std::string& path) {
   if (before.is_array() && now.is_array()) {
     if (before.size() != now.size()) {
@@ -41,7 +41,7 @@ std::string difference(const Json& before, const Json& now, const std::string& p
   return path;
 }
 
-// The state in `file`, which must be of that run.
+// Returns the state in `file`. Throws InputError if the file belongs to another run.
 std::string stateIn(const fs::path& file, const Json& run) {
   CheckpointFile found = readCheckpoint(file);
   const Json theirs = Json::parse(found.run, nullptr, /*allow_exceptions=*/false);
@@ -62,13 +62,13 @@ std::string differenceOf(const Json& before, const Json& now) {
 void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
   CLI::Option* file =
       addFile(cli, "--checkpoint", options.file,
-              "save the work to this file now and then, and go on from it where it exists; it is "
-              "removed when the output is written");
-  addReal(cli, realOption("checkpoint-every", "", 0, 1e6, "", "seconds between two savings"),
+              "save progress to this file periodically, and resume from it if it exists; removed "
+              "once the output is written");
+  addReal(cli, realOption("checkpoint-every", "", 0, 1e6, "", "seconds between two saves"),
           options.everyS)
       ->needs(file);
   cli.add_flag("--checkpoint-replace", options.replace,
-               "begin anew where that file is the checkpoint of another run, or damaged")
+               "start over if the checkpoint is damaged or belongs to another run")
       ->needs(file);
 }
 

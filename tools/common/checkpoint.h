@@ -1,4 +1,4 @@
-// --checkpoint FILE: a long stage can be stopped and continued, with the same bytes in the end.
+// --checkpoint FILE: a long stage can be stopped and resumed without a change to its output.
 #pragma once
 
 #include <optional>
@@ -9,32 +9,33 @@
 
 namespace bnvpl {
 
-// The first thing in which two runs differ: "options photons was 10000000 and is now 5000000".
+// Describes the first difference of two runs: "options photons was 10000000 and is now 5000000".
 std::string differenceOf(const Json& before, const Json& now);
 
 struct CheckpointOptions {
-  fs::path file;  // empty: none
+  fs::path file;  // empty: no checkpoint
   double everyS = 60.0;
-  bool replace = false;  // one that is damaged or of another run counts as none
+  bool replace = false;  // start over if the file is damaged or of another run
 };
 
-// --checkpoint, --checkpoint-every and --checkpoint-replace. They do not change what is computed.
+// Adds --checkpoint, --checkpoint-every and --checkpoint-replace, none of which changes the result.
 void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options);
 
 class Checkpoint {
  public:
-  // `run` names everything that decides the result: tool, version, options, inputs; processorId()
-  // joins it. Reads the file where there is one. Throws InputError when it is damaged or belongs to
-  // another run, unless such checkpoints are to be replaced; OutputError when it could not be
-  // written later.
+  // `run` names everything that determines the result: tool, version, options and inputs; the
+  // constructor adds processorId(). Reads the file if it exists. Throws InputError if the file is
+  // damaged or belongs to another run, unless it is a checkpoint and options.replace is set, and
+  // OutputError if it cannot be written.
   Checkpoint(CheckpointOptions options, Json run);
 
-  // For the stage: what was done before; pauses every so often, and when the user interrupts, which
-  // throws Interrupted once the work is saved. Without --checkpoint: nothing. Must not outlive
-  // this.
+  // For the stage: the saved state, and pauses every options.everyS seconds and at an interrupt.
+  // After an interrupt save() throws Interrupted once the state is on disk. Empty without
+  // --checkpoint. Must not outlive this object.
   Resume resume();
 
-  // Once the output stands; interruptions are no longer deferred. What is no checkpoint stays.
+  // Removes the file once the output is written, unless it is not a checkpoint; ends the deferral
+  // of interrupts.
   void remove();
 
  private:

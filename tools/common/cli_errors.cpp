@@ -16,14 +16,14 @@ std::string commandsOf(const CLI::App& cli) {
   return names;
 }
 
-// Options of former versions.
+// Outdated names of options, with their replacements.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
     {{"--specks", "--fireflies redistribute or keep"},
      {"--sharers", "--reuse"},
      {"--balance", "--allocate"},
      {"--near-field", "--compensate near-field or none"}}};
 
-// Words that no option takes.
+// Describes words that belong to no option.
 std::string describeExtras(const std::vector<std::string>& words) {
   std::string list;
   bool option = false;

@@ -1,4 +1,4 @@
-// What is wrong with a command line, in sentences that name the option and the cure.
+// Messages for a wrong command line that name the option and the remedy.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-// `tool`: for the hint at its --help.
+// The message ends with a hint to the --help of `tool`.
 std::string describe(const CLI::ParseError& error, const CLI::App& cli, const std::string& tool);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// Options on a command line: how --help shows them, and those that stand outside a stage's table.
+// Options on a command line: their text in --help, and options outside the table of a stage.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,14 @@
 
 namespace bnvpl {
 
-// For --help: "how far a VPL reaches for light (r_max, 0.01 to 100)", and "NUMBER".
+// Texts for --help: "how far a VPL reaches for light (r_max, 0.01 to 100)", and "NUMBER".
 std::string helpOf(const Option& option);
 std::string typeOf(const Option& option);
 
-// An option of one tool, read like those of a stage; `take` gets what was given. Throws UsageError
-// while the command line is read.
+// Adds an option of one tool, parsed like those of a stage. `take` receives the value. An invalid
+// value makes the parsing of the command line throw UsageError.
 CLI::Option* addOption(CLI::App& cli, const Option& option, std::function<void(const Value&)> take);
-// The same for a number, whose default is the value that it has now.
+// The same for a number, whose current value is the default.
 CLI::Option* addReal(CLI::App& cli, const Option& option, double& value);
 CLI::Option* addReal(CLI::App& cli, const Option& option, std::optional<double>& value);
 

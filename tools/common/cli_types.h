@@ -1,4 +1,4 @@
-// CLI11's types by name, for headers: the library itself takes seconds to compile.
+// Forward declarations of CLI11's types: its own header takes seconds to compile.
 #pragma once
 
 namespace CLI {

@@ -4,7 +4,7 @@
 
 namespace bnvpl {
 
-// Seconds since some moment in the past; never runs backwards.
+// Seconds of a monotonic clock with an arbitrary zero.
 inline double nowS() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

@@ -15,10 +15,10 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kMinCpuS = 0.5;   // that a probe takes, where there is so much to do
-constexpr double kMaxCpuS = 10.0;  // that all probes take, as far as units are short
+constexpr double kMinCpuS = 0.5;   // CPU time of a probe, if the work is that long
+constexpr double kMaxCpuS = 10.0;  // CPU time of all probes, if single units are short
 
-double bytesIn(const char* key) {  // of /proc/self/status: "VmHWM:     12345 kB"
+double bytesIn(const char* key) {  // a line of /proc/self/status: "VmHWM:     12345 kB"
   std::ifstream in("/proc/self/status");
   unsigned long long kib = 0;
   const std::string format = std::string(key) + ": %llu kB";
@@ -41,7 +41,7 @@ Probe tryUnits(const std::function<void(const Resume&)>& part, const Shard& shar
   resume.shard = shard;
   resume.sink = &nowhere;
   resume.probe = &probe;
-  resume.pause = [&] {  // asked once after each unit
+  resume.pause = [&] {  // called once after each unit
     units.fetch_add(1, std::memory_order_relaxed);
     return false;
   };
@@ -52,8 +52,8 @@ Probe tryUnits(const std::function<void(const Resume&)>& part, const Shard& shar
   return {cpuSecondsSoFar() + probe.skippedCpuS() - before, static_cast<double>(units)};
 }
 
-// The middle one of so many parts, whose units are those of all over so many, rounded. Odd, since
-// an image's tiles often come in rows of even numbers, of which a part would hold whole columns.
+// The middle one of about `parts` parts. Their number is odd: rows of an image often have an even
+// number of tiles, and one of an even number of parts would then hold whole columns.
 Shard middleOf(double parts) {
   const uint64_t of = static_cast<uint64_t>(parts) | 1;
   return {of / 2, of / 2 + 1, of};
@@ -64,8 +64,8 @@ Shard middleOf(double parts) {
 void addCostOptions(CLI::App& cli, CostOptions& options) {
   CLI::Option* estimate = cli.add_flag(
       "--estimate", options.estimate,
-      "do a small part of the work, print what all of it will need, and write nothing");
-  cli.add_flag("--json", options.json, "print that as JSON")->needs(estimate);
+      "do a small part of the work, print the estimated CPU time and memory, and write nothing");
+  cli.add_flag("--json", options.json, "print the estimate as JSON")->needs(estimate);
 }
 
 double cpuSecondsSoFar() {
@@ -78,7 +78,7 @@ double cpuSecondsSoFar() {
 }
 
 MemoryWatch::MemoryWatch() : before_(bytesIn("VmRSS")) {
-  std::ofstream("/proc/self/clear_refs") << "5\n";  // forget the peak
+  std::ofstream("/proc/self/clear_refs") << "5\n";  // resets the peak
 }
 
 double MemoryWatch::peak() const { return bytesIn("VmHWM"); }
@@ -91,22 +91,22 @@ Cost Cost::ofShard(const std::optional<Shard>& shard) const {
 
 Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& probe,
                  const UnitsToTry& units) {
-  constexpr uint64_t kNone = uint64_t{1} << 40;  // no work has so many units
+  constexpr uint64_t kNone = uint64_t{1} << 40;  // more parts than any work has units
   const double startS = cpuSecondsSoFar() + probe.skippedCpuS();
   const double setupS = tryUnits(part, {kNone - 1, kNone, kNone}, probe, units.apart).cpuS;
-  // What is made once for all of them counts once: of the first time, in setupS.
+  // Results that the first run keeps for all others count once, in setupS.
   const double begunS = cpuSecondsSoFar();
   const Probe base = tryUnits(part, {kNone - 1, kNone, kNone}, probe, units.apart);
   const double baseS = cpuSecondsSoFar() - begunS, enoughS = std::max(kMinCpuS, 0.5 * baseS);
-  // The first units may prepare what is not of the units: their cost is the slope between two
-  // probes that had any.
+  // The first units may include preparations. The cost of a unit is therefore the slope between two
+  // probes that ran some units.
   Probe fewer{base.cpuS, 0.0};
   double fewerShare = 0.0;
   for (double parts = 4096.0;;) {
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
     const double beforeS = cpuSecondsSoFar();
     const Probe some = tryUnits(part, shard, probe, units.apart);
-    const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // of the units
+    const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // CPU time of the units
         leftS = kMaxCpuS - (cpuSecondsSoFar() - begunS) - baseS;
     const double share = 1.0 / static_cast<double>(shard.of);
     const bool enough = some.units >= units.fewest && ownS >= enoughS;
@@ -116,7 +116,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
       const bool sure = some.units >= units.fewest && ownS >= 0.2 * enoughS;
       return {bytesIn("VmHWM"), startS + setupS + firstS, workS, share, sure || shard.whole()};
     }
-    const double measuredS = std::max(ownS, 0.03 * std::max(baseS, kMinCpuS));  // or below noise
+    const double measuredS = std::max(ownS, 0.03 * std::max(baseS, kMinCpuS));  // above noise
     double more = 1.3 * std::max(units.fewest / std::max(some.units, 0.5), enoughS / measuredS);
     more = std::clamp(more, 2.0, 64.0);
     if (some.units > 0.0) {
@@ -132,7 +132,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
 Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t)>& part,
                 const std::function<double(uint64_t)>& growth) {
   const double startS = cpuSecondsSoFar();
-  double fewerS = 0.0, fewer = 0.0;  // CPU seconds and growth of the probe before
+  double fewerS = 0.0, fewer = 0.0;  // CPU seconds and growth of the previous probe
   for (uint64_t some = std::min(rows, first);; some = std::min(rows, 4 * some)) {
     const MemoryWatch memory;
     const double before = cpuSecondsSoFar();
@@ -147,7 +147,7 @@ Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t
         grown > fewer && cpuS > fewerS ? (cpuS - fewerS) / (grown - fewer) : cpuS / grown;
     return {memory.before() + all * (memory.peak() - memory.before()), startS,
             cpuS + slope * (growth(rows) - grown), 1.0 / all,
-            some == rows || fewer > 0.0};  // two sizes show how it grows
+            some == rows || fewer > 0.0};  // the slope needs two sizes
   }
 }
 

@@ -1,4 +1,4 @@
-// --estimate: what a run will need, by doing a small part of it.
+// --estimate: predicts the CPU time and memory of a run from a small part of it.
 #pragma once
 
 #include <functional>
@@ -13,14 +13,14 @@ namespace bnvpl {
 struct CostOptions {
   bool estimate = false, json = false;
 };
-// --estimate and --json. A run that estimates writes nothing.
+// Adds --estimate and --json. A run that estimates writes no files.
 void addCostOptions(CLI::App& cli, CostOptions& options);
 
-// CPU seconds of this process so far, all its threads together.
+// CPU seconds that all threads of this process have used so far.
 double cpuSecondsSoFar();
 
-// The most memory that the process has held since this was made, and what it held then, in bytes.
-// Where Linux does not let a process forget its peak, the peak is that since its start.
+// Peak memory of the process since construction, and its memory at construction, in bytes. Where
+// Linux does not let a process reset its peak, the peak counts from the start of the process.
 class MemoryWatch {
  public:
   MemoryWatch();
@@ -33,31 +33,31 @@ class MemoryWatch {
 
 struct Cost {
   double memoryBytes = 0.0;
-  double setupCpuS = 0.0;  // what each shard does again: loading, and all that goes before units
-  double workCpuS = 0.0;   // what shards share out
-  double probed = 1.0;     // of the work, that was done to know this
-  bool sure = true;        // else that was too little: units of the work take too long
+  double setupCpuS = 0.0;  // repeated by each shard: loading, and all else before the units
+  double workCpuS = 0.0;   // divided among the shards
+  double probed = 1.0;     // share of the work that was done for this estimate
+  bool sure = true;        // false: that share was too small, because single units take long
 
-  Cost ofShard(const std::optional<Shard>& shard) const;  // none: all of it
+  Cost ofShard(const std::optional<Shard>& shard) const;  // none: the whole work
 };
 
 struct UnitsToTry {
-  double fewest = 32.0;  // they differ
-  bool apart = false;    // they will be done in shards, where neighbours share nothing
+  double fewest = 32.0;  // min number of units, since their costs differ
+  bool apart = false;    // the work will run in shards, where neighbouring units share no results
 };
-// Of work in units, by `part`, which does those of resume.shard: first of none, then of more and
-// more, until what they take can be told from the rest, or takes seconds. Preparations that go by
-// resume.probe count in full.
+// Estimates work that consists of units. `part` does the units of resume.shard: first none, then
+// more and more, until their CPU time stands out from the rest or reaches seconds. Preparations
+// that use resume.probe count in full.
 Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& probe,
                  const UnitsToTry& units = {});
 
-// Of work on rows, by `part`, which does it for so many of them: of `first`, then more and more,
-// until that can be measured. `growth` tells how the CPU time goes with rows, but for a factor and
-// what is the same for any number; it is asked after `part`. Memory goes with the rows.
+// Estimates work on rows. `part` does it for a number of rows: `first`, then more and more, until
+// the CPU time can be measured. That time is a * growth(rows) + b with unknown a and b; `growth` is
+// called after `part`. Memory beyond that at the start is proportional to the rows.
 Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t)>& part,
                 const std::function<double(uint64_t)>& growth);
 
-// One line, or with --json an object.
+// Prints one line, or a JSON object with --json.
 void printCost(const Cost& cost, const CostOptions& options);
 
 }  // namespace bnvpl

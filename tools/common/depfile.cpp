@@ -9,8 +9,8 @@
 namespace bnvpl {
 namespace {
 
-// `file`, or the nearest of its folders that is there: its whole path, as ninja's graphs have other
-// targets that are named as folders.
+// Returns `file`, or the absolute path of its nearest existing folder. A relative path could be the
+// name of another target in ninja's graph.
 fs::path nearestTo(const fs::path& file) {
   std::error_code ignored;
   fs::path found = file;
@@ -34,13 +34,13 @@ std::string escaped(const fs::path& file) {
 
 void requireDepfileName(const fs::path& file) {
   const std::string name = file.string();
-  // What is left, both read as it is, but blanks, which are escaped.
+  // Make and ninja read all other characters literally, except blanks, which are escaped.
   constexpr std::string_view kSpecial = "#$%*:;<=>?[\\]^`{|}~";
   const bool plain = std::ranges::all_of(name, [&](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return byte >= ' ' && byte != 0x7f && kSpecial.find(c) == std::string_view::npos;
   });
-  // A&: and A(B) are rules and archives to Make.
+  // Make reads "A&:" as a grouped rule and "A(B)" as a member of an archive.
   if (plain && !name.ends_with('&') && !name.ends_with(')') && !name.ends_with(' ')) return;
   throw UsageError("--depfile: Make and ninja cannot read the name '" + name +
                    "'; rename it, to letters, digits, blanks and ! \" & ' ( ) + , - . @ _");

@@ -1,4 +1,4 @@
-// "target: file file ...", as Make and ninja read it.
+// Dependency files for Make and ninja: "target: file file ...".
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@ namespace bnvpl {
 // Throws UsageError for a file whose name Make or ninja cannot read in a depfile.
 void requireDepfileName(const fs::path& file);
 
-// Adds a depfile to what the run makes. In place of a file that is missing stands its folder, which
-// changes when the file arrives. Does nothing when `depfile` is empty.
+// Adds a depfile to the outputs of a run. A missing file is replaced by its nearest existing
+// folder, which changes when the file appears. Does nothing if `depfile` is empty.
 void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,
                 const std::vector<fs::path>& files);
 

@@ -1,7 +1,7 @@
-// Text from files and command lines, made harmless for terminals and logs: UTF-8 stays as it is,
-// and what would act instead of being shown is spelled out.
-//   ESC -> \x1b   a byte that is no UTF-8 -> \xff   U+202E, which reverses the text -> \u202e
-// JSON stays the same JSON: it holds none of the first two, and the third is its own escape.
+// Makes text from files and command lines harmless for terminals and logs: printable UTF-8 stays,
+// and characters that would control the terminal are escaped.
+//   ESC -> \x1b   a byte that is not UTF-8 -> \xff   U+202E, which reverses the text -> \u202e
+// JSON keeps its meaning: it contains neither of the first two, and \u202e is a JSON escape.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace bnvpl {
 // Whether line breaks and tabs, which a text of several lines needs, are escaped too.
 enum class LineBreaks { Keep, Escape };
 
-// One character at the start of a text that is not empty. `length` 1 and no `valid`: a byte that is
-// no UTF-8 (Unicode 15, table 3-7).
+// The first character of a text that is not empty. A byte that is not UTF-8 (Unicode 15, table 3-7)
+// has `length` 1 and is not `valid`.
 struct Utf8Character {
   uint32_t code;
   size_t length;
@@ -50,7 +50,7 @@ inline bool isUtf8(std::string_view text) {
   return true;
 }
 
-// Controls, and characters that reorder or break the line that holds them.
+// True for control characters, and for characters that reorder or break their line.
 constexpr bool actsOnTerminals(uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x61c || c == 0x200e || c == 0x200f ||
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069) || c == 0xfeff;
@@ -65,10 +65,10 @@ void outHexadecimal(uint32_t code, size_t digits, const Out& out) {
   out(std::string_view(text.data(), 2 + digits));
 }
 
-// Calls out(std::string_view) for one part after another. Allocates nothing.
+// Calls out(std::string_view) for each part of the escaped text in order. Allocates nothing.
 template <typename Out>
 void escapeText(std::string_view text, LineBreaks breaks, const Out& out) {
-  size_t plain = 0;  // characters in front that stay as they are
+  size_t plain = 0;  // bytes at the front of `text` that stay unchanged
   const auto flush = [&] {
     if (plain > 0) out(text.substr(0, plain));
     text.remove_prefix(plain);
@@ -92,7 +92,7 @@ void escapeText(std::string_view text, LineBreaks breaks, const Out& out) {
   flush();
 }
 
-// A text of several lines, and one that has to stay on its line.
+// escapedText() keeps line breaks and tabs; escapedLine() escapes them.
 inline std::string escaped(std::string_view text, LineBreaks breaks) {
   std::string safe;
   escapeText(text, breaks, [&safe](std::string_view part) { safe += part; });

@@ -1,4 +1,4 @@
-// Exposures in stops (EV), as options of vpl-render and vpl-inspect compare.
+// Exposures in stops (EV), for options of vpl-render, vpl-merge and vpl-inspect compare.
 #pragma once
 
 #include <array>
@@ -7,13 +7,13 @@
 
 namespace bnvpl {
 
-inline constexpr double kMaxEv = 64.0;  // either way; light * 2^64 squared is far inside a double
+inline constexpr double kMaxEv = 64.0;  // positive or negative; a double holds (light * 2^64)^2
 
-// "-1.5", up to 64 either way; none for "auto". Throws UsageError.
+// Parses "-1.5", from -kMaxEv to kMaxEv; returns none for "auto". Throws UsageError.
 std::optional<double> parseExposure(const std::string& text);
 
-// "-4:10"; none for "auto". Throws UsageError unless both are exposures and the first is not
-// larger.
+// Parses "-4:10"; returns none for "auto". Throws UsageError unless both are exposures in ascending
+// order; they may be equal.
 std::optional<std::array<double, 2>> parseExposureRange(const std::string& text);
 
 }  // namespace bnvpl

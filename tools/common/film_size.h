@@ -1,4 +1,4 @@
-// "--size 640x480": another film than the scene's, with the same vertical field of view.
+// --size 640x480: replaces the size of the scene's film; the vertical field of view stays.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace bnvpl {
 
-// "640x480", each side 1 to kMaxFilmSide. Throws UsageError on anything else.
+// Parses "640x480", each side from 1 to kMaxFilmSide. Throws UsageError on anything else.
 Film parseSize(const std::string& text);
-std::string sizeText(const Film& film);  // and back
+std::string sizeText(const Film& film);  // the inverse
 
 }  // namespace bnvpl

@@ -25,10 +25,10 @@ struct Stop {
 constexpr std::array<Stop, 4> kStops{
     {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}, {SIGXCPU, "SIGXCPU"}}};
 
-std::array<char, 64> toolName{};  // what a handler needs is ready before it runs
+std::array<char, 64> toolName{};  // set before any handler runs
 std::atomic<bool> deferring{false}, ending{false};
 std::atomic<int> pending{0};
-std::array<std::atomic<int64_t>, kStops.size()> firstNs{};  // when each signal came; 0: not yet
+std::array<std::atomic<int64_t>, kStops.size()> firstNs{};  // first arrival of each signal; 0: none
 constexpr int64_t kOneRequestNs = 1'000'000'000;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
@@ -41,7 +41,7 @@ void sayInterrupted(int signal, const char* what) {
   line.add("); ").add(what);
 }
 
-// Inside the handler the signal waits until it returns.
+// If this runs in a handler, the raised signal is delivered when the handler returns.
 void end(int signal, const char* what) {
   if (ending.exchange(true)) return;
   removePartialFiles();
@@ -56,8 +56,8 @@ void endAtOnce(int signal) {
                                   : "no output was touched");
 }
 
-// One request to stop may come as several signals: Ctrl-C reaches a tool and Make, which sends
-// SIGTERM on. Only the same signal a while later is another request.
+// One request to stop may arrive as several signals: Ctrl-C reaches a tool and Make, which then
+// sends SIGTERM. Only the same signal, kOneRequestNs or more after the first, is another request.
 bool isAnotherRequest(int signal) {
   struct timespec now {};
   ::clock_gettime(CLOCK_MONOTONIC, &now);

@@ -1,12 +1,12 @@
-// Ctrl-C and its kin: what a tool does when it is asked to stop.
+// Signals that ask a tool to stop, such as Ctrl-C.
 //
-// SIGINT, SIGTERM, SIGHUP and SIGXCPU end a tool at once, wherever it is: partial files are
-// removed, one line on stderr says what became of the outputs, and the signal is raised again, so
-// that Make and the shell see a tool that was interrupted (exit code 128 + signal). Those that were
-// ignored when the tool started (nohup) stay ignored. SIGPIPE is left alone, and SIGXFSZ ignored:
-// the write then fails and is reported like that of a full disk.
+// SIGINT, SIGTERM, SIGHUP and SIGXCPU end a tool at once: partial files are removed, one line on
+// stderr tells the state of the outputs, and the signal is raised again, so that Make and the shell
+// see an interrupted tool (exit code 128 + signal). Signals that were ignored when the tool started
+// (nohup) stay ignored. SIGPIPE keeps its default action. SIGXFSZ is ignored: the write fails and
+// is reported as on a full disk.
 //
-// A loop that can save what it has done asks for time to do so:
+// A loop that can save its progress defers interrupts:
 //
 //   DeferInterrupts defer;
 //   while (more) {
@@ -23,11 +23,12 @@
 
 namespace bnvpl {
 
-// Called once, by runTool, before there is any other thread.
+// Installs the handlers. Called once, by runTool, before any other thread exists.
 void catchInterrupts(const std::string& tool);
 
-// While one lives, a signal only makes interrupted() true; the same signal again, a second later or
-// more, ends the tool at once. At its end a signal that nobody acted upon has its usual effect.
+// While an instance exists, a signal only makes interrupted() true; the same signal a second or
+// more later ends the tool at once. Unless an exception is being thrown, the destructor gives a
+// pending signal its usual effect.
 class DeferInterrupts {
  public:
   DeferInterrupts();
@@ -36,19 +37,19 @@ class DeferInterrupts {
   DeferInterrupts& operator=(const DeferInterrupts&) = delete;
 
  private:
-  int exceptions_;  // in flight at the start
+  int exceptions_;  // uncaught exceptions at construction
 };
 
-// From any thread, and cheap: one relaxed load.
+// May be called from any thread; costs one relaxed load.
 bool interrupted();
 
-// The text ends the line "TOOL: interrupted (SIGINT); ..." and says how to go on.
+// The text completes the line "TOOL: interrupted (SIGINT); ..." and tells how to continue.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// What runTool does with an Interrupted: the line, and the signal that was deferred.
+// Prints that line and raises the deferred signal; called by runTool.
 [[noreturn]] void endInterrupted(const Interrupted& reason);
 
 }  // namespace bnvpl

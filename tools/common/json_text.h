@@ -1,4 +1,4 @@
-// JSON of the tools, and the one way in which it becomes text.
+// The JSON type of the tools, and its serialization.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,12 +8,12 @@ namespace bnvpl {
 
 using Json = nlohmann::ordered_json;
 
-// `indent` as of Json::dump(): -1 for one line. Names come from files and need not be UTF-8, which
-// JSON is: U+FFFD takes the place of what is none. Never throws for a text.
+// Serializes to UTF-8; `indent` is that of Json::dump(), -1 for one line. Names from files need not
+// be UTF-8: U+FFFD replaces invalid bytes, and no text makes this throw.
 std::string jsonText(const Json& json, int indent = -1);
 
-// The same with every name, keys included, on its line: line breaks, other controls and what is no
-// UTF-8 are escaped as escapedLine() does. For reports to people, which lay out lines of their own.
+// A copy with escapedLine() applied to every string and key, for reports to people, which lay out
+// their own lines.
 Json withEscapedNames(const Json& json);
 
 }  // namespace bnvpl

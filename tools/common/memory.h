@@ -4,7 +4,8 @@
 
 namespace bnvpl {
 
-// requireMemory() for the rows of a .vpl file, by its header. Throws what readVplHeader() throws.
+// Calls requireMemory() for the number of rows in the header of a .vpl file. Also throws what
+// readVplHeader() throws.
 void requireMemoryFor(const fs::path& file, double bytesPerRow, const std::string& cure);
 
 }  // namespace bnvpl

@@ -1,5 +1,5 @@
 // A method of a stage: one folder with its code, its test and its theory.md. The build lists the
-// folders of a slot and makes the function that returns them (bnvpl_add_methods in CMake).
+// folders of a slot and generates the function that returns its methods (cmake/Methods.cmake).
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace bnvpl {
 
-// Make is a function that turns inputs and values into what the slot needs; it may throw InputError
-// and UsageError.
+// Make is the type of a function that turns inputs and option values into what the slot needs. The
+// function may throw InputError and UsageError.
 template <typename Make>
 struct Method {
   std::string_view name;     // on the command line and in the record
@@ -21,7 +21,7 @@ struct Method {
   Make make;
 };
 
-// The methods of a slot as its stage lists them.
+// The methods of a slot as entries of its StageSpec.
 template <typename M>
 std::vector<MethodEntry> entriesOf(std::span<const M* const> methods) {
   std::vector<MethodEntry> entries;
@@ -29,7 +29,7 @@ std::vector<MethodEntry> entriesOf(std::span<const M* const> methods) {
   return entries;
 }
 
-// The method of that name; resolve() has seen to it that there is one.
+// The method called `name`, which exists: resolve() refuses other names.
 template <typename M>
 const M& methodNamed(std::span<const M* const> methods, std::string_view name) {
   for (const M* m : methods) {

@@ -34,7 +34,7 @@ std::string orList(const std::vector<std::string_view>& names) {
   return text;
 }
 
-// As one would type it: "1e300", "0.000001".
+// Formats a number as a user would type it: "1e300", "0.000001".
 std::string numberText(double number) {
   std::array<char, 32> text{};
   const auto fixed =
@@ -45,7 +45,7 @@ std::string numberText(double number) {
   return out;
 }
 
-// Large limits are powers of two, or one less: "2^32 - 1".
+// Formats a limit. Large powers of two, and one less, are written as such: "2^32 - 1".
 std::string limitText(double limit) {
   for (const double less : {0.0, 1.0}) {
     int power = 0;
@@ -67,7 +67,7 @@ std::string limitText(double limit) {
   refuse(o, "'" + text + "' is out of range: from " + rangeOf(o));
 }
 
-// Decimal digits alone.
+// Parses a text that consists of decimal digits.
 uint64_t wholeOf(const Option& o, const std::string& text) {
   uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -77,7 +77,7 @@ uint64_t wholeOf(const Option& o, const std::string& text) {
   return value;
 }
 
-// The whole text is one decimal number, and doubles can hold it.
+// Succeeds if the whole text is one decimal number that a double can hold.
 std::errc readReal(const std::string& text, double& value) {
   const char* last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, value);
@@ -111,7 +111,7 @@ uint64_t countOf(const Option& o, const std::string& text) {
   else if (!suffix.empty())
     refuseAs("has an unknown suffix");
   if (error != std::errc{} || !(value >= o.least && value <= o.most)) refuseRange(o, text);
-  // 2.01 times 1e3 is 2009.9999999999998: the decimal point may cost the last digits.
+  // Scaling rounds: 2.01 times 1e3 is 2009.9999999999998.
   const double whole = std::round(value);
   if (std::fabs(value - whole) > 1e-15 * value) refuseAs("is not whole");
   return static_cast<uint64_t>(whole);
@@ -170,7 +170,7 @@ bool inRange(const Option& o, const Value& value) {
   return number >= o.least && number <= o.most;
 }
 
-// "density=local|even" as a name and its values; "time" as a name alone: it has to be given.
+// A condition. "density=local|even" has a name and values; "time", a name alone, must be given.
 struct Need {
   std::string_view name;
   std::vector<std::string_view> values;
@@ -184,7 +184,7 @@ std::string textOf(const Need& need) {
   return "--" + std::string(need.name) + (need.values.empty() ? "" : " " + orList(need.values));
 }
 
-// One of them must hold, with all its conditions.
+// Parses Option::needs. One of the alternatives must hold, with all its conditions.
 std::vector<std::vector<Need>> alternativesOf(std::string_view needs) {
   std::vector<std::vector<Need>> alternatives;
   for (const std::string_view conditions : split(needs, ';')) {
@@ -209,7 +209,7 @@ bool met(const Need& need, const Values& values) {
   return false;
 }
 
-// Of each alternative the first condition that does not hold; nothing where one holds whole.
+// The first condition of each alternative that does not hold; empty if one alternative holds.
 std::vector<Need> unmet(std::string_view needs, const Values& values) {
   std::vector<Need> missing;
   for (const std::vector<Need>& all : alternativesOf(needs)) {
@@ -224,10 +224,10 @@ bool satisfied(std::string_view needs, const Values& values) {
   return unmet(needs, values).empty();
 }
 
-// All options that carry a name, each with the slot and method that it belongs to.
+// All options called `name`, each with its slot and method.
 struct Found {
   const Option* option;
-  const MethodSlot* slot;  // null: the stage's own
+  const MethodSlot* slot;  // null: an option of the stage itself
   const MethodEntry* method;
 };
 std::vector<Found> findAll(const StageSpec& spec, std::string_view name) {
@@ -245,7 +245,7 @@ std::vector<Found> findAll(const StageSpec& spec, std::string_view name) {
   return found;
 }
 
-// Any of what is missing would do.
+// Reports the missing conditions, any one of which would give the option an effect.
 [[noreturn]] void refuseFor(const std::string& name, const std::vector<Need>& missing,
                             const Values& values) {
   std::string with, needed;
@@ -269,7 +269,7 @@ std::vector<Found> findAll(const StageSpec& spec, std::string_view name) {
     throw UsageError("--" + name + " is not an option of " + std::string(spec.tool));
   Need methods;
   for (const Found& f : found) {
-    // A slot that is itself without effect: say what would give it one.
+    // The slot itself has no effect: the message names what would give it one.
     if (f.slot && !values.has(f.slot->name)) refuseFor(name, unmet(f.slot->needs, values), values);
     const bool chosen = !f.slot || values.text(f.slot->name) == f.method->name;
     if (chosen) refuseFor(name, unmet(f.option->needs, values), values);
@@ -290,7 +290,7 @@ const MethodEntry& chosen(const MethodSlot& slot, const std::string& name) {
 }
 
 const std::string* textOf(const Given& given, std::string_view name) {
-  const std::string* text = nullptr;  // of several, the last
+  const std::string* text = nullptr;  // the last one wins
   for (const auto& [key, value] : given) {
     if (key == name) text = &value;
   }
@@ -314,7 +314,7 @@ std::string rangeOf(const Option& o) {
       o.kind != Option::Kind::Real) {
     return {};
   }
-  // No whole number reaches 2^64.
+  // A `most` of 2^64 excludes no 64-bit number.
   return limitText(o.least) + " to " + (o.most == 0x1p64 ? "2^64 - 1" : limitText(o.most));
 }
 
@@ -371,8 +371,8 @@ void Values::set(std::string_view name, Value value) {
 }
 
 Values resolve(const StageSpec& spec, const Given& given) {
-  // `known`: the stage's own options before all, and those of methods as soon as they are chosen,
-  // as slots may need them.
+  // Slots may need options of the stage or of methods chosen before. `known` therefore holds the
+  // stage's options from the start, and those of each method once it is chosen.
   Values values, known;
   std::vector<const MethodEntry*> methods;
   for (const Option& o : spec.options) takeOption(o, given, known);
@@ -424,7 +424,8 @@ void requireSound(const StageSpec& spec) {
       std::set<std::string_view> names = stage;
       checkTable(m.options, names);
       for (size_t other = s + 1; other < spec.slots.size(); ++other) {
-        // Methods of two slots may run together, unless one slot needs another method of the other.
+        // Methods of two slots may run together, unless the later slot needs another method of the
+        // earlier one.
         const auto alternatives = alternativesOf(spec.slots[other].needs);
         const bool apart =
             !alternatives.empty() && std::ranges::all_of(alternatives, [&](const auto& all) {

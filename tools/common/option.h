@@ -1,6 +1,6 @@
-// What a stage or a method can be told: each option is written once, as an entry of a table. The
-// command line, --help, the record in the files, the identity of a checkpoint and the table in the
-// docs are made from these entries.
+// Options of stages and methods. Each is declared once, as an entry of a table. The command line,
+// --help, the record in files, the identity of a checkpoint and the table in the docs are all
+// generated from these entries.
 #pragma once
 
 #include <array>
@@ -20,29 +20,29 @@ struct Option {
   enum class Kind {
     Switch,    // on or off
     Whole,     // a whole number in decimal digits
-    Count,     // the same, from 1, with k, M or G for thousands, millions or billions
+    Count,     // a whole number from 1; k, M and G stand for thousands, millions and billions
     Real,      // a finite number
     Duration,  // seconds, typed as 90s, 2m or 1.5h; more than 0
     Choice,    // one of a few names
-    Text       // whatever the stage makes of it; its unit is what to type
+    Text       // free text that the stage parses; `unit` is its placeholder in --help
   };
   std::string_view name;  // "max-cut": --max-cut on the command line, max-cut in the record
   Kind kind;
-  std::string_view fallback;  // the default as one would type it; empty: has to be given
-  double least, most;         // the range, both ends included; from 2^64 on: no upper end
+  std::string_view fallback;  // the default as typed; empty: the option is required
+  double least, most;         // the range, both ends included; whole numbers: 2^64 is no limit
   std::string_view unit;      // empty: none
   std::string_view help;
   std::string_view choices = {};  // Choice: "local|uniform"
-  std::string_view needs = {};    // "density=local|even": has an effect only then; "time": only
-                                  // where that is given; with more conditions behind commas all
-                                  // must hold; behind semicolons stand alternatives
-  std::string_view letter = {};   // "-n": a short spelling
-  bool recorded = true;           // false: changes nothing of what is computed
+  std::string_view needs = {};    // conditions for having an effect: "density=local|even", or
+                                  // "time", which must be given; commas join conditions that must
+                                  // all hold; semicolons separate alternatives
+  std::string_view letter = {};   // a short spelling: "-n"
+  bool recorded = true;           // false: does not change the result
   bool optional = false;          // has no value unless it is given
-  bool harmless = false;          // may be given where it has no effect: ignored, not recorded
+  bool harmless = false;          // where it has no effect, it is ignored instead of refused
 };
 
-// Entries of a table.
+// Makers of table entries, one for each kind.
 constexpr Option realOption(std::string_view name, std::string_view fallback, double least,
                             double most, std::string_view unit, std::string_view help) {
   return {name, Option::Kind::Real, fallback, least, most, unit, help};
@@ -70,8 +70,8 @@ constexpr Option textOption(std::string_view name, std::string_view fallback, st
 constexpr Option durationOption(std::string_view name, std::string_view help) {
   return {name, Option::Kind::Duration, {}, 0x1p-10, 1e9, {}, help};
 }
-// Of every stage that draws random numbers.
-// A script may give one to every stage, also to a method that draws none.
+// The seed of a stage that draws random numbers. Scripts may pass it to every stage, also for
+// methods that draw none.
 constexpr Option seedOption() {
   Option seed = wholeOption("seed", "1", 0, 0x1p64, {}, "random seed");
   seed.harmless = true;
@@ -96,7 +96,7 @@ constexpr Option optional(Option option) {
   return option;
 }
 
-// A table and another behind it.
+// Concatenates two tables.
 template <size_t A, size_t B>
 constexpr std::array<Option, A + B> joined(const std::array<Option, A>& a,
                                            const std::array<Option, B>& b) {
@@ -108,25 +108,25 @@ constexpr std::array<Option, A + B> joined(const std::array<Option, A>& a,
 
 using Value = std::variant<bool, uint64_t, double, std::string>;
 
-// Of a number, for people: "0 to 1000", "1 to 2^32 - 1"; of another kind empty.
+// The range of a number for people: "0 to 1000", "1 to 2^32 - 1"; empty for other kinds.
 std::string rangeOf(const Option& option);
-// "--density local or --area 0"; empty where nothing is needed.
+// The conditions for people: "--density local or --area 0"; empty if there are none.
 std::string needText(std::string_view needs);
 
-// Throws UsageError, which names the option, what is wrong and what is right.
+// Parses and checks a value. Throws UsageError that names the option, the problem and the remedy.
 Value parseValue(const Option& option, const std::string& text);
-// A finite decimal number, for texts that hold more than one; nothing for any other text.
+// Parses a finite decimal number, as a part of a longer text; none for any other text.
 std::optional<double> parseReal(const std::string& text);
 
-// The options of a run that have an effect, by name. Asking for another, or for another type, is an
-// error of the program: std::logic_error.
+// The values of the options that have an effect in a run, by name. The typed accessors throw
+// std::logic_error for an unknown name or another type.
 class Values {
  public:
   bool on(std::string_view name) const { return get<bool>(name); }
-  uint64_t whole(std::string_view name) const { return get<uint64_t>(name); }  // Count, too
-  double real(std::string_view name) const { return get<double>(name); }  // Duration, too: seconds
+  uint64_t whole(std::string_view name) const { return get<uint64_t>(name); }  // also Count
+  double real(std::string_view name) const { return get<double>(name); }  // also Duration, seconds
   float real32(std::string_view name) const { return static_cast<float>(real(name)); }
-  const std::string& text(std::string_view name) const {  // Choice, too
+  const std::string& text(std::string_view name) const {  // also Choice
     return get<std::string>(name);
   }
   bool has(std::string_view name) const { return find(name) != nullptr; }
@@ -141,35 +141,35 @@ class Values {
   std::vector<std::pair<std::string, Value>> list_;  // in the order of the tables
 };
 
-// A method as its stage lists it, whatever it makes.
+// A method as its stage lists it, without the type of what it makes.
 struct MethodEntry {
   std::string_view name, summary;
   std::span<const Option> options;
 };
 
-// The methods that one option chooses from.
+// A set of methods, one of which is selected by an option.
 struct MethodSlot {
   std::string_view name;  // "gather": --gather NAME
   std::string_view fallback;
   std::string_view help;
   std::vector<MethodEntry> methods;
-  std::string_view needs = {};  // as of Option
+  std::string_view needs = {};  // see Option::needs
 };
 
-// All that a stage can be told. Slots are chosen in their order; one may need a slot before it, or
-// an option of the stage.
+// All options of a stage. Slots are resolved in order; a slot may need an earlier slot or an option
+// of the stage.
 struct StageSpec {
   std::string_view tool;
   std::span<const Option> options;
   std::vector<MethodSlot> slots;
 };
 
-// What was given, as typed: name without dashes, text.
+// The given options as typed: name without dashes, and text.
 using Given = std::vector<std::pair<std::string, std::string>>;
 
-// The values of a run: of what was given, and the defaults of all else that has an effect. Throws
-// UsageError for an unknown method or option, for a value out of range, for what is missing, and
-// for an option that would have no effect, naming what it needs.
+// The values of a run: those that were given, and the defaults of all other options that have an
+// effect. Throws UsageError for an unknown method or option, a value out of range, a missing
+// option, and an option that would have no effect, naming what it needs.
 Values resolve(const StageSpec& spec, const Given& given = {});
 
 // Whether the record of a run names this option.

@@ -28,7 +28,7 @@ bool isSvg(std::string_view text) {
          (text.starts_with("<?xml"sv) && text.find("<svg"sv) != text.npos);
 }
 
-// A head of names with commas between them.
+// The first line holds names, separated by commas.
 bool isCsv(std::string_view text) {
   const std::string_view head = firstLine(text);
   return head.find(',') != head.npos && std::ranges::all_of(head, [](unsigned char c) {
@@ -36,7 +36,8 @@ bool isCsv(std::string_view text) {
          });
 }
 
-// {"tool":"vpl-...", laid out in any way. Other JSON, such as a glTF scene, is another kind.
+// The text begins with {"tool":"vpl-, apart from white space. Other JSON, such as a glTF scene,
+// begins otherwise.
 bool isStats(std::string_view text) {
   std::string dense;
   std::ranges::copy_if(text.substr(0, 256), std::back_inserter(dense),
@@ -44,7 +45,7 @@ bool isStats(std::string_view text) {
   return dense.starts_with("{\"tool\":\"vpl-");
 }
 
-// Rules without commands: a target, and behind the first colon files on lines that go on.
+// Make rules without commands: a target, a colon, and files on continued lines.
 bool isDepfile(std::string_view text) {
   const std::string_view head = firstLine(text);
   if (!head.ends_with(":") && !head.ends_with(" \\")) return false;

@@ -1,5 +1,5 @@
-// What an output holds, and whether a file that stands at its name is an older one of that kind.
-// Checkpoints are told by formats/checkpoint.h.
+// Kinds of outputs, and whether an existing file is of a kind, so that it may be replaced.
+// formats/checkpoint.h recognises checkpoints.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@ namespace bnvpl {
 
 enum class OutputKind { Vpl, Exr, Png, Svg, Ply, Csv, Shard, Stats, Depfile };
 
-// ".vpl"; empty for those of any name: --stats and --depfile.
+// ".vpl"; empty for kinds whose files may have any name: --stats and --depfile.
 std::string extensionOf(OutputKind kind);
 std::string contentOf(OutputKind kind);  // "an OpenEXR image"
 
-// By content, whatever the name. An empty file is of every kind; so is one that cannot be read,
-// which whoever replaces it refuses or reports. Does not throw.
+// Judges the content, not the name. True also for a file that is empty, missing or unreadable;
+// writing the output reports the last. Does not throw.
 bool mayReplace(const fs::path& file, OutputKind kind);
 
 }  // namespace bnvpl

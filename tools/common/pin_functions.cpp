@@ -37,10 +37,10 @@ std::string join(const std::vector<std::string>& parts, char separator) {
   return text;
 }
 
-// "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2" with what is missing in it.
+// Adds kOff to tunables such as "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2".
 std::string pinned(const std::string& tunables) {
   std::vector<std::string> all = split(tunables, ':');
-  // Of a tunable that is named twice, the last holds.
+  // The last of several entries for one tunable takes effect.
   auto hwcaps = std::find_if(all.rbegin(), all.rend(),
                              [](const std::string& t) { return t.starts_with(kTunable); });
   if (hwcaps == all.rend()) {
@@ -65,8 +65,8 @@ void pinFunctions(Processor processor, char** argv) {
   ::setenv(kVariable, now.c_str(), 1);
   std::error_code none;
   const fs::path self = fs::read_symlink("/proc/self/exe", none);
-  if (!none) ::execv(self.c_str(), argv);  // by its name, which ps and killall then show
-  ::execv("/proc/self/exe", argv);         // one that has been replaced or removed
+  if (!none) ::execv(self.c_str(), argv);  // its path, so that ps and killall show its name
+  ::execv("/proc/self/exe", argv);         // works for a file that was replaced or removed
   throw UsageError(std::string("--processor any cannot start the tool anew (") +
                    std::strerror(errno) + "); start it with " + kVariable + "=" + now);
 }

@@ -4,11 +4,11 @@
 
 namespace bnvpl {
 
-// The C library has sin, exp, pow and their kin twice: for processors that contract products and
-// sums, with other last digits, and for those that do not. It chooses when a program starts. For
-// Processor::Any this starts the program anew, as GLIBC_TUNABLES says that none contracts; it
-// returns where that is said already. Called before there are other threads and files. Throws
-// UsageError where the program cannot be started.
+// The C library has two variants of sin, exp, pow and similar functions, with and without fused
+// multiply-add, which differ in the last digits. It selects one when a program starts. For
+// Processor::Any this function restarts the program with GLIBC_TUNABLES set to the variant without,
+// and returns if they are set already. Call it before other threads and files exist. Throws
+// UsageError if the program cannot be restarted.
 void pinFunctions(Processor processor, char** argv);
 
 }  // namespace bnvpl

@@ -13,7 +13,7 @@
 namespace bnvpl {
 namespace {
 
-// A hilly field of 2 * kSide^2 triangles, whose texture coordinates are their barycentric ones.
+// A height field of 2 * kSide^2 triangles, whose texture coordinates are the barycentric ones.
 Scene field() {
   constexpr uint32_t kSide = 12, kCorners = kSide + 1;
   Scene scene;
@@ -38,7 +38,7 @@ Scene field() {
   return scene;
 }
 
-// Rays from above, half of them through corners, where neighbours share the hit.
+// Adds the hits of rays from above. Half of the rays aim at vertices, where triangles meet.
 void addHits(Processor processor, std::vector<float>& bits) {
   constexpr uint32_t kRays = 1024;
   const Scene scene = field();
@@ -58,14 +58,14 @@ void addHits(Processor processor, std::vector<float>& bits) {
   }
 }
 
-// Every function of the C library that the stages use and that it may round in several ways.
+// Adds results of every C library function that the stages use and that may round differently.
 template <typename Real>
 void addFunctions(std::vector<Real>& bits) {
   constexpr uint32_t kArguments = 256;
   Rng rng(3, 0);
   for (uint32_t i = 0; i < kArguments; ++i) {
     const float high = rng.next(), low = rng.next(), other = rng.next();
-    const Real x = Real(high) + Real(low) * Real(0x1p-24), y = Real(other);  // of all digits
+    const Real x = Real(high) + Real(low) * Real(0x1p-24), y = Real(other);  // x uses all digits
     bits.insert(bits.end(), {std::sin(8 * x), std::cos(8 * x), std::tan(x), std::asin(x),
                              std::acos(x), std::atan(8 * x), std::atan2(x, y), std::exp(8 * x),
                              std::exp2(8 * x), std::expm1(x), std::log(x), std::log2(x),

@@ -15,7 +15,7 @@ namespace bnvpl {
 
 namespace {
 constexpr double kTerminalIntervalS = 0.2;
-constexpr double kLogIntervalS = 10.0;  // a build log wants a sign of life, not a film
+constexpr double kLogIntervalS = 10.0;  // few lines for build logs
 constexpr double kReportIntervalS = 0.2;
 }  // namespace
 
@@ -57,7 +57,7 @@ void ProgressMeter::add(uint64_t done) {
   done_.fetch_add(done, std::memory_order_relaxed);
   if (quiet_) return;
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock()) return;  // somebody else is printing
+  if (!lock.owns_lock()) return;  // another thread is printing
   const double now = nowS();
   if (now < nextReportS_) return;
   nextReportS_ = now + kReportIntervalS;

@@ -1,5 +1,5 @@
-// Progress with an estimate of the time that is left: one rewritten line on a terminal, elsewhere
-// an occasional plain line in the tool's name.
+// Progress with an estimate of the time that is left: one rewritten line on a terminal, otherwise
+// an occasional plain line that begins with the tool's name.
 #pragma once
 
 #include <atomic>
@@ -16,8 +16,8 @@ namespace bnvpl {
 // "47 s", "2 min 05 s", "1 h 46 min". Negative counts as 0.
 std::string durationText(double seconds);
 
-// "samples 12M of 40M (30 %), 2 min 05 s left", without the time where it is not known yet. Without
-// a total, 0, it ends in the time since the start: "samples 12M in 34 s".
+// "samples 12M of 40M (30 %), 2 min 05 s left", without the time as long as that is unknown. If
+// `total` is 0, the text ends with the elapsed time: "samples 12M in 34 s".
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
                          std::optional<double> leftS);
 
@@ -28,7 +28,7 @@ class ProgressMeter {
   ~ProgressMeter();  // erases the line on a terminal
 
   void add(uint64_t done);  // from any thread
-  // Preparations are shown under their own names; their time is not the main work's.
+  // Preparations are shown under their own names; their time does not count for the main work.
   ProgressFn callback() {
     return {[this](uint64_t done) { add(done); },
             [this](std::string_view what, uint64_t total) { beginPhase(what, total); },
@@ -39,7 +39,7 @@ class ProgressMeter {
   struct Work {
     std::string what;
     uint64_t total;
-    double startS;  // later by the time that its preparations took
+    double startS;  // moved later by the time of its preparations
     TimeLeft left = {};
   };
   void beginPhase(std::string_view what, uint64_t total);
@@ -47,7 +47,7 @@ class ProgressMeter {
   void print(double nowS, uint64_t done) const;
 
   Work work_;
-  Work main_{};  // what goes on after the phase
+  Work main_{};  // the work that continues after the phase
   uint64_t mainDone_ = 0;
   bool quiet_, terminal_;
   std::atomic<uint64_t> done_{0};

@@ -14,7 +14,8 @@
 namespace bnvpl {
 namespace {
 
-// Of one file, however it is spelled. A file that does not exist yet is a name in a folder.
+// Identifies a file whatever the spelling of its path. A file that does not exist yet is a name in
+// a folder.
 struct Identity {
   uint64_t device = 0, inode = 0;
   std::string name;
@@ -83,7 +84,7 @@ void RunFiles::checkExtensions() const {
   }
 }
 
-// An older file of the kind is replaced.
+// An output may replace an existing file of its own kind only.
 void RunFiles::checkKinds() const {
   for (const Named& out : outputs_) {
     const std::string extension = lowerExtension(out.file);
@@ -106,7 +107,7 @@ void RunFiles::checkIdentities() const {
   for (const Named& in : inputs_) inputs.emplace(identityOf(in.file), &in);
   for (const Named& out : outputs_) {
     std::error_code ignored;
-    // Folders and devices are refused as such.
+    // replaceableTarget() refuses folders and devices.
     if (fs::exists(out.file, ignored) && !isRegularFile(out.file)) continue;
     const Identity identity = identityOf(out.file);
     if (const auto in = inputs.find(identity); in != inputs.end()) {
@@ -123,7 +124,8 @@ void RunFiles::checkIdentities() const {
   }
 }
 
-// Outputs remove what unfinished runs left beside them, which is told by its name.
+// An output removes partial files of unfinished runs, which it recognises by their names. No input
+// may have such a name.
 void RunFiles::checkPartialNames() const {
   for (const Named& in : inputs_) {
     std::error_code failed;

@@ -1,9 +1,8 @@
-// Every file that a run reads or writes, under the name of its option: none is overwritten by
-// mistake.
+// Collects every file that a run reads or writes, so that none is overwritten by mistake.
 //
 //   RunFiles used;
-//   used.reads("scene", scenePath).writes("-o", output, {".vpl"}).writes(tool).check();
-//   const Scene scene = loadScene(scenePath);
+//   used.reads("scene", path).writes("-o", output, {OutputKind::Vpl}).writes(tool).check();
+//   const Scene scene = loadScene(path);
 //   used.ready(scene.files);
 //   ... the work
 #pragma once
@@ -20,32 +19,32 @@ struct ToolOptions;
 
 class RunFiles {
  public:
-  // `option` as the user knows it: "-o", "--mask", "scene". An empty path is an option that was not
-  // given.
+  // `option` is the name that the user knows: "-o", "--mask", "scene". An empty path means that the
+  // option was not given.
   RunFiles& reads(const std::string& option, const fs::path& file);
 
-  // `kinds` are what it may hold, of which the extension of its name, in upper case too, chooses
-  // one; a name may also have none. None given: neither name nor an older file is looked at. A
-  // checkpoint, which is read too, is one of these.
+  // `kinds` lists what the file may hold. Its extension, in upper or lower case, selects one of
+  // them; a name without extension allows all. Without kinds neither the name nor an existing file
+  // is checked, as for a checkpoint, which is also read.
   RunFiles& writes(const std::string& option, const fs::path& file,
                    const std::vector<OutputKind>& kinds = {});
   RunFiles& writes(const ToolOptions& tool);  // --stats and --depfile
 
-  // First of all: asks, and touches nothing. Throws UsageError, which names both options, when an
-  // output is also another output or an input, be it through links or another spelling; and for an
-  // extension of something else. Throws OutputError when an output cannot be written.
+  // Call this first; it touches no file. Throws UsageError that names both options if an output is
+  // also another output or an input, even through links or another spelling, and UsageError for an
+  // extension of another kind. Throws OutputError if an output cannot be written.
   void check() const;
 
-  // Last before the work: check(), with the scene's own files as inputs, which are known only now;
-  // then tries to write beside each output. Throws OutputError, too, where an output would replace
-  // a file of another kind; and UsageError for names that a depfile cannot say.
+  // Call this just before the work, when the scene's files are known: check() with these as inputs,
+  // then a trial write beside each output. Also throws OutputError if an output would replace a
+  // file of another kind, and UsageError for names that a depfile cannot hold.
   void ready(const std::vector<fs::path>& sceneFiles = {});
 
  private:
   struct Named {
     std::string option;
     fs::path file;
-    std::vector<OutputKind> kinds;  // of outputs
+    std::vector<OutputKind> kinds;  // for outputs only
   };
   void checkExtensions() const;
   void checkKinds() const;

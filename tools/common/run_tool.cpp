@@ -32,11 +32,11 @@ double peakMemoryMiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
 }
 
-std::string toolName;  // before each line on stderr
+std::string toolName;  // begins each line on stderr
 std::vector<std::string> heldWarnings;
 char** arguments = nullptr;
 
-// Formats nothing in memory, of which there may be none left.
+// Allocates no memory, since there may be none left.
 int fail(int code, const char* what, const char* more = "") {
   ErrorLine().add(toolName).add(": ").add(what).add(more);
   return code;
@@ -47,7 +47,7 @@ int failForMemory() {
               "out of memory; lower the counts or the film size, or raise the limit on memory");
 }
 
-// One line and the exit code for the exception that is being handled.
+// Prints one line for the exception that is being handled, and returns the exit code.
 int report() {
   try {
     throw;
@@ -63,10 +63,10 @@ int report() {
     return fail(kExitMemory, e.what());
   } catch (const std::bad_alloc&) {
     return failForMemory();
-  } catch (const std::length_error&) {  // a container of more elements than there are addresses
+  } catch (const std::length_error&) {  // a container would exceed its max_size()
     return failForMemory();
   } catch (const std::exception& e) {
-    if (std::strstr(e.what(), "pthread_create")) {  // oneTBB's words, which Embree hands on
+    if (std::strstr(e.what(), "pthread_create")) {  // oneTBB's message, which Embree passes on
       return fail(kExitMemory,
                   "out of memory for threads; lower --threads, or raise the limits on "
                   "memory and processes");
@@ -77,17 +77,17 @@ int report() {
   }
 }
 
-// For what no catch can reach, such as oneTBB's failure to start a thread.
+// Handles exceptions that no catch can reach, such as oneTBB's failure to start a thread.
 [[noreturn]] void onTerminate() {
   static std::atomic_flag ending;
-  while (ending.test_and_set()) ::pause();  // another thread has it
+  while (ending.test_and_set()) ::pause();  // another thread ends the process
   removePartialFiles();
   if (std::current_exception()) ::_exit(report());
-  // Embree, on its way out of a function for lack of memory, throws again.
+  // When Embree runs out of memory, it throws a second exception while the first unwinds.
   ::_exit(std::uncaught_exceptions() > 0 ? failForMemory() : fail(kExitInternal, "internal error"));
 }
 
-// An empty text comes from a variable that a script has not set: nobody types it to say "none".
+// Refuses empty values, which usually come from an unset variable of a script.
 void requireTexts(const CLI::App& cli) {
   for (const CLI::Option* option : cli.get_options()) {
     for (const std::string& text : option->results()) {
@@ -97,14 +97,14 @@ void requireTexts(const CLI::App& cli) {
   for (const CLI::App* command : cli.get_subcommands()) requireTexts(*command);
 }
 
-// False when the answer was --help or --version.
+// Returns false if --help or --version was answered.
 bool parse(CLI::App& cli, int argc, char** argv) {
   try {
     cli.parse(argc, argv);
     requireTexts(cli);
     return true;
   } catch (const CLI::Success& e) {
-    // CLI11 helps before it looks at words that mean nothing, such as an unknown subcommand.
+    // CLI11 answers --help before it checks for unknown words, such as an unknown subcommand.
     if (cli.remaining_size(true) > 0)
       throw UsageError(describe(CLI::ExtrasError(cli.remaining(true)), cli, toolName));
     std::ostringstream text;
@@ -136,7 +136,7 @@ CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::pat
 }
 
 void addToolOptions(CLI::App& cli, ToolOptions& options) {
-  addOption(cli, wholeOption("threads", "0", 0, 65536, "", "worker threads; 0 takes every core"),
+  addOption(cli, wholeOption("threads", "0", 0, 65536, "", "worker threads; 0 uses every core"),
             [&options](const Value& value) {
               options.threads = static_cast<unsigned>(std::get<uint64_t>(value));
             });
@@ -149,14 +149,14 @@ void addToolOptions(CLI::App& cli, ToolOptions& options) {
 
 void addDepfileOption(CLI::App& cli, ToolOptions& options) {
   addFile(cli, "--depfile", options.depfile,
-          "write the files that were read, in Make syntax, for make and ninja");
+          "write the list of files that were read, as a rule for make and ninja");
 }
 
 void addProcessorOption(CLI::App& cli, ToolOptions& options) {
   addOption(cli,
             choiceOption("processor", "this", "this|any",
-                         "whose last digits to compute: those of the processor at hand, or, "
-                         "slower, those that any other computes, too"),
+                         "this: use the fastest code for this processor; any: give the same bytes "
+                         "on every processor, which is slower"),
             [&options](const Value& value) {
               const bool any = std::get<std::string>(value) == "any";
               options.processor = any ? Processor::Any : Processor::This;
@@ -173,8 +173,8 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
   try {
     if (!parse(cli, argc, argv)) return kExitOk;
     computeFor(options.processor);
-    // Never destroyed: at its end oneTBB would start the threads that were held back, and it ends
-    // the process if it cannot, with all outputs already in place.
+    // Never destroyed: its destructor would let oneTBB start the threads that were held back, and a
+    // failure to do so would end the process, with all outputs already in place.
     alignas(tbb::global_control) static std::byte forever[sizeof(tbb::global_control)];
     new (forever) tbb::global_control(
         tbb::global_control::max_allowed_parallelism,
@@ -261,7 +261,7 @@ void Summary::finish(const ToolOptions& options, OutputSet& files) const {
   for (const std::string& line : lines_) text += tool_ + ": " + escapedLine(line) + "\n";
   char last[64];
   std::snprintf(last, sizeof last, ": %.2f s, peak memory %.0f MiB\n", cost.timeS, cost.memoryMiB);
-  // The files are whole: a log that is full is no reason for Make to remove them.
+  // The outputs are complete: Make must not delete them because a log is full.
   if (!tryPrint(text + tool_ + last)) {
     printWarnings(tool_, {std::string("the summary cannot be printed: ") + std::strerror(errno)});
   }

@@ -1,4 +1,4 @@
-// What every stage's main shares: options of all tools, exit codes, summary, provenance records.
+// What the mains of all tools share: options, exit codes, summary and provenance records.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace bnvpl {
 
-// Options that do not change what is computed, and therefore never enter a provenance record; and
+// Options of all tools. They do not change the result and never enter a provenance record, except
 // --processor, which does.
 struct ToolOptions {
   Processor processor = Processor::This;
@@ -24,39 +24,42 @@ struct ToolOptions {
   fs::path depfile;  // Make/ninja dependencies, empty: none
 };
 
-// An option, or without dashes an argument, that names a file, or several. An empty name, as of an
-// unset variable of a script, is refused.
+// Adds an option, or an argument if `name` has no dashes, that takes one or several file names.
+// Empty names are refused: they usually come from an unset variable of a script.
 CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
                      const std::string& help);
 CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
                      const std::string& help);
 
-// --threads --quiet --stats --version, and --depfile where the stage reads more than it is named.
+// Adds --threads, --quiet, --stats and --version. addDepfileOption() is for tools that read more
+// files than the command line names.
 void addToolOptions(CLI::App& cli, ToolOptions& options);
 void addDepfileOption(CLI::App& cli, ToolOptions& options);
-// --processor, of tools that compute.
+// Adds --processor, for tools that compute.
 void addProcessorOption(CLI::App& cli, ToolOptions& options);
 
-// Parses argv, starts the tool anew where --processor asks for it (pin_functions.h), limits oneTBB
-// to --threads, calls `work`, and turns exceptions into one line on stderr and the documented exit
-// code. The only try/catch of a tool. Signals: interrupt.h.
+// Parses argv, restarts the tool if --processor requires it (pin_functions.h), limits oneTBB to
+// --threads, calls `work`, and turns exceptions into one line on stderr and the documented exit
+// code. It is the only try/catch of a tool. interrupt.h describes signals.
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
 
-// Worker threads that the work of runTool() may take.
+// Number of worker threads that the work of runTool() may use.
 unsigned threadsInUse();
 
-// For a tool that finds out whose bits to compute by what it reads: what runTool() does for
-// --processor. Before there is any thread or output.
+// Does what runTool() does for --processor, for a tool whose inputs name the processor. Call it
+// before any thread or output exists.
 void computeFor(Processor processor);
 
 // The name of the tool that runTool() runs, which begins each line on stderr.
 const std::string& runningTool();
 
-// Tries to write beside each output; see also run_files.h. Empty paths are not asked for.
+// Throws OutputError unless a file can be written beside each output. Empty paths are skipped. See
+// also run_files.h.
 void requireWritable(const std::vector<fs::path>& outputs);
 
-// What a file from elsewhere says under a key. Throws InputError where it does not, in that type.
+// The value under a key of JSON that was read. Throws InputError if it is missing or of another
+// type.
 template <typename T>
 T fieldOf(const Json& json, const char* key) {
   try {
@@ -67,28 +70,30 @@ T fieldOf(const Json& json, const char* key) {
   }
 }
 
-// What a stage did, and that record behind those of its input (empty for the first stage).
+// stageRecord() describes one run of a stage. extendProvenance() appends it to the history of the
+// input, which is empty for the first stage.
 //   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":
 //   "<hash>"}}
-// and "processor": "any" in it where that was asked for.
+// It also has "processor": "any" if that was requested.
 Json stageRecord(const std::string& tool, const Json& options, const Json& inputs,
                  Processor processor = Processor::This);
 Processor processorOf(const Json& record);
 std::string extendProvenance(const std::string& earlier, const Json& record);
 std::string hashText(uint64_t hash);  // 16 hexadecimal digits
 
-// Ends a tool's work: the figures go to --stats, with time and peak memory; then all files that the
-// run made are replaced together, and the lines for people are printed to stdout unless quiet.
+// Collects the figures of a run. finish() writes them to --stats, with time and peak memory,
+// commits all output files together, and prints the lines for people to stdout unless --quiet is
+// given.
 class Summary {
  public:
   explicit Summary(std::string tool);
   // `text` is for people, `value` for the JSON file. Keys carry their units: "time_s".
   void add(const std::string& key, Json value, const std::string& text = "");
-  // Samples that became NaN or infinite and count as zero: "non_finite_samples", and one warning
-  // where there are any. `what` names them in the plural.
+  // Adds "non_finite_samples", the number of samples that became NaN or infinite and count as zero,
+  // and prints one warning if there are any. `what` names them in the plural.
   void addNonFinite(uint64_t count, const std::string& what);
   void finish(const ToolOptions& options, OutputSet& files) const;
-  // The same without lines for people, where stdout is for what was asked.
+  // The same without lines for people, for commands that print their answer to stdout.
   void save(const ToolOptions& options, OutputSet& files) const { close(options, files); }
 
  private:
@@ -103,12 +108,12 @@ class Summary {
   std::vector<std::string> lines_;
 };
 
-// Prints each warning once, by name, to stderr. Warnings are not silenced by --quiet.
+// Prints each warning as one line on stderr. --quiet does not silence warnings.
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
 
-// A warning about an input, which waits: for printHeldWarnings(), or for an InputError, which
-// runTool() prints behind all that wait. One that the error repeats is left out; those that wait
-// when the tool ends well are never printed. Called by the thread of runTool() alone.
+// Holds a warning about an input back until printHeldWarnings(). If an InputError ends the tool,
+// runTool() prints the held warnings before it, except one that the error repeats; if the tool
+// succeeds, they are never printed. Only the thread of runTool() may call these.
 void holdWarning(const std::string& text);
 void printHeldWarnings();
 

@@ -13,23 +13,23 @@ namespace bnvpl {
 
 namespace {
 
-// What follows the scene's name, all of which needs `scene`.
+// Adds the options that require `scene`.
 void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene, ViewCount views) {
   const bool several = views == ViewCount::Several;
-  const std::string more = several ? "; repeat it for VPLs that serve several" : "";
+  const std::string more = several ? "; repeat to place VPLs for several views" : "";
   cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
       ->type_name("NAME=VALUE")
       ->take_all()
-      ->allow_extra_args(false)  // or it would swallow what follows
+      ->allow_extra_args(false)  // otherwise it would take the arguments that follow
       ->needs(scene);
   if (views == ViewCount::None) return;
   CLI::Option* camera = cli.add_option("--camera", options.cameras,
-                                       "camera of the scene's file; the first unless given" + more)
+                                       "camera of the scene file; default: the first" + more)
                             ->type_name("NAME|NUMBER")
                             ->allow_extra_args(false)
                             ->needs(scene);
   CLI::Option* view = addFile(cli, "--view", options.views,
-                              "a .toml of [film] and [camera] in place of the scene's own" + more)
+                              "a .toml whose [film] and [camera] replace the scene's" + more)
                           ->allow_extra_args(false)
                           ->needs(scene)
                           ->excludes(camera);

@@ -1,5 +1,5 @@
-// What the stages that read a scene share: its options, loading with warnings, and the inputs'
-// hashes.
+// What tools that read a scene share: its options, loading with warnings, and checks of inputs
+// against the scene.
 #pragma once
 
 #include <span>
@@ -12,40 +12,41 @@ namespace bnvpl {
 struct SceneOptions {
   fs::path file;
   std::vector<std::string> defines;  // NAME=VALUE
-  std::vector<std::string> cameras;  // of the file, by name or number; none: its first
-  std::vector<fs::path> views;       // instead of any of its cameras
+  std::vector<std::string> cameras;  // names or numbers of the file's cameras; empty: the first
+  std::vector<fs::path> views;       // files that replace the cameras
 };
 
-// How many cameras, or views, a tool takes.
+// How many cameras or views a tool takes.
 enum class ViewCount { None, One, Several };
 
-// The positional argument SCENE, --define, and where views matter --camera and --view.
+// Adds the argument SCENE, --define and, unless `views` is None, --camera and --view.
 void addSceneOptions(CLI::App& cli, SceneOptions& options, ViewCount views = ViewCount::One);
-// The same for tools that need a scene at times: --scene SCENE in place of the argument.
+// The same for tools that do not always need a scene: --scene SCENE replaces the argument.
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help);
 
-// The options as JSON, for a file from which the scene is loaded again, and back.
+// Converts the options to JSON, for a file from which the scene is loaded again, and back.
 Json toJson(const SceneOptions& options);
 SceneOptions sceneOptionsOf(const Json& json);
 
-// Loads the scene, chooses the camera, and prints its warnings, once for all tools: a tool holds
-// them that reads a file made from this scene, as whoever made that has said them, or that says
-// them in a way of its own. They come before an InputError in any case (holdWarning()).
+// Whether loading a scene prints its warnings. Tools hold them (holdWarning()) if an earlier stage
+// has printed them, or if they report them in another way.
 enum class Warnings { Print, Hold };
-// Of several views the first is the scene's.
+// Loads the scene. Its camera is the first view that the options name, otherwise the first of the
+// file.
 Scene loadSceneFor(const SceneOptions& options, Warnings warnings);
 
-// All views that the options name, or else the scene's own. Their files become the scene's.
+// All views that the options name, otherwise the scene's own. Adds their files to scene.files.
 std::vector<View> viewsOf(const SceneOptions& options, Scene& scene);
 
-// What a view is, for records: its size in pixels, and a hash of camera and film.
+// The record of a view: its size in pixels, and a hash of camera and film.
 Json viewRecord(const Camera& camera, const Film& film);
 Json viewRecord(const Scene& scene);
 
-// Refuses VPLs that stand for more than the scene: stages would look for neighbours everywhere.
+// Throws InputError for a radius larger than the scene, since stages would search all of it for
+// neighbours.
 void requireRadiiWithin(const fs::path& file, std::span<const float> radii, const Scene& scene);
 
-// Refuses rows that lie on another scene. `cure` says what to rerun.
+// Throws InputError for rows that belong to another scene. `cure` names what to rerun.
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,
                       const std::string& cure);
 

@@ -11,12 +11,12 @@
 namespace bnvpl {
 namespace {
 
-// What does not decide the result, or is said anew of each shard.
+// Options that do not affect the result, or that each shard has for itself.
 constexpr std::array<std::string_view, 11> kOwn{
     "--output", "--shard",   "--checkpoint",  "--checkpoint-every", "--threads", "--quiet",
     "--stats",  "--depfile", "--shard-spare", "--estimate",         "--json"};
 
-// Digits only, from 1 to kMaxShards; 0 for anything else.
+// Parses a number from 1 to kMaxShards, digits only; returns 0 for anything else.
 uint64_t numberOf(const std::string& text) {
   const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
   if (text.empty() || text.size() > 7 || !digits) return 0;
@@ -48,8 +48,8 @@ CLI::Option* addShardOption(CLI::App& cli, std::optional<Shard>& shard, const st
   return cli
       .add_option_function<std::string>(
           "--shard", [&shard](const std::string& text) { shard = parseShard(text); },
-          "do this part of the " + units +
-              " and write a .shard for vpl-merge: 3/64 is the third of 64, 3-6/64 four of them")
+          "do only this part of the " + units +
+              " and write a .shard for vpl-merge: 3/64 is the third of 64 parts, 3-6/64 are four")
       ->type_name("I/N");
 }
 

@@ -1,4 +1,4 @@
-// --shard I/N: a stage does a part of its work, and writes what it brought for vpl-merge.
+// --shard I/N: a stage does a part of its work, and writes the results for vpl-merge.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,19 @@ namespace bnvpl {
 
 inline constexpr const char* kShardExtension = ".shard";
 
-// --shard, with `units`, "photons", in its help.
+// Adds --shard; its help names the `units`, such as "photons".
 CLI::Option* addShardOption(CLI::App& cli, std::optional<Shard>& shard, const std::string& units);
-// "3/64", "3-6/64": as one types it.
+// The shard as typed: "3/64", "3-6/64".
 std::string textOf(const Shard& shard);
 
-// Where a checkpoint of that run belongs to: the run, and the shard of it.
+// Adds the shard to `run`, which identifies a checkpoint.
 Json withShard(Json run, const std::optional<Shard>& shard);
 
-// The command line of a stage without what differs between its shards.
+// The command line of a stage without the options that its shards have for themselves. Throws
+// UsageError if the stage writes a shard, but a text is not UTF-8.
 std::string commandOf(const CLI::App& cli);
 
-// The file of a shard, written as the work goes on.
+// The file of a shard, written during the work.
 class ShardOutput {
  public:
   ShardOutput(AtomicFile& file, const Shard& shard);
@@ -32,9 +33,10 @@ class ShardOutput {
   ShardOutput& operator=(const ShardOutput&) = delete;
 
   const ShardSink& sink() const { return sink_; }
-  // The same work, for this shard alone. Must not outlive this.
+  // Restricts `whole` to the units of this shard, whose results go to the file. Must not outlive
+  // this object.
   Resume only(Resume whole) const;
-  // Ends the file, which the caller commits, and tells the summary. Asks for its processorId().
+  // Completes the file, which the caller commits, and adds the shard to the summary.
   void finish(const ShardRun& run, Summary& summary);
 
  private:

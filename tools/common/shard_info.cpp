@@ -26,7 +26,7 @@ std::string textOf(const ShardInfo& info) {
 }
 
 ShardInfo parseShardInfo(const fs::path& file, const std::string& text) {
-  // One object, as the only one of an array, whose depth and letters isProvenance() judges.
+  // The object is checked as the only one of an array: isProvenance() tests depth and UTF-8.
   const std::string list = "[" + text + "]";
   const Json all = isProvenance(list) ? Json::parse(list) : Json::array();
   if (all.size() != 1)

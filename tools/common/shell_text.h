@@ -1,4 +1,4 @@
-// Commands as a user can paste them into a shell.
+// Quoting for commands that a user can paste into a shell.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace bnvpl {
 
-// A word, in quotes where it needs them.
+// Returns the word, in quotes if the shell needs them.
 inline std::string shellWord(const std::string& word) {
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
     return std::isalnum(c) ||

@@ -36,13 +36,13 @@ void addSlot(CLI::App& cli, const MethodSlot& slot, Given& given) {
       ->default_str(std::string(slot.fallback));
 }
 
-// An option of methods: once, even where several have it.
+// An option of one or several methods, which --help lists once.
 struct Shared {
   std::vector<const Option*> options;
   std::vector<std::string> methods;
 };
 
-// One text where all methods mean the same, else a line for each meaning.
+// One text if its meaning is the same for all methods, otherwise a line for each meaning.
 std::string helpOf(const Shared& s, bool oneDefault) {
   std::vector<std::pair<std::string, std::string>> meanings;  // with the methods that share it
   for (size_t i = 0; i < s.options.size(); ++i) {
@@ -74,7 +74,7 @@ void addMethodOptions(CLI::App& cli, const MethodSlot& slot, std::vector<std::st
     }
   }
   for (const std::string_view name : order) {
-    if (std::ranges::find(added, name) != added.end()) continue;  // of another slot's method
+    if (std::ranges::find(added, name) != added.end()) continue;  // added for another slot
     added.push_back(name);
     const Shared& s = byName[name];
     const Option& first = *s.options.front();

@@ -9,11 +9,11 @@
 
 namespace bnvpl {
 
-// Adds every option and slot of the stage; what is typed goes to `given`, for resolve(). Also
-// --help-json. Both must outlive the parsing.
+// Adds every option and slot of the stage, and --help-json. Typed values go to `given`, for
+// resolve(). `spec` and `given` must outlive the parsing.
 void addStageOptions(CLI::App& cli, const StageSpec& spec, Given& given);
 
-// The values that decide what is computed, for the record and for a checkpoint's identity.
+// The values that determine the result, for the record and for a checkpoint's identity.
 Json recordOf(const StageSpec& spec, const Values& values);
 
 // The spec as JSON: {"tool": "vpl-render", "options": [...], "slots": [{"name": "gather",

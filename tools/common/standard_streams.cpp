@@ -39,7 +39,8 @@ size_t terminalColumns() {
 void occupyClosedStreams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(fd, F_GETFD) != -1 || errno != EBADF) continue;
-    // The lowest number that is free, which is this one; opened the wrong way round.
+    // open() takes the lowest free number, which is `fd`. The opposite access mode makes every use
+    // of the stream fail.
     [[maybe_unused]] const int taken =
         ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }

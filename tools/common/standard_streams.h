@@ -1,6 +1,5 @@
-// stdout, stderr and stdin, whatever whoever started the tool has made of them. All that a tool
-// prints goes out here: names and texts from files cannot command the terminal, and the progress
-// line is erased first.
+// Standard streams. A tool prints everything through these functions: they escape control
+// characters in names and texts from files, and erase the progress line first.
 #pragma once
 
 #include <array>
@@ -10,15 +9,15 @@
 
 namespace bnvpl {
 
-// Gives stdin, stdout and stderr something to be when they are closed: else the next file that is
-// opened takes the number, and gets what is printed. Using them still fails, as on a closed one.
+// Opens /dev/null for each of stdin, stdout and stderr that is closed. Otherwise the next file that
+// is opened would take its number and receive what is printed. Using such a stream still fails.
 void occupyClosedStreams();
 
-// For text that was asked for, such as --help or what vpl-inspect finds: throws OutputError when
-// stdout cannot take it. Control characters other than line breaks and tabs are escaped.
+// Prints requested text, such as --help or a report of vpl-inspect. Throws OutputError if stdout
+// cannot take it. Escapes control characters other than line breaks and tabs.
 void print(const std::string& text);
 
-// For text that comes along: whether stdout took it.
+// Prints text that was not requested; returns whether stdout took it.
 bool tryPrint(const std::string& text);
 
 // One line on stderr, written without allocating memory and without the C library's locks, so that
@@ -40,7 +39,7 @@ class ErrorLine {
   size_t length_ = 0;
 };
 
-// On a terminal: the one line that each call rewrites, cut to its width.
+// Rewrites the progress line of a terminal, cut to the terminal's width.
 void showProgress(const std::string& text);
 void eraseProgress();
 

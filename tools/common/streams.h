@@ -1,5 +1,5 @@
-// What random numbers are drawn for. Each purpose has a number of its own, which never changes: it
-// decides the bytes.
+// Streams of random numbers, one for each purpose. Their numbers never change, since outputs depend
+// on them.
 #pragma once
 
 #include "core/random.h"
@@ -12,20 +12,20 @@ enum class Stream : uint32_t {
   Eliminate,
   Photons,
   PixelSamples,
-  LightTree = 7,  // numbers are parts of images: they stay
+  LightTree = 7,
   Plot,
   AreaEstimate,
   LightTracer,
   FilmPoints,
   VplPaths,
   TileLights,
-  SurfaceLights,  // in a render
-  PathLights,     // in vpl-estimate
+  SurfaceLights,  // light selection in vpl-render
+  PathLights,     // light selection in vpl-estimate
   Guide = 16,
   Caustics,
   Allocation,
   CausticPilot,
-  PilotPhotons = 30,  // of vpl-estimate --method both
+  PilotPhotons = 30,  // vpl-estimate --method both
   PilotPaths
 };
 

@@ -1,4 +1,4 @@
-// printf to the end of a text.
+// Appends printf output to a text.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace bnvpl {
 
-// The text may have any length.
+// The output may have any length.
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
@@ -20,7 +20,7 @@ append(std::string& text, const char* format, ...) {
   const auto length =
       static_cast<size_t>(std::max(0, std::vsnprintf(nullptr, 0, format, arguments)));
   const size_t end = text.size();
-  text.resize(end + length + 1);  // with printf's zero
+  text.resize(end + length + 1);  // including the terminating zero
   std::vsnprintf(text.data() + end, length + 1, format, again);
   text.resize(end + length);
   va_end(again);

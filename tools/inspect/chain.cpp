@@ -10,7 +10,7 @@
 namespace bnvpl {
 namespace {
 
-using Links = std::vector<const CheckedFile*>;  // by length of history
+using Links = std::vector<const CheckedFile*>;  // sorted by length of history
 
 bool sameRecord(const StageRecord& a, const StageRecord& b) {
   return a.tool == b.tool && a.version == b.version && a.options == b.options &&
@@ -21,14 +21,14 @@ std::string optionText(const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
   if (value.is_string()) return shellWord(value.get<std::string>());
   if (!value.is_number_float()) return jsonText(value);
-  char text[32];  // the shortest that gives this number back
+  char text[32];  // shortest text that parses back to this number
   const auto end = std::to_chars(text, text + sizeof text, value.get<double>());
   return {text, end.ptr};
 }
 
 bool readsScene(const StageRecord& record) { return record.inputs.count("scene") > 0; }
 
-// From link `first` on, each stage on its predecessor's output.
+// The commands that rerun link `first` and all after it, each on the output of its predecessor.
 std::string mending(const Links& links, size_t first, const std::string& scene) {
   std::string commands;
   for (size_t i = first; i < links.size(); ++i) {
@@ -54,7 +54,7 @@ void requireOneOfEachStage(const Links& links) {
   }
 }
 
-// Candidates that no earlier file made have one record; whatever has more was made from a file.
+// The first file must have a history of one record, and each file one more than its predecessor.
 void requireNoGap(const Links& links) {
   size_t before = 0;
   for (const CheckedFile* link : links) {
@@ -74,7 +74,7 @@ void requireNoGap(const Links& links) {
   }
 }
 
-// What is wrong between two neighbours by their histories, or empty.
+// Describes a contradiction between the histories of two neighbours; empty if there is none.
 std::string brokenHistory(const CheckedFile& earlier, const CheckedFile& later) {
   const StageRecord& record = later.chain.back();
   for (const auto& [name, checksum] : record.inputs) {
@@ -87,7 +87,7 @@ std::string brokenHistory(const CheckedFile& earlier, const CheckedFile& later) 
   return {};
 }
 
-// Rejection divides the flux of a row by the probability of keeping it, and gives it a new radius.
+// Rejection divides the flux of a row by the probability that it is kept, and assigns a new radius.
 bool isReweighted(std::string_view column) {
   return column == "flux" || column == "first_bounce_flux" || column == "radius";
 }
@@ -163,7 +163,7 @@ void checkChain(std::span<const CheckedFile> files, const Scene* scene) {
   for (size_t i = 0; i < links.size(); ++i) {
     const CheckedFile& link = *links[i];
     std::string broken;
-    size_t first = i;  // to make again
+    size_t first = i;  // first link to rerun
     if (!sceneHash.empty() && link.scene != sceneHash) {
       broken = "made from scene " + link.scene + ", but " + name + " is " + sceneHash;
       first = 0;

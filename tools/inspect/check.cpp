@@ -11,7 +11,7 @@
 namespace bnvpl {
 namespace {
 
-// Under which name a later stage records the checksum of a file of this stage.
+// The name under which a later stage records the checksum of a file of this stage.
 const char* inputName(VplStage stage) {
   switch (stage) {
     case VplStage::Candidates:
@@ -68,7 +68,7 @@ CheckedFile checkVpl(const fs::path& file) {
   return checked;
 }
 
-// " --size 640x480 --layers N,direct": layers are told by their channels, "direct.R" and so on.
+// " --size 640x480 --layers N,direct". The channels, such as "direct.R", tell the layers.
 std::string renderOptions(const Image& image) {
   std::string options =
       " --size " + std::to_string(image.width) + "x" + std::to_string(image.height);
@@ -99,7 +99,8 @@ CheckedFile checkExr(const fs::path& file) {
   return checked;
 }
 
-// Rejection makes lit VPLs of lit ones: both are in the history of an image.
+// Whether the reader's history names the checksum. Rejection turns lit VPLs into lit VPLs, so that
+// the history of an image may name several lit files.
 bool wasRead(const CheckedFile& reader, const std::string& checksum) {
   return std::ranges::any_of(reader.chain, [&](const StageRecord& record) {
     return std::ranges::any_of(record.inputs,
@@ -107,7 +108,7 @@ bool wasRead(const CheckedFile& reader, const std::string& checksum) {
   });
 }
 
-// A given file of `stage` that the reader never read, when none is the one with this checksum.
+// A given file of the stage of `input` that the reader never read; null if a file has `checksum`.
 const CheckedFile* strangerOfStage(std::span<const CheckedFile> files, const std::string& input,
                                    const std::string& checksum, const CheckedFile& reader) {
   const CheckedFile* stranger = nullptr;
@@ -131,10 +132,11 @@ void requireOneScene(std::span<const CheckedFile> files) {
   }
 }
 
-// What it makes is of use to any view.
+// Placed VPLs can be used for any view.
 bool isPlacing(const StageRecord& record) { return record.tool == "vpl-place"; }
 
-// Than any that the stage looked at. An image may have a size of its own.
+// Whether the scene's view is none of those that the stage used. An image may have another size
+// than the scene's film.
 bool isOfAnotherView(const CheckedFile& file, const StageRecord& record, const Scene& scene) {
   const Film& film = file.film && &record == &file.chain.back() ? *file.film : scene.film;
   const std::string hash = hashText(hashView(scene.camera, film));
@@ -152,8 +154,7 @@ CheckedFile checkFile(const fs::path& file) {
 
 void checkTogether(std::span<const CheckedFile> files) {
   requireOneScene(files);
-  // The earliest stage that is out of date is the one to rerun, so records are looked at in chain
-  // order.
+  // Records are checked in chain order: the earliest stage that is out of date must be rerun.
   size_t longest = 0;
   for (const CheckedFile& f : files) longest = std::max(longest, f.chain.size());
   for (size_t step = 0; step < longest; ++step) {

@@ -1,4 +1,4 @@
-// Names of the single numbers of a .vpl column.
+// Names for the components of a .vpl column.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace bnvpl {
 
-// "position.x", "flux.g", "radius", "emit_position.3.y"; a strategy's columns are numbered:
-// "rich.lobes.0".
+// "position.x", "flux.g", "radius", "emit_position.3.y". Components of a method's own columns are
+// numbered: "rich.lobes.0".
 inline std::string componentName(const VplColumnView& column, size_t component,
                                  char separator = '.') {
   std::string name(column.name);

@@ -24,7 +24,7 @@ namespace bnvpl {
 
 namespace {
 
-// For programs: the figures of a command whose text goes to stdout, under its name.
+// Writes the figures of a command whose report goes to stdout to --stats, under the command's name.
 void saveStats(const char* command, Json figures, const Summary& start, const ToolOptions& tool) {
   Summary summary = start;
   summary.add(command, std::move(figures));
@@ -44,7 +44,7 @@ Json describeChecked(const std::vector<CheckedFile>& files, const std::string& s
   return json;
 }
 
-// A folder that is replaced as a whole must hold none of the run's other files.
+// Throws UsageError if a folder that will be replaced as a whole holds other files of the run.
 void requireOutside(const fs::path& folder, const std::vector<fs::path>& files,
                     const std::string& what) {
   std::error_code ignored;
@@ -135,7 +135,7 @@ int runScene(const SceneCommand& command, const ToolOptions& tool) {
     requireOutside(command.toml, {tool.stats, tool.depfile}, "is another output");
     folder.emplace(command.toml);
   }
-  // Its warnings are part of the answer.
+  // The report contains the warnings.
   const Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
   if (folder) requireOutside(command.toml, scene.files, "the run reads");

@@ -1,4 +1,5 @@
-// The subcommands of vpl-inspect: read, call, write. Each returns the exit code.
+// The subcommands of vpl-inspect. Each reads files, calls the library, writes the result and
+// returns the exit code.
 #pragma once
 
 #include "images/error_map.h"
@@ -15,7 +16,7 @@ struct InfoCommand {
 struct CheckCommand {
   std::vector<fs::path> files;
   bool deep = false;
-  SceneOptions scene;  // no file: its content is not asked for
+  SceneOptions scene;  // without file: the scene is not checked
 };
 struct ExportCommand {
   fs::path file, output;
@@ -24,13 +25,13 @@ struct PlotCommand {
   fs::path file, output;
   SceneOptions scene;
   PlotOptions plot;
-  bool colourGiven = false;  // else flux for lit rows, plain for others
+  bool colourGiven = false;  // false: flux for lit rows, plain for others
   std::string size;          // WxH, empty: the scene's film
 };
 struct SceneCommand {
   SceneOptions scene;
   bool json = false;
-  fs::path toml;  // a folder for the scene in our own format; empty: none
+  fs::path toml;  // folder to write the scene to in bnvpl's format; empty: none
 };
 struct RunCommand {
   fs::path folder, svg;
@@ -38,14 +39,14 @@ struct RunCommand {
 };
 struct CompareCommand {
   fs::path imageA, imageB, secondB, mask, diff;
-  std::string layer, layerA, layerB;  // layerA and layerB go first
+  std::string layer, layerA, layerB;  // layerA and layerB override `layer`
   CompareOptions limits;
-  std::string exposure;       // of LDR-FLIP, stops or auto
-  std::string flipExposures;  // of HDR-FLIP, START:STOP or auto; empty: as in `flip`
+  std::string exposure;       // for LDR-FLIP, stops or auto
+  std::string flipExposures;  // for HDR-FLIP, START:STOP or auto; empty: as in `flip`
   FlipOptions flip;
-  std::vector<const CLI::Option*> ofFlip;  // the options that are FLIP's alone
+  std::vector<const CLI::Option*> ofFlip;  // options that only FLIP uses
   MapKind map = MapKind::Difference;
-  std::optional<double> diffRange;  // at the end of the colour scale; none: the map's own
+  std::optional<double> diffRange;  // value at the end of the colour scale; none: the map's own
   bool json = false;
 };
 
@@ -57,7 +58,7 @@ int runScene(const SceneCommand& command, const ToolOptions& tool);
 int runRun(const RunCommand& command, const ToolOptions& tool);
 int runCompare(const CompareCommand& command, const ToolOptions& tool);
 
-// The options of `compare`.
+// Adds the subcommand `compare` with its options.
 CLI::App* addCompare(CLI::App& cli, CompareCommand& command);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// `vpl-inspect compare`: its options, and from files to figures and pictures.
+// `vpl-inspect compare`: options, reading of files, and output of figures and pictures.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -24,11 +24,11 @@ const Choices<MapKind> kMaps{{"difference", MapKind::Difference},
                              {"flip", MapKind::Flip},
                              {"hdr-flip", MapKind::HdrFlip}};
 
-// What there is to compare, with the images that the layers point into.
+// The layers to compare, and the images that they point into.
 struct Sides {
   Image imageA, imageB, imageSecond, imageMean;
   Layer a, b, second;
-  Layer reference;  // b, or the mean of both halves
+  Layer reference;  // `b`, or the mean of `b` and `second`
   Mask mask;
   bool halves = false;
 };
@@ -39,7 +39,8 @@ Image readImage(const fs::path& file) {
   return readExr(file);
 }
 
-// Halves with the same noise would hide it, and what they share with A would count for it.
+// Throws InputError if the second half equals another image: equal halves hide the reference's
+// noise, and a half that equals A would make A's noise count as the reference's.
 void requireOther(const fs::path& second, const Layer& s, const fs::path& file,
                   const Layer& other) {
   const auto same = [](const std::vector<float>* x, const std::vector<float>* y) {
@@ -53,13 +54,13 @@ void requireOther(const fs::path& second, const Layer& s, const fs::path& file,
   }
 }
 
-// What the last stage of an image ran on.
+// The record of the stage that made the image; none if it has no history.
 std::optional<StageRecord> lastRecord(const fs::path& file, const Image& image) {
   const std::vector<StageRecord> chain = parseProvenance(file, provenanceOf(image));
   return chain.empty() ? std::nullopt : std::optional(chain.back());
 }
 
-// A comparison of other things is possible, and mostly a mistake.
+// Warns of images of different scenes or views, whose comparison is mostly a mistake.
 void warnOfOtherScenes(const CompareCommand& command, const Sides& s) {
   const auto a = lastRecord(command.imageA, s.imageA), b = lastRecord(command.imageB, s.imageB);
   if (!a || !b) return;
@@ -117,7 +118,7 @@ ErrorMap errorMapOf(const CompareCommand& command, const Sides& s, double epsilo
 Picture pictureOf(const CompareCommand& command, const Sides& s, double epsilon,
                   const std::optional<FlipMaps>& flip) {
   if (command.map == MapKind::Difference) {
-    constexpr double kRange = 0.5;  // half as much or as much again: the strongest colours
+    constexpr double kRange = 0.5;  // relative difference with the strongest colours
     return differencePicture(s.a, s.reference, command.diffRange.value_or(kRange), s.mask);
   }
   ErrorMap map = errorMapOf(command, s, epsilon, flip);
@@ -127,20 +128,20 @@ Picture pictureOf(const CompareCommand& command, const Sides& s, double epsilon,
 
 void addReferenceOptions(CLI::App& sub, CompareCommand& c) {
   addFile(sub, "--second-half", c.secondB,
-          "the reference again, with another seed: takes its noise out of RMSE and relMSE");
+          "the reference with another seed, to remove the noise of B from RMSE and relMSE");
   addFile(sub, "--mask", c.mask,
-          "PNG of the images' size: white pixels count, black ones do not, greys in part");
+          "PNG of the images' size with the weights of pixels: white 1, black 0");
   const auto addLayer = [&](const char* name, std::string& layer, const char* help) {
     sub.add_option(name, layer, help)->type_name("NAME");
   };
-  addLayer("--layer", c.layer, "direct, indirect, albedo, N, Z, ... instead of R, G, B");
-  addLayer("--layer-a", c.layerA, "of A only");
-  addLayer("--layer-b", c.layerB, "of B only");
+  addLayer("--layer", c.layer, "layer instead of R, G, B: direct, indirect, albedo, N, Z, ...");
+  addLayer("--layer-a", c.layerA, "layer of A; overrides --layer");
+  addLayer("--layer-b", c.layerB, "layer of B; overrides --layer");
 }
 
 void addLimitOptions(CLI::App& sub, CompareCommand& c) {
   constexpr double kMax = 1e300;
-  addReal(sub, realOption("epsilon", "", 0, kMax, "", "of relMSE, times the squared mean of B"),
+  addReal(sub, realOption("epsilon", "", 0, kMax, "", "epsilon of relMSE, in units of mean(B)^2"),
           c.limits.epsilon);
   addReal(sub, realOption("max-relmse", "", 0, kMax, "", "largest relMSE allowed"),
           c.limits.maxRelMse);
@@ -154,7 +155,7 @@ void addFlipOptions(CLI::App& sub, CompareCommand& c) {
   std::snprintf(range, sizeof range, "%g:%g", (*c.flip.rangeEv)[0], (*c.flip.rangeEv)[1]);
   const auto given = [&c](const CLI::Option* option) { c.ofFlip.push_back(option); };
   given(sub.add_option("--exposure", c.exposure,
-                       "of FLIP, in stops; auto: B's logarithmic mean to middle grey")
+                       "exposure of FLIP, in stops; auto: maps the log-average of B to middle grey")
             ->type_name("EV|auto")
             ->default_str("auto"));
   given(sub.add_option("--flip-exposures", c.flipExposures,
@@ -162,25 +163,25 @@ void addFlipOptions(CLI::App& sub, CompareCommand& c) {
                        "paper")
             ->type_name("START:STOP|auto")
             ->default_str(range));
-  given(addReal(
-      sub, realOption("ppd", "", 1, 1000, "", "pixels in a degree of the viewer's field, for FLIP"),
-      c.flip.ppd));
+  given(addReal(sub,
+                realOption("ppd", "", 1, 1000, "", "pixels per degree of visual angle, for FLIP"),
+                c.flip.ppd));
 }
 
 void addPictureOptions(CLI::App& sub, CompareCommand& c) {
   CLI::Option* diff = addFile(sub, "--diff", c.diff, "false-colour picture (.png) with a legend");
   addChoice(sub, "--map", c.map, kMaps,
-            "what it shows; difference: (a-b) / (b + 0.1 mean(b)), blue darker, red brighter")
+            "measure to show; difference: (a-b) / (b + 0.1 mean(b)), blue darker, red brighter")
       ->needs(diff);
   addReal(sub,
           realOption("diff-range", "", 1e-6, 1e6, "",
-                     "value at the end of its colours; of the difference, 1 = 100 %"),
+                     "value at the end of the colour scale; for difference, 1 is 100 %"),
           c.diffRange)
-      ->default_str("0.5 of the difference, else 1")
+      ->default_str("0.5 for difference, else 1")
       ->needs(diff);
 }
 
-// What only FLIP and HDR-FLIP ask for, of layers without colours.
+// Throws UsageError for options of FLIP, which needs layers of R, G and B.
 void requireNoFlip(const CompareCommand& command, const Sides& s) {
   const auto given = std::ranges::find_if(
       command.ofFlip, [](const CLI::Option* option) { return option->count() > 0; });
@@ -207,7 +208,7 @@ CLI::App* addCompare(CLI::App& cli, CompareCommand& c) {
   addLimitOptions(*sub, c);
   addFlipOptions(*sub, c);
   addPictureOptions(*sub, c);
-  sub->add_flag("--json", c.json, "the measures as JSON");
+  sub->add_flag("--json", c.json, "print the measures as JSON");
   return sub;
 }
 

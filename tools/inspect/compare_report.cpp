@@ -14,7 +14,7 @@ namespace {
 
 Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-// Over a black reference some measures are 0/0 or x/0.
+// For a black reference some measures are 0/0 or x/0.
 std::string orUndefined(double value) {
   if (!std::isfinite(value)) return "undefined";
   char text[32];
@@ -32,7 +32,7 @@ std::array<Limit, 3> limits(const Comparison& c, const CompareOptions& options) 
            {"RMSE", c.rmse, options.maxRmse},
            {"RMSE / mean", c.rmseOverMean(), options.maxRmseOverMean}}};
 }
-// Written so that an undefined value exceeds any limit.
+// The negated comparison lets an undefined value exceed any limit.
 bool exceeds(const Limit& limit) { return limit.most && !(limit.value <= *limit.most); }
 
 Json channelJson(const Comparison::Channel& k) {

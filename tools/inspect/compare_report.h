@@ -1,4 +1,4 @@
-// What `vpl-inspect compare` says of a comparison, and how it exits.
+// Report and exit code of `vpl-inspect compare`.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ struct CompareOptions {
 Json comparisonJson(const Comparison& c, const CompareOptions& options);
 std::string comparisonText(const Comparison& c, const CompareOptions& options);
 
-// kExitOk, or kExitDifferent when a limit is exceeded; infinite and undefined measures exceed any
-// limit.
+// kExitDifferent if a limit is exceeded, otherwise kExitOk. Infinite and undefined measures exceed
+// any limit.
 int comparisonExitCode(const Comparison& c, const CompareOptions& options);
 
 }  // namespace bnvpl

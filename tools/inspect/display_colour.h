@@ -1,4 +1,4 @@
-// Colours of the rows for display, linear sRGB in 0..1.
+// Colours of rows for display, linear sRGB in 0..1.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace bnvpl {
 
-// The value below which `share` of the lit rows have their strongest channel of flux, W. 1 where no
-// row has any flux.
+// The quantile `share`, from 0 to 1, of the strongest channel of flux over all rows that are not
+// black, in W; 1 if all are black.
 inline float fluxPercentile(const VplTable& table, double share) {
   std::vector<float> strongest;
   for (const Vec3& f : table.flux) {
@@ -23,11 +23,11 @@ inline float fluxPercentile(const VplTable& table, double share) {
   return strongest[static_cast<size_t>(rank)];
 }
 
-// What is shown at full brightness: a few bright VPLs beside the lamp must not leave all others
-// black.
+// The flux that is shown at full brightness, in W. A percentile keeps a few bright VPLs near a
+// light source from making all others look black.
 inline float displayFlux(const VplTable& table) { return fluxPercentile(table, 0.99); }
 
-// The flux over displayFlux for lit rows, the albedo for others.
+// flux / displayFlux, at most 1, for lit rows; the albedo for others.
 inline std::vector<Vec3> displayColours(const VplTable& table) {
   if (table.stage != VplStage::Lit) return table.albedo;
   const float full = displayFlux(table);

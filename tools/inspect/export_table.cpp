@@ -32,7 +32,7 @@ std::vector<Vec3> firstPoints(const VplTable& table, const std::vector<Vec3>& po
   return first;
 }
 
-// What vertices are made of: PLY's own names first, then the columns that have none.
+// Properties of the vertices: those that PLY names, then all other columns.
 struct Vertices {
   explicit Vertices(const VplTable& table)
       : lit(table.stage == VplStage::Lit),
@@ -42,7 +42,7 @@ struct Vertices {
     const char* place = lit ? "emit_position" : "position";
     const char* normal = lit ? "emit_normal" : "normal";
     for (const VplColumnView& column : columnsOf(table)) {
-      // Of several points a row is drawn at the first, and has all of them as numbers.
+      // A row with several emission points is drawn at the first and lists all as properties.
       if ((column.name != place && column.name != normal) || column.components > 3)
         others.push_back(column);
     }
@@ -92,7 +92,7 @@ void appendVertex(std::string& bytes, const Vertices& vertices, size_t row, Vec3
   appendVec(bytes, vertices.normals[row]);
   for (size_t k = 0; k < 3; ++k) appendValue(bytes, toSrgb8(vertices.colours[row][k]));
   for (const VplColumnView& column : vertices.others) {
-    if (column.type == VplType::U64) {  // which PLY does not have
+    if (column.type == VplType::U64) {  // PLY lacks this type: written as double
       for (size_t k = 0; k < column.components; ++k) appendValue(bytes, column.value(row, k));
     } else {
       const auto values = column.row(row);

@@ -1,4 +1,4 @@
-// Small triangles that stand for rows in programs that draw faces only.
+// Small triangles that represent rows in programs that draw faces only.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,16 @@
 
 namespace bnvpl {
 
-// The other corners of a triangle that faces along `normal`, from its corner at `place` (right
-// angle, anticlockwise).
+// The second and third corner, anticlockwise, of a triangle that faces along `normal` and has its
+// right angle at `place`.
 inline std::array<Vec3, 2> facetCorners(Vec3 place, Vec3 normal, float leg) {
   const Basis basis(normal);
   return {place + basis.s * leg, place + basis.t * leg};
 }
 
-// Lengths of the legs, scene units: half the row's radius, so that facets do not meet; without
-// radii, a part of the extent. Long enough for float coordinates to tell the corners apart.
+// Lengths of the legs, scene units: half the row's radius, so that facets do not overlap, or a
+// fraction of the extent without radii; at least so long that float coordinates keep the corners
+// apart.
 inline std::vector<float> facetLegs(const VplTable& table, const std::vector<Vec3>& places) {
   Bounds bounds;
   for (const Vec3 p : places) bounds.extend(p);

@@ -1,4 +1,4 @@
-// Which of the project's binary files a path holds.
+// Recognises the project's binary files.
 #pragma once
 
 #include "core/errors.h"
@@ -7,10 +7,10 @@ namespace bnvpl {
 
 enum class FileKind { Vpl, Exr, Shard };
 
-// By the first bytes; a damaged start falls back on the extension, so that the reader can say what
-// is wrong. Throws InputError when the file cannot be read or is none of them.
+// Decides by the first bytes, or by the extension if they are damaged, so that the reader can
+// report the damage. Throws InputError if the file cannot be read or is of no such kind.
 FileKind fileKind(const fs::path& file);
-// The same for commands that take whole results: throws InputError for a shard.
+// The same for commands that take complete results: throws InputError for a shard.
 FileKind wholeFileKind(const fs::path& file);
 
 }  // namespace bnvpl

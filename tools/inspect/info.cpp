@@ -39,8 +39,8 @@ Json rangeJson(const std::string& name, const Range& range) {
   return json;
 }
 
-// Of columns with more components than people read, one range over all of them, or over each part
-// of points.
+// Lists the range of each component. Columns with more than kMaxListed components have one range
+// for each part (such as x, y and z), or a single range if they have no parts.
 Json columnsJson(const VplTable& table) {
   constexpr uint32_t kMaxListed = 4;
   Json columns = Json::array();

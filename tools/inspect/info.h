@@ -1,4 +1,4 @@
-// What a file holds, as data and as text: `vpl-inspect info`.
+// Describes the contents of a file, as data and as text: `vpl-inspect info`.
 #pragma once
 
 #include "formats/image.h"
@@ -7,14 +7,14 @@
 
 namespace bnvpl {
 
-// Reads and verifies a .vpl file, an OpenEXR image or a .shard and describes it. Keys carry their
-// units. Throws InputError.
+// Reads, verifies and describes a .vpl file, an OpenEXR image or a .shard. Keys carry their units.
+// Throws InputError.
 Json describeFile(const fs::path& file);
 
 Json describeTable(const VplTable& table);
 Json describeImage(const Image& image);
 
-// The same for people: a few lines and one table, ends with a line feed.
+// The description for people: a few lines and one table, with a line feed at the end.
 std::string infoText(const Json& description);
 
 }  // namespace bnvpl

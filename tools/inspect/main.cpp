@@ -1,4 +1,4 @@
-// vpl-inspect: look into, check, export, draw and compare what the stages make.
+// vpl-inspect: describes, checks, exports, plots and compares the files of the stages.
 //   vpl-inspect info lit.vpl
 //   vpl-inspect compare image.exr reference.exr --layer indirect --max-relmse 0.01 --diff diff.png
 #include <CLI/CLI.hpp>
@@ -17,7 +17,7 @@ CLI::App* addInfo(CLI::App& cli, InfoCommand& c) {
                                      "Header, history, columns and spacing of a .vpl file, "
                                      "channels of an .exr image, or what a .shard holds.");
   addFile(*sub, "file", c.file, ".vpl, .exr or .shard")->required();
-  sub->add_flag("--json", c.json, "the same as JSON");
+  sub->add_flag("--json", c.json, "print the report as JSON");
   return sub;
 }
 
@@ -25,9 +25,9 @@ CLI::App* addCheck(CLI::App& cli, CheckCommand& c) {
   CLI::App* sub = cli.add_subcommand("check", "Verify files; several also against each other.");
   addFile(*sub, "files", c.files, ".vpl and .exr")->required();
   sub->add_flag("--deep", c.deep,
-                "the files must be one whole chain, row by row; what is broken comes with the "
-                "commands that mend it");
-  addSceneFlag(*sub, c.scene, "the scene (.toml) that all must come from");
+                "require one complete chain of files, checked row by row; an error ends with the "
+                "commands that repair the chain");
+  addSceneFlag(*sub, c.scene, "the scene (.toml) that all files must have been made from");
   return sub;
 }
 
@@ -41,13 +41,14 @@ CLI::App* addExport(CLI::App& cli, ExportCommand& c) {
 CLI::App* addScene(CLI::App& cli, SceneCommand& c) {
   CLI::App* sub = cli.add_subcommand(
       "scene",
-      "What is understood of a scene: meshes, materials, lights with their power, cameras, "
-      "textures, and all that is ignored or approximated.");
+      "Report how a scene is interpreted: meshes, materials, lights with their power, cameras, "
+      "textures, and everything that is ignored or approximated.");
   addSceneOptions(*sub, c.scene);
-  sub->add_flag("--json", c.json, "the same as JSON");
+  sub->add_flag("--json", c.json, "print the report as JSON");
   sub->add_option(
          "--to-toml", c.toml,
-         "also write it as scene.toml, OBJ and MTL: the folder is new, empty, or one made so")
+         "also write the scene as scene.toml, OBJ and MTL; the folder must be new, empty or "
+         "written by this option")
       ->type_name("FOLDER");
   return sub;
 }
@@ -60,11 +61,11 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
   addFile(*sub, "-o,--output", c.output, "picture (.png)")->required();
   addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
   addChoice(*sub, "--color", c.plot.colour, kDotColours,
-            "what the dots' colour shows, violet for little to yellow for much")
+            "quantity that colours the dots, from violet (low) to yellow (high)")
       ->default_str("flux if lit, else plain");
   sub->add_flag("--show-back", c.plot.showBack,
-                "rings for rows in sight whose lit side faces away");
-  sub->add_option("--size", c.size, "of the picture, pixels; the scene's film unless given")
+                "draw rings for visible rows whose lit side faces away");
+  sub->add_option("--size", c.size, "size of the picture in pixels; default: the scene's film")
       ->type_name("WIDTHxHEIGHT");
   return sub;
 }
@@ -72,23 +73,23 @@ CLI::App* addPlot(CLI::App& cli, PlotCommand& c) {
 CLI::App* addRun(CLI::App& cli, RunCommand& c) {
   CLI::App* sub = cli.add_subcommand(
       "run",
-      "What the tasks of a pipeline took: stages, hosts, CPU time and the critical path, from the "
+      "Report the tasks of a pipeline: stages, hosts, CPU time and the critical path, from the "
       "records of pipelines/slurm/submit.py or generate_ninja.py --record.");
-  sub->add_option("folder", c.folder, "of the records: OUT/SCENE/run")
+  sub->add_option("folder", c.folder, "folder of the records: OUT/SCENE/run")
       ->required()
       ->type_name("FOLDER");
-  addFile(*sub, "--svg", c.svg, "picture (.svg): hosts downwards, time to the right");
-  sub->add_flag("--json", c.json, "the same as JSON, with every attempt");
+  addFile(*sub, "--svg", c.svg, "timeline (.svg): hosts downwards, time to the right");
+  sub->add_flag("--json", c.json, "print the report as JSON, with every attempt");
   return sub;
 }
 
 }  // namespace
 }  // namespace bnvpl
 
-// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
+// NOLINTNEXTLINE(bugprone-exception-escape): only a wrongly declared option throws, at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Look into, check, export, draw and compare what the stages make.", "vpl-inspect"};
+  CLI::App cli{"Describe, check, export, plot and compare the files of the stages.", "vpl-inspect"};
   ToolOptions tool;
   cli.fallthrough();  // --threads and --quiet may stand after the subcommand too
   addToolOptions(cli, tool);

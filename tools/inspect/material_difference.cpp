@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-// What a material is made of, in a fixed order.
+// The parameters of a material, in a fixed order.
 struct Parts {
   std::vector<float> numbers;
   std::vector<uint32_t> expressions, images, materials;
@@ -57,11 +57,11 @@ bool near(float a, float b, float tolerance) {
 }
 bool nearNumber(float a, float b) { return near(a, b, 1e-6f); }
 bool nearTexel(Vec3 a, Vec3 b) {
-  constexpr float kTexel = 2e-3f;  // rounding of coordinates, within a texel
+  constexpr float kTexel = 2e-3f;  // tolerance for coordinates rounded within a texel
   return near(a.x, b.x, kTexel) && near(a.y, b.y, kTexel) && near(a.z, b.z, kTexel);
 }
 
-// At places all over the unit square and around it.
+// Compares two functions at points spread over [-1, 2]^2.
 template <typename A, typename B>
 bool sameOverPlane(const A& a, const B& b) {
   constexpr int kPlaces = 64;

@@ -1,4 +1,4 @@
-// Whether materials of two scenes are the same.
+// Compares materials of two scenes.
 #pragma once
 
 #include "scene/scene.h"
@@ -11,7 +11,7 @@ struct MaterialOf {
   const Material& operator*() const { return scene.materials[number]; }
 };
 
-// By their parameters, and textures by their values at some places; names do not count.
+// Compares parameters, and textures by their values at some points; ignores names.
 bool sameMaterial(const MaterialOf& material, const MaterialOf& again);
 
 }  // namespace bnvpl

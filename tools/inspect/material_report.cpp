@@ -8,7 +8,7 @@ namespace {
 
 Json colourJson(Vec3 c) { return Json::array({c.x, c.y, c.z}); }
 
-// The images that an expression looks into.
+// Collects the images that an expression reads.
 void collectImages(const Scene& scene, uint32_t expression, std::set<uint32_t>& images) {
   if (expression == kNone) return;
   const TextureExpression& e = scene.expressions[expression];

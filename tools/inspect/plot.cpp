@@ -15,9 +15,9 @@
 namespace bnvpl {
 namespace {
 
-constexpr unsigned kMaxMirrors = 8;           // mirrors and glass behind each other
-constexpr float kDim = 0.4f;                  // of the view, so that dots stand out
-constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; where a ray leaves the scene
+constexpr unsigned kMaxMirrors = 8;           // max number of specular bounces
+constexpr float kDim = 0.4f;                  // dims the view, so that dots stand out
+constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; for rays that leave the scene
 constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
 
 Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
@@ -47,7 +47,7 @@ Vec3 encoded(Vec3 linear) {
   return {encodeSrgb(linear.x), encodeSrgb(linear.y), encodeSrgb(linear.z)};
 }
 
-// From violet for the smallest to yellow for the largest, sRGB; even to the eye.
+// A perceptually even ramp from violet (t = 0) to yellow (t = 1), sRGB.
 Vec3 rampColour(float t) {
   constexpr std::array<Vec3, 4> kStops{Vec3{0.36f, 0.18f, 0.78f}, Vec3{0.86f, 0.25f, 0.55f},
                                        Vec3{1.0f, 0.58f, 0.25f}, Vec3{1.0f, 0.95f, 0.4f}};
@@ -56,15 +56,15 @@ Vec3 rampColour(float t) {
   return kStops[from] + (kStops[from + 1] - kStops[from]) * (at - static_cast<float>(from));
 }
 
-// Flux and radius span decades and count as ratios: a logarithmic scale from `low` to `high`, both
-// above 0.
+// The colour of `value` on a logarithmic scale from `low` to `high`, both above 0, since flux and
+// radius span decades.
 Vec3 logColour(float value, float low, float high) {
   if (!(value > low)) return rampColour(high > low ? 0.0f : 0.5f);
   return rampColour(high > low ? std::log(value / low) / std::log(high / low) : 0.5f);
 }
 
-// The dots' own hue would be lost on walls of that hue, so that the ramp shows the strongest
-// channel; the weakest and strongest few share its ends.
+// Colours by the strongest channel of flux: dots with the hue of their flux would be lost on walls
+// of that hue. The weakest 2 % and the strongest 1 % get the ends of the ramp.
 std::vector<Vec3> fluxColours(const VplTable& table) {
   const float low = fluxPercentile(table, 0.02), high = displayFlux(table);
   std::vector<Vec3> colours;

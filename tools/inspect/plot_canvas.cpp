@@ -6,11 +6,11 @@ namespace bnvpl {
 namespace {
 
 constexpr Vec3 kRim{0.05f, 0.05f, 0.08f};
-// Of the radius: a thinner rim is lost among bright surfaces at the usual 5 pixels.
+// Fraction of the radius. A thinner rim cannot be seen on bright surfaces at the usual 5 pixels.
 constexpr float kRimShare = 0.3f;
 
-// Share of the pixel that a disk covers, from the distance of the pixel's centre to the disk's:
-// exact for a straight edge, which a disk of a few pixels nearly is.
+// Fraction of a pixel that a disk covers, by the distance of their centres. It is exact for a
+// straight edge parallel to the pixel's side, and close for disks of a few pixels.
 float coverage(float distance, float radius) {
   return std::clamp(radius + 0.5f - distance, 0.0f, 1.0f);
 }

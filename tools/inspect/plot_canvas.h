@@ -10,9 +10,9 @@ namespace bnvpl {
 
 struct Dot {
   float x = 0, y = 0;   // pixels from the top left corner of the picture
-  float depth = 0;      // scene units along the viewing axis: near dots are painted over far ones
+  float depth = 0;      // scene units along the viewing axis; near dots cover far ones
   Vec3 colour;          // sRGB encoded, 0..1
-  bool hollow = false;  // only a ring: the row faces away
+  bool hollow = false;  // drawn as a ring, for a row that faces away
 };
 
 // Colours are sRGB encoded, 0..1, so that anti-aliased edges look even.

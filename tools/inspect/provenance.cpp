@@ -10,7 +10,7 @@ namespace bnvpl {
 namespace {
 
 std::string plain(const Json& value) {
-  if (value.is_number_float()) {  // 0.02, not 0.0199999996 of a float that became a double
+  if (value.is_number_float()) {  // prints a float 0.02 as such, not as 0.0199999996
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value.get<double>());
     return text;
@@ -19,8 +19,7 @@ std::string plain(const Json& value) {
   return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
 
-// The record's text under `key`, or an empty one: a chain of another program is shown as far as it
-// goes.
+// The record's text under `key`; empty if it is missing, as in histories of other programs.
 std::string textAt(const Json& record, const char* key) {
   const auto found = record.find(key);
   return found == record.end() ? std::string() : plain(*found);

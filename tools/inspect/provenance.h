@@ -1,4 +1,4 @@
-// The history that every file carries: which tools made it, with what, from what.
+// The history that every file carries: tools, options and inputs that made it.
 #pragma once
 
 #include <map>
@@ -21,19 +21,19 @@ struct StageRecord {
     std::string size, hash;  // "640x480" and 16 hex digits
     bool operator==(const View&) const = default;
   };
-  std::vector<View> views;  // that the stage looked at
-  std::string processor;    // "any"; empty: the one at hand
+  std::vector<View> views;  // views that the stage used
+  std::string processor;    // "any"; empty: the processor at hand
 };
 
-// Oldest first; keys that are absent stay empty. `file` is for the message.
-// Throws InputError when `text` is not a JSON array of objects. An empty text is an empty chain.
+// Records, oldest first; missing keys stay empty, and an empty text has no records. Throws
+// InputError, which names `file`, if `text` is not a JSON array of objects.
 std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string& text);
 
-// The provenance attribute of an image, or an empty text.
+// The provenance attribute of an image; empty if it has none.
 std::string provenanceOf(const Image& image);
 
-// "vpl-place 0.1.0: count 3000, seed 1; from scene 0123456789abcdef; view 640x480
-// 0123456789abcdef"; of many views the first few
+// "vpl-place 0.1.0: count 3000, seed 1; from scene HASH; view 640x480 HASH", with at most four
+// views.
 std::string describeRecord(const StageRecord& record);
 std::string describeViews(const StageRecord& record);
 

@@ -17,7 +17,7 @@ constexpr size_t kLongestName = 200;
 constexpr double kLatestS = 1e11;  // the year 5138
 constexpr double kMaxS = 1e12, kMaxMiB = 1e12, kMaxAttempts = 1e6, kMaxExit = 255;
 
-// The fields of one record; what is wrong names the file.
+// The fields of one record. Every error names the file.
 class Record {
  public:
   explicit Record(const fs::path& file) : file_(file) {
@@ -65,7 +65,7 @@ class Record {
   }
 
  private:
-  // Names are printed, so they hold no control characters.
+  // Names are printed and must not hold control characters.
   std::string nameIn(const Json& value, const char* key) const {
     if (!value.is_string()) fail(std::string("'") + key + "' is no text");
     std::string text = value.get<std::string>();
@@ -116,7 +116,7 @@ std::vector<fs::path> recordFiles(const fs::path& folder) {
   return files;
 }
 
-// Of attempts in order: the first that belongs to the latest run of their task.
+// The first of the ordered attempts of a task that belongs to the task's latest run.
 using Attempts = std::vector<TaskAttempt>;
 Attempts::iterator latestRun(Attempts::iterator begin, Attempts::iterator end) {
   Attempts::iterator first = begin;

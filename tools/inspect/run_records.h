@@ -1,4 +1,4 @@
-// What pipelines/record.py wrote about the tasks of a run: one file an attempt, *.task.json.
+// Records that pipelines/record.py writes about the tasks of a run: one *.task.json per attempt.
 #pragma once
 
 #include <map>
@@ -11,14 +11,13 @@
 
 namespace bnvpl {
 
-// One start of a task. Of one that was killed with its machine, or that still runs, the end is not
-// known.
+// One attempt to run a task. The end is unknown if it still runs or was killed with its machine.
 struct TaskAttempt {
   std::string task, stage, host;
-  std::string job;  // of the scheduler; empty: none
+  std::string job;  // job id of the scheduler; empty: none
   unsigned number = 1;
-  bool resumed = false;  // went on from a checkpoint
-  double startS = 0.0;   // since 1970
+  bool resumed = false;  // continued from a checkpoint
+  double startS = 0.0;   // seconds since 1970
   std::optional<double> endS, cpuS, peakMemoryMiB;
   std::optional<int> exit;  // 128 and more: ended by a signal
 
@@ -26,13 +25,13 @@ struct TaskAttempt {
 };
 
 struct RunRecords {
-  // By task, then by number. Those that an earlier run of a task ended with are left out: what
-  // precedes a success that was followed by another attempt.
+  // Sorted by task, then by number. Attempts of earlier runs of a task are left out: those up to
+  // the last success that another attempt follows.
   std::vector<TaskAttempt> attempts;
-  std::map<std::string, std::set<std::string>> after;  // of each stage: those whose files it reads
+  std::map<std::string, std::set<std::string>> after;  // for each stage, the stages that it reads
 };
 
-// Reads all *.task.json of a folder. Throws InputError, also where there are none.
+// Reads all *.task.json of a folder. Throws InputError, also if there are none.
 RunRecords readRunRecords(const fs::path& folder);
 
 }  // namespace bnvpl

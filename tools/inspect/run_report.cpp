@@ -8,12 +8,12 @@ namespace {
 struct Task {
   std::string name;
   double startS = 0.0;
-  std::optional<double> endS;  // of its last attempt that ended
+  std::optional<double> endS;  // latest end of an attempt
   bool done = false;
-  std::optional<int> exit;  // of the last attempt; none: killed with its machine, or running
+  std::optional<int> exit;  // the last attempt's; none: killed with its machine, or running
 };
 
-// Sums over attempts. Those whose end is not known add no CPU time.
+// Sums over attempts. Attempts without an end add neither busy time nor CPU time.
 struct Use {
   size_t attempts = 0, resumed = 0, withoutEnd = 0;
   double startS = kNone, endS = 0.0, busyS = 0.0, cpuS = 0.0, peakMemoryMiB = 0.0;
@@ -141,7 +141,7 @@ std::vector<std::string> stagesInOrder(const RunRecords& run) {
     if (!fresh) found->second = std::min(found->second, a.startS);
   }
   std::map<std::string, size_t> waitsFor;
-  std::map<std::string, std::vector<std::string>> before;  // a stage: who waits for it
+  std::map<std::string, std::vector<std::string>> before;  // for each stage, those that wait for it
   std::set<std::pair<double, std::string>> ready;
   for (const auto& [stage, start] : startS) {
     for (const std::string& other : run.after.at(stage)) {

@@ -1,4 +1,4 @@
-// What ran where and how long: `vpl-inspect run`.
+// Reports what a pipeline ran, where and for how long: `vpl-inspect run`.
 #pragma once
 
 #include "tools/common/run_tool.h"
@@ -6,16 +6,16 @@
 
 namespace bnvpl {
 
-// Totals, stages in their order, hosts, the critical path, and every attempt. Keys carry their
-// units. A task takes from its first start to its last end, with the waits between its attempts;
-// the critical path is the chain of stages whose longest tasks take longest together: less, no
-// number of machines can do. Throws InputError where stages come after each other in a circle.
+// Totals, stages in order, hosts, the critical path, and every attempt. Keys carry their units. The
+// time of a task extends from its first start to its last end and includes waits between attempts.
+// The critical path is the chain of stages whose longest tasks have the largest total time, a lower
+// bound for any number of machines. Throws InputError if the order of the stages has a cycle.
 Json describeRun(const RunRecords& run);
 
-// The same for people, ends with a line feed.
+// The description for people, with a line feed at the end.
 std::string runText(const Json& description);
 
-// The stages, each after those whose files it reads, else by their first start.
+// The stages, each after those whose files it reads, otherwise by first start.
 std::vector<std::string> stagesInOrder(const RunRecords& run);
 
 }  // namespace bnvpl

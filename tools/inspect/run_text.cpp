@@ -1,4 +1,4 @@
-// `vpl-inspect run` for people.
+// The report of `vpl-inspect run` for people.
 #include <algorithm>
 #include <ctime>
 
@@ -8,7 +8,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr size_t kMaxNamed = 10;  // unfinished tasks
+constexpr size_t kMaxNamed = 10;  // max number of unfinished tasks to list
 
 std::string textOf(const Json& json, const char* key) { return json[key].get<std::string>(); }
 size_t count(const Json& json, const char* key) { return json[key].get<size_t>(); }

@@ -10,19 +10,19 @@
 namespace bnvpl {
 namespace {
 
-// Pixels.
+// Dimensions in pixels.
 constexpr double kWidth = 1200, kLeft = 130, kRight = 20, kTop = 44, kBottom = 34;
 constexpr double kMaxHeight = 900, kRowMost = 16, kRowLeast = 1, kHostGap = 4, kFont = 11;
 constexpr double kPlotWidth = kWidth - kLeft - kRight;
 
-// Of stages in their order; a merge follows its stage in a lighter tone.
+// Colours of the stages in order. A merge follows its stage and has a lighter tone of its colour.
 constexpr std::array kColours{"#4477aa", "#a3bddb", "#228833", "#cc9933", "#ebd9a6",
                               "#aa3377", "#dba3c4", "#66ccee", "#777777"};
 
 struct Bar {
   const TaskAttempt* attempt;
   double startS, endS;
-  size_t lane = 0;  // of its host
+  size_t lane = 0;  // lane within its host
 };
 
 struct Host {
@@ -47,11 +47,11 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// Each bar into the first lane that is free when it begins.
+// Puts each bar into the first lane that is free when it begins.
 void assignLanes(Host& host) {
   std::ranges::stable_sort(host.bars, {}, [](const Bar& b) { return b.startS; });
   std::set<size_t> free;
-  std::multimap<double, size_t> busy;  // until when, lane
+  std::multimap<double, size_t> busy;  // end in seconds -> lane
   for (Bar& bar : host.bars) {
     while (!busy.empty() && busy.begin()->first <= bar.startS) {
       free.insert(busy.begin()->second);
@@ -70,7 +70,7 @@ double endOfRun(const RunRecords& run) {
   return endS;
 }
 
-// Until when an attempt without an end may have run.
+// The latest time until which an attempt without an end may have run.
 double lastSeen(const std::vector<TaskAttempt>& attempts, size_t i, double endOfRunS) {
   if (i + 1 == attempts.size() || attempts[i + 1].task != attempts[i].task) return endOfRunS;
   return std::max(attempts[i].startS, attempts[i + 1].startS);
@@ -87,7 +87,7 @@ std::map<std::string, Host> hostsOf(const RunRecords& run) {
   return hosts;
 }
 
-// 1, 2 or 5 times a power of ten, so that at most ten fit.
+// The smallest step of 1, 2 or 5 times a power of ten that divides `spanS` into at most ten.
 double tickStep(double spanS) {
   const double power = std::pow(10.0, std::floor(std::log10(std::max(spanS, 1e-3) / 10.0)));
   for (const double factor : {1.0, 2.0, 5.0}) {

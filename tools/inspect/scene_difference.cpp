@@ -11,7 +11,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kRounding = 1e-5f;  // of numbers and unit vectors that went through text
+constexpr float kRounding = 1e-5f;  // tolerance for numbers and unit vectors that went through text
 
 bool near(float a, float b) {
   return std::fabs(a - b) <= kRounding * std::max({1.0f, std::fabs(a), std::fabs(b)});
@@ -27,18 +27,18 @@ class Comparison {
   bool sameViews() const;
   bool sameLights() const;
   bool sameInstances() const;
-  // Material of the first that differs, or another text; empty: none.
+  // Names the first material or triangle that differs; empty: none.
   std::string triangles(uint32_t beginA, uint32_t endA, uint32_t beginB, uint32_t endB);
   std::string prototypes();
 
  private:
-  // In the coordinates of the files, of things of the world.
+  // Compares points in the coordinates of the files: those of the world have an origin to add.
   bool samePlace(Vec3 p, Vec3 q, bool world = true) const;
   bool sameCorner(const Triangle& t, const Triangle& u, size_t k, bool world) const;
   bool sameLight(const LightSpec& l, const LightSpec& m) const;
 
   const Scene &a_, &b_;
-  std::map<std::pair<uint32_t, uint32_t>, bool> materials_;  // whether they are the same
+  std::map<std::pair<uint32_t, uint32_t>, bool> materials_;  // whether two materials are equal
 };
 
 bool Comparison::samePlace(Vec3 p, Vec3 q, bool world) const {
@@ -110,7 +110,7 @@ std::string Comparison::triangles(uint32_t beginA, uint32_t endA, uint32_t begin
   return "";
 }
 
-// In the order of their prototypes, as they are written.
+// Sorts instances by prototype, the order in which they are written.
 std::vector<Instance> instancesInOrder(const Scene& scene) {
   std::vector<Instance> out = scene.instances;
   std::ranges::stable_sort(out, {}, &Instance::prototype);

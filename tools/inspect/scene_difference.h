@@ -1,4 +1,4 @@
-// Whether two scenes are one and the same but for rounding.
+// Compares two scenes up to rounding.
 #pragma once
 
 #include <string>
@@ -7,9 +7,8 @@
 
 namespace bnvpl {
 
-// Compares a scene with the one that was read from what write_scene.h made of it, part by part:
-// camera and film, triangles with their materials, instances, lights. Names the first part that
-// differs; empty: none.
+// Compares a scene with itself after writing (write_scene.h) and reading: camera and film, lights,
+// triangles with their materials, instances. Names the first part that differs; empty: none.
 std::string sceneDifference(const Scene& scene, const Scene& again);
 
 }  // namespace bnvpl

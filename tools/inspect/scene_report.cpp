@@ -14,7 +14,7 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Json vectorJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
 
-// In the coordinates of the files.
+// The point in the coordinates of the files.
 Json placeJson(const Scene& scene, Vec3 p) {
   return Json::array({p.x + scene.origin[0], p.y + scene.origin[1], p.z + scene.origin[2]});
 }
@@ -71,7 +71,7 @@ std::string valueText(const Json& value) {
   return "(" + list + ")";
 }
 
-// "NAME VALUE, NAME VALUE" of all members but some.
+// "NAME VALUE, NAME VALUE" for all members except those in `without`.
 std::string membersText(const Json& object, const std::vector<std::string>& without) {
   std::string text;
   for (const auto& [key, value] : object.items()) {

@@ -1,4 +1,4 @@
-// What was understood of a scene, as data and as text: `vpl-inspect scene`.
+// Describes how a scene is interpreted, as data and as text: `vpl-inspect scene`.
 #pragma once
 
 #include "tools/common/run_tool.h"
@@ -7,14 +7,13 @@
 namespace bnvpl {
 
 // Meshes, materials, lights with their power, cameras, textures, and all warnings, which name what
-// is ignored or approximated. Lengths in the scene's unit, angles in degrees, power in W.
+// is ignored or approximated. Lengths are in the scene's unit, angles in degrees, power in W.
 Json describeScene(const Scene& scene, const LightSet& lights);
 
-// One material: its model and each parameter by name; textures by their numbers in the list of
-// textures.
+// One material: its model and its parameters by name. Textures are numbers in the list of textures.
 Json describeMaterial(const Scene& scene, const Material& material);
 
-// The same for people, a few lines a section; ends with a line feed.
+// The description for people, in sections of a few lines, with a line feed at the end.
 std::string sceneText(const Json& description);
 
 }  // namespace bnvpl

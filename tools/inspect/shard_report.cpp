@@ -11,7 +11,7 @@
 namespace bnvpl {
 namespace {
 
-// Of each work, how many units and sums, and their bytes, all of which are read.
+// Counts units, sums and bytes of each work. Reads, and thus verifies, all blocks.
 Json describeWorks(ShardReader& reader) {
   Json works = Json::array();
   for (size_t b = 0; b < reader.blocks().size(); ++b) {

@@ -1,4 +1,4 @@
-// What a .shard holds: `vpl-inspect info`.
+// Describes a .shard: `vpl-inspect info`.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace bnvpl {
 
-// Reads and verifies all of it. Throws InputError.
+// Reads and verifies the whole file. Throws InputError.
 Json describeShard(const fs::path& file);
 std::string shardText(const Json& description);
 

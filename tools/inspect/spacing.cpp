@@ -15,16 +15,17 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 
 struct RowSpacing {
   float distance = kNone;  // to the nearest row on a compatible surface
-  float own = kNone;       // smallest distance / (r_i + r_j) among the rows that were looked at
+  float own = kNone;       // min distance / (r_i + r_j) over the compatible rows that were visited
 };
 
 RowSpacing measureRow(const VplTable& table, const KdTree& tree, uint32_t row,
                       std::vector<Neighbour>& found) {
   const bool radii = !table.radius.empty();
   RowSpacing result;
-  // Most rows find a partner among the first eight; corners and thin parts need more.
+  // Most rows have a compatible row among the nearest eight; at corners and thin parts it takes
+  // more.
   for (size_t count = 8; count <= kSpacingNeighbours; count *= 4) {
-    tree.nearest(table.position[row], count + 1, found);  // the row itself is among them
+    tree.nearest(table.position[row], count + 1, found);  // includes the row itself
     for (const Neighbour& n : found) {
       if (n.index == row) continue;
       const float distance = std::sqrt(n.distanceSquared);

@@ -15,7 +15,7 @@ std::string triple(Vec3 v) {
   return shortestText(v.x) + " " + shortestText(v.y) + " " + shortestText(v.z);
 }
 
-// The image of an expression that is nothing but that image; else kNone.
+// The image of an expression that consists of the unmodified image; otherwise kNone.
 uint32_t plainImage(const Scene& scene, uint32_t expression) {
   if (expression == kNone) return kNone;
   const TextureExpression& e = scene.expressions[expression];
@@ -32,13 +32,13 @@ Vec3 atNormalIncidence(const ConductorFresnel& f) {
   return {mirrored.x / all.x, mirrored.y / all.y, mirrored.z / all.z};
 }
 
-// What is nearest to each model among Lambert, Phong lobe, mirror, glass, and roughness and metal.
+// Approximates each model by Lambert, Phong lobe, mirror, glass, or metallic-roughness.
 class NearestMtl {
  public:
   explicit NearestMtl(const Scene& scene) : scene_(scene) {}
 
   PhongModel phong;
-  std::optional<MetallicRoughnessModel> facets;  // stated beside Kd, if any; specularColour is f0
+  std::optional<MetallicRoughnessModel> facets;  // written beside Kd; specularColour holds f0
 
   void operator()(const PhongModel& m) { phong = m; }
   void operator()(const DiffuseModel& m) { diffuse(m.reflectance); }
@@ -125,7 +125,7 @@ std::string phongText(const PhongModel& p) {
          triple(mirror ? p.mirror : p.glossy) + "\nNs " + shortestText(p.exponent) + "\n";
 }
 
-// What only a material that MTL states whole has there.
+// Properties that are written only for materials that MTL can express exactly.
 std::string moreText(const Scene& scene, const Material& m, WrittenMaterials& used) {
   std::string text = textureLine(scene, "map_Ke", m.emissionTexture, used);
   if (m.twoSidedEmission) text += "emission_sides 2\n";
@@ -148,13 +148,13 @@ std::string materialText(const Scene& scene, const Material& m, WrittenMaterials
          imageLine(scene, "map_d", m.opacityMap, used);
 }
 
-// Without what OBJ and MTL take for more than a name.
+// Replaces characters that have a meaning of their own in OBJ and MTL.
 std::string cleanName(std::string name) {
   for (char& c : name) {
     const auto code = static_cast<unsigned char>(c);
     if (code < 0x20 || code == 0x7f || c == '\\' || c == '#') c = '_';
   }
-  name = Json::parse(jsonText(name));  // replaces what is no UTF-8
+  name = Json::parse(jsonText(name));  // replaces bytes that are not UTF-8
   const size_t first = std::min(name.find_first_not_of(' '), name.size());
   return name.substr(first, name.find_last_not_of(' ') + 1 - first);
 }

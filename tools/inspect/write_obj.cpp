@@ -10,7 +10,7 @@ namespace bnvpl {
 
 namespace {
 
-// Numbers from 1 of the indices that are used, in their order.
+// Numbers the indices that are used from 1, in ascending order.
 class Numbering {
  public:
   std::vector<uint32_t> used;
@@ -36,7 +36,7 @@ std::string placeText(Vec3 p, const FilePoint& origin) {
 
 }  // namespace
 
-// Consecutive triangles of a material stand together; the order is the scene's.
+// Keeps the scene's order of triangles, with one usemtl for consecutive triangles of one material.
 std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
                     const std::vector<std::string>& names) {
   const std::span triangles(&scene.triangles[begin], end - begin);

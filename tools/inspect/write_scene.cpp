@@ -27,7 +27,7 @@ std::string placeText(const Scene& scene, Vec3 p) {
   return "[" + shortestText(p.x + x) + ", " + shortestText(p.y + y) + ", " + shortestText(p.z + z) +
          "]";
 }
-// Degrees that read back as the angle, where floats have such.
+// Degrees that read back as exactly this angle, if a float has such a value.
 std::string degText(float rad) {
   constexpr float kRadPerDeg = kPi / 180.0f;
   const auto deg = static_cast<float>(double{rad} * kDegPerRad);
@@ -37,7 +37,7 @@ std::string degText(float rad) {
   return shortestText(deg);
 }
 
-// `mirrored` is stated where a reader would guess otherwise.
+// Writes `mirrored` only where it differs from `guess`, the value that a reader assumes.
 std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool guess) {
   std::string text = "[film]\nwidth = " + std::to_string(film.width) +
                      "\nheight = " + std::to_string(film.height) +
@@ -106,7 +106,7 @@ void writeText(OutputFolder& folder, const std::string& name, const std::string&
   file.commit();
 }
 
-// The world, and each prototype with its instances.
+// Writes the world, and each prototype with its instances; returns their TOML.
 std::string writeMeshes(const Scene& scene, const std::vector<std::string>& names,
                         OutputFolder& folder) {
   std::string toml;
@@ -155,7 +155,7 @@ void writeEnvironment(const EnvironmentImage& e, const std::string& name, Output
   file.commit();
 }
 
-// What was written must be the scene that was given.
+// Throws OutputError unless the written scene reads back as the given one.
 void requireSame(const Scene& scene, const OutputFolder& folder) {
   const fs::path file = folder.partial() / "scene.toml";
   std::string difference;

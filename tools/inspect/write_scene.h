@@ -1,4 +1,4 @@
-// A scene in the project's own format: `vpl-inspect scene --to-toml`.
+// Writes a scene in the project's own format: `vpl-inspect scene --to-toml`.
 #pragma once
 
 #include <set>
@@ -9,14 +9,14 @@
 
 namespace bnvpl {
 
-// scene.toml, OBJ, MTL and images of a scene; view-N.toml beside it where the scene has several
-// cameras. Reads them again, and throws OutputError, which names what is different, where they are
-// not the scene that was given. The caller commits.
+// Writes scene.toml, OBJ, MTL and images, and view-N.toml for each camera if there are several.
+// Then reads them again and throws OutputError, which names the difference, unless they give the
+// same scene. The caller commits.
 void writeSceneToml(const Scene& scene, OutputFolder& folder);
 
-// The materials to write, and the images of Scene::textures that their text names.
+// The materials to write, and the images of Scene::textures that they use.
 struct WrittenMaterials {
-  std::vector<std::string> names;  // of all materials: see materialNames()
+  std::vector<std::string> names;  // names of all materials, by materialNames()
   std::set<uint32_t> materials, textures;
 };
 
@@ -24,18 +24,18 @@ struct WrittenMaterials {
 std::string listText(Vec3 v);
 // The file of a texture, relative to the scene's folder.
 std::string textureFile(uint32_t texture);
-// Of each material in MTL, OBJ and TOML: unlike any other, one line of UTF-8.
+// Names of all materials for MTL, OBJ and TOML: unique, and each one line of UTF-8.
 std::vector<std::string> materialNames(const Scene& scene);
-// Texture coordinates of an image of Scene::textures: its own scale and offset included.
+// The transform of texture coordinates of an image, including the texture's own scale and offset.
 UvTransform uvOfImage(const Scene& scene, const TextureExpression& image);
 
-// The triangles from `begin` to `end`, in the coordinates of the files where they stand in the
-// world.
+// OBJ of the triangles [begin, end). Those of the world are in the coordinates of the files, those
+// of prototypes in their own.
 std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
                     const std::vector<std::string>& names);
-// MTL. Of materials that it cannot state, the nearest, for other programs.
+// MTL of all used materials. Those that MTL cannot express are approximated, for other programs.
 std::string mtlText(const Scene& scene, WrittenMaterials& used);
-// [[texture]] and [[material]] of those that MTL cannot state.
+// [[texture]] and [[material]] of the materials that MTL cannot express.
 std::string surfacesText(const Scene& scene, WrittenMaterials& used);
 
 }  // namespace bnvpl

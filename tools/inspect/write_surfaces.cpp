@@ -55,7 +55,7 @@ class Surfaces {
 
   const Scene& scene_;
   WrittenMaterials& used_;
-  std::set<uint32_t> written_;  // of the scene's expressions
+  std::set<uint32_t> written_;  // expressions of the scene that are written already
   std::string textures_, materials_;
 };
 
@@ -82,7 +82,7 @@ void Surfaces::relief(const Relief& r, const std::string& prefix) {
   add(prefix + "relief_strength", shortestText(r.strength));
 }
 
-// A mask of MTL or pbrt is the alpha of an image, once it was filled.
+// After loading, opacity masks of MTL and pbrt are the alpha channel of an image.
 void Surfaces::opacity(const Material& m, uint32_t number) {
   if (m.opacity != 1.0f) add("opacity", shortestText(m.opacity));
   if (m.opacityCutoff != 0.5f) add("opacity_cutoff", shortestText(m.opacityCutoff));
@@ -126,7 +126,7 @@ void Surfaces::texture(uint32_t expression) {
     textures_ += image(name, e);
     return;
   }
-  const bool white = e.kind == TextureExpression::Kind::Image;  // of a texel of 1
+  const bool white = e.kind == TextureExpression::Kind::Image;  // a missing image reads as 1
   textures_ += "\n[[texture]]\nname = " + inQuotes(name) +
                "\ntype = " + (white ? inQuotes("constant") : nameIn(kTextureNames, e.kind)) + "\n";
   if (white || e.kind == TextureExpression::Kind::Constant) {
@@ -141,7 +141,7 @@ void Surfaces::texture(uint32_t expression) {
   if (e.kind == TextureExpression::Kind::Checkerboard) textures_ += uvText(e.uv);
 }
 
-// With what mixes are made of.
+// Adds a material and, for a mix, its parts.
 void addWithParts(const Scene& scene, uint32_t material, std::set<uint32_t>& materials) {
   if (material == kNone || !materials.insert(material).second) return;
   if (const auto* mix = std::get_if<MixModel>(&scene.materials[material].model)) {

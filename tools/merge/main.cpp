@@ -1,4 +1,5 @@
-// vpl-merge: from the shards of a stage to the very bytes that the stage writes without --shard.
+// vpl-merge: merges the shards of a stage into the same bytes that the stage writes without
+// --shard.
 //   vpl-merge parts/*.shard -o candidates.vpl
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -57,21 +58,22 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
 }  // namespace
 }  // namespace bnvpl
 
-// NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
+// NOLINTNEXTLINE(bugprone-exception-escape): only a wrongly declared option throws, at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Put the shards of a stage together.", "vpl-merge"};
+  CLI::App cli{"Merge the shards of a stage.", "vpl-merge"};
   std::vector<fs::path> inputs;
   MergeOutput output;
   ToolOptions tool;
-  addFile(cli, "shards", inputs, "that a stage made with --shard (.shard), in any order")
+  addFile(cli, "shards", inputs, "shards that a stage made with --shard (.shard), in any order")
       ->required();
   addFile(cli, "-o,--output", output.product,
-          "what the stage writes (.vpl, .exr); or a shard of some of its parts (.shard)")
+          "output of the stage (.vpl, .exr), or one shard of all given parts (.shard)")
       ->required();
-  CLI::Option* png = addFile(cli, "--png", output.png, "of an image, also write a preview");
+  CLI::Option* png = addFile(cli, "--png", output.png, "also write a preview of an image");
   addOption(cli,
-            textOption("exposure", "auto", "EV|auto", "of the PNG, in stops; auto: middle grey"),
+            textOption("exposure", "auto", "EV|auto",
+                       "exposure of the PNG, in stops; auto: maps the log-average to middle grey"),
             [&output](const Value& value) {
               output.exposure = std::get<std::string>(value);
               parseExposure(output.exposure);

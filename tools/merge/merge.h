@@ -1,4 +1,5 @@
-// From the shards of a whole to what the whole run writes. A stage is one entry of mergeStages().
+// Merges the shards of a run into the output of the whole run. Each stage is an entry of
+// mergeStages().
 #pragma once
 
 #include <span>
@@ -13,31 +14,31 @@
 namespace bnvpl {
 
 struct MergeOutput {
-  fs::path product, png;          // png empty: none
-  std::string exposure = "auto";  // of the png
+  fs::path product, png;          // empty png: none
+  std::string exposure = "auto";  // exposure of the png
 };
 
 struct MergeStage {
-  std::string_view tool;  // whose shards these are
+  std::string_view tool;  // the tool that made the shards
   OutputKind product;
   // Adds the product to `files` and its figures to the summary. Returns the files that it read
   // besides the shards.
   std::vector<fs::path> (*merge)(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                  Summary& summary);
-  bool image = false;  // takes a png
+  bool image = false;  // the product is an image, for which --png is allowed
 };
 std::span<const MergeStage> mergeStages();
 
-// The options of the whole, by resolve() of its stage. Throws InputError where the shards say of
-// themselves what no run can be.
+// The options of the whole run; `resolved` is resolve() of its stage. Throws InputError if no run
+// can have the options or the record that the shards hold.
 Values optionsOf(const ShardRun& whole, const StageSpec& spec, Values (*resolved)(const Given&));
-// Of an input by name, as the record tells.
+// The recorded hash of the input called `name`. Throws InputError if there is none.
 uint64_t inputHash(const ShardRun& whole, const char* name);
 
-// Refuses an input that is read again and is no longer what the shards were made from.
+// Throws InputError if an input that is read again has changed since the shards were made.
 void requireSameInput(const fs::path& file, uint64_t hash, const ShardRun& whole, const char* name);
 
-// Refuses rows that no stage could have written.
+// Throws InputError for rows that no stage could have written.
 void requireSound(const VplTable& table);
 
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,

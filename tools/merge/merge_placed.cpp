@@ -15,7 +15,7 @@ namespace {
                    shards.commandFor({part, part + 1, shards.of()}, " --shard-spare 0.1"));
 }
 
-// As vpl-place records its views; one has no share.
+// The shares of views as vpl-place records them; a single view has none.
 ViewTurns turnsOf(const Json& record) {
   std::vector<uint64_t> shares;
   if (!record.contains("views")) return ViewTurns();

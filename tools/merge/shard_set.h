@@ -1,4 +1,4 @@
-// The shards of one whole, as vpl-merge has been given them.
+// The shards of one run, as given to vpl-merge.
 #pragma once
 
 #include <fstream>
@@ -9,14 +9,14 @@
 
 namespace bnvpl {
 
-// Whose bits a shard holds, by its record. Throws what the constructor of ShardSet throws.
+// The processor option that a shard records. Throws what the constructor of ShardSet throws.
 Processor processorOfShard(const fs::path& file);
 
 class ShardSet {
  public:
-  // Reads what the files say of themselves. Throws InputError, which names file and cure, for
-  // files that are damaged, of another run, build, processor or number of parts, and for parts that
-  // two hold.
+  // Reads the descriptions in the files. Throws InputError, which names file and remedy, for files
+  // that are damaged, of another run, build, processor or number of parts, and for parts that two
+  // files hold.
   explicit ShardSet(const std::vector<fs::path>& files);
   ShardSet(const ShardSet&) = delete;
   ShardSet& operator=(const ShardSet&) = delete;
@@ -25,26 +25,26 @@ class ShardSet {
   size_t files() const { return files_.size(); }
   uint64_t of() const { return of_; }
   const ShardParts& parts() const { return parts_; }
-  // Throws InputError with the command that makes what is missing.
+  // Throws InputError with the command that makes missing parts.
   void requireComplete() const;
-  // The command that makes those parts, `more` being further options.
+  // The command that makes these parts, with further options `more`.
   std::string commandFor(const Shard& shard, const std::string& more = "") const;
 
   ShardSource source();  // borrows this
-  // Reads the records that nobody has asked for. Throws InputError for one that is damaged.
+  // Reads all records that have not been requested. Throws InputError for one that is damaged.
   void verifyRest();
-  void writeTo(AtomicFile& output);  // as one shard
+  void writeTo(AtomicFile& output);  // writes all parts as one shard
 
  private:
   struct Record {
-    size_t work;  // in works_
+    size_t work;  // index into works_
     uint64_t unit;
     size_t file;
     uint64_t offset;
     ShardBlock block;
     bool verified = false;
   };
-  struct Holder {  // of a range of parts
+  struct Holder {  // a file that holds the parts [first, last]
     uint64_t first, last;
     size_t file;
   };
@@ -64,8 +64,8 @@ class ShardSet {
   uint64_t of_ = 0;
   ShardParts parts_;
   std::vector<std::string> works_;
-  std::vector<std::pair<std::string, size_t>> sums_;  // works with sums, and how many
-  std::vector<Record> records_;                       // by work and unit
+  std::vector<std::pair<std::string, size_t>> sums_;  // works with sums, and their number of sums
+  std::vector<Record> records_;                       // sorted by work and unit
   std::ifstream open_;                                // the file that was read last
   size_t openFile_ = SIZE_MAX;
 };
