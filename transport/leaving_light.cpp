@@ -16,7 +16,8 @@ unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsd
     const Bsdf& bsdf = bounce == 0 ? at : scattering.emplace(rays.scene(), vertex.hit);
     Vec3& sum = bounce == 0 ? first : later;
     if (where) strata = where->at(bsdf.point().position, bsdf.point().ng);
-    sum += throughput * directLight(rays, lights, bsdf, LobeGroup::Rough, strata, 1, rng);
+    sum += throughput * directLight(rays, lights, Reflected{bsdf}, {learnedBy(strata)},
+                                    BsdfRays{bsdf}, LightNumbers(rng));
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
     if (rng.next() >= survive) return bounce + 1;

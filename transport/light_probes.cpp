@@ -20,11 +20,11 @@ StrataValues probeStrata(const RayScene& rays, const LightSet& lights, const Lig
       const LightPlace place = strata.place(s, {u, v});
       DirectSample sample;
       Vec3 reflected;
-      if (!unoccludedLight(lights, bsdf, LobeGroup::Rough, place, sample, reflected) ||
+      if (!unoccludedLight(lights, Reflected{bsdf}, place, sample, reflected) ||
           isHidden(rays, bsdf.point(), sample))
         continue;
-      const float brought = mean(reflected) * strata.share(s) / strata.lightShare(place.light);
-      sum += brought * brought;
+      const float contribution = mean(reflected) * strata.share(s) / strata.lightShare(place.light);
+      sum += contribution * contribution;
     }
     if (!(sum > 0.0f) || !std::isfinite(sum)) continue;
     out.strata.push_back(s);

@@ -60,8 +60,10 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
       strata = end.links == 1 && behind.first ? *behind.first
                : behind.others                ? behind.others->at(end.hit.position, end.hit.ng)
                                               : LearnedStrata{};
-      end.metLater += end.throughput * directLight(rays, lights, bsdf, LobeGroup::Specular, strata,
-                                                   1, rng, start.shared);
+      end.metLater += end.throughput *
+                      directLight(rays, lights, Reflected{bsdf, LobeGroup::Specular},
+                                  {learnedBy(strata), LightChoice::One, start.shared},
+                                  BsdfRays{bsdf, 1.0f, LobeGroup::Specular}, LightNumbers(rng));
     }
     BsdfSample sample;
     Ray next;

@@ -91,18 +91,19 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
 // light by MIS.
 Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t slot,
                               uint64_t key, Rng& rng) const {
+  const Reflected reflected{bsdf};
+  const LightSampling sampling{learned, LightChoice::Each};
   if (!learned.strata) {
-    return directLight(rays_, lights_, bsdf, LobeGroup::Rough, LightChoice::Each,
-                       static_cast<float>(parts_.raysEach), rng);
+    const BsdfRays others{bsdf, static_cast<float>(parts_.raysEach)};
+    return directLight(rays_, lights_, reflected, sampling, others, LightNumbers(rng));
   }
-  const uint32_t first = slot * parts_.lightRays;
-  if (!parts_.rays)
-    return directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned, 0, first, key);
+  const LightNumbers numbers(slot * parts_.lightRays, key);
+  if (!parts_.rays) return directLight(rays_, lights_, reflected, sampling, NoRays{}, numbers);
   const Directions directions = parts_.rays->directionsFrom(bsdf);
   const auto rayPdf = [&](Vec3 wi) {
     return static_cast<float>(parts_.raysEach) * directions.pdf(wi);
   };
-  return directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned, rayPdf, first, key);
+  return directLight(rays_, lights_, reflected, sampling, rayPdf, numbers);
 }
 
 // `direct`: mean direct light of the tile; the noise of VPLs counts relative to all light.

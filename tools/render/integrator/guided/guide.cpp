@@ -99,8 +99,9 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
       if (at != kNone) {
         found += path.throughput * radiance_[at];
       } else {
-        found += path.throughput * directLight(rays, lights, Bsdf(rays.scene(), path.hit),
-                                               LobeGroup::Rough, LightChoice::One, 0, rng);
+        const Bsdf bsdf(rays.scene(), path.hit);
+        found += path.throughput *
+                 directLight(rays, lights, Reflected{bsdf}, {}, NoRays{}, LightNumbers(rng));
       }
     }
     const float value = mean(found);

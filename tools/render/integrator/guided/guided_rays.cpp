@@ -88,12 +88,12 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     strata = surfaceLights_.at(bsdf.point().position, bsdf.point().ng);
     const LearnedLight lights{strata.all ? &strata : nullptr, bounce == 1 ? kFirstLightRays : 1};
     const auto rayPdf = [&](Vec3 wi) { return directions.pdf(wi); };
+    const LightNumbers numbers = lights.strata ? LightNumbers::sequence(rng) : LightNumbers(rng);
     if (bounce == 1) {
-      leaving += directLight(rays_, lights_, bsdf, LobeGroup::Rough, diffuse, lights, rayPdf, rng) *
-                 throughput;
+      const ReflectedWithDiffuse reflected{bsdf, diffuse};
+      leaving += directLight(rays_, lights_, reflected, {lights}, rayPdf, numbers) * throughput;
     } else {
-      const Vec3 light = directLight(rays_, lights_, bsdf, LobeGroup::Rough, lights, rayPdf, rng);
-      leaving += weight * light;
+      leaving += weight * directLight(rays_, lights_, Reflected{bsdf}, {lights}, rayPdf, numbers);
     }
 
     float survival = bsdf.reflectance();

@@ -179,11 +179,10 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
   const LearnedLight lights =
       path.learned(first && !(known && path.isStraight()) ? kFirstLightRays : 1);
   const float bsdfRays = known ? 0.0f : 1.0f;
+  const LightNumbers numbers =
+      lights.strata && lights.rays > 1 ? LightNumbers::sequence(path.rng) : LightNumbers(path.rng);
   const Vec3 firstBounce =
-      lights.strata && lights.rays > 1
-          ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, lights, bsdfRays, 0,
-                        mix64(static_cast<uint64_t>(path.rng.next() * 0x1p24f)))
-          : directLight(rays_, lights_, bsdf, LobeGroup::Rough, path.strata, bsdfRays, path.rng);
+      directLight(rays_, lights_, Reflected{bsdf}, {lights}, BsdfRays{bsdf, bsdfRays}, numbers);
   if (known) {
     path.light += path.throughput * (firstBounce + *uncovered.scattered) * uncovered.share;
     return;

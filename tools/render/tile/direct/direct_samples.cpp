@@ -54,11 +54,11 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
     around = surfaceLights_->at(path.hit.position, path.hit.ng);
     if (around.all) learned.strata = &around;
   }
-  light.byLight = path.throughput *
-                  (learned.strata ? directLight(rays_, lights_, bsdf, LobeGroup::Rough, learned,
-                                                rays.bsdf, index * learned.rays, numbers.light)
-                                  : directLight(rays_, lights_, bsdf, LobeGroup::Rough,
-                                                LightChoice::Each, rays.bsdf, rng));
+  const LightNumbers random =
+      learned.strata ? LightNumbers(index * learned.rays, numbers.light) : LightNumbers(rng);
+  light.byLight =
+      path.throughput * directLight(rays_, lights_, Reflected{bsdf}, {learned, LightChoice::Each},
+                                    BsdfRays{bsdf, rays.bsdf}, random);
   light.byBsdf = bsdfRay(bsdf, path.throughput, rays, learned, rng);
   return light;
 }
