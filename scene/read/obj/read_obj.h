@@ -1,4 +1,4 @@
-// An OBJ and the libraries that it names, as tinyobjloader understands them.
+// Reads an OBJ and the libraries that it names with tinyobjloader.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,30 @@
 namespace bnvpl {
 
 struct ObjCorner {
-  uint32_t vertex, normal, uv;  // kNone: none
+  uint32_t vertex, normal, uv;  // kNone if absent
   bool operator==(const ObjCorner&) const = default;
 };
 
 // The polygons of an OBJ, in its order.
 struct ObjMesh {
-  std::vector<double> positions, normals, uvs;  // x, y, z; x, y, z; u, v. NaN where it has a word
-  std::vector<ObjCorner> corners;               // of all faces, one after the other
+  std::vector<double> positions, normals, uvs;  // x, y, z; x, y, z; u, v. x is NaN if not finite
+  std::vector<ObjCorner> corners;               // corners of all faces, concatenated
   std::vector<uint32_t> counts;                 // corners of each face, at least 3
-  std::vector<int> materials;                   // of each, in libraries.materials; -1: none
+  std::vector<int> materials;                   // number of each in libraries.materials; -1 if none
 };
 
 struct ObjReading {
   ObjMesh mesh;
   MaterialLibraries libraries;
-  std::vector<std::string> unknown;  // materials that faces ask for and no library has
-  size_t lostTriangles = 0;          // of faces with numbers that no int holds
-  size_t unusableFaces = 0;          // of fewer than three corners
+  std::vector<std::string> unknown;  // materials that faces use and no library defines
+  size_t lostTriangles = 0;          // triangles of faces with indices beyond int
+  size_t unusableFaces = 0;          // faces of fewer than three corners
 };
 
-// `materials` replaces the libraries that the OBJ names; empty: those are used, and hold for the
-// whole file. Calls expect(library, material) for each material that faces may use, while the faces
-// are still to be read. Large files are read by all threads, in pieces of `pieceBytes` (for tests).
-// Throws InputError when the OBJ cannot be read, MemoryError when it cannot fit.
+// `materials`, unless empty, replaces the libraries that the OBJ names, which hold for the whole
+// file. Calls expect(library, material, keys) for each material that faces may use, before the
+// faces are read. Large files are parsed in parallel, in pieces of `pieceBytes` (for tests). Throws
+// InputError if the OBJ cannot be read, MemoryError if it cannot fit.
 ObjReading readObj(const fs::path& obj, const fs::path& materials,
                    const MaterialLibraries::OnMaterial& expect, size_t pieceBytes = kObjPiece);
 
