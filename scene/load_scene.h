@@ -1,4 +1,4 @@
-// Scene files -> Scene. A format is a folder of scene/read/ and one line of the list in
+// Reads scene files. A format is a folder of scene/read/ and one line of the list in
 // load_scene.cpp.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Polygons -> triangles.
+// Triangulates polygons.
 #pragma once
 
 #include <array>

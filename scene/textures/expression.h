@@ -28,8 +28,8 @@ struct UvTransform {
 
 enum class Wrap : uint32_t { Repeat, Mirror, Clamp, Black };
 // The part of a texel that is used. A scalar parameter takes the first of three channels, so its
-// expression should select a channel or Mean. Alpha is the image's own, without sRGB decoding;
-// images read as masks do not keep it.
+// expression should select a channel or Mean. Alpha is the image's own, without sRGB decoding,
+// unless the image is read as a mask.
 enum class Channel : uint32_t { Rgb, Red, Green, Blue, Alpha, Mean };
 
 struct TextureExpression {

@@ -1,4 +1,4 @@
-// Film and camera of a pbrt file.
+// Converts the film and camera of a pbrt file.
 #pragma once
 
 #include "scene/read/pbrt/colors.h"

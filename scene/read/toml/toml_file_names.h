@@ -1,4 +1,4 @@
-// File names in a scene.toml.
+// Resolves file names in a scene.toml.
 #pragma once
 
 #include "scene/load_scene.h"

@@ -1,4 +1,4 @@
-// [film] and [camera] of a TOML file.
+// Reads [film] and [camera] of a TOML file.
 #pragma once
 
 #include "core/sampling.h"
