@@ -7,8 +7,8 @@ namespace bnvpl {
 
 namespace {
 
-// Distance from the origin, in sizes of the scene, above which coordinates count from the scene.
-// Below, floats resolve a millionth of its size, and files keep the coordinates of their OBJs.
+// Distance from the origin, in diagonals of the scene, beyond which the coordinates get an origin
+// of their own. Nearer scenes keep those of their files: floats resolve a millionth of their size.
 constexpr double kFarAway = 16.0;
 
 }  // namespace
@@ -36,7 +36,7 @@ FilePoint Affine::cofactors(const FilePoint& n) const {
 }
 
 Vec3 Affine::normal(const FilePoint& n) const {
-  const FilePoint q = cofactors(n);  // the sign of the determinant matters
+  const FilePoint q = cofactors(n);  // scaled by the determinant, whose sign counts
   const double length = std::hypot(q[0], q[1], q[2]);
   if (!(length > 0.0) || !std::isfinite(length)) return {};
   const double perLength = (determinant() < 0.0 ? -1.0 : 1.0) / length;
@@ -84,7 +84,7 @@ FilePoint sceneOrigin(const FilePoint& lower, const FilePoint& upper) {
   }
   const double size = std::sqrt(size2);
   if (!(furthest > kFarAway * size) || !(size > 0.0)) return {};
-  const double step = std::exp2(std::ceil(std::log2(size)));  // round numbers, for messages
+  const double step = std::exp2(std::ceil(std::log2(size)));  // rounds the origin, for messages
   FilePoint origin;
   for (size_t i = 0; i < 3; ++i) origin[i] = std::round(0.5 * (lower[i] + upper[i]) / step) * step;
   return origin;

@@ -1,4 +1,4 @@
-// Places as the files give them, and where they come to lie in a scene.
+// Points in double precision, affine transforms, and the origin of a scene's coordinates.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// A place or direction as the files give it, before anything is rounded to floats.
+// A point or direction as a file gives it, before it is rounded to floats.
 using FilePoint = std::array<double, 3>;
 
 // Row-major 3x4 matrix, applied to column vectors.
@@ -15,26 +15,26 @@ struct Affine {
   std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
   FilePoint point(const FilePoint& p) const;
-  FilePoint direction(const FilePoint& d) const;  // turned and scaled, not moved
-  Vec3 normal(const FilePoint& n) const;          // by the inverse transpose; unit length, or 0
-  FilePoint cofactors(const FilePoint& n) const;  // the inverse transpose but for the determinant
-  double determinant() const;                     // negative: mirrors, so that windings must turn
-  // Scales, then turns about x, then y, then z, then moves.
+  FilePoint direction(const FilePoint& d) const;  // applies the linear part only
+  Vec3 normal(const FilePoint& n) const;          // inverse transpose; unit length, or 0
+  FilePoint cofactors(const FilePoint& n) const;  // inverse transpose times the determinant
+  double determinant() const;                     // negative if it mirrors and flips windings
+  // Scales, then rotates about x, y and z in this order, then translates.
   static Affine fromParts(const FilePoint& translate, const FilePoint& rotateRad,
                           const FilePoint& scale);
 };
 
-// `inner` first.
+// The product applies `inner` first.
 Affine operator*(const Affine& outer, const Affine& inner);
 
-// Cameras and lights lie at most this far from a scene's origin in each coordinate: rays from
-// beyond are longer than floats can square.
+// Largest absolute coordinate of a camera or light. Beyond it, the squared length of a ray
+// overflows a float.
 inline constexpr double kFurthestPlace = 1e18;
 
-// Where coordinates should count from so that floats resolve a scene of these bounds: the origin of
-// the files unless the scene lies many times its own size away from it.
+// Origin of coordinates in which floats resolve a scene of these bounds. It is 0, the origin of the
+// files, unless the scene lies many times its own size away from there.
 FilePoint sceneOrigin(const FilePoint& lower, const FilePoint& upper);
-// A place of the files in the coordinates of the scene.
+// Converts a point of the files to the coordinates of the scene, which count from `origin`.
 Vec3 fromOrigin(const FilePoint& p, const FilePoint& origin);
 
 }  // namespace bnvpl

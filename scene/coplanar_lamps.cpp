@@ -37,7 +37,7 @@ double crossed(const Flat& a, const Flat& b, const Flat& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// Area that two triangles share, seen along the axis that the first one's normal is nearest to.
+// Area of the intersection of two triangles, projected along the dominant axis of the first normal.
 double sharedArea(const Face& a, const Face& b) {
   const Vec3 n{std::fabs(a.normal.x), std::fabs(a.normal.y), std::fabs(a.normal.z)};
   const size_t axis = n.x > n.y && n.x > n.z ? 0 : n.y > n.z ? 1 : 2;
@@ -92,7 +92,7 @@ class Lamps {
     in.assign(faces.size(), kNone);
   }
 
-  // Finds the lamps that lie in a wall; the wall of the lowest material is remembered.
+  // Finds the lamps that lie in this wall. A lamp in several walls keeps the lowest material.
   void meet(const Face& wall) {
     auto k = static_cast<size_t>(
         std::upper_bound(begins_.begin(), begins_.end(), wall.box.upper[axis_] + slack(wall)) -
@@ -107,7 +107,7 @@ class Lamps {
         in[order_[k]] = std::min(in[order_[k]], wall.material);
     }
   }
-  // Whether a lamp may lie there.
+  // Whether the box of any lamp touches `box`, within rounding.
   bool anyIn(const Bounds& box) const {
     const float by = maxComponent(max(max(-box.lower, box.upper), Vec3())) * 0x1p-20f;
     return std::ranges::any_of(faces, [&](const Face& f) { return !apart(f.box, box, by); });
@@ -130,11 +130,11 @@ class Lamps {
   }
 
   std::vector<Face> faces;
-  std::vector<uint32_t> triangles;  // of the scene
-  std::vector<uint32_t> in;         // material of a wall, or kNone
+  std::vector<uint32_t> triangles;  // numbers in Scene::triangles
+  std::vector<uint32_t> in;         // material of each lamp's wall, or kNone
 
  private:
-  // How far rounding may have moved corners apart.
+  // Tolerance for rounding of corners: at least four ulps of the largest coordinate.
   static float slack(const Face& f) { return f.reach() * 0x1p-21f; }
   std::array<Vec3, 3> cornersOf(uint32_t t) const {
     return {scene_.corner(t, 0), scene_.corner(t, 1), scene_.corner(t, 2)};
@@ -156,10 +156,10 @@ class Lamps {
   }
 
   const Scene& scene_;
-  std::map<uint32_t, Bounds> boxes_;  // of prototypes
+  std::map<uint32_t, Bounds> boxes_;  // bounds of prototypes, in their own coordinates
   size_t axis_ = 0;
   std::vector<uint32_t> order_;
-  std::vector<float> begins_, ends_;  // along the axis; the furthest end so far
+  std::vector<float> begins_, ends_;  // extents along the axis; ends_ is a running maximum
 };
 
 }  // namespace
@@ -177,7 +177,7 @@ std::vector<std::string> liftCoplanarLamps(Scene& scene) {
                       scene.materials[lamps.in[i]].name +
                       "'; the side of its winding is taken to be in front");
     }
-    // As RayScene::offsetOrigin().
+    // The offset of RayScene::offsetOrigin().
     const float by = lamp.reach() * 0x1p-18f + scene.offsetSize() * 0x1p-20f;
     Triangle& t = scene.triangles[lamps.triangles[i]];
     for (size_t c = 0; c < 3; ++c) {

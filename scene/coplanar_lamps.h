@@ -1,5 +1,5 @@
-// Lamps that lie exactly in a wall: which of the two a ray meets is left to rounding, so that such
-// a lamp would shine in part, and by the order of the faces.
+// Lamps (emissive triangles) that lie exactly in the plane of a wall. Rounding and the order of the
+// faces decide which of the two a ray hits, so such a lamp would appear in patches.
 #pragma once
 
 #include <string>
@@ -9,10 +9,9 @@
 
 namespace bnvpl {
 
-// Moves emissive triangles of the world that lie in the plane of others, over which they extend, to
-// the side on which they shine, by what rays are offset. Needs the bounds. Returns a warning for
-// each pair of materials of which the lamp shines on both sides: it is left with the one of its
-// winding.
+// Moves emissive triangles of the world that overlap other triangles in their plane towards the
+// side of their winding, by the offset of ray origins. Needs Scene::bounds. Returns a warning for
+// each pair of materials whose lamp emits on both sides: only the side of the winding shows.
 std::vector<std::string> liftCoplanarLamps(Scene& scene);
 
 }  // namespace bnvpl

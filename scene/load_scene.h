@@ -1,4 +1,4 @@
-// Scene files -> Scene. A format is a folder of scene/read/ and one line of the list in
+// Reads scene files. A format is a folder of scene/read/ and one line of the list in
 // load_scene.cpp.
 #pragma once
 
@@ -12,17 +12,17 @@
 
 namespace bnvpl {
 
-// Values for ${NAME} in file names of a scene file; environment variables are asked second.
-// Remembers which were asked for; of one thread.
+// Values of ${NAME} in the file names of a scene file; they take precedence over environment
+// variables. Records which of them were used; not thread-safe.
 class Defines {
  public:
   Defines(std::initializer_list<std::pair<std::string, std::string>> values = {}) {
     for (const auto& [name, value] : values) set(name, value);
   }
   void set(const std::string& name, const std::string& value) { values_[name] = {value}; }
-  // Null where there is none of that name.
+  // Returns null if the name has no value; else marks it as used.
   const std::string* find(const std::string& name) const;
-  // Names that no find() asked for.
+  // Names that no find() has used.
   std::vector<std::string> unused() const;
 
  private:
@@ -33,10 +33,10 @@ class Defines {
   std::map<std::string, Define> values_;
 };
 
-// Reads a scene and everything that it names; the extension says the format. What could be
-// repaired is in Scene::warnings, and goes to `onWarning` as it arises: what an error follows is
-// nowhere else. Throws InputError with file, line where there is one, problem and cure; MemoryError
-// or std::bad_alloc when it does not fit.
+// Reads a scene and all files that it names; the extension decides the format. Repairs are reported
+// in Scene::warnings and, as they occur, to `onWarning`, which alone receives those that precede an
+// error. Throws InputError with file, line (if any), problem and remedy; MemoryError or
+// std::bad_alloc if the scene does not fit.
 Scene loadScene(const fs::path& path, const Defines& defines = {}, const OnWarning& onWarning = {});
 
 }  // namespace bnvpl

@@ -1,5 +1,5 @@
-// The parameters of a material, one after the other and by name, for what treats all models alike:
-// hashes, checks, reports, and files that state them.
+// Visits the parameters of a material by name, for code that treats all models alike: hashes,
+// checks, reports and file formats.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace bnvpl {
 
-// Names in files, in the order of MaterialModel and Roughness::Alpha.
+// Names in scene files, in the order of MaterialModel and Roughness::Alpha.
 inline constexpr std::array<const char*, 9> kModelNames{
     "phong",          "diffuse",          "diffuse_transmission", "conductor", "dielectric",
     "coated_diffuse", "coated_conductor", "metallic_roughness",   "mix"};
 static_assert(kModelNames.size() == std::variant_size_v<MaterialModel>);
 inline constexpr std::array<const char*, 3> kAlphaNames{"same", "square", "root"};
 
-// In the order of TextureExpression::Kind, Wrap and Channel.
+// Names in scene files, in the order of TextureExpression::Kind, Wrap and Channel.
 inline constexpr std::array<const char*, 5> kTextureNames{"constant", "image", "product", "mix",
                                                           "checkerboard"};
 inline constexpr std::array<const char*, 4> kWrapNames{"repeat", "mirror", "clamp", "black"};
@@ -29,9 +29,9 @@ inline constexpr bool kTextured = std::same_as<Field, Colour> || std::same_as<Fi
 template <typename T, typename Plain>
 concept Like = std::same_as<std::remove_const_t<T>, Plain>;
 
-// Calls fn with the name and the field, by reference, of each parameter of a model, in a fixed
-// order: a Colour, Scalar, bool, Roughness::Alpha, or, of a mix, the number of a material. None of
-// the PhongModel: MTL has names of its own for what it holds.
+// Calls fn(name, field) for each parameter of a model, in a fixed order. The field is a reference
+// to a Colour, Scalar, bool, Roughness::Alpha or, in a mix, the number of a material. The
+// PhongModel has none: MTL has its own names for its fields.
 template <Like<PhongModel> M, typename Fn>
 void forEachField(M&, const Fn&) {}
 template <Like<Roughness> M, typename Fn>
@@ -107,8 +107,8 @@ void forEachField(M& m, const Fn& fn) {
   fn("amount", m.amount);
 }
 
-// Calls fn with each Colour, Scalar, and number or switch (uint32_t) of a material, in a fixed
-// order. Not of the PhongModel, nor the coat's relief.
+// Calls fn with each Colour and Scalar, and each number or switch as uint32_t, of a material, in a
+// fixed order. Leaves out the PhongModel and the coat's relief.
 template <typename Fn>
 void forEachInput(const Material& m, const Fn& fn) {
   const auto field = [&]<typename Field>(const char*, const Field& f) {
@@ -123,7 +123,7 @@ void forEachInput(const Material& m, const Fn& fn) {
     fn(number);
 }
 
-// Calls fn with the number of each expression of a material, kNone for each there is none for.
+// Calls fn with the number of each expression of a material, or kNone where it has none.
 template <typename Fn>
 void forEachExpression(const Material& m, const Fn& fn) {
   const auto field = [&]<typename Field>(const char*, const Field& f) {

@@ -1,6 +1,6 @@
-// What a scene is: plain arrays, ready for ray tracing. load_scene.h reads one from files,
-// scene_builder.h makes one in memory.
-// Lengths are the scene's own unit (called m below), angles radians in memory, colours linear sRGB.
+// A scene as plain arrays, ready for ray tracing. load_scene.h reads one from files,
+// scene_builder.h builds one in memory.
+// Lengths are in the scene's own unit (called m below), angles in radians, colours in linear sRGB.
 #pragma once
 
 #include <algorithm>
@@ -19,46 +19,46 @@
 
 namespace bnvpl {
 
-inline constexpr uint32_t kMaxFilmSide = 16384;  // pixels, of [film] and --size
+inline constexpr uint32_t kMaxFilmSide = 16384;  // pixels; limit of [film] and --size
 struct Film {
   uint32_t width = 640, height = 480;  // pixels
 };
 
-// Pinhole. Pixel (0, 0) is the top left one. The film's centre lies `shift` film heights to the
-// right of the viewing axis and above it: not 0 of crops and shifted lenses.
+// Pinhole camera. Pixel (0, 0) is at the top left. The film's centre lies `shift` film heights to
+// the right of the viewing axis and above it, for crops and shifted lenses.
 struct Camera {
   Vec3 position;
   Vec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};  // orthonormal
-  float verticalFovRad = 1.0f;                          // of the film, were it not shifted
+  float verticalFovRad = 1.0f;                          // field of view of the unshifted film
   std::array<float, 2> shift{};
 };
 
-// A camera of the scene's file, and the film that it asks for.
+// A camera of the scene file and its film.
 struct View {
-  std::string name;  // empty: it has none
+  std::string name;  // empty if the file gives none
   Camera camera;
   Film film;
 };
 
-// One corner index triple into each of Scene's arrays. `normal` and `uv` may be kNone.
+// Indices of the three corners in Scene's arrays. `normal` and `uv` may be kNone.
 struct Triangle {
   std::array<uint32_t, 3> position, normal, uv;
   uint32_t material;
 };
 static_assert(sizeof(Triangle) == 40);
 
-// Triangles that occur many times: stored once, in coordinates of their own. None of them shines:
-// lamps stand in the world.
+// Triangles that occur many times, stored once in coordinates of their own. None of them emits:
+// emissive triangles are stored in the world, once for each instance.
 struct Prototype {
-  uint32_t begin = 0, maskedBegin = 0, end = 0;  // of Scene::triangles; opaque ones first
+  uint32_t begin = 0, maskedBegin = 0, end = 0;  // range of Scene::triangles, opaque ones first
 };
 
 // An occurrence of a prototype.
 struct Instance {
   uint32_t prototype = 0;
-  uint32_t mirrored = 0;                 // 1: windings turn
+  uint32_t mirrored = 0;                 // 1 if the transform mirrors, which flips windings
   std::array<float, 12> toWorld{};       // rows of a 3x4 matrix, applied to column vectors
-  std::array<float, 9> normalToWorld{};  // rows of its inverse transpose but for a factor
+  std::array<float, 9> normalToWorld{};  // rows of its inverse transpose up to a positive factor
   Vec3 point(Vec3 p) const {
     const auto row = [&](size_t r) {
       return toWorld[4 * r] * p.x + toWorld[4 * r + 1] * p.y + toWorld[4 * r + 2] * p.z +
@@ -66,62 +66,63 @@ struct Instance {
     };
     return {row(0), row(1), row(2)};
   }
-  Vec3 normal(Vec3 n) const {  // of no particular length
+  Vec3 normal(Vec3 n) const {  // not normalised
     const auto row = [&](size_t r) {
       return normalToWorld[3 * r] * n.x + normalToWorld[3 * r + 1] * n.y +
              normalToWorld[3 * r + 2] * n.z;
     };
     return {row(0), row(1), row(2)};
   }
-  // Of direction vectors in the surface.
+  // Transforms a vector in the surface, such as a tangent.
   Vec3 vector(Vec3 v) const { return point(v) - point({}); }
 };
 
 enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 
-// A light that is no surface. Emissive triangles are lights too; LightSet gathers both.
+// A light that is not a surface. LightSet combines these with the emissive triangles.
 struct LightSpec {
   LightType type = LightType::Point;
   Vec3 position;             // point, spot
-  Vec3 direction{0, 0, -1};  // spot, directional: the way the light travels
+  Vec3 direction{0, 0, -1};  // spot, directional: direction of propagation
   Vec3 emission;            // intensity W/sr; irradiance W/m2 (directional); radiance (environment)
   float coneRad = 0.0f;     // spot: half angle outside which it is dark
   float falloffRad = 0.0f;  // spot: width of the soft rim inside the cone
   float angularRadiusRad = 0.0f;  // directional: half the angular diameter
   uint32_t image = kNone;         // environment: into Scene::environments
-  float rotateRad = 0.0f;         // environment: about +y
-  float scale = 1.0f;             // environment
+  float rotateRad = 0.0f;         // environment: rotation about +y
+  float scale = 1.0f;             // environment: factor on the radiance
 };
 
-// Of a scene, problem and cure.
+// Message about a scene without light: problem and remedy.
 inline constexpr const char* kNoLight =
     "has no light with power: its images are black; add a [[light]] or an emissive material (Ke)";
 
-// What the files call a mesh, before anything is left out of it.
+// A mesh by its name in the files. Its counts include triangles that are left out later.
 struct MeshRecord {
   std::string name;
-  size_t triangles = 0, instances = 0;  // triangles of one instance
+  size_t triangles = 0, instances = 0;  // `triangles` counts one instance
 };
 
-// Takes one text after another, each of which names what was ignored or repaired.
+// Receives each warning: a text that names what was ignored or repaired.
 using OnWarning = std::function<void(const std::string&)>;
 
 struct Scene {
   Film film;
   Camera camera;
-  // All cameras of the file; film and camera are the first's until choose_view.h takes another.
+  // All cameras of the file. `film` and `camera` are those of the first unless choose_view.h
+  // selects another.
   std::vector<View> views;
 
-  std::vector<Vec3> positions;  // one more than indexed: Embree reads 16 bytes at each vertex
+  std::vector<Vec3> positions;  // padded by one: Embree reads 16 bytes at each vertex
   std::vector<Vec3> normals;    // unit length
   std::vector<std::array<float, 2>> uvs;
-  // Of the world, opaque ones first, then of the prototypes.
+  // Triangles of the world, opaque ones first, followed by those of the prototypes.
   std::vector<Triangle> triangles;
-  uint32_t maskedBegin = 0;  // first of the world whose material has an alpha mask
+  uint32_t maskedBegin = 0;  // first world triangle whose material has an alpha mask
   uint32_t worldEnd() const {
     return prototypes.empty() ? static_cast<uint32_t>(triangles.size()) : prototypes.front().begin;
   }
-  // Those of the world and of the prototypes, each stored once.
+  // Number of stored triangles with an alpha mask; those of a prototype count once.
   size_t maskedTriangles() const {
     size_t count = worldEnd() - maskedBegin;
     for (const Prototype& p : prototypes) count += p.end - p.maskedBegin;
@@ -129,38 +130,38 @@ struct Scene {
   }
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;
-  Bounds bounds;  // of all but strays (scene/strays.h)
-  // Diagonal of the box around what is not far from the rest; offsets of rays follow it.
+  Bounds bounds;  // box around all triangles but strays (scene/strays.h)
+  // Diagonal of the box around triangles that lie near the others; scales ray-origin offsets.
   float nearSize = INFINITY;
   float offsetSize() const { return std::min(nearSize, bounds.diagonal()); }
-  // What the coordinates count from, in the coordinates of the files: 0 but for scenes that lie far
-  // from their own origin, which floats would resolve coarsely there (sceneOrigin in affine.h).
+  // Origin of the scene's coordinates, in those of the files. It is 0 unless the scene lies so far
+  // from 0 that floats would resolve it coarsely (sceneOrigin in affine.h).
   std::array<double, 3> origin{};
 
-  std::vector<MeshRecord> meshes;  // for people
+  std::vector<MeshRecord> meshes;  // for reports
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<TextureExpression> expressions;
   std::vector<LightSpec> lights;
   std::vector<EnvironmentImage> environments;
 
-  uint64_t contentHash = 0;     // of geometry, materials, textures and lights; not of the camera
-  std::vector<fs::path> files;  // everything that was read or is missing, for depfiles
+  uint64_t contentHash = 0;     // covers geometry, materials, textures and lights, not the camera
+  std::vector<fs::path> files;  // every file that was read or is missing, for depfiles
   std::vector<std::string> warnings;  // each names what was ignored or repaired
 
-  // Whether anything shines: a light that is not black, or a triangle whose material emits.
+  // Whether anything emits: a light that is not black, or a triangle with an emissive material.
   bool hasLight() const;
-  // Throws InputError, naming the scene, when nothing does.
+  // Throws InputError, which names the scene, if nothing emits.
   void requireLight() const;
 
   std::string name() const {  // for messages
     return files.empty() ? "the scene" : files.front().string();
   }
-  // What an expression is at finite texture coordinates.
+  // Value of an expression at finite texture coordinates.
   Vec3 expressionAt(uint32_t expression, float u, float v) const {
     return TextureEvaluator(expressions, textures).at(expression, u, v);
   }
-  // Radiance of a material, at texture coordinates that may be NaN.
+  // Emitted radiance of a material. The texture counts as 1 where u or v is not finite.
   Vec3 emissionAt(const Material& m, float u, float v) const {
     if (m.emissionTexture == kNone || !std::isfinite(u) || !std::isfinite(v)) return m.emission;
     return m.emission * expressionAt(m.emissionTexture, u, v);

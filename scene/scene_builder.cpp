@@ -17,13 +17,14 @@ namespace bnvpl {
 
 namespace {
 
-// Sizes of scenes that floats hold: products of four lengths must stay in range.
+// Limits on the size of a scene: products of four lengths must stay in the range of floats.
 constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
 
-// Of prototypes, which stand in the world one by one.
-constexpr size_t kMaxLamps = size_t{1} << 27;  // triangles
+// Maximum number of emissive triangles of one mesh over all its instances, each of which is stored.
+constexpr size_t kMaxLamps = size_t{1} << 27;
 
-// Of an expression: operands may share operands, so that few expressions ask for very many lookups.
+// Maximum number of lookups of an expression. Shared operands can make it exponential in the number
+// of expressions.
 constexpr uint32_t kMaxLookups = 1000;
 
 constexpr const char* kGrey = "it is grey";
@@ -36,7 +37,7 @@ std::string distanceText(double distance) {
   return distance < 1e30 ? shortestText(static_cast<float>(distance)) : shortestText(distance);
 }
 
-// From above and to the right, looking at the middle.
+// A camera above and to the right that looks at the middle.
 Camera cameraThatSees(const Bounds& bounds) {
   Camera c;
   c.verticalFovRad = 0.7f;
@@ -282,7 +283,8 @@ size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& tran
   return grey;
 }
 
-// Into the prototype, but for the lamps, which stand in the world wherever it is placed.
+// Stores a mesh in its prototype. Emissive triangles go to the world instead, once for each
+// instance.
 void SceneBuilder::shareMesh(const KeptMesh& kept, uint32_t prototype) {
   std::vector<Triangle> rest, lamps;
   for (const Triangle& t : kept.triangles) {
@@ -320,7 +322,7 @@ void SceneBuilder::placePrototypes() {
   }
 }
 
-// Until here, maps hold the numbers of the pool.
+// Replaces the pool's numbers in all maps by indices into Scene::textures.
 void SceneBuilder::resolveTextures() {
   TexturePool::Result read = textures_.take();
   std::vector<bool> grey(read.indexOf.size(), false);
@@ -350,7 +352,8 @@ void SceneBuilder::resolveTextures() {
   }
 }
 
-// A texture that is the same everywhere counts on faces without texture coordinates, too.
+// Folds constant textures into the parameters, so that they also apply to faces without texture
+// coordinates.
 void SceneBuilder::foldConstants() {
   std::vector<std::optional<Vec3>> constants;
   for (uint32_t e = 0; e < scene_.expressions.size(); ++e) constants.push_back(constantValue(e));
@@ -390,7 +393,7 @@ void SceneBuilder::warnOfMissingUvs() {
   }
 }
 
-// None in scenes of instances, whose places are few and say nothing of their size.
+// Scenes with instances are not searched: their world triangles do not represent their extent.
 void SceneBuilder::findStrays() {
   if (!placed_.empty()) return;
   const auto corners = [&](size_t i) { return cornersOf(scene_.triangles[i]); };
@@ -404,8 +407,8 @@ void SceneBuilder::findStrays() {
   cutFarFaces();
 }
 
-// Faces that reach from the scene to far away are cut into pieces that are small beside their
-// distance, so that floats tell hits on them well, and what is far of them counts as strays.
+// Cuts faces that reach from the scene to far away into pieces that are small relative to their
+// distance. Floats then resolve hits on the near pieces, and the far ones count as strays.
 void SceneBuilder::cutFarFaces() {
   std::vector<Triangle> pieces;
   size_t kept = 0, begin = 0, faces = 0;
@@ -436,7 +439,7 @@ void SceneBuilder::cutFarFaces() {
        " away from the middle of the others; if a vertex is there by mistake, mend it");
 }
 
-// Halves the longest edge, again and again.
+// Bisects longest edges until all pieces may stay.
 void SceneBuilder::cut(const Triangle& face, std::vector<Triangle>& pieces) {
   const auto squaredEdge = [&](const Corners& c, size_t k) {
     double sum = 0.0;
@@ -485,7 +488,7 @@ void SceneBuilder::cut(const Triangle& face, std::vector<Triangle>& pieces) {
   }
 }
 
-// The points of prototypes keep the coordinates that instances are placed by.
+// Rounds points to floats, relative to the scene's origin. Prototypes keep their own coordinates.
 void SceneBuilder::roundPositions() {
   FilePoint lower, upper;
   lower.fill(INFINITY);
@@ -528,7 +531,7 @@ void SceneBuilder::roundPositions() {
   }
 }
 
-// A triangle is of use when its normal can be computed in floats, as every ray that hits it will.
+// Drops triangles whose normal cannot be computed in floats, as it is at every hit.
 void SceneBuilder::dropUnusable() {
   size_t kept = 0, next = 0;
   for (Part& part : parts_) {
@@ -558,8 +561,8 @@ void SceneBuilder::dropUnusable() {
   scene_.triangles.resize(kept);
 }
 
-// Of emissive triangles that lie on each other, winding included, one stays: light sampling would
-// count both, while a ray meets one.
+// Keeps one of several coincident emissive triangles of equal winding: light sampling would count
+// all of them, while a ray hits only one.
 void SceneBuilder::dropDoubledLamps() {
   std::set<std::array<float, 9>> seen;
   const auto doubled = [&](const Triangle& t) {
@@ -586,7 +589,7 @@ void SceneBuilder::dropDoubledLamps() {
   }
 }
 
-// The world first, then prototype by prototype; in each, opaque triangles first.
+// Moves opaque triangles to the front of the world and of each prototype.
 void SceneBuilder::sortByMask() {
   const auto opaque = [&](const Triangle& t) { return !scene_.materials[t.material].masked(); };
   const auto begin = scene_.triangles.begin();
@@ -599,7 +602,7 @@ void SceneBuilder::sortByMask() {
   for (Prototype& p : scene_.prototypes) p.maskedBegin = sort(p.begin, p.end);
 }
 
-// Takes the triangles of prototypes behind those of the world, and places them.
+// Moves the triangles of prototypes behind those of the world and creates the instances.
 void SceneBuilder::placeInstances() {
   if (placed_.empty()) return;
   std::vector<Triangle> world;
@@ -648,7 +651,7 @@ void SceneBuilder::placeInstances() {
   }
 }
 
-// Of prototypes, the corners of their boxes count: what lies between cannot be further out.
+// Instances extend the bounds by the transformed corners of their prototype's box.
 void SceneBuilder::extendBounds() {
   std::vector<Bounds> boxes(scene_.prototypes.size());
   const Strays strays = strays_.from(scene_.origin);

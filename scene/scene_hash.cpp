@@ -19,7 +19,7 @@ class Hasher {
   template <typename T>
   void value(const T& v) {
     static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, float> ||
-                  std::is_same_v<T, Vec3>);  // no padding bytes, which are not content
+                  std::is_same_v<T, Vec3>);  // padding bytes are not content
     XXH3_64bits_update(state_.get(), &v, sizeof v);
   }
   template <typename T>
@@ -57,7 +57,7 @@ void hashMaterial(Hasher& h, const Material& m) {
   for (const Vec3 v : {p.diffuse, p.glossy, p.mirror, p.transmission, m.emission}) h.value(v);
   for (const float f : {p.exponent, p.ior, m.opacity}) h.value(f);
   for (const uint32_t i : {p.diffuseMap, p.glossyMap, m.opacityMap}) h.value(i);
-  // What MTL of its own cannot say comes behind, so that its scenes keep their hashes.
+  // Fields that MTL lacks are hashed only if used, which leaves the hash of other materials alone.
   bool more = !phong || m.opacityCutoff != 0.5f;
   forEachExpression(m, [&](uint32_t number) { more |= number != kNone; });
   h.value(uint32_t{p.glass} | uint32_t{m.twoSidedEmission} << 1 | uint32_t{more} << 2);
@@ -110,7 +110,7 @@ uint64_t hashScene(const Scene& scene) {
     h.value(e.height);
     h.array(e.radiance);
   }
-  if (!scene.instances.empty()) {  // others keep the hash that they had before there were any
+  if (!scene.instances.empty()) {  // leaves the hash of other scenes alone
     h.array(scene.prototypes);
     h.array(scene.instances);
   }

@@ -4,8 +4,8 @@
 
 namespace bnvpl {
 
-// XXH3-64 over what light transport depends on: geometry, materials, textures, lights. The camera
-// and the film are left out: the VPLs of one view may light another.
+// XXH3-64 of everything that light transport depends on: geometry, materials, textures, lights. It
+// leaves out camera and film, since the VPLs of one view may light another.
 uint64_t hashScene(const Scene& scene);
 
 // XXH3-64 of a camera and its film.

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kTimesAsFar = 1000.0;
 constexpr double kMaxExtent = 1.0 / 4.0;                           // extent over distance
-constexpr double kMaxDirections = 4.0 * std::numbers::pi / 250.0;  // solid angle of all
-constexpr double kFurthestCut = 1e9;                               // beyond, scenes are refused
+constexpr double kMaxDirections = 4.0 * std::numbers::pi / 250.0;  // solid angle of all strays
+constexpr double kFurthestCut = 1e9;                               // larger scenes are refused
 constexpr size_t kSamples = size_t{1} << 16;
 
 double extentOf(const Corners& c) {
@@ -99,7 +99,7 @@ double Strays::distance(const Corners& triangle) const {
   return most;
 }
 
-// Distance of its box: a lower bound of the triangle's.
+// Distance of the triangle's box, a lower bound of the triangle's own distance.
 double Strays::leastDistance(const Corners& c) const {
   double most = 0.0;
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -109,8 +109,8 @@ double Strays::leastDistance(const Corners& c) const {
   return most;
 }
 
-// Solid angle from the middle of the scene; exact for triangles that are small beside their
-// distance.
+// Solid angle as seen from the middle of the scene; accurate for triangles that are small relative
+// to their distance.
 double Strays::solidAngle(const Corners& c) const {
   FilePoint to{}, a{}, b{};
   for (size_t axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// Faces that lie, or reach, so far from all others that they are there by mistake.
+// Triangles that lie or reach so far from all others that they must be there by mistake.
 #pragma once
 
 #include <array>
@@ -11,31 +11,32 @@ namespace bnvpl {
 
 using Corners = std::array<FilePoint, 3>;
 
-// Which triangles of a scene are strays: far from its middle, more than 1000 times as far as three
-// quarters of the triangles are, and small as seen from there. Where photons of the sky start
-// follows the size of what is left, and offsets of rays that of what is near.
+// Classifies the triangles of a scene. A stray lies more than 1000 times as far from the scene's
+// middle as three quarters of the triangles, and is small relative to that distance. Scene::bounds,
+// which sizes the disc where photons of the environment start, leaves out strays. Ray-origin
+// offsets scale with the near triangles alone.
 class Strays {
  public:
   Strays() = default;
-  // `corners(i)` of `count` triangles. Together strays cover at most a 250th of the directions:
-  // a dome around the scene is none.
+  // `corners(i)` returns the corners of triangle i of `count`. All strays together cover at most
+  // 1/250 of the sphere of directions; else none are strays, such as a dome around the scene.
   Strays(size_t count, const std::function<Corners(size_t)>& corners);
-  // Classifies the scene again after triangles that reach far away were cut. Pieces become strays
-  // at smaller distances, too, as long as all strays together cover as little.
+  // Classifies again after triangles that reach far away were cut. The distance of strays may then
+  // be smaller, under the same limit on the directions that they cover.
   void cutAt(size_t count, const std::function<Corners(size_t)>& corners);
 
   bool has(const Corners& triangle) const;
-  // Whether it is far, but so large beside its distance that it comes near: numbers would be
-  // coarse there. To be cut until mayStay().
+  // Whether the triangle is far but so large that it also comes near the scene, where floats would
+  // resolve hits on it coarsely. It must be cut until mayStay() holds for every piece.
   bool reaches(const Corners& triangle) const;
   bool mayStay(const Corners& piece) const;
-  // Whether offsets of rays follow its size.
+  // Whether ray-origin offsets scale with the triangle.
   bool isNear(const Corners& triangle) const { return distance(triangle) <= near_; }
 
   size_t count() const { return count_; }
-  double furthest() const { return furthest_; }  // from the middle
+  double furthest() const { return furthest_; }  // largest distance from the middle
   double distance(const Corners& triangle) const;
-  // The same of coordinates that count from there.
+  // The same classification for coordinates that count from `origin`.
   Strays from(const FilePoint& origin) const;
 
  private:
@@ -43,9 +44,9 @@ class Strays {
   double solidAngle(const Corners& triangle) const;
 
   FilePoint middle_{};
-  double beyond_ = HUGE_VAL;  // strays are this far from the middle
-  double far_ = HUGE_VAL;     // 1000 times as far as most triangles
-  double near_ = HUGE_VAL;    // the furthest triangle within; infinite where none is beyond
+  double beyond_ = HUGE_VAL;  // strays lie farther from the middle than this
+  double far_ = HUGE_VAL;     // 1000 times the distance of three quarters of the triangles
+  double near_ = HUGE_VAL;    // furthest triangle within far_; infinite if all are within
   size_t count_ = 0;
   double furthest_ = 0.0;
 };

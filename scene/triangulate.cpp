@@ -17,14 +17,14 @@ double area2(const Point& a, const Point& b, const Point& c) {
 }
 double distance(const Point& a, const Point& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
 
-// A polygon in its plane, anti-clockwise, seen from its own scale.
+// A polygon projected to a plane, anti-clockwise, scaled so that its coordinates are about 1.
 struct Outline {
   std::vector<Point> points;
-  double tolerance = 0.0;  // distance within which rounding may have moved a point
-  bool flat = false;       // it has no area
+  double tolerance = 0.0;  // largest distance by which rounding may move a point
+  bool flat = false;       // whether it has no area
 
-  // 1: c lies to the left of the line from a to b, -1: to its right, 0: on it as far as doubles
-  // say, whichever of the three is asked about.
+  // Returns 1 if c lies to the left of the line from a to b, -1 if to the right, 0 if on it within
+  // the tolerance, which treats the three points alike.
   int side(const Point& a, const Point& b, const Point& c) const {
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
     const double area = area2(a, b, c), least = tolerance * longest;
@@ -55,7 +55,7 @@ FilePoint extentOf(std::span<const FilePoint> corners) {
   return extent;
 }
 
-// Leaves out the axis that the normal is closest to: an affine map, which rounds nothing.
+// Projects along the axis closest to the normal: dropping a coordinate rounds nothing.
 Outline outlineOf(std::span<const FilePoint> corners) {
   Outline out;
   const double largest = largestOf(corners);
@@ -90,7 +90,7 @@ Outline outlineOf(std::span<const FilePoint> corners) {
   return out;
 }
 
-// Whether all corners turn left, and are seen from the first: a fan from there covers it.
+// Whether all corners turn left and corner 0 sees each of them, so that a fan from there suffices.
 bool isStrictlyConvex(const Outline& o) {
   const size_t n = o.points.size();
   for (size_t i = 0; i < n; ++i) {
@@ -127,7 +127,7 @@ class EarClipper {
     left_ = n;
   }
 
-  // Returns false when it had to cut where no ear was.
+  // Returns false if it had to cut off a corner that is no ear.
   bool clip(std::vector<std::array<uint32_t, 3>>& triangles) {
     bool simple = true;
     findEars();
@@ -149,17 +149,17 @@ class EarClipper {
       const uint32_t a = previous_[ear], c = next_[ear];
       if (kind_[ear] != Kind::Flat && kind_[ear] != Kind::Spike) triangles.push_back({a, ear, c});
       remove(ear);
-      at = next_[c];  // the next but one: fewer slivers than in a fan
+      at = next_[c];  // skips a corner: a fan would have more slivers
     }
     return simple;
   }
 
  private:
   enum class Kind : uint8_t {
-    Ear,      // its triangle holds nothing of the outline
-    Touched,  // nothing but corners on the diagonal, which they would not share
-    Flat,     // in line with its neighbours
-    Spike,    // there and back again; while it is there, what lies beside it looks like an ear
+    Ear,      // the outline does not enter its triangle
+    Touched,  // an ear but for corners on its diagonal, which would become T-junctions
+    Flat,     // collinear with its neighbours
+    Spike,    // the outline turns back on itself, which makes corners beside it look like ears
     Blocked,  // convex, but the outline crosses its triangle
     Reflex
   };
@@ -180,7 +180,7 @@ class EarClipper {
     return kind;
   }
 
-  // Of three in line, whether b is not between the others.
+  // Whether b lies outside the segment between a and c, all three being collinear.
   bool isSpike(uint32_t a, uint32_t b, uint32_t c) const {
     const Point &p = o_.points[a], &q = o_.points[b], &r = o_.points[c];
     return (p[0] - q[0]) * (r[0] - q[0]) + (p[1] - q[1]) * (r[1] - q[1]) >= 0.0;
@@ -213,7 +213,7 @@ class EarClipper {
     }
     return kNowhere;
   }
-  // What an ear elsewhere leaves of the polygon is part of it: only its neighbours can become ears.
+  // Classifies only the two neighbours again; clip() searches all corners when it finds no ear.
   void remove(uint32_t b) {
     const uint32_t a = previous_[b], c = next_[b];
     next_[a] = c;
@@ -268,7 +268,7 @@ bool triangulate(std::span<const FilePoint> corners, QuadCut quads,
   }
   const size_t before = triangles.size();
   const bool ears = EarClipper(outline).clip(triangles);
-  if (triangles.size() == before) triangles.push_back({0, 1, 2});  // so that it is counted
+  if (triangles.size() == before) triangles.push_back({0, 1, 2});  // so that it counts as one
   return ears && !edgesCross(outline);
 }
 

@@ -1,12 +1,12 @@
-// Surfaces that are partly there, in proportion to an opacity between 0 and 1.
+// Surfaces of partial opacity, between 0 and 1.
 #pragma once
 
 #include "scene/scene_builder.h"
 
 namespace bnvpl {
 
-// Makes `m`, which must not have the PhongModel, a mix: `amount` of its model beside what lets all
-// light straight through, but for shadow rays.
+// Turns `m`, which must not have the PhongModel, into a mix of `amount` of its model and a thin
+// sheet of index 1, which light crosses unchanged. Shadow rays do not cross it.
 void addTransparency(Scalar amount, SceneBuilder& builder, Material& m);
 
 }  // namespace bnvpl

@@ -7,11 +7,11 @@ namespace bnvpl {
 
 namespace {
 
-// Beyond this many texels or squares, floats have no fraction left: the coordinate counts as 0.
+// Beyond this many squares, floats have hardly any fraction left, and the coordinate counts as 0.
 constexpr float kLargest = 0x1p22f;
 float wholeBelow(float x) { return std::fabs(x) < kLargest ? std::floor(x) : 0.0f; }
 
-// The texel that stands for column or row i of n. False: black.
+// Maps column or row i to 0..n-1 by the wrap mode. Returns false if the texel is black.
 bool wrapped(Wrap wrap, int64_t i, int64_t n, uint32_t& out) {
   if (wrap == Wrap::Black && (i < 0 || i >= n)) return false;
   if (wrap == Wrap::Clamp) i = std::clamp<int64_t>(i, 0, n - 1);
@@ -24,7 +24,7 @@ bool wrapped(Wrap wrap, int64_t i, int64_t n, uint32_t& out) {
   return true;
 }
 
-// Bilinear; x texel's colour, w its alpha.
+// A bilinearly interpolated texel: `alpha` alone for Channel::Alpha, else `colour` alone.
 struct Texel {
   Vec3 colour;
   float alpha = 0.0f;

@@ -1,7 +1,7 @@
-// Expressions over textures: what a parameter of a material looks up.
+// Expressions over textures, which drive the parameters of materials.
 //
 // An expression is a node in Scene::expressions that names its operands by their numbers there.
-// Operands have smaller numbers than what uses them, so that no expression contains itself.
+// Operands have smaller numbers than the nodes that use them, so no expression contains itself.
 //
 //   const uint32_t image = builder.addTexture({"wood.png"});                  // may be kNone
 //   const uint32_t wood = builder.addExpression(imageExpression(image));
@@ -27,14 +27,15 @@ struct UvTransform {
 };
 
 enum class Wrap : uint32_t { Repeat, Mirror, Clamp, Black };
-// What is taken of a texel. A parameter that is one number takes the first of the three: name a
-// channel, or Mean, for it. Alpha is the image's own, not decoded: not of images read as masks.
+// The part of a texel that is used. A scalar parameter takes the first of three channels, so its
+// expression should select a channel or Mean. Alpha is the image's own, without sRGB decoding,
+// unless the image is read as a mask.
 enum class Channel : uint32_t { Rgb, Red, Green, Blue, Alpha, Mean };
 
 struct TextureExpression {
   enum class Kind : uint32_t {
     Constant,     // value
-    Image,        // value * texel; 1 - that where `invert`; never below 0
+    Image,        // max(0, value * texel), or max(0, 1 - value * texel) where `invert`
     Product,      // first * second
     Mix,          // (1 - amount) * first + amount * second
     Checkerboard  // first where floor(u') + floor(v') is even, else second
@@ -45,7 +46,7 @@ struct TextureExpression {
   Channel channel = Channel::Rgb;
   Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
   bool invert = false;
-  UvTransform uv;                                          // of images and checkerboards
+  UvTransform uv;                                          // for images and checkerboards
   uint32_t first = kNone, second = kNone, amount = kNone;  // into Scene::expressions
 };
 
@@ -81,18 +82,17 @@ inline TextureExpression checkerboardExpression(uint32_t first, uint32_t second,
   return e;
 }
 
-// What an expression is at texture coordinates, which must be finite; linear, bilinear between
-// texels.
+// Evaluates expressions at finite texture coordinates. Texels are decoded to linear values and
+// interpolated bilinearly.
 class TextureEvaluator {
  public:
   TextureEvaluator(std::span<const TextureExpression> expressions,
                    std::span<const Texture> textures)
       : expressions_(expressions), textures_(textures) {}
   Vec3 at(uint32_t expression, float u, float v) const;
-  // Mean over texture coordinates from 0 to 1, by a grid of 64 x 64.
+  // Mean over texture coordinates in 0..1, estimated on a grid of 64 x 64.
   Vec3 mean(uint32_t expression) const;
-  // A step in texture coordinates in which the expression changes by about a texel of its finest
-  // image.
+  // Size of about one texel of the expression's finest image in texture coordinates, at most 1/256.
   float step(uint32_t expression) const;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kMaxPfmPixels = size_t{1} << 28;  // as of other images
 
-// A word of the header, and the one blank behind it.
+// Removes a word of the header and the single blank behind it.
 std::string_view takeWord(std::string_view& bytes) {
   const size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
   const size_t end = std::min(bytes.find_first_of(" \t\r\n", begin), bytes.size());
@@ -50,7 +50,7 @@ EnvironmentImage readPfm(const fs::path& file, std::string_view bytes) {
   const bool swap = (scale < 0.0f) != (std::endian::native == std::endian::little);
   for (size_t i = 0; i < pixels; ++i) {
     Vec3& pixel = image.radiance[(image.height - 1 - i / image.width) * image.width +
-                                 i % image.width];  // rows come from the bottom
+                                 i % image.width];  // rows are stored bottom-up
     for (size_t c = 0; c < 3; ++c) {
       std::array<char, sizeof(float)> raw;
       std::memcpy(raw.data(), bytes.data() + (i * channels + c % channels) * raw.size(),

@@ -1,4 +1,4 @@
-// PFM images: floats, in colour or grey.
+// Reads PFM images: floats in colour or grey.
 #pragma once
 
 #include <string_view>
@@ -9,8 +9,8 @@ namespace bnvpl {
 
 bool isPfm(std::string_view bytes);
 
-// Of either byte order. Values are as the file has them, whatever they are. Throws InputError;
-// `file` is for the message.
+// Reads either byte order. Values are not checked: they may be negative or not finite. Throws
+// InputError, for which `file` names the image.
 EnvironmentImage readPfm(const fs::path& file, std::string_view bytes);
 
 }  // namespace bnvpl

@@ -6,7 +6,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr uint32_t kMaxSide = 32767;            // of rows in runs
+constexpr uint32_t kMaxSide = 32767;            // limit of run-length encoded rows
 constexpr uint32_t kMinRunSide = 8;             // narrower rows are always flat
 constexpr size_t kMaxHdrPixels = size_t{1} << 28;  // as of other images
 
@@ -33,7 +33,7 @@ class Reader {
     return value;
   }
   Rgbe pixel() { return {byte(), byte(), byte(), byte()}; }
-  // The next row is in runs of `width` pixels.
+  // Whether the next row is run-length encoded and has `width` pixels.
   bool runsAhead(uint32_t width) const {
     const auto at = [&](size_t i) { return static_cast<uint8_t>(left_[i]); };
     return left_.size() >= 4 && at(0) == 2 && at(1) == 2 && (at(2) << 8 | at(3)) == int(width);
@@ -51,7 +51,7 @@ Vec3 radianceOf(Rgbe p) {
 }
 
 void readRuns(Reader& in, std::vector<Rgbe>& row) {
-  in.pixel();  // the mark that runs follow
+  in.pixel();  // marks a run-length encoded row
   for (size_t channel = 0; channel < 4; ++channel) {
     for (size_t x = 0; x < row.size();) {
       const size_t code = in.byte(), count = code > 128 ? code - 128 : code;
@@ -62,7 +62,7 @@ void readRuns(Reader& in, std::vector<Rgbe>& row) {
   }
 }
 
-// A number after `key`, such as "+X ".
+// Parses the number behind `key`, such as "+X ".
 uint32_t side(Reader& in, std::string_view& text, std::string_view key) {
   uint32_t value = 0;
   if (!text.starts_with(key)) in.fail("its size is not -Y height +X width");
@@ -93,7 +93,7 @@ EnvironmentImage readRadianceHdr(const fs::path& file, std::string_view bytes) {
   if (size_t{image.width} * image.height > kMaxHdrPixels) in.fail("its size is out of range");
 
   std::vector<Rgbe> row(image.width);
-  for (uint32_t y = 0; y < image.height; ++y) {  // grows with what the file really holds
+  for (uint32_t y = 0; y < image.height; ++y) {  // memory grows only with the file's content
     if (image.width >= kMinRunSide && in.runsAhead(image.width)) {
       readRuns(in, row);
     } else {

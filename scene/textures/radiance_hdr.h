@@ -1,4 +1,5 @@
-// Radiance HDR images: stb_image 2.27 never returns from one that is cut short.
+// Reads Radiance HDR images. stb_image 2.27, which reads the other formats, hangs on truncated
+// ones.
 #pragma once
 
 #include <string_view>
@@ -9,7 +10,8 @@ namespace bnvpl {
 
 bool isRadianceHdr(std::string_view bytes);
 
-// Rows from the top, RGBE, flat or in runs. Throws InputError; `file` is for the message.
+// Reads RGBE rows from the top, flat or run-length encoded. Throws InputError, for which `file`
+// names the image.
 EnvironmentImage readRadianceHdr(const fs::path& file, std::string_view bytes);
 
 }  // namespace bnvpl

@@ -32,15 +32,15 @@ struct Bilinear {  // four texels and their weights
   float weight[4];
 };
 
-// std::floor, which is a call on the baseline machine; larger numbers are whole.
+// std::floor, which baseline x86-64 compiles to a call. Numbers of 2^23 and more are whole.
 float floorOf(float v) {
   if (!(std::fabs(v) < 0x1p23f)) return v;
   const auto whole = static_cast<float>(static_cast<int32_t>(v));
   return whole > v ? whole - 1.0f : whole;
 }
 
-// The texel centre of column i is at (i + 0.5) / width. None for coordinates that are not finite,
-// which an OBJ or the scale of an MTL can make them.
+// The centre of column i is at u = (i + 0.5) / width. Returns nothing for coordinates that are not
+// finite, which an OBJ or the scale of an MTL can produce.
 std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
   u = u * t.scale[0] + t.offset[0];
   v = v * t.scale[1] + t.offset[1];
@@ -48,7 +48,7 @@ std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
   const float x = (u - floorOf(u)) * static_cast<float>(t.width) - 0.5f;
   const float y = (1.0f - (v - floorOf(v))) * static_cast<float>(t.height) - 0.5f;
   const float left = floorOf(x), top = floorOf(y), fx = x - left, fy = y - top;
-  const auto wrap = [](int64_t i, int64_t n) {  // of -1 to n, as u - floor(u) is 0 to 1
+  const auto wrap = [](int64_t i, int64_t n) {  // i is -1 to n, since u - floor(u) is 0 to 1
     return static_cast<size_t>(i < 0 ? i + n : i >= n ? i - n : i);
   };
   const auto column = static_cast<int64_t>(left), row = static_cast<int64_t>(top);
@@ -152,7 +152,7 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
   return e;
 }
 
-// Negative values become 0; returns the number of pixels that had some.
+// Sets negative values to 0 and returns the number of pixels that had some.
 size_t requireFinite(const fs::path& file, EnvironmentImage& e) {
   size_t negative = 0;
   for (size_t i = 0; i < e.radiance.size(); ++i) {
@@ -168,7 +168,7 @@ size_t requireFinite(const fs::path& file, EnvironmentImage& e) {
   return negative;
 }
 
-// `alpha`: of each texel, or empty.
+// `alpha` holds one value per texel, or is empty.
 Texture textureOfFloats(const fs::path& file, EnvironmentImage image,
                         const std::vector<float>& alpha, bool mask) {
   Texture t;

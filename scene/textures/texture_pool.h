@@ -1,4 +1,4 @@
-// The textures of a scene, read side by side while its loaders go on.
+// The textures of a scene, decoded in parallel with its loaders.
 #pragma once
 
 #include <tbb/task_group.h>
@@ -14,18 +14,18 @@ namespace bnvpl {
 
 // A file and how a material reads it.
 struct TextureUse {
-  fs::path file;  // or a name of its own for an image that lies in another file:
+  fs::path file;                                   // a unique name if `bytes` holds the image
   bool srgb = true;                                // decode to linear on lookup
   bool mask = false;                               // fill the alpha channel: see loadTexture
-  std::array<float, 2> scale{1, 1}, offset{0, 0};  // of the texture coordinates
-  std::shared_ptr<const std::string> bytes = {};   // that image, as PNG, JPEG, ...
+  std::array<float, 2> scale{1, 1}, offset{0, 0};  // transform texture coordinates
+  std::shared_ptr<const std::string> bytes = {};   // encoded image within another file
 };
 
 class TexturePool {
  public:
   struct Result {
     std::vector<Texture> textures;      // those that could be read, in the order of add()
-    std::vector<uint32_t> indexOf;      // of each number of add(), in `textures`; kUnreadable
+    std::vector<uint32_t> indexOf;      // index in `textures` for each number, or kUnreadable
     std::vector<std::string> problems;  // file and problem of the others
   };
   static constexpr uint32_t kUnreadable = 0xffffffffu;
@@ -35,12 +35,12 @@ class TexturePool {
   TexturePool(const TexturePool&) = delete;
   TexturePool& operator=(const TexturePool&) = delete;
 
-  // Starts to read a regular file; others are passed over.
+  // Starts to decode a regular file; ignores others.
   void expect(const TextureUse& use);
-  // The use's number, counted from 0; the same for the same use.
+  // Returns the number of the use, counted from 0; equal uses share one.
   uint32_t add(const TextureUse& use);
-  // Waits, and empties the pool. Throws InputError when a file changed while it was read, and what
-  // else is no matter of a damaged image, such as std::bad_alloc.
+  // Waits for all textures and empties the pool. Throws InputError if a file changed while it was
+  // read, and any error that is not about a damaged image, such as std::bad_alloc.
   Result take();
 
  private:
@@ -48,13 +48,13 @@ class TexturePool {
     static constexpr uint32_t kOnlyExpected = kUnreadable;
     uint32_t number = kOnlyExpected;
     Texture texture;
-    std::string problem;         // why there is none
-    std::exception_ptr failure;  // why there can be no scene
+    std::string problem;         // why the texture is unreadable
+    std::exception_ptr failure;  // error that take() rethrows
   };
   Entry& start(const TextureUse& use);
 
-  std::map<std::string, Entry> entries_;  // by file, use and place; each task writes to its own
-  std::vector<Entry*> added_;             // by number
+  std::map<std::string, Entry> entries_;  // by file and use; each task writes to its own
+  std::vector<Entry*> added_;             // in the order of their numbers
   tbb::task_group tasks_;
 };
 

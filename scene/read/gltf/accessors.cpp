@@ -8,10 +8,11 @@ namespace bnvpl {
 namespace {
 
 
-// Without a buffer view all elements are 0: a few bytes of JSON could ask for any amount of memory.
+// Maximum number of elements without a buffer view, which are all 0: a few bytes of JSON could
+// request any amount of memory.
 constexpr size_t kMaxZeros = size_t{1} << 16;
 
-// Elements that lie somewhere in a view.
+// Elements within a buffer view.
 struct Elements {
   const char* first = nullptr;
   size_t stride = 0, count = 0, components = 0;
@@ -55,7 +56,7 @@ double numberAt(const char* bytes, int componentType, bool normalized) {
   }
 }
 
-// Throws where they are not within the view.
+// Locates elements in a buffer view. Throws GltfError if they do not lie within it.
 Elements elementsIn(const GltfModel& model, const std::string& pointer, int bufferView,
                     size_t offset, size_t count, size_t components, int componentType) {
   if (bufferView < 0) model.fail(pointer, std::string("needs a 'bufferView'") + kExportAgain);
@@ -80,7 +81,7 @@ void copyElement(const Elements& from, size_t i, const Read& read, T* to) {
     to[k] = read(from.first + i * from.stride + k * size, from.componentType);
 }
 
-// `read` makes a T of the bytes of a component.
+// read(bytes, componentType) converts a component to a T.
 template <typename T, typename Read>
 std::vector<T> readElements(const GltfModel& model, int index, size_t components,
                             const Read& read) {

@@ -1,4 +1,4 @@
-// Accessors of a glTF as plain arrays.
+// Reads accessors of a glTF as plain arrays.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace bnvpl {
 
-// `components` numbers an element: SCALAR 1, VEC2 2, VEC3 3, VEC4 4, MAT4 16 (column by column). Of
-// any component type; integers are scaled to 0..1 or -1..1 where the accessor is normalized. Sparse
-// values are in place. Throws GltfError, which names the accessor.
+// Reads `components` numbers per element: SCALAR 1, VEC2 2, VEC3 3, VEC4 4, MAT4 16 (column-major).
+// All component types are accepted. Integers of normalized accessors are scaled to 0..1 or -1..1,
+// and sparse values are applied. Throws GltfError, which names the accessor.
 std::vector<double> readNumbers(const GltfModel& model, int accessor, size_t components);
 
-// Of a SCALAR of unsigned integers.
+// Reads a SCALAR accessor of unsigned integers.
 std::vector<uint32_t> readIndices(const GltfModel& model, int accessor);
 
 }  // namespace bnvpl

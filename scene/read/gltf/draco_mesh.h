@@ -1,4 +1,4 @@
-// KHR_draco_mesh_compression. The one use of Draco.
+// Decodes KHR_draco_mesh_compression. Nothing else uses Draco.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ namespace bnvpl {
 
 class DracoMesh {
  public:
-  // Throws GltfError, which names `pointer`, where the bytes are no Draco mesh.
+  // Throws GltfError, which names `pointer`, if the bytes are no Draco mesh.
   DracoMesh(const fs::path& file, const std::string& pointer, std::string_view bytes);
   ~DracoMesh();
   DracoMesh(const DracoMesh&) = delete;
   DracoMesh& operator=(const DracoMesh&) = delete;
 
-  std::vector<uint32_t> indices() const;  // three a triangle
-  // `components` numbers a vertex; none where there is no attribute of this id and size.
+  std::vector<uint32_t> indices() const;  // three per triangle
+  // `components` numbers per vertex; nothing if no attribute has this id and size.
   std::optional<std::vector<double>> attribute(uint32_t id, size_t components) const;
 
  private:

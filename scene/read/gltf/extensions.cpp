@@ -13,8 +13,8 @@ constexpr std::array<std::string_view, 14> kUnderstood{
     "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
     "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
     "KHR_materials_unlit", "KHR_mesh_quantization", "KHR_texture_transform",
-    // Of no effect on a picture:
-    "KHR_xmp_json_ld", "KHR_materials_variants"};  // the default variant is shown
+    // These have no effect on the image:
+    "KHR_xmp_json_ld", "KHR_materials_variants"};  // the default variant is rendered
 
 bool isUnderstood(const std::string& name) {
   return std::find(kUnderstood.begin(), kUnderstood.end(), name) != kUnderstood.end();

@@ -1,4 +1,4 @@
-// Which extensions of glTF are understood.
+// Checks the extensions of a glTF.
 #pragma once
 
 #include "scene/read/gltf/gltf_document.h"
@@ -6,8 +6,7 @@
 
 namespace bnvpl {
 
-// Throws GltfError for an extension that the file requires and that we do not know; warns of those
-// that it uses and that are ignored.
+// Throws GltfError for an unknown extension that the file requires; warns about other unknown ones.
 void checkExtensions(const GltfDocument& document, SceneBuilder& builder);
 
 }  // namespace bnvpl

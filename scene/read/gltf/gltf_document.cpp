@@ -20,7 +20,7 @@ uint32_t wordAt(const std::string& bytes, size_t at) {  // little-endian
   return word;
 }
 
-// The parsers below use the stack for each level.
+// Limits nesting, since the parsers recurse at each level.
 void refuseDeepNesting(const fs::path& file, std::string_view json) {
   constexpr size_t kMaxDepth = 64;
   size_t depth = 0, line = 1;
@@ -53,7 +53,7 @@ nlohmann::json parseJson(const fs::path& file, std::string_view text) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(e.byte, text.size()));
     throw InputError(file.string() + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
                      ": is no JSON that can be read; export it again");
-  } catch (const nlohmann::json::exception&) {  // such as a number that no double holds
+  } catch (const nlohmann::json::exception&) {  // such as a number beyond double
     throw InputError(file, "holds a number out of range; export it again");
   }
   throw InputError(file, "is no glTF: its JSON is no object; export it again");

@@ -1,4 +1,4 @@
-// The container of a glTF: a .gltf is its JSON, a .glb holds the JSON and up to one block of bytes.
+// The container of a glTF: a .gltf is plain JSON, a .glb holds JSON and at most one block of bytes.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 
 namespace bnvpl {
 
-// What is wrong at a place of a glTF: "room.gltf#/accessors/3: problem; cure". `pointer` is a JSON
-// pointer (RFC 6901), "" for the whole.
+// An error at a place in a glTF: "room.gltf#/accessors/3: problem; remedy". `pointer` is a JSON
+// pointer (RFC 6901), "" for the whole file.
 class GltfError : public InputError {
  public:
   GltfError(const fs::path& file, const std::string& pointer, const std::string& problem)
@@ -20,11 +20,11 @@ struct GltfDocument {
   fs::path file;
   nlohmann::json json;
   std::string binary;      // the BIN chunk of a .glb
-  bool hasBinary = false;  // a chunk may be empty
+  bool hasBinary = false;  // true even if that chunk is empty
 };
 
-// Told apart by content, not by extension. Throws InputError: for JSON that is none with its line,
-// for a damaged .glb with its byte, for nesting deeper than any exporter's.
+// Reads either container, recognised by content. Throws InputError with the line of a JSON error or
+// the byte of a GLB error, and for nesting deeper than any exporter's.
 GltfDocument readGltfDocument(const fs::path& file);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-#define TINYGLTF_IMPLEMENTATION  // of tinygltf.h, here alone
+#define TINYGLTF_IMPLEMENTATION  // compiles tinygltf here alone
 #include "scene/read/gltf/gltf_model.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 bool isDataUri(const std::string& uri) { return uri.starts_with("data:"); }
 
-// The text of a percent-encoded relative reference (RFC 3986).
+// Decodes a percent-encoded relative reference (RFC 3986).
 std::string decodedUri(const std::string& uri) {
   const auto digit = [](char c) {
     return c >= '0' && c <= '9'   ? c - '0'
@@ -49,7 +49,7 @@ std::string decodeData(const fs::path& file, const std::string& pointer, const s
   return {bytes.begin(), bytes.end()};
 }
 
-// The extension's object of a part, or null.
+// The object of an extension of `part`, or null.
 const Json* extensionOf(const Json& part, const char* name) {
   const auto extensions = part.find("extensions");
   if (extensions == part.end() || !extensions->is_object()) return nullptr;
@@ -57,7 +57,7 @@ const Json* extensionOf(const Json& part, const char* name) {
   return it != extensions->end() && it->is_object() ? &*it : nullptr;
 }
 
-// Also makes reals of large integers in extensions, of which tinygltf would keep 32 bits.
+// Also converts large integers in extensions to reals: tinygltf would keep 32 bits of them.
 void eraseExtras(Json& json, bool inExtension = false) {
   if (json.is_object()) json.erase("extras");
   if (json.is_structured()) {
@@ -69,8 +69,7 @@ void eraseExtras(Json& json, bool inExtension = false) {
   }
 }
 
-// What tinygltf would read in its own way, or not at all. Draco's indices have no buffer view,
-// which it refuses.
+// Removes what tinygltf need not read, and Draco's indices: it refuses them without a buffer view.
 void removeOurParts(Json& json) {
   json.erase("buffers");
   json.erase("images");

@@ -1,4 +1,4 @@
-// A glTF whose parts can be relied on: checked, with its bytes at hand, parsed by tinygltf.
+// A validated glTF, parsed by tinygltf, with the bytes of its buffers and images.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,8 @@ inline constexpr const char* kExportAgain = "; export the file again";
 
 // An image of the file, still as PNG, JPEG or the like.
 struct GltfImage {
-  fs::path file;                             // where it lies, or a name for what is embedded
-  std::shared_ptr<const std::string> bytes;  // null: `file` is to be read
+  fs::path file;                             // its path, or a unique name if it is embedded
+  std::shared_ptr<const std::string> bytes;  // null if `file` must be read
 };
 
 class GltfModel {
@@ -26,10 +26,10 @@ class GltfModel {
   GltfModel(const fs::path& file, SceneBuilder& builder);
 
   const fs::path& file() const { return file_; }
-  // All indices that gltf_rules.h lists are in range. Without `buffers` and `images`, which lie
-  // here, and without `extras`.
+  // The model without `extras`, and without `buffers` and `images`, which this class holds. All
+  // indices that requireValid() checks are in range.
   const tinygltf::Model& parts() const { return model_; }
-  // Of a buffer view, decompressed, with the stride between its elements; 0: tightly packed.
+  // Bytes of a buffer view, decompressed, and the stride of its elements; 0 if tightly packed.
   struct View {
     std::string_view bytes;
     size_t stride = 0;
@@ -40,7 +40,7 @@ class GltfModel {
   [[noreturn]] void fail(const std::string& pointer, const std::string& problem) const {
     throw GltfError(file_, pointer, problem);
   }
-  // Says once that something is ignored or approximated: "FILE: TEXT".
+  // Reports once that something is ignored or approximated: "FILE: TEXT".
   void warn(const std::string& text) const { builder_.warn(file_.string() + ": " + text); }
 
  private:
@@ -58,7 +58,7 @@ class GltfModel {
   std::vector<GltfImage> images_;
 };
 
-// Where an array's element is: "/accessors/3".
+// JSON pointer to an element of a top-level array, such as "/accessors/3".
 inline std::string gltfPointer(const char* array, size_t i) {
   return "/" + std::string(array) + "/" + std::to_string(i);
 }

@@ -16,17 +16,17 @@ using Json = nlohmann::json;
 
 constexpr double kMax = 1e30;  // largest coordinate, factor or power, as in scene.toml
 constexpr double kAny = std::numeric_limits<double>::max();
-constexpr double kMaxBytes = 0x1p40;  // largest size or offset: sums of two do not overflow
+constexpr double kMaxBytes = 0x1p40;  // largest size or offset; the sum of two does not overflow
 
 struct Rule {
   enum class Kind { Object, Text, Flag, Number, Numbers, Whole, Index };
-  std::string_view path;  // "*": each element of an array, each member of an object
+  std::string_view path;  // "*" matches each element of an array or member of an object
   Kind kind;
   bool required = false;
   double least = -kMax, most = kMax;
-  size_t count = 0;          // Numbers: so many
+  size_t count = 0;          // Numbers: their count
   std::string_view of = {};  // Index: into this array
-  bool clamped = false;      // numbers out of range are moved to its nearer end, with a warning
+  bool clamped = false;      // numbers out of range are clamped, with a warning
 };
 using Kind = Rule::Kind;
 
@@ -53,7 +53,7 @@ constexpr Rule needed(Rule rule) {
   return rule;
 }
 
-// Exporters write factors that rounding, or a user, has taken out of range.
+// Clamps the value: exporters write factors that rounding, or a user, has moved out of range.
 constexpr Rule clamped(Rule rule) {
   rule.clamped = true;
   return rule;
@@ -165,7 +165,7 @@ constexpr Rule kRules[] = {
     objectRule("materials/*/extensions/KHR_materials_unlit"),
 };
 
-// Wherever a material names a texture.
+// All places where a material refers to a texture.
 constexpr std::string_view kTextureInfos[] = {
     "pbrMetallicRoughness/baseColorTexture",
     "pbrMetallicRoughness/metallicRoughnessTexture",
@@ -292,7 +292,7 @@ class Checker {
 
   GltfDocument& document_;
   const std::function<void(const std::string&)>& warn_;
-  // Of the rule that is being checked: the end of its indices, and what was out of range.
+  // State of the current rule: end of its indices, number of clamped values, report of the first.
   size_t indexEnd_ = 0, moved_ = 0;
   std::string movedFirst_;
 };

@@ -1,4 +1,4 @@
-// What the readers of a glTF rely on, checked in one place.
+// Validates everything that the readers of a glTF rely on.
 #pragma once
 
 #include <functional>
@@ -8,11 +8,10 @@
 
 namespace bnvpl {
 
-// Throws GltfError where a property that we read has another type, is out of range, is missing
-// though required, or is an index of something that is not there; and where the version is none of
-// 2.x, or needs a reader of a later one. Factors and powers out of range are moved into it: warn()
-// is told file, place and what is used, once a property. Properties that we do not read may be
-// anything.
+// Throws GltfError if a property that is read has the wrong type, is out of range, is missing
+// though required, or is an index without a target; also if the version is not 2.x or requires a
+// later reader. Factors and powers out of range are clamped: warn() receives file, place and the
+// value used, once per property. Properties that are not read may be anything.
 void requireValid(GltfDocument& document, const std::function<void(const std::string&)>& warn);
 
 }  // namespace bnvpl

@@ -11,7 +11,7 @@ namespace bnvpl {
 
 namespace {
 
-// Each mesh is decoded and stored once, however many nodes show it, unless they pose it.
+// Decodes and stores each mesh once for all nodes that show it, unless they pose it.
 class Meshes {
  public:
   Meshes(const GltfModel& model, SceneBuilder& builder)
@@ -25,7 +25,7 @@ class Meshes {
     if (!prototype) prototype = read(mesh, {});
     for (const Affine& instance : instances) builder_.addInstance(*prototype, world * instance);
   }
-  // A skin's joints place the mesh, whatever its node's transform is.
+  // The joints of a skin place the mesh; glTF ignores the transform of its node.
   void addPosed(size_t mesh, const GltfPose& pose, const Affine& world) {
     builder_.addInstance(read(mesh, pose), pose.joints.empty() ? world : Affine());
   }

@@ -1,4 +1,4 @@
-// glTF 2.0, .gltf and .glb, with the buffers and images that it names. docs/scenes.md says
+// Reads glTF 2.0 (.gltf and .glb) with the buffers and images that it names. docs/scenes.md says
 // what is read and how.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// Throws InputError: file, JSON pointer, problem and cure. glTF has no names to be defined.
+// Throws InputError with file, JSON pointer, problem and remedy. Defines are unused.
 void readGltf(const fs::path& file, const Defines&, SceneBuilder& builder);
 
 }  // namespace bnvpl

@@ -32,9 +32,9 @@ GltfTextureRef::GltfTextureRef(const tinygltf::Value& extension, const char* mem
   read(static_cast<unsigned>(gltfNumber(info, "texCoord", 0)), transform);
 }
 
-// The extension moves, turns and scales the file's coordinates, whose v runs down:
+// KHR_texture_transform scales, rotates and moves the file's coordinates, whose v points down:
 //   u' = sx cos u + sy sin v + ox,  v' = -sx sin u + sy cos v + oy.
-// Ours run up: v and v' become 1 - v and 1 - v'.
+// Here v points up: v and v' become 1 - v and 1 - v'.
 void GltfTextureRef::read(unsigned texCoord, const tinygltf::Value& transform) {
   uvSet = static_cast<unsigned>(gltfNumber(transform, "texCoord", texCoord));
   const double angle = gltfNumber(transform, "rotation", 0.0);

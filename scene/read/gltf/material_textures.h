@@ -1,4 +1,4 @@
-// How the materials of a glTF look into its textures.
+// The texture references of glTF materials.
 #pragma once
 
 #include <optional>
@@ -7,35 +7,35 @@
 
 namespace bnvpl {
 
-// A textureInfo, wherever it stands.
+// A textureInfo of a material or of its extensions.
 struct GltfTextureRef {
-  int texture = -1;  // of the model; -1: none
+  int texture = -1;  // number in the model; -1 if none
   unsigned uvSet = 0;
   UvTransform uv;  // KHR_texture_transform, for v = 0 at the bottom row
 
   GltfTextureRef() = default;
-  // Of tinygltf's TextureInfo and NormalTextureInfo.
+  // Converts tinygltf's TextureInfo and NormalTextureInfo.
   template <typename Info>
   explicit GltfTextureRef(const Info& info) : texture(info.index) {
     const auto it = info.extensions.find("KHR_texture_transform");
     read(static_cast<unsigned>(info.texCoord),
          it == info.extensions.end() ? tinygltf::Value() : it->second);
   }
-  // Of a member of an extension.
+  // Converts a member of an extension.
   GltfTextureRef(const tinygltf::Value& extension, const char* member);
 
  private:
   void read(unsigned texCoord, const tinygltf::Value& transform);
 };
 
-// The textures of one material, all of which must use one set of texture coordinates: that of the
-// first that is asked for.
+// The textures of one material. All must use the same set of texture coordinates as the first one.
 class GltfMaterialTextures {
  public:
   GltfMaterialTextures(const GltfModel& model, SceneBuilder& builder, std::string materialName)
       : model_(model), builder_(builder), material_(std::move(materialName)) {}
 
-  // The number of an expression; kNone, with a warning where there should be one, for none.
+  // Each returns the number of an expression. It is kNone without a texture, and, with a warning,
+  // for a texture that cannot be used.
   uint32_t colour(const GltfTextureRef& ref) { return add(ref, true, Channel::Rgb); }
   uint32_t alpha(const GltfTextureRef& ref) { return add(ref, true, Channel::Alpha); }
   uint32_t data(const GltfTextureRef& ref, Channel channel) { return add(ref, false, channel); }
@@ -52,7 +52,7 @@ class GltfMaterialTextures {
   std::optional<unsigned> uvSet_;
 };
 
-// A number of an extension's object; `otherwise` where it is not given.
+// A number in an extension's object; `otherwise` if it is absent.
 double gltfNumber(const tinygltf::Value& object, const char* member, double otherwise);
 
 }  // namespace bnvpl

@@ -20,7 +20,7 @@ Vec3 colourOf(const tinygltf::Value& object, const char* member) {
   return {at(0), at(1), at(2)};
 }
 
-// Null where the material has none: each member is then at its default.
+// Returns a null value if the material lacks the extension: all members then have their defaults.
 const tinygltf::Value& extensionOf(const tinygltf::Material& material, const char* name) {
   static const tinygltf::Value none;
   const auto it = material.extensions.find(name);
@@ -99,7 +99,7 @@ class MaterialReader {
     m.coatRelief.strength = real(gltfNumber(coat.Get("clearcoatNormalTexture"), "scale", 1.0));
   }
 
-  // Radiance as it is: Blender writes its emission strength so, in W/(m2 sr).
+  // Emission is taken as radiance in W/(m2 sr), as Blender exports it.
   void addEmission(Material& m) {
     const double strength =
         gltfNumber(extensionOf(from_, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
@@ -134,7 +134,7 @@ class MaterialReader {
 };
 
 std::vector<bool> usedMaterials(const tinygltf::Model& parts) {
-  std::vector<bool> used(parts.materials.size() + 1, false);  // then of primitives without
+  std::vector<bool> used(parts.materials.size() + 1, false);  // the last: primitives without one
   for (const tinygltf::Mesh& mesh : parts.meshes) {
     for (const tinygltf::Primitive& p : mesh.primitives)
       used[p.material < 0 ? parts.materials.size() : static_cast<size_t>(p.material)] = true;

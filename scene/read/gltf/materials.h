@@ -1,4 +1,4 @@
-// Materials of a glTF.
+// Converts the materials of a glTF.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace bnvpl {
 
-// Adds the file's materials that its meshes use, and the specification's default material where a
-// primitive has none. The result is what readPrimitives() asks for.
+// Adds the materials that meshes use, and the specification's default material if a primitive has
+// none. Returns the `surfaces` of readPrimitives().
 std::vector<GltfSurface> addGltfMaterials(const GltfModel& model, SceneBuilder& builder);
 
 }  // namespace bnvpl

@@ -6,7 +6,7 @@ namespace bnvpl {
 
 namespace {
 
-// A byte of the codec stands for at most so many of the result: it spends two bits on 16 bytes.
+// Upper bound on decoded bytes per encoded byte: the codec spends at least two bits on 16 bytes.
 constexpr size_t kMaxPerByte = 128;
 
 bool decode(const std::string& mode, std::string& out, size_t count, size_t stride,

@@ -1,4 +1,4 @@
-// EXT_meshopt_compression. The one use of meshoptimizer.
+// Decodes EXT_meshopt_compression. Nothing else uses meshoptimizer.
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace bnvpl {
 
-// The bytes of a buffer view from its compressed ones. `extension` is the view's, as gltf_rules.h
-// checks it; `pointer` names it in messages. Throws GltfError.
+// Decompresses the bytes of a buffer view. `extension` is the view's extension, validated by
+// requireValid(); `pointer` names it in messages. Throws GltfError.
 std::string decodeMeshopt(const fs::path& file, const std::string& pointer,
                           const nlohmann::json& extension, std::string_view compressed);
 

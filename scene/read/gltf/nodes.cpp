@@ -8,7 +8,8 @@ namespace bnvpl {
 
 namespace {
 
-// A unit quaternion x, y, z, w, or what is made one; 0 turns nothing.
+// Scales by s, rotates by the quaternion q (x, y, z, w), then translates by t. q is normalised; a
+// zero q does not rotate.
 Affine fromTrs(std::span<const double> t, std::span<const double> q, std::span<const double> s) {
   const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   const double per = length > 0.0 ? 1.0 / length : 0.0;
@@ -29,7 +30,7 @@ constexpr std::array<double, 4> kNoTurn{0, 0, 0, 1};
 
 Affine localOf(const tinygltf::Node& node) {
   if (node.matrix.size() == 16) {
-    Affine a;  // the file goes column by column
+    Affine a;  // the file is column-major
     for (size_t i = 0; i < 3; ++i) {
       for (size_t j = 0; j < 4; ++j) a.m[i][j] = node.matrix[4 * j + i];
     }
@@ -42,7 +43,7 @@ Affine localOf(const tinygltf::Node& node) {
                  given(node.scale, kNoScale));
 }
 
-// Of no scene: those that are nobody's child.
+// Roots of a file without scenes: nodes that have no parent.
 std::vector<int> freeNodes(const tinygltf::Model& parts) {
   std::vector<bool> isChild(parts.nodes.size(), false);
   for (const tinygltf::Node& node : parts.nodes) {
@@ -85,7 +86,7 @@ std::vector<GltfPlacement> placeNodes(const GltfModel& model) {
   };
   for (const int root : rootsOf(model)) place(root, Affine());
   for (size_t i = 0; i < out.size(); ++i) {
-    const Affine parent = out[i].world;  // `out` grows
+    const Affine parent = out[i].world;  // a copy, since `out` grows
     for (const int child : nodes[out[i].node].children) place(child, parent);
   }
   return out;

@@ -1,4 +1,4 @@
-// The node tree of a glTF, laid flat.
+// The node tree of a glTF, flattened.
 #pragma once
 
 #include "scene/read/gltf/gltf_model.h"
@@ -6,16 +6,17 @@
 namespace bnvpl {
 
 struct GltfPlacement {
-  size_t node;   // of the model
+  size_t node;   // number in the model
   Affine world;  // from the node to the scene
 };
 
-// The nodes of the file's default scene, or of its first where it names none, parents before
-// children; of a file without scenes, all nodes. Throws GltfError where a node has two parents or
-// is its own ancestor.
+// The nodes of the file's default scene, or of its first scene if it names no default; all nodes of
+// a file without scenes. Parents precede children. Throws GltfError if a node has two parents or is
+// its own ancestor.
 std::vector<GltfPlacement> placeNodes(const GltfModel& model);
 
-// Where a node has copies of its mesh, in its own space: by EXT_mesh_gpu_instancing, else once.
+// Transforms of the copies of a node's mesh, in the node's space, from EXT_mesh_gpu_instancing; the
+// identity without that extension.
 std::vector<Affine> instancesOf(const GltfModel& model, size_t node);
 
 }  // namespace bnvpl

@@ -1,22 +1,22 @@
-// Meshes whose vertices move: skins and morph targets, in the pose that the file stands in. No
-// animation is played.
+// Skins and morph targets of meshes, in the static pose of the file. Animations are ignored.
 #pragma once
 
 #include "scene/read/gltf/nodes.h"
 
 namespace bnvpl {
 
-// What a node asks of its mesh. Two nodes with equal poses can share it.
+// The deformation that a node applies to its mesh.
 struct GltfPose {
-  std::vector<double> morphWeights;  // of the mesh's targets, 0 beyond
-  std::vector<Affine> joints;        // from the mesh to the scene; empty: without a skin
+  std::vector<double> morphWeights;  // weights of the mesh's targets, 0 beyond the end
+  std::vector<Affine> joints;        // from the mesh to the scene; empty without a skin
   bool rests() const { return morphWeights.empty() && joints.empty(); }
 };
 
-// `placed`: all nodes. A skin's joints that stand in no scene count as unmoved, with a warning.
+// `placed` holds all nodes. A joint outside the scene counts as the identity, with a warning.
 GltfPose poseOf(const GltfModel& model, size_t node, std::span<const GltfPlacement> placed);
 
-// Of one vertex: joints and weights in fours (glTF 2.0, 3.7.3.3). Weights are made to sum to 1.
+// Transform of one vertex: the mean of its joints (glTF 2.0, 3.7.3.3). `numbers` index the joints;
+// `weights`, one each, are normalised to sum to 1.
 Affine blended(std::span<const Affine> joints, std::span<const double> numbers,
                std::span<const double> weights);
 

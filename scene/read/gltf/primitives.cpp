@@ -10,7 +10,7 @@ namespace bnvpl {
 
 namespace {
 
-// The vertices and indices of a primitive, from accessors or from Draco's data.
+// The vertices and indices of a primitive, from accessors or Draco data.
 class PrimitiveData {
  public:
   PrimitiveData(const GltfModel& model, const tinygltf::Primitive& primitive,
@@ -24,7 +24,7 @@ class PrimitiveData {
     dracoIds_ = &it->second.Get("attributes");
   }
 
-  // Empty where the primitive has no such attribute.
+  // The values of an attribute; empty if the primitive lacks it.
   std::vector<double> numbers(const std::string& name, size_t components) const {
     const auto it = primitive_.attributes.find(name);
     if (it == primitive_.attributes.end()) return {};
@@ -68,7 +68,7 @@ std::string setName(const char* attribute, unsigned set) {
   return std::string(attribute) + "_" + std::to_string(set);
 }
 
-// Adds the morph targets' differences of positions or normals.
+// Adds the weighted displacements of the morph targets to positions or normals.
 void morph(const GltfModel& model, const tinygltf::Primitive& primitive, const std::string& pointer,
            const char* attribute, std::span<const double> weights, std::vector<double>& values) {
   for (size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
@@ -82,7 +82,7 @@ void morph(const GltfModel& model, const tinygltf::Primitive& primitive, const s
   }
 }
 
-// Moves vertices by their joints (glTF 2.0, 3.7.3.3); up to eight a vertex.
+// Transforms vertices by their joints (glTF 2.0, 3.7.3.3), up to eight per vertex.
 void applySkin(const GltfModel& model, const PrimitiveData& data, std::span<const Affine> joints,
                GltfPrimitive& out) {
   const size_t vertices = out.positions.size() / 3;

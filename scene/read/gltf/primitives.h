@@ -1,4 +1,4 @@
-// Primitives of glTF meshes as triangles.
+// Reads primitives of glTF meshes as triangles.
 #pragma once
 
 #include <span>
@@ -14,15 +14,15 @@ struct GltfPrimitive {
   std::vector<Triangle> triangles;
 };
 
-// What a primitive's material asks of it.
+// A material, and the texture coordinates that it needs of its primitives.
 struct GltfSurface {
-  uint32_t material = kNone;  // a number of addMaterial()
+  uint32_t material = kNone;  // a number from addMaterial()
   unsigned uvSet = 0;         // TEXCOORD_n
 };
 
-// The primitives of a mesh; with joints, in the coordinates of the scene. `surfaces` are those of
-// the file's materials, then one for primitives without. Points and lines are left out with a
-// warning. Throws GltfError.
+// The primitives of a mesh, in its own coordinates, or in those of the scene if the pose has
+// joints. `surfaces` holds one for each of the file's materials, then one for primitives without
+// material. Points and lines are left out with a warning. Throws GltfError.
 std::vector<GltfPrimitive> readPrimitives(const GltfModel& model, size_t mesh,
                                           std::span<const GltfSurface> surfaces,
                                           const GltfPose& pose);

@@ -1,4 +1,4 @@
-// tinygltf as we use it: a parser of checked JSON. Buffers and images are ours to read.
+// tinygltf as a parser of validated JSON; GltfModel reads buffers and images.
 #pragma once
 
 #define TINYGLTF_NO_STB_IMAGE

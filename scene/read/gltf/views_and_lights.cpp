@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLumensPerWatt = 683.0;
 
-// A unit vector; `otherwise` where a node is scaled to nothing.
+// The unit vector of d; `otherwise` if a node is scaled to nothing.
 Vec3 unitOr(const FilePoint& d, Vec3 otherwise) {
   const double length = std::hypot(d[0], d[1], d[2]);
   if (!(length > 0.0) || !std::isfinite(length)) return otherwise;
@@ -30,7 +30,7 @@ FilePoint placeOf(const GltfModel& model, const GltfPlacement& placement) {
   return place;
 }
 
-// As large as a 960 x 540 film at most, with the camera's aspect.
+// A film with the camera's aspect and a shorter side of 540 pixels; 960 x 540 without an aspect.
 Film filmOf(double aspect) {
   constexpr uint32_t kShorter = 540;
   constexpr double kUsual = 16.0 / 9.0;
@@ -43,7 +43,7 @@ Film filmOf(double aspect) {
 
 float radians(double angle) { return static_cast<float>(angle); }
 
-// The rim is between the two cones; its profile is scene.toml's.
+// The rim lies between the inner and outer cone. Its profile is that of spot lights in scene.toml.
 void setCone(const tinygltf::SpotLight& spot, LightSpec& light) {
   constexpr double kMin = 1e-4;
   const double outer = std::clamp(spot.outerConeAngle, kMin, std::numbers::pi / 2);

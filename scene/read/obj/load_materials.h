@@ -1,4 +1,4 @@
-// Materials of MTL libraries -> those of a scene. docs/scene-format.md says how fields are read.
+// Converts materials of MTL libraries. docs/scene-format.md says how their fields are read.
 #pragma once
 
 #include "scene/read/obj/mtl_keys.h"
@@ -7,14 +7,14 @@
 
 namespace bnvpl {
 
-// Where a material comes from. Textures are looked for beside the library, then beside the OBJ.
+// The source of a material. Textures are searched beside the library, then beside the OBJ.
 struct MaterialSource {
   const fs::path& library;
   const fs::path& obj;
-  const MtlKeys& keys;  // that the material states
+  const MtlKeys& keys;  // keys that the material states
 };
 
-// Textures that will be wanted, to be read while the mesh is.
+// Starts to decode the material's textures while the mesh is read.
 void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder);
 

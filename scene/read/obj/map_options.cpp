@@ -12,11 +12,11 @@ namespace {
 
 struct Option {
   std::string_view name;
-  size_t least, most;          // values
-  bool numbers;                // those are; else they are words
-  std::string_view missing;    // what stands for values that are left out
-  bool kept;                   // tinyobjloader reads it, and it means something here
-  std::string_view unchanged;  // values that change nothing
+  size_t least, most;          // limits on the number of values
+  bool numbers;                // whether the values are numbers, else words
+  std::string_view missing;    // replaces each value that is left out
+  bool kept;                   // whether it is passed to tinyobjloader
+  std::string_view unchanged;  // values without effect
 };
 constexpr std::array<Option, 15> kOptions{{
     {"-s", 1, 3, true, " 1", true, ""},
@@ -43,7 +43,7 @@ const Option* optionOf(std::string_view word) {
 
 using Words = std::vector<std::string_view>;
 
-// Takes options from words[at] on, and leaves `left` words at least. Returns where they end.
+// Parses options from words[at] on and leaves at least `left` words. Returns where they end.
 size_t takeOptions(const Words& words, size_t at, size_t left, MapOptions& out) {
   while (at < words.size()) {
     const Option* option = optionOf(words[at]);

@@ -1,4 +1,4 @@
-// The options of an MTL's map_..., bump, disp, refl and norm.
+// Options of the MTL keys map_..., bump, disp, refl and norm.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 namespace bnvpl {
 
 struct MapOptions {
-  std::string kept;                  // -s, -o and -bm with all their values, each with a blank
-  std::string name;                  // of the image; may hold blanks
-  std::vector<std::string> ignored;  // others that would change the picture, with their values
-  std::string problem;               // empty: none
+  std::string kept;                  // -s, -o and -bm with all values, a blank behind each
+  std::string name;                  // file of the image; may hold blanks
+  std::vector<std::string> ignored;  // others that would affect the image, with their values
+  std::string problem;               // empty if none
 };
 
-// `rest` follows the key. Options stand before the name or behind it.
+// Parses the text behind the key. Options stand before the name or behind it.
 MapOptions mapOptions(std::string_view rest);
 
 }  // namespace bnvpl

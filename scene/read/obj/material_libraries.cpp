@@ -19,8 +19,8 @@ fs::path pathOf(const fs::path& folder, std::string name) {
 
 bool isReadable(const fs::path& file) { return isRegularFile(file) && std::ifstream(file); }
 
-// The libraries of an mtllib line: which of its two meanings holds is for the files to say, and
-// where there are none, for the names.
+// The libraries of an mtllib line, which is one name or a list of them. Existing files decide
+// which; without any, it is a list if all words end in .mtl.
 std::vector<fs::path> filesOf(const fs::path& folder, const std::string& line) {
   const fs::path whole = pathOf(folder, line);
   if (isRegularFile(whole)) return {whole};
@@ -46,7 +46,7 @@ void MaterialLibraries::readLine(const fs::path& folder, const std::string& name
 }
 
 void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMaterial) {
-  // Once: an OBJ can name one library in many ways, as often as it has lines.
+  // Reads each library once: an OBJ can name it in many ways and on any number of lines.
   if (std::find(read.begin(), read.end(), library) != read.end()) return;
   read.push_back(library);
   std::string raw = readText(library);

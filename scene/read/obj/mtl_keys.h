@@ -1,5 +1,5 @@
-// Which fields the materials of a library state: tinyobjloader gives its defaults for those that
-// are not there. And what wrote them, on which their meaning depends.
+// The keys that the materials of a library state, since tinyobjloader hides absent ones behind
+// defaults, and the program that wrote them, on which their meaning depends.
 #pragma once
 
 #include <map>
@@ -16,11 +16,12 @@ struct MtlKeys {
   bool blender = false;            // the library says that Blender wrote it
 
   bool has(std::string_view key) const { return keys.contains(key); }
-  // Read as roughness and metal (docs/scene-format.md); else as Phong, mirror or glass.
+  // Whether it is read as metallic-roughness, else as Phong, mirror or glass
+  // (docs/scene-format.md).
   bool metallicRoughness() const;
 };
 
-// By name, of the first material of each; of the lines that logicalLines() made.
+// The keys by material name; the first of a name counts. `library` is made by logicalLines().
 std::map<std::string, MtlKeys> mtlKeys(std::string_view library);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// Textures of an MTL's material.
+// Textures of an MTL material.
 #pragma once
 
 #include "scene/read/obj/load_materials.h"
@@ -7,14 +7,14 @@ namespace bnvpl {
 
 class MtlMaps {
  public:
-  // `expectOnly`: textures are announced to the builder, and all numbers are kNone.
+  // With `expectOnly`, textures are only announced to the builder, and all numbers are kNone.
   MtlMaps(const MaterialSource& from, SceneBuilder& builder, bool expectOnly)
       : from_(from), builder_(builder), expectOnly_(expectOnly) {}
 
-  // Into Scene::textures; kNone without a name.
+  // A number in Scene::textures; kNone without a name.
   uint32_t image(const std::string& field, const tinyobj::texture_option_t& options, bool srgb,
                  bool mask = false) const;
-  // Into Scene::expressions. Colours are sRGB, data linear, masks as opacities are.
+  // A number in Scene::expressions. Colours are decoded from sRGB, data are linear.
   uint32_t colour(const std::string& field, const tinyobj::texture_option_t& options) const {
     return expression(image(field, options, true), Channel::Rgb);
   }

@@ -19,7 +19,7 @@ Vec3 clamped(const tinyobj::real_t* v) { return {clamped(v[0]), clamped(v[1]), c
 float roughnessOf(const tinyobj::material_t& in, const MtlKeys& keys) {
   if (keys.has("Pr")) return clamped(in.roughness);
   if (keys.has("map_Pr") || keys.has("map_Ns")) return 1.0f;
-  if (!keys.has("Ns")) return 0.5f;                         // that of Blender's default material
+  if (!keys.has("Ns")) return 0.5f;                         // Blender's default
   return 1.0f - std::sqrt(clamped(in.shininess / 1000.0));  // Blender's approximation
 }
 
@@ -54,14 +54,14 @@ MetallicRoughnessModel modelOf(const tinyobj::material_t& in, const MtlKeys& key
   return m;
 }
 
-// What Blender calls transmission, and others glass: light enters the body.
+// Share of light that enters the body: Blender's transmission, or the glass of other programs.
 float transmissionOf(const tinyobj::material_t& in, const MtlKeys& keys) {
   if (keys.has("Tf")) return mean(clamped(in.transmittance));
   const bool glass = in.illum == 4 || in.illum == 6 || in.illum == 7 || in.illum == 9;
   return glass && !keys.blender ? 1.0f : 0.0f;
 }
 
-// `amount` of the model is glass of the same roughness.
+// Replaces `amount` of the model by glass of the same roughness.
 void addGlass(const tinyobj::material_t& in, float amount, SceneBuilder& builder, Material& m) {
   const auto& base = std::get<MetallicRoughnessModel>(m.model);
   DielectricModel glass;

@@ -1,4 +1,4 @@
-// Materials of MTL that state roughness and metal, or that Blender wrote: its Principled BSDF.
+// MTL materials that state roughness or metallic keys, or that Blender wrote (Principled BSDF).
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// The model, and how much of it is seen through. `warn` gets problem and what becomes of it.
+// Sets the model of `m` and its transparency. `warn` receives each problem and its consequence.
 void readMetallicRoughness(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
                            SceneBuilder& builder,
                            const std::function<void(const std::string&)>& warn, Material& m);

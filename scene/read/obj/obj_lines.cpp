@@ -13,29 +13,29 @@
 namespace bnvpl {
 namespace {
 
-// Where the line that holds `at` ends: at its "\r" or "\n", as for tinyobj, or with the text.
+// The end of the line that holds `at`: its "\r" or "\n", as for tinyobj, or the end of the text.
 size_t lineEnd(std::string_view text, size_t at) {
-  // Not find_first_of, which is a call for each character.
+  // find_first_of would make a call for each character.
   const auto ends = [](char c) { return c == '\n' || c == '\r'; };
   return static_cast<size_t>(
       std::find_if(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), ends) -
       text.begin());
 }
 
-// A stretch of whole lines.
+// A range of whole lines, and what it holds.
 struct Stretch {
   size_t begin = 0, end = 0;
   size_t newlines = 0;
   size_t vertices = 0, normals = 0, coordinates = 0, triangles = 0;
   size_t lostTriangles = 0, unusableFaces = 0;
-  std::vector<size_t> verticesOfWords;   // from its first vertex on
-  std::set<std::string_view> materials;  // of faces, but for those before the first name
+  std::vector<size_t> verticesOfWords;   // counted from its first vertex
+  std::set<std::string_view> materials;  // used by faces behind its first usemtl
   bool facesBeforeNames = false;
-  std::optional<std::string_view> material;  // named last
+  std::optional<std::string_view> material;  // that of its last usemtl
   bool materialUsed = false;
   std::vector<std::string_view> libraries;
-  size_t badLine = kNot;  // from its first on
-  std::string problem;    // of that line
+  size_t badLine = kNot;  // counted from its first line
+  std::string problem;    // problem of that line
   static constexpr size_t kNot = ~size_t{0};
 };
 
@@ -45,7 +45,7 @@ void noteProblem(const std::string& problem, Stretch& s) {
   s.problem = problem;
 }
 
-// False: no triangle comes of it.
+// Returns false if the face gives no triangle.
 bool noteFace(std::string_view rest, Stretch& s) {
   const CornersOfLine corners = checkCorners(rest);
   noteProblem(corners.problem, s);
@@ -77,7 +77,7 @@ void noteVertex(std::string_view rest, Stretch& s) {
   ++s.vertices;
 }
 
-// Takes note of a line; false: tinyobj does not need it.
+// Takes note of a line. Returns false if tinyobj does not need it.
 bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
   if (keyword == "usemtl") {
     s.material = trimmed(rest);
@@ -114,7 +114,7 @@ std::string_view withoutComment(std::string_view rest, std::string& text) {
 
 void scan(std::string& text, Stretch& s) {
   std::replace(text.begin() + static_cast<std::ptrdiff_t>(s.begin),
-               text.begin() + static_cast<std::ptrdiff_t>(s.end), '\0', ' ');  // tinyobj would stop
+               text.begin() + static_cast<std::ptrdiff_t>(s.end), '\0', ' ');  // tinyobj stops at 0
   const std::string_view all = std::string_view(text).substr(0, s.end);
   for (size_t at = s.begin; at < s.end;) {
     const size_t end = lineEnd(all, at);
@@ -132,14 +132,14 @@ void scan(std::string& text, Stretch& s) {
     }
     const bool unnamed = keyword == "usemtl" && rest.empty();
     if (length > 0 && !note(keyword, rest, s)) text[at + begin] = '#';
-    // tinyobj passes over a usemtl alone, but calls back for a group.
+    // tinyobj ignores a usemtl without a name, but reports a group.
     if (unnamed) text.replace(at + begin, length, "g     ");
     s.newlines += end < s.end && all[end] == '\n';
     at = end + 1;
   }
 }
 
-// Of about `bytes` each.
+// Divides the text into ranges of about `bytes` each.
 std::vector<Stretch> stretchesOf(std::string_view text, size_t bytes) {
   std::vector<Stretch> out;
   for (size_t begin = 0; begin < text.size();) {

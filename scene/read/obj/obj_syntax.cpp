@@ -18,7 +18,7 @@ size_t digits(std::string_view text) {
   return static_cast<size_t>(std::find_if_not(text.begin(), text.end(), isDigit) - text.begin());
 }
 
-// Passes over [sign] digits [. digits] [e [sign] digits]; false where there is no digit.
+// Removes [sign] digits [. digits] [e [sign] digits] from `word`. Returns false without digits.
 bool takeDecimal(std::string_view& word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   size_t found = digits(word);
@@ -38,7 +38,7 @@ bool takeDecimal(std::string_view& word) {
   return exponent > 0;
 }
 
-// nan, -inf, nan(ind), infinity, 1.#IND, -1.#QNAN: what C libraries print.
+// Recognises nan, -inf, nan(ind), infinity, 1.#IND and -1.#QNAN, as C libraries print them.
 bool isNonFinite(std::string_view word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   std::string lower(word.substr(0, 3));
@@ -60,7 +60,7 @@ std::string inQuotes(std::string_view word) {
   return "'" + std::string(word.substr(0, kShown)) + (word.size() > kShown ? "...'" : "'");
 }
 
-// One number of a corner; `largest` where it needs more than an int. False: there is none.
+// Removes one index of a corner from `word`, clamped to 64 bits. Returns false if there is none.
 bool takeIndex(std::string_view& word, int64_t& index) {
   constexpr int64_t kBeyond = INT64_MAX;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
@@ -70,7 +70,7 @@ bool takeIndex(std::string_view& word, int64_t& index) {
   return true;
 }
 
-// Empty, or what is wrong with the corner.
+// Returns the problem of a corner, or an empty text. Raises `largest` to the corner's indices.
 std::string checkCorner(std::string_view word, size_t& largest) {
   const std::string_view whole = word;
   for (int part = 0; part < 3; ++part) {

@@ -1,4 +1,4 @@
-// Whether the lines of an OBJ that a mesh is made of say what they should.
+// Checks the syntax of the OBJ lines that form a mesh.
 #pragma once
 
 #include <cstddef>
@@ -7,28 +7,28 @@
 
 namespace bnvpl {
 
-// What the numbers behind a keyword are. `problem` is empty or what is wrong, without the place.
+// The numbers behind a keyword. `problem` is empty or a message without the place.
 struct NumbersOfLine {
   std::string problem;
-  bool finite = true;  // false: one of those needed is nan or inf, in any spelling of C's
+  bool finite = true;  // false if a number is nan or inf, in any spelling of C
 };
 
-// The first `needed` words of `rest`, which must be there, and others up to `most`.
+// Checks the first `most` words of `rest`, of which `needed` must exist.
 NumbersOfLine checkNumbers(std::string_view keyword, std::string_view rest, size_t needed,
                            size_t most);
 
 struct CornersOfLine {
   std::string problem;
   size_t count = 0;
-  size_t largest = 0;  // vertex, normal or coordinate; those that count back are not in it
+  size_t largest = 0;  // largest index; of relative ones, only those beyond int count
 };
 
-// The corners of a face: 1, 1/2, 1//3 or 1/2/3, with or without slashes behind them.
+// Checks the corners of a face: 1, 1/2, 1//3 or 1/2/3; slashes may follow.
 CornersOfLine checkCorners(std::string_view rest);
 
-// Of a word that is no number; names a decimal comma as such.
+// The message about a word that is no number; it points out a decimal comma.
 std::string noNumber(std::string_view word);
-// A finite number, or nan or inf, which `finite` tells; false for everything else.
+// Whether a word is a number; `finite` becomes false for nan and inf.
 bool isNumber(std::string_view word, bool& finite);
 
 }  // namespace bnvpl

@@ -13,8 +13,7 @@ constexpr std::pair<char, char> kBlanks[] = {{' ', '\x1f'}, {'\t', '\x1e'}};
 
 bool isLineEnd(char c) { return c == '\n' || c == '\r'; }
 
-// Where the next line begins, if nothing but blanks stands between `at` and the end of the line;
-// else npos.
+// The begin of the next line if only blanks follow `at` on its line; else npos.
 size_t afterLineEnd(std::string_view text, size_t at) {
   at = std::min(text.find_first_not_of(" \t", at), text.size());
   if (at == text.size()) return at;
@@ -34,9 +33,9 @@ bool mayContinueLines(std::string_view text) {
 std::string logicalLines(std::string text) {
   if (text.starts_with(kByteOrderMark)) text.replace(0, kByteOrderMark.size(), "   ");
   if (!mayContinueLines(text)) return text;
-  // In place: what is written is never more than what was read.
+  // Works in place: it never writes more than it has read.
   size_t out = 0;
-  std::string ends;  // of the lines that were joined with the next
+  std::string ends;  // line ends of lines that were joined with the next
   bool comment = false;
   char before = ' ';
   for (size_t at = 0; at < text.size();) {

@@ -1,4 +1,4 @@
-#define TINYOBJLOADER_IMPLEMENTATION  // of tinyobj.h, here alone
+#define TINYOBJLOADER_IMPLEMENTATION  // compiles tinyobjloader here alone
 #include "scene/read/obj/read_obj.h"
 
 #include <algorithm>
@@ -19,23 +19,23 @@ namespace bnvpl {
 
 namespace {
 
-// A text, read where it is.
+// Reads a text without copying it.
 class ViewBuffer : public std::streambuf {
  public:
   explicit ViewBuffer(std::string_view text) {
-    char* begin = const_cast<char*>(text.data());  // nobody puts a character back
+    char* begin = const_cast<char*>(text.data());  // no character is put back
     setg(begin, begin, begin + text.size());
   }
 };
 
-// What the callbacks of tinyobj fill: the corners in the numbers of the whole mesh.
+// The result of tinyobj's callbacks. Corners are numbered within the whole mesh.
 struct Parsed {
   ObjMesh mesh;
   int material = -1;
   const MeshLines::Piece& piece;
   const std::map<std::string, int>& materials;
 
-  // `number` counts from 1, or back from the end; 0: there is none.
+  // `number` counts from 1, or back from the end if negative; 0 means none.
   static uint32_t resolved(int number, size_t before) {
     const int64_t index = number > 0 ? int64_t{number} - 1 : static_cast<int64_t>(before) + number;
     return number == 0 || index < 0 || index >= kNone ? kNone : static_cast<uint32_t>(index);
@@ -79,7 +79,7 @@ ObjMesh parse(const MeshLines& lines, const MeshLines::Piece& piece,
     static_cast<Parsed*>(p)->addFace({corners, static_cast<size_t>(count)});
   };
   to.usemtl_cb = [](void* p, const char* name, int) { static_cast<Parsed*>(p)->use(name); };
-  // obj_lines.cpp leaves no group but for a usemtl without a name.
+  // The only groups that obj_lines.cpp leaves stand for a usemtl without a name.
   to.group_cb = [](void* p, const char**, int) { static_cast<Parsed*>(p)->use(""); };
   ViewBuffer buffer(std::string_view(lines.text).substr(piece.begin, piece.end - piece.begin));
   std::istream in(&buffer);
@@ -87,7 +87,7 @@ ObjMesh parse(const MeshLines& lines, const MeshLines::Piece& piece,
   return std::move(out.mesh);
 }
 
-// The pieces side by side, joined in their order.
+// Parses the pieces in parallel and joins them in order.
 ObjMesh parsePieces(const MeshLines& lines, const std::map<std::string, int>& materials) {
   if (lines.pieces.size() == 1) return parse(lines, lines.pieces.front(), materials);
   std::vector<ObjMesh> pieces(lines.pieces.size());
@@ -114,7 +114,7 @@ ObjMesh parsePieces(const MeshLines& lines, const std::map<std::string, int>& ma
 
 constexpr const char* kTooLarge = "simplify the mesh";
 
-// What a mesh takes at least, beside the text: numbers, corners, triangles and points.
+// Lower bound on the memory of a mesh beside its text: numbers, corners, triangles and points.
 double bytesOf(const MeshLines& lines) {
   const auto n = [](size_t count) { return static_cast<double>(count); };
   constexpr double kReal = sizeof(tinyobj::real_t);

@@ -1,4 +1,4 @@
-// An OBJ and the libraries that it names, as tinyobjloader understands them.
+// Reads an OBJ and the libraries that it names with tinyobjloader.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,24 @@
 namespace bnvpl {
 
 struct ObjCorner {
-  uint32_t vertex, normal, uv;  // kNone: none
+  uint32_t vertex, normal, uv;  // kNone if absent
   bool operator==(const ObjCorner&) const = default;
 };
 
 // The polygons of an OBJ, in its order.
 struct ObjMesh {
-  std::vector<double> positions, normals, uvs;  // x, y, z; x, y, z; u, v. NaN where it has a word
-  std::vector<ObjCorner> corners;               // of all faces, one after the other
+  std::vector<double> positions, normals, uvs;  // x, y, z; x, y, z; u, v. x is NaN if not finite
+  std::vector<ObjCorner> corners;               // corners of all faces, concatenated
   std::vector<uint32_t> counts;                 // corners of each face, at least 3
-  std::vector<int> materials;                   // of each, in libraries.materials; -1: none
+  std::vector<int> materials;                   // number of each in libraries.materials; -1 if none
 };
 
 struct ObjReading {
   ObjMesh mesh;
   MaterialLibraries libraries;
-  std::vector<std::string> unknown;  // materials that faces ask for and no library has
-  size_t lostTriangles = 0;          // of faces with numbers that no int holds
-  size_t unusableFaces = 0;          // of fewer than three corners
+  std::vector<std::string> unknown;  // materials that faces use and no library defines
+  size_t lostTriangles = 0;          // triangles of faces with indices beyond int
+  size_t unusableFaces = 0;          // faces of fewer than three corners
 };
 
 // `materials` replaces the libraries that the OBJ names; empty: those are used, and hold for the

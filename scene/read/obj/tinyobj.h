@@ -1,4 +1,4 @@
-// tinyobjloader as every file of ours sees it.
+// tinyobjloader in double precision, as all files include it.
 #pragma once
 
 #pragma GCC diagnostic push

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kAtOnce = 256;                 // shapes that are in memory beside the scene
 constexpr size_t kMaxCopied = size_t{1} << 27;  // triangles that lamps of objects may become
 
-// A shape and where it stands: once in the world, or as often as its object is placed.
+// A shape and its transforms: one in the world, or one for each instance of its object.
 struct Placed {
   const Shape* shape;
   std::vector<Affine> worldFromShape;
@@ -65,7 +65,7 @@ class Meshes {
   Meshes(const LightReader& reader, Materials& materials, SceneBuilder& builder)
       : reader_(reader), materials_(materials), builder_(builder) {}
 
-  // Reads the shapes side by side; they come into the scene one after the other.
+  // Tessellates the shapes in parallel, then adds them to the scene in order.
   void add(std::span<const Placed> shapes) {
     std::vector<MeshData> meshes(shapes.size());
     std::vector<std::exception_ptr> failures(shapes.size());
@@ -83,8 +83,7 @@ class Meshes {
   }
 
  private:
-  // What stands in many places is stored once, but for lamps, whose light depends on where they
-  // are.
+  // Stores a shape of many instances once, unless it emits: emission depends on the transform.
   void place(const Placed& placed, MeshData mesh) {
     const Shape& shape = *placed.shape;
     for (const std::string& note : mesh.notes) reader_.notes.add(shape.place, note);
@@ -102,7 +101,7 @@ class Meshes {
       failAt(shape.place, "the lamps of objects are more than 2^27 triangles; place fewer");
     for (const Affine& transform : placed.worldFromShape) {
       const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));
-      if (material == kNone) return;  // an interface: nothing is there
+      if (material == kNone) return;  // an interface has no surface
       for (Triangle& t : mesh.triangles) t.material = material;
       builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles}, transform);
     }
@@ -110,7 +109,7 @@ class Meshes {
 
   void share(const Placed& placed, MeshData mesh, const fs::path& file) {
     const uint32_t material = materials_.of(*placed.shape, {});
-    if (material == kNone) return;  // an interface: nothing is there
+    if (material == kNone) return;  // an interface has no surface
     for (Triangle& t : mesh.triangles) t.material = material;
     const uint32_t prototype = builder_.beginPrototype();
     builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles});
@@ -133,7 +132,7 @@ class Meshes {
   size_t copied_ = 0;
 };
 
-// What nobody asked for.
+// Notes the parameters that no reader used.
 void noteUnused(const char* directive, const Entity& entity, Notes& notes) {
   for (const Param* p : entity.params.unused()) {
     notes.add(p->place, std::string(directive) + " \"" + entity.type + "\": parameter '" + p->name +

@@ -1,4 +1,4 @@
-// Description -> scene: what types and parameters mean.
+// Turns a Description into a scene: interprets types and parameters.
 #pragma once
 
 #include "scene/read/pbrt/description.h"
@@ -6,7 +6,7 @@
 
 namespace bnvpl::pbrt {
 
-// `folder` is that of the scene's file. Throws InputError.
+// `folder` is the folder of the scene file. Throws InputError.
 void build(const Description& description, const fs::path& folder, Notes& notes,
            SceneBuilder& builder);
 

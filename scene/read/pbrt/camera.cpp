@@ -12,7 +12,7 @@ namespace {
 // The pixels that are rendered: all of the film, or a crop of it.
 struct Pixels {
   Film film;
-  double left = 0, right = 1, top = 0, bottom = 1;  // of the crop, as shares of the film
+  double left = 0, right = 1, top = 0, bottom = 1;  // bounds of the crop as fractions of the film
   Film cropped() const {
     const auto side = [](double from, double to, uint32_t n) {
       return static_cast<uint32_t>(std::max(1.0, std::ceil(to * n) - std::ceil(from * n)));
@@ -46,16 +46,16 @@ Pixels pixelsOf(const Description& description) {
   return out;
 }
 
-// What is seen of the plane at distance 1.
+// The visible part of the plane at distance 1.
 struct Window {
-  double halfHeight, centreX, centreY;  // upwards
+  double halfHeight, centreX, centreY;  // y counts upwards
 };
 Window windowOf(const Description& description, const Film& film, Notes& notes) {
   const Entity& camera = description.camera;
   const Params& p = camera.params;
   const double pixels = double(film.width) / double(film.height);
   const double aspect = p.number("frameaspectratio", pixels, 1e-3, 1e3);
-  // pbrt's screen: 1 is what the field of view ends at.
+  // The screen window of pbrt, where the field of view ends at 1.
   std::array<double, 4> screen = aspect > 1.0 ? std::array{-aspect, aspect, -1.0, 1.0}
                                               : std::array{-1.0, 1.0, -1.0 / aspect, 1.0 / aspect};
   if (const Param* window = p.find("screenwindow", {ParamType::Float}, "four floats")) {
@@ -137,8 +137,8 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
   };
   if (!unit(axis(0, 0, 1), camera.forward) || !unit(axis(1, 0, 0), camera.right))
     failAt(entity.place, "the camera's transform flattens it");
-  // Orthonormal, and on the sides that the transform gives: a camera of pbrt that nothing mirrors
-  // has x to the right of a left-handed frame, so that right x up is forward.
+  // Orthonormalises the axes and keeps the handedness of the transform. An unmirrored camera of
+  // pbrt has x to the right in a left-handed frame, so that right x up is forward.
   camera.right = normalize(camera.right - dot(camera.right, camera.forward) * camera.forward);
   camera.up = cross(camera.forward, camera.right);
   Vec3 up;
@@ -147,7 +147,7 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
   constexpr float kMin = 1e-5f, kMaxFov = 3.1415f;
   if (!(camera.verticalFovRad > kMin && camera.verticalFovRad < kMaxFov))
     failAt(entity.place, "the field of view is too small or too large");
-  // + 0.0: not -0.
+  // Adding 0.0 turns -0 into 0.
   const FilePoint position = worldFromCamera->point({0, 0, 0});
   builder.setCamera({position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, camera);
   const Params& p = entity.params;

@@ -1,4 +1,4 @@
-// Film and camera of a pbrt file.
+// Converts the film and camera of a pbrt file.
 #pragma once
 
 #include "scene/read/pbrt/colors.h"
@@ -6,8 +6,8 @@
 
 namespace bnvpl::pbrt {
 
-// What the film's sensor does to light: rows of the matrix that makes pixels of linear sRGB
-// radiance. The scene's lights are multiplied by it, as our pixels are radiance itself.
+// The film's sensor as the rows of a matrix from linear sRGB radiance to pixels. It multiplies the
+// lights of the scene, since pixels are radiance here.
 struct Sensor {
   std::array<Vec3, 3> rows{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   Vec3 operator()(Vec3 light) const;  // not negative

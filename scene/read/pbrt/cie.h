@@ -1,4 +1,4 @@
-// The CIE's published tables: the 1931 standard observer and the components of daylight.
+// Tables published by the CIE: the 1931 standard observer and the components of daylight.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@ namespace bnvpl::pbrt {
 
 inline constexpr double kFirstNm = 380.0, kStepNm = 5.0;
 
-// x, y and z of each wavelength from 380 to 780 nm in steps of 5 (CIE 1931, 2 degrees).
+// Colour matching functions x, y and z from 380 to 780 nm in steps of 5 (CIE 1931, 2 degrees).
 inline constexpr std::array<std::array<double, 3>, 81> kObserver{{
     {.0014, .0000, .0065},  {.0022, .0001, .0105},  {.0042, .0001, .0201},  {.0076, .0002, .0362},
     {.0143, .0004, .0679},  {.0232, .0006, .1102},  {.0435, .0012, .2074},  {.0776, .0022, .3713},

@@ -82,7 +82,7 @@ Matrix xyzFromRgb(ColorSpace space) {
   return m;
 }
 
-// Bradford: cone responses of XYZ.
+// Bradford's matrix from XYZ to cone responses.
 constexpr Matrix kBradford{
     {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
 
@@ -132,8 +132,8 @@ Vec3 intoGamut(Vec3 light) {
   return wanted > 0.0f && got > 0.0f ? clamped * (wanted / got) : clamped;
 }
 
-// D60 of ACES, and the CIE's illuminants A, D and F (CIE 15), by chromaticity: a light's spectrum
-// counts by its colour alone, as pbrt scales each to Y = 1.
+// Chromaticities of ACES's D60 and of the CIE illuminants A, D and F (CIE 15). Only the colour of
+// an illuminant counts, since pbrt scales each spectrum to Y = 1.
 std::optional<Xyz> namedIlluminant(const std::string& name) {
   struct Named {
     const char* name;

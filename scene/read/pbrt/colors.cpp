@@ -18,7 +18,7 @@ double temperatureOf(const Param& p) {
   return p.numbers[0];
 }
 
-// The scale that pbrt-v3 has behind the temperature.
+// The scale factor that pbrt-v3 allows behind the temperature.
 float scaleOf(const Param& p) {
   if (p.numbers.size() < 2) return 1.0f;
   if (!(p.numbers[1] >= 0.0)) failAt(p.place, "'" + p.name + "' must have a scale of 0 or more");
@@ -34,7 +34,7 @@ Vec3 rgbOf(const Param& p) {
   return {float(p.numbers[0]), float(p.numbers[1]), float(p.numbers[2])};
 }
 
-// A name, a file, or pairs of numbers.
+// Reads a spectrum from a name, a file, or pairs of numbers.
 Spectrum Colors::spectrum(const Param& p) const {
   if (p.strings.empty()) {
     const auto s = spectrumOf(p.numbers);
@@ -94,7 +94,7 @@ double Colors::ior(const Params& params, const std::string& name, double otherwi
   if (!p) return otherwise;
   double eta;
   if (p->type == ParamType::Spectrum) {
-    constexpr double kYellow = 587.6;  // nm, the line d
+    constexpr double kYellow = 587.6;  // nm, Fraunhofer line d
     eta = spectrum(*p).at(kYellow);
     if (p->numbers.size() != 2)
       notes_.add(p->place,
@@ -102,7 +102,7 @@ double Colors::ior(const Params& params, const std::string& name, double otherwi
   } else {
     eta = p->type == ParamType::Rgb ? double{mean(rgbOf(*p))} : params.number(name, otherwise);
   }
-  // As pbrt has it, an interface of 0 is none.
+  // An index of 0 means no interface, as in pbrt.
   if (eta == 0.0) return 1.0;
   constexpr double kMin = 0.01, kMaxIor = 100.0;
   if (!(eta >= kMin && eta <= kMaxIor))

@@ -1,4 +1,4 @@
-// Parameters that are colours -> linear sRGB, as docs/scenes.md says.
+// Converts colour parameters to linear sRGB, as docs/scenes.md describes.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,21 @@ namespace bnvpl::pbrt {
 
 class Colors {
  public:
-  // `folder` is the scene's; spectra that are read are added to `files`.
+  // `folder` is the scene's folder. Files of spectra that are read are added to `files`.
   Colors(const fs::path& folder, Notes& notes, std::vector<fs::path>& files)
       : folder_(folder), notes_(notes), files_(files) {}
 
-  // Radiance or intensity before `scale`: of an rgb itself, of a blackbody or spectrum its colour
-  // at luminance 1. Without the parameter the white of the colour space. Not negative.
+  // Radiance or intensity before `scale`: an rgb as it is, a blackbody or spectrum as its colour at
+  // luminance 1; without the parameter, the white of the colour space. Never negative.
   Vec3 light(const Params& params, const std::string& name, ColorSpace space) const;
-  // From 0 to 1.
+  // A reflectance, clamped to 0..1.
   Vec3 reflectance(const Param& p) const;
-  // Of any size, not negative.
+  // A colour of any magnitude, never negative.
   Vec3 unbounded(const Param& p) const;
-  // An index of refraction that is one number: that at 587.6 nm of a spectrum.
+  // A scalar index of refraction; a spectrum is evaluated at 587.6 nm.
   double ior(const Params& params, const std::string& name, double otherwise) const;
-  // "eta" and "k"; of names and files by their spectra, else as triples. Copper where both lack.
+  // The index eta + i k. Two spectra are converted together, triples are used as they are. Each is
+  // that of copper by default.
   MetalRgb metal(const Params& params, const std::string& eta, const std::string& k) const;
 
  private:
@@ -35,7 +36,7 @@ class Colors {
   std::vector<fs::path>& files_;
 };
 
-// An rgb's three numbers.
+// The three numbers of an rgb.
 Vec3 rgbOf(const Param& p);
 
 }  // namespace bnvpl::pbrt

@@ -1,5 +1,5 @@
-// What a pbrt file says, directive by directive, before anything is made of it: the parser
-// (parser.h) fills a Description, build.h makes a scene of it.
+// The directives of a pbrt file before they are interpreted: the parser (parser.h) fills a
+// Description, and build.h turns it into a scene.
 #pragma once
 
 #include <deque>
@@ -17,10 +17,10 @@ struct Entity {
   std::string type;
   Params params;
   Place place;
-  ColorSpace colorSpace = ColorSpace::Srgb;  // of what it gives without a colour
+  ColorSpace colorSpace = ColorSpace::Srgb;  // for colours that it leaves out
 };
 
-// A named material, or, where the name is empty, a number in Description::materials; kNone: pbrt's
+// A named material or, if the name is empty, a number in Description::materials; kNone is pbrt's
 // default, grey.
 struct MaterialRef {
   std::string name;
@@ -35,12 +35,12 @@ struct Shape : Entity {
   Affine worldFromObject;
   bool reverseOrientation = false;
   MaterialRef material;
-  uint32_t areaLight = kNone;  // in Description::areaLights
-  bool hasMedium = false;      // a medium on either side
+  uint32_t areaLight = kNone;  // number in Description::areaLights
+  bool hasMedium = false;      // whether either side has one
 };
 
 struct TextureEntity : Entity {
-  bool isSpectrum = true;  // else float
+  bool isSpectrum = true;  // else a float texture
   Affine worldFromTexture;
 };
 
@@ -58,7 +58,7 @@ struct Instance {
 };
 
 struct Description {
-  std::deque<std::string> files;  // names of all that were read, the scene's first
+  std::deque<std::string> files;  // names of all files read, the scene's first
   Entity camera{"perspective", {}, {}}, film{"rgb", {}, {}};
   Affine cameraFromWorld;
   std::vector<Entity> materials;
@@ -71,12 +71,12 @@ struct Description {
   std::vector<Instance> instances;
 };
 
-// What was ignored or approximated, each once however often it occurs.
+// Notes of what was ignored or approximated. Equal notes are counted instead of repeated.
 class Notes {
  public:
-  // `text` is the whole story but for the place, which is that of the first of equal texts.
+  // `text` is the message without its place. Of equal texts, the first place is kept.
   void add(const Place& place, const std::string& text);
-  // "room.pbrt:3:1: text", and how many more there are; in the order of adding.
+  // Lines such as "room.pbrt:3:1: text (and 2 more)", in the order of add().
   std::vector<std::string> lines() const;
 
  private:

@@ -1,4 +1,4 @@
-// The text of a pbrt file as tokens, and places in it for messages.
+// Splits the text of a pbrt file into tokens, with their places for messages.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,26 @@
 
 namespace bnvpl::pbrt {
 
-// Where something stands. The file's name outlives it.
+// A place in a file. The file name must outlive it.
 struct Place {
   const std::string* file = nullptr;
   uint32_t line = 0, column = 0;  // from 1
   std::string text() const;       // room.pbrt:3:14
 };
 
-// Throws InputError: place, problem and cure.
+// Throws InputError with place and problem.
 [[noreturn]] void failAt(const Place& place, const std::string& problem);
 
 struct Token {
   enum class Kind { End, Word, String, Open, Close };  // Open, Close: brackets
   Kind kind = Kind::End;
-  std::string_view text;  // of a string what is between its quotes, escapes as they are
+  std::string_view text;  // a string lacks its quotes and keeps its escapes
   Place place;
 };
 
 class Lexer {
  public:
-  // Both are borrowed.
+  // Borrows both arguments.
   Lexer(const std::string& file, std::string_view text) : file_(file), text_(text) {}
 
   // Throws InputError at a string that does not end on its line.
@@ -44,10 +44,10 @@ class Lexer {
   uint32_t line_ = 1;
 };
 
-// With \" \\ \n \t and the like replaced by what they stand for.
+// Replaces the escapes \" \\ \n \t and the like.
 std::string unescaped(std::string_view text);
 
-// A whole token as a number. False for anything else, and for what is not finite.
+// Converts a whole token to a number. Returns false if it is none or not finite.
 bool toNumber(std::string_view text, double& number);
 
 }  // namespace bnvpl::pbrt

@@ -37,7 +37,7 @@ class Builder {
 
  private:
   double scale() const { return p_.number("scale", 1.0, 0.0); }
-  // `power` or `illuminance`, over what the light would have of it.
+  // Factor that gives the light the `power` or `illuminance` of the file; 1 if the file has none.
   double aimedAt(const char* name, double has) const {
     const double wanted = p_.number(name, -1.0);
     return wanted > 0.0 && has > 0.0 ? wanted / has : 1.0;
@@ -70,7 +70,7 @@ class Builder {
     return {float(v[0] / length), float(v[1] / length), float(v[2] / length)};
   }
   FilePoint from() const { return light_.worldFromLight.point(p_.point("from", {0, 0, 0})); }
-  // From `from` to `to`.
+  // World direction from `from` to `to`.
   Vec3 towards(const FilePoint& otherwise) const {
     const FilePoint a = p_.point("from", {0, 0, 0}), b = p_.point("to", otherwise);
     return unit(direction(light_.worldFromLight, {b[0] - a[0], b[1] - a[1], b[2] - a[2]}));
@@ -131,11 +131,11 @@ class Builder {
     builder_.addLight(spec);
   }
 
-  // What pbrt takes for the illuminance of a surface that faces the light's +z: half of it.
+  // Illuminance of a surface that faces the light's +z, as pbrt computes it: half of the true one.
   static double illuminanceOf(const EnvironmentImage& square) {
     double sum = 0.0;
     for (size_t i = 0; i < square.radiance.size(); ++i) {
-      // The square's distance from the middle, |x| + |y|, is sqrt(1 - z).
+      // In the upper half of the sphere, |x| + |y| = sqrt(1 - z).
       const double x = std::fabs(2.0 * (double(i % square.width) + 0.5) / square.width - 1.0);
       const double y = std::fabs(2.0 * (double(i / square.width) + 0.5) / square.height - 1.0);
       const double z = 1.0 - (x + y) * (x + y);

@@ -1,5 +1,5 @@
 // Loop's subdivision surfaces; declared in shapes.h. Charles Loop, "Smooth Subdivision Surfaces
-// Based on Triangles", 1987, with Warren's weights; the limit surface as of Hoppe et al. 1994.
+// Based on Triangles", 1987, with Warren's weights; the limit surface follows Hoppe et al. 1994.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -46,10 +46,10 @@ struct Edges {
   }
 };
 
-// The vertices around each, in a closed ring where it lies within, else those along the border.
+// The vertices that share an edge with each vertex.
 struct Rings {
-  std::vector<std::vector<uint32_t>> neighbours;  // all, in no order
-  std::vector<std::vector<uint32_t>> border;      // along border edges
+  std::vector<std::vector<uint32_t>> neighbours;  // all of them, unordered
+  std::vector<std::vector<uint32_t>> border;      // those along border edges
 
   Rings(const Surface& s, const Edges& edges)
       : neighbours(s.points.size()), border(s.points.size()) {
@@ -85,7 +85,7 @@ Surface subdivided(const Surface& s) {
     if (all.empty()) {
       out.points.push_back(s.points[v]);
     } else if (!border.empty()) {
-      const double each = 0.25 / double(border.size());  // 1/8 of each of two
+      const double each = 0.25 / double(border.size());  // 1/8 for each of two
       out.points.push_back(weighted(s, 0.75, v, each, border));
     } else {
       const double b = beta(all.size());
@@ -114,7 +114,7 @@ Surface subdivided(const Surface& s) {
   return out;
 }
 
-// Moves the vertices to where they come to lie after endless subdivision.
+// Moves the vertices to their limits under infinite subdivision.
 void moveToLimit(Surface& s) {
   const Edges edges(s);
   const Rings rings(s, edges);
@@ -133,8 +133,7 @@ void moveToLimit(Surface& s) {
   s.points = std::move(limit);
 }
 
-// Normals of the fine mesh, weighted by area: those of the limit within a small fraction of a
-// degree.
+// Area-weighted normals of the fine mesh, a small fraction of a degree off those of the limit.
 std::vector<double> normalsOf(const Surface& s) {
   std::vector<double> normals(3 * s.points.size(), 0.0);
   for (const auto& [a, b, c] : s.faces) {

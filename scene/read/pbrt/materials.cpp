@@ -25,7 +25,7 @@ class Materials::Maker {
         builder_(builder),
         textures_(reader.description, reader.folder, reader.colors, reader.notes, builder) {}
 
-  // But for emission and alpha. None for an interface.
+  // The material without emission and alpha; nothing for an interface.
   const std::optional<Material>& base(const MaterialRef& ref);
   uint32_t of(const Shape& shape, const Emission& emission);
   void noteUnused() const;
@@ -51,7 +51,7 @@ class Materials::Maker {
   Textures textures_;
   std::map<MaterialRef, std::optional<Material>> bases_;
   std::set<MaterialRef> making_;
-  std::map<std::string, uint32_t> components_;  // of mixes
+  std::map<std::string, uint32_t> components_;  // materials within mixes
   using Key = std::tuple<MaterialRef, std::array<float, 3>, bool, fs::path, std::string>;
   std::map<Key, uint32_t> numbers_;
 };
@@ -130,7 +130,7 @@ Roughness Materials::Maker::roughness(const Params& p, const std::string& prefix
 ConductorFresnel Materials::Maker::conductor(const Params& p, const std::string& prefix) {
   ConductorFresnel f;
   const std::string eta = prefix + "eta", k = prefix + "k";
-  // Of a coated one, files have both names.
+  // Files of coated conductors have the name with and without the prefix.
   const std::string reflectance =
       p.has(prefix + "reflectance") ? prefix + "reflectance" : "reflectance";
   if (p.has(reflectance)) {
@@ -159,7 +159,7 @@ MaterialModel Materials::Maker::conductorModel(const Entity& e) {
   ConductorModel m;
   m.fresnel = conductor(e.params);
   m.roughness = roughness(e.params);
-  m.multipleScattering = false;  // pbrt's has none
+  m.multipleScattering = false;  // pbrt has none
   return m;
 }
 
@@ -192,7 +192,8 @@ MaterialModel Materials::Maker::diffuseTransmission(const Entity& e) {
   return m;
 }
 
-// What lies between coat and base: of thickness alone nothing is seen while its albedo is 0.
+// Ignores the medium between coat and base. With albedo 0 it only absorbs: pbrt multiplies by
+// exp(-thickness / |cos|) at each crossing, with 0.01 as default thickness.
 void Materials::Maker::ignoreMedium(const Entity& e) {
   const Param* albedo = e.params.find("albedo");
   if (albedo && !(albedo->type != ParamType::Texture && isBlack(r_.colors.unbounded(*albedo)))) {

@@ -1,4 +1,4 @@
-// Materials and textures of a pbrt file -> those of the scene.
+// Converts the materials and textures of a pbrt file.
 #pragma once
 
 #include "scene/read/pbrt/lights.h"
@@ -10,12 +10,11 @@ class Materials {
   Materials(const LightReader& reader, SceneBuilder& builder);
   ~Materials();
 
-  // Begins to read the textures of a shape's material, so that they are there when all shapes are.
+  // Starts to decode the textures of a shape's material while shapes are read.
   void expect(const Shape& shape);
-  // The number of its material, with its alpha and what it emits; kNone for an interface, which
-  // is nothing to see.
+  // The number of the shape's material with its alpha and emission; kNone for an interface.
   uint32_t of(const Shape& shape, const Emission& emission);
-  // Notes the parameters of the materials and textures that were used which nobody asked for.
+  // Notes the parameters that no reader used, of all materials and textures in use.
   void noteUnused() const;
 
  private:

@@ -8,7 +8,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 // Silver, aluminium, gold, copper and titanium dioxide from Palik, "Handbook of Optical Constants
-// of Solids": each 0.1 eV from 3.2 down to 1.5.
+// of Solids", in steps of 0.1 eV from 3.2 down to 1.5.
 constexpr size_t kEnergies = 18;
 using ByEnergy = std::array<double, kEnergies>;
 struct Metal {
@@ -47,7 +47,7 @@ constexpr Metal kMetals[]{
 };
 
 Spectrum fromEnergies(const ByEnergy& values) {
-  constexpr double kNmEv = 1239.841984;  // h c
+  constexpr double kNmEv = 1239.841984;  // h c in nm eV
   Spectrum s;
   for (size_t i = 0; i < kEnergies; ++i) {
     s.nm.push_back(kNmEv / (3.2 - 0.1 * double(i)));
@@ -63,7 +63,7 @@ Spectrum brass(bool k) {
             : std::vector{1.445, 1.094, 0.686, 0.527, 0.450, 0.444, 0.446, 0.473}};
 }
 
-// Schott's glasses at the lines F, d and C. pbrt calls SF5, SF10 and SF11 also F5, F10 and F11.
+// Schott glasses at the Fraunhofer lines F, d and C. pbrt's F5, F10 and F11 are SF5, SF10 and SF11.
 struct Glass {
   const char* name;
   double f, d, c;

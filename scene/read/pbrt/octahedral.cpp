@@ -29,15 +29,15 @@ const Vec3& texelAt(const EnvironmentImage& image, const std::array<double, 2>& 
   return image.radiance[size_t{index(p[1], image.height)} * image.width + index(p[0], image.width)];
 }
 
-// Arc tangent of 0 to 1, within 1.2e-5 (Abramowitz & Stegun 4.4.49): 1/100 of a texel of an image
-// of 1000.
+// Arc tangent of 0..1, within 1.2e-5 (Abramowitz & Stegun 4.4.49). The error is 1/100 of a texel in
+// an image of 1000 x 1000.
 double quickArcTangent(double x) {
   const double x2 = x * x;
   return x *
          (0.9998660 + x2 * (-0.3302995 + x2 * (0.1801410 + x2 * (-0.0851330 + x2 * 0.0208351))));
 }
 
-// Means over the sphere.
+// Mean over the sphere.
 Rgb meanOfSquare(const EnvironmentImage& image) {
   Rgb sum;
   for (const Vec3& v : image.radiance) sum.add(v, 1.0 / double(image.radiance.size()));
@@ -78,7 +78,7 @@ EnvironmentImage latLongOf(const EnvironmentImage& square, const Affine& lightFr
   out.height = square.height;
   out.width = 2 * square.height;
   out.radiance.resize(size_t{out.width} * out.height);
-  std::vector<std::array<double, 2>> around(kSamples * out.width);  // sine and cosine
+  std::vector<std::array<double, 2>> around(kSamples * out.width);  // sine and cosine of phi
   for (size_t i = 0; i < around.size(); ++i) {
     const double phi = 2.0 * std::numbers::pi * ((double(i) + 0.5) / double(around.size()) - 0.5);
     around[i] = {std::sin(phi), std::cos(phi)};

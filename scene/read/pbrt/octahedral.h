@@ -1,5 +1,5 @@
-// pbrt's environment images: the sphere on a square, each part in proportion to its solid angle.
-// Petrik Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008.
+// pbrt's environment images, which map the sphere to a square with areas in proportion to solid
+// angle. Petrik Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008.
 #pragma once
 
 #include "scene/affine.h"
@@ -7,11 +7,11 @@
 
 namespace bnvpl::pbrt {
 
-// A unit direction's place in the square [0,1]^2; (0.5, 0.5) is +z, the corners are -z.
+// Maps a unit direction to the square [0,1]^2; (0.5, 0.5) is +z, the corners are -z.
 std::array<double, 2> squareOf(const FilePoint& direction);
 
-// As a latitude-longitude image of world directions (transport/light_shape.h), of about as many
-// texels. What arrives from the whole sphere stays the same in each channel. The image is square.
+// Resamples a square image to a latitude-longitude image of world directions
+// (transport/light_shape.h) of equal height. The mean over the sphere is kept in each channel.
 EnvironmentImage latLongOf(const EnvironmentImage& square, const Affine& lightFromWorld);
 
 }  // namespace bnvpl::pbrt

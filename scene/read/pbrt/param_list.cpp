@@ -7,7 +7,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kMaxParams = 256;  // parameters in one directive
+constexpr size_t kMaxParams = 256;  // limit for one directive
 
 bool isTruth(std::string_view text) { return text == "true" || text == "false"; }
 
@@ -43,7 +43,7 @@ bool wantsStrings(ParamType type) {
   return type == ParamType::String || type == ParamType::Texture || type == ParamType::Bool;
 }
 
-// "type name", with the place of the whole.
+// Parses the declaration "type name" of a parameter.
 Param declared(const Token& token) {
   const std::string text = unescaped(token.text);
   const size_t typeEnd = text.find_first_of(" \t"), name = text.find_first_not_of(" \t", typeEnd);

@@ -1,4 +1,4 @@
-// Tokens of one file -> the strings, numbers and parameters of its directives.
+// Reads strings, numbers and parameters of directives from the tokens of a file.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,10 @@ class Tokens {
   std::optional<Token> ahead_;
 };
 
-// Throws InputError when the next token is no string; `what` should be there.
+// Throws InputError if the next token is no string; `what` names what is expected.
 std::string readString(Tokens& tokens, const char* what);
 
-// In brackets or not. Throws InputError when they are no numbers, or beyond kMax.
+// Fills `out`, from brackets or not. Throws InputError for what is no number or beyond kMax.
 void readNumbers(Tokens& tokens, std::span<double> out);
 template <size_t kCount>
 std::array<double, kCount> readNumbers(Tokens& tokens) {
@@ -31,7 +31,7 @@ std::array<double, kCount> readNumbers(Tokens& tokens) {
   return out;
 }
 
-// All "type name" values up to the next directive. Those of an unknown type are noted and left out.
+// Reads all parameters up to the next directive. Those of unknown type are noted and left out.
 Params readParams(Tokens& tokens, ColorSpace colorSpace, Notes& notes);
 
 }  // namespace bnvpl::pbrt

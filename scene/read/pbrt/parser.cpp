@@ -15,7 +15,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr size_t kDeepestInclude = 64, kMaxIncludes = 10'000;
-constexpr size_t kMaxAttributes = 64;  // parameters that Attribute sets for one target
+constexpr size_t kMaxAttributes = 64;  // limit on parameters of Attribute for one target
 
 class Parser {
  public:
@@ -58,7 +58,7 @@ class Parser {
   void mediumInterface(const Token& at);
   void worldBegin(const Token& at);
 
-  // What is seen.
+  // Camera, film, materials, lights and shapes.
   void camera(const Token& at);
   void film(const Token& at) { out_.film = entity(at); }
   void material(const Token& at);
@@ -73,7 +73,7 @@ class Parser {
   void objectEnd(const Token& at);
   void objectInstance(const Token& at);
 
-  // Files, and what has no meaning here.
+  // Files and ignored directives.
   void include(const Token& at);
   void import(const Token& at);
   void ignoreEntity(const Token& at) { entity(at); }
@@ -90,10 +90,10 @@ class Parser {
   Notes& notes_;
   fs::path folder_;
   States states_;
-  Tokens* tokens_ = nullptr;       // of the file that is being read
-  std::vector<fs::path> reading_;  // it, and those that include it
+  Tokens* tokens_ = nullptr;       // tokens of the file that is being read
+  std::vector<fs::path> reading_;  // that file and those that include it
   size_t included_ = 0;
-  Object* object_ = nullptr;  // that ObjectBegin opened
+  Object* object_ = nullptr;  // the object that ObjectBegin opened
   Place objectPlace_, end_;
 };
 
@@ -177,7 +177,7 @@ void Parser::readFile(const fs::path& file, const Place* from) {
   tokens_ = outer;
 }
 
-// Up to the next directive.
+// Skips an unknown directive, up to the next one.
 void Parser::skipUnknown(const Token& at) {
   double number;
   const std::string name(at.text);
@@ -355,7 +355,7 @@ void Parser::texture(const Token& at) {
   if (type != "spectrum" && type != "float")
     failAt(at.place, "texture '" + name + "' must be a \"spectrum\" or \"float\" one");
   TextureEntity t{entity(at, "texture"), type == "spectrum", now().transform};
-  // Names of the two types are apart.
+  // Spectrum and float textures have separate names.
   if (!out_.textures.try_emplace(type + " " + name, std::move(t)).second)
     failAt(at.place, type + " texture '" + name + "' is there already; choose another name");
 }

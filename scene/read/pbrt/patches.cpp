@@ -1,4 +1,4 @@
-// Meshes that the scene file itself holds: triangles and bilinear patches; declared in shapes.h.
+// Meshes within the scene file: triangles and bilinear patches; declared in shapes.h.
 #include <cmath>
 
 #include "scene/read/pbrt/shapes.h"
@@ -7,9 +7,9 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kPatchSteps = 16;  // of a patch that is no parallelogram
+constexpr size_t kPatchSteps = 16;  // steps along each side of a patch that is no parallelogram
 
-// Positions, normals and texture coordinates, which must fit together.
+// Reads positions, normals and texture coordinates, whose numbers must agree.
 MeshData vertices(const Params& params, const Place& place) {
   MeshData mesh;
   mesh.positions = params.floats("P", 3);
@@ -24,7 +24,7 @@ MeshData vertices(const Params& params, const Place& place) {
   return mesh;
 }
 
-using Corners = std::array<uint32_t, 4>;  // at (0, 0), (1, 0), (0, 1) and (1, 1)
+using Corners = std::array<uint32_t, 4>;  // corners at (0, 0), (1, 0), (0, 1) and (1, 1)
 
 double bilinear(const std::array<double, 4>& at, double u, double v) {
   return (1 - v) * ((1 - u) * at[0] + u * at[1]) + v * ((1 - u) * at[2] + u * at[3]);
@@ -37,7 +37,7 @@ std::array<double, 4> ofCorners(const std::vector<double>& values, const Corners
   return out;
 }
 
-// Two triangles are the patch itself when it is a parallelogram, but for normals.
+// Two triangles reproduce a patch without normals exactly if it is a parallelogram.
 bool isParallelogram(const MeshData& from, const Corners& corners) {
   double gap = 0.0, size = 0.0;
   for (size_t c = 0; c < 3; ++c) {

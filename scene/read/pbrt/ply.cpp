@@ -12,7 +12,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-// Values one after the other. What is beyond the end is 0, and marks the body as cut short.
+// The values of the body in order. Values beyond its end, and malformed ones, mark it as cut short.
 class Body {
  public:
   Body(std::string_view bytes, PlyFormat format) : bytes_(bytes), format_(format) {}
@@ -81,8 +81,7 @@ class Body {
   bool cut_ = false;
 };
 
-// Where the values of each property of a vertex go: nowhere, or one of an array of `stride` in
-// each.
+// Destination of a vertex property: component `offset` of `stride` per vertex in `array`, if any.
 struct Target {
   std::vector<double>* array = nullptr;
   size_t stride = 0, offset = 0;
@@ -116,7 +115,7 @@ std::vector<Target> targetsOf(const fs::path& file, const PlyElement& element, M
   return targets;
 }
 
-// Passes over so many values of a list; a count in words can be any number, and infinite.
+// Skips `count` values of a list. A count in ASCII can be any number, even infinite.
 void skipValues(Body& body, const PlyProperty& p, double count) {
   constexpr double kMax = 1e15;  // more than any file holds
   if (count > 0.0) body.skip(p.type, static_cast<size_t>(std::min(count, kMax)));
@@ -138,7 +137,7 @@ void readVertices(const fs::path& file, Body& body, const PlyElement& element, M
   }
 }
 
-// Corners of one face; false where it is none that can be used.
+// Reads the corners of one face. Returns false if their number is unusable.
 bool readFace(Body& body, const PlyProperty& p, std::vector<uint32_t>& corners) {
   const double count = body.next(p.countType);
   corners.clear();
@@ -153,10 +152,10 @@ bool readFace(Body& body, const PlyProperty& p, std::vector<uint32_t>& corners) 
   return true;
 }
 
-// Faces of three or more corners, one after the other.
+// Faces of three or more corners, concatenated.
 struct Faces {
   std::vector<uint32_t> corners;
-  std::vector<uint32_t> counts;  // of corners
+  std::vector<uint32_t> counts;  // corners of each
   size_t unusable = 0;
 };
 
@@ -188,7 +187,7 @@ void requireVertices(const fs::path& file, const Faces& faces, const MeshData& m
   }
 }
 
-// Returns how many cross themselves.
+// Triangulates the faces. Returns the number of those that cross themselves.
 size_t cutFaces(const Faces& faces, MeshData& mesh) {
   size_t crossing = 0;
   mesh.triangles.reserve(faces.counts.size());

@@ -1,7 +1,7 @@
-// PLY meshes, ASCII and binary of both byte orders.
+// Reads PLY meshes, ASCII and binary of both byte orders.
 //
-// Read are x, y, z; nx, ny, nz; texture coordinates as u, v or s, t, alone or behind texture_; and
-// faces as vertex_indices or vertex_index. Everything else is passed over.
+// The reader takes x, y, z; nx, ny, nz; texture coordinates as u, v or s, t, alone or behind
+// texture_; and faces as vertex_indices or vertex_index. It skips everything else.
 #pragma once
 
 #include <string_view>
@@ -10,8 +10,8 @@
 
 namespace bnvpl::pbrt {
 
-// Takes any bytes. Throws InputError. Faces of more than three corners are cut into triangles.
-// `file` is for messages.
+// Accepts any bytes and throws InputError if they are no mesh. Faces of more than three corners are
+// triangulated. `file` is for messages.
 MeshData readPly(const fs::path& file, std::string_view bytes);
 
 }  // namespace bnvpl::pbrt

@@ -42,9 +42,10 @@ PlyProperty propertyOf(const fs::path& file, std::istringstream& words) {
   return p;
 }
 
-// The fewest bytes that one of an element takes.
+// Minimum number of bytes of one instance of an element.
 size_t leastBytes(const PlyElement& element, PlyFormat format) {
-  if (format == PlyFormat::Ascii) return 2 * element.properties.size();  // but for the last blank
+  if (format == PlyFormat::Ascii)
+    return 2 * element.properties.size();  // except for the last blank
   size_t bytes = 0;
   for (const PlyProperty& p : element.properties)
     bytes += p.isList ? sizeOf(p.countType) : sizeOf(p.type);

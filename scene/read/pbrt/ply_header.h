@@ -1,4 +1,4 @@
-// What a PLY file says that it holds.
+// The header of a PLY file.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct PlyProperty {
   std::string name;
   PlyType type = PlyType::Float;
   bool isList = false;
-  PlyType countType = PlyType::Uint8;  // of a list
+  PlyType countType = PlyType::Uint8;  // type of a list's count
 };
 struct PlyElement {
   std::string name;
@@ -27,10 +27,10 @@ enum class PlyFormat { Ascii, Little, Big };
 struct PlyHeader {
   PlyFormat format = PlyFormat::Ascii;
   std::vector<PlyElement> elements;
-  size_t bodyBegin = 0;  // byte
+  size_t bodyBegin = 0;  // byte offset
 };
 
-// Throws InputError; also when the bytes cannot hold as many elements as the header claims.
+// Throws InputError, also if the bytes cannot hold as many elements as the header claims.
 PlyHeader readPlyHeader(const fs::path& file, std::string_view bytes);
 
 }  // namespace bnvpl::pbrt

@@ -17,7 +17,7 @@ struct Point {
   double u, v;
 };
 
-// False for triangles at a pole, where two corners are one.
+// Returns false for triangles at a pole, where two corners coincide.
 bool hasArea(const MeshData& mesh, uint32_t a, uint32_t b, uint32_t c) {
   const auto distance = [&](uint32_t p, uint32_t q) {
     const double *x = &mesh.positions[3 * p], *y = &mesh.positions[3 * q];
@@ -27,8 +27,8 @@ bool hasArea(const MeshData& mesh, uint32_t a, uint32_t b, uint32_t c) {
   return std::min({ab, bc, ca}) > 1e-9 * std::max({ab, bc, ca});
 }
 
-// A grid of (columns + 1) x (rows + 1) points over u and v from 0 to 1. Cells have their first side
-// along u; where that runs anti-clockwise seen from outside they face outwards.
+// Tessellates a surface by a grid of (columns + 1) x (rows + 1) points over u and v from 0 to 1.
+// Triangles face the side of dp/du x dp/dv.
 template <typename At>
 MeshData grid(size_t columns, size_t rows, const At& at) {
   MeshData mesh;
@@ -69,8 +69,8 @@ double areaOf(const MeshData& mesh) {
   return sum;
 }
 
-// Scales x and y, and z where `z`, until the area is exact. It grows with the square of that where
-// `square`.
+// Scales x and y, and also z if `z`, so that the area is exact. `square` tells whether the area
+// grows with the square of the factor, else in proportion.
 void correctArea(MeshData& mesh, double exact, bool square, bool z) {
   const double area = areaOf(mesh);
   if (!(area > 0.0) || !std::isfinite(exact / area)) return;
@@ -115,7 +115,7 @@ MeshData disk(const Params& params) {
                inner = params.number("innerradius", 0.0, 0.0);
   const double height = params.number("height", 0.0), phi = phiMax(params);
   MeshData mesh = grid(stepsAround(phi), 1, [&](double u, double v) {
-    // v grows inwards, so that u runs the other way round seen from +z: turned below.
+    // v increases inwards, so triangles face +z unless the inner radius is larger: flipped below.
     const double here = r + v * (inner - r);
     return Point{{here * std::cos(u * phi), here * std::sin(u * phi), height}, {0, 0, 1}, u, v};
   });

@@ -1,4 +1,4 @@
-// .pbrt files, of pbrt-v4. docs/scenes.md says what is read and how.
+// Reads scene files of pbrt-v4. docs/scenes.md says what is read and how.
 #pragma once
 
 #include "scene/load_scene.h"
@@ -6,8 +6,8 @@
 
 namespace bnvpl {
 
-// Reads a scene file, packed by gzip or not, and all that it names. The format knows no ${NAME}:
-// `defines` mean nothing to it. Throws InputError.
+// Reads a scene file, packed by gzip or not, and all files that it names. `defines` are unused: the
+// format has no ${NAME}. Throws InputError.
 void readScenePbrt(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 
 }  // namespace bnvpl

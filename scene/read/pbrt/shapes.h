@@ -1,5 +1,5 @@
-// Shapes of a pbrt file -> triangles. Curved ones are cut finely; their corners lie a little
-// outside of the shape, so that its area, and with it the power of a lamp, is exact.
+// Tessellates the shapes of a pbrt file. The corners of curved quadrics lie slightly outside the
+// shape, so that its area, and with it the power of an area light, is exact.
 #pragma once
 
 #include "scene/read/pbrt/description.h"
@@ -7,14 +7,14 @@
 
 namespace bnvpl::pbrt {
 
-// The file of a plymesh; empty for other shapes. `folder` is the scene's.
+// The file of a plymesh; empty for other shapes. `folder` is the scene's folder.
 fs::path meshFileOf(const Shape& shape, const fs::path& folder);
 
-// Runs beside itself on other shapes. A shape that is not known gives nothing but a note. Throws
-// InputError with the place in the scene, or the PLY file.
+// May run in parallel on different shapes. An unknown shape gives only a note. Throws InputError
+// with the place in the scene, or the PLY file.
 MeshData tessellate(const Shape& shape, const fs::path& folder);
 
-// Each of its own parameters and file; declared here for tessellate() and tests.
+// The functions for each type of shape, declared for tessellate() and tests.
 MeshData triangleMesh(const Params& params, const Place& place);
 MeshData sphere(const Params& params);
 MeshData disk(const Params& params);

@@ -15,7 +15,7 @@ const Spectrum& d65() {
   return spectrum;
 }
 
-// Integrals over the observer of term(wavelength).
+// Integrals of term(wavelength) times the observer's colour matching functions.
 template <typename Term>
 Xyz integral(const Term& term) {
   Xyz sum{};
@@ -75,7 +75,7 @@ Spectrum blackbody(double kelvin) {
   for (size_t i = 0; i < kObserver.size(); ++i) {
     const double nm = kFirstNm + kStepNm * double(i);
     s.nm.push_back(nm);
-    // Relative to 560 nm, so that low temperatures do not underflow.
+    // Planck's law relative to 560 nm, so that low temperatures do not underflow.
     const double x = kSecond / (nm * kelvin), x560 = kSecond / (560.0 * kelvin);
     s.value.push_back(std::pow(560.0 / nm, 5.0) * std::exp(x560 - x) * -std::expm1(-x560) /
                       -std::expm1(-x));
@@ -83,7 +83,7 @@ Spectrum blackbody(double kelvin) {
   return s;
 }
 
-// CIE 15: chromaticity of daylight, and the components that give it.
+// CIE 15: the chromaticity of daylight, and the weights of the components that give it.
 Spectrum daylight(double kelvin) {
   if (kelvin < 4000.0) return blackbody(kelvin);
   const double t = std::min(kelvin, 25000.0), t2 = t * t, t3 = t2 * t;
@@ -129,7 +129,7 @@ MetalRgb metalRgb(const Spectrum& eta, const Spectrum& k) {
     const double f = std::clamp(double{target[c]}, 0.0, kMaxReflectance);
     double n = std::max(double{etaRgb[c]}, kMinEta);
     double k2 = (f * (n + 1) * (n + 1) - (n - 1) * (n - 1)) / (1.0 - f);
-    if (k2 < 0.0) {  // eta alone reflects more than that: the eta that reflects as much
+    if (k2 < 0.0) {  // eta alone reflects more: k is 0, and eta solves for f
       n = (1.0 + std::sqrt(f)) / (1.0 - std::sqrt(f));
       k2 = 0.0;
     }

@@ -1,9 +1,9 @@
-// Spectra, and the linear sRGB that pbrt's film makes of them.
+// Spectra and their conversion to the linear sRGB of pbrt's film.
 //
 // pbrt renders wavelengths and integrates them with the CIE 1931 observer; its colour space then
-// makes linear RGB of XYZ, without adaptation. For one surface under one light the results here
-// are the same. What light does on several coloured surfaces one after the other differs, as
-// always between rendering in RGB and in wavelengths. docs/scenes.md says it for users.
+// converts XYZ to linear RGB, without adaptation. For one surface under one light the result here
+// is the same. Light that is reflected by several coloured surfaces differs, as always between RGB
+// and spectral rendering (docs/scenes.md).
 #pragma once
 
 #include <array>
@@ -19,51 +19,50 @@ namespace bnvpl::pbrt {
 
 using Xyz = std::array<double, 3>;
 
-// Linear between samples, and constant beyond them.
+// A spectrum that is linear between samples and constant beyond them.
 struct Spectrum {
-  std::vector<double> nm;  // rising
+  std::vector<double> nm;  // ascending
   std::vector<double> value;
   double at(double wavelength) const;
 };
 
-// Samples "nm value nm value ..." of a parameter or file. None where they are no spectrum.
+// Converts samples "nm value nm value ..." of a parameter or file; nothing if they are no spectrum.
 std::optional<Spectrum> spectrumOf(const std::vector<double>& pairs);
-// A text of such pairs; '#' begins a comment. Throws InputError.
+// Reads a text of such pairs; '#' begins a comment. Throws InputError.
 Spectrum readSpd(const fs::path& file);
 
 Spectrum blackbody(double kelvin);
-// CIE daylight of a correlated colour temperature; below 4000 K, where there is none, a blackbody.
+// CIE daylight of a correlated colour temperature; a blackbody below 4000 K, where it is undefined.
 Spectrum daylight(double kelvin);
 
-// Of light, scaled to Y = 1.
+// XYZ of a light, scaled to Y = 1.
 Xyz xyzOfLight(const Spectrum& light);
-// Of what a spectrum leaves of daylight D65, whose Y is 1.
+// XYZ of a reflectance (or transmittance) under daylight D65 of Y = 1.
 Xyz xyzUnderD65(const Spectrum& s);
 
-// Linear sRGB of XYZ. Colours outside of the gamut have negative channels.
+// Linear sRGB of XYZ. Colours outside the gamut have negative channels.
 Vec3 srgbOf(const Xyz& xyz);
-// An RGB triple of another colour space, as light: its white keeps its colour.
+// Converts light from another colour space; its white keeps its colour.
 Vec3 srgbOfLight(const Vec3& rgb, ColorSpace from);
-// The same as a reflectance: its white becomes white (Bradford).
+// Converts a reflectance from another colour space; its white becomes white (Bradford).
 Vec3 srgbOfReflectance(const Vec3& rgb, ColorSpace from);
-// What a white balance to `kelvin` does to linear sRGB: XYZ adapted by Bradford's matrix to sRGB's
-// white. Rows.
+// Rows of the matrix that white-balances linear sRGB from `kelvin` to sRGB's white (Bradford).
 std::array<Vec3, 3> whiteBalance(double kelvin);
 
-// Without negative channels, at the same luminance where it has one.
+// Clamps negative channels and keeps the luminance, if that is positive.
 Vec3 intoGamut(Vec3 light);
 
-// The complex index of refraction of a metal for red, green and blue: eta is the spectrum's colour
-// under D65, and k such that the reflectance at normal incidence has the colour that the
-// spectra give under D65.
+// The complex index of refraction of a metal for red, green and blue. eta is the colour of its
+// spectrum under D65. k gives the reflectance at normal incidence the colour that the spectral
+// reflectance has under D65.
 struct MetalRgb {
   Vec3 eta, k;
 };
 MetalRgb metalRgb(const Spectrum& eta, const Spectrum& k);
-// At normal incidence, against vacuum.
+// Reflectance at normal incidence from vacuum.
 double metalReflectance(double eta, double k);
 
-// What pbrt knows by name.
+// Spectra that pbrt knows by name.
 std::optional<Spectrum> namedSpectrum(const std::string& name);  // metal-Au-eta, glass-BK7
 std::optional<Xyz> namedIlluminant(const std::string& name);     // stdillum-D65, Y = 1
 

@@ -1,4 +1,4 @@
-// What pbrt's attributes say at a place of the file.
+// pbrt's graphics state at a place in the file.
 #pragma once
 
 #include "scene/read/pbrt/description.h"
@@ -7,8 +7,8 @@
 namespace bnvpl::pbrt {
 
 struct State {
-  Affine transform;             // at the beginning of the shutter
-  bool transformsStart = true;  // whether transforms change it: ActiveTransform
+  Affine transform;             // at the opening of the shutter
+  bool transformsStart = true;  // whether ActiveTransform lets directives change it
   bool reverseOrientation = false;
   ColorSpace colorSpace = ColorSpace::Srgb;
   MaterialRef material;
@@ -17,14 +17,14 @@ struct State {
   std::map<std::string, std::shared_ptr<const Params>> attributes;  // by target: shape, light, ...
 };
 
-// The stack of states, and transforms by name.
+// The stack of graphics states, and named coordinate systems.
 class States {
  public:
   State& now() { return now_; }
   const State& now() const { return now_; }
-  // Refused at a depth that only mistakes reach.
+  // Throws InputError at a depth that only mistakes reach.
   void push(const Place& place, bool transformOnly = false);
-  // `what` opened it: "AttributeBegin".
+  // `what` is the directive that opens such a block: "AttributeBegin".
   void pop(const Place& place, bool transformOnly, const char* what);
   void transformBy(const Place& place, const Affine& by);
   void setTransform(const Place& place, const Affine& to);

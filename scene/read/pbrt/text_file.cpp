@@ -12,7 +12,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kMaxUnpacked = size_t{1} << 34;  // bytes; a scene of text that large is a mistake
+constexpr size_t kMaxUnpacked = size_t{1} << 34;  // bytes; a larger text is a mistake
 
 std::string unpacked(const fs::path& file, const std::string& packed) {
   z_stream stream{};

@@ -1,4 +1,4 @@
-// Files of a pbrt scene that may be packed by gzip.
+// Reads files of a pbrt scene, which may be packed by gzip.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace bnvpl::pbrt {
 
-// The whole regular file, unpacked where it is packed, whatever its name. Throws InputError.
+// The content of a regular file, unpacked if it is packed, whatever its name. Throws InputError.
 std::string readPacked(const fs::path& file);
 
 }  // namespace bnvpl::pbrt

@@ -101,7 +101,7 @@ uint32_t Textures::operand(const TextureEntity& t, const std::string& name, floa
   const Param* p = t.params.find(name);
   if (!p) return constant(Vec3{otherwise});
   if (p->type != ParamType::Texture) return constantOf(*p, t.isSpectrum && name != "amount");
-  // `scale` and `amount` are floats; some files scale by a colour.
+  // `scale` and `amount` name float textures, though a constant `scale` may be a colour.
   const bool isFloat = name == "amount" || (name == "scale" && t.isSpectrum);
   const uint32_t texture = named(*p, t.isSpectrum && !isFloat);
   return texture == kNone ? constant(Vec3{otherwise}) : texture;

@@ -1,4 +1,4 @@
-// Textures of a pbrt file -> expressions over images.
+// Converts the textures of a pbrt file to expressions over images.
 #pragma once
 
 #include <set>
@@ -18,24 +18,24 @@ class Textures {
         notes_(notes),
         builder_(builder) {}
 
-  // A parameter of a material: a constant or a texture. What cannot be read is noted, and stays
-  // as it is without the parameter.
+  // A material parameter, constant or texture. An unreadable texture is noted; the default replaces
+  // it.
   Colour colour(const Params& params, const std::string& name, Vec3 otherwise);
-  // Of any size, such as refractive indices.
+  // A colour of any magnitude, such as a refractive index.
   Colour unboundedColour(const Params& params, const std::string& name, Vec3 otherwise);
   Scalar scalar(const Params& params, const std::string& name, float otherwise, float most = 1.0f);
   // The expression of a float texture that a parameter names; kNone without one.
   uint32_t floatTexture(const Params& params, const std::string& name);
-  // The same as a mask: an image's own alpha channel counts where it has one. None where it is not
-  // simply an image.
+  // A float texture as a mask, which takes the alpha channel of an image that has one. Nothing if
+  // the texture is not simply an image.
   std::optional<uint32_t> mask(const Params& params, const std::string& name);
-  // An image over the texture coordinates as they are; kNone where there is no such file.
+  // An image over unmodified texture coordinates; kNone if the file does not exist.
   uint32_t image(const fs::path& file, bool srgb);
 
   void noteUnused() const;
 
  private:
-  uint32_t named(const Param& p, bool isSpectrum);  // an expression; kNone
+  uint32_t named(const Param& p, bool isSpectrum);  // an expression, or kNone
   const TextureEntity* find(const Param& p, bool isSpectrum);
   uint32_t make(const TextureEntity& t);
   uint32_t operand(const TextureEntity& t, const std::string& name, float otherwise);

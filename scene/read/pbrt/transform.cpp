@@ -11,7 +11,7 @@ FilePoint cross(const FilePoint& a, const FilePoint& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// False when there is no direction.
+// Returns false if the vector has no direction.
 bool normalize(FilePoint& v) {
   const double length = std::hypot(v[0], v[1], v[2]);
   if (!(length > 0.0) || !std::isfinite(length)) return false;

@@ -1,5 +1,4 @@
-// The transforms of pbrt's directives. Directions turn left-handed or right-handed as they are:
-// what a matrix does to coordinates does not depend on it.
+// The transforms of pbrt's directives, which act on coordinates regardless of handedness.
 #pragma once
 
 #include <optional>
@@ -11,15 +10,14 @@ namespace bnvpl::pbrt {
 Affine translation(const FilePoint& by);
 Affine scaling(const FilePoint& by);
 Affine rotation(double degrees, const FilePoint& axis);
-// cameraFromWorld: +x to the right, +y up, +z forward. None when `up` gives no direction.
+// cameraFromWorld: +x to the right, +y up, +z forward. Nothing if `up` gives no direction.
 std::optional<Affine> lookAt(const FilePoint& eye, const FilePoint& at, const FilePoint& up);
-// Sixteen numbers, column by column. None when the last row is not 0, 0, 0, w.
+// A matrix from sixteen numbers in column-major order; nothing if the last row is not 0, 0, 0, w.
 std::optional<Affine> fromColumns(const std::array<double, 16>& numbers);
 
-// First b, then a.
-// None for a transform that flattens space.
+// Nothing for a singular transform.
 std::optional<Affine> inverse(const Affine& a);
-// Without the translation.
+// Applies the linear part only.
 FilePoint direction(const Affine& a, const FilePoint& d);
 bool isFinite(const Affine& a);
 

@@ -14,7 +14,7 @@ namespace bnvpl {
 namespace {
 
 constexpr double kMaxMagnitude = TomlSection::kMaxMagnitude;
-// A smaller sun is a point: the direction of no float ray lies in it.
+// A smaller sun is a point: floats do not resolve directions within it.
 constexpr double kMinSunDeg = 1e-4;
 
 const std::vector<std::string> kTransformKeys{"transform", "translate", "rotate_deg", "scale"};
@@ -140,7 +140,7 @@ void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& b
                         {"film", "camera", "texture", "material", "mesh", "light"});
   const FileNames names(file, defines);
 
-  // What is small comes first: a mistake in it shows before the meshes are read.
+  // Small sections come first, so that mistakes in them show before the meshes are read.
   const TomlView view = readTomlView(file, root);
   builder.setFilm(view.film);
   builder.setCamera(view.position, view.camera);

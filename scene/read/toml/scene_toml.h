@@ -1,4 +1,4 @@
-// scene.toml, with the meshes and images that it names. docs/scene-format.md describes it.
+// Reads a scene.toml with the meshes and images that it names. docs/scene-format.md describes it.
 #pragma once
 
 #include "scene/load_scene.h"
@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-// Throws InputError: file, line, section, problem and cure.
+// Throws InputError with file, line, section, problem and remedy.
 void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 
 }  // namespace bnvpl

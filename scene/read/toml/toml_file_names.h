@@ -1,4 +1,4 @@
-// File names in a scene.toml.
+// Resolves file names in a scene.toml.
 #pragma once
 
 #include "scene/load_scene.h"
@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-// With ${NAME} filled in, and relative to the scene's folder unless absolute. Borrows `defines`.
+// Expands ${NAME} and resolves relative names against the scene's folder. Borrows `defines`.
 class FileNames {
  public:
   FileNames(const fs::path& sceneFile, const Defines& defines)

@@ -30,8 +30,8 @@ std::string lineOf(const fs::path& file, const toml::source_region& source) {
   return file.string() + ":" + std::to_string(source.begin.line) + ": ";
 }
 
-// toml++ makes a table of each dot of a.b.c.d, and takes them apart by a call for each: enough of
-// them overflow the stack. It limits nested brackets itself.
+// toml++ nests one table for each dot of a.b.c.d and destroys them recursively, so that many dots
+// overflow the stack. It limits nested brackets itself.
 void refuseDeepKeys(const fs::path& file, const std::string& text) {
   constexpr size_t kMaxDots = 100;
   size_t line = 1, dots = 0;
@@ -46,7 +46,7 @@ void refuseDeepKeys(const fs::path& file, const std::string& text) {
   }
 }
 
-// TOML's own rule, which names of Windows meet.
+// File names of Windows often break this rule of TOML.
 constexpr const char* kBackslashCure =
     "; in \"...\" a backslash begins an escape: write / in file names, or put them in '...'";
 
@@ -108,8 +108,7 @@ void TomlSection::checkKnown(const std::string& key, const toml::node& node,
   if (std::find(known.begin(), known.end(), key) != known.end()) return;
   const auto distance = [&](const std::string& name) { return editDistance(key, name); };
   const std::string nearest = *std::ranges::min_element(known, {}, distance);
-  // Half of the letters may be wrong, as two that swapped places are: what is farther was not
-  // meant.
+  // Suggests a key if at most half of the letters differ, as after a swap in a short key.
   if (2 * distance(nearest) <= std::max(key.size(), nearest.size()))
     fail(node, "unknown key '" + key + "'; did you mean '" + nearest + "'?");
   std::string list;

@@ -1,5 +1,5 @@
-// A table of a TOML file, read key by key. Every mistake is one line with file, line, section,
-// problem and cure.
+// A table of a TOML file, read key by key. Every error is one line with file, line, section,
+// problem and remedy.
 #pragma once
 
 #include <toml++/toml.h>
@@ -15,21 +15,21 @@
 
 namespace bnvpl {
 
-// Throws InputError, with the line where the file is no TOML.
+// Throws InputError with the line of a syntax error.
 toml::table parseToml(const fs::path& file);
 
-// The section [key], which must be there, and the tables of [[key]], of which there may be none;
-// `written` is what [[key]] is called within another.
+// The section [key], which must exist, and the tables of [[key]], of which there may be none;
+// `written` is the full name of a nested [[key]], for messages.
 const toml::table& tableOf(const fs::path& file, const toml::table& root, const char* key);
 std::vector<const toml::table*> tablesOf(const fs::path& file, const toml::table& root,
                                          const char* key, const std::string& written = "");
 
-// The unit vector from one place to another. False: there is none.
+// Computes the unit vector from one point to another. Returns false if they coincide.
 bool toUnit(const FilePoint& to, const FilePoint& from, Vec3& unit);
 
-// Borrows the table and the file's name. All of it throws InputError: the constructor for a key
-// that is none of the known, the readers for a key that is missing, of another type or out of
-// range. Limits belong to the range.
+// Borrows the table and the file name. All functions throw InputError: the constructor for an
+// unknown key, the readers for a key that is missing, of another type or out of range. Ranges
+// include their limits.
 class TomlSection {
  public:
   TomlSection(const fs::path& file, std::string name, const toml::table& table,
@@ -49,29 +49,29 @@ class TomlSection {
   double numberOf(const toml::node& n, const char* key, double least, double most) const;
   uint32_t integer(const char* key, uint32_t least, uint32_t most) const;
   std::string text(const char* key) const;
-  // A text without control characters, its backslashes as slashes.
+  // A text without control characters, with slashes for backslashes.
   std::string fileName(const char* key) const;
-  std::array<float, 2> pair(const char* key, double most) const;  // each of a size up to `most`
+  std::array<float, 2> pair(const char* key, double most) const;  // magnitudes up to `most`
   FilePoint place(const char* key) const { return triple(key, -kFurthestPlace, kFurthestPlace); }
   bool flag(const char* key, bool otherwise) const;
-  // The place of the text in `names`.
+  // Index of the text in `names`.
   uint32_t choice(const char* key, std::span<const char* const> names) const;
-  // 'name', which must not be empty, nor among those that are known.
+  // The text of 'name', which must be neither empty nor known.
   std::string newName(const std::map<std::string, uint32_t>& known) const;
-  // The number of the text among those that are known, each a table of the kind.
+  // The number of the text in `numbers`; `kind` is the section that defines it, for messages.
   uint32_t known(const char* key, const std::string& kind,
                  const std::map<std::string, uint32_t>& numbers) const;
   std::vector<std::vector<double>> rows(const char* key, size_t rows, size_t columns) const;
-  // A key of another sort would be ignored. `what` is "a point light".
+  // Refuses keys that would be ignored. `what` names the object, such as "a point light".
   void requireOnly(const std::string& what, const std::set<std::string>& allowed) const;
   FilePoint point(const char* key) const { return triple(key, -kMaxMagnitude, kMaxMagnitude); }
   Vec3 color(const char* key) const;                 // not negative
-  Vec3 vector(const char* key, double most) const {  // each of a size up to `most`
+  Vec3 vector(const char* key, double most) const {  // magnitudes up to `most`
     return fromOrigin(triple(key, -most, most), {});
   }
   Vec3 direction(const char* key) const;  // unit length
 
-  static constexpr double kMaxMagnitude = 1e30;  // of a coordinate, a factor or a power
+  static constexpr double kMaxMagnitude = 1e30;  // limit of coordinates, factors and powers
 
  private:
   FilePoint triple(const char* key, double least, double most) const;

@@ -10,14 +10,14 @@ namespace bnvpl {
 namespace {
 
 constexpr double kMax = TomlSection::kMaxMagnitude;
-constexpr double kMaxFactor =
-    1e6;  // largest factor of a texture: light times a few of them stays finite
+// Largest factor of a texture: radiance times several of them stays finite.
+constexpr double kMaxFactor = 1e6;
 
 float number(const TomlSection& s, const std::string& key, float otherwise) {
   return static_cast<float>(s.number(key.c_str(), -kMax, kMax, double{otherwise}));
 }
 
-// The place of a key's text among the names; `otherwise` without the key.
+// Index of a key's text in `names`; `otherwise` without the key.
 template <typename Names>
 uint32_t choice(const TomlSection& s, const char* key, const Names& names, uint32_t otherwise) {
   return s.has(key) ? s.choice(key, names) : otherwise;
@@ -132,7 +132,7 @@ void TomlSurfaces::readMaterial(const toml::table& table) {
   if (known != kModelNames.end() && known != kModelNames.begin())
     m.model = modelOf<0>(static_cast<uint32_t>(known - kModelNames.begin()));
   const TomlSection s(file_, "[[material]]", table, materialKeys(m.model));
-  s.choice("model", std::span(kModelNames).subspan(1));  // Phong is MTL's
+  s.choice("model", std::span(kModelNames).subspan(1));  // the Phong model is left to MTL
   m.name = s.newName(materials_);
   struct Fields {
     TomlSurfaces& of;

@@ -1,4 +1,4 @@
-// [[texture]] and [[material]] of a scene.toml: what MTL cannot say.
+// [[texture]] and [[material]] of a scene.toml, for materials that MTL cannot express.
 #pragma once
 
 #include <map>
@@ -9,13 +9,13 @@
 
 namespace bnvpl {
 
-// Read before the meshes, whose materials they replace. Borrows its arguments. All of it throws
-// InputError.
+// Must be read before the meshes, whose materials it replaces. Borrows its arguments. All functions
+// throw InputError.
 class TomlSurfaces {
  public:
   TomlSurfaces(const fs::path& file, const toml::table& root, const FileNames& names,
                SceneBuilder& builder);
-  // After the meshes: warns of materials that no mesh has.
+  // Warns about materials that no mesh uses. Call it after the meshes are read.
   void warnOfUnused() const;
 
  private:
@@ -23,7 +23,7 @@ class TomlSurfaces {
   void readMaterial(const toml::table& table);
   void readCommon(const TomlSection& s, Material& m) const;
   Relief readRelief(const TomlSection& s, const std::string& prefix) const;
-  // The number of a name that stands before; kNone without the key.
+  // The number of a texture or material defined above; kNone without the key.
   uint32_t texture(const TomlSection& s, const std::string& key) const;
   uint32_t material(const TomlSection& s, const char* key);
 
@@ -31,7 +31,7 @@ class TomlSurfaces {
   const FileNames& names_;
   SceneBuilder& builder_;
   std::map<std::string, uint32_t> textures_, materials_;  // numbers by name
-  std::set<std::string> mixed_;                           // materials that others are made of
+  std::set<std::string> mixed_;                           // materials that mixes use
 };
 
 }  // namespace bnvpl

@@ -8,7 +8,7 @@ Film readFilm(const TomlSection& s) {
   return {s.integer("width", 1, kMaxFilmSide), s.integer("height", 1, kMaxFilmSide)};
 }
 
-// But for the position.
+// Reads everything but the position.
 Camera readCamera(const TomlSection& s, const FilePoint& position, bool mirrored) {
   Camera c;
   if (s.has("look_at") == s.has("forward")) s.fail("needs exactly one of 'look_at' and 'forward'");

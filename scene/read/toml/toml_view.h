@@ -1,4 +1,4 @@
-// [film] and [camera] of a TOML file.
+// Reads [film] and [camera] of a TOML file.
 #pragma once
 
 #include "core/sampling.h"
@@ -9,12 +9,12 @@ namespace bnvpl {
 
 struct TomlView {
   Film film;
-  FilePoint position{};  // of the camera
-  Camera camera;         // but for its position
+  FilePoint position{};  // position of the camera
+  Camera camera;         // everything but its position
 };
 
-// Both sections must be there; `mirrored` counts where the camera does not say whether it mirrors.
-// Throws InputError.
+// Both sections must exist; `mirrored` is the default of the camera's 'mirrored'. Throws
+// InputError.
 TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirrored = false);
 
 inline float radians(double degrees) { return static_cast<float>(degrees) * (kPi / 180.0f); }
