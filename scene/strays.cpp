@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "core/number_text.h"
+
 namespace bnvpl {
 
 namespace {
@@ -143,6 +145,10 @@ Strays Strays::from(const FilePoint& origin) const {
   Strays out = *this;
   for (size_t axis = 0; axis < 3; ++axis) out.middle_[axis] -= origin[axis];
   return out;
+}
+
+std::string distanceText(double distance) {
+  return distance < 1e30 ? shortestText(static_cast<float>(distance)) : shortestText(distance);
 }
 
 }  // namespace bnvpl

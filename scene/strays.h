@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "scene/affine.h"
 
@@ -50,5 +51,8 @@ class Strays {
   size_t count_ = 0;
   double furthest_ = 0.0;
 };
+
+// A distance for a message; floats are spelled as floats.
+std::string distanceText(double distance);
 
 }  // namespace bnvpl

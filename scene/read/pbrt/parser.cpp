@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
-#include <unordered_map>
 #include <utility>
 
-#include "scene/read/pbrt/param_list.h"
-#include "scene/read/pbrt/state.h"
-#include "scene/read/pbrt/text_file.h"
+#include "scene/read/pbrt/parser_class.h"
 
 namespace bnvpl::pbrt {
 
@@ -17,85 +13,7 @@ namespace {
 constexpr size_t kDeepestInclude = 64, kMaxIncludes = 10'000;
 constexpr size_t kMaxAttributes = 64;  // limit on parameters of Attribute for one target
 
-class Parser {
- public:
-  Parser(Description& out, Notes& notes, fs::path folder)
-      : out_(out), notes_(notes), folder_(std::move(folder)) {}
-
-  void readFile(const fs::path& file, const Place* from);
-  void requireClosed() const { states_.requireClosed(end_); }
-
- private:
-  using Directive = void (Parser::*)(const Token&);
-  static const std::unordered_map<std::string_view, Directive>& directives();
-
-  State& now() { return states_.now(); }
-  Entity entity(const Token& at, const char* target = nullptr);
-  void skipUnknown(const Token& at);
-
-  // Transforms.
-  void identity(const Token& at) { states_.setTransform(at.place, {}); }
-  void translate(const Token& at);
-  void scale(const Token& at);
-  void rotate(const Token& at);
-  void look(const Token& at);
-  void transform(const Token& at) { states_.setTransform(at.place, matrix(at)); }
-  void concatTransform(const Token& at) { states_.transformBy(at.place, matrix(at)); }
-  void coordinateSystem(const Token& at);
-  void coordSysTransform(const Token& at);
-  void activeTransform(const Token& at);
-  void transformTimes(const Token&) { numbers<2>(); }
-  Affine matrix(const Token& at);
-
-  // Attributes.
-  void attributeBegin(const Token& at) { states_.push(at.place); }
-  void attributeEnd(const Token& at) { states_.pop(at.place, false, "AttributeBegin"); }
-  void transformBegin(const Token& at) { states_.push(at.place, true); }
-  void transformEnd(const Token& at) { states_.pop(at.place, true, "TransformBegin"); }
-  void attribute(const Token& at);
-  void reverseOrientation(const Token&) { now().reverseOrientation ^= true; }
-  void colorSpace(const Token& at);
-  void mediumInterface(const Token& at);
-  void worldBegin(const Token& at);
-
-  // Camera, film, materials, lights and shapes.
-  void camera(const Token& at);
-  void film(const Token& at) { out_.film = entity(at); }
-  void material(const Token& at);
-  void namedMaterial(const Token& at);
-  void makeNamedMaterial(const Token& at);
-  void makeNamedMedium(const Token& at);
-  void texture(const Token& at);
-  void lightSource(const Token& at);
-  void areaLightSource(const Token& at);
-  void shape(const Token& at);
-  void objectBegin(const Token& at);
-  void objectEnd(const Token& at);
-  void objectInstance(const Token& at);
-
-  // Files and ignored directives.
-  void include(const Token& at);
-  void import(const Token& at);
-  void ignoreEntity(const Token& at) { entity(at); }
-  void option(const Token&) { readParams(*tokens_, now().colorSpace, notes_); }
-  void ignore(const Token&) {}
-
-  template <size_t kCount>
-  std::array<double, kCount> numbers() {
-    return readNumbers<kCount>(*tokens_);
-  }
-  std::string string(const char* what) { return readString(*tokens_, what); }
-
-  Description& out_;
-  Notes& notes_;
-  fs::path folder_;
-  States states_;
-  Tokens* tokens_ = nullptr;       // tokens of the file that is being read
-  std::vector<fs::path> reading_;  // that file and those that include it
-  size_t included_ = 0;
-  Object* object_ = nullptr;  // the object that ObjectBegin opened
-  Place objectPlace_, end_;
-};
+}  // namespace
 
 const std::unordered_map<std::string_view, Parser::Directive>& Parser::directives() {
   static const std::unordered_map<std::string_view, Directive> all{
@@ -308,111 +226,6 @@ void Parser::worldBegin(const Token& at) {
   now().transformsStart = true;
   states_.coordinateSystems["world"] = {};
 }
-
-void Parser::camera(const Token& at) {
-  out_.camera = entity(at);
-  out_.cameraFromWorld = now().transform;
-  const auto worldFromCamera = inverse(now().transform);
-  if (!worldFromCamera) failAt(at.place, "the camera's transform has no inverse");
-  states_.coordinateSystems["camera"] = *worldFromCamera;
-}
-
-void Parser::material(const Token& at) {
-  out_.materials.push_back(entity(at, "material"));
-  now().material = {"", static_cast<uint32_t>(out_.materials.size() - 1), at.place};
-}
-
-void Parser::namedMaterial(const Token& at) {
-  now().material = {string("a name in quotes"), kNone, at.place};
-}
-
-void Parser::makeNamedMaterial(const Token& at) {
-  const std::string name = string("a name in quotes");
-  Entity e;
-  e.place = at.place;
-  e.colorSpace = now().colorSpace;
-  e.params = readParams(*tokens_, now().colorSpace, notes_);
-  const auto set = now().attributes.find("material");
-  if (set != now().attributes.end()) e.params.setFallback(set->second);
-  if (!e.params.has("type")) failAt(at.place, "material '" + name + "' needs a \"string type\"");
-  e.type = e.params.text("type");
-  if (!out_.namedMaterials.try_emplace(name, std::move(e)).second)
-    failAt(at.place, "material '" + name + "' is there already; choose another name");
-}
-
-void Parser::makeNamedMedium(const Token& at) {
-  const std::string name = string("a name in quotes");
-  Entity e;
-  e.place = at.place;
-  e.params = readParams(*tokens_, now().colorSpace, notes_);
-  e.type = e.params.text("type");
-  notes_.add(at.place, "MakeNamedMedium: media are not rendered; the space is taken as empty");
-  out_.media.try_emplace(name, std::move(e));
-}
-
-void Parser::texture(const Token& at) {
-  const std::string name = string("a name in quotes"), type = string("spectrum or float");
-  if (type != "spectrum" && type != "float")
-    failAt(at.place, "texture '" + name + "' must be a \"spectrum\" or \"float\" one");
-  TextureEntity t{entity(at, "texture"), type == "spectrum", now().transform};
-  // Spectrum and float textures have separate names.
-  if (!out_.textures.try_emplace(type + " " + name, std::move(t)).second)
-    failAt(at.place, type + " texture '" + name + "' is there already; choose another name");
-}
-
-void Parser::lightSource(const Token& at) {
-  out_.lights.push_back({entity(at, "light"), now().transform});
-}
-
-void Parser::areaLightSource(const Token& at) {
-  out_.areaLights.push_back(entity(at, "light"));
-  now().areaLight = static_cast<uint32_t>(out_.areaLights.size() - 1);
-}
-
-void Parser::shape(const Token& at) {
-  const State& s = now();
-  Shape shape{entity(at, "shape"), s.transform, s.reverseOrientation,
-              s.material,          s.areaLight, s.hasMedium};
-  if (object_ && shape.areaLight != kNone) {
-    notes_.add(at.place, "a lamp within an object does not shine: pbrt has no such lamps");
-    shape.areaLight = kNone;
-  }
-  (object_ ? object_->shapes : out_.shapes).push_back(std::move(shape));
-}
-
-void Parser::objectBegin(const Token& at) {
-  if (object_) failAt(at.place, "ObjectBegin stands within an object; close it by ObjectEnd");
-  const std::string name = string("a name in quotes");
-  const auto [it, isNew] = out_.objects.try_emplace(name);
-  if (!isNew) failAt(at.place, "object '" + name + "' is there already; choose another name");
-  states_.push(at.place);
-  object_ = &it->second;
-}
-
-void Parser::objectEnd(const Token& at) {
-  if (!object_) failAt(at.place, "ObjectEnd closes what no ObjectBegin has opened");
-  states_.pop(at.place, false, "ObjectBegin");
-  object_ = nullptr;
-}
-
-void Parser::objectInstance(const Token& at) {
-  const std::string name = string("a name in quotes");
-  if (object_) failAt(at.place, "an object cannot hold an ObjectInstance; pbrt nests none");
-  out_.instances.push_back({name, now().transform, at.place});
-}
-
-void Parser::include(const Token& at) {
-  const std::string name = string("a file in quotes");
-  readFile((folder_ / name).lexically_normal(), &at.place);
-}
-
-void Parser::import(const Token& at) {
-  states_.push(at.place);
-  include(at);
-  states_.pop(at.place, false, "Import");
-}
-
-}  // namespace
 
 void parse(const fs::path& file, Description& out, Notes& notes) {
   Parser parser(out, notes, file.parent_path());

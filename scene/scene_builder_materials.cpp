@@ -1,0 +1,205 @@
+// The part of SceneBuilder that adds materials, textures and images.
+#include <algorithm>
+#include <cassert>
+
+#include "core/files.h"
+#include "core/read_file.h"
+#include "scene/material_inputs.h"
+#include "scene/scene_builder.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Maximum number of lookups of an expression. Shared operands can make it exponential in the number
+// of expressions.
+constexpr uint32_t kMaxLookups = 1000;
+
+constexpr const char* kGrey = "it is grey";
+
+bool hasTexture(const Material& m) {
+  if (const auto* p = std::get_if<PhongModel>(&m.model)) {
+    if (p->diffuseMap != kNone || p->glossyMap != kNone) return true;
+  }
+  bool expression = false;
+  forEachExpression(m, [&](uint32_t number) { expression |= number != kNone; });
+  return expression || m.opacityMap != kNone;
+}
+
+}  // namespace
+
+uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& otherwise) {
+  if (use.bytes) return textures_.add(use);
+  addFile(use.file);
+  if (!isRegularFile(use.file)) {
+    warn(use.file.string() + ": no such texture; " + otherwise);
+    return kNone;
+  }
+  return textures_.add(use);
+}
+
+uint32_t SceneBuilder::addReplacement(Material material) {
+  assert(!material.name.empty() && !replacements_.contains(material.name));
+  const std::string name = material.name;
+  return replacements_[name] = addMaterial(std::move(material));
+}
+
+uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression image) {
+  image.image = addTexture(use, kGrey);
+  if (image.image == kNone) return addExpression(constantExpression(Vec3{0.5f}));
+  const uint32_t expression = addExpression(image);
+  greyable_.push_back(expression);
+  return expression;
+}
+
+uint32_t SceneBuilder::addMaterial(Material material) {
+  if (const auto it = replacements_.find(material.name); it != replacements_.end()) {
+    replaced_.insert(material.name);
+    return it->second;
+  }
+  uint32_t parts = 1;
+  if (const auto* mix = std::get_if<MixModel>(&material.model)) {
+    for (const uint32_t part : {mix->first, mix->second}) {
+      assert(part == kNone || part < scene_.materials.size());
+      if (part != kNone) parts += mixParts_[part];
+    }
+    if (parts > kMaxLookups) {
+      warn(name() + ": material '" + material.name + "' mixes too many materials; it is grey");
+      material.model = DiffuseModel{};
+      parts = 1;
+    }
+  }
+  mixParts_.push_back(parts);
+  scene_.materials.push_back(std::move(material));
+  return static_cast<uint32_t>(scene_.materials.size() - 1);
+}
+
+uint32_t SceneBuilder::addExpression(const TextureExpression& expression) {
+  uint32_t lookups = 1;
+  for (const uint32_t operand : {expression.first, expression.second, expression.amount}) {
+    assert(operand == kNone || operand < scene_.expressions.size());
+    if (operand != kNone) lookups += lookups_[operand];
+  }
+  if (lookups > kMaxLookups) {
+    warn(name() + ": a texture is made of more than " + std::to_string(kMaxLookups) +
+         " textures; the plain material colour is used");
+    return kNone;
+  }
+  scene_.expressions.push_back(expression);
+  lookups_.push_back(lookups);
+  return static_cast<uint32_t>(scene_.expressions.size() - 1);
+}
+
+std::optional<Vec3> SceneBuilder::constantValue(uint32_t expression) const {
+  if (expression == kNone) return Vec3(1);
+  const TextureExpression& e = scene_.expressions[expression];
+  if (e.kind == TextureExpression::Kind::Checkerboard) return {};
+  if (e.kind == TextureExpression::Kind::Image && e.image != kNone) return {};
+  for (const uint32_t operand : {e.first, e.second, e.amount}) {
+    if (operand != kNone && !constantValue(operand)) return {};
+  }
+  return TextureEvaluator(scene_.expressions, {}).at(expression, 0.0f, 0.0f);
+}
+
+uint32_t SceneBuilder::greyMaterial() {
+  if (grey_ == kNone) {
+    Material grey;
+    grey.phong().diffuse = Vec3{0.5f};
+    grey_ = addMaterial(std::move(grey));
+  }
+  return grey_;
+}
+
+EnvironmentImage SceneBuilder::readEnvironment(const fs::path& image) {
+  const ReadGuard guard(image);
+  size_t negative = 0;
+  EnvironmentImage radiance = loadEnvironment(image, negative);
+  guard.check();
+  warnOfNegative(image.string(), negative, radiance.radiance.size());
+  return radiance;
+}
+
+void SceneBuilder::warnOfNegative(const std::string& image, size_t negative, size_t pixels) {
+  if (negative == 0) return;
+  warn(image + ": " + std::to_string(negative) + " of " + std::to_string(pixels) +
+       " pixels have negative values, which count as 0");
+}
+
+uint32_t SceneBuilder::addEnvironment(const fs::path& image, EnvironmentImage radiance) {
+  scene_.environments.push_back(std::move(radiance));
+  addFile(image);
+  return static_cast<uint32_t>(scene_.environments.size() - 1);
+}
+
+// Replaces the pool's numbers in all maps by indices into Scene::textures.
+void SceneBuilder::resolveTextures() {
+  TexturePool::Result read = textures_.take();
+  std::vector<bool> grey(read.indexOf.size(), false);
+  for (const uint32_t e : greyable_) grey[scene_.expressions[e].image] = true;
+  size_t next = 0;
+  for (size_t i = 0; i < read.indexOf.size(); ++i) {
+    if (read.indexOf[i] == TexturePool::kUnreadable)
+      warn(read.problems.at(next++) + "; " + (grey[i] ? kGrey : kPlainColour));
+  }
+  scene_.textures = std::move(read.textures);
+  for (const Texture& t : scene_.textures) warnOfNegative(t.name, t.negative, t.floats.size() / 4);
+  static_assert(TexturePool::kUnreadable == kNone);
+  const auto resolve = [&](uint32_t& map) {
+    if (map != kNone) map = read.indexOf.at(map);
+  };
+  for (Material& m : scene_.materials) {
+    resolve(m.opacityMap);
+    if (auto* phong = std::get_if<PhongModel>(&m.model)) {
+      resolve(phong->diffuseMap);
+      resolve(phong->glossyMap);
+    }
+  }
+  for (TextureExpression& e : scene_.expressions) resolve(e.image);
+  for (const uint32_t e : greyable_) {
+    if (scene_.expressions[e].image == kNone)
+      scene_.expressions[e] = constantExpression(Vec3{0.5f});
+  }
+}
+
+// Folds constant textures into the parameters, so that they also apply to faces without texture
+// coordinates.
+void SceneBuilder::foldConstants() {
+  std::vector<std::optional<Vec3>> constants;
+  for (uint32_t e = 0; e < scene_.expressions.size(); ++e) constants.push_back(constantValue(e));
+  const auto take = [&](uint32_t& texture, const auto& fold) {
+    if (texture == kNone || !constants[texture]) return;
+    fold(*constants[texture]);
+    texture = kNone;
+  };
+  const auto field = [&]<typename Field>(const char*, Field& f) {
+    if constexpr (Like<Field, Colour>)
+      take(f.texture, [&](Vec3 v) { f.value = f.value * v; });
+    else if constexpr (Like<Field, Scalar>)
+      take(f.texture, [&](Vec3 v) { f.value *= v.x; });
+  };
+  for (Material& m : scene_.materials) {
+    std::visit([&](auto& model) { forEachField(model, field); }, m.model);
+    take(m.emissionTexture, [&](Vec3 v) { m.emission = m.emission * v; });
+    take(m.opacityTexture, [&](Vec3 v) { m.opacity *= v.x; });
+    for (Relief* relief : {&m.relief, &m.coatRelief}) take(relief->bumpMap, [](Vec3) {});
+  }
+}
+
+void SceneBuilder::warnOfMissingUvs() {
+  size_t next = 0;
+  for (const Part& part : parts_) {
+    std::vector<bool> warned(scene_.materials.size(), false);
+    for (; next < part.endTriangle; ++next) {
+      const Triangle& t = scene_.triangles[next];
+      const Material& m = scene_.materials[t.material];
+      if (warned[t.material] || !hasTexture(m)) continue;
+      if (std::find(t.uv.begin(), t.uv.end(), kNone) == t.uv.end()) continue;
+      warned[t.material] = true;
+      warn(part.file.string() + ": material '" + m.name +
+           "' has a texture but faces without texture coordinates; "
+           "the plain material colour is used there");
+    }
+  }
+}
+
+}  // namespace bnvpl
