@@ -28,16 +28,28 @@ def measure(folder: Path, name_filter: str, seconds: float) -> dict[str, float]:
     found = {}
     for program in PROGRAMS:
         if not (folder / program).is_file():
-            sys.exit(f"compare.py: {folder / program}: no such program; build it: cmake --build --preset release")
-        done = subprocess.run([folder / program, f"--benchmark_filter={name_filter}", "--benchmark_format=json",
-                               f"--benchmark_min_time={seconds}"], capture_output=True, text=True)
+            sys.exit(
+                f"compare.py: {folder / program}: no such program; build it: cmake --build --preset release"
+            )
+        done = subprocess.run(
+            [
+                folder / program,
+                f"--benchmark_filter={name_filter}",
+                "--benchmark_format=json",
+                f"--benchmark_min_time={seconds}",
+            ],
+            capture_output=True,
+            text=True,
+        )
         if done.returncode != 0:
             sys.exit(f"compare.py: {program} failed: {done.stderr.strip()}")
         if not done.stdout.strip():
             continue  # nothing of that name
         for row in json.loads(done.stdout)["benchmarks"]:
             where = f"{scene}: " if program == "bench_stages" else ""
-            found[where + row["name"].replace("/process_time", "").replace("/real_time", "")] = row["real_time"]
+            found[where + row["name"].replace("/process_time", "").replace("/real_time", "")] = row[
+                "real_time"
+            ]
     return found
 
 
@@ -46,17 +58,29 @@ def show(now: dict[str, float], then: dict) -> None:
     for name, value in now.items():
         before = then.get("milliseconds", {}).get(name)
         ratio = f"{value / before:7.2f}" if before else "      -"
-        mark = "" if not before or abs(value / before - 1) < NOTABLE else " slower" if value > before else " faster"
+        mark = (
+            ""
+            if not before or abs(value / before - 1) < NOTABLE
+            else " slower"
+            if value > before
+            else " faster"
+        )
         print(f"{name:52} {value:10.1f} {before if before else float('nan'):10.1f} {ratio}{mark}")
     if then:
         print(f"then: commit {then['commit']} on {then['machine']}")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--filter", default=".", help="regular expression on names")
-    parser.add_argument("--min-time", type=float, default=0.3, help="seconds for each (default 0.3)")
-    parser.add_argument("--runs", type=int, default=3, help="of which the least time counts (default 3)")
+    parser.add_argument(
+        "--min-time", type=float, default=0.3, help="seconds for each (default 0.3)"
+    )
+    parser.add_argument(
+        "--runs", type=int, default=3, help="of which the least time counts (default 3)"
+    )
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
     parser.add_argument("--save", action="store_true", help="write bench/baseline.json")
     options = parser.parse_args()
@@ -71,10 +95,20 @@ def main() -> None:
         sys.exit(f"compare.py: no benchmark matches '{options.filter}'")
     show(now, then)
     if options.save:
-        commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-        BASELINE.write_text(json.dumps({"commit": commit.stdout.strip(), "machine": f"{os.cpu_count()} cores, "
-                                        f"{platform.machine()}", "milliseconds": then.get("milliseconds", {}) | now},
-                                       indent=1) + "\n")
+        commit = subprocess.run(
+            ["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True
+        )
+        BASELINE.write_text(
+            json.dumps(
+                {
+                    "commit": commit.stdout.strip(),
+                    "machine": f"{os.cpu_count()} cores, {platform.machine()}",
+                    "milliseconds": then.get("milliseconds", {}) | now,
+                },
+                indent=1,
+            )
+            + "\n"
+        )
 
 
 if __name__ == "__main__":

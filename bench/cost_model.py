@@ -40,7 +40,9 @@ def make_scene(name, triangles, folder):
     here = folder / f"{name}-{triangles}"
     if name == "size":  # the room of size.py: no walls, a point light
         here.mkdir()
-        file = size.Size(argparse.Namespace(bin=None, most=1.0, cpu=True), here).room(triangles, 0, 1)
+        file = size.Size(argparse.Namespace(bin=None, most=1.0, cpu=True), here).room(
+            triangles, 0, 1
+        )
         made = sum(line.startswith("f ") for line in open(here / "size.obj"))
     else:
         file, made = scenes.cut_scene(ROOT / f"scenes/{name}/scene.toml", here, triangles)
@@ -55,14 +57,25 @@ def measure_all(bin_folder, had):
     """[{role, scene, stage, counts, figures}]. Repeats of a run lie apart in time; each round takes those still wanted."""
     with tempfile.TemporaryDirectory(prefix="bnvpl-cost-") as name:
         bench, known, runs, rows = measure.Bench(bin_folder, Path(name)), {}, [], []
-        groups = [("fit", design.FITTED), ("check", design.CHECKED),
-                  ("scale", [(*scene, design.SCALED_BY) for scene in design.OTHERS]),
-                  ("other", [(*scene, design.OTHER_RUNS) for scene in design.OTHERS])]
-        for role, (scene, triangles, chosen) in [(role, group) for role, members in groups for group in members]:
+        groups = [
+            ("fit", design.FITTED),
+            ("check", design.CHECKED),
+            ("scale", [(*scene, design.SCALED_BY) for scene in design.OTHERS]),
+            ("other", [(*scene, design.OTHER_RUNS) for scene in design.OTHERS]),
+        ]
+        for role, (scene, triangles, chosen) in [
+            (role, group) for role, members in groups for group in members
+        ]:
             if (key := (scene, triangles)) not in known:
                 known[key] = make_scene(scene, triangles, Path(name))
             for stage, given in chosen:
-                row = {"role": role, "scene": scene, "triangles": known[key].triangles, "stage": stage, "counts": given}
+                row = {
+                    "role": role,
+                    "scene": scene,
+                    "triangles": known[key].triangles,
+                    "stage": stage,
+                    "counts": given,
+                }
                 if found := [each for each in had if same_run(each, row)]:
                     rows += found
                 else:
@@ -70,7 +83,11 @@ def measure_all(bin_folder, had):
         while wanted := [(scene, run) for scene, run in runs if run.wanted()]:
             for scene, run in wanted:
                 run.taken.append(bench.measure(scene, run.row["stage"], counts_of(run.row)))
-            print(f"{len(wanted)} runs of {len(runs)}, {bench.spent_s:.0f} CPU s so far", file=sys.stderr, flush=True)
+            print(
+                f"{len(wanted)} runs of {len(runs)}, {bench.spent_s:.0f} CPU s so far",
+                file=sys.stderr,
+                flush=True,
+            )
         return rows + [run.result() for _, run in runs]
 
 
@@ -81,9 +98,15 @@ def counts_of(row):
 def fitted(rows):
     """{stage: {figure: {term: rate}}}"""
     chosen = [row for row in rows if row["role"] == "fit"]
-    return {stage: {figure: fit.rates(terms, [(counts_of(row), row[figure]) for row in chosen if row["stage"] == stage])
-                    for figure, terms in figures.items()}
-            for stage, figures in cost.TERMS.items()}
+    return {
+        stage: {
+            figure: fit.rates(
+                terms, [(counts_of(row), row[figure]) for row in chosen if row["stage"] == stage]
+            )
+            for figure, terms in figures.items()
+        }
+        for stage, figures in cost.TERMS.items()
+    }
 
 
 def scales(model, rows):
@@ -93,7 +116,9 @@ def scales(model, rows):
         if row["role"] == "scale":
             loading = model.loading_s(row["stage"], counts_of(row))
             work = model.predict(row["stage"], "cpu_s", counts_of(row)) - loading
-            found.setdefault(row["scene"], {})[row["stage"]] = float(f"{max(0.0, row['cpu_s'] - loading) / work:.3g}")
+            found.setdefault(row["scene"], {})[row["stage"]] = float(
+                f"{max(0.0, row['cpu_s'] - loading) / work:.3g}"
+            )
     return found
 
 
@@ -105,20 +130,31 @@ def checks(model, rows):
             stage, counts = row["stage"], counts_of(row)
             said = {figure: model.predict(stage, figure, counts) for figure in cost.TERMS[stage]}
             check = {key: row[key] for key in ("scene", "triangles", "stage", "counts")}
-            check["figures"] = {figure: [row[figure], float(f"{value:.4g}")] for figure, value in said.items()}
+            check["figures"] = {
+                figure: [row[figure], float(f"{value:.4g}")] for figure, value in said.items()
+            }
             if row["role"] == "other":
                 loading = model.loading_s(stage, counts)
-                check["scaled_cpu_s"] = float(f"{loading + scale[row['scene']][stage] * (said['cpu_s'] - loading):.4g}")
+                check["scaled_cpu_s"] = float(
+                    f"{loading + scale[row['scene']][stage] * (said['cpu_s'] - loading):.4g}"
+                )
             found.append(check)
     return found
 
 
-ROWS = output_guard.json_kind("runs of cost_model.py", lambda rows: isinstance(rows, list) and all(
-    isinstance(row, dict) and "role" in row and "stage" in row for row in rows))
+ROWS = output_guard.json_kind(
+    "runs of cost_model.py",
+    lambda rows: (
+        isinstance(rows, list)
+        and all(isinstance(row, dict) and "role" in row and "stage" in row for row in rows)
+    ),
+)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
     parser.add_argument("--keep", type=Path, metavar="F")
     parser.add_argument("--table", action="store_true")
@@ -129,11 +165,18 @@ def main():
         had = json.loads(options.keep.read_text()) if options.keep and options.keep.exists() else []
         rows = measure_all(options.bin.resolve(), had)
         if options.keep:
-            output_guard.or_exit(output_guard.write, options.keep, json.dumps(rows, indent=1) + "\n", ROWS, "--keep")
+            output_guard.or_exit(
+                output_guard.write, options.keep, json.dumps(rows, indent=1) + "\n", ROWS, "--keep"
+            )
         rates = fitted(rows)
         model = cost.Model(rates)
-        cost.MODEL.write_text(json.dumps({"rates": rates, "scales": scales(model, rows), "checks": checks(model, rows)},
-                                         indent=1) + "\n")
+        cost.MODEL.write_text(
+            json.dumps(
+                {"rates": rates, "scales": scales(model, rows), "checks": checks(model, rows)},
+                indent=1,
+            )
+            + "\n"
+        )
     print(cost_tables.tables(json.loads(cost.MODEL.read_text())), end="")
 
 

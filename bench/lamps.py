@@ -25,9 +25,14 @@ LAMP_M2 = 1.6  # all lamps together
 def quads(lamps):
     """(material, four corners)"""
     w, h, d = WIDTH, HEIGHT, DEPTH
-    walls = [((0, 0, 0), (0, 0, d), (w, 0, d), (w, 0, 0)), ((0, h, 0), (w, h, 0), (w, h, d), (0, h, d)),
-             ((0, 0, 0), (w, 0, 0), (w, h, 0), (0, h, 0)), ((0, 0, d), (0, h, d), (w, h, d), (w, 0, d)),
-             ((0, 0, 0), (0, h, 0), (0, h, d), (0, 0, d)), ((w, 0, 0), (w, 0, d), (w, h, d), (w, h, 0))]
+    walls = [
+        ((0, 0, 0), (0, 0, d), (w, 0, d), (w, 0, 0)),
+        ((0, h, 0), (w, h, 0), (w, h, d), (0, h, d)),
+        ((0, 0, 0), (w, 0, 0), (w, h, 0), (0, h, 0)),
+        ((0, 0, d), (0, h, d), (w, h, d), (w, 0, d)),
+        ((0, 0, 0), (0, h, 0), (0, h, d), (0, 0, d)),
+        ((w, 0, 0), (w, 0, d), (w, h, d), (w, h, 0)),
+    ]
     for x in (2.0, 4.0, 6.0, 8.0):
         walls.append(((x, 0, 2), (x, 0, 8), (x, 2.2, 8), (x, 2.2, 2)))
         walls.append(((x + 0.05, 0, 2), (x + 0.05, 2.2, 2), (x + 0.05, 2.2, 8), (x + 0.05, 0, 8)))
@@ -35,7 +40,15 @@ def quads(lamps):
     draw, half = random.Random(1), 0.5 * math.sqrt(LAMP_M2 / lamps)
     for k in range(lamps):
         x, y, z = draw.uniform(0.5, w - 0.5), h - 0.01, draw.uniform(0.5, d - 0.5)
-        yield f"lamp{k}", ((x - half, y, z - half), (x + half, y, z - half), (x + half, y, z + half), (x - half, y, z + half))
+        yield (
+            f"lamp{k}",
+            (
+                (x - half, y, z - half),
+                (x + half, y, z - half),
+                (x + half, y, z + half),
+                (x - half, y, z + half),
+            ),
+        )
 
 
 def write_room(folder, lamps):
@@ -48,8 +61,10 @@ def write_room(folder, lamps):
     lamp = "".join(f"newmtl lamp{k}\nKd 0 0 0\nKe 10 10 10\n" for k in range(lamps))
     (folder / "room.mtl").write_text("newmtl white\nKd 0.7 0.7 0.7\n" + lamp)
     scene = folder / "room.toml"
-    scene.write_text('[film]\nwidth = 160\nheight = 120\n[camera]\nposition = [0.5, 1.6, 0.5]\nforward = [1.0, -0.1, 1.0]\n'
-                     'up = [0.0, 1.0, 0.0]\nvertical_fov_deg = 60\n[[mesh]]\nfile = "room.obj"\n')
+    scene.write_text(
+        "[film]\nwidth = 160\nheight = 120\n[camera]\nposition = [0.5, 1.6, 0.5]\nforward = [1.0, -0.1, 1.0]\n"
+        'up = [0.0, 1.0, 0.0]\nvertical_fov_deg = 60\n[[mesh]]\nfile = "room.obj"\n'
+    )
     return scene
 
 
@@ -72,16 +87,26 @@ def measure(tools, folder, lamps):
     found = {}
     for only in ("direct", "all"):
         images = [folder / f"{seed}.exr" for seed in (1, 2)]
-        spent = min(run(tools / "vpl-render", scene, lit, "--only", only, "--seed", seed, "-o", image)
-                    for seed, image in enumerate(images, 1))
-        compared = json.loads(subprocess.run([tools / "vpl-inspect", "compare", *images, "--json"], check=True, text=True,
-                                             stdout=subprocess.PIPE).stdout)
+        spent = min(
+            run(tools / "vpl-render", scene, lit, "--only", only, "--seed", seed, "-o", image)
+            for seed, image in enumerate(images, 1)
+        )
+        compared = json.loads(
+            subprocess.run(
+                [tools / "vpl-inspect", "compare", *images, "--json"],
+                check=True,
+                text=True,
+                stdout=subprocess.PIPE,
+            ).stdout
+        )
         found[only] = spent, compared["rmse_over_mean"] / math.sqrt(2.0)
     return found
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
     parser.add_argument("--lamps", default="10,1000")
     options = parser.parse_args()
@@ -90,9 +115,14 @@ def main():
         with tempfile.TemporaryDirectory(prefix="bnvpl-lamps-") as name:
             found = measure(options.bin.resolve(), Path(name), lamps)
         first = first or found
-        print(f"{lamps} lamps: " + "; ".join(
-            f"{only} {spent:.2f} CPU s ({spent / first[only][0]:.2f} times), noise / mean {noise:.4f}"
-            for only, (spent, noise) in found.items()), flush=True)
+        print(
+            f"{lamps} lamps: "
+            + "; ".join(
+                f"{only} {spent:.2f} CPU s ({spent / first[only][0]:.2f} times), noise / mean {noise:.4f}"
+                for only, (spent, noise) in found.items()
+            ),
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ begins with <!-- session goes on --> runs in the folder that the session before 
 Hashes and builds differ from run to run: NORMAL says what is written instead. Lines of progress, times and
 memory are left out. Both modes fail where a relative link in any page leads to no file or no heading.
 """
+
 import argparse
 import json
 import os
@@ -32,12 +33,13 @@ from pathlib import Path
 import make_guide_pictures
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.append(str(ROOT / 'bench/cost'))
+sys.path.append(str(ROOT / "bench/cost"))
 import cost_tables  # noqa: E402
-STAGES = ('vpl-place', 'vpl-eliminate', 'vpl-estimate', 'vpl-render')
+
+STAGES = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render")
 
 # What the blocks' commands find. Small, so that a test can run it.
-SETUP = '''
+SETUP = """
 ln -s '{root}/scenes' scenes
 ln -s '{root}/pipelines' pipelines
 mkdir -p build/release
@@ -47,87 +49,127 @@ vpl-eliminate candidates.vpl -o vpls.vpl -n 1k --quiet
 vpl-estimate scenes/cornell/scene.toml vpls.vpl -o lit.vpl --photons 200k --quiet
 vpl-render scenes/cornell/scene.toml lit.vpl -o image.exr --size 80x80 --layers all --quiet
 vpl-render scenes/cornell/scene.toml -o reference.exr --integrator path --spp 64 --size 80x80 --layers all --quiet
-'''
+"""
 
 # Build identities and hashes; progress, seconds and memory.
-NORMAL = ((re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
-          (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'),
-          (re.compile(r'^vpl-\w+: (.* of \S+ \(\d+ %\)(, .* left)?|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
+NORMAL = (
+    (re.compile(r"\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b"), r"\1"),
+    (re.compile(r"\b[0-9a-f]{16}\b"), "0123456789abcdef"),
+    (
+        re.compile(
+            r"^vpl-\w+: (.* of \S+ \(\d+ %\)(, .* left)?|\d+\.\d\d s, peak memory \d+ MiB)\n", re.M
+        ),
+        "",
+    ),
+)
 
-SESSION = re.compile(r'(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)',
-                     re.S)
+SESSION = re.compile(
+    r"(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)",
+    re.S,
+)
 # Blocks that other text than a session fills: <!-- made: NAME --> ... <!-- end -->
-MADE = re.compile(r'(<!-- made: (?P<name>\w+) -->\n)(?P<text>.*?)(<!-- end -->)', re.S)
+MADE = re.compile(r"(<!-- made: (?P<name>\w+) -->\n)(?P<text>.*?)(<!-- end -->)", re.S)
 
 
 def setup_block(_):
-    return '```sh\n' + ''.join(f'{line.removesuffix(" --quiet")}\n' for line in SETUP.split('\n')
-                               if line.startswith('vpl-')) + '```\n'
+    return (
+        "```sh\n"
+        + "".join(
+            f"{line.removesuffix(' --quiet')}\n"
+            for line in SETUP.split("\n")
+            if line.startswith("vpl-")
+        )
+        + "```\n"
+    )
 
 
 def recipes_block(_):
-    return ''.join(f'{row}\n' for row in make_guide_pictures.table())
+    return "".join(f"{row}\n" for row in make_guide_pictures.table())
 
 
 def methods_block(bench):
     """The methods of all stages, each with its page; for pages of docs/."""
-    rows = ['| option | methods |', '|---|---|']
+    rows = ["| option | methods |", "|---|---|"]
     for tool in STAGES:
-        for slot in bench.spec(tool)['slots']:
-            folder = f'../tools/{tool.removeprefix("vpl-")}/' + ('' if slot['name'] == 'method' else f'{slot["name"]}/')
-            names = sorted((m['name'] for m in slot['methods']), key=lambda name: (name != slot['default'], name))
-            links = [f'[{name}]({folder}{name.replace("-", "_")}/theory.md)' for name in names]
-            rows.append(f'| `{tool} --{slot["name"]}` | **{links[0]}**{"".join(f", {link}" for link in links[1:])} |')
-    return ''.join(f'{row}\n' for row in rows)
+        for slot in bench.spec(tool)["slots"]:
+            folder = f"../tools/{tool.removeprefix('vpl-')}/" + (
+                "" if slot["name"] == "method" else f"{slot['name']}/"
+            )
+            names = sorted(
+                (m["name"] for m in slot["methods"]),
+                key=lambda name: (name != slot["default"], name),
+            )
+            links = [f"[{name}]({folder}{name.replace('-', '_')}/theory.md)" for name in names]
+            rows.append(
+                f"| `{tool} --{slot['name']}` | **{links[0]}**{''.join(f', {link}' for link in links[1:])} |"
+            )
+    return "".join(f"{row}\n" for row in rows)
 
 
 def cost_block(part):
     """A table of pipelines/cost_model.json, which bench/cost_model.py has measured."""
-    return ''.join(f'{row}\n' for row in part(json.loads((ROOT / 'pipelines/cost_model.json').read_text())))
+    return "".join(
+        f"{row}\n" for row in part(json.loads((ROOT / "pipelines/cost_model.json").read_text()))
+    )
 
 
-BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block,
-          'cost_rates': lambda _: cost_block(cost_tables.rates), 'cost_checks': lambda _: cost_block(cost_tables.checks)}
+BLOCKS = {
+    "setup": setup_block,
+    "recipes": recipes_block,
+    "methods": methods_block,
+    "cost_rates": lambda _: cost_block(cost_tables.rates),
+    "cost_checks": lambda _: cost_block(cost_tables.checks),
+}
 
 
 def normal(text):
     for pattern, instead in NORMAL:
         text = pattern.sub(instead, text)
-    return '\n'.join(line.rstrip() for line in text.splitlines()) + '\n'
+    return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
 
 
 def same(a, b):
     """Equal but for the last digits of numbers, which depend on the processor: by 2 % or a unit of the last one shown."""
-    number = re.compile(r'-?\d+(?:\.\d+)?(?:e[-+]?\d+)?')
-    if number.sub('#', a) != number.sub('#', b):
+    number = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+    if number.sub("#", a) != number.sub("#", b):
         return False
 
     def unit(x):
-        digits, _, exponent = x.partition('e')
-        return 10.0 ** (int(exponent or 0) - len(digits.partition('.')[2]))
+        digits, _, exponent = x.partition("e")
+        return 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
 
-    return all(abs(float(x) - float(y)) <= max(0.02 * max(abs(float(x)), abs(float(y))), 1.001 * max(unit(x), unit(y)))
-               for x, y in zip(number.findall(a), number.findall(b)))
+    return all(
+        abs(float(x) - float(y))
+        <= max(0.02 * max(abs(float(x)), abs(float(y))), 1.001 * max(unit(x), unit(y)))
+        for x, y in zip(number.findall(a), number.findall(b))
+    )
 
 
 class Bench:
     def __init__(self, bin_folder, folder):
         self.folder = folder
         folder.mkdir()
-        self.environment = dict(os.environ, PATH=f'{bin_folder}:{os.environ["PATH"]}', COLUMNS='100', LC_ALL='C.UTF-8')
-        for name in 'MAKEFLAGS', 'MAKELEVEL', 'NINJA_STATUS':
+        self.environment = dict(
+            os.environ, PATH=f"{bin_folder}:{os.environ['PATH']}", COLUMNS="100", LC_ALL="C.UTF-8"
+        )
+        for name in "MAKEFLAGS", "MAKELEVEL", "NINJA_STATUS":
             self.environment.pop(name, None)
         done = self.run(SETUP.format(root=ROOT, bin=bin_folder))
         if done.returncode:
-            raise SystemExit(f'make_docs: the set-up failed: {done.stderr}')
+            raise SystemExit(f"make_docs: the set-up failed: {done.stderr}")
 
     def run(self, command):
-        return subprocess.run(['bash', '-euc', command], cwd=self.folder, env=self.environment, text=True,
-                              capture_output=True)
+        return subprocess.run(
+            ["bash", "-euc", command],
+            cwd=self.folder,
+            env=self.environment,
+            text=True,
+            capture_output=True,
+        )
 
     def spec(self, tool):
         """The tool's options and methods."""
-        return json.loads(self.run(f'{tool} --help-json').stdout)
+        return json.loads(self.run(f"{tool} --help-json").stdout)
 
     def copy(self, folder):
         shutil.copytree(self.folder, folder, symlinks=True)
@@ -135,131 +177,162 @@ class Bench:
 
     def session(self, text, folder):
         """The commands of a session, each with what it prints, as one shell runs them in the folder."""
-        commands = [line[2:] for line in text.splitlines() if line.startswith('$ ')]
-        marker = '\x1e'
-        script = 'status=0\n' + ''.join(
-            f"printf '{marker}'; (exit $status); {{ {command}\n}} 2>&1; status=$?\n" for command in commands)
-        done = subprocess.run(['bash', '-c', script], cwd=folder, env=self.environment, text=True, capture_output=True)
+        commands = [line[2:] for line in text.splitlines() if line.startswith("$ ")]
+        marker = "\x1e"
+        script = "status=0\n" + "".join(
+            f"printf '{marker}'; (exit $status); {{ {command}\n}} 2>&1; status=$?\n"
+            for command in commands
+        )
+        done = subprocess.run(
+            ["bash", "-c", script], cwd=folder, env=self.environment, text=True, capture_output=True
+        )
         printed = done.stdout.split(marker)[1:]
-        return ''.join(f'$ {command}\n{normal(output) if output.strip() else ""}'
-                       for command, output in zip(commands, printed))
+        return "".join(
+            f"$ {command}\n{normal(output) if output.strip() else ''}"
+            for command, output in zip(commands, printed)
+        )
 
 
 def option_rows(options):
     for o in options:
-        facts = ', '.join(x for x in (o['unit'], o['range']) if x)
-        needs = f' Needs `{o["needs"]}`.' if o['needs'] else ''
-        kind = o['type'].replace('|', '\\|')
-        text = o['help'].replace('\n  ', '<br>')
-        yield f'| `--{o["name"]}` | {kind} | {o["default"] or "-"} | {facts or "-"} | {text}.{needs} |'
+        facts = ", ".join(x for x in (o["unit"], o["range"]) if x)
+        needs = f" Needs `{o['needs']}`." if o["needs"] else ""
+        kind = o["type"].replace("|", "\\|")
+        text = o["help"].replace("\n  ", "<br>")
+        yield f"| `--{o['name']}` | {kind} | {o['default'] or '-'} | {facts or '-'} | {text}.{needs} |"
 
 
 def options_page(bench):
-    lines = ['# Options', '',
-             'Every option of the stages, as `--help` shows them; made by `docs/make_docs.py` from the tables in the code.',
-             'An option of a method is refused while another method is chosen.', '']
-    head = ['| option | type | default | unit, range | |', '|---|---|---|---|---|']
+    lines = [
+        "# Options",
+        "",
+        "Every option of the stages, as `--help` shows them; made by `docs/make_docs.py` from the tables in the code.",
+        "An option of a method is refused while another method is chosen.",
+        "",
+    ]
+    head = ["| option | type | default | unit, range | |", "|---|---|---|---|---|"]
     for tool in STAGES:
         spec = bench.spec(tool)
-        lines += [f'## {tool}', '', *head, *option_rows(spec['options']), '']
-        for slot in spec['slots']:
-            needs = f' Needs `{slot["needs"]}`.' if slot['needs'] else ''
-            lines += [f'### {tool} --{slot["name"]}', '',
-                      f'{slot["help"][0].upper()}{slot["help"][1:]}; default `{slot["default"]}`.{needs}', '']
-            for method in slot['methods']:
-                lines += [f'- `{method["name"]}`: {method["summary"]}']
-            lines += ['']
-            for method in slot['methods']:
-                if method['options']:
-                    lines += [f'With `--{slot["name"]} {method["name"]}`:', '', *head,
-                              *option_rows(method['options']), '']
-    return '\n'.join(lines)
+        lines += [f"## {tool}", "", *head, *option_rows(spec["options"]), ""]
+        for slot in spec["slots"]:
+            needs = f" Needs `{slot['needs']}`." if slot["needs"] else ""
+            lines += [
+                f"### {tool} --{slot['name']}",
+                "",
+                f"{slot['help'][0].upper()}{slot['help'][1:]}; default `{slot['default']}`.{needs}",
+                "",
+            ]
+            for method in slot["methods"]:
+                lines += [f"- `{method['name']}`: {method['summary']}"]
+            lines += [""]
+            for method in slot["methods"]:
+                if method["options"]:
+                    lines += [
+                        f"With `--{slot['name']} {method['name']}`:",
+                        "",
+                        *head,
+                        *option_rows(method["options"]),
+                        "",
+                    ]
+    return "\n".join(lines)
 
 
 def pages():
-    found = subprocess.run(['git', 'ls-files', '-co', '--exclude-standard', '*.md'], cwd=ROOT, capture_output=True,
-                           text=True).stdout.splitlines()
-    return [f for f in ([ROOT / f for f in found] or sorted(ROOT.glob('**/*.md'))) if f.exists()]
+    found = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard", "*.md"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    ).stdout.splitlines()
+    return [f for f in ([ROOT / f for f in found] or sorted(ROOT.glob("**/*.md"))) if f.exists()]
 
 
 def prose(text):
     """The text without code, in which brackets are no links."""
-    return re.sub(r'`[^`\n]*`', '', re.sub(r'^```.*?^```', '', text, flags=re.S | re.M))
+    return re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```", "", text, flags=re.S | re.M))
 
 
 def anchors(file):
     """Of the file's headings, as GitHub makes them: lower case, blanks as hyphens, other marks dropped."""
     seen = {}
-    for heading in re.findall(r'^#+ +(.*?) *$', re.sub(r'^```.*?^```', '', file.read_text(), flags=re.S | re.M), re.M):
-        name = re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
+    for heading in re.findall(
+        r"^#+ +(.*?) *$", re.sub(r"^```.*?^```", "", file.read_text(), flags=re.S | re.M), re.M
+    ):
+        name = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
         seen[name] = seen.get(name, -1) + 1
-        yield f'{name}-{seen[name]}' if seen[name] else name
+        yield f"{name}-{seen[name]}" if seen[name] else name
 
 
 def broken_links(file):
-    for link in re.findall(r'\]\(([^)\s]+)\)', prose(file.read_text())):
-        if re.match(r'[a-z]+:', link):
+    for link in re.findall(r"\]\(([^)\s]+)\)", prose(file.read_text())):
+        if re.match(r"[a-z]+:", link):
             continue
-        path, _, anchor = link.partition('#')
+        path, _, anchor = link.partition("#")
         target = (file.parent / path).resolve() if path else file
         if not target.exists():
-            yield f'{link}: no such file'
-        elif anchor and (target.suffix != '.md' or anchor not in anchors(target)):
-            yield f'{link}: no such heading'
+            yield f"{link}: no such file"
+        elif anchor and (target.suffix != ".md" or anchor not in anchors(target)):
+            yield f"{link}: no such heading"
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--check', action='store_true', help='write nothing')
-    parser.add_argument('--bin', default=ROOT / 'build/release/bin', type=Path, help='folder of the executables')
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--check", action="store_true", help="write nothing")
+    parser.add_argument(
+        "--bin", default=ROOT / "build/release/bin", type=Path, help="folder of the executables"
+    )
     arguments = parser.parse_args()
     # A shell's background jobs ignore SIGINT, which a session sends; what has a handler here is not ignored there.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     differing = 0
-    with tempfile.TemporaryDirectory(prefix='bnvpl-docs.') as folder:
-        bench = Bench(arguments.bin.resolve(), Path(folder) / 'files')
+    with tempfile.TemporaryDirectory(prefix="bnvpl-docs.") as folder:
+        bench = Bench(arguments.bin.resolve(), Path(folder) / "files")
 
         def renew(file, old, new, what):
             nonlocal differing
             differing += 1
-            print(f'{file.relative_to(ROOT)}: {what} differs')
+            print(f"{file.relative_to(ROOT)}: {what} differs")
             if not arguments.check:
                 file.write_text(new)
 
         for file in pages():
             text = file.read_text()
-            if 'docs/lab' in str(file):
+            if "docs/lab" in str(file):
                 continue
             sessions = 0
 
             def block(match):
                 nonlocal sessions
-                if not match['on']:
+                if not match["on"]:
                     sessions += 1
-                here = Path(folder) / f'{file.stem}-{sessions}'
-                now = bench.session(match['text'], here if here.exists() else bench.copy(here))
-                if same(now, match['text']):
+                here = Path(folder) / f"{file.stem}-{sessions}"
+                now = bench.session(match["text"], here if here.exists() else bench.copy(here))
+                if same(now, match["text"]):
                     return match[0]
-                print(f'  {match["text"].splitlines()[0]}')
+                print(f"  {match['text'].splitlines()[0]}")
                 if arguments.check:
                     print(now)
-                return f'{match[1]}{now}{match[4]}'
+                return f"{match[1]}{now}{match[4]}"
 
             new = SESSION.sub(block, text)
-            new = MADE.sub(lambda match: f'{match[1]}{BLOCKS[match["name"]](bench)}{match[4]}', new)
+            new = MADE.sub(lambda match: f"{match[1]}{BLOCKS[match['name']](bench)}{match[4]}", new)
             if new != text:
-                renew(file, text, new, 'output')
-        table = ROOT / 'docs/options.md'
+                renew(file, text, new, "output")
+        table = ROOT / "docs/options.md"
         page = options_page(bench)
         if not table.exists() or table.read_text() != page:
-            renew(table, '', page, 'the table of options')
+            renew(table, "", page, "the table of options")
     if differing and arguments.check:
-        print('run docs/make_docs.py')
-    broken = [f'{file.relative_to(ROOT)}: {what}' for file in pages() for what in broken_links(file)]
+        print("run docs/make_docs.py")
+    broken = [
+        f"{file.relative_to(ROOT)}: {what}" for file in pages() for what in broken_links(file)
+    ]
     if broken:
-        print('\n'.join(broken))
+        print("\n".join(broken))
     return 1 if broken or (differing and arguments.check) else 0
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     sys.exit(main())

@@ -23,9 +23,11 @@ GAP = 4  # pixels of white between two pictures
 ENLARGED = 2  # crops
 FRAME = (255, 0, 200)  # of what is enlarged
 FULL = ["local", "reference"]  # of each strip, in full
-STRIPS = {"methods": ["light", "random", "uniform", "local", "reference"],
-          "scatter": ["reference", "local", "even", "literal"],
-          "equal-time": ["path", "local", "reference"]}
+STRIPS = {
+    "methods": ["light", "random", "uniform", "local", "reference"],
+    "scatter": ["reference", "local", "even", "literal"],
+    "equal-time": ["path", "local", "reference"],
+}
 OVERLAYS = {"dots-u-shape": ["dots-random", "dots-local"], "cuts-sponza": ["cut", "cut-lightcuts"]}
 LEAST_WIDTH = 480  # of an overlay; smaller ones are enlarged by whole numbers
 METHODS = ["light", "random", "uniform", "local"]
@@ -46,13 +48,20 @@ def number(value, better) -> str:
 
 
 def markdown(table: dict) -> str:
-    heads = ["scene", *(column["label"] + (f", {column['unit']}" if column.get("unit") else "")
-                        for column in table["columns"])]
+    heads = [
+        "scene",
+        *(
+            column["label"] + (f", {column['unit']}" if column.get("unit") else "")
+            for column in table["columns"]
+        ),
+    ]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     group = None
     for row in table["rows"]:
         cells = [number(row.get(c["key"]), c.get("better")) for c in table["columns"]]
-        lines.append("| " + " | ".join([row["group"] if row["group"] != group else "", *cells]) + " |")
+        lines.append(
+            "| " + " | ".join([row["group"] if row["group"] != group else "", *cells]) + " |"
+        )
         group = row["group"]
     return "\n".join(lines)
 
@@ -67,7 +76,9 @@ def write_tables(report: dict, wanted: list[str]) -> None:
     tables = {table["id"]: table for table in report["tables"]}
     for name in wanted:
         if name not in tables:
-            raise SystemExit(f"eval: {path}: wants table '{name}', but report.json has {', '.join(tables)}")
+            raise SystemExit(
+                f"eval: {path}: wants table '{name}', but report.json has {', '.join(tables)}"
+            )
     made = f"<!-- tools of {report['provenance']['commits of the runs']}, {report['provenance']['date']} -->"
 
     def filled(match: re.Match) -> str:
@@ -75,18 +86,32 @@ def write_tables(report: dict, wanted: list[str]) -> None:
             return match[0]
         return f"<!-- table {match[1]} -->\n{markdown(tables[match[1]])}\n\n{made}\n<!-- end -->"
 
-    output.write_page(path, re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, path.read_text(), flags=re.S))
+    output.write_page(
+        path,
+        re.sub(r"<!-- table ([\w-]+) -->.*?<!-- end -->", filled, path.read_text(), flags=re.S),
+    )
 
 
 def write_plots(folder: Path, wanted: list[str]) -> None:
     for plot in wanted:
-        subprocess.run([sys.executable, settings.EVAL / "report/plots.py", folder / "report.json", plot,
-                        "-o", DOCS / "images" / f"{plot}.png"], check=True)
+        subprocess.run(
+            [
+                sys.executable,
+                settings.EVAL / "report/plots.py",
+                folder / "report.json",
+                plot,
+                "-o",
+                DOCS / "images" / f"{plot}.png",
+            ],
+            check=True,
+        )
 
 
 def srgb(pixels: np.ndarray, scale: float) -> np.ndarray:
     x = np.clip(pixels * scale, 0, 1)
-    return np.rint(255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x**(1 / 2.4) - 0.055)).astype(np.uint8)
+    return np.rint(
+        255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
+    ).astype(np.uint8)
 
 
 def beside(parts: list[np.ndarray]) -> np.ndarray:
@@ -97,7 +122,10 @@ def beside(parts: list[np.ndarray]) -> np.ndarray:
 
 def below(rows: list[np.ndarray]) -> np.ndarray:
     width = max(row.shape[1] for row in rows)
-    padded = [np.pad(row, ((0, GAP), (0, width - row.shape[1]), (0, 0)), constant_values=255) for row in rows]
+    padded = [
+        np.pad(row, ((0, GAP), (0, width - row.shape[1]), (0, 0)), constant_values=255)
+        for row in rows
+    ]
     return np.concatenate(padded)[:-GAP]
 
 
@@ -105,21 +133,30 @@ def telling_window(shown: list[np.ndarray], height: int, width: int) -> tuple[in
     """Top and left of where the pictures differ most from each other."""
     spread = np.stack([picture.astype(np.float32) for picture in shown]).std(axis=0).mean(axis=2)
     sums = np.pad(spread, ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
-    inside = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width] + sums[:-height, :-width]
+    inside = (
+        sums[height:, width:]
+        - sums[:-height, width:]
+        - sums[height:, :-width]
+        + sums[:-height, :-width]
+    )
     return np.unravel_index(inside.argmax(), inside.shape)
 
 
 def framed(picture: np.ndarray, top: int, left: int, height: int, width: int) -> np.ndarray:
     out = picture.copy()
     for rows in (slice(top - 1, top + 1), slice(top + height - 1, top + height + 1)):
-        out[rows, left:left + width] = FRAME
+        out[rows, left : left + width] = FRAME
     for columns in (slice(left - 1, left + 1), slice(left + width - 1, left + width + 1)):
-        out[top:top + height, columns] = FRAME
+        out[top : top + height, columns] = FRAME
     return out
 
 
 def save_png(pixels: np.ndarray, target: Path, **how) -> None:
-    output.save(target, output.output_guard.PNG, lambda partial: Image.fromarray(pixels).save(partial, **how))
+    output.save(
+        target,
+        output.output_guard.PNG,
+        lambda partial: Image.fromarray(pixels).save(partial, **how),
+    )
 
 
 def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> None:
@@ -134,8 +171,12 @@ def write_strip(folder: Path, view: dict, names: list[str], target: Path) -> Non
     width = (2 * full[0].shape[1] + GAP - (len(names) - 1) * GAP) // len(names) // ENLARGED
     height = width * 3 // 4
     top, left = telling_window([shown[name] for name in names], height, width)
-    crops = [shown[name][top:top + height, left:left + width].repeat(ENLARGED, axis=0).repeat(ENLARGED, axis=1)
-             for name in names]
+    crops = [
+        shown[name][top : top + height, left : left + width]
+        .repeat(ENLARGED, axis=0)
+        .repeat(ENLARGED, axis=1)
+        for name in names
+    ]
     full[0] = framed(full[0], top, left, height, width)
     save_png(below([beside(full), beside(crops)]), target, optimize=True)
 
@@ -160,32 +201,55 @@ def write_pictures(report: dict, folder: Path) -> None:
 
 def write_summary(results: dict) -> None:
     """The README's table: main views, one row a scene."""
-    rows = {(row["view"], row["method"]): row for row in results["results"] if row["part"] == "methods"}
-    lines = ["| scene, VPLs | from the light | random | blue noise, uniform (thesis) | **blue noise, local (ours)** | "
-             "mean ratio, ours | CPU s |", "|---" * 7 + "|"]
+    rows = {
+        (row["view"], row["method"]): row for row in results["results"] if row["part"] == "methods"
+    }
+    lines = [
+        "| scene, VPLs | from the light | random | blue noise, uniform (thesis) | **blue noise, local (ours)** | "
+        "mean ratio, ours | CPU s |",
+        "|---" * 7 + "|",
+    ]
     scenes, _ = settings.load()
     for scene in scenes:
         if (f"{scene.id}-main", METHODS[0]) not in rows:
-            raise SystemExit(f"eval: the README's summary wants {scene.title}, which the run has left out")
+            raise SystemExit(
+                f"eval: the README's summary wants {scene.title}, which the run has left out"
+            )
         found = [rows[f"{scene.id}-main", method] for method in METHODS]
         best = min(row["relmse"] for row in found)
-        cells = [f"**{row['relmse']:.3g}**" if row["relmse"] == best else f"{row['relmse']:.3g}" for row in found]
+        cells = [
+            f"**{row['relmse']:.3g}**" if row["relmse"] == best else f"{row['relmse']:.3g}"
+            for row in found
+        ]
         ours = found[-1]
-        lines.append(f"| {scene.title}, {ours['vpls']} | {' | '.join(cells)} | {ours['mean_ratio']:.3f} ± "
-                     f"{ours['mean_ratio_error']:.3f} | {ours['cpu_s']:.0f} |")
+        lines.append(
+            f"| {scene.title}, {ours['vpls']} | {' | '.join(cells)} | {ours['mean_ratio']:.3f} ± "
+            f"{ours['mean_ratio_error']:.3f} | {ours['cpu_s']:.0f} |"
+        )
     path = settings.ROOT / "README.md"
-    text, count = re.subn(r"<!-- summary -->.*?<!-- end -->", "<!-- summary -->\n" + "\n".join(lines) + "\n<!-- end -->",
-                          path.read_text(), flags=re.S)
+    text, count = re.subn(
+        r"<!-- summary -->.*?<!-- end -->",
+        "<!-- summary -->\n" + "\n".join(lines) + "\n<!-- end -->",
+        path.read_text(),
+        flags=re.S,
+    )
     if count != 1:
-        raise SystemExit(f"eval: {path}: has {count} places for the summary, '<!-- summary -->' to '<!-- end -->', not one")
+        raise SystemExit(
+            f"eval: {path}: has {count} places for the summary, '<!-- summary -->' to '<!-- end -->', not one"
+        )
     output.write_page(path, text)
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("folder", type=Path, help="of the run")
-    parser.add_argument("--only", help="ids of tables and plots, such as gather,scatter, 'pictures', and 'summary', of "
-                        "the README")
+    parser.add_argument(
+        "--only",
+        help="ids of tables and plots, such as gather,scatter, 'pictures', and 'summary', of "
+        "the README",
+    )
     arguments = parser.parse_args()
     folder = arguments.folder
     report = json.loads((folder / "report.json").read_text())
@@ -193,7 +257,9 @@ def main() -> int:
     known = [*places, *plots, "summary", "pictures"]
     only = arguments.only.split(",") if arguments.only else known
     if unknown := set(only) - set(known):
-        raise SystemExit(f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join(known)}")
+        raise SystemExit(
+            f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join(known)}"
+        )
     write_tables(report, [name for name in only if name in places])
     write_plots(folder, [name for name in only if name in plots])
     if "summary" in only:

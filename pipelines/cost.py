@@ -87,7 +87,11 @@ TERMS = {
             "pairs": pairs,
             "VPLs": lambda c: c.vpls,
         },
-        "memory_MiB": {"start": lambda c: 1, "candidates": lambda c: c.candidates, "VPLs": lambda c: c.vpls},
+        "memory_MiB": {
+            "start": lambda c: 1,
+            "candidates": lambda c: c.candidates,
+            "VPLs": lambda c: c.vpls,
+        },
         "file_bytes": {"VPLs": lambda c: c.vpls},
     },
     "estimate": {
@@ -100,7 +104,11 @@ TERMS = {
             "photons log2(triangles)": lambda c: c.photons * c.share * depth(c.triangles),
             "photons sqrt(triangles)": lambda c: c.photons * c.share * math.sqrt(c.triangles),
         },
-        "memory_MiB": {"start": lambda c: 1, "triangles": lambda c: c.triangles, "VPLs": lambda c: c.vpls},
+        "memory_MiB": {
+            "start": lambda c: 1,
+            "triangles": lambda c: c.triangles,
+            "VPLs": lambda c: c.vpls,
+        },
         "file_bytes": {
             "VPLs": lambda c: c.vpls if c.shards == 1 else 0,
             "VPLs, in shards": lambda c: c.vpls if c.shards > 1 else 0,
@@ -121,7 +129,9 @@ TERMS = {
             "samples": lambda c: c.pixels * c.spp * c.share,
             "samples log2(VPLs)": lambda c: c.pixels * c.spp * c.share * depth(c.vpls),
             "samples log2(triangles)": lambda c: c.pixels * c.spp * c.share * depth(c.triangles),
-            "samples sqrt(triangles)": lambda c: c.pixels * c.spp * c.share * math.sqrt(c.triangles),
+            "samples sqrt(triangles)": lambda c: (
+                c.pixels * c.spp * c.share * math.sqrt(c.triangles)
+            ),
         },
         "memory_MiB": {
             "start": lambda c: 1,
@@ -136,7 +146,11 @@ TERMS = {
         },
     },
     "merge-place": {
-        "cpu_s": {"start": lambda c: 1, "candidates": lambda c: c.candidates, "shards": lambda c: c.shards},
+        "cpu_s": {
+            "start": lambda c: 1,
+            "candidates": lambda c: c.candidates,
+            "shards": lambda c: c.shards,
+        },
         "memory_MiB": {"start": lambda c: 1, "candidates": lambda c: c.candidates},
     },
     "merge-estimate": {
@@ -146,7 +160,11 @@ TERMS = {
             "VPLs": lambda c: c.vpls,
             "VPLs x shards": lambda c: c.vpls * c.shards,
         },
-        "memory_MiB": {"start": lambda c: 1, "triangles": lambda c: c.triangles, "VPLs": lambda c: c.vpls},
+        "memory_MiB": {
+            "start": lambda c: 1,
+            "triangles": lambda c: c.triangles,
+            "VPLs": lambda c: c.vpls,
+        },
     },
     "merge-render": {
         "cpu_s": {"start": lambda c: 1, "pixels": lambda c: c.pixels, "shards": lambda c: c.shards},

@@ -27,9 +27,13 @@ class Job:
 @dataclasses.dataclass
 class Conditions:
     cores: dict  # of a task, by stage, with "merge" for all merges
-    efficiency: float = 0.95  # CPU seconds of one thread over cores times wall time, where threads share work
+    efficiency: float = (
+        0.95  # CPU seconds of one thread over cores times wall time, where threads share work
+    )
     scatter: float = 0.1  # standard deviation of log(time)
-    scales: dict = dataclasses.field(default_factory=dict)  # of a stage but for loading, in scenes unlike the model's
+    scales: dict = dataclasses.field(
+        default_factory=dict
+    )  # of a stage but for loading, in scenes unlike the model's
     seed: int = 1
 
 
@@ -63,20 +67,39 @@ def job_of(task, needs, model, whole, shards, conditions):
     scale = conditions.scales.get(kind, 1.0)
     factor = random.Random(f"{conditions.seed}/{task.name}").lognormvariate(0.0, conditions.scatter)
     loading, before = model.loading_s(kind, counts), model.setup_s(kind, counts)
-    setup, work = loading + scale * (before - loading), scale * (model.predict(kind, "cpu_s", counts) - before)
+    setup, work = (
+        loading + scale * (before - loading),
+        scale * (model.predict(kind, "cpu_s", counts) - before),
+    )
     many = cores * conditions.efficiency if cores > 1 else 1.0
     terms = cost.TERMS[kind]
-    return Job(task.name, kind, needs, cores, factor * (loading + (setup - loading) / many), factor * work / many,
-               bool(task.checkpoint), factor * (setup + work), model.predict(kind, "memory_MiB", counts),
-               model.predict(kind, "file_bytes", counts) if "file_bytes" in terms else 0.0)
+    return Job(
+        task.name,
+        kind,
+        needs,
+        cores,
+        factor * (loading + (setup - loading) / many),
+        factor * work / many,
+        bool(task.checkpoint),
+        factor * (setup + work),
+        model.predict(kind, "memory_MiB", counts),
+        model.predict(kind, "file_bytes", counts) if "file_bytes" in terms else 0.0,
+    )
 
 
 def jobs_of(tasks, order, model, whole, shards, conditions):
     """Jobs, each after those that it needs; `order` is "files" or "stages"."""
-    rows = with_stages(tasks) if order == "stages" else \
-        [(task, task.stage, needs) for task, needs in zip(tasks, needs_by_files(tasks))]
-    return [job_of(task, needs, model, whole, shards, conditions) if task else Job(f"end of {stage}", stage, needs, 0)
-            for task, stage, needs in rows]
+    rows = (
+        with_stages(tasks)
+        if order == "stages"
+        else [(task, task.stage, needs) for task, needs in zip(tasks, needs_by_files(tasks))]
+    )
+    return [
+        job_of(task, needs, model, whole, shards, conditions)
+        if task
+        else Job(f"end of {stage}", stage, needs, 0)
+        for task, stage, needs in rows
+    ]
 
 
 def critical_path(jobs):

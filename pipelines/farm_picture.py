@@ -3,7 +3,13 @@
 import math
 
 WIDTH, HEIGHT, LEFT, RIGHT = 800, 300, 70, 150
-COLOURS = {"place": "#4e79a7", "eliminate": "#e15759", "estimate": "#f28e2b", "render": "#59a14f", "merge": "#b07aa1"}
+COLOURS = {
+    "place": "#4e79a7",
+    "eliminate": "#e15759",
+    "estimate": "#f28e2b",
+    "render": "#59a14f",
+    "merge": "#b07aa1",
+}
 UNITS = ((86400, "d"), (3600, "h"), (60, "min"), (1, "s"))
 COLUMNS = 200
 
@@ -16,17 +22,23 @@ class Plot:
         self.rows = [f'<text x="{LEFT}" y="{top + 18}" font-weight="bold">{title}</text>']
 
     def share(self, value, span):
-        low, high, value = (math.log(max(v, 1e-9)) for v in (*span, value)) if self.log else (*span, value)
+        low, high, value = (
+            (math.log(max(v, 1e-9)) for v in (*span, value)) if self.log else (*span, value)
+        )
         return (value - low) / (high - low) if high > low else 0.5
 
     def place(self, x, y):
         inner = WIDTH - LEFT - RIGHT
-        return LEFT + inner * self.share(x, self.x), self.top + (HEIGHT - 80) * (1 - self.share(y, self.y))
+        return LEFT + inner * self.share(x, self.x), self.top + (HEIGHT - 80) * (
+            1 - self.share(y, self.y)
+        )
 
     def line(self, points, colour, dash="", width=2):
         path = " ".join("%.1f,%.1f" % self.place(*p) for p in points)
         dashes = f' stroke-dasharray="{dash}"' if dash else ""
-        self.rows.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width}"{dashes}/>')
+        self.rows.append(
+            f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="{width}"{dashes}/>'
+        )
 
     def area(self, points, colour):
         path = " ".join("%.1f,%.1f" % self.place(*p) for p in points)
@@ -34,10 +46,14 @@ class Plot:
 
     def text(self, x, y, words, anchor="middle", dx=0.0, dy=0.0, colour="#222"):
         px, py = self.place(x, y)
-        self.rows.append(f'<text x="{px + dx:.1f}" y="{py + dy:.1f}" text-anchor="{anchor}" fill="{colour}">{words}</text>')
+        self.rows.append(
+            f'<text x="{px + dx:.1f}" y="{py + dy:.1f}" text-anchor="{anchor}" fill="{colour}">{words}</text>'
+        )
 
     def dot(self, x, y, colour):
-        self.rows.append('<circle cx="%.1f" cy="%.1f" r="3" fill="%s"/>' % (*self.place(x, y), colour))
+        self.rows.append(
+            '<circle cx="%.1f" cy="%.1f" r="3" fill="%s"/>' % (*self.place(x, y), colour)
+        )
 
     def axes(self, xs, ys, what):
         for x, words in xs:
@@ -55,8 +71,16 @@ def time_words(s):
 
 
 def time_ticks(low, high):
-    ticks = [n * size for size, _, steps in ((1, "s", (1, 10)), (60, "min", (1, 10)), (3600, "h", (1, 5)),
-                                             (86400, "d", (1, 10, 100, 1000))) for n in steps]
+    ticks = [
+        n * size
+        for size, _, steps in (
+            (1, "s", (1, 10)),
+            (60, "min", (1, 10)),
+            (3600, "h", (1, 5)),
+            (86400, "d", (1, 10, 100, 1000)),
+        )
+        for n in steps
+    ]
     return [(t, time_words(t)) for t in ticks if low <= t <= high]
 
 
@@ -89,7 +113,9 @@ def cores_over_time(jobs, outcome):
     width, held = outcome.wall_s / COLUMNS, {kind: [0.0] * COLUMNS for kind in COLOURS}
     for attempt in outcome.attempts:
         job = jobs[attempt.job]
-        for column in range(int(attempt.begin_s / width), min(COLUMNS, int(attempt.end_s / width) + 1)):
+        for column in range(
+            int(attempt.begin_s / width), min(COLUMNS, int(attempt.end_s / width) + 1)
+        ):
             inside = min(attempt.end_s, (column + 1) * width) - max(attempt.begin_s, column * width)
             held[kind_of(job)][column] += job.cores * max(0.0, inside) / width
     return held
@@ -118,16 +144,25 @@ def over_time(jobs, outcome, cores):
         below = above
     step = outcome.wall_s / 5
     size, unit = next(((size, unit) for size, unit in UNITS if step >= size), (1, "s"))
-    plot.axes([(k * step, f"{k * step / size:.1f} {unit}") for k in range(6)],
-              [(cores * k / 4, f"{cores * k / 4:g}") for k in range(5)], "time")
+    plot.axes(
+        [(k * step, f"{k * step / size:.1f} {unit}") for k in range(6)],
+        [(cores * k / 4, f"{cores * k / 4:g}") for k in range(5)],
+        "time",
+    )
     for k, (kind, colour) in enumerate(COLOURS.items()):
         y = plot.top + 12 + 18 * k
-        plot.rows += [f'<rect x="{WIDTH - RIGHT + 10}" y="{y - 10}" width="12" height="12" fill="{colour}"/>',
-                      f'<text x="{WIDTH - RIGHT + 28}" y="{y}">{kind}</text>']
+        plot.rows += [
+            f'<rect x="{WIDTH - RIGHT + 10}" y="{y - 10}" width="12" height="12" fill="{colour}"/>',
+            f'<text x="{WIDTH - RIGHT + 28}" y="{y}">{kind}</text>',
+        ]
     return plot.rows
 
 
 def svg(rows, limit_s, jobs, outcome, cores):
-    head = (f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{2 * HEIGHT}" font-family="sans-serif" '
-            f'font-size="12" fill="#222">\n<rect width="{WIDTH}" height="{2 * HEIGHT}" fill="white"/>\n')
-    return head + "\n".join(over_nodes(rows, limit_s) + over_time(jobs, outcome, cores)) + "\n</svg>\n"
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{2 * HEIGHT}" font-family="sans-serif" '
+        f'font-size="12" fill="#222">\n<rect width="{WIDTH}" height="{2 * HEIGHT}" fill="white"/>\n'
+    )
+    return (
+        head + "\n".join(over_nodes(rows, limit_s) + over_time(jobs, outcome, cores)) + "\n</svg>\n"
+    )

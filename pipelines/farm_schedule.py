@@ -110,8 +110,11 @@ class Simulation:
 
     def begin_all(self):
         while True:
-            fits = [(heap[0], node) for cores, heap in self.ready.items()
-                    if heap and (node := self.nodes.with_room(cores)) is not None]
+            fits = [
+                (heap[0], node)
+                for cores, heap in self.ready.items()
+                if heap and (node := self.nodes.with_room(cores)) is not None
+            ]
             if not fits:
                 return
             k, node = min(fits)
@@ -119,7 +122,9 @@ class Simulation:
             heapq.heappop(self.ready[job.cores])
             self.begun[k] += 1
             if self.begun[k] > MOST_ATTEMPTS:
-                raise ValueError(f"{job.name} has failed {MOST_ATTEMPTS} times: nodes do not last as long as it takes")
+                raise ValueError(
+                    f"{job.name} has failed {MOST_ATTEMPTS} times: nodes do not last as long as it takes"
+                )
             attempt = Attempt(k, node, self.now, math.nan, False)
             self.attempts.append(attempt)
             self.running[node][k] = attempt

@@ -23,7 +23,9 @@ import stages
 
 # Stages take all cores, so one runs at a time whatever -j says. So do shards, unless they are launched elsewhere.
 MARK = "# Made by generate_ninja.py"
-HEADER = MARK + """; run that again to change it.
+HEADER = (
+    MARK
+    + """; run that again to change it.
 ninja_required_version = 1.7
 builddir = {out}
 pool stage
@@ -43,16 +45,24 @@ rule shard
   description = $out
   pool = {shard_pool}
 """
+)
 
 
 def arguments():
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
     p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
     stages.add_arguments(p)
-    p.add_argument("--launcher", default="", metavar="COMMAND",
-                   help="goes before the command of each shard, such as 'srun -n1 -c8'; ninja -j says how many at once")
-    p.add_argument("--record", action="store_true",
-                   help="each task writes what it took to OUT/SCENE/run, for vpl-inspect run")
+    p.add_argument(
+        "--launcher",
+        default="",
+        metavar="COMMAND",
+        help="goes before the command of each shard, such as 'srun -n1 -c8'; ninja -j says how many at once",
+    )
+    p.add_argument(
+        "--record",
+        action="store_true",
+        help="each task writes what it took to OUT/SCENE/run, for vpl-inspect run",
+    )
     options = p.parse_args()
     stages.complete(options)
     if options.launcher and max(options.shards.values()) == 1:
@@ -65,8 +75,17 @@ def build(task, out, options):
     command = task.command
     if options.record:
         after = [word for stage in task.after for word in ("--after", stage)]
-        command = [stages.relative(stages.HERE / "record.py"), f"{out}/run", task.name, "--stage", task.stage, *after,
-                   *(["--checkpoint", task.checkpoint] if task.checkpoint else []), "--", *command]
+        command = [
+            stages.relative(stages.HERE / "record.py"),
+            f"{out}/run",
+            task.name,
+            "--stage",
+            task.stage,
+            *after,
+            *(["--checkpoint", task.checkpoint] if task.checkpoint else []),
+            "--",
+            *command,
+        ]
     if task.shard:
         command = [*shlex.split(options.launcher), *command]
     rule = "shard" if task.shard else "read_scene" if task.depfile else "run"
@@ -79,7 +98,13 @@ def build(task, out, options):
 
 def write_graph(target, text):
     """Over nobody else's graph, such as that of CMake."""
-    output_guard.or_exit(output_guard.write, target, text, output_guard.text_kind("a graph of this program", MARK), "--out")
+    output_guard.or_exit(
+        output_guard.write,
+        target,
+        text,
+        output_guard.text_kind("a graph of this program", MARK),
+        "--out",
+    )
 
 
 def main():
@@ -92,8 +117,11 @@ def main():
     rows = [HEADER.format(out=options.out, shard_pool="" if options.launcher else "stage")]
     for scene in options.scenes:
         tasks, out = stages.tasks_of(scene, options), stages.folder_of(scene, options)
-        rows += ["", *(row for task in tasks for row in build(task, out, options)),
-                 f"build {stages.name_of(scene)}: phony {' '.join(image for image, _ in stages.images_in(scene, options))}"]
+        rows += [
+            "",
+            *(row for task in tasks for row in build(task, out, options)),
+            f"build {stages.name_of(scene)}: phony {' '.join(image for image, _ in stages.images_in(scene, options))}",
+        ]
     target = pathlib.Path(options.out) / "build.ninja"
     text = "\n".join(rows) + "\n"
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -24,7 +24,9 @@ class Refused(Exception):
 class Kind:
     content: str  # "an SVG picture"
     begins: typing.Callable[[bytes], bool] | None  # of the first HEAD bytes
-    whole: typing.Callable[[bytes], bool] | None = None  # of all bytes, where the head tells too little
+    whole: typing.Callable[[bytes], bool] | None = (
+        None  # of all bytes, where the head tells too little
+    )
 
 
 def _svg(head):
@@ -38,16 +40,20 @@ def _csv(head):
 
 def json_kind(content, fits):
     """A JSON file of which fits(value) tells whether it is of this kind."""
+
     def whole(data):
         try:
             return bool(fits(json.loads(data)))
         except (ValueError, RecursionError):
             return False
+
     return Kind(content, None, whole)
 
 
 def json_object(content, *keys):
-    return json_kind(content, lambda value: isinstance(value, dict) and all(key in value for key in keys))
+    return json_kind(
+        content, lambda value: isinstance(value, dict) and all(key in value for key in keys)
+    )
 
 
 def text_kind(content, mark):
@@ -84,11 +90,15 @@ def check(file, kind, option="", reads=None):
         return  # such as /dev/stdout
     for name, other in (reads or {}).items():
         if os.path.exists(other) and os.path.samefile(file, other):
-            raise Refused(f"{file}: is the file of {name}, which the run reads; name another file"
-                          f"{f' for {option}' if option else ''}")
+            raise Refused(
+                f"{file}: is the file of {name}, which the run reads; name another file"
+                f"{f' for {option}' if option else ''}"
+            )
     if not _is(file, kind):
-        raise Refused(f"{file}: is not {kind.content}, which {option or 'this run'} would replace it with; "
-                      "name another file, or remove this one")
+        raise Refused(
+            f"{file}: is not {kind.content}, which {option or 'this run'} would replace it with; "
+            "name another file, or remove this one"
+        )
 
 
 def replace(file, kind, make, option="", reads=None):

@@ -65,9 +65,17 @@ class Attempt:
     """One run of a command, recorded in a file that no other attempt writes."""
 
     def __init__(self, folder, name, stage, after, command, checkpoint=""):
-        self.record = {"task": name, "stage": stage, "attempt": 1, "after": after, "command": command,
-                       "host": node_name(), "job": job_id(), "resumed": bool(checkpoint) and os.path.exists(checkpoint),
-                       "start_s": round(time.time(), 3)}
+        self.record = {
+            "task": name,
+            "stage": stage,
+            "attempt": 1,
+            "after": after,
+            "command": command,
+            "host": node_name(),
+            "job": job_id(),
+            "resumed": bool(checkpoint) and os.path.exists(checkpoint),
+            "start_s": round(time.time(), 3),
+        }
         self.folder, self.process = pathlib.Path(folder), None
         self.folder.mkdir(parents=True, exist_ok=True)
         self.claim()
@@ -103,7 +111,9 @@ class Attempt:
             self.process = subprocess.Popen(command, preexec_fn=die_with_parent)
             self.tell_to_stop()
         except OSError as error:
-            print(f"{pathlib.Path(sys.argv[0]).name}: {command[0]}: {error.strerror}", file=sys.stderr)
+            print(
+                f"{pathlib.Path(sys.argv[0]).name}: {command[0]}: {error.strerror}", file=sys.stderr
+            )
             return self.close(127, None)
         self.wait_until_ended(woken)
         _, status, usage = os.wait4(self.process.pid, 0)
@@ -138,8 +148,10 @@ class Attempt:
     def close(self, code, usage):
         self.record |= {"end_s": round(time.time(), 3), "exit": code}
         if usage:
-            self.record |= {"cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
-                            "peak_memory_MiB": round(usage.ru_maxrss / 1024, 1)}
+            self.record |= {
+                "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
+                "peak_memory_MiB": round(usage.ru_maxrss / 1024, 1),
+            }
         self.save()
         return code
 
@@ -152,15 +164,26 @@ class Attempt:
 
 
 def main():
-    p = argparse.ArgumentParser(description="Run the command of a task, and record what it took for vpl-inspect run.")
+    p = argparse.ArgumentParser(
+        description="Run the command of a task, and record what it took for vpl-inspect run."
+    )
     p.add_argument("folder", help="of the records")
     p.add_argument("task", help="its name")
     p.add_argument("--stage", required=True, help="the stage that it is part of")
-    p.add_argument("--after", action="append", default=[], metavar="STAGE", help="a stage whose files it reads")
+    p.add_argument(
+        "--after", action="append", default=[], metavar="STAGE", help="a stage whose files it reads"
+    )
     p.add_argument("--checkpoint", default="", metavar="FILE", help="what the command goes on from")
     p.add_argument("command", nargs="+", help="after --")
     options = p.parse_args()
-    attempt = Attempt(options.folder, options.task, options.stage, options.after, options.command, options.checkpoint)
+    attempt = Attempt(
+        options.folder,
+        options.task,
+        options.stage,
+        options.after,
+        options.command,
+        options.checkpoint,
+    )
     sys.exit(attempt.run(options.command))
 
 

@@ -53,7 +53,9 @@ class PerStage(argparse.Action):
         for word in text.split(","):
             stage, equals, value = word.rpartition("=")
             if equals and stage not in self.stages:
-                parser.error(f"{option_string} {text}: '{stage}' is none of {', '.join(self.stages)}")
+                parser.error(
+                    f"{option_string} {text}: '{stage}' is none of {', '.join(self.stages)}"
+                )
             if not self.pattern.fullmatch(value):
                 parser.error(f"{option_string} {text}: '{value}' is not {self.what}")
             chosen |= {stage: value} if equals else dict.fromkeys(self.stages, value)
@@ -62,32 +64,71 @@ class PerStage(argparse.Action):
 
 def add_arguments(parser, shards="1"):
     """What decides the graph and the images; `shards` is the default of --shards."""
-    parser.add_argument("--out", default="out", help="folder; each scene gets one below it (default out)")
-    parser.add_argument("--bin", default=relative(DEFAULT_BIN), help="folder of the executables (default %(default)s)")
-    parser.add_argument("--quality", default="default", choices=sorted(presets()),
-                        help="counts and options of quality.mk (default %(default)s)")
+    parser.add_argument(
+        "--out", default="out", help="folder; each scene gets one below it (default out)"
+    )
+    parser.add_argument(
+        "--bin",
+        default=relative(DEFAULT_BIN),
+        help="folder of the executables (default %(default)s)",
+    )
+    parser.add_argument(
+        "--quality",
+        default="default",
+        choices=sorted(presets()),
+        help="counts and options of quality.mk (default %(default)s)",
+    )
     parser.add_argument("--candidates", help="default: the quality's")
     parser.add_argument("--vpls", help="default: the quality's")
     parser.add_argument("--photons", help="default: the quality's")
-    parser.add_argument("--spp", help="samples per pixel; default: the quality's; "
-                                      "'' for none, as with --render-flags='--time 2m'")
+    parser.add_argument(
+        "--spp",
+        help="samples per pixel; default: the quality's; "
+        "'' for none, as with --render-flags='--time 2m'",
+    )
     parser.add_argument("--seed", help="for place, estimate and render")
-    parser.add_argument("--processor", default="this", choices=("this", "any"),
-                        help="any: the same bytes on processors of all kinds, slower (default %(default)s)")
-    parser.add_argument("--views", type=view_list, default=[], metavar="FILE,...",
-                        help="a .toml of [film] and [camera] for each image, in place of the scene's own: "
-                             "one set of VPLs serves all of them; images go to OUT/SCENE/views")
-    parser.add_argument("--place-views", type=view_list, default=[], metavar="FILE,...",
-                        help="the views that VPLs are placed for (default all of --views): more images may be added "
-                             "later without other VPLs")
-    parser.add_argument("--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene")
-    parser.add_argument("--shards", action=PerStage, stages=DIVIDED, pattern=r"[1-9]\d*", what="a count from 1",
-                        default=dict.fromkeys(DIVIDED, shards),
-                        help=f"parts of {', '.join(DIVIDED)}, each a task: one count for all, or 4,render=64 "
-                             f"(default {shards})")
+    parser.add_argument(
+        "--processor",
+        default="this",
+        choices=("this", "any"),
+        help="any: the same bytes on processors of all kinds, slower (default %(default)s)",
+    )
+    parser.add_argument(
+        "--views",
+        type=view_list,
+        default=[],
+        metavar="FILE,...",
+        help="a .toml of [film] and [camera] for each image, in place of the scene's own: "
+        "one set of VPLs serves all of them; images go to OUT/SCENE/views",
+    )
+    parser.add_argument(
+        "--place-views",
+        type=view_list,
+        default=[],
+        metavar="FILE,...",
+        help="the views that VPLs are placed for (default all of --views): more images may be added "
+        "later without other VPLs",
+    )
+    parser.add_argument(
+        "--define", action="append", default=[], metavar="NAME=VALUE", help="for ${NAME} in a scene"
+    )
+    parser.add_argument(
+        "--shards",
+        action=PerStage,
+        stages=DIVIDED,
+        pattern=r"[1-9]\d*",
+        what="a count from 1",
+        default=dict.fromkeys(DIVIDED, shards),
+        help=f"parts of {', '.join(DIVIDED)}, each a task: one count for all, or 4,render=64 "
+        f"(default {shards})",
+    )
     for stage in ("place", "eliminate", "estimate", "render"):
-        parser.add_argument(f"--{stage}-flags", default="", metavar="FLAGS",
-                            help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'")
+        parser.add_argument(
+            f"--{stage}-flags",
+            default="",
+            metavar="FLAGS",
+            help=f"more options of vpl-{stage}; write --{stage}-flags='--x y'",
+        )
 
 
 def complete(options):
@@ -100,7 +141,9 @@ def complete(options):
     for name in ("candidates", "vpls", "photons", "spp"):
         if getattr(options, name) is None:
             setattr(options, name, preset[name.upper()])
-    options.presets = {stage: shlex.split(preset[stage.upper()]) for stage in ("estimate", "render")}
+    options.presets = {
+        stage: shlex.split(preset[stage.upper()]) for stage in ("estimate", "render")
+    }
     refuse_lit_placement(options)
     for path in (options.out, options.bin):
         check_path(path)
@@ -118,7 +161,9 @@ def views_of(options):
     named = [(pathlib.Path(view).stem, view) for view in options.views]
     for name, _ in named:
         if [other for other, _ in named].count(name) > 1:
-            refuse(f"two views would be images of one name, '{name}'; give their files different names")
+            refuse(
+                f"two views would be images of one name, '{name}'; give their files different names"
+            )
     return named or [("", "")]
 
 
@@ -128,17 +173,25 @@ def refuse(problem):
 
 def refuse_lit_placement(options):
     """VPLs from the lights have their flux, and rejection reads the scene: other files, other stages."""
-    words = {"light", "--method=light"} & set(shlex.split(options.place_flags)) or \
-            {"rejection", "--method=rejection"} & set(shlex.split(options.eliminate_flags))
+    words = {"light", "--method=light"} & set(shlex.split(options.place_flags)) or {
+        "rejection",
+        "--method=rejection",
+    } & set(shlex.split(options.eliminate_flags))
     if words:
-        refuse("vpl-place --method light and vpl-eliminate --method rejection leave no work to vpl-estimate; "
-               "run these stages by hand, as pipelines/README.md shows")
+        refuse(
+            "vpl-place --method light and vpl-eliminate --method rejection leave no work to vpl-estimate; "
+            "run these stages by hand, as pipelines/README.md shows"
+        )
 
 
 def relative(path):
     """From here when it is below here: shorter to read, and the project may move."""
     here = pathlib.Path.cwd()
-    return f"{'./' if path.parent == here else ''}{path.relative_to(here)}" if path.is_relative_to(here) else str(path)
+    return (
+        f"{'./' if path.parent == here else ''}{path.relative_to(here)}"
+        if path.is_relative_to(here)
+        else str(path)
+    )
 
 
 def check_path(path):
@@ -146,7 +199,9 @@ def check_path(path):
     found = re.search(r"[^\w/.,+@!-]", path)
     if found:
         character = "a space" if found[0] == " " else repr(found[0])
-        refuse(f"{path!r} contains {character}, which the pipelines cannot handle; choose another path")
+        refuse(
+            f"{path!r} contains {character}, which the pipelines cannot handle; choose another path"
+        )
     return path
 
 
@@ -171,13 +226,22 @@ def shard_name(stage, part, of):
 
 
 def images_of(view, out):
-    return [f"{out}/views/{view}.exr", f"{out}/views/{view}.png"] if view else [f"{out}/image.exr", f"{out}/image.png"]
+    return (
+        [f"{out}/views/{view}.exr", f"{out}/views/{view}.png"]
+        if view
+        else [f"{out}/image.exr", f"{out}/image.png"]
+    )
 
 
-def task(name, stage, after, outputs, inputs, words, beside, scene_read=True, saves=False, shard=False):
+def task(
+    name, stage, after, outputs, inputs, words, beside, scene_read=True, saves=False, shard=False
+):
     """The first input is the executable, which `words` do not repeat; `beside` begins the names of its other files."""
     command = [inputs[0], *words, "--stats", f"{beside}.json"]
-    depfile, checkpoint = f"{beside}.d" if scene_read else "", f"{beside}.checkpoint" if saves else ""
+    depfile, checkpoint = (
+        f"{beside}.d" if scene_read else "",
+        f"{beside}.checkpoint" if saves else "",
+    )
     command += ["--depfile", depfile] if depfile else []
     command += ["--checkpoint", checkpoint, "--checkpoint-replace"] if checkpoint else []
     return Task(name, stage, after, command, inputs, outputs, depfile, checkpoint, shard)
@@ -189,21 +253,46 @@ def tasks_in_parts(stage, after, options, outputs, inputs, words, view=""):
     product, preview = ["-o", outputs[0]], ["--png", outputs[-1]] if PREVIEW in words else []
 
     def filled(output, png):
-        return [w for word in words for w in (output if word is OUTPUT else png if word is PREVIEW else [word])]
+        return [
+            w
+            for word in words
+            for w in (output if word is OUTPUT else png if word is PREVIEW else [word])
+        ]
 
     folder, of = outputs[0].rsplit("/", 1)[0], options.shards[stage]
     beside = f"{folder}/{view or stage}"
     if of == 1:
-        return [task(whole, stage, after, outputs, inputs, filled(product, preview), beside, saves=True)]
+        return [
+            task(whole, stage, after, outputs, inputs, filled(product, preview), beside, saves=True)
+        ]
     tasks, parts = [], []
     for part in range(1, of + 1):
         name = shard_name(whole, part, of)
         parts.append(f"{folder}/shards/{name}.shard")
-        tasks.append(task(name, stage, after, [parts[-1]], inputs,
-                          [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}"], f"{folder}/shards/{name}",
-                          saves=True, shard=True))
-    return tasks + [task(f"merge-{whole}", f"merge-{stage}", [stage], outputs, [f"{options.bin}/vpl-merge", *parts],
-                         [*parts, *product, *preview], beside)]
+        tasks.append(
+            task(
+                name,
+                stage,
+                after,
+                [parts[-1]],
+                inputs,
+                [*filled(["-o", parts[-1]], []), "--shard", f"{part}/{of}"],
+                f"{folder}/shards/{name}",
+                saves=True,
+                shard=True,
+            )
+        )
+    return tasks + [
+        task(
+            f"merge-{whole}",
+            f"merge-{stage}",
+            [stage],
+            outputs,
+            [f"{options.bin}/vpl-merge", *parts],
+            [*parts, *product, *preview],
+            beside,
+        )
+    ]
 
 
 def tasks_of(scene, options):
@@ -230,20 +319,75 @@ def tasks_of(scene, options):
 
     placed = options.place_views or options.views
     before = [
-        *tasks_in_parts("place", [], options, [candidates], [tool("place"), scene, *placed],
-                        [scene, *(word for view in placed for word in looking(view)), OUTPUT,
-                         "-n", options.candidates, *seed, *defines, *flags("place")]),
-        task("eliminate", "eliminate", done("place"), [vpls], [tool("eliminate"), candidates],
-             [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")], f"{out}/eliminate", scene_read=False),
-        *tasks_in_parts("estimate", ["eliminate"], options, [lit], [tool("estimate"), scene, vpls],
-                        [scene, vpls, OUTPUT, "--photons", options.photons, *seed, *defines,
-                         *options.presets["estimate"], *flags("estimate")]),
+        *tasks_in_parts(
+            "place",
+            [],
+            options,
+            [candidates],
+            [tool("place"), scene, *placed],
+            [
+                scene,
+                *(word for view in placed for word in looking(view)),
+                OUTPUT,
+                "-n",
+                options.candidates,
+                *seed,
+                *defines,
+                *flags("place"),
+            ],
+        ),
+        task(
+            "eliminate",
+            "eliminate",
+            done("place"),
+            [vpls],
+            [tool("eliminate"), candidates],
+            [candidates, "-o", vpls, "-n", options.vpls, *flags("eliminate")],
+            f"{out}/eliminate",
+            scene_read=False,
+        ),
+        *tasks_in_parts(
+            "estimate",
+            ["eliminate"],
+            options,
+            [lit],
+            [tool("estimate"), scene, vpls],
+            [
+                scene,
+                vpls,
+                OUTPUT,
+                "--photons",
+                options.photons,
+                *seed,
+                *defines,
+                *options.presets["estimate"],
+                *flags("estimate"),
+            ],
+        ),
     ]
-    images = [tasks_in_parts("render", done("estimate"), options, images_of(name, out),
-                             [tool("render"), scene, lit, *([view] if view else [])],
-                             [scene, *looking(view), lit, OUTPUT, *spp, PREVIEW, *seed, *defines,
-                              *options.presets["render"], *flags("render")], name)
-              for name, view in views]
+    images = [
+        tasks_in_parts(
+            "render",
+            done("estimate"),
+            options,
+            images_of(name, out),
+            [tool("render"), scene, lit, *([view] if view else [])],
+            [
+                scene,
+                *looking(view),
+                lit,
+                OUTPUT,
+                *spp,
+                PREVIEW,
+                *seed,
+                *defines,
+                *options.presets["render"],
+                *flags("render"),
+            ],
+            name,
+        )
+        for name, view in views
+    ]
     return before + [task for tasks in images for task in tasks]
 
 

@@ -33,6 +33,7 @@ def merge(kind, shards, **counts):
 K, M = 1000, 1000_000
 
 # [(scene, triangles, [runs])]
+# fmt: off
 FITTED = [
     ("u-shape", FEW, [
         place(1 * K), place(200 * K), place(800 * K), place(2 * M), place(2 * M, 16),
@@ -70,10 +71,21 @@ CHECKED = [
         render(10 * K, 320, 2, 8), render(10 * K, 1280, 4, 500), render(10 * K, 640, 24, 1000),
     ]),
 ]
+# fmt: on
 
 # Other scenes: what the model says of a stage, but for loading, is scaled by one short run in that scene.
-SCALED_BY = [place(800 * K), eliminate(100 * K, 2500), estimate(4 * K, 2 * M), render(4 * K, 160, 4)]
-OTHER_RUNS = [place(2 * M), eliminate(400 * K, 10 * K), estimate(8 * K, 4 * M), render(8 * K, 240, 4)]
+SCALED_BY = [
+    place(800 * K),
+    eliminate(100 * K, 2500),
+    estimate(4 * K, 2 * M),
+    render(4 * K, 160, 4),
+]
+OTHER_RUNS = [
+    place(2 * M),
+    eliminate(400 * K, 10 * K),
+    estimate(8 * K, 4 * M),
+    render(8 * K, 240, 4),
+]
 OTHERS = [("cornell", 50_000), ("size", 200_000)]
 
 

@@ -25,7 +25,10 @@ def non_negative(matrix, target, rounds=20000):
 def rates(terms, runs):
     """{term: rate} from [(counts, measured)]; terms is {term: function of counts}."""
     measured = np.array([value for _, value in runs], float)
-    columns = np.array([[term(counts) for term in terms.values()] for counts, _ in runs], float) / measured[:, None]
+    columns = (
+        np.array([[term(counts) for term in terms.values()] for counts, _ in runs], float)
+        / measured[:, None]
+    )
     scale = np.abs(columns).max(axis=0)
     scale[scale == 0] = 1
     found = non_negative(columns / scale, np.ones(len(runs))) / scale

@@ -15,9 +15,13 @@ class Bench:
     def run(self, tool, *words):
         """(CPU seconds, MiB)"""
         stats = self.folder / "stats.json"
-        command = [str(w) for w in (self.bin / tool, *words, "--quiet", "--threads", "1", "--stats", stats)]
+        command = [
+            str(w) for w in (self.bin / tool, *words, "--quiet", "--threads", "1", "--stats", stats)
+        ]
         # A shell between, which forks: Linux counts the memory of the process that starts a tool as the tool's.
-        process = subprocess.Popen(["sh", "-c", '"$@"; exit $?', "sh", *command], stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            ["sh", "-c", '"$@"; exit $?', "sh", *command], stderr=subprocess.PIPE, text=True
+        )
         said = process.stderr.read()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -35,16 +39,34 @@ class Bench:
         return self.made[name]
 
     def candidates(self, scene, n):
-        return self.once(f"{scene.name}.{n:.0f}.candidates.vpl",
-                         lambda file: self.run("vpl-place", scene.file, "-o", file, "-n", f"{n:.0f}"))
+        return self.once(
+            f"{scene.name}.{n:.0f}.candidates.vpl",
+            lambda file: self.run("vpl-place", scene.file, "-o", file, "-n", f"{n:.0f}"),
+        )
 
     def vpls(self, scene, n):
-        return self.once(f"{scene.name}.{n:.0f}.vpls.vpl", lambda file: self.run(
-            "vpl-eliminate", self.candidates(scene, 10 * n), "-o", file, "-n", f"{n:.0f}"))
+        return self.once(
+            f"{scene.name}.{n:.0f}.vpls.vpl",
+            lambda file: self.run(
+                "vpl-eliminate", self.candidates(scene, 10 * n), "-o", file, "-n", f"{n:.0f}"
+            ),
+        )
 
     def lit(self, scene, n):
-        return self.once(f"{scene.name}.{n:.0f}.lit.vpl", lambda file: self.run(
-            "vpl-estimate", scene.file, self.vpls(scene, n), "-o", file, "--method", "guarded", "--photons", f"{50 * n:.0f}"))
+        return self.once(
+            f"{scene.name}.{n:.0f}.lit.vpl",
+            lambda file: self.run(
+                "vpl-estimate",
+                scene.file,
+                self.vpls(scene, n),
+                "-o",
+                file,
+                "--method",
+                "guarded",
+                "--photons",
+                f"{50 * n:.0f}",
+            ),
+        )
 
     def command(self, scene, stage, c, part=1):
         """(tool, words without -o, ending)"""
@@ -52,30 +74,65 @@ class Bench:
         if stage == "place":
             return "vpl-place", [scene.file, "-n", f"{c.candidates:.0f}", *shard], "vpl"
         if stage == "eliminate":
-            return "vpl-eliminate", [self.candidates(scene, c.candidates), "-n", f"{c.vpls:.0f}"], "vpl"
+            return (
+                "vpl-eliminate",
+                [self.candidates(scene, c.candidates), "-n", f"{c.vpls:.0f}"],
+                "vpl",
+            )
         if stage == "estimate":
-            return "vpl-estimate", [scene.file, self.vpls(scene, c.vpls), "--photons", f"{c.photons:.0f}",
-                                    "--irradiance-error", "0", *shard], "vpl"
-        width = round((c.pixels * 4 / 3)**0.5)
-        return "vpl-render", [scene.file, self.lit(scene, c.vpls), "--size", f"{width}x{c.pixels / width:.0f}",
-                              "--spp", f"{c.spp:.0f}", *shard], "exr"
+            return (
+                "vpl-estimate",
+                [
+                    scene.file,
+                    self.vpls(scene, c.vpls),
+                    "--photons",
+                    f"{c.photons:.0f}",
+                    "--irradiance-error",
+                    "0",
+                    *shard,
+                ],
+                "vpl",
+            )
+        width = round((c.pixels * 4 / 3) ** 0.5)
+        return (
+            "vpl-render",
+            [
+                scene.file,
+                self.lit(scene, c.vpls),
+                "--size",
+                f"{width}x{c.pixels / width:.0f}",
+                "--spp",
+                f"{c.spp:.0f}",
+                *shard,
+            ],
+            "exr",
+        )
 
     def shards(self, scene, stage, c):
         """Those that a merge reads. Pixels are the same whatever has lit them: path tracing is fast."""
+
         def make(file, part):
             tool, words, _ = self.command(scene, stage, c, part)
             words = [words[0], "--integrator", "path", *words[2:]] if stage == "render" else words
             self.run(tool, *words, "-o", file)
 
         beside = f"{scene.name}.{stage}.{c.candidates:.0f}-{c.vpls:.0f}-{c.pixels:.0f}"
-        return [self.once(f"{beside}.{part}-of-{c.shards}.shard", lambda file, part=part: make(file, part))
-                for part in range(1, c.shards + 1)]
+        return [
+            self.once(
+                f"{beside}.{part}-of-{c.shards}.shard", lambda file, part=part: make(file, part)
+            )
+            for part in range(1, c.shards + 1)
+        ]
 
     def measure(self, scene, stage, c):
         """{figure: value}, of one run."""
         if stage.startswith("merge-"):
             kind = stage.removeprefix("merge-")
-            tool, words, ending = "vpl-merge", self.shards(scene, kind, c), "exr" if kind == "render" else "vpl"
+            tool, words, ending = (
+                "vpl-merge",
+                self.shards(scene, kind, c),
+                "exr" if kind == "render" else "vpl",
+            )
         else:
             tool, words, ending = self.command(scene, stage, c)
         output = self.folder / f"out.{'shard' if tool != 'vpl-merge' and c.shards > 1 else ending}"
@@ -97,5 +154,11 @@ class Repeated:
         return len(self.taken) < self.MOST and (len(least) < 2 or least[1] > self.AGREE * least[0])
 
     def result(self):
-        return self.row | {figure: round(min(each[figure] for each in self.taken), 4) for figure in self.taken[0]} | \
-            {"repeats": len(self.taken)}
+        return (
+            self.row
+            | {
+                figure: round(min(each[figure] for each in self.taken), 4)
+                for figure in self.taken[0]
+            }
+            | {"repeats": len(self.taken)}
+        )

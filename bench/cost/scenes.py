@@ -23,7 +23,12 @@ def faces_of(obj):
             material = words[1]
         elif words[0] == "f":
             corners = [word.split("/") for word in words[1:]]
-            faces.append((material, [(int(c[0]) - 1, int(c[2]) - 1 if len(c) == 3 else None) for c in corners]))
+            faces.append(
+                (
+                    material,
+                    [(int(c[0]) - 1, int(c[2]) - 1 if len(c) == 3 else None) for c in corners],
+                )
+            )
     return vertices, normals, faces
 
 
@@ -34,20 +39,30 @@ def mixed(corners, a, b, c):
 def area(vertices, corners):
     a, b, c = (vertices[v] for v, _ in corners)
     u, w = [y - x for x, y in zip(a, b)], [y - x for x, y in zip(a, c)]
-    return 0.5 * math.hypot(u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
+    return 0.5 * math.hypot(
+        u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]
+    )
 
 
 def write_cut(obj, target, triangles):
     """About so many triangles, shared out by area; lamps stay whole. Returns their number."""
     vertices, normals, faces = faces_of(obj)
-    whole = [(material, [face[0], face[i], face[i + 1]]) for material, face in faces for i in range(1, len(face) - 1)]
+    whole = [
+        (material, [face[0], face[i], face[i + 1]])
+        for material, face in faces
+        for i in range(1, len(face) - 1)
+    ]
 
     per_area = triangles / sum(area(vertices, corners) for _, corners in whole)
     made, first_v, first_n = 0, 1, 1
     with open(target, "w") as out:
         out.write(f"mtllib {obj.stem}.mtl\n")
         for material, corners in whole:
-            n = 1 if material == "Lamp" else max(1, round(math.sqrt(area(vertices, corners) * per_area)))
+            n = (
+                1
+                if material == "Lamp"
+                else max(1, round(math.sqrt(area(vertices, corners) * per_area)))
+            )
             grid = [(i, j) for i in range(n + 1) for j in range(n + 1 - i)]
             row = [sum(n + 1 - k for k in range(i)) for i in range(n + 2)]
             places = [vertices[v] for v, _ in corners]
@@ -61,11 +76,18 @@ def write_cut(obj, target, triangles):
                     out.write("vn %.5g %.5g %.5g\n" % mixed(turned, 1 - (i + j) / n, j / n, i / n))
             for i, j in grid:
                 lower, upper = row[i] + j, row[i + 1] + j
-                cut = ([(lower, lower + 1, upper)] if i + j < n else []) + \
-                    ([(lower + 1, upper + 1, upper)] if i + j < n - 1 else [])
+                cut = ([(lower, lower + 1, upper)] if i + j < n else []) + (
+                    [(lower + 1, upper + 1, upper)] if i + j < n - 1 else []
+                )
                 for face in cut:
-                    out.write("f " + " ".join(f"{v + first_v}//{v + first_n}" if smooth else f"{v + first_v}"
-                                              for v in face) + "\n")
+                    out.write(
+                        "f "
+                        + " ".join(
+                            f"{v + first_v}//{v + first_n}" if smooth else f"{v + first_v}"
+                            for v in face
+                        )
+                        + "\n"
+                    )
                     made += 1
             first_v += len(grid)
             first_n += len(grid) if smooth else 0

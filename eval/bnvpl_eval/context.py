@@ -22,15 +22,25 @@ class Context:
     pictures: dict[str, list[dict]] = field(default_factory=dict)  # by view name
 
     def views(self, only: str = "") -> list[View]:
-        return [view for scene in self.scenes for view in scene.views
-                if view.id in self.size["views"] and (not only or view.id == only)]
+        return [
+            view
+            for scene in self.scenes
+            for view in scene.views
+            if view.id in self.size["views"] and (not only or view.id == only)
+        ]
 
     def configuration(self, view: View, method: str, width: int = 0) -> Configuration:
         """On the small film, or on one of another width, in pixels."""
         vpls = max(1, round(view.scene.vpls * self.size["scale"]))
         width = width or self.size["film_width"]
-        return Configuration(method, vpls, self.size["photons"], vpls * self.size["candidates_per_vpl"],
-                             self.size["spp"], view.scene.film(width))
+        return Configuration(
+            method,
+            vpls,
+            self.size["photons"],
+            vpls * self.size["candidates_per_vpl"],
+            self.size["spp"],
+            view.scene.film(width),
+        )
 
     def require_references(self) -> None:
         """Now rather than after an hour of runs."""
@@ -47,19 +57,34 @@ class Context:
         """Runs the configuration for all seeds and adds a row: errors of the indirect light and of the full
         image, seconds and peak memory of every stage."""
         made = [pipeline.image(self.runner, view, c, seed) for seed in seeds]
-        row = {"part": part, "view": view.name, "method": c.method, "vpls": c.vpls, "photons": c.photons,
-               "candidates": c.candidates, "spp": c.spp, "film": c.film, "seed_numbers": " ".join(map(str, seeds)),
-               **pipeline.options_of(c), **labels}
+        row = {
+            "part": part,
+            "view": view.name,
+            "method": c.method,
+            "vpls": c.vpls,
+            "photons": c.photons,
+            "candidates": c.candidates,
+            "spp": c.spp,
+            "film": c.film,
+            "seed_numbers": " ".join(map(str, seeds)),
+            **pipeline.options_of(c),
+            **labels,
+        }
         return self.add_row(row, view, made)
 
     def judge_path(self, part: str, view: View, film: str, spp: int, seeds: range) -> dict:
         made = [pipeline.traced(self.runner, view, film, spp, seed) for seed in seeds]
-        return self.add_row({"part": part, "view": view.name, "method": "path", "spp": spp, "film": film},
-                            view, made)
+        return self.add_row(
+            {"part": part, "view": view.name, "method": "path", "spp": spp, "film": film},
+            view,
+            made,
+        )
 
     def add_row(self, row: dict, view: View, made: list) -> dict:
         files = [file for file, _ in made]
-        row |= statistics.summarise([images.read(file, "indirect") for file in files], self.halves(view))
+        row |= statistics.summarise(
+            [images.read(file, "indirect") for file in files], self.halves(view)
+        )
         full = statistics.summarise([images.read(file) for file in files], self.halves(view, ""))
         row |= {f"full_{key}": full[key] for key in ("mean_ratio", "rmse_over_mean", "relmse")}
         for stage in range(len(made[0][1])):

@@ -16,7 +16,9 @@ def channel_names(layer: str) -> list[str]:
 def read(path: Path, layer: str = "") -> np.ndarray:
     source = oiio.ImageInput.open(str(path))
     if source is None:
-        raise SystemExit(f"eval: {path}: cannot be read as an image ({oiio.geterror()}); delete it and rerun")
+        raise SystemExit(
+            f"eval: {path}: cannot be read as an image ({oiio.geterror()}); delete it and rerun"
+        )
     spec = source.spec()
     names = list(spec.channelnames)
     missing = [name for name in channel_names(layer) if name not in names]
@@ -42,7 +44,9 @@ def write_half(path: Path, layers: dict[str, np.ndarray], note: str) -> None:
         target = oiio.ImageOutput.create(str(partial))
         if target is None or not target.open(str(partial), spec) or not target.write_image(pixels):
             reason = target.geterror() if target else oiio.geterror()
-            raise SystemExit(f"eval: {path}: cannot be written ({reason}); is the folder writable and the disk not full?")
+            raise SystemExit(
+                f"eval: {path}: cannot be written ({reason}); is the folder writable and the disk not full?"
+            )
         target.close()
 
     guarded(output_guard.replace, path, output_guard.EXR, make)

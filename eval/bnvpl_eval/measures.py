@@ -19,8 +19,11 @@ MEASURES = ("smape", "flip", "hdr_flip")
 
 def compare(context, view: View, image: str) -> dict:
     run = context.runner.run(
-        "vpl-inspect", ["compare", "{image}", "{a}", "--second-half", "{b}", "--layer", "indirect", "--json"],
-        {"image": Path(image), **halves(context, view)}, [])
+        "vpl-inspect",
+        ["compare", "{image}", "{a}", "--second-half", "{b}", "--layer", "indirect", "--json"],
+        {"image": Path(image), **halves(context, view)},
+        [],
+    )
     return json.loads(run["log.txt"].read_text())
 
 

@@ -17,7 +17,9 @@ from .settings import EVAL, ROOT, View
 
 CHUNK = 2048  # spp of one render
 FOLDER = EVAL / "references"
-RECORD = output_guard.json_object("the record of a reference", "key", "scene", "film", "spp", "half")
+RECORD = output_guard.json_object(
+    "the record of a reference", "key", "scene", "film", "spp", "half"
+)
 
 
 def path(view: View, film: str, half: str) -> Path:
@@ -33,25 +35,60 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     if done >= spp:
         return
     chunk = min(spp - done, CHUNK)
-    first_seed = stored["seeds"][1] + 2 if stored else 1000 + (half == "b")  # away from the seeds that are judged
+    first_seed = (
+        stored["seeds"][1] + 2 if stored else 1000 + (half == "b")
+    )  # away from the seeds that are judged
     seeds = range(first_seed, first_seed + 2 * -(-(spp - done) // chunk), 2)
-    sums = {layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0 for layer in ("", "indirect")}
+    sums = {
+        layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0
+        for layer in ("", "indirect")
+    }
     cpu_s = stored["cpu_s"] if stored else 0.0
     for seed in seeds:
-        run = runner.run("vpl-render",
-                         ["{scene}", "--size", film, "--integrator", view.reference_integrator, "--spp", chunk,
-                          "--seed", seed, "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
-                         {"scene": ROOT / view.file}, ["image.exr"])
+        run = runner.run(
+            "vpl-render",
+            [
+                "{scene}",
+                "--size",
+                film,
+                "--integrator",
+                view.reference_integrator,
+                "--spp",
+                chunk,
+                "--seed",
+                seed,
+                "--layers",
+                "direct,indirect",
+                "-o",
+                "@image.exr",
+                "--quiet",
+            ],
+            {"scene": ROOT / view.file},
+            ["image.exr"],
+        )
         cpu_s += run.cpu_s
         for layer in sums:
-            sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(np.float64)
+            sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(
+                np.float64
+            )
     total = done + chunk * len(seeds)
-    note = f"bnvpl {view.reference_integrator} tracer, {view.file}, {film}, {total} spp, half {half}"
+    note = (
+        f"bnvpl {view.reference_integrator} tracer, {view.file}, {film}, {total} spp, half {half}"
+    )
     images.write_half(target, {layer: sum_ / total for layer, sum_ in sums.items()}, note)
-    record = {"key": reference_key(view, film, total, half), "scene": view.file, "film": film,
-              "integrator": view.reference_integrator, "spp": total, "half": half,
-              "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]], "cpu_s": round(cpu_s, 1)}
-    guarded(output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD)
+    record = {
+        "key": reference_key(view, film, total, half),
+        "scene": view.file,
+        "film": film,
+        "integrator": view.reference_integrator,
+        "spp": total,
+        "half": half,
+        "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]],
+        "cpu_s": round(cpu_s, 1),
+    }
+    guarded(
+        output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD
+    )
 
 
 def _stored(view: View, film: str, half: str) -> dict | None:
@@ -81,8 +118,10 @@ def require(view: View, film: str) -> dict:
             raise SystemExit(f"eval: {file}: no such reference; make it with '{cure}'")
         records[half] = json.loads(file.with_suffix(".json").read_text())
         if records[half]["key"] != reference_key(view, film, records[half]["spp"], half):
-            raise SystemExit(f"eval: {file}: made from another version of {view.file} or by another integrator; "
-                             f"run '{cure}'")
+            raise SystemExit(
+                f"eval: {file}: made from another version of {view.file} or by another integrator; "
+                f"run '{cure}'"
+            )
     return records
 
 
@@ -95,4 +134,4 @@ def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
 def half_difference(halves: tuple[np.ndarray, np.ndarray]) -> float:
     """RMS of the difference of the halves over the mean. The mean of both has half of that as its error."""
     a, b = (half.astype(np.float64) for half in halves)
-    return float(np.sqrt(np.mean((a - b)**2)) / np.mean((a + b) / 2))
+    return float(np.sqrt(np.mean((a - b) ** 2)) / np.mean((a + b) / 2))

@@ -26,10 +26,19 @@ def digest(data: bytes) -> str:
 def scene_key(scene: Path) -> str:
     """Of a scene.toml and every model, material and picture in its folder and in the folders that it names."""
     text = scene.read_text()
-    folders = [scene.parent] + [(scene.parent / os.path.expandvars(name)).resolve().parent
-                                for name in re.findall(r'^(?:file|materials) = "(.*)"', text, re.M)]
-    files = sorted({file for folder in folders for file in folder.iterdir()
-                    if file.suffix in (".obj", ".mtl", ".png")}, key=lambda file: file.name)
+    folders = [scene.parent] + [
+        (scene.parent / os.path.expandvars(name)).resolve().parent
+        for name in re.findall(r'^(?:file|materials) = "(.*)"', text, re.M)
+    ]
+    files = sorted(
+        {
+            file
+            for folder in folders
+            for file in folder.iterdir()
+            if file.suffix in (".obj", ".mtl", ".png")
+        },
+        key=lambda file: file.name,
+    )
     return digest(text.encode() + b"".join(file.read_bytes() for file in files))
 
 
@@ -51,7 +60,9 @@ class Runner:
     bin: Path
     cache: Path
     quiet: bool = False
-    provenance: dict = field(default_factory=dict)  # commit, processor, date: goes into every run.json
+    provenance: dict = field(
+        default_factory=dict
+    )  # commit, processor, date: goes into every run.json
     runs: dict[str, Run] = field(default_factory=dict)  # every run that was asked for, by key
     _files: dict[Path, str] = field(default_factory=dict)
     _tools: dict[Path, tuple] = field(default_factory=dict)  # time and size when first used
@@ -62,7 +73,9 @@ class Runner:
         if path.is_relative_to(self.cache):
             return path.parent.name + "/" + path.name
         if path not in self._files:
-            self._files[path] = scene_key(path) if path.suffix == ".toml" else digest(path.read_bytes())
+            self._files[path] = (
+                scene_key(path) if path.suffix == ".toml" else digest(path.read_bytes())
+            )
         return self._files[path]
 
     def run(self, tool: str, options: list, inputs: dict[str, Path], outputs: list[str]) -> Run:
@@ -70,8 +83,16 @@ class Runner:
         words = [str(word) for word in options]
         executable = self.bin / tool
         self._require_unchanged(executable)
-        key = digest(json.dumps([tool, self.file_key(executable), words,
-                                 {name: self.file_key(path) for name, path in inputs.items()}]).encode())
+        key = digest(
+            json.dumps(
+                [
+                    tool,
+                    self.file_key(executable),
+                    words,
+                    {name: self.file_key(path) for name, path in inputs.items()},
+                ]
+            ).encode()
+        )
         if key in self.runs:
             return self.runs[key]
         folder = self.cache / key
@@ -79,7 +100,9 @@ class Runner:
             self._execute(key, executable, words, inputs, folder)
         for name in outputs:
             if not (folder / name).is_file():
-                raise SystemExit(f"eval: {folder / name}: missing from the cache; delete {folder} and rerun")
+                raise SystemExit(
+                    f"eval: {folder / name}: missing from the cache; delete {folder} and rerun"
+                )
         run = Run(folder, json.loads((folder / "run.json").read_text()))
         self.runs[key] = run
         return run
@@ -87,12 +110,18 @@ class Runner:
     def _require_unchanged(self, executable: Path) -> None:
         """Results of two versions of a tool must not meet in one report."""
         now = executable.stat()
-        if self._tools.setdefault(executable, (now.st_mtime_ns, now.st_size)) != (now.st_mtime_ns, now.st_size):
-            raise SystemExit(f"eval: {executable}: was built anew during the run; start again, or evaluate a copy of "
-                             "the tools (--bin)")
+        if self._tools.setdefault(executable, (now.st_mtime_ns, now.st_size)) != (
+            now.st_mtime_ns,
+            now.st_size,
+        ):
+            raise SystemExit(
+                f"eval: {executable}: was built anew during the run; start again, or evaluate a copy of "
+                "the tools (--bin)"
+            )
 
-    def _execute(self, key: str, executable: Path, words: list[str], inputs: dict[str, Path],
-                 folder: Path) -> None:
+    def _execute(
+        self, key: str, executable: Path, words: list[str], inputs: dict[str, Path], folder: Path
+    ) -> None:
         partial = folder.with_name(f".{key}.partial-{os.getpid()}")
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
@@ -114,11 +143,19 @@ class Runner:
         if child.returncode != 0:
             text = (partial / "log.txt").read_text(errors="replace").strip()
             shutil.rmtree(partial)
-            raise SystemExit(f"eval: {' '.join(command)}\nfailed with exit code {child.returncode}: {text}")
-        record = {"tool": executable.name, "options": words,
-                  "inputs": {name: self.file_key(path) for name, path in inputs.items()}, "key": key,
-                  "wall_s": round(wall, 3), "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
-                  "peak_mib": round(usage.ru_maxrss / 1024, 1), **self.provenance}
+            raise SystemExit(
+                f"eval: {' '.join(command)}\nfailed with exit code {child.returncode}: {text}"
+            )
+        record = {
+            "tool": executable.name,
+            "options": words,
+            "inputs": {name: self.file_key(path) for name, path in inputs.items()},
+            "key": key,
+            "wall_s": round(wall, 3),
+            "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
+            "peak_mib": round(usage.ru_maxrss / 1024, 1),
+            **self.provenance,
+        }
         (partial / "run.json").write_text(json.dumps(record, indent=1))
         try:
             os.rename(partial, folder)

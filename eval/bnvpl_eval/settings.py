@@ -47,8 +47,14 @@ def load(path: Path = EVAL / "settings.toml") -> tuple[list[Scene], dict]:
         table = tomllib.load(file)
     scenes = []
     for entry in table["scene"]:
-        scene = Scene(entry["id"], entry["title"], entry["vpls"], tuple(entry["aspect"]),
-                      entry.get("define", ""), [])
+        scene = Scene(
+            entry["id"],
+            entry["title"],
+            entry["vpls"],
+            tuple(entry["aspect"]),
+            entry.get("define", ""),
+            [],
+        )
         scene.views.extend(View(scene, **view) for view in entry["views"])
         scenes.append(scene)
     return scenes, table

@@ -15,7 +15,7 @@ EPSILON = 1e-4  # of relMSE, times the squared mean of the reference: as vpl-ins
 
 def relative_weight(reference: np.ndarray) -> np.ndarray:
     """What relMSE multiplies squared errors by."""
-    return 1.0 / (reference**2 + EPSILON * reference.mean()**2)
+    return 1.0 / (reference**2 + EPSILON * reference.mean() ** 2)
 
 
 def root(value: float) -> float:
@@ -34,10 +34,14 @@ def summarise(images: list[np.ndarray], halves: tuple[np.ndarray, np.ndarray]) -
     ratios = stack.mean(axis=(1, 2, 3)) / mean
     # The reference's mean is known as well as its halves agree.
     reference_ratio_error = abs(a.mean() - b.mean()) / (2 * mean)
-    result = {"seeds": len(images), "mean_ratio": float(ratios.mean()),
-              "rmse_over_mean": root(mse.mean()) / mean, "relmse": float(relative.mean()),
-              "reference_half_difference": root(((a - b)**2).mean()) / mean,
-              "reference_mean_ratio_error": float(reference_ratio_error)}
+    result = {
+        "seeds": len(images),
+        "mean_ratio": float(ratios.mean()),
+        "rmse_over_mean": root(mse.mean()) / mean,
+        "relmse": float(relative.mean()),
+        "reference_half_difference": root(((a - b) ** 2).mean()) / mean,
+        "reference_mean_ratio_error": float(reference_ratio_error),
+    }
     if len(images) > 1:
         count = len(images)
         variance = stack.var(axis=0, ddof=1)
@@ -45,9 +49,13 @@ def summarise(images: list[np.ndarray], halves: tuple[np.ndarray, np.ndarray]) -
         squared_bias = (middle - a) * (middle - b) - variance / count
         result |= {
             # Of the images and of the reference: they have nothing to do with each other.
-            "mean_ratio_error": float(np.hypot(ratios.std(ddof=1) / np.sqrt(count), reference_ratio_error)),
+            "mean_ratio_error": float(
+                np.hypot(ratios.std(ddof=1) / np.sqrt(count), reference_ratio_error)
+            ),
             "relmse_error": float(relative.std(ddof=1) / np.sqrt(count)),
-            "rmse_error": float(mse.std(ddof=1) / np.sqrt(count) / (2 * max(root(mse.mean()), 1e-30)) / mean),
+            "rmse_error": float(
+                mse.std(ddof=1) / np.sqrt(count) / (2 * max(root(mse.mean()), 1e-30)) / mean
+            ),
             "bias_over_mean": root(squared_bias.mean()) / mean,
             "std_over_mean": root(variance.mean()) / mean,
             "relmse_bias": max(0.0, float((squared_bias * weight).mean())),

@@ -26,8 +26,14 @@ def column(key: str, label: str = "", unit: str = "", better: str | None = None)
 
 
 # Standard errors that rows carry, shown behind their values.
-ERRORS = {"mean_ratio": "mean_ratio_error", "rmse_over_mean": "rmse_error", "relmse": "relmse_error",
-          "smape": "smape_error", "flip": "flip_error", "hdr_flip": "hdr_flip_error"}
+ERRORS = {
+    "mean_ratio": "mean_ratio_error",
+    "rmse_over_mean": "rmse_error",
+    "relmse": "relmse_error",
+    "smape": "smape_error",
+    "flip": "flip_error",
+    "hdr_flip": "hdr_flip_error",
+}
 
 
 def cell(row: dict, key: str):
@@ -38,5 +44,10 @@ def cell(row: dict, key: str):
 def table(name: str, title: str, note: str, columns: list[dict], rows: list[dict]) -> dict:
     """Rows carry 'group' and more than is shown."""
     keys = ["group", *(c["key"] for c in columns)]
-    return {"id": name, "title": title, "note": note, "columns": columns,
-            "rows": [{key: cell(row, key) for key in keys} for row in rows]}
+    return {
+        "id": name,
+        "title": title,
+        "note": note,
+        "columns": columns,
+        "rows": [{key: cell(row, key) for key in keys} for row in rows],
+    }

@@ -47,10 +47,23 @@ class Case:
     model: dict = field(default_factory=dict)  # the sphere's, of model_cases.py
 
 
-ROOM = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 128, "cycles_spp": 128, "seeds": 12,
-        "views": (DIRECT, INDIRECT), "drop": ("Ke",)}
-BOX = {"scene": "cornell/scene.toml", "size": (96, 96), "spp": 256, "cycles_spp": 256, "seeds": 12,
-       "views": (DIRECT, INDIRECT)}
+ROOM = {
+    "scene": "cornell/scene.toml",
+    "size": (96, 96),
+    "spp": 128,
+    "cycles_spp": 128,
+    "seeds": 12,
+    "views": (DIRECT, INDIRECT),
+    "drop": ("Ke",),
+}
+BOX = {
+    "scene": "cornell/scene.toml",
+    "size": (96, 96),
+    "spp": 256,
+    "cycles_spp": 256,
+    "seeds": 12,
+    "views": (DIRECT, INDIRECT),
+}
 MODEL = {"size": model_scenes.SIZE, "spp": 32, "cycles_spp": 32, "seeds": 4, "views": (ALL,)}
 TEAPOT = {"scale": 0.09, "rotate_deg": [0.0, 40.0, 0.0], "translate": [0.186, 0.165, 0.168]}
 SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.0, 2.5, 2.0]}
@@ -58,32 +71,79 @@ SUN = {"type": "directional", "direction": [-0.35, -0.3, 1.0], "irradiance": [3.
 CASES = (
     Case("cornell", "cornell/scene.toml", (160, 160), 128, 128, 12, (DIRECT, ONE_BOUNCE, INDIRECT)),
     Case("u-shape", "u-shape/scene.toml", (160, 120), 512, 512, 12, (DIRECT, INDIRECT)),
-    Case("veach-ajar", "veach-ajar/scene.toml", (160, 90), 256, 256, 12, (DIRECT, INDIRECT),
-         note="all diffuse, by the scene's own material library"),
-    Case("veach-door", "veach-door/scene.toml", (160, 90), 256, 256, 12, (DIRECT, INDIRECT),
-         drop=("Ks",), note="Phong lobes left out of both renderers; the mirror teapot stays"),
-    Case("room-point", lights=({"type": "point", "position": [0.3, 0.45, 0.15],
-                                "intensity": [0.2, 0.15, 0.1]},), **ROOM),
-    Case("room-spot", lights=({"type": "spot", "position": [0.3, 0.5, 0.1], "cone_deg": 30.0,
-                               "direction": [-0.2, -1.0, 0.6], "intensity": [1.0, 0.8, 0.6]},),
-         **ROOM),
+    Case(
+        "veach-ajar",
+        "veach-ajar/scene.toml",
+        (160, 90),
+        256,
+        256,
+        12,
+        (DIRECT, INDIRECT),
+        note="all diffuse, by the scene's own material library",
+    ),
+    Case(
+        "veach-door",
+        "veach-door/scene.toml",
+        (160, 90),
+        256,
+        256,
+        12,
+        (DIRECT, INDIRECT),
+        drop=("Ks",),
+        note="Phong lobes left out of both renderers; the mirror teapot stays",
+    ),
+    Case(
+        "room-point",
+        lights=({"type": "point", "position": [0.3, 0.45, 0.15], "intensity": [0.2, 0.15, 0.1]},),
+        **ROOM,
+    ),
+    Case(
+        "room-spot",
+        lights=(
+            {
+                "type": "spot",
+                "position": [0.3, 0.5, 0.1],
+                "cone_deg": 30.0,
+                "direction": [-0.2, -1.0, 0.6],
+                "intensity": [1.0, 0.8, 0.6],
+            },
+        ),
+        **ROOM,
+    ),
     Case("room-sun", lights=(SUN | {"angular_diameter_deg": 5.0},), **ROOM),
     Case("room-distant", lights=(SUN,), **ROOM, note="a sun of no size"),
     Case("room-sky", lights=({"type": "environment", "radiance": [0.5, 0.8, 1.0]},), **ROOM),
-    Case("room-sky-image", lights=({"type": "environment", "image": "sky.exr", "scale": 0.5,
-                                    "rotate_deg": 130.0},), **ROOM),
+    Case(
+        "room-sky-image",
+        lights=({"type": "environment", "image": "sky.exr", "scale": 0.5, "rotate_deg": 130.0},),
+        **ROOM,
+    ),
     Case("box-mirror", tall_block="Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n", **BOX),
-    Case("box-polished", tall_block="Kd 0.3 0.4 0.2\nKs 0.5 0.4 0.3\nillum 3\n", **BOX,
-         note="mirror beside diffuse"),
+    Case(
+        "box-polished",
+        tall_block="Kd 0.3 0.4 0.2\nKs 0.5 0.4 0.3\nillum 3\n",
+        **BOX,
+        note="mirror beside diffuse",
+    ),
     Case("teapot-mirror", teapot="Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n", **BOX),
     Case("teapot-glass", teapot="Kd 0 0 0\nNi 1.5\nillum 7\n", **BOX),
     Case("box-glass", tall_block="Kd 0 0 0\nNi 1.5\nillum 7\n", **BOX),
-    *(Case(name, f"{name}.{'glb' if name in model_cases.GLTF else 'pbrt'}",
-           model=model_cases.SPHERES.get(name, {}), **MODEL)
-      for name in model_cases.SKETCHES if name != "windows"),
-    Case("windows", "windows.obj", lights=({"type": "environment", "image": "sky.exr",
-                                            "rotate_deg": 160.0},),
-         **MODEL | {"spp": 128, "cycles_spp": 128}),
+    *(
+        Case(
+            name,
+            f"{name}.{'glb' if name in model_cases.GLTF else 'pbrt'}",
+            model=model_cases.SPHERES.get(name, {}),
+            **MODEL,
+        )
+        for name in model_cases.SKETCHES
+        if name != "windows"
+    ),
+    Case(
+        "windows",
+        "windows.obj",
+        lights=({"type": "environment", "image": "sky.exr", "rotate_deg": 160.0},),
+        **MODEL | {"spp": 128, "cycles_spp": 128},
+    ),
 )
 
 
@@ -92,8 +152,11 @@ def edit_mtl(text: str, drop: tuple[str, ...]) -> str:
     out = []
     for block in text.split("newmtl "):
         mirror = any(line.split() in (["illum", n] for n in "358") for line in block.splitlines())
-        lines = [line for line in block.split("\n")
-                 if mirror or not line.split() or line.split()[0] not in drop]
+        lines = [
+            line
+            for line in block.split("\n")
+            if mirror or not line.split() or line.split()[0] not in drop
+        ]
         out.append("\n".join(lines))
     return "newmtl ".join(out)
 
@@ -112,7 +175,7 @@ def with_tall_block(obj: Path, mtl: Path, lines: str, folder: Path) -> tuple[Pat
     if not name:
         raise SceneError(f"{obj}: has no 'o TallBlock' followed by usemtl; use the Cornell box")
     new_obj, new_mtl = folder / "block.obj", folder / "block.mtl"
-    write_scene(new_obj, before + "o TallBlock\nusemtl Block" + after[after.index("\n"):])
+    write_scene(new_obj, before + "o TallBlock\nusemtl Block" + after[after.index("\n") :])
     write_scene(new_mtl, mtl.read_text() + "\nnewmtl Block\n" + lines)
     return new_obj, new_mtl
 
@@ -141,7 +204,6 @@ def write_sky(path: Path) -> None:
     image = oiio.ImageBuf(oiio.ImageSpec(32, 16, 3, oiio.FLOAT))
     image.set_pixels(oiio.ROI(), np.ascontiguousarray(sky, np.float32))
 
-
     def make(partial: Path) -> None:
         if not image.write(str(partial)):
             raise OSError(f"{path}: cannot write: {image.geterror()}")
@@ -158,9 +220,14 @@ def prepare(case: Case, scenes: Path, folder: Path) -> Path:
         model_cases.write(case.name, original)
     if original.suffix in (".glb", ".pbrt"):
         return original
-    table = ({"camera": model_scenes.CAMERA, "mesh": [
-        {"file": str(original), "materials": str(original.with_suffix(".mtl"))}]}
-        if original.suffix == ".obj" else read_toml(original))
+    table = (
+        {
+            "camera": model_scenes.CAMERA,
+            "mesh": [{"file": str(original), "materials": str(original.with_suffix(".mtl"))}],
+        }
+        if original.suffix == ".obj"
+        else read_toml(original)
+    )
     width, height = case.size
     text = _toml_table("[film]", {"width": width, "height": height})
     text += _toml_table("[camera]", table["camera"])

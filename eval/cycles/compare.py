@@ -93,8 +93,12 @@ def compare(ours: np.ndarray, cycles: np.ndarray) -> dict:
         "mean_square_z": float(np.mean(z**2)),
         "beyond_3_errors": int((np.abs(z) > 3).sum()),
         "root_mean_square_relative": float(np.sqrt(np.mean(relative**2))),
-        "worst": {"x": int(worst[1]) * BLOCK, "y": int(worst[0]) * BLOCK,
-                  "z": float(z[worst]), "relative": float(relative[worst])},
+        "worst": {
+            "x": int(worst[1]) * BLOCK,
+            "y": int(worst[0]) * BLOCK,
+            "z": float(z[worst]),
+            "relative": float(relative[worst]),
+        },
     }
     return result
 
@@ -118,8 +122,10 @@ def write_picture(path: Path, title: str, ours: np.ndarray, cycles: np.ndarray) 
     for axis, name, image in ((axes[0], "ours", mean_ours), (axes[1], "Cycles", mean_cycles)):
         axis.imshow(display(image, white))
         axis.set_title(name)
-    for axis, name, values, limit in ((axes[2], "(ours - Cycles) / Cycles", relative, 0.1),
-                                      (axes[3], "difference / standard error", z, 4.0)):
+    for axis, name, values, limit in (
+        (axes[2], "(ours - Cycles) / Cycles", relative, 0.1),
+        (axes[3], "difference / standard error", z, 4.0),
+    ):
         shown = np.kron(values, np.ones((BLOCK, BLOCK)))[:height, :width]
         drawn = axis.imshow(shown, cmap="RdBu_r", vmin=-limit, vmax=limit)
         axis.set_title(name)
@@ -127,6 +133,9 @@ def write_picture(path: Path, title: str, ours: np.ndarray, cycles: np.ndarray) 
     for axis in axes:
         axis.set_xticks([])
         axis.set_yticks([])
-    output_guard.replace(path, output_guard.PNG,
-                         lambda partial: figure.savefig(partial, dpi=80, metadata={"Software": None}))
+    output_guard.replace(
+        path,
+        output_guard.PNG,
+        lambda partial: figure.savefig(partial, dpi=80, metadata={"Software": None}),
+    )
     pyplot.close(figure)

@@ -45,27 +45,50 @@ class ToolError(Exception):
 
 def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="cross_check.py", description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+        prog="cross_check.py",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all")
     parser.add_argument("--list", action="store_true", help="print the cases and stop")
-    parser.add_argument("--table", action="store_true",
-                        help="print --results as a Markdown table and stop")
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "cycles",
-                        help="folder for images (default out/cycles)")
-    parser.add_argument("--results", type=Path,
-                        help="JSON to write; cases already in it stay (default OUT/results.json)")
+    parser.add_argument(
+        "--table", action="store_true", help="print --results as a Markdown table and stop"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=ROOT / "out" / "cycles",
+        help="folder for images (default out/cycles)",
+    )
+    parser.add_argument(
+        "--results",
+        type=Path,
+        help="JSON to write; cases already in it stay (default OUT/results.json)",
+    )
     parser.add_argument("--blender", default="blender", help="program (default blender)")
-    parser.add_argument("--vpl-render", default=str(ROOT / "build/release/bin/vpl-render"),
-                        help="program (default build/release/bin/vpl-render)")
+    parser.add_argument(
+        "--vpl-render",
+        default=str(ROOT / "build/release/bin/vpl-render"),
+        help="program (default build/release/bin/vpl-render)",
+    )
     parser.add_argument("--effort", type=float, default=1.0, help="factor on samples (default 1)")
-    parser.add_argument("--tolerance", type=float, default=0.01,
-                        help="allowed difference of the means (default 0.01)")
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=0.01,
+        help="allowed difference of the means (default 0.01)",
+    )
     parser.add_argument("--threads", type=int, default=2, help="default 2")
-    parser.add_argument("--reuse", action="store_true",
-                        help="keep images of an earlier run with the same samples and seeds")
-    parser.add_argument("--encoded-textures", action="store_true",
-                        help="Cycles filters textures before decoding them, as it does by itself")
+    parser.add_argument(
+        "--reuse",
+        action="store_true",
+        help="keep images of an earlier run with the same samples and seeds",
+    )
+    parser.add_argument(
+        "--encoded-textures",
+        action="store_true",
+        help="Cycles filters textures before decoding them, as it does by itself",
+    )
     options = parser.parse_args(arguments)
     names = [case.name for case in CASES]
     for name in options.cases:
@@ -91,16 +114,21 @@ def run(command: list[str], log: Path, wanted: list[Path]) -> float:
         done = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, check=False)
     missing = [path for path in wanted if not path.is_file()]
     if done.returncode != 0 or missing:
-        told = [line for line in log.read_text().splitlines()
-                if re.match(r"\S+: ", line) and not line.startswith("Fra:")]
+        told = [
+            line
+            for line in log.read_text().splitlines()
+            if re.match(r"\S+: ", line) and not line.startswith("Fra:")
+        ]
         cause = told[-1] if told else f"exit code {done.returncode}"
         raise ToolError(f"{Path(command[0]).name} failed: {cause}; all it said is in {log}")
     return time.monotonic() - start
 
 
 def samples(case: Case, options: argparse.Namespace) -> tuple[int, int]:
-    return (max(1, round(case.spp * options.effort)),
-            max(1, round(case.cycles_spp * options.effort)))
+    return (
+        max(1, round(case.spp * options.effort)),
+        max(1, round(case.cycles_spp * options.effort)),
+    )
 
 
 def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
@@ -110,9 +138,25 @@ def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[d
         images = []
         for seed in range(1, case.seeds + 1):
             image = scene.parent / f"ours.{view.name}.{spp}spp.{seed}.exr"
-            command = [options.vpl_render, str(scene), "-o", str(image), "--integrator", "path",
-                       "--only", view.quantity, "--spp", str(spp), "--seed", str(seed), "--threads",
-                       str(options.threads), "--quiet", "--size", "x".join(map(str, case.size))]
+            command = [
+                options.vpl_render,
+                str(scene),
+                "-o",
+                str(image),
+                "--integrator",
+                "path",
+                "--only",
+                view.quantity,
+                "--spp",
+                str(spp),
+                "--seed",
+                str(seed),
+                "--threads",
+                str(options.threads),
+                "--quiet",
+                "--size",
+                "x".join(map(str, case.size)),
+            ]
             if view.quantity != "direct":  # which has no bounce
                 command += ["--max-bounces", str(view.bounces)]
             if not (options.reuse and image.is_file()):
@@ -129,8 +173,9 @@ def cycles_bounces(views: tuple[View, ...]) -> list[int]:
     return sorted(limits | ({0} if any(v.quantity == "indirect" for v in views) else set()))
 
 
-def missing_images(limits: list[int], seeds: range, path: Callable[[int, int], Path],
-                   reuse: bool) -> dict[tuple[int, ...], list[int]]:
+def missing_images(
+    limits: list[int], seeds: range, path: Callable[[int, int], Path], reuse: bool
+) -> dict[tuple[int, ...], list[int]]:
     """Seeds to render -> the bounce limits that lack them: each entry is one start of Blender."""
     jobs: dict[tuple[int, ...], list[int]] = {}
     for bounces in limits:
@@ -153,16 +198,33 @@ def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple
         wanted = [path(b, s) for b in bounces for s in todo]
         for image in wanted:
             image.unlink(missing_ok=True)
-        command = [options.blender, "-b", "--factory-startup", "--python-exit-code", "3",
-                   "--python", str(HERE / "render_cycles.py"), "--", str(scene),
-                   "--output", str(scene.parent / name), "--spp", str(spp),
-                   "--bounces", ",".join(map(str, bounces)), "--seeds", ",".join(map(str, todo)),
-                   "--threads", str(options.threads)]
+        command = [
+            options.blender,
+            "-b",
+            "--factory-startup",
+            "--python-exit-code",
+            "3",
+            "--python",
+            str(HERE / "render_cycles.py"),
+            "--",
+            str(scene),
+            "--output",
+            str(scene.parent / name),
+            "--spp",
+            str(spp),
+            "--bounces",
+            ",".join(map(str, bounces)),
+            "--seeds",
+            ",".join(map(str, todo)),
+            "--threads",
+            str(options.threads),
+        ]
         command += ["--encoded-textures"] if options.encoded_textures else []
         seconds += run(command, scene.parent / "cycles.log", wanted)
     stacks = {b: np.stack([compare.read_exr(path(b, s)) for s in seeds]) for b in limits}
-    return {v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0)
-            for v in case.views}, seconds
+    return {
+        v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0) for v in case.views
+    }, seconds
 
 
 def verdict(figures: dict, tolerance: float) -> str:
@@ -183,21 +245,30 @@ def check(case: Case, options: argparse.Namespace) -> dict:
     ours, our_seconds = render_ours(case, scene, options)
     cycles, cycles_seconds = render_cycles(case, scene, options)
     spp, cycles_spp = samples(case, options)
-    result = {"scene": case.scene, "note": case.note, "size": list(case.size), "seeds": case.seeds,
-              "spp": spp, "cycles_spp": cycles_spp, "views": {},
-              # null: nothing was rendered, thanks to --reuse
-              "time_s": round(our_seconds, 1) or None,
-              "cycles_time_s": round(cycles_seconds, 1) or None}
+    result = {
+        "scene": case.scene,
+        "note": case.note,
+        "size": list(case.size),
+        "seeds": case.seeds,
+        "spp": spp,
+        "cycles_spp": cycles_spp,
+        "views": {},
+        # null: nothing was rendered, thanks to --reuse
+        "time_s": round(our_seconds, 1) or None,
+        "cycles_time_s": round(cycles_seconds, 1) or None,
+    }
     for view in case.views:
         figures = compare.compare(ours[view], cycles[view])
         if case.model or case.name == "gltf-normal-map":
             figures["expected"], figures["expected_error"] = walk.expected_ratio(
-                case.model, max(2, round(WALKS * options.effort)))
+                case.model, max(2, round(WALKS * options.effort))
+            )
         figures["verdict"] = verdict(figures, options.tolerance)
         result["views"][view.name] = figures
         report(case, view, figures)
-        compare.write_picture(folder / f"{view.name}.png", f"{case.name}, {view.name}", ours[view],
-                              cycles[view])
+        compare.write_picture(
+            folder / f"{view.name}.png", f"{case.name}, {view.name}", ours[view], cycles[view]
+        )
     return result
 
 
@@ -206,9 +277,11 @@ def report(case: Case, view: View, figures: dict) -> None:
     ratio = "-" if mean["ratio"] is None else f"{mean['ratio']:.4f} +- {mean['error']:.4f}"
     if "expected" in figures:
         ratio += f" (expected {figures['expected']:.4f} +- {figures['expected_error']:.4f})"
-    print(f"{case.name:15} {view.name:12} ours {mean['ours']:.5g}  Cycles {mean['cycles']:.5g}  "
-          f"ratio {ratio}  blocks z^2 {blocks['mean_square_z']:.2f}  {figures['verdict']}",
-          flush=True)
+    print(
+        f"{case.name:15} {view.name:12} ours {mean['ours']:.5g}  Cycles {mean['cycles']:.5g}  "
+        f"ratio {ratio}  blocks z^2 {blocks['mean_square_z']:.2f}  {figures['verdict']}",
+        flush=True,
+    )
 
 
 def first_line(command: list[str]) -> str:
@@ -221,30 +294,47 @@ def describe_run(options: argparse.Namespace) -> dict:
     parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render", "transport"]
     changed = first_line([*git, "status", "--porcelain", "--", *parts]) != ""
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    return {"commit": first_line([*git, "rev-parse", "--short=10", "HEAD"]),
-            "sources_changed": changed,
-            "blender": first_line([options.blender, "--version"]),
-            "vpl_render": first_line([options.vpl_render, "--version"]),
-            "cpu": cpu[1] if cpu else platform.machine(), "threads": options.threads,
-            "effort": options.effort, "tolerance": options.tolerance,
-            "encoded_textures": options.encoded_textures}
+    return {
+        "commit": first_line([*git, "rev-parse", "--short=10", "HEAD"]),
+        "sources_changed": changed,
+        "blender": first_line([options.blender, "--version"]),
+        "vpl_render": first_line([options.vpl_render, "--version"]),
+        "cpu": cpu[1] if cpu else platform.machine(),
+        "threads": options.threads,
+        "effort": options.effort,
+        "tolerance": options.tolerance,
+        "encoded_textures": options.encoded_textures,
+    }
 
 
 def write_results(path: Path, runs: dict) -> None:
-    output_guard.write(path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results")
+    output_guard.write(
+        path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results"
+    )
 
 
 def table(results: dict) -> str:
-    heads = ("case", "view", "ours", "Cycles", "ratio", "standard error", "expected",
-             "blocks: mean z²")
+    heads = (
+        "case",
+        "view",
+        "ours",
+        "Cycles",
+        "ratio",
+        "standard error",
+        "expected",
+        "blocks: mean z²",
+    )
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for case in (case.name for case in CASES if case.name in results):
         for view, figures in results[case]["views"].items():
             mean, z2 = figures["mean"], figures["blocks"]["mean_square_z"]
-            ratio, error = ("-" if mean[key] is None else f"{mean[key]:.4f}"
-                            for key in ("ratio", "error"))
-            lines.append(f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
-                         f"| {ratio} | {error} | {figures.get('expected', 1.0):.4f} | {z2:.2f} |")
+            ratio, error = (
+                "-" if mean[key] is None else f"{mean[key]:.4f}" for key in ("ratio", "error")
+            )
+            lines.append(
+                f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
+                f"| {ratio} | {error} | {figures.get('expected', 1.0):.4f} | {z2:.2f} |"
+            )
     return "\n".join(lines)
 
 
@@ -259,7 +349,8 @@ def main(arguments: list[str]) -> int:
         print(table(json.loads(options.results.read_text())))
         return EXIT_OK
     options.blender = require_program(
-        options.blender, "apt-get install --no-install-recommends blender, or name it by --blender")
+        options.blender, "apt-get install --no-install-recommends blender, or name it by --blender"
+    )
     options.vpl_render = require_program(options.vpl_render, "build it, or name it by --vpl-render")
     output_guard.check(options.results, RESULTS, "--results")
     options.out.mkdir(parents=True, exist_ok=True)

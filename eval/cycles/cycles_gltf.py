@@ -25,8 +25,10 @@ def _plain(tree: bpy.types.NodeTree) -> None:
     gltf_file.py, what is of roughness 1 and no metal is Lambert by KHR_materials_specular, whose
     factor of 0 Blender's importer keeps to itself."""
     for old in [n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"]:
-        glow = [c * old.inputs["Emission Strength"].default_value
-                for c in old.inputs["Emission"].default_value[:3]]
+        glow = [
+            c * old.inputs["Emission Strength"].default_value
+            for c in old.inputs["Emission"].default_value[:3]
+        ]
         if any(glow):
             node = _replace(tree, old, "ShaderNodeEmission")
             node.inputs["Color"].default_value = (*glow, 1.0)

@@ -36,8 +36,9 @@ def albedo_socket(tree: bpy.types.NodeTree, material: source.Material, encoded: 
     if not material.map_kd.is_file():
         raise SceneError(f"{material.map_kd}: no such texture; supply it")
     texture = tree.nodes.new("ShaderNodeTexImage")
-    texture.image = (bpy.data.images.load(str(material.map_kd)) if encoded
-                     else linear_image(material.map_kd))
+    texture.image = (
+        bpy.data.images.load(str(material.map_kd)) if encoded else linear_image(material.map_kd)
+    )
     texture.interpolation = "Linear"
     texture.extension = "REPEAT"
     scale = tree.nodes.new("ShaderNodeVectorMath")
@@ -95,8 +96,11 @@ def make_material(material: source.Material, encoded: bool) -> bpy.types.Materia
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    shader = (model_shader(tree, material.model) if material.model
-              else reflection_shader(tree, material, encoded))
+    shader = (
+        model_shader(tree, material.model)
+        if material.model
+        else reflection_shader(tree, material, encoded)
+    )
     if any(material.ke):
         shader = add_shaders(tree, shader, emission_shader(tree, material))
     output = tree.nodes.new("ShaderNodeOutputMaterial")

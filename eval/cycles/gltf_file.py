@@ -30,34 +30,56 @@ class Bytes:
 
     def accessor(self, values: np.ndarray) -> int:
         rows = np.ascontiguousarray(values.reshape(-1, values.shape[-1]), "<f4")
-        self.accessors.append({"bufferView": self.view(rows.tobytes()), "componentType": FLOAT,
-                               "count": len(rows), "type": f"VEC{rows.shape[1]}",
-                               "min": rows.min(0).tolist(), "max": rows.max(0).tolist()})
+        self.accessors.append(
+            {
+                "bufferView": self.view(rows.tobytes()),
+                "componentType": FLOAT,
+                "count": len(rows),
+                "type": f"VEC{rows.shape[1]}",
+                "min": rows.min(0).tolist(),
+                "max": rows.max(0).tolist(),
+            }
+        )
         return len(self.accessors) - 1
 
 
 def png(pixels: np.ndarray) -> bytes:
     """8-bit RGB, rows from the top."""
+
     def chunk(kind: bytes, data: bytes) -> bytes:
-        return (struct.pack(">I", len(data)) + kind + data
-                + struct.pack(">I", zlib.crc32(kind + data)))
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
 
     height, width = pixels.shape[:2]
     rows = b"".join(b"\0" + row.astype(np.uint8).tobytes() for row in pixels)
     head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows))
-            + chunk(b"IEND", b""))
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", head)
+        + chunk(b"IDAT", zlib.compress(rows))
+        + chunk(b"IEND", b"")
+    )
 
 
 def material(name: str, data: dict) -> dict:
     """Diffuse ones are Lambert: KHR_materials_specular takes all gloss away."""
     if data["type"] == "metallicroughness":
-        pbr = {"baseColorFactor": [*data["reflectance"], 1.0], "metallicFactor": data["metallic"],
-               "roughnessFactor": data["roughness"]}
+        pbr = {
+            "baseColorFactor": [*data["reflectance"], 1.0],
+            "metallicFactor": data["metallic"],
+            "roughnessFactor": data["roughness"],
+        }
         return {"name": name, "pbrMetallicRoughness": pbr}
-    made = {"name": name, "extensions": {"KHR_materials_specular": {"specularFactor": 0.0}},
-            "pbrMetallicRoughness": {"baseColorFactor": [*data["reflectance"], 1.0],
-                                     "metallicFactor": 0.0, "roughnessFactor": 1.0}}
+    made = {
+        "name": name,
+        "extensions": {"KHR_materials_specular": {"specularFactor": 0.0}},
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [*data["reflectance"], 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 1.0,
+        },
+    }
     if "radiance" in data:  # both sides shine: Blender's importer knows no other lamps
         peak = max(data["radiance"])
         made["emissiveFactor"] = [c / peak for c in data["radiance"]]
@@ -83,27 +105,47 @@ def write(path: Path, sketch: scenes.Sketch) -> None:
         for key, values in (("NORMAL", part.normal), ("TEXCOORD_0", part.uv)):
             if values is not None:
                 attributes[key] = chunk.accessor(values)
-        meshes.append({"primitives": [{"attributes": attributes,
-                                       "material": names.index(part.material)}]})
+        meshes.append(
+            {"primitives": [{"attributes": attributes, "material": names.index(part.material)}]}
+        )
     nodes = [camera_node()] + [{"mesh": n} for n in range(len(meshes) - bool(sketch.nodes))]
     nodes += [node | {"mesh": len(meshes) - 1} for node in sketch.nodes]  # all of the last part
     fov = np.radians(scenes.CAMERA["vertical_fov_deg"])
-    whole = {"asset": {"version": "2.0", "generator": MAKER}, "scene": 0,
-             "scenes": [{"nodes": list(range(len(nodes)))}],
-             "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"],
-             "cameras": [{"type": "perspective", "perspective":
-                          {"aspectRatio": 1.0, "yfov": float(fov), "znear": 1e-4}}],
-             "nodes": nodes, "meshes": meshes,
-             "materials": [material(name, data) for name, data in sketch.materials.items()]}
+    whole = {
+        "asset": {"version": "2.0", "generator": MAKER},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(len(nodes)))}],
+        "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"],
+        "cameras": [
+            {
+                "type": "perspective",
+                "perspective": {"aspectRatio": 1.0, "yfov": float(fov), "znear": 1e-4},
+            }
+        ],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": [material(name, data) for name, data in sketch.materials.items()],
+    }
     images = [data["normal"] for data in sketch.materials.values() if "normal" in data]
     if images:
-        whole |= {"images": [{"bufferView": chunk.view(png(images[0])), "mimeType": "image/png"}],
-                  "textures": [{"source": 0}]}
-    whole |= {"bufferViews": chunk.views, "accessors": chunk.accessors,
-              "buffers": [{"byteLength": len(chunk.data)}]}
+        whole |= {
+            "images": [{"bufferView": chunk.view(png(images[0])), "mimeType": "image/png"}],
+            "textures": [{"source": 0}],
+        }
+    whole |= {
+        "bufferViews": chunk.views,
+        "accessors": chunk.accessors,
+        "buffers": [{"byteLength": len(chunk.data)}],
+    }
     text = json.dumps(whole).encode()
     text += b" " * (-len(text) % 4)
     data = chunk.data + b"\0" * (-len(chunk.data) % 4)
-    output_guard.write(path, struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data))
-                       + struct.pack("<I4s", len(text), b"JSON") + text
-                       + struct.pack("<I4s", len(data), b"BIN\0") + data, GLB)
+    output_guard.write(
+        path,
+        struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data))
+        + struct.pack("<I4s", len(text), b"JSON")
+        + text
+        + struct.pack("<I4s", len(data), b"BIN\0")
+        + data,
+        GLB,
+    )

@@ -45,16 +45,18 @@ def quad(a, b, c, d, cells: int = 1) -> tuple[np.ndarray, np.ndarray]:
     assert np.allclose(a + ab + ad, c)
     i, j = (g.ravel() / cells for g in np.mgrid[0:cells, 0:cells])
     step = 1.0 / cells
-    corner = [np.stack([i + x * step, j + y * step], 1)
-              for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    corner = [
+        np.stack([i + x * step, j + y * step], 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))
+    ]
     uv = np.concatenate([np.stack([corner[k] for k in t], 1) for t in ((0, 1, 2), (0, 2, 3))])
     return a + uv[..., :1] * ab + uv[..., 1:] * ad, uv
 
 
 def sphere(centre, radius: float, around: int = 96) -> tuple[np.ndarray, np.ndarray]:
     """Positions and normals."""
-    phi, theta = np.meshgrid(np.linspace(0, 2 * np.pi, around + 1),
-                             np.linspace(0, np.pi, around // 2 + 1))
+    phi, theta = np.meshgrid(
+        np.linspace(0, 2 * np.pi, around + 1), np.linspace(0, np.pi, around // 2 + 1)
+    )
     n = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta), -np.sin(theta) * np.sin(phi)], -1)
     a, b, c, d = n[1:, :-1], n[1:, 1:], n[:-1, 1:], n[:-1, :-1]
     upper = np.stack([a, c, d], 2)[1:].reshape(-1, 3, 3)  # none at the north pole
@@ -67,12 +69,14 @@ def box_parts() -> list[Part]:
     """Seen from inside: the camera is in the box."""
     p, m = 1.0, -1.0
     h, y = LAMP_HALF, LAMP_Y
-    walls = {"floor": ((m, m, p), (p, m, p), (p, m, m), (m, m, m)),
-             "ceiling": ((m, p, m), (p, p, m), (p, p, p), (m, p, p)),
-             "back": ((m, m, m), (p, m, m), (p, p, m), (m, p, m)),
-             "front": ((p, m, p), (m, m, p), (m, p, p), (p, p, p)),
-             "left": ((m, m, p), (m, m, m), (m, p, m), (m, p, p)),
-             "right": ((p, m, m), (p, m, p), (p, p, p), (p, p, m))}
+    walls = {
+        "floor": ((m, m, p), (p, m, p), (p, m, m), (m, m, m)),
+        "ceiling": ((m, p, m), (p, p, m), (p, p, p), (m, p, p)),
+        "back": ((m, m, m), (p, m, m), (p, p, m), (m, p, m)),
+        "front": ((p, m, p), (m, m, p), (m, p, p), (p, p, p)),
+        "left": ((m, m, p), (m, m, m), (m, p, m), (m, p, p)),
+        "right": ((p, m, m), (p, m, p), (p, p, p), (p, p, m)),
+    }
     parts = []
     for name, corners in walls.items():
         position, uv = quad(*corners)
@@ -82,8 +86,14 @@ def box_parts() -> list[Part]:
 
 
 def box_materials() -> dict[str, dict]:
-    colours = {"floor": GREY, "ceiling": GREY, "back": GREY, "front": GREY, "left": RED,
-               "right": GREEN}
+    colours = {
+        "floor": GREY,
+        "ceiling": GREY,
+        "back": GREY,
+        "front": GREY,
+        "left": RED,
+        "right": GREEN,
+    }
     materials = {name: {"type": "diffuse", "reflectance": c} for name, c in colours.items()}
     black = (0.0, 0.0, 0.0)
     return materials | {"lamp": {"type": "diffuse", "reflectance": black, "radiance": RADIANCE}}
@@ -91,15 +101,17 @@ def box_materials() -> dict[str, dict]:
 
 def sphere_in_box(material: dict) -> Sketch:
     position, normal = sphere(CENTRE, RADIUS)
-    return Sketch(box_materials() | {"sphere": material},
-                  [*box_parts(), Part("sphere", position, normal)])
+    return Sketch(
+        box_materials() | {"sphere": material}, [*box_parts(), Part("sphere", position, normal)]
+    )
 
 
 def mapped_normal(u, v) -> np.ndarray:
     """Waves without symmetry, up to 24 degrees steep; v down."""
     x, y = 2 * np.pi * u, 2 * np.pi * v
-    normal = np.stack([0.3 * np.sin(x) + 0.1 * np.sin(3 * y), 0.2 * np.cos(2 * y + x),
-                       np.ones_like(x)], -1)
+    normal = np.stack(
+        [0.3 * np.sin(x) + 0.1 * np.sin(3 * y), 0.2 * np.cos(2 * y + x), np.ones_like(x)], -1
+    )
     return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
 
 
@@ -123,8 +135,13 @@ def instances_in_box(count: int = 24) -> Sketch:
     for number in range(count):
         turn = random.normal(size=4)
         size = random.uniform(0.2, 0.6, 3) * ((-1.0 if number % 2 else 1.0), 1.0, 1.0)
-        nodes.append({"translation": random.uniform((-0.7, -0.9, -0.8), (0.4, 0.3, 0.1)).tolist(),
-                      "rotation": (turn / np.linalg.norm(turn)).tolist(), "scale": size.tolist()})
+        nodes.append(
+            {
+                "translation": random.uniform((-0.7, -0.9, -0.8), (0.4, 0.3, 0.1)).tolist(),
+                "rotation": (turn / np.linalg.norm(turn)).tolist(),
+                "scale": size.tolist(),
+            }
+        )
     materials = box_materials() | {"wedge": {"type": "diffuse", "reflectance": (0.8, 0.7, 0.3)}}
     return Sketch(materials, [*box_parts(), Part("wedge", wedge)], nodes)
 
@@ -139,12 +156,17 @@ def room_with_windows() -> Sketch:
         for i in range(len(cuts_u) - 1):
             for j in range(len(cuts_v) - 1):
                 if (i, j) not in holes:
-                    (a, b), (c, d) = cuts_u[i:i + 2], cuts_v[j:j + 2]
+                    (a, b), (c, d) = cuts_u[i : i + 2], cuts_v[j : j + 2]
                     corners = (plane(a, c), plane(b, c), plane(b, d), plane(a, d))
                     parts.append(Part(material, *quad(*corners)[:1]))
 
-    wall("left", lambda u, v: (m, v, -u), (m, -0.6, -0.3, 0.1, 0.7, p), (m, -0.3, 0.0, 0.6, p),
-         {(1, 2), (3, 1), (3, 2)})
+    wall(
+        "left",
+        lambda u, v: (m, v, -u),
+        (m, -0.6, -0.3, 0.1, 0.7, p),
+        (m, -0.3, 0.0, 0.6, p),
+        {(1, 2), (3, 1), (3, 2)},
+    )
     wall("front", lambda u, v: (-u, v, p), (m, 0.2, 0.8, p), (m, 0.1, 0.7, p), {(1, 1)})
     materials = {k: v for k, v in box_materials().items() if k != "lamp"}
     return Sketch(materials, parts)
@@ -155,17 +177,22 @@ def obj_text(sketch: Sketch) -> str:
     lines, count = [], 0
     for part in sketch.parts:
         lines.append(f"usemtl {part.material}")
-        lines += ["v " + " ".join(f"{x:.9g}" for x in corner)
-                  for corner in part.position.reshape(-1, 3)]
-        lines += [f"f {count + k + 1} {count + k + 2} {count + k + 3}"
-                  for k in range(0, 3 * len(part.position), 3)]
+        lines += [
+            "v " + " ".join(f"{x:.9g}" for x in corner) for corner in part.position.reshape(-1, 3)
+        ]
+        lines += [
+            f"f {count + k + 1} {count + k + 2} {count + k + 3}"
+            for k in range(0, 3 * len(part.position), 3)
+        ]
         count += 3 * len(part.position)
     return "\n".join(lines) + "\n"
 
 
 def mtl_text(sketch: Sketch) -> str:
-    return "".join(f"newmtl {name}\nKd {' '.join(map(str, data['reflectance']))}\n"
-                   for name, data in sketch.materials.items())
+    return "".join(
+        f"newmtl {name}\nKd {' '.join(map(str, data['reflectance']))}\n"
+        for name, data in sketch.materials.items()
+    )
 
 
 def source_scene(sketch: Sketch) -> source.Scene:
@@ -173,8 +200,12 @@ def source_scene(sketch: Sketch) -> source.Scene:
     meshes = []
     for part in sketch.parts:
         data = sketch.materials[part.material]
-        material = source.Material(part.material, kd=data.get("reflectance", (0, 0, 0)),
-                                   ke=data.get("radiance", (0, 0, 0)), model=data)
+        material = source.Material(
+            part.material,
+            kd=data.get("reflectance", (0, 0, 0)),
+            ke=data.get("radiance", (0, 0, 0)),
+            model=data,
+        )
         n = len(part.position)
         normal = np.full((n, 3, 3), np.nan) if part.normal is None else part.normal
         uv = np.full((n, 3, 2), np.nan) if part.uv is None else part.uv
@@ -189,8 +220,9 @@ def _numbers(values) -> str:
 def _pbrt_material(data: dict) -> str:
     kinds = {"reflectance": "rgb", "roughness": "float", "eta": "float"}
     words = [f'Material "{data["type"]}"']
-    words += [f'"{kinds[key]} {key}" {_numbers(value)}' for key, value in data.items()
-              if key in kinds]
+    words += [
+        f'"{kinds[key]} {key}" {_numbers(value)}' for key, value in data.items() if key in kinds
+    ]
     if "roughness" in data:
         words.append('"bool remaproughness" false')
     return " ".join(words)
@@ -199,10 +231,13 @@ def _pbrt_material(data: dict) -> str:
 def pbrt_text(sketch: Sketch) -> str:
     """pbrt is left-handed: Scale -1 1 1 before LookAt keeps the picture as it is."""
     eye, at = CAMERA["position"], CAMERA["look_at"]
-    lines = ["Scale -1 1 1", "LookAt " + " ".join(map(str, [*eye, *at, 0, 1, 0])),
-             f'Camera "perspective" "float fov" {CAMERA["vertical_fov_deg"]}',
-             f'Film "rgb" "integer xresolution" {SIZE[0]} "integer yresolution" {SIZE[1]}',
-             "WorldBegin"]
+    lines = [
+        "Scale -1 1 1",
+        "LookAt " + " ".join(map(str, [*eye, *at, 0, 1, 0])),
+        f'Camera "perspective" "float fov" {CAMERA["vertical_fov_deg"]}',
+        f'Film "rgb" "integer xresolution" {SIZE[0]} "integer yresolution" {SIZE[1]}',
+        "WorldBegin",
+    ]
     for part in sketch.parts:
         data = sketch.materials[part.material]
         lines += ["AttributeBegin", _pbrt_material(data)]

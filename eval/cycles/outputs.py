@@ -11,10 +11,19 @@ import output_guard  # noqa: E402
 MAKER = "eval/cycles/cross_check.py"
 MARK = f"# Made by {MAKER}\n"  # a comment in TOML, OBJ, MTL and pbrt
 SCENE = output_guard.text_kind("a scene that cross_check.py made", MARK)
-GLB = output_guard.Kind("a scene that cross_check.py made",
-                        lambda head: head.startswith(b"glTF") and MAKER.encode() in head)
-RESULTS = output_guard.json_kind("results of cross_check.py", lambda cases: isinstance(cases, dict) and all(
-    isinstance(case, dict) and "run" in case and "views" in case for case in cases.values()))
+GLB = output_guard.Kind(
+    "a scene that cross_check.py made",
+    lambda head: head.startswith(b"glTF") and MAKER.encode() in head,
+)
+RESULTS = output_guard.json_kind(
+    "results of cross_check.py",
+    lambda cases: (
+        isinstance(cases, dict)
+        and all(
+            isinstance(case, dict) and "run" in case and "views" in case for case in cases.values()
+        )
+    ),
+)
 
 
 def write_scene(path: Path, text: str) -> None:

@@ -37,17 +37,25 @@ EMITTER_EDGE = 0.1  # scene units
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="render_cycles.py", description=__doc__.split("\n")[0])
     parser.add_argument("scene", type=Path)
-    parser.add_argument("--output", required=True, help="{bounces} and {seed} in its name are replaced")
+    parser.add_argument(
+        "--output", required=True, help="{bounces} and {seed} in its name are replaced"
+    )
     parser.add_argument("--size", help="WIDTHxHEIGHT in pixels; the scene's unless given")
     parser.add_argument("--bounces", default="32", help="limits as our --max-bounces: 0,32")
     parser.add_argument("--seeds", default="1")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--encoded-textures", action="store_true",
-                        help="let Cycles filter the sRGB values, as it does by itself")
-    parser.add_argument("--whole-emitters", action="store_true",
-                        help="leave emitting triangles as large as they are: shows Cycles' bias")
-    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
+    parser.add_argument(
+        "--encoded-textures",
+        action="store_true",
+        help="let Cycles filter the sRGB values, as it does by itself",
+    )
+    parser.add_argument(
+        "--whole-emitters",
+        action="store_true",
+        help="leave emitting triangles as large as they are: shows Cycles' bias",
+    )
+    return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
 
 
 def corner_normals(mesh: source.Mesh) -> tuple[np.ndarray, bool]:
@@ -158,8 +166,7 @@ def set_bounces(bounces: int) -> None:
 def read(path: Path) -> source.Scene:
     """A .pbrt is not read, but built again from what it was written from."""
     if path.suffix == ".pbrt":
-        return model_scenes.source_scene(
-            model_scenes.sphere_in_box(model_cases.SPHERES[path.stem]))
+        return model_scenes.source_scene(model_scenes.sphere_in_box(model_cases.SPHERES[path.stem]))
     return source.read_scene(path)
 
 
@@ -202,7 +209,9 @@ def run() -> None:
         for seed in options.seeds.split(","):
             bpy.context.scene.cycles.seed = int(seed)
             name = options.output.replace("{bounces}", bounces).replace("{seed}", seed)
-            output_guard.replace(name, output_guard.EXR, render, "--output", {"the scene": options.scene})
+            output_guard.replace(
+                name, output_guard.EXR, render, "--output", {"the scene": options.scene}
+            )
 
 
 if __name__ == "__main__":

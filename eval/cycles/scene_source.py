@@ -171,8 +171,10 @@ def check_supported(material: Material, path: Path) -> None:
     elif max(np.add(material.kd, material.ks)) > 1.0:
         problem = "reflects more than it receives (Kd + Ks > 1)"
     if problem:
-        raise SceneError(f"{path}: material '{material.name}' {problem}, which the cross-check does"
-                         " not map; name a diffuse variant in 'materials'")
+        raise SceneError(
+            f"{path}: material '{material.name}' {problem}, which the cross-check does"
+            " not map; name a diffuse variant in 'materials'"
+        )
 
 
 def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
@@ -187,7 +189,7 @@ def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
                 continue
             key = parts[0]
             if key in columns:
-                columns[key].append([float(x) for x in parts[1:3 if key == "vt" else 4]])
+                columns[key].append([float(x) for x in parts[1 : 3 if key == "vt" else 4]])
             elif key == "usemtl":
                 name = parts[1]
             elif key == "mtllib":
@@ -203,8 +205,9 @@ def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
 def _corner(text: str, columns: dict[str, list]) -> tuple[int, int, int]:
     ids = (text.split("/") + ["", ""])[:3]
     sizes = (len(columns["v"]), len(columns["vt"]), len(columns["vn"]))
-    return tuple(-1 if not i else int(i) - 1 if int(i) > 0 else size + int(i)
-                 for i, size in zip(ids, sizes))
+    return tuple(
+        -1 if not i else int(i) - 1 if int(i) > 0 else size + int(i) for i, size in zip(ids, sizes)
+    )
 
 
 def read_mesh(obj: Path, mtl: Path | None, matrix: np.ndarray) -> Mesh:
@@ -255,8 +258,12 @@ def split_emitters(mesh: Mesh, longest: float) -> Mesh:
 def _quarters(corners: np.ndarray) -> np.ndarray:
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-    return np.concatenate([np.stack(triangle, axis=1) for triangle in
-                           ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    return np.concatenate(
+        [
+            np.stack(triangle, axis=1)
+            for triangle in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        ]
+    )
 
 
 def read_scene(path: Path) -> Scene:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests of the cross-check; those that need Blender are skipped where it is missing.
 
-  python3 eval/cycles/test_cross_check.py
+python3 eval/cycles/test_cross_check.py
 """
 
 from __future__ import annotations
@@ -51,8 +51,12 @@ MTL = "newmtl A\nKd 0.1 0.2 0.3\nnewmtl B\nKd 0.5 0.5 0.5\nKe 1 2 3\nemission_si
 
 
 def command(*arguments: str) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, str(HERE / "cross_check.py"), *arguments],
-                          capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [sys.executable, str(HERE / "cross_check.py"), *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 class InFolder(unittest.TestCase):
@@ -74,9 +78,14 @@ class Reader(InFolder):
 
     def test_quads_negative_indices_and_triangles_without_area(self) -> None:
         mesh = self.mesh(np.eye(4))
-        self.assertEqual(mesh.position.tolist(), [
-            [[0, 0, 0], [2, 0, 0], [2, 3, 0]], [[0, 0, 0], [2, 3, 0], [0, 3, 0]],
-            [[0, 0, 0], [2, 0, 0], [0, 3, 0]]])
+        self.assertEqual(
+            mesh.position.tolist(),
+            [
+                [[0, 0, 0], [2, 0, 0], [2, 3, 0]],
+                [[0, 0, 0], [2, 3, 0], [0, 3, 0]],
+                [[0, 0, 0], [2, 0, 0], [0, 3, 0]],
+            ],
+        )
         self.assertEqual([mesh.materials[m].name for m in mesh.material], ["A", "A", "B"])
         self.assertEqual(mesh.uv[0].tolist(), [[0, 0], [1, 0], [1, 0]])
         self.assertTrue(np.isnan(mesh.normal[2]).all() and np.isnan(mesh.uv[2]).all())
@@ -87,8 +96,9 @@ class Reader(InFolder):
         self.assertEqual((b.ke, b.two_sided), ((1, 2, 3), True))
 
     def test_scale_then_turns_then_shift(self) -> None:
-        matrix = source.read_transform({"scale": [2, 1, 1], "rotate_deg": [90, 0, 90],
-                                        "translate": [0, 0, 5]})
+        matrix = source.read_transform(
+            {"scale": [2, 1, 1], "rotate_deg": [90, 0, 90], "translate": [0, 0, 5]}
+        )
         # (1, 1, 0) -> scale (2, 1, 0) -> about x (2, 0, 1) -> about z (0, 2, 1) -> shift
         np.testing.assert_allclose(matrix @ [1, 1, 0, 1], [0, 2, 6, 1], atol=1e-12)
 
@@ -115,9 +125,13 @@ class Reader(InFolder):
         np.testing.assert_array_equal(fine.position[fine.material == 0], mesh.position[:2])
 
     def test_what_has_no_counterpart_is_refused_by_name(self) -> None:
-        for line, said in (("Ks 0.1 0.1 0.1", "Phong"), ("map_d a.png", "mask"),
-                           ("illum 7\nTf 0.5 1 1", "coloured glass"), ("illum 7\nNi 0.6", "below 1"),
-                           ("Ks 0.9 0.9 0.9\nillum 3", "more than it receives")):
+        for line, said in (
+            ("Ks 0.1 0.1 0.1", "Phong"),
+            ("map_d a.png", "mask"),
+            ("illum 7\nTf 0.5 1 1", "coloured glass"),
+            ("illum 7\nNi 0.6", "below 1"),
+            ("Ks 0.9 0.9 0.9\nillum 3", "more than it receives"),
+        ):
             with self.assertRaisesRegex(source.SceneError, f"material 'B'.*{said}"):
                 self.mesh(np.eye(4), MTL + line + "\n")
 
@@ -125,8 +139,10 @@ class Reader(InFolder):
 class Preparation(InFolder):
     def test_edited_library_keeps_mirrors(self) -> None:
         text = "# c\nnewmtl A\nKs 1 1 1\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n"
-        self.assertEqual(cases.edit_mtl(text, ("Ks",)),
-                         "# c\nnewmtl A\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n")
+        self.assertEqual(
+            cases.edit_mtl(text, ("Ks",)),
+            "# c\nnewmtl A\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n",
+        )
 
     def test_every_own_case_is_read(self) -> None:
         for case in cases.CASES:
@@ -172,7 +188,7 @@ class ModelScenes(InFolder):
             data = path.read_bytes()
             self.assertEqual(struct.unpack("<4sII", data[:12]), (b"glTF", 2, len(data)))
             (size,) = struct.unpack("<I", data[12:16])
-            scene, binary = json.loads(data[20:20 + size]), data[28 + size:]
+            scene, binary = json.loads(data[20 : 20 + size]), data[28 + size :]
             self.assertIn(len(binary) - scene["buffers"][0]["byteLength"], range(4))  # padding
             for accessor in scene["accessors"]:
                 view = scene["bufferViews"][accessor["bufferView"]]
@@ -300,10 +316,13 @@ class CommandLine(InFolder):
         for name in ("0.1", "0.2", "1.1"):
             self.write(name, "")
         seeds = range(1, 4)
-        self.assertEqual(cross_check.missing_images([0, 1, 32], seeds, path, True),
-                         {(3,): [0], (2, 3): [1], (1, 2, 3): [32]})
-        self.assertEqual(cross_check.missing_images([0, 1], seeds, path, False),
-                         {(1, 2, 3): [0, 1]})
+        self.assertEqual(
+            cross_check.missing_images([0, 1, 32], seeds, path, True),
+            {(3,): [0], (2, 3): [1], (1, 2, 3): [32]},
+        )
+        self.assertEqual(
+            cross_check.missing_images([0, 1], seeds, path, False), {(1, 2, 3): [0, 1]}
+        )
 
     def assert_one_line(self, done: subprocess.CompletedProcess, code: int, said: str) -> None:
         self.assertEqual(done.returncode, code, done.stderr)
@@ -313,16 +332,38 @@ class CommandLine(InFolder):
     def test_files_of_others_stay(self) -> None:
         """OUT may be the folder of the scenes themselves."""
         scene = self.folder / "room-point" / "scene.toml"
-        cases.prepare(next(case for case in cases.CASES if case.name == "room-point"), ROOT / "scenes", scene.parent)
-        cases.prepare(next(case for case in cases.CASES if case.name == "room-point"), ROOT / "scenes", scene.parent)
+        cases.prepare(
+            next(case for case in cases.CASES if case.name == "room-point"),
+            ROOT / "scenes",
+            scene.parent,
+        )
+        cases.prepare(
+            next(case for case in cases.CASES if case.name == "room-point"),
+            ROOT / "scenes",
+            scene.parent,
+        )
         scene.write_text("[film]\nwidth = 8\n")
         fake = self.write("fake", "#!/bin/sh\nexit 0\n")
         fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
-        words = ("room-point", "--blender", str(fake), "--vpl-render", str(fake), "--out", str(self.folder))
-        self.assert_one_line(command(*words), 3, "scene.toml: is not a scene that cross_check.py made")
+        words = (
+            "room-point",
+            "--blender",
+            str(fake),
+            "--vpl-render",
+            str(fake),
+            "--out",
+            str(self.folder),
+        )
+        self.assert_one_line(
+            command(*words), 3, "scene.toml: is not a scene that cross_check.py made"
+        )
         self.assertEqual(scene.read_text(), "[film]\nwidth = 8\n")
         results = self.write("results.json", '{"asset": {"version": "2.0"}}')
-        self.assert_one_line(command(*words), 3, "results.json: is not results of cross_check.py, which --results would")
+        self.assert_one_line(
+            command(*words),
+            3,
+            "results.json: is not results of cross_check.py, which --results would",
+        )
         self.assertEqual(results.read_text(), '{"asset": {"version": "2.0"}}')
 
     def test_no_blender_is_one_line_and_code_3(self) -> None:
@@ -343,28 +384,49 @@ class CommandLine(InFolder):
         fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
         if not Path(VPL_RENDER).is_file():
             self.skipTest("no vpl-render")
-        done = command("room-point", "--effort", "0.004", "--blender", str(fake), "--vpl-render",
-                       VPL_RENDER, "--out", str(self.folder / "out"))
+        done = command(
+            "room-point",
+            "--effort",
+            "0.004",
+            "--blender",
+            str(fake),
+            "--vpl-render",
+            VPL_RENDER,
+            "--out",
+            str(self.folder / "out"),
+        )
         self.assert_one_line(done, 3, "fake failed: exit code 0; all it said is in")
         self.assertFalse((self.folder / "out" / "results.json").exists())
 
     @unittest.skipUnless(shutil.which("blender") and Path(VPL_RENDER).is_file(), "no Blender")
     def test_a_small_cornell_box_agrees(self) -> None:
-        done = command("cornell", "--effort", "0.03", "--tolerance", "0.05", "--vpl-render",
-                       VPL_RENDER, "--out", str(self.folder))
+        done = command(
+            "cornell",
+            "--effort",
+            "0.03",
+            "--tolerance",
+            "0.05",
+            "--vpl-render",
+            VPL_RENDER,
+            "--out",
+            str(self.folder),
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(done.stdout.count("agrees"), 3)
         table = command("--table", "--out", str(self.folder)).stdout.splitlines()
-        self.assertEqual([row.split(" | ")[:2] for row in table[2:]],
-                         [["| cornell", v.name] for v in cases.CASES[0].views])
+        self.assertEqual(
+            [row.split(" | ")[:2] for row in table[2:]],
+            [["| cornell", v.name] for v in cases.CASES[0].views],
+        )
         self.assertTrue((self.folder / "cornell" / "indirect-32.png").is_file())
 
     @unittest.skipUnless(shutil.which("blender") and Path(VPL_RENDER).is_file(), "no Blender")
     def test_flat_faces_of_a_mesh_with_normals_stay_flat(self) -> None:
         # The knobs' normals once made Cycles shade the walls of that mesh as if round: 12 % too
         # much direct light. The mirror teapot shows light that must count as direct.
-        command("veach-door", "--effort", "0.06", "--vpl-render", VPL_RENDER, "--out",
-                str(self.folder))
+        command(
+            "veach-door", "--effort", "0.06", "--vpl-render", VPL_RENDER, "--out", str(self.folder)
+        )
         results = json.loads((self.folder / "results.json").read_text())
         mean = results["veach-door"]["views"]["direct-0"]["mean"]
         self.assertLess(abs(mean["ratio"] - 1.0), 0.05)

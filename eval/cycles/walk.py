@@ -78,12 +78,14 @@ def conductor(alpha: float) -> Scatter:
         wi = reflected(wo, visible_facet(wo, alpha, u))
         both = shadowing(wo, wi, alpha)
         return wi, np.where(wi[:, 2:] > 0, both, 0.0)[:, :, None]
+
     return scatter
 
 
 def dielectric(alpha: float, index: float) -> Scatter:
     """Ours reflects the Fresnel share of the facet; Cycles' Glass BSDF takes that of the mean
     normal, and loses light where a facet then reflects totally."""
+
     def scatter(wo, inside, u):
         eta = np.where(inside, 1 / index, index)
         h = visible_facet(wo, alpha, u)
@@ -99,6 +101,7 @@ def dielectric(alpha: float, index: float) -> Scatter:
         drawn = np.where(mirror[:, None], share, 1 - share)
         both = shadowing(wo, wi, alpha) * drawn / np.where(mirror, chance, 1 - chance)[:, None]
         return wi, np.where(good[:, None], both, 0.0)[:, :, None]
+
     return scatter
 
 
@@ -134,6 +137,7 @@ def coated(alpha: float, index: float, reflectance) -> Scatter:
         below = np.stack([ours, (1 - mixed)[:, None] * base], 1)
         both = np.where(gloss[:, None, None], shine[:, :, None], below)
         return wi, 2 * np.where(wi[:, 2:, None] > 0, both, 0.0)
+
     return scatter
 
 
@@ -163,6 +167,7 @@ def metallic_roughness(colour, metallic: float, roughness: float) -> Scatter:
         below = base * np.stack([ours, np.repeat(disney[:, None], 3, 1)], 1)
         both = np.where(gloss[:, None, None], shine, below)
         return wi, 2 * np.where(wi[:, 2:, None] > 0, both, 0.0)
+
     return scatter
 
 
@@ -272,8 +277,9 @@ def frame(n):
     return x, np.cross(n, x)
 
 
-def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
-         mapped: bool = False) -> np.ndarray:
+def walk(
+    scatter: Scatter, colours: np.ndarray, count: int, seed: int, mapped: bool = False
+) -> np.ndarray:
     """Radiance (count, 2, 3) of random points of the film: with our model, and with Cycles'.
     `mapped`: of model_scenes.mapped_box, which has no sphere."""
     random = np.random.default_rng(seed)
@@ -301,8 +307,9 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
         wi[b], factor[b] = scatter(wo, inside[b], u[b])
         if mapped:
             b = np.flatnonzero((sign < 0) & (axis > 0))
-            factor[b] *= relief_factors(p[b], axis[b], -d[b], n[b],
-                                        wi[b, :1] * x[b] + wi[b, 1:2] * y[b] + wi[b, 2:] * n[b])
+            factor[b] *= relief_factors(
+                p[b], axis[b], -d[b], n[b], wi[b, :1] * x[b] + wi[b, 1:2] * y[b] + wi[b, 2:] * n[b]
+            )
         weight = weight * factor
         stay = np.minimum(weight.max(axis=(1, 2)), 1.0) * ~lit  # Russian roulette
         live = u[:, 3] < stay
@@ -318,8 +325,9 @@ def image_means(data: dict, batches: int, batch: int = 1 << 15) -> np.ndarray:
     materials = scenes.box_materials()
     colours = np.array([materials[name]["reflectance"] for name in FACES], float)
     scatter = scatter_of(data) if data else conductor(1.0)
-    return np.array([walk(scatter, colours, batch, seed, not data).mean(axis=(0, 2))
-                     for seed in range(batches)])
+    return np.array(
+        [walk(scatter, colours, batch, seed, not data).mean(axis=(0, 2)) for seed in range(batches)]
+    )
 
 
 def expected_ratio(data: dict, batches: int) -> tuple[float, float]:

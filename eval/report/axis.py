@@ -62,14 +62,14 @@ def ticks(axis: Axis) -> list[Tick]:
 
 def log_ticks(axis: Axis) -> list[Tick]:
     first, last = math.floor(math.log10(axis.low)), math.ceil(math.log10(axis.high))
-    decades = [n for n in range(first, last + 1) if axis.low <= 10.0 ** n <= axis.high]
+    decades = [n for n in range(first, last + 1) if axis.low <= 10.0**n <= axis.high]
     step = max(1, math.ceil(len(decades) / 8))
     # One or two decades alone leave most of an axis unlabelled.
     labelled = {1: (2, 5), 2: (3,)}.get(len(decades), (2, 3, 5) if not decades else ())
     result = []
     for n in range(first, last + 1):
         for factor in range(1, 10):
-            value = factor * 10.0 ** n
+            value = factor * 10.0**n
             if not axis.low <= value <= axis.high:
                 continue
             if factor == 1 and n % step == 0:

@@ -27,7 +27,7 @@ class HdrImage:
     width: int
     height: int
     exponent: int  # value = half * 2^exponent
-    data: str      # base64
+    data: str  # base64
 
 
 def read_layer(path: Path, layer: str) -> np.ndarray:
@@ -41,8 +41,10 @@ def read_layer(path: Path, layer: str) -> np.ndarray:
     names = list(source.spec().channelnames)
     wanted = [f"{layer}.{c}" if layer else c for c in "RGB"]
     if not set(wanted) <= set(names):
-        raise ReportError(f"{path}: no channels {' '.join(wanted)} (it has {' '.join(names)}); "
-                          "name another layer, or render with --layers")
+        raise ReportError(
+            f"{path}: no channels {' '.join(wanted)} (it has {' '.join(names)}); "
+            "name another layer, or render with --layers"
+        )
     pixels = source.read_image(oiio.FLOAT)
     if pixels is None:
         raise ReportError(f"{path}: cut short or damaged; render it again")
@@ -50,8 +52,10 @@ def read_layer(path: Path, layer: str) -> np.ndarray:
     bad = np.argwhere(~np.isfinite(pixels).all(axis=2))
     if len(bad):
         y, x = bad[0]
-        raise ReportError(f"{path}: pixel ({x}, {y}): not finite, and {len(bad) - 1} more; see "
-                          "vpl-inspect check, and render it again")
+        raise ReportError(
+            f"{path}: pixel ({x}, {y}): not finite, and {len(bad) - 1} more; see "
+            "vpl-inspect check, and render it again"
+        )
     return pixels
 
 
@@ -103,9 +107,10 @@ def read_png(path: Path) -> tuple[int, int, str]:
     try:
         data = path.read_bytes()
     except OSError as e:
-        raise ReportError(f"{path}: {e.strerror}; make it, or correct its name in the "
-                          "report") from e
+        raise ReportError(
+            f"{path}: {e.strerror}; make it, or correct its name in the report"
+        ) from e
     if data[:8] != b"\x89PNG\r\n\x1a\n" or data[12:16] != b"IHDR" or data[-8:-4] != b"IEND":
         raise ReportError(f"{path}: not a whole PNG file; make it again")
-    width, height = (int.from_bytes(data[at:at + 4], "big") for at in (16, 20))
+    width, height = (int.from_bytes(data[at : at + 4], "big") for at in (16, 20))
     return width, height, base64.b64encode(data).decode()

@@ -35,7 +35,7 @@ def cell_text(value: Any, digits: int, fixed: int | None = None) -> str:
         return f"{centre} ± {error}"
     if fixed is not None:
         return f"{value:.{fixed}f}".replace("-", MINUS)
-    if isinstance(value, int) and abs(value) >= 10 ** digits:
+    if isinstance(value, int) and abs(value) >= 10**digits:
         return f"{value:,}".replace(",", "\u2009").replace("-", MINUS)
     return number_text(value, digits)
 
@@ -65,8 +65,11 @@ def best_rows(rows: list[dict[str, Any]], column: dict[str, Any]) -> set[int]:
     """Of one group; none where there is nothing to choose between."""
     if column["better"] is None:
         return set()
-    found = {i: badness(row["cells"][column["key"]], column["better"])
-             for i, row in enumerate(rows) if row["judged"]}
+    found = {
+        i: badness(row["cells"][column["key"]], column["better"])
+        for i, row in enumerate(rows)
+        if row["judged"]
+    }
     judged = {i: v for i, v in found.items() if v is not None}
     if len(judged) < 2:
         return set()
@@ -84,8 +87,9 @@ def head(columns: list[dict[str, Any]], text: list[bool]) -> str:
         hint = hints.get(column["better"], "")
         below = " · ".join(t for t in (column["unit"], hint) if t)
         small = f"<small>{escape(below)}</small>" if below else ""
-        cells.append(f'<th scope="col"{" class=text" if left else ""}>'
-                     f'{escape(column["label"])}{small}</th>')
+        cells.append(
+            f'<th scope="col"{" class=text" if left else ""}>{escape(column["label"])}{small}</th>'
+        )
     return "<thead><tr>" + "".join(cells) + "</tr></thead>"
 
 
@@ -96,14 +100,18 @@ def table_html(table: dict[str, Any]) -> str:
     if table["note"]:
         parts.append(f'<p class="note">{escape(table["note"])}</p>')
     # Focusable, so that arrow keys scroll it where it is wider than the page.
-    parts.append(f'<div class="scroll" tabindex="0" role="region" '
-                 f'aria-label="{escape(table["title"])}"><table class="numbers">')
+    parts.append(
+        f'<div class="scroll" tabindex="0" role="region" '
+        f'aria-label="{escape(table["title"])}"><table class="numbers">'
+    )
     parts.append(head(columns, text))
     for group, rows in groups_of(table["rows"]):
         parts.append("<tbody>")
         if group:
-            parts.append(f'<tr class="group"><th colspan="{len(columns)}" scope="rowgroup">'
-                         f"<span>{escape(group)}</span></th></tr>")
+            parts.append(
+                f'<tr class="group"><th colspan="{len(columns)}" scope="rowgroup">'
+                f"<span>{escape(group)}</span></th></tr>"
+            )
         best = [best_rows(rows, c) for c in columns]
         parts += [row_html(i, row, columns, text, best) for i, row in enumerate(rows)]
         parts.append("</tbody>")
@@ -113,16 +121,20 @@ def table_html(table: dict[str, Any]) -> str:
     return "\n".join(parts + ["</section>"])
 
 
-def row_html(i: int, row: dict[str, Any], columns: list[dict[str, Any]], text: list[bool],
-             best: list[set[int]]) -> str:
+def row_html(
+    i: int,
+    row: dict[str, Any],
+    columns: list[dict[str, Any]],
+    text: list[bool],
+    best: list[set[int]],
+) -> str:
     cells = []
     for k, column in enumerate(columns):
-        shown = escape(cell_text(row["cells"][column["key"]], column["digits"],
-                                 column["decimals"]))
+        shown = escape(cell_text(row["cells"][column["key"]], column["digits"], column["decimals"]))
         if i in best[k]:
             shown = f'<b class="best">{shown}<span class="hidden"> (best)</span></b>'
         if k == 0:
             cells.append(f'<th scope="row"{" class=text" if text[k] else ""}>{shown}</th>')
         else:
-            cells.append(f'<td{" class=text" if text[k] else ""}>{shown}</td>')
+            cells.append(f"<td{' class=text' if text[k] else ''}>{shown}</td>")
     return "<tr>" + "".join(cells) + "</tr>"

@@ -23,7 +23,9 @@ EXIT_INPUT = 3
 EXIT_OUTPUT = 4
 
 
-def write_output(program: str, path: Path, data: bytes, kind: output_guard.Kind, report: Path) -> int:
+def write_output(
+    program: str, path: Path, data: bytes, kind: output_guard.Kind, report: Path
+) -> int:
     """The exit code; what is wrong is printed."""
     try:
         output_guard.write(path, data, kind, "-o", {"the report": report})
@@ -37,7 +39,8 @@ def write_output(program: str, path: Path, data: bytes, kind: output_guard.Kind,
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("report", type=Path, help="what to show (.json)")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the page (.html)")
     parser.add_argument("--quiet", action="store_true", help="no line about the page's size")

@@ -45,10 +45,14 @@ class PageCase(unittest.TestCase):
         self.assertEqual(found, [], "the console is not silent")
 
     def open(self, width: int, scheme: str) -> None:
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
-            "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        self.driver.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False},
+        )
+        self.driver.execute_cdp_cmd(
+            "Emulation.setEmulatedMedia",
+            {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
+        )
         self.driver.get(self.url)
         self.viewer = self.reach(0)
 
@@ -88,12 +92,20 @@ class PageCase(unittest.TestCase):
 
     def colour(self, x: float, y: float) -> list[int]:
         """What the canvas shows at a place given in image pixels at zoom 1."""
-        return self.js("""
+        return self.js(
+            """
             const c = arguments[0].querySelector('.stage canvas'), s = c.width / arguments[3];
-            return readPixel(c, arguments[1] * s, arguments[2] * s);""" + READ_PIXEL,
-                       self.viewer, x, y, WIDTH)
+            return readPixel(c, arguments[1] * s, arguments[2] * s);"""
+            + READ_PIXEL,
+            self.viewer,
+            x,
+            y,
+            WIDTH,
+        )
 
     def readout(self) -> list[list[str]]:
-        return self.js("return [...arguments[0].querySelectorAll('.readout tbody tr')].map("
-                       "(r) => [...r.querySelectorAll('td')].map((c) => c.textContent))",
-                       self.viewer)
+        return self.js(
+            "return [...arguments[0].querySelectorAll('.readout tbody tr')].map("
+            "(r) => [...r.querySelectorAll('td')].map((c) => c.textContent))",
+            self.viewer,
+        )

@@ -12,22 +12,68 @@ EVAL = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(EVAL / "report"))
 from page_case import PageCase  # noqa: E402 (after its folder is known)
 from test_support import WIDTH, browser  # noqa: E402
+
 sys.path.insert(0, str(EVAL))
 from bnvpl_eval.pipeline import METHODS  # noqa: E402
 
-PARTS = {"methods", "scatter", "gather", "gather-equal-time", "claims", "equal-time", "convergence", "sensitivity"}
-TABLES = {"methods", "scatter", "gather", "claims", "equal-time", "energy", "references", "sensitivity"}
+PARTS = {
+    "methods",
+    "scatter",
+    "gather",
+    "gather-equal-time",
+    "claims",
+    "equal-time",
+    "convergence",
+    "sensitivity",
+}
+TABLES = {
+    "methods",
+    "scatter",
+    "gather",
+    "claims",
+    "equal-time",
+    "energy",
+    "references",
+    "sensitivity",
+}
 PLOTS = {"convergence-vpls-u-shape", "convergence-time-u-shape"}
 IMAGES = {"reference", *METHODS, "path"}
-OVERLAYS = {"dots-random", "dots-uniform", "dots-local", "cut", "cut-lightcuts"}  # laid over the images
+OVERLAYS = {
+    "dots-random",
+    "dots-uniform",
+    "dots-local",
+    "cut",
+    "cut-lightcuts",
+}  # laid over the images
 BIN, FOLDER = (Path(word) for word in sys.argv[1:3])
 
 
 def setUpModule():
-    subprocess.run([sys.executable, EVAL / "evaluate.py", "--quick", "--bin", BIN,
-                    "--cache", FOLDER / "cache", "-o", FOLDER, "--quiet"], check=True)
-    subprocess.run([sys.executable, EVAL / "report/make_report.py", FOLDER / "report.json",
-                    "-o", FOLDER / "report.html"], check=True)
+    subprocess.run(
+        [
+            sys.executable,
+            EVAL / "evaluate.py",
+            "--quick",
+            "--bin",
+            BIN,
+            "--cache",
+            FOLDER / "cache",
+            "-o",
+            FOLDER,
+            "--quiet",
+        ],
+        check=True,
+    )
+    subprocess.run(
+        [
+            sys.executable,
+            EVAL / "report/make_report.py",
+            FOLDER / "report.json",
+            "-o",
+            FOLDER / "report.html",
+        ],
+        check=True,
+    )
 
 
 class QuickRun(unittest.TestCase):
@@ -36,8 +82,11 @@ class QuickRun(unittest.TestCase):
         cls.results = json.loads((FOLDER / "results.json").read_text())
 
     def rows(self, part: str, **wanted) -> list[dict]:
-        return [row for row in self.results["results"]
-                if row["part"] == part and all(row.get(key) == value for key, value in wanted.items())]
+        return [
+            row
+            for row in self.results["results"]
+            if row["part"] == part and all(row.get(key) == value for key, value in wanted.items())
+        ]
 
     def row(self, part: str, **wanted) -> dict:
         found = self.rows(part, **wanted)
@@ -49,9 +98,14 @@ class QuickRun(unittest.TestCase):
 
     def test_thesis_scatter_is_too_bright(self):
         for view in ("u-shape-main", "veach-door-main"):
-            ours, even, literal = (self.row("scatter", view=view, method=m)["mean_ratio"] for m in ("local", "even", "literal"))
+            ours, even, literal = (
+                self.row("scatter", view=view, method=m)["mean_ratio"]
+                for m in ("local", "even", "literal")
+            )
             self.assertGreater(literal, 4 * ours)
-            self.assertGreater(even, 1.5 * ours)  # less with points of emission, which lie where the light does
+            self.assertGreater(
+                even, 1.5 * ours
+            )  # less with points of emission, which lie where the light does
 
     def test_energy_is_about_right_even_at_this_size(self):
         for row in self.rows("methods", method="local"):
@@ -71,27 +125,40 @@ class QuickRun(unittest.TestCase):
                 self.assertGreater(row["cut_rmse"], 0.0, gather)
 
     def test_every_gather_has_a_row(self):
-        spec = json.loads(subprocess.run([BIN / "vpl-render", "--help-json"], capture_output=True, check=True).stdout)
-        gathers = {m["name"] for slot in spec["slots"] if slot["name"] == "gather" for m in slot["methods"]}
+        spec = json.loads(
+            subprocess.run(
+                [BIN / "vpl-render", "--help-json"], capture_output=True, check=True
+            ).stdout
+        )
+        gathers = {
+            m["name"] for slot in spec["slots"] if slot["name"] == "gather" for m in slot["methods"]
+        }
         self.assertGreater(len(gathers), 5)
         for part in ("gather", "gather-equal-time"):
             self.assertEqual({row["label"] for row in self.rows(part)}, gathers)
         for row in self.rows("gather"):
             self.assertGreaterEqual(row["equal_spp"], 1)
             self.assertGreater(row["equal_relmse"], 0.0)
-            self.assertAlmostEqual(row["mean_ratio"], self.row("gather", view=row["view"], label="all")["mean_ratio"],
-                                   delta=0.1)
+            self.assertAlmostEqual(
+                row["mean_ratio"],
+                self.row("gather", view=row["view"], label="all")["mean_ratio"],
+                delta=0.1,
+            )
 
     def test_rejection_is_better_than_all_that_the_lights_send(self):
         for view in ("u-shape-main", "veach-door-main"):
-            light, chosen = (self.row("methods", view=view, method=m) for m in ("light", "rejection"))
+            light, chosen = (
+                self.row("methods", view=view, method=m) for m in ("light", "rejection")
+            )
             self.assertLess(chosen["rmse_over_mean"], light["rmse_over_mean"])
 
     def test_claims_have_a_row_each(self):
         tables = {t["id"]: t for t in json.loads((FOLDER / "report.json").read_text())["tables"]}
         rows = tables["claims"]["rows"]
         self.assertEqual(len(rows), 8)
-        self.assertEqual({row["label"] for row in rows}, {"ward", "stochastic", "lightslice", "rejection"})
+        self.assertEqual(
+            {row["label"] for row in rows}, {"ward", "stochastic", "lightslice", "rejection"}
+        )
         for row in rows:
             self.assertIn(row["holds"], ("yes", "no"))
             self.assertTrue(row["measured"])
@@ -111,7 +178,11 @@ class QuickRun(unittest.TestCase):
 
     def test_dark_room(self):
         tables = {t["id"]: t for t in json.loads((FOLDER / "report.json").read_text())["tables"]}
-        dark = {row["label"]: row["dark_room"] for row in tables["scatter"]["rows"] if row["dark_room"] is not None}
+        dark = {
+            row["label"]: row["dark_room"]
+            for row in tables["scatter"]["rows"]
+            if row["dark_room"] is not None
+        }
         self.assertEqual(dark["--method guarded"], 0.0)
         self.assertGreater(dark["--method even"], 0.0)
 
@@ -122,7 +193,9 @@ class QuickRun(unittest.TestCase):
         for run in runs:
             self.assertGreater(float(run["peak_mib"]), 0)
             self.assertTrue(run["options"])
-            self.assertIn(run["commit"], self.results["provenance"]["commits of the runs"].split(", "))
+            self.assertIn(
+                run["commit"], self.results["provenance"]["commits of the runs"].split(", ")
+            )
         self.assertIn("commit", self.results["provenance"])
 
     def test_report_holds_the_pictures(self):
@@ -140,7 +213,11 @@ class QuickRun(unittest.TestCase):
             self.assertEqual({image["id"] for image in view["images"]}, IMAGES)
             self.assertLessEqual(OVERLAYS, {picture["id"] for picture in view["pictures"]})
             for image in view["images"]:
-                self.assertEqual("relMSE" in image["numbers"], image["id"] not in ("reference", "path"), image["id"])
+                self.assertEqual(
+                    "relMSE" in image["numbers"],
+                    image["id"] not in ("reference", "path"),
+                    image["id"],
+                )
 
 
 class RealPage(PageCase):
@@ -155,7 +232,10 @@ class RealPage(PageCase):
     def test_views_can_be_compared(self):
         for index in range(2):
             self.viewer = self.reach(index)
-            names = {n.get_attribute("textContent") for n in self.viewer.find_elements("css selector", ".list .name")}
+            names = {
+                n.get_attribute("textContent")
+                for n in self.viewer.find_elements("css selector", ".list .name")
+            }
             self.assertEqual(len(names), len(IMAGES) + len(OVERLAYS))
             # A row of pixels through the middle, each way of showing another.
             seen = [self.middle_row()]

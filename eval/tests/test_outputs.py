@@ -31,13 +31,22 @@ class Outputs(unittest.TestCase):
         rows = [{"scene": "a", "relmse": 1.5}]
         output.write_csv(self.folder / "t.csv", rows)
         output.write_csv(self.folder / "t.csv", rows)
-        self.assertIn("is not a CSV table", self.refused("t.csv", b"[film]\nwidth = 8\n", lambda f: output.write_csv(f, rows)))
+        self.assertIn(
+            "is not a CSV table",
+            self.refused("t.csv", b"[film]\nwidth = 8\n", lambda f: output.write_csv(f, rows)),
+        )
         grey = np.full((2, 2, 3), 0.5, np.float32)
         for _ in range(2):
             images.write_half(self.folder / "i.exr", {"": grey}, "test")
         vpl = b"\x89VPL\r\n\x1a\n"
-        self.assertIn("is not an OpenEXR image", self.refused("i.exr", vpl, lambda f: images.write_half(f, {"": grey}, "test")))
-        self.assertIn("is not a PNG picture", self.refused("h.png", vpl, lambda f: output.heat_map(grey[:, :, 0], f)))
+        self.assertIn(
+            "is not an OpenEXR image",
+            self.refused("i.exr", vpl, lambda f: images.write_half(f, {"": grey}, "test")),
+        )
+        self.assertIn(
+            "is not a PNG picture",
+            self.refused("h.png", vpl, lambda f: output.heat_map(grey[:, :, 0], f)),
+        )
 
     def test_a_folder_of_others_is_refused_before_the_work(self):
         output.check(self.folder)

@@ -62,9 +62,14 @@ class References(unittest.TestCase):
         self.assertEqual(len(self.runner.asked), 4)
         self.render(self.view, 4 * references.CHUNK)  # goes on
         self.assertEqual([seed for _, _, seed in self.runner.asked[4:]], [1004, 1006, 1005, 1007])
-        self.assertAlmostEqual(float(references.load(self.view, FILM, "indirect")[0].mean()), 1003, delta=0.5)
+        self.assertAlmostEqual(
+            float(references.load(self.view, FILM, "indirect")[0].mean()), 1003, delta=0.5
+        )
         record = references.require(self.view, FILM)["a"]
-        self.assertEqual((record["spp"], record["seeds"], record["cpu_s"]), (4 * references.CHUNK, [1000, 1006], 6.0))
+        self.assertEqual(
+            (record["spp"], record["seeds"], record["cpu_s"]),
+            (4 * references.CHUNK, [1000, 1006], 6.0),
+        )
 
     def test_another_integrator_begins_anew(self):
         path = dataclasses.replace(self.view, reference_integrator="path")

@@ -26,7 +26,9 @@ class KnownErrors(unittest.TestCase):
     def test_noise_alone(self):
         found = self.judged(0.0, 0.1)
         self.assertAlmostEqual(found["std_over_mean"], 0.1, delta=0.003)
-        self.assertAlmostEqual(found["rmse_over_mean"], 0.1, delta=0.005)  # not the reference's 0.2 / sqrt 2
+        self.assertAlmostEqual(
+            found["rmse_over_mean"], 0.1, delta=0.005
+        )  # not the reference's 0.2 / sqrt 2
         self.assertLess(found["bias_over_mean"], 0.02)
         self.assertAlmostEqual(found["mean_ratio"], 1.0, delta=0.003)
 
@@ -40,12 +42,19 @@ class KnownErrors(unittest.TestCase):
         found = self.judged(0.2, 0.3)
         self.assertAlmostEqual(found["bias_over_mean"], 0.2, delta=0.01)
         self.assertAlmostEqual(found["std_over_mean"], 0.3, delta=0.005)
-        self.assertAlmostEqual(found["rmse_over_mean"]**2,
-                               found["bias_over_mean"]**2 + found["std_over_mean"]**2, delta=1e-6)
-        self.assertAlmostEqual(found["relmse"], found["relmse_bias"] + found["relmse_variance"], delta=1e-6)
+        self.assertAlmostEqual(
+            found["rmse_over_mean"] ** 2,
+            found["bias_over_mean"] ** 2 + found["std_over_mean"] ** 2,
+            delta=1e-6,
+        )
+        self.assertAlmostEqual(
+            found["relmse"], found["relmse_bias"] + found["relmse_variance"], delta=1e-6
+        )
 
     def test_reference_halves(self):
-        self.assertAlmostEqual(self.judged(0, 0)["reference_half_difference"], 0.2 * np.sqrt(2), delta=0.005)
+        self.assertAlmostEqual(
+            self.judged(0, 0)["reference_half_difference"], 0.2 * np.sqrt(2), delta=0.005
+        )
 
     def test_one_seed_has_no_noise_to_tell(self):
         self.assertNotIn("std_over_mean", self.judged(0.1, 0.1, seeds=1))

@@ -14,10 +14,17 @@ PAGE = "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- tabl
 
 
 def report(*ids: str) -> dict:
-    columns = [{"key": "label", "label": "VPLs"}, {"key": "relmse", "label": "relMSE", "better": "low"}]
+    columns = [
+        {"key": "label", "label": "VPLs"},
+        {"key": "relmse", "label": "relMSE", "better": "low"},
+    ]
     rows = [{"group": "a room", "label": "ours", "relmse": {"value": 0.0123456, "error": 0.0004}}]
-    return {"tables": [{"id": name, "columns": columns, "rows": rows} for name in ids], "plots": [], "scenes": [],
-            "provenance": {"commits of the runs": "abc1234", "date": "2026-11-22"}}
+    return {
+        "tables": [{"id": name, "columns": columns, "rows": rows} for name in ids],
+        "plots": [],
+        "scenes": [],
+        "provenance": {"commits of the runs": "abc1234", "date": "2026-11-22"},
+    }
 
 
 class Tables(unittest.TestCase):
@@ -29,8 +36,10 @@ class Tables(unittest.TestCase):
 
     def write(self, made: dict, *options: str) -> str:
         (self.folder / "report.json").write_text(json.dumps(made))
-        with mock.patch.object(write_docs, "DOCS", self.folder), \
-                mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]):
+        with (
+            mock.patch.object(write_docs, "DOCS", self.folder),
+            mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]),
+        ):
             write_docs.main()
         return (self.folder / "results.md").read_text()
 
@@ -43,7 +52,10 @@ class Tables(unittest.TestCase):
         self.assertTrue(page.endswith("<!-- end -->\nlast\n"))
 
     def test_what_is_not_there_is_refused(self):
-        for made, only, message in ((report("one"), "two", "wants table 'two'"), (report("one"), "three", "named 'three'")):
+        for made, only, message in (
+            (report("one"), "two", "wants table 'two'"),
+            (report("one"), "three", "named 'three'"),
+        ):
             with self.assertRaises(SystemExit) as refused:
                 self.write(made, "--only", only)
             self.assertIn(message, str(refused.exception))

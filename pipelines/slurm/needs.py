@@ -22,7 +22,9 @@ def look(scene, options, *more):
     try:
         done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     except FileNotFoundError:
-        stages.refuse(f"there is no {command[0]}, which looks at the scene; build the tools, or give --memory and --time")
+        stages.refuse(
+            f"there is no {command[0]}, which looks at the scene; build the tools, or give --memory and --time"
+        )
     if done.returncode:
         stages.refuse(done.stderr.strip() + "; or give --memory and --time")
     return json.loads(done.stdout)
@@ -34,7 +36,10 @@ def pixels_of(seen, options):
     if "--size" in words[:-1]:
         films = [words[words.index("--size") + 1]]
     elif options.views:
-        films = [look(options.scene, options, "--view", view)["cameras"][0]["film"] for view in options.views]
+        films = [
+            look(options.scene, options, "--view", view)["cameras"][0]["film"]
+            for view in options.views
+        ]
     else:
         films = [seen["cameras"][0]["film"]]
     sizes = [re.fullmatch(r"(\d+)x(\d+)", film) for film in films]
@@ -52,11 +57,15 @@ class Needs:
             o = self.options
             seen = look(o.scene, o)
             try:
-                counts = [cost.count(text) for text in (o.candidates, o.vpls, o.photons, o.spp or "256")]
+                counts = [
+                    cost.count(text) for text in (o.candidates, o.vpls, o.photons, o.spp or "256")
+                ]
             except ValueError as problem:
                 stages.refuse(str(problem))
             self.whole = cost.Counts(seen["triangles"], *counts[:3], pixels_of(seen, o), counts[3])
-        return self.model.predict(stage, figure, cost.with_shards(self.whole, stage, self.options.shards))
+        return self.model.predict(
+            stage, figure, cost.with_shards(self.whole, stage, self.options.shards)
+        )
 
     def memory(self, stage):
         """As of sbatch --mem."""

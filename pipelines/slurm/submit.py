@@ -27,8 +27,13 @@ import task as task_program  # noqa: E402
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
 SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
 JOB = output_guard.json_object("a job of this program", "threads", "retries", "tasks")
-IDS = output_guard.json_kind("a list of jobs of this program", lambda ids: isinstance(ids, dict) and
-                             all(isinstance(job, str) and job.isdigit() for job in ids.values()))
+IDS = output_guard.json_kind(
+    "a list of jobs of this program",
+    lambda ids: (
+        isinstance(ids, dict)
+        and all(isinstance(job, str) and job.isdigit() for job in ids.values())
+    ),
+)
 
 
 def per_stage(value, **others):
@@ -39,20 +44,56 @@ def arguments():
     p = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.")
+        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.",
+    )
     p.add_argument("scene", metavar="SCENE", help="scene.toml")
     stages.add_arguments(p, shards="16")
-    p.add_argument("--cpus", action=stages.PerStage, stages=KINDS, pattern=r"[1-9]\d*", what="a count from 1",
-                   default=per_stage("4", merge="1"), help="of a task; default 4, and merge=1")
-    p.add_argument("--memory", action=stages.PerStage, stages=KINDS, pattern=r"\d+[KMGT]?|auto", what="a size such as 4G",
-                   default=per_stage("auto"), help="of a task; default auto: by what is known of the tools (docs/scaling.md)")
-    p.add_argument("--time", action=stages.PerStage, stages=KINDS, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
-                   what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)", default=per_stage("auto"),
-                   help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and render are queued again when they reach it, and go on")
-    p.add_argument("--at-once", type=int, metavar="N", help="most tasks of an array that run together; default: all")
-    p.add_argument("--retries", type=int, default=3, metavar="N",
-                   help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count")
-    p.add_argument("--sbatch", default="", metavar="OPTIONS", help="for every job: --sbatch='--partition=long --account=x'")
+    p.add_argument(
+        "--cpus",
+        action=stages.PerStage,
+        stages=KINDS,
+        pattern=r"[1-9]\d*",
+        what="a count from 1",
+        default=per_stage("4", merge="1"),
+        help="of a task; default 4, and merge=1",
+    )
+    p.add_argument(
+        "--memory",
+        action=stages.PerStage,
+        stages=KINDS,
+        pattern=r"\d+[KMGT]?|auto",
+        what="a size such as 4G",
+        default=per_stage("auto"),
+        help="of a task; default auto: by what is known of the tools (docs/scaling.md)",
+    )
+    p.add_argument(
+        "--time",
+        action=stages.PerStage,
+        stages=KINDS,
+        pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
+        what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)",
+        default=per_stage("auto"),
+        help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and render are queued again when they reach it, and go on",
+    )
+    p.add_argument(
+        "--at-once",
+        type=int,
+        metavar="N",
+        help="most tasks of an array that run together; default: all",
+    )
+    p.add_argument(
+        "--retries",
+        type=int,
+        default=3,
+        metavar="N",
+        help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count",
+    )
+    p.add_argument(
+        "--sbatch",
+        default="",
+        metavar="OPTIONS",
+        help="for every job: --sbatch='--partition=long --account=x'",
+    )
     p.add_argument("--dry-run", action="store_true", help="print what would be submitted")
     options = p.parse_args()
     if options.at_once is not None and options.at_once < 1:
@@ -102,7 +143,9 @@ class Submission:
         """All that will be written, before anything is."""
         for folder in (self.run, self.run / "earlier"):
             if folder.exists() and not folder.is_dir():
-                stages.refuse(f"{folder}: is no folder, which the run needs there; give another --out, or remove it")
+                stages.refuse(
+                    f"{folder}: is no folder, which the run needs there; give another --out, or remove it"
+                )
         for file, kind in [(self.ids, IDS), *((self.job_file(name), JOB) for name in names)]:
             output_guard.or_exit(output_guard.check, file, kind)
 
@@ -111,9 +154,13 @@ class Submission:
         if not self.ids.exists():
             return
         known = set(json.loads(self.ids.read_text()).values())
-        queued = {line for line in self.slurm("squeue", "--noheader", "--format=%A %F", "--me").split()} & known
+        queued = {
+            line for line in self.slurm("squeue", "--noheader", "--format=%A %F", "--me").split()
+        } & known
         if queued:
-            stages.refuse(f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end them with scancel")
+            stages.refuse(
+                f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end them with scancel"
+            )
 
     def put_aside(self, names):
         """Records of tasks that this run does not have, such as those of another number of shards."""
@@ -138,17 +185,31 @@ class Submission:
             subprocess.run(["scancel", *self.submitted.values()])
 
     def limits(self, name, kind):
-        memory, time, cores = (each[kind] for each in (self.options.memory, self.options.time, self.options.cpus))
-        return (self.needs.memory(name) if memory == "auto" else memory,
-                self.needs.time(name, int(cores)) if time == "auto" else time, cores)
+        memory, time, cores = (
+            each[kind] for each in (self.options.memory, self.options.time, self.options.cpus)
+        )
+        return (
+            self.needs.memory(name) if memory == "auto" else memory,
+            self.needs.time(name, int(cores)) if time == "auto" else time,
+            cores,
+        )
 
     def submit(self, name, kind, words, command, note):
         chosen = self.options
         memory, time, cores = self.limits(name, kind)
-        full = ["sbatch", "--parsable", f"--job-name={stages.name_of(self.scene)}-{name}",
-                f"--cpus-per-task={cores}", f"--mem={memory}", f"--time={time}",
-                "--requeue", "--open-mode=append", *words, *shlex.split(chosen.sbatch),
-                f"--wrap=exec {shlex.join(command)}"]
+        full = [
+            "sbatch",
+            "--parsable",
+            f"--job-name={stages.name_of(self.scene)}-{name}",
+            f"--cpus-per-task={cores}",
+            f"--mem={memory}",
+            f"--time={time}",
+            "--requeue",
+            "--open-mode=append",
+            *words,
+            *shlex.split(chosen.sbatch),
+            f"--wrap=exec {shlex.join(command)}",
+        ]
         if chosen.dry_run:
             print(shlex.join(full))
             self.submitted[name] = f"ID_OF_{name}"
@@ -160,14 +221,28 @@ class Submission:
     def submit_stage(self, name, tasks):
         before = [self.submitted[stage] for stage in tasks[0].after if stage in self.submitted]
         described = [dataclasses.asdict(task) for task in tasks]
-        wanted = [i for i, task in enumerate(described, 1) if before or not task_program.up_to_date(self.run, task)]
+        wanted = [
+            i
+            for i, task in enumerate(described, 1)
+            if before or not task_program.up_to_date(self.run, task)
+        ]
         if not wanted:
             return
         kind = kind_of(name)
         if not self.options.dry_run:
-            job = {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}
-            output_guard.or_exit(output_guard.write, self.job_file(name), json.dumps(job, indent=1), JOB)
-        words = [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"] if before else []
+            job = {
+                "threads": int(self.options.cpus[kind]),
+                "retries": self.options.retries,
+                "tasks": described,
+            }
+            output_guard.or_exit(
+                output_guard.write, self.job_file(name), json.dumps(job, indent=1), JOB
+            )
+        words = (
+            [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"]
+            if before
+            else []
+        )
         if len(tasks) > 1:  # shards, and images of several views
             at_once = f"%{self.options.at_once}" if self.options.at_once else ""
             log = stages.shard_name(name, "%a", len(tasks))
@@ -176,15 +251,27 @@ class Submission:
             log = name
         words += [f"--signal=B:USR1@{SECONDS_TO_SAVE}"] if tasks[0].checkpoint else []
         words.append(f"--output={self.run}/{log}.log")
-        note = f"{len(wanted)} of {len(tasks)} tasks" if len(wanted) < len(tasks) else \
-            f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
+        note = (
+            f"{len(wanted)} of {len(tasks)} tasks"
+            if len(wanted) < len(tasks)
+            else f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
+        )
         program = [sys.executable, str(HERE / "task.py"), str(self.job_file(name))]
         self.submit(name, kind, words, program, note)
 
     def submit_summary(self):
-        command = [f"{self.options.bin}/vpl-inspect", "run", str(self.run), "--svg", f"{self.run}/timeline.svg"]
-        words = [f"--dependency=afterany:{':'.join(self.submitted.values())}", "--open-mode=truncate",
-                 f"--output={self.run}/summary.log"]
+        command = [
+            f"{self.options.bin}/vpl-inspect",
+            "run",
+            str(self.run),
+            "--svg",
+            f"{self.run}/timeline.svg",
+        ]
+        words = [
+            f"--dependency=afterany:{':'.join(self.submitted.values())}",
+            "--open-mode=truncate",
+            f"--output={self.run}/summary.log",
+        ]
         self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
 
     def submit_all(self):
@@ -192,7 +279,9 @@ class Submission:
         if not self.options.dry_run:
             for command in ("sbatch", "squeue", "scancel"):
                 if not shutil.which(command):
-                    stages.refuse(f"there is no {command} here; run this where Slurm's commands are")
+                    stages.refuse(
+                        f"there is no {command} here; run this where Slurm's commands are"
+                    )
             self.check_files([name for name, _ in jobs])
             self.refuse_while_queued()
             for name, _ in jobs:  # what cannot be known is refused before anything is done

@@ -24,12 +24,14 @@ ASKED_TO_STOP = {128 + number for number in (signal.SIGINT, signal.SIGTERM, sign
 
 def signature(files):
     """Size and time of each; None where there is no such file. Of a command that is a name alone, nothing is known."""
+
     def of(file):
         try:
             state = os.stat(file)
             return [state.st_size, state.st_mtime_ns]
         except OSError:
             return None
+
     return {file: of(file) for file in files}
 
 
@@ -48,9 +50,15 @@ def up_to_date(folder, task):
     if any(state is None for state in signature(task["outputs"]).values()):
         return False
     for earlier in record.attempts(folder, task["name"]):
-        if earlier and earlier.get("exit") == 0 and earlier.get("command") == task["command"] and \
-                all("made" in earlier and signature(earlier["made"][kind]) == earlier["made"][kind]
-                    for kind in ("inputs", "outputs")):
+        if (
+            earlier
+            and earlier.get("exit") == 0
+            and earlier.get("command") == task["command"]
+            and all(
+                "made" in earlier and signature(earlier["made"][kind]) == earlier["made"][kind]
+                for kind in ("inputs", "outputs")
+            )
+        ):
             return True
     return False
 
@@ -71,15 +79,23 @@ class Job:
         task = self.task
         for output in task["outputs"]:
             pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
-        self.attempt = record.Attempt(self.folder, task["name"], task["stage"], task["after"], task["command"],
-                                      task["checkpoint"])
+        self.attempt = record.Attempt(
+            self.folder,
+            task["name"],
+            task["stage"],
+            task["after"],
+            task["command"],
+            task["checkpoint"],
+        )
         if task["checkpoint"]:  # without one, stopping early would only lose the work
             signal.signal(signal.SIGUSR1, self.on_time_limit)
         before = {"inputs": signature(task["inputs"])}
         code = self.attempt.run([*task["command"], "--threads", str(self.threads)])
         if code == 0:
-            made = {"inputs": before["inputs"] | signature(dependencies(task["depfile"])),
-                    "outputs": signature(task["outputs"])}
+            made = {
+                "inputs": before["inputs"] | signature(dependencies(task["depfile"])),
+                "outputs": signature(task["outputs"]),
+            }
             self.attempt.record["made"] = made
             self.attempt.save()
         elif self.shall_run_again(code):
@@ -92,16 +108,25 @@ class Job:
         if self.out_of_time:
             begun = os.path.exists(self.task["checkpoint"])
             if not begun:
-                print(f"task.py: {self.task['name']} saved nothing before its time limit; give it more --time", flush=True)
+                print(
+                    f"task.py: {self.task['name']} saved nothing before its time limit; give it more --time",
+                    flush=True,
+                )
             return begun
         return code > 128 and code not in ASKED_TO_STOP and self.killed_before() < self.retries
 
     def killed_before(self):
         """Attempts within this job whose tools were killed."""
         mine = self.attempt.record
-        return sum(1 for earlier in record.attempts(self.folder, self.task["name"])
-                   if earlier and earlier["job"] == mine["job"] and earlier["attempt"] != mine["attempt"]
-                   and earlier.get("exit", 0) > 128 and earlier["exit"] not in ASKED_TO_STOP)
+        return sum(
+            1
+            for earlier in record.attempts(self.folder, self.task["name"])
+            if earlier
+            and earlier["job"] == mine["job"]
+            and earlier["attempt"] != mine["attempt"]
+            and earlier.get("exit", 0) > 128
+            and earlier["exit"] not in ASKED_TO_STOP
+        )
 
     def queue_again(self):
         print(f"task.py: {self.task['name']} is queued again, to go on", flush=True)

@@ -14,7 +14,7 @@ def chunk(tag, data):
 def stored(data):
     out = b"\x78\x01"
     for begin in range(0, len(data), BLOCK):
-        part = data[begin:begin + BLOCK]
+        part = data[begin : begin + BLOCK]
         last = begin + BLOCK >= len(data)
         out += struct.pack("<BHH", last, len(part), 0xFFFF - len(part)) + part
     return out + struct.pack(">I", zlib.adler32(data))
@@ -23,7 +23,8 @@ def stored(data):
 def png(width, height, colour_at):
     """`colour_at(x, y)` gives sRGB bytes; row 0 is the top one."""
     rows = b"".join(
-        b"\0" + bytes(c for x in range(width) for c in colour_at(x, y)) for y in range(height))
+        b"\0" + bytes(c for x in range(width) for c in colour_at(x, y)) for y in range(height)
+    )
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     signature = b"\x89PNG\r\n\x1a\n"
     return signature + chunk(b"IHDR", header) + chunk(b"IDAT", stored(rows)) + chunk(b"IEND", b"")

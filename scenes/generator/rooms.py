@@ -38,15 +38,23 @@ def u_shape():
     mesh.object("SmallBox")
     mesh.box((-3.5, -SUNK, 3.3), (-3.0, 0.45, 3.8), "OchreBox", turn_deg=35)
     materials = {
-        "Floor": {"Kd": grey(0.7)}, "Ceiling": {"Kd": grey(0.75)}, "Wall": {"Kd": grey(0.75)},
-        "FarWall": {"Kd": grey(0.75)}, "Divider": {"Kd": grey(0.75)},
-        "RedWall": {"Kd": (0.63, 0.065, 0.05)}, "Table": {"Kd": grey(0.75)},
-        "WhiteBox": {"Kd": grey(0.75)}, "GreenBox": {"Kd": (0.14, 0.45, 0.091)},
-        "OchreBox": {"Kd": (0.65, 0.45, 0.15)}, "Housing": {"Kd": grey(0.7)},
+        "Floor": {"Kd": grey(0.7)},
+        "Ceiling": {"Kd": grey(0.75)},
+        "Wall": {"Kd": grey(0.75)},
+        "FarWall": {"Kd": grey(0.75)},
+        "Divider": {"Kd": grey(0.75)},
+        "RedWall": {"Kd": (0.63, 0.065, 0.05)},
+        "Table": {"Kd": grey(0.75)},
+        "WhiteBox": {"Kd": grey(0.75)},
+        "GreenBox": {"Kd": (0.14, 0.45, 0.091)},
+        "OchreBox": {"Kd": (0.65, 0.45, 0.15)},
+        "Housing": {"Kd": grey(0.7)},
         LAMP: {"Ke": grey(30)},
     }
-    return {"u-shape/room.obj": mesh.text(),
-            "u-shape/room.mtl": mtl("Diffuse throughout; Ke in W/(m2 sr)", materials)}
+    return {
+        "u-shape/room.obj": mesh.text(),
+        "u-shape/room.mtl": mtl("Diffuse throughout; Ke in W/(m2 sr)", materials),
+    }
 
 
 def tiles(begin, end, size):
@@ -76,7 +84,10 @@ def door_leaf(mesh, hinge, width, turn_deg):
     mesh.box((hx, 0.01, hz - 0.04), (hx + width, 2.09, hz), "Door", turn_deg=turn_deg, pivot=hinge)
     mesh.object("DoorHandle")
     along, height = width - 0.08, 1.02
-    stem = ((hx + along - 0.012, height - 0.012, hz - 0.1), (hx + along + 0.012, height + 0.012, hz + 0.06))
+    stem = (
+        (hx + along - 0.012, height - 0.012, hz - 0.1),
+        (hx + along + 0.012, height + 0.012, hz + 0.06),
+    )
     mesh.box(*stem, "Brass", turn_deg=turn_deg, pivot=hinge)
     c, s = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
     for off in (0.06, -0.1):
@@ -85,7 +96,9 @@ def door_leaf(mesh, hinge, width, turn_deg):
 
 
 def veach_door():
-    mesh = Mesh("A room lit through a door that stands ajar; made by scenes/generate.py", "room.mtl")
+    mesh = Mesh(
+        "A room lit through a door that stands ajar; made by scenes/generate.py", "room.mtl"
+    )
     mesh.object("Shell")
     mesh.box((-3, -SUNK, -4), (3, 3, 5), "Wall", {"+y": "Ceiling"}, inward=True)
     mesh.object("Floor")
@@ -108,20 +121,30 @@ def veach_door():
     low, high = (-1.55, 1.35, -SUNK), (0.05, 2.2, 0.04)
     mesh.box(low, high, "Frame")
     x0, x1, y0, y1, z = low[0] + 0.08, high[0] - 0.08, low[1] + 0.08, high[1] - 0.08, 0.043
-    mesh.face("Painting", [(x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)],
-              uvs=[(0, 0), (1, 0), (1, 1), (0, 1)])
+    mesh.face(
+        "Painting",
+        [(x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)],
+        uvs=[(0, 0), (1, 0), (1, 1), (0, 1)],
+    )
     materials = {
-        "Wall": {"Kd": grey(0.75)}, "Ceiling": {"Kd": grey(0.75)},
-        "FloorLight": {"Kd": grey(0.7)}, "FloorDark": {"Kd": grey(0.12)},
-        "Frame": {"Kd": (0.45, 0.36, 0.2)}, "Door": {"Kd": (0.5, 0.23, 0.09)},
+        "Wall": {"Kd": grey(0.75)},
+        "Ceiling": {"Kd": grey(0.75)},
+        "FloorLight": {"Kd": grey(0.7)},
+        "FloorDark": {"Kd": grey(0.12)},
+        "Frame": {"Kd": (0.45, 0.36, 0.2)},
+        "Door": {"Kd": (0.5, 0.23, 0.09)},
         "Brass": {"Kd": (0.3, 0.25, 0.12), "Ks": (0.4, 0.35, 0.2), "Ns": 60, "illum": 2},
-        "Table": {"Kd": (0.6, 0.52, 0.27)}, "Leg": {"Kd": grey(0.7)}, "Housing": {"Kd": grey(0.7)},
+        "Table": {"Kd": (0.6, 0.52, 0.27)},
+        "Leg": {"Kd": grey(0.7)},
+        "Housing": {"Kd": grey(0.7)},
         "Painting": {"Kd": grey(1), "map_Kd": "landscape.png"},
         LAMP: {"Ke": grey(200)},
     }
-    return {"veach-door/room.obj": mesh.text(),
-            "veach-door/room.mtl": mtl("Ke in W/(m2 sr)", materials),
-            "veach-door/landscape.png": png(96, 48, landscape)}
+    return {
+        "veach-door/room.obj": mesh.text(),
+        "veach-door/room.mtl": mtl("Ke in W/(m2 sr)", materials),
+        "veach-door/landscape.png": png(96, 48, landscape),
+    }
 
 
 def block(mesh, material, top):
@@ -139,29 +162,54 @@ def millimetres(*points):
 
 
 def cornell():
-    mesh = Mesh("The Cornell box from its published measurements, in metres;\n"
-                "made by scenes/generate.py", "cornell.mtl")
+    mesh = Mesh(
+        "The Cornell box from its published measurements, in metres;\nmade by scenes/generate.py",
+        "cornell.mtl",
+    )
     mesh.object("Walls")
     mesh.face("White", millimetres((552.8, 0, 0), (0, 0, 0), (0, 0, 559.2), (549.6, 0, 559.2)))
-    mesh.face("White", millimetres((556, 548.8, 0), (556, 548.8, 559.2), (0, 548.8, 559.2), (0, 548.8, 0)))
-    mesh.face("White", millimetres((549.6, 0, 559.2), (0, 0, 559.2), (0, 548.8, 559.2), (556, 548.8, 559.2)))
+    mesh.face(
+        "White", millimetres((556, 548.8, 0), (556, 548.8, 559.2), (0, 548.8, 559.2), (0, 548.8, 0))
+    )
+    mesh.face(
+        "White",
+        millimetres((549.6, 0, 559.2), (0, 0, 559.2), (0, 548.8, 559.2), (556, 548.8, 559.2)),
+    )
     mesh.face("Green", millimetres((0, 0, 559.2), (0, 0, 0), (0, 548.8, 0), (0, 548.8, 559.2)))
-    mesh.face("Red", millimetres((552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0)))
+    mesh.face(
+        "Red", millimetres((552.8, 0, 0), (549.6, 0, 559.2), (556, 548.8, 559.2), (556, 548.8, 0))
+    )
     mesh.object("ShortBlock")
-    block(mesh, "White", millimetres((130, 165, 65), (82, 165, 225), (240, 165, 272), (290, 165, 114)))
+    block(
+        mesh, "White", millimetres((130, 165, 65), (82, 165, 225), (240, 165, 272), (290, 165, 114))
+    )
     mesh.object("TallBlock")
-    block(mesh, "White", millimetres((423, 330, 247), (265, 330, 296), (314, 330, 456), (472, 330, 406)))
+    block(
+        mesh,
+        "White",
+        millimetres((423, 330, 247), (265, 330, 296), (314, 330, 456), (472, 330, 406)),
+    )
     mesh.object("Lamp")  # 5 mm below the ceiling, where the real one is a hole in it
-    mesh.face(LAMP, millimetres((343, 543.8, 227), (343, 543.8, 332), (213, 543.8, 332), (213, 543.8, 227)))
+    mesh.face(
+        LAMP,
+        millimetres((343, 543.8, 227), (343, 543.8, 332), (213, 543.8, 332), (213, 543.8, 227)),
+    )
     materials = {
-        "White": {"Kd": (0.725, 0.71, 0.68)}, "Red": {"Kd": (0.63, 0.065, 0.05)},
-        "Green": {"Kd": (0.14, 0.45, 0.091)}, LAMP: {"Kd": grey(0.78), "Ke": (17, 12, 4)},
+        "White": {"Kd": (0.725, 0.71, 0.68)},
+        "Red": {"Kd": (0.63, 0.065, 0.05)},
+        "Green": {"Kd": (0.14, 0.45, 0.091)},
+        LAMP: {"Kd": grey(0.78), "Ke": (17, 12, 4)},
     }
-    return {"cornell/cornell.obj": mesh.text(), "cornell/cornell.mtl": mtl("Linear sRGB", materials)}
+    return {
+        "cornell/cornell.obj": mesh.text(),
+        "cornell/cornell.mtl": mtl("Linear sRGB", materials),
+    }
 
 
 def furnace():
-    mesh = Mesh("Closed unit cube, seen and lit from inside; made by scenes/generate.py", "furnace.mtl")
+    mesh = Mesh(
+        "Closed unit cube, seen and lit from inside; made by scenes/generate.py", "furnace.mtl"
+    )
     mesh.object("Cube")
     mesh.box((0, 0, 0), (1, 1, 1), "Glow", inward=True)
     out = {"furnace/furnace.obj": mesh.text()}

@@ -46,9 +46,13 @@ def bernstein_slope(t):
 
 def blend(patch, row_weights, column_weights):
     return tuple(
-        sum(row_weights[i] * column_weights[j] * patch[4 * i + j][axis]
-            for i in range(4) for j in range(4))
-        for axis in range(3))
+        sum(
+            row_weights[i] * column_weights[j] * patch[4 * i + j][axis]
+            for i in range(4)
+            for j in range(4)
+        )
+        for axis in range(3)
+    )
 
 
 def cross(a, b):
@@ -93,7 +97,9 @@ def add_ring(mesh, patches, steps):
 
 def files(folder):
     patches = read_patches(folder / "newell-patches.txt")
-    mesh = Mesh("Utah teapot, tessellated by scenes/generate.py from Newell's patches", "teapot.mtl")
+    mesh = Mesh(
+        "Utah teapot, tessellated by scenes/generate.py from Newell's patches", "teapot.mtl"
+    )
     mesh.object("Teapot")
     for patch in patches:
         add_patch(mesh, patch, STEPS)

@@ -5,8 +5,14 @@ from .png import png
 from .rooms import LAMP, SUNK, lamp_box
 
 MADE = "made by scenes/generate.py"
-DIFFUSE = {"Floor": {"Kd": grey(0.7)}, "Ceiling": {"Kd": grey(0.7)}, "Wall": {"Kd": grey(0.7)},
-           "Divider": {"Kd": grey(0.7)}, "Housing": {"Kd": grey(0.7)}, LAMP: {"Ke": grey(20)}}
+DIFFUSE = {
+    "Floor": {"Kd": grey(0.7)},
+    "Ceiling": {"Kd": grey(0.7)},
+    "Wall": {"Kd": grey(0.7)},
+    "Divider": {"Kd": grey(0.7)},
+    "Housing": {"Kd": grey(0.7)},
+    LAMP: {"Ke": grey(20)},
+}
 ROOM = {"-y": "Floor", "+y": "Ceiling"}
 
 
@@ -27,7 +33,9 @@ def two_rooms():
 
 
 def divider():
-    mesh = Mesh(f"One room cut in two by a 0.02 m divider over one common floor; {MADE}", "divider.mtl")
+    mesh = Mesh(
+        f"One room cut in two by a 0.02 m divider over one common floor; {MADE}", "divider.mtl"
+    )
     mesh.object("Shell")
     mesh.box((-2, 0, 0), (2, 2, 2), "Wall", ROOM, inward=True)
     mesh.object("Divider")
@@ -46,7 +54,9 @@ def square(mesh, material, corner, side_a, side_b):
 
 
 def two_patches():
-    mesh = Mesh(f"A shining square 1 m above a diffuse one, face to face; {MADE}", "two-patches.mtl")
+    mesh = Mesh(
+        f"A shining square 1 m above a diffuse one, face to face; {MADE}", "two-patches.mtl"
+    )
     mesh.object("Emitter")
     square(mesh, "Emitter", (-0.1, 1, -0.1), (0.2, 0, 0), (0, 0, 0.2))
     mesh.object("Receiver")
@@ -56,15 +66,22 @@ def two_patches():
 
 
 def one_bounce():
-    mesh = Mesh("Floor, wall, and a lamp that lies level with the floor and faces up: it reaches the\n"
-                f"wall alone, so all light on the floor has bounced there; {MADE}", "one-bounce.mtl")
+    mesh = Mesh(
+        "Floor, wall, and a lamp that lies level with the floor and faces up: it reaches the\n"
+        f"wall alone, so all light on the floor has bounced there; {MADE}",
+        "one-bounce.mtl",
+    )
     mesh.object("Floor")
     square(mesh, "Floor", (-1, 0, -1), (0, 0, 2), (2, 0, 0))
     mesh.object("Wall")
     square(mesh, "Wall", (-1, 0, -1), (0, 2, 0), (0, 0, 2))
     mesh.object("Lamp")
     square(mesh, LAMP, (1, 0, -0.5), (0, 0, 1), (0.5, 0, 0))
-    materials = {"Floor": {"Kd": grey(0.6)}, "Wall": {"Kd": (0.8, 0.4, 0.2)}, LAMP: {"Ke": grey(10)}}
+    materials = {
+        "Floor": {"Kd": grey(0.6)},
+        "Wall": {"Kd": (0.8, 0.4, 0.2)},
+        LAMP: {"Ke": grey(10)},
+    }
     return {"test/one-bounce.obj": mesh.text(), "test/one-bounce.mtl": mtl("", materials)}
 
 
@@ -135,6 +152,12 @@ def dos(text):
 
 def files():
     squares = png(8, 8, lambda x, y: (230,) * 3 if (x + y) % 2 else (40,) * 3)
-    return {**two_rooms(), **divider(), **two_patches(), **one_bounce(),
-            "test/quirks.obj": dos(QUIRKS_OBJ), "test/quirks.mtl": dos(QUIRKS_MTL),
-            "test/textures/checker.png": squares}
+    return {
+        **two_rooms(),
+        **divider(),
+        **two_patches(),
+        **one_bounce(),
+        "test/quirks.obj": dos(QUIRKS_OBJ),
+        "test/quirks.mtl": dos(QUIRKS_MTL),
+        "test/textures/checker.png": squares,
+    }

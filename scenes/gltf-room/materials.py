@@ -1,4 +1,5 @@
 """The room's materials, by name, and the images that they use."""
+
 import pathlib
 import tempfile
 import types
@@ -71,12 +72,19 @@ def light_material(name, colour, radiance, both_sides=False):
 def make_materials():
     mat = types.SimpleNamespace()
     colour, normal, rough = textures.planks()
-    mat.planks = material("planks", base=image("planks", colour, "jpg"),
-                          normal=image("planks normal", normal, "jpg", False),
-                          rough=image("planks rough", rough, "jpg", False))
+    mat.planks = material(
+        "planks",
+        base=image("planks", colour, "jpg"),
+        normal=image("planks normal", normal, "jpg", False),
+        rough=image("planks rough", rough, "jpg", False),
+    )
     colour, normal = textures.bricks()
-    mat.bricks = material("bricks", base=image("bricks", colour, "jpg"), Roughness=0.9,
-                          normal=image("bricks normal", normal, "jpg", False))
+    mat.bricks = material(
+        "bricks",
+        base=image("bricks", colour, "jpg"),
+        Roughness=0.9,
+        normal=image("bricks normal", normal, "jpg", False),
+    )
     mat.oak = material("oak", base=image("oak", textures.oak(), "jpg"), Roughness=0.45)
     weave = image("weave", textures.weave(), "png", False)
     mat.cloth = material("cloth", (0.16, 0.26, 0.27), normal=weave, Roughness=0.95)
@@ -85,7 +93,9 @@ def make_materials():
     mat.plaster = material("plaster", (0.80, 0.77, 0.71), Roughness=0.95)
     mat.paint = material("paint", (0.78, 0.77, 0.73), Roughness=0.35)
     mat.clay = material("clay", (0.45, 0.36, 0.28), Roughness=1.0)
-    mat.lacquer = material("lacquer", (0.12, 0.035, 0.025), Roughness=0.5, Clearcoat=1.0, Clearcoat_Roughness=0.05)
+    mat.lacquer = material(
+        "lacquer", (0.12, 0.035, 0.025), Roughness=0.5, Clearcoat=1.0, Clearcoat_Roughness=0.05
+    )
     mat.steel = material("steel", (0.25, 0.25, 0.26), Metallic=1.0, Roughness=0.4)
     mat.brass = material("brass", (0.87, 0.66, 0.30), Metallic=1.0, Roughness=0.28)
     mat.copper = material("copper", (0.93, 0.55, 0.42), Metallic=1.0, Roughness=0.15)
@@ -94,12 +104,31 @@ def make_materials():
     mat.soil = material("soil", (0.05, 0.035, 0.025), Roughness=1.0)
     mat.black = material("black", (0.03, 0.03, 0.03), Roughness=0.4)
     mat.paper = material("paper", (0.80, 0.77, 0.68), Roughness=0.9)
-    mat.books = [material(f"cover {i}", of, Roughness=0.6) for i, of in enumerate((
-        (0.42, 0.09, 0.07), (0.07, 0.13, 0.26), (0.55, 0.38, 0.14), (0.10, 0.22, 0.13), (0.60, 0.55, 0.46)))]
-    mat.balls = [material(f"ball {i}", (0.95, 0.64 + 0.025 * i, 0.38 + 0.025 * i), Metallic=i / 4,
-                          Roughness=0.6 - 0.125 * i) for i in range(5)]
+    mat.books = [
+        material(f"cover {i}", of, Roughness=0.6)
+        for i, of in enumerate(
+            (
+                (0.42, 0.09, 0.07),
+                (0.07, 0.13, 0.26),
+                (0.55, 0.38, 0.14),
+                (0.10, 0.22, 0.13),
+                (0.60, 0.55, 0.46),
+            )
+        )
+    ]
+    mat.balls = [
+        material(
+            f"ball {i}",
+            (0.95, 0.64 + 0.025 * i, 0.38 + 0.025 * i),
+            Metallic=i / 4,
+            Roughness=0.6 - 0.125 * i,
+        )
+        for i in range(5)
+    ]
     mat.rug = material("rug", base=image("rug", textures.rug(), "jpg"), Roughness=1.0)
-    mat.picture = material("picture", base=image("picture", textures.landscape(), "jpg"), Roughness=0.5)
+    mat.picture = material(
+        "picture", base=image("picture", textures.landscape(), "jpg"), Roughness=0.5
+    )
     mat.leaf = material("leaf", base=image("frond", textures.frond()), cutout=True, Roughness=0.5)
     mat.sky = light_material("sky", (0.78, 0.89, 1.0), 45)
     mat.bulb = light_material("bulb", (1.0, 0.75, 0.48), 700)

@@ -1,4 +1,5 @@
 """Meshes of the room: boxes, curved sheets and turned shapes, with normals and texture coordinates."""
+
 import math
 
 import bmesh
@@ -35,10 +36,19 @@ def boxes(name, materials, parts, bevel=0.0, segments=2, tile=(1, 1), smooth_deg
         size = [b - a for a, b in zip(low, high)]
         centre = (Vector(low) + Vector(high)) / 2
         bm = bmesh.new()
-        bmesh.ops.create_cube(bm, size=1, matrix=Matrix.Translation(centre) @ Matrix.Diagonal((*size, 1)))
+        bmesh.ops.create_cube(
+            bm, size=1, matrix=Matrix.Translation(centre) @ Matrix.Diagonal((*size, 1))
+        )
         if bevel:
-            bmesh.ops.bevel(bm, geom=bm.edges[:], offset=bevel, segments=segments, profile=0.5,
-                            affect="EDGES", clamp_overlap=True)
+            bmesh.ops.bevel(
+                bm,
+                geom=bm.edges[:],
+                offset=bevel,
+                segments=segments,
+                profile=0.5,
+                affect="EDGES",
+                clamp_overlap=True,
+            )
         for face in bm.faces:
             axis = max(range(3), key=lambda i: abs(face.normal[i]))
             u, v = sorted((i for i in range(3) if i != axis), key=lambda i: -size[i])
@@ -55,8 +65,10 @@ def sheet(name, of, point, columns, rows, smooth_deg=60):
     """A mesh of the surface point(u, v), seen from the side where v is to the left of u."""
     bm = bmesh.new()
     layer = bm.loops.layers.uv.new("UVMap")
-    grid = [[bm.verts.new(point(i / columns, j / rows)) for i in range(columns + 1)]
-            for j in range(rows + 1)]
+    grid = [
+        [bm.verts.new(point(i / columns, j / rows)) for i in range(columns + 1)]
+        for j in range(rows + 1)
+    ]
     for j in range(rows):
         for i in range(columns):
             corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
@@ -69,9 +81,11 @@ def sheet(name, of, point, columns, rows, smooth_deg=60):
 
 def lathe(name, of, profile, steps=32, smooth_deg=40):
     """A mesh of the profile, (radius, height) upwards for an outside, turned about z."""
+
     def point(u, v):
         radius, z = profile[round(v * (len(profile) - 1))]
         return radius * math.cos(2 * math.pi * u), radius * math.sin(2 * math.pi * u), z
+
     return sheet(name, of, point, steps, len(profile) - 1, smooth_deg)
 
 

@@ -1,6 +1,7 @@
 """The room's textures: arrays of rows from bottom to top, colours in sRGB, 0..1. All tile but the
 picture, the rug and the leaf.
 """
+
 import math
 
 import numpy as np
@@ -35,8 +36,10 @@ def cells(size, rows, columns, offsets):
     height, width = size // rows, size // columns
     row = v // height
     u = (u + offsets[row]) % size
-    from_edge = np.minimum(np.minimum(u % width, width - 1 - u % width),
-                           np.minimum(v % height, height - 1 - v % height))
+    from_edge = np.minimum(
+        np.minimum(u % width, width - 1 - u % width),
+        np.minimum(v % height, height - 1 - v % height),
+    )
     return row * columns + u // width, from_edge
 
 
@@ -68,7 +71,7 @@ def bricks():
 
 def rug():
     v, u = np.mgrid[0:256, 0:256] / 256
-    diamonds = (np.abs((u * 8) % 1 - 0.5) + np.abs((v * 5) % 1 - 0.5))
+    diamonds = np.abs((u * 8) % 1 - 0.5) + np.abs((v * 5) % 1 - 0.5)
     edge = np.minimum(np.minimum(u, 1 - u) * 1.6, np.minimum(v, 1 - v))
     colour = np.full((256, 256, 3), (0.80, 0.74, 0.64))
     colour[np.abs(diamonds - 0.5) < 0.07] = (0.23, 0.30, 0.38)

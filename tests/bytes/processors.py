@@ -11,6 +11,7 @@ mixture by both. Each stage reads what the processor at hand has made, so that a
 Prints a line for each processor and fails (exit code 1) where that does not hold. Exit code 77: qemu-x86_64, of
 Debian's package qemu-user, is not installed.
 """
+
 import argparse
 import json
 import os
@@ -44,13 +45,17 @@ class Processor:
         command = [*(prefix or self.prefix), str(self.options.bin / tool), *map(str, arguments)]
         if tool != "vpl-merge":
             command += ["--processor", self.mode]
-        return subprocess.run(command, env=self.environment, capture_output=True, text=True, check=False)
+        return subprocess.run(
+            command, env=self.environment, capture_output=True, text=True, check=False
+        )
 
     def run(self, tool, *arguments):
         result = self.start(tool, "--quiet", *arguments)
         if result.returncode:
-            sys.exit(f"{self.name}: {tool} {' '.join(map(str, arguments))}: exit code {result.returncode}: "
-                     f"{result.stderr}")
+            sys.exit(
+                f"{self.name}: {tool} {' '.join(map(str, arguments))}: exit code {result.returncode}: "
+                f"{result.stderr}"
+            )
 
     def stages(self, inputs):
         """Name, tool and arguments of each stage, which reads its inputs from that folder."""
@@ -59,8 +64,16 @@ class Processor:
             ("candidates.vpl", "vpl-place", [o.scene, "-n", o.candidates]),
             ("vpls.vpl", "vpl-eliminate", [inputs / "candidates.vpl", "-n", o.vpls]),
             ("lit.vpl", "vpl-estimate", [o.scene, inputs / "vpls.vpl", "--photons", o.photons]),
-            ("image.exr", "vpl-render", [o.scene, inputs / "lit.vpl", "--size", o.size, "--spp", "1"]),
-            ("path.exr", "vpl-render", [o.scene, "--integrator", "path", "--size", o.size, "--spp", "1"]),
+            (
+                "image.exr",
+                "vpl-render",
+                [o.scene, inputs / "lit.vpl", "--size", o.size, "--spp", "1"],
+            ),
+            (
+                "path.exr",
+                "vpl-render",
+                [o.scene, "--integrator", "path", "--size", o.size, "--spp", "1"],
+            ),
         ]
 
     def make(self, inputs):
@@ -74,8 +87,12 @@ class Processor:
 
     def id(self):
         shard = self.shard("candidates.vpl")
-        info = subprocess.run([self.options.bin / "vpl-inspect", "info", "--json", shard], capture_output=True, text=True,
-                              check=True)
+        info = subprocess.run(
+            [self.options.bin / "vpl-inspect", "info", "--json", shard],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         return json.loads(info.stdout)["processor"]
 
 
@@ -97,11 +114,16 @@ def compare(check, home, other):
     """What `other` has made with what `home` has, and their shards mixed."""
     products = [product for product, _, _ in home.stages(home.folder)]
     differ = [p for p in products if not same(home.folder / p, other.folder / p)]
-    print(f"{other.name}, --processor {other.mode}: id {other.id()}, "
-          f"{'differs: ' + ', '.join(differ) if differ else 'the same bytes'}", flush=True)
+    print(
+        f"{other.name}, --processor {other.mode}: id {other.id()}, "
+        f"{'differs: ' + ', '.join(differ) if differ else 'the same bytes'}",
+        flush=True,
+    )
     if home.mode == "any":
         check.require(not differ, f"{other.name}: other bytes than {home.name}")
-    check.require(not differ or home.id() != other.id(), f"{other.name}: other bytes under the same id")
+    check.require(
+        not differ or home.id() != other.id(), f"{other.name}: other bytes under the same id"
+    )
     for product in products:
         first, second = home.shard(product), other.shard(product)
         if product == "vpls.vpl":
@@ -109,18 +131,31 @@ def compare(check, home, other):
         merged = other.folder / f"merged-{product}"
         result = home.start("vpl-merge", "--quiet", first, second, "-o", merged)
         if home.id() == other.id():
-            check.require(result.returncode == 0 and same(merged, home.folder / product),
-                          f"{other.name}: merged {product} is not that of one run {result.stderr}")
+            check.require(
+                result.returncode == 0 and same(merged, home.folder / product),
+                f"{other.name}: merged {product} is not that of one run {result.stderr}",
+            )
         else:
-            named = home.id() in result.stderr and other.id() in result.stderr and str(second) in result.stderr
-            check.require(result.returncode == 3 and named, f"{other.name}: {product} of two processors is not refused")
+            named = (
+                home.id() in result.stderr
+                and other.id() in result.stderr
+                and str(second) in result.stderr
+            )
+            check.require(
+                result.returncode == 3 and named,
+                f"{other.name}: {product} of two processors is not refused",
+            )
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--bin", type=lambda text: Path(text).resolve(), default=ROOT / "build/release/bin")
+    parser.add_argument(
+        "--bin", type=lambda text: Path(text).resolve(), default=ROOT / "build/release/bin"
+    )
     parser.add_argument("--scene", type=Path, default=ROOT / "scenes/u-shape/scene.toml")
-    parser.add_argument("--processors", default="Nehalem,Haswell,max", help=f"as {QEMU} -cpu help lists them")
+    parser.add_argument(
+        "--processors", default="Nehalem,Haswell,max", help=f"as {QEMU} -cpu help lists them"
+    )
     parser.add_argument("-n", "--candidates", default="2k")
     parser.add_argument("--vpls", default="200")
     parser.add_argument("--photons", default="20k")
@@ -137,10 +172,19 @@ def main():
             print(f"{HERE}, --processor {mode}: id {home.id()}", flush=True)
             for name in options.processors.split(","):
                 other = Processor(name, mode, options, Path(folder))
-                traced = other.start("vpl-place", options.scene, "-n", "1", "-o", other.folder / "x.vpl",
-                                     prefix=[*other.prefix, "-strace"])
-                check.require(traced.returncode == 0 and "execve(" not in traced.stderr,
-                              f"{name}: the tool left its emulator")
+                traced = other.start(
+                    "vpl-place",
+                    options.scene,
+                    "-n",
+                    "1",
+                    "-o",
+                    other.folder / "x.vpl",
+                    prefix=[*other.prefix, "-strace"],
+                )
+                check.require(
+                    traced.returncode == 0 and "execve(" not in traced.stderr,
+                    f"{name}: the tool left its emulator",
+                )
                 other.make(home.folder)
                 compare(check, home, other)
     sys.exit(1 if check.failed else 0)

@@ -32,8 +32,11 @@ PRODUCTS = ("candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr", "image.png")
 RENDER = "--render-flags=--size 240x180 --layers all"
 ESTIMATE = "--estimate-flags=--irradiance-error 0"  # all photons
 SIZES = ["--candidates", "200k", "--vpls", "1500"]
-SAVE_OFTEN = ["--place-flags=--checkpoint-every 0", f"{ESTIMATE} --checkpoint-every 0.2",
-              f"{RENDER} --checkpoint-every 0.2"]
+SAVE_OFTEN = [
+    "--place-flags=--checkpoint-every 0",
+    f"{ESTIMATE} --checkpoint-every 0.2",
+    f"{RENDER} --checkpoint-every 0.2",
+]
 
 
 def say(text):
@@ -71,8 +74,13 @@ class Killer:
         """Whether there was something to kill."""
         steps, running = self.cluster.steps(), processes()
         tools = {pid: self.task_of(running, pid) for pid in sorted(steps) if pid in running}
-        tools = [pid for pid, task in tools.items()
-                 if task and self.victims.get(task, 0) < 2 and self.count() < self.most * self.third(task) / 3]
+        tools = [
+            pid
+            for pid, task in tools.items()
+            if task
+            and self.victims.get(task, 0) < 2
+            and self.count() < self.most * self.third(task) / 3
+        ]
         if not tools:
             return False
         pid = self.chance.choice(tools)
@@ -98,8 +106,12 @@ class Killer:
     def task_of(running, pid):
         """The name of what a tool makes that pipelines/slurm/task.py has started; '' for other processes."""
         parent, words = running[pid]
-        if not words or not os.path.basename(words[0]).startswith("vpl-") or "-o" not in words or \
-                not any(word.endswith("task.py") for word in running.get(parent, (0, []))[1]):
+        if (
+            not words
+            or not os.path.basename(words[0]).startswith("vpl-")
+            or "-o" not in words
+            or not any(word.endswith("task.py") for word in running.get(parent, (0, []))[1])
+        ):
             return ""
         return os.path.basename(words[words.index("-o") + 1])
 
@@ -118,13 +130,31 @@ class Test:
             say(f"FAILED: {problem}")
 
     def arguments(self, out, seed):
-        return [SCENE, "--out", str(self.folder / out), "--bin", self.named_bin, "--seed", str(seed), *SIZES,
-                "--photons", self.options.photons, "--spp", self.options.spp, ESTIMATE, RENDER]
+        return [
+            SCENE,
+            "--out",
+            str(self.folder / out),
+            "--bin",
+            self.named_bin,
+            "--seed",
+            str(seed),
+            *SIZES,
+            "--photons",
+            self.options.photons,
+            "--spp",
+            self.options.spp,
+            ESTIMATE,
+            RENDER,
+        ]
 
     def run_here(self, seed):
         """All of it in one process a stage."""
         began = time.monotonic()
-        generate = [sys.executable, "pipelines/generate_ninja.py", *self.arguments(f"here-{seed}", seed)]
+        generate = [
+            sys.executable,
+            "pipelines/generate_ninja.py",
+            *self.arguments(f"here-{seed}", seed),
+        ]
         subprocess.run(generate, cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
         ninja = ["ninja", "--quiet", "-f", str(self.folder / f"here-{seed}" / "build.ninja")]
         done = subprocess.run(ninja, cwd=SOURCE, text=True, stdout=subprocess.PIPE)
@@ -133,11 +163,30 @@ class Test:
         say(f"the run in one process a stage took {time.monotonic() - began:.0f} s")
 
     def submit(self, cluster, seed):
-        command = [sys.executable, "pipelines/slurm/submit.py", *self.arguments(f"there-{seed}", seed), *SAVE_OFTEN,
-                   "--shards", str(self.options.shards), "--cpus", "1", "--memory", "500M", "--time", "10",
-                   "--retries", str(self.options.kills)]
-        done = subprocess.run(command, cwd=SOURCE, env=cluster.environment | {"PATH": self.environment["PATH"]}, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        command = [
+            sys.executable,
+            "pipelines/slurm/submit.py",
+            *self.arguments(f"there-{seed}", seed),
+            *SAVE_OFTEN,
+            "--shards",
+            str(self.options.shards),
+            "--cpus",
+            "1",
+            "--memory",
+            "500M",
+            "--time",
+            "10",
+            "--retries",
+            str(self.options.kills),
+        ]
+        done = subprocess.run(
+            command,
+            cwd=SOURCE,
+            env=cluster.environment | {"PATH": self.environment["PATH"]},
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
         if done.returncode:
             sys.exit(f"submit.py failed:\n{done.stdout}")
         return done.stdout
@@ -156,27 +205,49 @@ class Test:
                 if not jobs.strip() and cluster.ask("sinfo", "-h"):
                     break
         else:
-            self.expect(False, f"not done after {self.options.limit} s:\n{cluster.ask('squeue')}{cluster.ask('sinfo')}")
+            self.expect(
+                False,
+                f"not done after {self.options.limit} s:\n{cluster.ask('squeue')}{cluster.ask('sinfo')}",
+            )
         say(f"the run on the cluster took {time.monotonic() - began:.0f} s")
 
     def check(self, cluster, seed):
-        here, there = self.folder / f"here-{seed}" / "u-shape", self.folder / f"there-{seed}" / "u-shape"
+        here, there = (
+            self.folder / f"here-{seed}" / "u-shape",
+            self.folder / f"there-{seed}" / "u-shape",
+        )
         for name in PRODUCTS:
-            same = (there / name).is_file() and filecmp.cmp(here / name, there / name, shallow=False)
+            same = (there / name).is_file() and filecmp.cmp(
+                here / name, there / name, shallow=False
+            )
             self.expect(same, f"{name} {'differs' if (there / name).is_file() else 'is missing'}")
-        left = [str(file.relative_to(there)) for file in there.rglob("*") if re.search(r"\.partial|\.checkpoint$", file.name)
-                and "run" not in file.relative_to(there).parts[:1]]
+        left = [
+            str(file.relative_to(there))
+            for file in there.rglob("*")
+            if re.search(r"\.partial|\.checkpoint$", file.name)
+            and "run" not in file.relative_to(there).parts[:1]
+        ]
         self.expect(not left, f"left behind: {', '.join(left)}")
-        inspected = subprocess.run([self.bin / "vpl-inspect", "run", there / "run", "--json"], text=True,
-                                   stdout=subprocess.PIPE)
+        inspected = subprocess.run(
+            [self.bin / "vpl-inspect", "run", there / "run", "--json"],
+            text=True,
+            stdout=subprocess.PIPE,
+        )
         self.expect(inspected.returncode == 0, "vpl-inspect run failed")
         run = json.loads(inspected.stdout or "{}")
-        self.expect(run.get("tasks") == 3 * self.options.shards + 4, f"{run.get('tasks')} tasks are recorded")
+        self.expect(
+            run.get("tasks") == 3 * self.options.shards + 4,
+            f"{run.get('tasks')} tasks are recorded",
+        )
         self.expect(run.get("unfinished") == [], f"not done: {run.get('unfinished')}")
         self.expect((there / "run" / "timeline.svg").is_file(), "the summary made no timeline.svg")
         again = self.submit(cluster, seed)
         self.expect("is up to date" in again, f"submitted again, it is not up to date: {again}")
-        print((there / "run" / "summary.log").read_text() if (there / "run" / "summary.log").is_file() else "no summary")
+        print(
+            (there / "run" / "summary.log").read_text()
+            if (there / "run" / "summary.log").is_file()
+            else "no summary"
+        )
         if self.failures:
             self.show_logs(there)
         return run
@@ -205,24 +276,34 @@ class Test:
                 print(cluster.log_of("slurmctld"))
         if self.options.kills:
             self.expect(resumed > 0, "no task went on from a checkpoint")
-        print(f"{'FAILED' if self.failures else 'the same bytes'}: {struck['tool']} tools and {struck['node']} nodes killed, "
-              f"{requeued} attempts more than tasks, {resumed} of them resumed from checkpoints")
+        print(
+            f"{'FAILED' if self.failures else 'the same bytes'}: {struck['tool']} tools and {struck['node']} nodes killed, "
+            f"{requeued} attempts more than tasks, {resumed} of them resumed from checkpoints"
+        )
         return not self.failures
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", default=SOURCE / "build/release/bin")
     parser.add_argument("--shards", type=int, default=16)
     parser.add_argument("--kills", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1, help="of the moments and victims")
-    parser.add_argument("--photons", default="12M", help="more make the tasks longer (default %(default)s)")
+    parser.add_argument(
+        "--photons", default="12M", help="more make the tasks longer (default %(default)s)"
+    )
     parser.add_argument("--spp", default="12", help="likewise (default %(default)s)")
-    parser.add_argument("--limit", type=float, default=1200, metavar="S", help="for a run on the cluster")
+    parser.add_argument(
+        "--limit", type=float, default=1200, metavar="S", help="for a run on the cluster"
+    )
     parser.add_argument("--keep", action="store_true", help="keep the folder, and say where it is")
     options = parser.parse_args()
     if missing := missing_programs():
-        print(f"skipped: {', '.join(missing)} not found; apt-get install slurmctld slurmd slurm-client munge")
+        print(
+            f"skipped: {', '.join(missing)} not found; apt-get install slurmctld slurmd slurm-client munge"
+        )
         sys.exit(SKIPPED)
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(each, lambda number, _: sys.exit(128 + number))

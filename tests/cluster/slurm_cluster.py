@@ -112,14 +112,26 @@ class Cluster:
     def __enter__(self):
         try:
             self.configure()
-            self.start("munged", "--foreground", "--force", f"--socket={self.folder}/munge.socket",
-                       f"--key-file={self.folder}/munge.key", f"--pid-file={self.folder}/munge.pid",
-                       f"--log-file={self.folder}/log/munge.log", f"--seed-file={self.folder}/munge.seed")
+            self.start(
+                "munged",
+                "--foreground",
+                "--force",
+                f"--socket={self.folder}/munge.socket",
+                f"--key-file={self.folder}/munge.key",
+                f"--pid-file={self.folder}/munge.pid",
+                f"--log-file={self.folder}/log/munge.log",
+                f"--seed-file={self.folder}/munge.seed",
+            )
             self.wait_for("munged", lambda: (self.folder / "munge.socket").exists())
             self.start("slurmctld", "-D", "-c")
             for node in NODES:
                 self.start_node(node)
-            self.wait_for("the nodes", lambda: self.ask("sinfo", "-h", "-t", "idle", "-o", "%D").strip() == str(len(NODES)))
+            self.wait_for(
+                "the nodes",
+                lambda: (
+                    self.ask("sinfo", "-h", "-t", "idle", "-o", "%D").strip() == str(len(NODES))
+                ),
+            )
         except BaseException:
             self.stop()
             raise
@@ -135,7 +147,12 @@ class Cluster:
         key.write_bytes(os.urandom(1024))
         key.chmod(0o400)
         port, *ports = free_ports(1 + len(NODES))
-        rows = CONF.format(folder=self.folder, host=socket.gethostname().split(".")[0], port=port, user=pwd.getpwuid(os.getuid()).pw_name)
+        rows = CONF.format(
+            folder=self.folder,
+            host=socket.gethostname().split(".")[0],
+            port=port,
+            user=pwd.getpwuid(os.getuid()).pw_name,
+        )
         for node, node_port in zip(NODES, ports):
             rows += f"NodeName={node} NodeAddr=127.0.0.1 Port={node_port} CPUs=1 RealMemory=2000 State=UNKNOWN\n"
         rows += f"PartitionName=all Nodes={','.join(NODES)} Default=YES MaxTime=INFINITE State=UP\n"
@@ -145,8 +162,14 @@ class Cluster:
     def start(self, name, *arguments, label=None):
         with open(self.folder / "log" / f"{label or name}.out", "ab") as log:
             self.daemons[label or name] = subprocess.Popen(
-                [find(name), *arguments], stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=self.environment,
-                start_new_session=True, preexec_fn=die_with_parent)
+                [find(name), *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                env=self.environment,
+                start_new_session=True,
+                preexec_fn=die_with_parent,
+            )
 
     def start_node(self, node):
         self.start("slurmd", "-D", "-N", node, label=node)
@@ -156,18 +179,30 @@ class Cluster:
         while not ready():
             ended = [name for name, daemon in self.daemons.items() if daemon.poll() is not None]
             if ended or time.monotonic() > end:
-                raise RuntimeError(f"{what}: {'ended' if ended else 'not ready'}:\n" + self.log_of(*(ended or ["slurmctld"])))
+                raise RuntimeError(
+                    f"{what}: {'ended' if ended else 'not ready'}:\n"
+                    + self.log_of(*(ended or ["slurmctld"]))
+                )
             time.sleep(0.3)
 
     def log_of(self, *names):
-        return "".join(file.read_text(errors="replace")[-3000:] for name in names
-                       for file in sorted((self.folder / "log").glob(f"{name}.*")))
+        return "".join(
+            file.read_text(errors="replace")[-3000:]
+            for name in names
+            for file in sorted((self.folder / "log").glob(f"{name}.*"))
+        )
 
     def ask(self, *command, timeout=60):
         """What a command of Slurm prints; '' where it fails, as it may while the controller is busy."""
         try:
-            return subprocess.run(command, env=self.environment, text=True, stdout=subprocess.PIPE,
-                                  stderr=subprocess.DEVNULL, timeout=timeout).stdout
+            return subprocess.run(
+                command,
+                env=self.environment,
+                text=True,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                timeout=timeout,
+            ).stdout
         except subprocess.TimeoutExpired:
             return ""
 
@@ -192,7 +227,9 @@ class Cluster:
             for file in pathlib.Path(f"/proc/{pid}/fd").iterdir():
                 target = os.readlink(file)
                 for node in NODES:
-                    if target == f"{self.folder}/log/{node}.log" or target.startswith(f"{self.folder}/spool/{node}/"):
+                    if target == f"{self.folder}/log/{node}.log" or target.startswith(
+                        f"{self.folder}/spool/{node}/"
+                    ):
                         return node
         except OSError:
             pass

@@ -20,6 +20,7 @@ import scenes  # noqa: E402
 from farm_graph import Job  # noqa: E402
 from farm_schedule import Farm, Simulation, simulate  # noqa: E402
 
+
 def quick(nodes, cores=1, **more):
     return Farm(nodes, cores, start_s=0, **more)
 
@@ -37,8 +38,20 @@ def failing(times, nodes=1, cores=1, **more):
     return made
 
 
-FILM = ["--frames", "5", "--shards", "4,render=3", "--candidates", "1M", "--vpls", "10k", "--photons", "10M",
-        "--size", "640x480"]
+FILM = [
+    "--frames",
+    "5",
+    "--shards",
+    "4,render=3",
+    "--candidates",
+    "1M",
+    "--vpls",
+    "10k",
+    "--photons",
+    "10M",
+    "--size",
+    "640x480",
+]
 
 
 def jobs(*words):
@@ -53,27 +66,47 @@ def printed(*words):
 
 class Schedule(unittest.TestCase):
     def test_one_node_takes_the_sum_of_all_work(self):
-        found = simulate([Job("a", "s", [], 1, 1, 2), Job("b", "s", [], 1, 0, 5), Job("c", "s", [0], 1, 1, 7)], quick(1))
+        found = simulate(
+            [Job("a", "s", [], 1, 1, 2), Job("b", "s", [], 1, 0, 5), Job("c", "s", [0], 1, 1, 7)],
+            quick(1),
+        )
         self.assertAlmostEqual(found.wall_s, 16)
 
     def test_nodes_without_end_take_the_critical_path(self):
         graph = jobs()
         path = farm_graph.critical_path(graph)
-        self.assertAlmostEqual(simulate(graph, quick(1000, 16)).wall_s, sum(job.wall_s for job in path), places=6)
-        self.assertEqual([job.stage for job in path], ["place", "merge-place", "eliminate", "estimate", "merge-estimate",
-                                                       "render", "merge-render"])
+        self.assertAlmostEqual(
+            simulate(graph, quick(1000, 16)).wall_s, sum(job.wall_s for job in path), places=6
+        )
+        self.assertEqual(
+            [job.stage for job in path],
+            [
+                "place",
+                "merge-place",
+                "eliminate",
+                "estimate",
+                "merge-estimate",
+                "render",
+                "merge-render",
+            ],
+        )
 
     def test_each_task_is_done_once_after_those_that_it_needs(self):
         for order in "stages", "files":
             graph = jobs("--order", order)
             found = simulate(graph, Farm(3, 8, failure_s=15, repair_s=5, checkpoint_s=1))
             done = [a for a in found.attempts if a.done]
-            self.assertEqual(sorted(a.job for a in done), [k for k, job in enumerate(graph) if job.cores])
-            self.assertGreater(len(found.attempts), len(done), "no failure met a task: the test has lost its point")
+            self.assertEqual(
+                sorted(a.job for a in done), [k for k, job in enumerate(graph) if job.cores]
+            )
+            self.assertGreater(
+                len(found.attempts), len(done), "no failure met a task: the test has lost its point"
+            )
             end = {a.job: a.end_s for a in done}
 
             def ended(k):
                 return end[k] if k in end else max(ended(need) for need in graph[k].needs)
+
             for a in found.attempts:
                 for need in graph[a.job].needs:
                     self.assertLessEqual(ended(need), a.begin_s)
@@ -83,7 +116,11 @@ class Schedule(unittest.TestCase):
         found = simulate(graph, Farm(3, 6, failure_s=15, repair_s=5))
         for moment in {a.begin_s for a in found.attempts}:
             for node in range(3):
-                held = sum(graph[a.job].cores for a in found.attempts if a.node == node and a.begin_s <= moment < a.end_s)
+                held = sum(
+                    graph[a.job].cores
+                    for a in found.attempts
+                    if a.node == node and a.begin_s <= moment < a.end_s
+                )
                 self.assertLessEqual(held, 6)
 
     def test_a_task_goes_on_from_its_last_checkpoint(self):
@@ -93,21 +130,31 @@ class Schedule(unittest.TestCase):
         self.assertAlmostEqual(found.wall_s, 55 + 7 + 10 + 60)
 
     def test_a_task_without_checkpoints_begins_anew(self):
-        found = simulate([Job("a", "s", [], 1, 10, 100)], failing([55], checkpoint_s=20, repair_s=7))
+        found = simulate(
+            [Job("a", "s", [], 1, 10, 100)], failing([55], checkpoint_s=20, repair_s=7)
+        )
         self.assertAlmostEqual(found.wall_s, 55 + 7 + 110)
         self.assertEqual([a.done for a in found.attempts], [False, True])
 
     def test_a_failure_in_the_set_up_saves_nothing(self):
         job = Job("a", "s", [], 1, 10, 100, checkpoints=True)
-        self.assertAlmostEqual(simulate([job], failing([9], checkpoint_s=1, repair_s=7)).wall_s, 9 + 7 + 110)
+        self.assertAlmostEqual(
+            simulate([job], failing([9], checkpoint_s=1, repair_s=7)).wall_s, 9 + 7 + 110
+        )
 
     def test_another_node_takes_over(self):
         found = simulate([Job("a", "s", [], 1, 0, 100)], failing([40], nodes=2, repair_s=1000))
         self.assertAlmostEqual(found.wall_s, 140)
 
     def test_a_failure_takes_all_tasks_of_the_node(self):
-        found = simulate([Job("a", "s", [], 1, 0, 100), Job("b", "s", [], 1, 0, 30), Job("c", "s", [], 1, 0, 100)],
-                         failing([40], cores=3, repair_s=10))
+        found = simulate(
+            [
+                Job("a", "s", [], 1, 0, 100),
+                Job("b", "s", [], 1, 0, 30),
+                Job("c", "s", [], 1, 0, 100),
+            ],
+            failing([40], cores=3, repair_s=10),
+        )
         self.assertEqual(len(found.attempts), 5)  # b had ended
         self.assertAlmostEqual(found.wall_s, 150)
 
@@ -140,7 +187,10 @@ class Graph(unittest.TestCase):
     def test_files_wait_for_less_than_stages(self):
         graph = jobs("--order", "files")
         merge = next(job for job in graph if job.name == "merge-render-000001")
-        self.assertEqual(sorted(graph[k].name for k in merge.needs), [f"render-000001-{n}-of-3" for n in (1, 2, 3)])
+        self.assertEqual(
+            sorted(graph[k].name for k in merge.needs),
+            [f"render-000001-{n}-of-3" for n in (1, 2, 3)],
+        )
         merge = next(job for job in jobs() if job.name == "merge-render-000001")
         self.assertEqual([jobs()[k].name for k in merge.needs], ["end of render"])
 
@@ -177,10 +227,13 @@ class Command(unittest.TestCase):
         graph = [Job("a", "s", [], 2, 10, 100, checkpoints=True)]
         site = failing([55], cores=2, checkpoint_s=20, repair_s=7)
         row = farm.row_of(graph, site, simulate(graph, site), 0)
-        self.assertAlmostEqual(row["lost_h"] * 3600, 2 * (5 + 10))  # since the checkpoint, and the set-up again
+        self.assertAlmostEqual(
+            row["lost_h"] * 3600, 2 * (5 + 10)
+        )  # since the checkpoint, and the set-up again
 
     def test_the_picture_is_whole(self):
         import xml.etree.ElementTree
+
         with tempfile.TemporaryDirectory() as folder:
             picture = Path(folder) / "farm.svg"
             printed("--nodes", "1,4,16,64", "--svg", str(picture))
@@ -198,9 +251,11 @@ class Command(unittest.TestCase):
             model = Path(folder) / "model.json"
             model.write_bytes(cost.MODEL.read_bytes())
             picture.write_bytes(b"\x89VPL\r\n\x1a\n")
-            for file, problem in ((picture, "is not an SVG picture, which --svg would replace it with; name another"),
-                                  (model, "is the file of --model, which the run reads; name another file for --svg"),
-                                  (Path(folder), "is a folder; name a file for --svg")):
+            for file, problem in (
+                (picture, "is not an SVG picture, which --svg would replace it with; name another"),
+                (model, "is the file of --model, which the run reads; name another file for --svg"),
+                (Path(folder), "is a folder; name a file for --svg"),
+            ):
                 before = file.read_bytes() if file.is_file() else None
                 with self.assertRaises(SystemExit) as refused:
                     printed("--nodes", "1", "--model", str(model), "--svg", str(file))
@@ -209,7 +264,14 @@ class Command(unittest.TestCase):
             self.assertEqual(len(list(Path(folder).iterdir())), 2)
 
     def test_wrong_options_are_refused(self):
-        for words in (["--nodes", "0"], ["--quality", "final"], ["--render-flags=--gather all"], ["--size", "640"], ["--cpus", "64"], ["--frames", "0"]):
+        for words in (
+            ["--nodes", "0"],
+            ["--quality", "final"],
+            ["--render-flags=--gather all"],
+            ["--size", "640"],
+            ["--cpus", "64"],
+            ["--frames", "0"],
+        ):
             with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
                 farm.arguments([*FILM, *words])
 
@@ -219,11 +281,28 @@ class ModelTest(unittest.TestCase):
         terms = cost.TERMS["render"]["cpu_s"]
         true = {"start": 0.1, "VPLs": 2e-5, "samples": 3e-6, "samples log2(VPLs)": 1e-6}
         model = cost.Model({"render": {"cpu_s": true}})
-        some = [cost.Counts(1000, 0, v, 0, px, spp, n) for v in (1e3, 1e4, 1e5) for px in (5e3, 5e4) for spp in (1, 4, 16)
-                for n in (1, 8)]
-        found = cost.Model({"render": {"cpu_s": fit.rates(terms, [(c, model.predict("render", "cpu_s", c)) for c in some])}})
+        some = [
+            cost.Counts(1000, 0, v, 0, px, spp, n)
+            for v in (1e3, 1e4, 1e5)
+            for px in (5e3, 5e4)
+            for spp in (1, 4, 16)
+            for n in (1, 8)
+        ]
+        found = cost.Model(
+            {
+                "render": {
+                    "cpu_s": fit.rates(
+                        terms, [(c, model.predict("render", "cpu_s", c)) for c in some]
+                    )
+                }
+            }
+        )
         for counts in some + [cost.Counts(1000, 0, 3e4, 0, 1e6, 32, 1)]:
-            self.assertAlmostEqual(found.predict("render", "cpu_s", counts) / model.predict("render", "cpu_s", counts), 1, 2)
+            self.assertAlmostEqual(
+                found.predict("render", "cpu_s", counts) / model.predict("render", "cpu_s", counts),
+                1,
+                2,
+            )
 
     def test_no_rate_is_negative(self):
         terms = {"one": lambda c: 1, "n": lambda c: c.vpls}
@@ -236,14 +315,20 @@ class ModelTest(unittest.TestCase):
         part = cost.Counts(1e6, 4e6, 1e5, 1e9, 8e6, 16, shards=100)
         for stage in "place", "estimate":
             setup = model.setup_s(stage, whole)
-            self.assertAlmostEqual(model.predict(stage, "cpu_s", part) - setup,
-                                   (model.predict(stage, "cpu_s", whole) - setup) / 100, places=6)
+            self.assertAlmostEqual(
+                model.predict(stage, "cpu_s", part) - setup,
+                (model.predict(stage, "cpu_s", whole) - setup) / 100,
+                places=6,
+            )
 
     def test_scenes_are_cut_and_not_changed(self):
         def area(obj):
             vertices, _, faces = scenes.faces_of(obj)
-            return sum(scenes.area(vertices, [face[0], face[i], face[i + 1]])
-                       for _, face in faces for i in range(1, len(face) - 1))
+            return sum(
+                scenes.area(vertices, [face[0], face[i], face[i + 1]])
+                for _, face in faces
+                for i in range(1, len(face) - 1)
+            )
 
         with tempfile.TemporaryDirectory() as folder:
             file, made = scenes.cut_scene(SOURCE / "scenes/cornell/scene.toml", Path(folder), 5000)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """pipelines/slurm without Slurm: its commands are stand-ins that run each task at once.
 
-  tests/cluster/test_submit.py build/release/bin
+tests/cluster/test_submit.py build/release/bin
 """
 
 import filecmp
@@ -17,7 +17,17 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 BIN = Path("build/release/bin")
-SIZES = ["--candidates", "2k", "--vpls", "100", "--photons", "20k", "--spp", "1", "--render-flags=--size 32x24"]
+SIZES = [
+    "--candidates",
+    "2k",
+    "--vpls",
+    "100",
+    "--photons",
+    "20k",
+    "--spp",
+    "1",
+    "--render-flags=--size 32x24",
+]
 
 # sbatch: runs the tasks of a job one after the other if all jobs that it waits for went well.
 SBATCH = """\
@@ -43,7 +53,9 @@ jobs[number] = {"name": words["job-name"], "tasks": tasks, "well": well, "words"
 (state / "jobs.json").write_text(json.dumps(jobs))
 print(number)
 """
-SQUEUE = "import os, pathlib\nprint((pathlib.Path(os.environ['FAKE_SLURM']) / 'queued').read_text())\n"
+SQUEUE = (
+    "import os, pathlib\nprint((pathlib.Path(os.environ['FAKE_SLURM']) / 'queued').read_text())\n"
+)
 # scontrol requeue: notes it, and fails, so that the task ends.
 SCONTROL = """\
 import os, pathlib, sys
@@ -63,13 +75,20 @@ class SubmitTest(unittest.TestCase):
         self.keep = tempfile.TemporaryDirectory(prefix="bnvpl-submit-")
         self.folder = Path(self.keep.name)
         self.addCleanup(self.keep.cleanup)
-        for name, text in (("sbatch", SBATCH), ("squeue", SQUEUE), ("scontrol", SCONTROL), ("scancel", "")):
+        for name, text in (
+            ("sbatch", SBATCH),
+            ("squeue", SQUEUE),
+            ("scontrol", SCONTROL),
+            ("scancel", ""),
+        ):
             self.program(f"slurm/{name}", f"#!{sys.executable}\n{text}")
         (self.folder / "jobs.json").write_text("{}")
         (self.folder / "queued").write_text("")
         slurm = {name: value for name, value in os.environ.items() if not name.startswith("SLURM")}
-        self.environment = slurm | {"FAKE_SLURM": str(self.folder),
-                                    "PATH": f"{self.folder}/slurm:{os.environ['PATH']}"}
+        self.environment = slurm | {
+            "FAKE_SLURM": str(self.folder),
+            "PATH": f"{self.folder}/slurm:{os.environ['PATH']}",
+        }
 
     def program(self, name, text):
         file = self.folder / name
@@ -79,12 +98,26 @@ class SubmitTest(unittest.TestCase):
         return str(file)
 
     def call(self, *command):
-        return subprocess.run([sys.executable, *command], cwd=SOURCE, env=self.environment, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        return subprocess.run(
+            [sys.executable, *command],
+            cwd=SOURCE,
+            env=self.environment,
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
 
     def submit(self, *more):
-        return self.call("pipelines/slurm/submit.py", "scenes/u-shape/scene.toml", "--out", str(self.folder / "out"),
-                         "--bin", str(BIN), *SIZES, *more)
+        return self.call(
+            "pipelines/slurm/submit.py",
+            "scenes/u-shape/scene.toml",
+            "--out",
+            str(self.folder / "out"),
+            "--bin",
+            str(BIN),
+            *SIZES,
+            *more,
+        )
 
     def jobs(self):
         """{name without the scene's: job} of those that ran since this was last asked."""
@@ -100,8 +133,19 @@ class SubmitTest(unittest.TestCase):
         done = self.submit("--shards", "3")
         self.assertEqual(done.returncode, 0, done.stdout)
         jobs = self.jobs()
-        self.assertEqual(list(jobs), ["place", "merge-place", "eliminate", "estimate", "merge-estimate", "render",
-                                      "merge-render", "summary"])
+        self.assertEqual(
+            list(jobs),
+            [
+                "place",
+                "merge-place",
+                "eliminate",
+                "estimate",
+                "merge-estimate",
+                "render",
+                "merge-render",
+                "summary",
+            ],
+        )
         self.assertTrue(all(job["well"] for job in jobs.values()), self.logs())
         self.assertEqual(jobs["render"]["tasks"], [1, 2, 3])
         self.assertIn("--dependency=afterok:105", jobs["render"]["words"])
@@ -109,10 +153,25 @@ class SubmitTest(unittest.TestCase):
         self.assertIn("critical path", self.at("run/summary.log").read_text())
         self.assertTrue(self.at("run/timeline.svg").read_text().startswith("<svg"))
         whole = self.folder / "whole"
-        self.call("pipelines/generate_ninja.py", "scenes/u-shape/scene.toml", "--out", str(whole), "--bin", str(BIN), *SIZES)
-        subprocess.run(["ninja", "-f", str(whole / "build.ninja")], cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
+        self.call(
+            "pipelines/generate_ninja.py",
+            "scenes/u-shape/scene.toml",
+            "--out",
+            str(whole),
+            "--bin",
+            str(BIN),
+            *SIZES,
+        )
+        subprocess.run(
+            ["ninja", "-f", str(whole / "build.ninja")],
+            cwd=SOURCE,
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         for name in ("candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr", "image.png"):
-            self.assertTrue(filecmp.cmp(self.at(name), whole / "u-shape" / name, shallow=False), name)
+            self.assertTrue(
+                filecmp.cmp(self.at(name), whole / "u-shape" / name, shallow=False), name
+            )
 
         again = self.submit("--shards", "3")
         self.assertIn("is up to date", again.stdout)
@@ -123,7 +182,9 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(list(jobs), ["render", "merge-render", "summary"])
         self.assertEqual(jobs["render"]["tasks"], [2])
         self.assertEqual(self.submit("--shards", "3", "--photons", "30k").returncode, 0)
-        self.assertEqual(list(self.jobs()), ["estimate", "merge-estimate", "render", "merge-render", "summary"])
+        self.assertEqual(
+            list(self.jobs()), ["estimate", "merge-estimate", "render", "merge-render", "summary"]
+        )
         # A task that is done is not done again when Slurm starts it twice.
         task = self.call("pipelines/slurm/task.py", str(self.at("run/eliminate.job.json")))
         self.assertIn("is up to date", task.stdout)
@@ -137,25 +198,53 @@ class SubmitTest(unittest.TestCase):
         self.assertFalse(jobs["estimate"]["well"])
         self.assertFalse(jobs["render"]["well"])
         self.assertTrue(jobs["summary"]["well"])
-        self.assertIn("not done: estimate-1-of-2, exit code 2", self.at("run/summary.log").read_text())
+        self.assertIn(
+            "not done: estimate-1-of-2, exit code 2", self.at("run/summary.log").read_text()
+        )
         self.assertFalse(self.at("lit.vpl").exists())
         self.submit("--shards", "2")
         jobs = self.jobs()
-        self.assertEqual(list(jobs), ["estimate", "merge-estimate", "render", "merge-render", "summary"])
+        self.assertEqual(
+            list(jobs), ["estimate", "merge-estimate", "render", "merge-render", "summary"]
+        )
         self.assertTrue(all(job["well"] for job in jobs.values()), self.logs())
-        self.assertNotIn("not done", self.at("run/summary.log").read_text().rpartition("tasks in")[2])
+        self.assertNotIn(
+            "not done", self.at("run/summary.log").read_text().rpartition("tasks in")[2]
+        )
 
     def test_ninja_records_what_its_tasks_take(self):
-        self.call("pipelines/generate_ninja.py", "scenes/u-shape/scene.toml", "--out", str(self.folder / "out"), "--bin",
-                  str(BIN), "--shards", "2", "--record", *SIZES)
+        self.call(
+            "pipelines/generate_ninja.py",
+            "scenes/u-shape/scene.toml",
+            "--out",
+            str(self.folder / "out"),
+            "--bin",
+            str(BIN),
+            "--shards",
+            "2",
+            "--record",
+            *SIZES,
+        )
         ninja = ["ninja", "-f", str(self.folder / "out/build.ninja")]
         subprocess.run(ninja, cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
-        inspected = subprocess.run([SOURCE / BIN / "vpl-inspect", "run", self.at("run"), "--json"], text=True,
-                                   stdout=subprocess.PIPE)
+        inspected = subprocess.run(
+            [SOURCE / BIN / "vpl-inspect", "run", self.at("run"), "--json"],
+            text=True,
+            stdout=subprocess.PIPE,
+        )
         run = json.loads(inspected.stdout)
-        self.assertEqual([(stage["stage"], stage["tasks"]) for stage in run["stages"]],
-                         [("place", 2), ("merge-place", 1), ("eliminate", 1), ("estimate", 2), ("merge-estimate", 1),
-                          ("render", 2), ("merge-render", 1)])
+        self.assertEqual(
+            [(stage["stage"], stage["tasks"]) for stage in run["stages"]],
+            [
+                ("place", 2),
+                ("merge-place", 1),
+                ("eliminate", 1),
+                ("estimate", 2),
+                ("merge-estimate", 1),
+                ("render", 2),
+                ("merge-render", 1),
+            ],
+        )
         self.assertEqual(len(run["critical_path"]["tasks"]), 7)
         again = subprocess.run(ninja, cwd=SOURCE, text=True, stdout=subprocess.PIPE)
         self.assertIn("no work to do", again.stdout)
@@ -170,21 +259,37 @@ class SubmitTest(unittest.TestCase):
 
     def test_shards_of_each_stage(self):
         done = self.submit("--dry-run", "--shards", "place=2,render=5")
-        rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
+        rows = {
+            row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()
+        }
         self.assertIn("--array=1-2 ", rows["place"])
         self.assertIn("--array=1-16 ", rows["estimate"])
         self.assertIn("--array=1-5 ", rows["render"])
         done = self.submit("--shards", "1", "--shards", "render=2")
         self.assertEqual(done.returncode, 0, done.stdout)
         jobs = self.jobs()
-        self.assertEqual(list(jobs), ["place", "eliminate", "estimate", "render", "merge-render", "summary"])
+        self.assertEqual(
+            list(jobs), ["place", "eliminate", "estimate", "render", "merge-render", "summary"]
+        )
         self.assertTrue(all(job["well"] for job in jobs.values()), self.logs())
         self.assertEqual(jobs["render"]["tasks"], [1, 2])
 
     def test_limits_of_each_stage(self):
-        done = self.submit("--dry-run", "--memory", "2G,eliminate=9G", "--time", "render=2:00:00", "--cpus",
-                           "8", "--sbatch=--partition=long --nice", "--at-once", "5")
-        rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
+        done = self.submit(
+            "--dry-run",
+            "--memory",
+            "2G,eliminate=9G",
+            "--time",
+            "render=2:00:00",
+            "--cpus",
+            "8",
+            "--sbatch=--partition=long --nice",
+            "--at-once",
+            "5",
+        )
+        rows = {
+            row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()
+        }
         self.assertIn("--mem=9G --time=11 ", rows["eliminate"])
         self.assertIn("--mem=2G --time=2:00:00", rows["render"])
         self.assertIn("--cpus-per-task=8", rows["merge-place"])
@@ -196,13 +301,30 @@ class SubmitTest(unittest.TestCase):
         def asked(*more):
             done = self.submit("--dry-run", *more)
             self.assertEqual(done.returncode, 0, done.stdout)
-            rows = {row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()}
-            return {name: [int(re.search(f"--{what}=(\\d+)", row)[1]) for what in ("mem", "time")]
-                    for name, row in rows.items()}
+            rows = {
+                row.split("--job-name=u-shape-")[1].split()[0]: row
+                for row in done.stdout.splitlines()
+            }
+            return {
+                name: [int(re.search(f"--{what}=(\\d+)", row)[1]) for what in ("mem", "time")]
+                for name, row in rows.items()
+            }
+
         small = asked()
         self.assertTrue(all(memory <= 384 and time <= 11 for memory, time in small.values()), small)
-        large = asked("--candidates", "100M", "--vpls", "1M", "--photons", "10G", "--spp", "64", "--render-flags=--size 3840x2160",
-                      "--shards", "estimate=4,render=4")
+        large = asked(
+            "--candidates",
+            "100M",
+            "--vpls",
+            "1M",
+            "--photons",
+            "10G",
+            "--spp",
+            "64",
+            "--render-flags=--size 3840x2160",
+            "--shards",
+            "estimate=4,render=4",
+        )
         for stage in ("place", "eliminate", "estimate", "render", "merge-render"):
             self.assertGreater(large[stage][0], small[stage][0], stage)
         self.assertGreater(large["eliminate"][0], 15000)  # 100M candidates take 15 GiB
@@ -213,11 +335,17 @@ class SubmitTest(unittest.TestCase):
         self.assertIn("--memory and --time", done.stdout)
 
     def test_errors_name_what_is_wrong(self):
-        for more, problem in ((["--memory", "much"], "'much' is not a size"), (["--time", "paint=3"], "'paint' is none of"),
-                              (["--cpus", "0"], "'0' is not a count"), (["--shards", "0"], "--shards 0"),
-                              (["--shards", "merge=2"], "'merge' is none of place, estimate, render"),
-                              (["--place-flags=--method light"], "no work to vpl-estimate"), (["--at-once", "0"], "--at-once 0"),
-                              (["--out", "a b"], "'a b' contains a space"), (["--retries", "-1"], "--retries -1")):
+        for more, problem in (
+            (["--memory", "much"], "'much' is not a size"),
+            (["--time", "paint=3"], "'paint' is none of"),
+            (["--cpus", "0"], "'0' is not a count"),
+            (["--shards", "0"], "--shards 0"),
+            (["--shards", "merge=2"], "'merge' is none of place, estimate, render"),
+            (["--place-flags=--method light"], "no work to vpl-estimate"),
+            (["--at-once", "0"], "--at-once 0"),
+            (["--out", "a b"], "'a b' contains a space"),
+            (["--retries", "-1"], "--retries -1"),
+        ):
             done = self.submit(*more)
             self.assertNotEqual(done.returncode, 0)
             self.assertIn(problem, done.stdout)
@@ -240,13 +368,20 @@ class SubmitTest(unittest.TestCase):
         self.submit("--shards", "2")
         self.assertEqual(self.submit("--shards", "2", "--seed", "3").returncode, 0)  # over its own
         self.jobs()
-        for name, content in (("jobs.json", '{"asset": {"version": "2.0"}}'), ("jobs.json", "[1"), ("render.job.json", "{}"),
-                              ("place.job.json", "\x89VPL")):
+        for name, content in (
+            ("jobs.json", '{"asset": {"version": "2.0"}}'),
+            ("jobs.json", "[1"),
+            ("render.job.json", "{}"),
+            ("place.job.json", "\x89VPL"),
+        ):
             file = self.at(f"run/{name}")
             own = file.read_bytes()
             file.write_text(content)
             done = self.submit("--shards", "2", "--seed", "4")
-            self.assertRegex(done.stdout, rf"\Asubmit.py: \S*/{name}: is not a .* of this program, [^\n]*; name another [^\n]*\n\Z")
+            self.assertRegex(
+                done.stdout,
+                rf"\Asubmit.py: \S*/{name}: is not a .* of this program, [^\n]*; name another [^\n]*\n\Z",
+            )
             self.assertEqual(done.returncode, 1)
             self.assertEqual(file.read_text(), content)
             file.write_bytes(own)
@@ -254,7 +389,10 @@ class SubmitTest(unittest.TestCase):
         other = self.folder / "other/u-shape/run"
         other.parent.mkdir(parents=True)
         other.write_text("a file")
-        self.assertIn("is no folder, which the run needs there", self.submit("--out", str(self.folder / "other")).stdout)
+        self.assertIn(
+            "is no folder, which the run needs there",
+            self.submit("--out", str(self.folder / "other")).stdout,
+        )
 
     def test_a_run_that_is_queued_is_not_submitted_again(self):
         self.submit("--shards", "1")
@@ -266,12 +404,26 @@ class SubmitTest(unittest.TestCase):
     def start_task(self, tool, retries=2, **more):
         """task.py as job 9, for a tool of these tests."""
         saved = str(self.folder / "saved")
-        task = {"name": "t", "stage": "s", "after": [], "command": [tool, "--checkpoint", saved], "inputs": [tool],
-                "outputs": [str(self.folder / "made")], "depfile": "", "checkpoint": saved}
+        task = {
+            "name": "t",
+            "stage": "s",
+            "after": [],
+            "command": [tool, "--checkpoint", saved],
+            "inputs": [tool],
+            "outputs": [str(self.folder / "made")],
+            "depfile": "",
+            "checkpoint": saved,
+        }
         (self.folder / "run").mkdir(exist_ok=True)
-        (self.folder / "run/s.job.json").write_text(json.dumps({"threads": 1, "retries": retries, "tasks": [task]}))
-        return subprocess.Popen([sys.executable, SOURCE / "pipelines/slurm/task.py", self.folder / "run/s.job.json"],
-                                env=self.environment | {"SLURM_JOB_ID": "9"}, stdout=subprocess.DEVNULL, **more)
+        (self.folder / "run/s.job.json").write_text(
+            json.dumps({"threads": 1, "retries": retries, "tasks": [task]})
+        )
+        return subprocess.Popen(
+            [sys.executable, SOURCE / "pipelines/slurm/task.py", self.folder / "run/s.job.json"],
+            env=self.environment | {"SLURM_JOB_ID": "9"},
+            stdout=subprocess.DEVNULL,
+            **more,
+        )
 
     def wait_until_ready(self):
         while not (self.folder / "saved.ready").exists():
@@ -309,9 +461,17 @@ class SubmitTest(unittest.TestCase):
 
     def test_whole_tasks_go_on_from_their_checkpoints(self):
         """A render that nears its time limit, as one task of the pipeline."""
-        arguments = ["--shards", "1", "--spp", "32", "--render-flags=--size 64x48 --checkpoint-every 0"]
-        rows = {row.split("--job-name=u-shape-")[1].split()[0]: row
-                for row in self.submit(*arguments, "--dry-run").stdout.splitlines()}
+        arguments = [
+            "--shards",
+            "1",
+            "--spp",
+            "32",
+            "--render-flags=--size 64x48 --checkpoint-every 0",
+        ]
+        rows = {
+            row.split("--job-name=u-shape-")[1].split()[0]: row
+            for row in self.submit(*arguments, "--dry-run").stdout.splitlines()
+        }
         for stage in ("place", "estimate", "render"):
             self.assertIn("--signal=B:USR1@60", rows[stage])
         self.assertNotIn("--signal", rows["eliminate"])
@@ -319,15 +479,25 @@ class SubmitTest(unittest.TestCase):
         whole = self.at("image.exr").read_bytes()
         self.at("image.exr").unlink()
         task = [sys.executable, SOURCE / "pipelines/slurm/task.py", self.at("run/render.job.json")]
-        begun = subprocess.Popen(task, cwd=SOURCE, env=self.environment | {"SLURM_JOB_ID": "9"}, stdout=subprocess.DEVNULL,
-                                 stderr=subprocess.DEVNULL)
+        begun = subprocess.Popen(
+            task,
+            cwd=SOURCE,
+            env=self.environment | {"SLURM_JOB_ID": "9"},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         while begun.poll() is None and not self.at("render.checkpoint").exists():
             time.sleep(0.005)
         begun.send_signal(10)
         self.assertEqual(begun.wait(), 128 + 15)
         self.assertEqual(self.requeued(), ["requeue 9"])
         self.assertFalse(self.at("image.exr").exists())
-        self.assertEqual(subprocess.run(task, cwd=SOURCE, env=self.environment, stdout=subprocess.DEVNULL).returncode, 0)
+        self.assertEqual(
+            subprocess.run(
+                task, cwd=SOURCE, env=self.environment, stdout=subprocess.DEVNULL
+            ).returncode,
+            0,
+        )
         self.assertTrue(json.loads(self.at("run/render.3.task.json").read_text())["resumed"])
         self.assertEqual(self.at("image.exr").read_bytes(), whole)
         self.assertFalse(self.at("render.checkpoint").exists())
@@ -352,7 +522,9 @@ class SubmitTest(unittest.TestCase):
         tool = self.program("saves", SAVES)
         task = self.start_task(tool)
         self.wait_until_ready()
-        child = int(subprocess.run(["pgrep", "-P", str(task.pid)], text=True, stdout=subprocess.PIPE).stdout)
+        child = int(
+            subprocess.run(["pgrep", "-P", str(task.pid)], text=True, stdout=subprocess.PIPE).stdout
+        )
         task.kill()
         task.wait()
         for _ in range(100):
@@ -372,5 +544,7 @@ class SubmitTest(unittest.TestCase):
 
 if __name__ == "__main__":
     if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        BIN = Path(os.path.relpath(Path(sys.argv.pop(1)).resolve(), SOURCE))  # the pipelines take no space in it
+        BIN = Path(
+            os.path.relpath(Path(sys.argv.pop(1)).resolve(), SOURCE)
+        )  # the pipelines take no space in it
     unittest.main()

@@ -12,30 +12,47 @@ from workbench import FULL, OK, OUTPUT, Command, Workbench, moments, needs_shim
 
 SAVE = " --checkpoint {out}/work --checkpoint-every 0"  # after every unit of work
 RESUMED = [
-    Command("estimate", "vpl-estimate",
-            "{scene} {made}/v.vpl --photons 120k -o {out}/l.vpl --depfile {out}/l.d --stats {out}/l.json" + SAVE,
-            ("l.vpl", "l.d", "l.json")),
-    Command("shard", "vpl-estimate",
-            "{scene} {made}/v.vpl --photons 240k --shard 2/2 -o {out}/s.shard --depfile {out}/s.d --stats {out}/s.json"
-            + SAVE, ("s.shard", "s.d", "s.json")),
-    Command("render", "vpl-render",
-            "{scene} {made}/l.vpl --size 40x24 --spp 96 -o {out}/i.exr --png {out}/i.png --depfile {out}/i.d"
-            " --stats {out}/i.json" + SAVE,
-            ("i.exr", "i.png", "i.d", "i.json")),
+    Command(
+        "estimate",
+        "vpl-estimate",
+        "{scene} {made}/v.vpl --photons 120k -o {out}/l.vpl --depfile {out}/l.d --stats {out}/l.json"
+        + SAVE,
+        ("l.vpl", "l.d", "l.json"),
+    ),
+    Command(
+        "shard",
+        "vpl-estimate",
+        "{scene} {made}/v.vpl --photons 240k --shard 2/2 -o {out}/s.shard --depfile {out}/s.d --stats {out}/s.json"
+        + SAVE,
+        ("s.shard", "s.d", "s.json"),
+    ),
+    Command(
+        "render",
+        "vpl-render",
+        "{scene} {made}/l.vpl --size 40x24 --spp 96 -o {out}/i.exr --png {out}/i.png --depfile {out}/i.d"
+        " --stats {out}/i.json" + SAVE,
+        ("i.exr", "i.png", "i.d", "i.json"),
+    ),
 ]
 
 
 class Checkpoints(Workbench):
     def assert_done(self, command, why):
         self.assert_all(command, "new", why)
-        self.assertEqual(self.left_over(), [], f"{command.name}: {why}: neither checkpoint nor partial files stay")
+        self.assertEqual(
+            self.left_over(),
+            [],
+            f"{command.name}: {why}: neither checkpoint nor partial files stay",
+        )
 
     def strike_until_done(self, command, number, seconds):
         """Returns how often the command was started."""
         self.put_old(command)
         for run in range(1, 40):
             process = self.start(command, SLOW_DISK, preexec_fn=heed_interrupts)
-            moment = self.random.uniform(0.2, 0.6) * seconds * 1.1**run  # it may have grown slower since it was measured
+            moment = (
+                self.random.uniform(0.2, 0.6) * seconds * 1.1**run
+            )  # it may have grown slower since it was measured
             try:
                 process.wait(moment)
             except subprocess.TimeoutExpired:
@@ -59,11 +76,15 @@ class Checkpoints(Workbench):
             seconds = self.run_command(command, SLOW_DISK).seconds
             struck = 0
             for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
-                runs = [self.strike_until_done(command, number, seconds) for _ in range(moments(5) // 5)]
+                runs = [
+                    self.strike_until_done(command, number, seconds) for _ in range(moments(5) // 5)
+                ]
                 struck += sum(runs) - len(runs)
                 self.run_command(command)  # removes what the killed ones left
                 self.assert_done(command, f"struck by {number}")
-                self.say(f"{signal.Signals(number).name} {command.name}: {sum(runs)} runs for {len(runs)} results")
+                self.say(
+                    f"{signal.Signals(number).name} {command.name}: {sum(runs)} runs for {len(runs)} results"
+                )
             self.assertGreater(struck, 0)
 
     @needs_shim
@@ -71,7 +92,11 @@ class Checkpoints(Workbench):
         """Saving fails: exit code 4, outputs as they were, and what was saved before is still good."""
         for command in RESUMED:
             self.right(command)
-            for call, error in (("write", errno.ENOSPC), ("fsync", errno.EIO), ("rename", errno.EIO)):
+            for call, error in (
+                ("write", errno.ENOSPC),
+                ("fsync", errno.EIO),
+                ("rename", errno.EIO),
+            ):
                 tried, at = 0, 1
                 while True:
                     self.put_old(command)
@@ -105,7 +130,9 @@ class Checkpoints(Workbench):
     def test_checkpoints_that_cannot_be_written(self):
         for command in RESUMED:
             self.put_old(command)
-            elsewhere = replace(command, arguments=command.arguments.replace("{out}/work", "{out}/absent/work"))
+            elsewhere = replace(
+                command, arguments=command.arguments.replace("{out}/work", "{out}/absent/work")
+            )
             result = self.run_command(elsewhere)
             self.assertEqual(result.code, OUTPUT, f"{command.name}: {result}")
             self.assert_one_line(command, result, "absent/", "No such file or directory")

@@ -33,7 +33,9 @@ class Targets(Workbench):
             self.folder.mkdir()
             process = self.start(command)
             time.sleep(self.random.uniform(0, 0.5 * self.seconds[command.name]))
-            shutil.rmtree(self.folder, ignore_errors=True)  # the process may be writing there just now
+            shutil.rmtree(
+                self.folder, ignore_errors=True
+            )  # the process may be writing there just now
             result = self.finish(process, 0)
             self.assertIn(result.code, (OK, OUTPUT), f"{command.name}: {result}")
             if result.code == OUTPUT:
@@ -53,17 +55,33 @@ class Targets(Workbench):
         require("unshare")
         flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
         script = 'mount --bind "$0" "$0" && mount -o remount,bind,ro "$0" && exec "$@"'
-        probe = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, "true"], capture_output=True)
+        probe = subprocess.run(
+            ["unshare", *flags, "sh", "-c", script, self.folder, "true"], capture_output=True
+        )
         if probe.returncode != 0:
             self.skipTest(f"no read-only mount: {probe.stderr.decode().strip()}")
         for command in COMMANDS:
             for old in (False, True):
                 if old:
                     self.put_old(command)
-                result = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder,
-                                         *command.line(self.folder)], cwd=SOURCE, capture_output=True, text=True)
+                result = subprocess.run(
+                    [
+                        "unshare",
+                        *flags,
+                        "sh",
+                        "-c",
+                        script,
+                        self.folder,
+                        *command.line(self.folder),
+                    ],
+                    cwd=SOURCE,
+                    capture_output=True,
+                    text=True,
+                )
                 self.assertEqual(result.returncode, OUTPUT, f"{command.name}: {result}")
-                self.assertRegex(result.stderr, rf"\A{command.tool}: [^\n]*Read-only file system[^\n]*\n\Z")
+                self.assertRegex(
+                    result.stderr, rf"\A{command.tool}: [^\n]*Read-only file system[^\n]*\n\Z"
+                )
                 self.assert_all(command, "old" if old else "absent", "read-only file system")
 
     def test_read_only_folder_and_file(self):
@@ -73,7 +91,9 @@ class Targets(Workbench):
             for folder in (self.folder, self.made):
                 folder.chmod(0o755)
             try:
-                probe = subprocess.run([BIN / "vpl-place", "--version"], capture_output=True, **user)
+                probe = subprocess.run(
+                    [BIN / "vpl-place", "--version"], capture_output=True, **user
+                )
             except PermissionError:
                 self.skipTest(f"cannot run {BIN} as another user")
             if probe.returncode != 0:
@@ -98,18 +118,27 @@ class FullDisks(Workbench):
         require("unshare")
         flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
         # The listing afterwards is the proof; what the folder holds vanishes with the namespace.
-        script = ('mount -t tmpfs -o size=8k none "$0" && cd "$0" && printf "" > "$1" && shift && "$@"; code=$?; '
-                  'cd "$0" && echo "left: $(ls -A) $(cat *)"; exit $code')
-        probe = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, "x", "true"], capture_output=True)
+        script = (
+            'mount -t tmpfs -o size=8k none "$0" && cd "$0" && printf "" > "$1" && shift && "$@"; code=$?; '
+            'cd "$0" && echo "left: $(ls -A) $(cat *)"; exit $code'
+        )
+        probe = subprocess.run(
+            ["unshare", *flags, "sh", "-c", script, self.folder, "x", "true"], capture_output=True
+        )
         if probe.returncode != 0:
             self.skipTest(f"no tmpfs: {probe.stderr.decode().strip()}")
         for command in COMMANDS:
             product = command.outputs[0]
             line = command.line(self.folder)
-            result = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, product, *line, "--quiet"],
-                                    capture_output=True, text=True)
+            result = subprocess.run(
+                ["unshare", *flags, "sh", "-c", script, self.folder, product, *line, "--quiet"],
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual(result.returncode, OUTPUT, f"{command.name}: {result}")
-            self.assertRegex(result.stderr, rf"\A{command.tool}: [^\n]*No space left on device[^\n]*\n\Z")
+            self.assertRegex(
+                result.stderr, rf"\A{command.tool}: [^\n]*No space left on device[^\n]*\n\Z"
+            )
             self.assertEqual(result.stdout, f"left: {product} \n")
 
     def test_limit_on_file_size(self):
@@ -117,10 +146,14 @@ class FullDisks(Workbench):
         for command in COMMANDS:
             self.right(command)
             self.put_old(command)
-            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
+            limit = lambda: resource.setrlimit(
+                resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY)
+            )
             result = self.run_command(command, preexec_fn=limit)
             self.assertEqual(result.code, OUTPUT, f"{command.name}: {result}")
-            self.assert_one_line(command, result, "write failed: File too large; the old file, if any, is unchanged")
+            self.assert_one_line(
+                command, result, "write failed: File too large; the old file, if any, is unchanged"
+            )
             self.assert_all(command, "old", "limit on file size")
             self.assertEqual(self.left_over(), [])
 
@@ -129,7 +162,11 @@ class FullDisks(Workbench):
         """Each write (of four, in the quick run), fsync and rename fails in turn, and all later ones of its kind."""
         for command in COMMANDS:
             self.right(command)
-            for call, error in (("write", errno.ENOSPC), ("fsync", errno.EIO), ("rename", errno.EIO)):
+            for call, error in (
+                ("write", errno.ENOSPC),
+                ("fsync", errno.EIO),
+                ("rename", errno.EIO),
+            ):
                 tried = self.fail_each(command, call, error)
                 self.assertGreaterEqual(tried, len(command.outputs), f"{command.name}: {call}")
                 self.say(f"{command.name}: {tried} calls of {call} failed in turn")
@@ -151,7 +188,11 @@ class FullDisks(Workbench):
             self.assertEqual(result.code, OUTPUT, what)
             self.assert_one_line(command, result, os.strerror(error))
             self.assertLessEqual(set(states.values()), {"old", "new"}, what)
-            if call == "write" or (call, at) == ("rename", 1) or (call == "fsync" and at <= len(command.outputs)):
+            if (
+                call == "write"
+                or (call, at) == ("rename", 1)
+                or (call == "fsync" and at <= len(command.outputs))
+            ):
                 self.assertEqual(set(states.values()), {"old"}, what)
             if call == "rename":
                 self.assertEqual(states[command.outputs[0]], "old", what)

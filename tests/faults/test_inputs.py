@@ -55,7 +55,9 @@ class ChangingInputs(Workbench):
         shutil.copytree(self.made, inputs)
         for file in SCENE.parent.glob(SCENE.stem + ".*"):
             shutil.copy(file, inputs)
-        arguments = command.arguments.replace("{made}", str(inputs)).replace("{scene}", str(inputs / SCENE.name))
+        arguments = command.arguments.replace("{made}", str(inputs)).replace(
+            "{scene}", str(inputs / SCENE.name)
+        )
         return Command(command.name, command.tool, arguments, command.outputs), inputs
 
     def spoil(self, command, name, change, seconds):
@@ -66,7 +68,11 @@ class ChangingInputs(Workbench):
         time.sleep(self.random.uniform(0, seconds))
         change(inputs / name, self.random)
         result = self.finish(process, begin)
-        states = {output: self.state(command, output) for output in command.outputs if not output.endswith(".d")}
+        states = {
+            output: self.state(command, output)
+            for output in command.outputs
+            if not output.endswith(".d")
+        }
         what = f"{command.name}: {change.__name__} {name}: {result} {states}"
         self.assertIn(result.code, (OK, INPUT), what)
         if result.code == INPUT:
@@ -95,8 +101,12 @@ class ChangingInputs(Workbench):
     def spoil_often(self, command, name):
         self.right(command)
         seconds = self.run_command(command, SLOW_DISK).seconds
-        ends = [self.spoil(command, name, CHANGES[k % len(CHANGES)], seconds) for k in range(moments(6))]
-        self.say(f"{command.name} {name}: {len(ends)} changes: {ends.count(INPUT)} refused, {ends.count(OK)} unharmed")
+        ends = [
+            self.spoil(command, name, CHANGES[k % len(CHANGES)], seconds) for k in range(moments(6))
+        ]
+        self.say(
+            f"{command.name} {name}: {len(ends)} changes: {ends.count(INPUT)} refused, {ends.count(OK)} unharmed"
+        )
 
     def test_read_errors(self):
         """Each read of an input fails in turn, as does every later one."""

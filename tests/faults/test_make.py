@@ -12,8 +12,18 @@ import unittest
 from test_signals import heed_interrupts
 from workbench import BIN, OK, SCENE, SOURCE, Workbench, require
 
-SETTINGS = ["-f", "pipelines/Makefile", f"SCENE=scene/{SCENE.name}", "BIN=bin", "CANDIDATES=2k", "VPLS=200", "PHOTONS=50k",
-            "SPP=128", "RENDER_FLAGS=--size 64x48 --checkpoint-every 0", "RUN_FLAGS=--quiet --threads 2"]
+SETTINGS = [
+    "-f",
+    "pipelines/Makefile",
+    f"SCENE=scene/{SCENE.name}",
+    "BIN=bin",
+    "CANDIDATES=2k",
+    "VPLS=200",
+    "PHOTONS=50k",
+    "SPP=128",
+    "RENDER_FLAGS=--size 64x48 --checkpoint-every 0",
+    "RUN_FLAGS=--quiet --threads 2",
+]
 
 
 def terminate_group(pid):
@@ -29,13 +39,23 @@ class UnderMake(Workbench):
         super().setUp()
         require("make")
         # The project's path may hold a space, which Make cannot handle.
-        for name, target in (("pipelines", SOURCE / "pipelines"), ("scene", SCENE.parent), ("bin", BIN)):
+        for name, target in (
+            ("pipelines", SOURCE / "pipelines"),
+            ("scene", SCENE.parent),
+            ("bin", BIN),
+        ):
             (self.folder / name).symlink_to(target)
 
     def start_make(self, out, *goals):
-        return subprocess.Popen(["make", *SETTINGS, f"OUT={out}", *(f"{out}/{goal}" for goal in goals)], cwd=self.folder,
-                                start_new_session=True, preexec_fn=heed_interrupts, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return subprocess.Popen(
+            ["make", *SETTINGS, f"OUT={out}", *(f"{out}/{goal}" for goal in goals)],
+            cwd=self.folder,
+            start_new_session=True,
+            preexec_fn=heed_interrupts,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
 
     def make(self, out, *goals):
         result = self.finish(self.start_make(out, *goals), time.monotonic())

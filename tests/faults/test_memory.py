@@ -17,10 +17,14 @@ class LimitedMemory(Workbench):
         return lambda: resource.setrlimit(resource.RLIMIT_AS, (int(mib * MIB), int(mib * MIB)))
 
     def limited(self, command, mib, threads):
-        return self.run_command(command, more=["--threads", str(threads)], preexec_fn=self.limit(mib))
+        return self.run_command(
+            command, more=["--threads", str(threads)], preexec_fn=self.limit(mib)
+        )
 
     def starts(self, command, mib):
-        done = subprocess.run([BIN / command.tool, "--version"], capture_output=True, preexec_fn=self.limit(mib))
+        done = subprocess.run(
+            [BIN / command.tool, "--version"], capture_output=True, preexec_fn=self.limit(mib)
+        )
         return done.returncode == OK
 
     def between(self, low, high, enough):
@@ -35,15 +39,19 @@ class LimitedMemory(Workbench):
             with self.subTest(command.name):
                 self.right(command)
                 least = self.between(1, 4096, lambda mib: self.starts(command, mib))
-                most = self.between(least, 8192, lambda mib: self.limited(command, mib, 2).code == OK)
+                most = self.between(
+                    least, 8192, lambda mib: self.limited(command, mib, 2).code == OK
+                )
                 steps = 60 if FULL else 6
                 ends = []
                 for step in range(steps):
                     mib = least + (most - least) * (step + self.random.random()) / steps
                     for threads in (1, 2):
                         ends.append(self.at_limit(command, mib, threads))
-                self.say(f"{command.name}: {least} to {most} MiB: {ends.count(MEMORY)} runs out of memory, "
-                         f"{ends.count(OK)} done")
+                self.say(
+                    f"{command.name}: {least} to {most} MiB: {ends.count(MEMORY)} runs out of memory, "
+                    f"{ends.count(OK)} done"
+                )
 
     def at_limit(self, command, mib, threads):
         self.put_old(command)

@@ -39,7 +39,9 @@ class Threads(Workbench):
             self.right(command)
             for number in ("0", "1", "3", "500"):
                 result = self.run_command(command, more=["--threads", number])
-                self.assertEqual((result.code, result.err), (OK, ""), f"{command.name} --threads {number}")
+                self.assertEqual(
+                    (result.code, result.err), (OK, ""), f"{command.name} --threads {number}"
+                )
                 self.assert_all(command, "new", f"--threads {number}")
 
     def test_numbers_that_are_none(self):

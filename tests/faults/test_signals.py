@@ -56,11 +56,15 @@ class AtRandomMoments(Workbench):
                 ends = [self.strike(command, number, faults, seconds) for _ in range(moments(few))]
                 left = len(self.left_over())
                 self.assertEqual(self.run_command(command).code, OK)
-                self.assertEqual(self.left_over(), [], "the next run removes what a killed one left")
+                self.assertEqual(
+                    self.left_over(), [], "the next run removes what a killed one left"
+                )
                 self.assert_all(command, "new", "after the next run")
                 counts = ", ".join(f"{ends.count(end)} {end}" for end in sorted(set(ends)))
-                self.say(f"{signal.Signals(number).name}{' slow disk' if faults else ''} {command.name}: "
-                         f"{len(ends)} moments: {counts}; {left} partial files left, then none")
+                self.say(
+                    f"{signal.Signals(number).name}{' slow disk' if faults else ''} {command.name}: "
+                    f"{len(ends)} moments: {counts}; {left} partial files left, then none"
+                )
 
     def test_killed(self):
         self.strike_often(signal.SIGKILL, None, 3)

@@ -1,7 +1,7 @@
 """What the fault tests share: every command that writes files, and what it may leave behind.
 
-    BNVPL_BIN, BNVPL_SOURCE, BNVPL_SHIM   set by ctest
-    BNVPL_FAULTS=full                     50 random moments of each command instead of a few
+BNVPL_BIN, BNVPL_SOURCE, BNVPL_SHIM   set by ctest
+BNVPL_FAULTS=full                     50 random moments of each command instead of a few
 """
 
 import atexit
@@ -26,7 +26,9 @@ SCENE = SOURCE / "scenes/test/one-bounce.toml"
 OK, INTERNAL, USAGE, INPUT, OUTPUT, DIFFERENT, MEMORY = range(7)  # core/errors.h
 PARTIAL = re.compile(r"\.partial-\d+-\d+$")
 
-needs_shim = unittest.skipUnless(SHIM, "a build with sanitizers takes no LD_PRELOAD and no limit on memory")
+needs_shim = unittest.skipUnless(
+    SHIM, "a build with sanitizers takes no LD_PRELOAD and no limit on memory"
+)
 
 
 def moments(few: int) -> int:
@@ -36,6 +38,7 @@ def moments(few: int) -> int:
 @dataclass(frozen=True)
 class Command:
     """A tool with its arguments; the outputs stand in the test's folder, the product first."""
+
     name: str
     tool: str
     arguments: str
@@ -50,30 +53,60 @@ class Command:
 
 # A tenth of a second each on an idle core; with --quiet, so that stderr holds what went wrong.
 COMMANDS = [
-    Command("place", "vpl-place",
-            "{scene} -n 10k -o {out}/c.vpl --depfile {out}/c.d --stats {out}/c.json", ("c.vpl", "c.d", "c.json")),
-    Command("eliminate", "vpl-eliminate",
-            "{made}/c.vpl -n 1k -o {out}/v.vpl --depfile {out}/v.d --stats {out}/v.json", ("v.vpl", "v.d", "v.json")),
-    Command("estimate", "vpl-estimate",
-            "{scene} {made}/v.vpl --photons 50k -o {out}/l.vpl --depfile {out}/l.d --stats {out}/l.json",
-            ("l.vpl", "l.d", "l.json")),
-    Command("render", "vpl-render",
-            "{scene} {made}/l.vpl --spp 1 -o {out}/i.exr --png {out}/i.png --depfile {out}/i.d --stats {out}/i.json",
-            ("i.exr", "i.png", "i.d", "i.json")),
-    Command("path", "vpl-render",
-            "{scene} --integrator path --spp 8 -o {out}/p.exr --png {out}/p.png --depfile {out}/p.d",
-            ("p.exr", "p.png", "p.d")),
-    Command("shard", "vpl-estimate",
-            "{scene} {made}/v.vpl --photons 50k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d --stats {out}/s.json",
-            ("s.shard", "s.d", "s.json")),
-    Command("merge", "vpl-merge",
-            "{made}/2.shard {made}/1.shard -o {out}/m.exr --png {out}/m.png --depfile {out}/m.d --stats {out}/m.json",
-            ("m.exr", "m.png", "m.d", "m.json")),
-    Command("export", "vpl-inspect",
-            "export {made}/c.vpl -o {out}/c.csv --stats {out}/e.json", ("c.csv", "e.json")),
-    Command("plot", "vpl-inspect",
-            "plot {made}/l.vpl --scene {scene} --size 160x120 -o {out}/d.png --depfile {out}/d.d --stats {out}/d.json",
-            ("d.png", "d.d", "d.json")),
+    Command(
+        "place",
+        "vpl-place",
+        "{scene} -n 10k -o {out}/c.vpl --depfile {out}/c.d --stats {out}/c.json",
+        ("c.vpl", "c.d", "c.json"),
+    ),
+    Command(
+        "eliminate",
+        "vpl-eliminate",
+        "{made}/c.vpl -n 1k -o {out}/v.vpl --depfile {out}/v.d --stats {out}/v.json",
+        ("v.vpl", "v.d", "v.json"),
+    ),
+    Command(
+        "estimate",
+        "vpl-estimate",
+        "{scene} {made}/v.vpl --photons 50k -o {out}/l.vpl --depfile {out}/l.d --stats {out}/l.json",
+        ("l.vpl", "l.d", "l.json"),
+    ),
+    Command(
+        "render",
+        "vpl-render",
+        "{scene} {made}/l.vpl --spp 1 -o {out}/i.exr --png {out}/i.png --depfile {out}/i.d --stats {out}/i.json",
+        ("i.exr", "i.png", "i.d", "i.json"),
+    ),
+    Command(
+        "path",
+        "vpl-render",
+        "{scene} --integrator path --spp 8 -o {out}/p.exr --png {out}/p.png --depfile {out}/p.d",
+        ("p.exr", "p.png", "p.d"),
+    ),
+    Command(
+        "shard",
+        "vpl-estimate",
+        "{scene} {made}/v.vpl --photons 50k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d --stats {out}/s.json",
+        ("s.shard", "s.d", "s.json"),
+    ),
+    Command(
+        "merge",
+        "vpl-merge",
+        "{made}/2.shard {made}/1.shard -o {out}/m.exr --png {out}/m.png --depfile {out}/m.d --stats {out}/m.json",
+        ("m.exr", "m.png", "m.d", "m.json"),
+    ),
+    Command(
+        "export",
+        "vpl-inspect",
+        "export {made}/c.vpl -o {out}/c.csv --stats {out}/e.json",
+        ("c.csv", "e.json"),
+    ),
+    Command(
+        "plot",
+        "vpl-inspect",
+        "plot {made}/l.vpl --scene {scene} --size 160x120 -o {out}/d.png --depfile {out}/d.d --stats {out}/d.json",
+        ("d.png", "d.d", "d.json"),
+    ),
 ]
 
 
@@ -87,6 +120,7 @@ class Outcome:
 
 class Workbench(unittest.TestCase):
     """Makes the inputs and each command's right outputs once; every test has an empty folder."""
+
     made: Path = None
     new: dict[str, bytes] = {}  # of every output but the summaries, whose times differ
     seconds: dict[str, float] = {}  # that a command takes by itself
@@ -98,14 +132,27 @@ class Workbench(unittest.TestCase):
         holder = tempfile.TemporaryDirectory(prefix="bnvpl-faults-")
         atexit.register(holder.cleanup)
         Workbench.made = Path(holder.name)
-        run = lambda tool, words: subprocess.run([BIN / tool, *map(str, words), "--quiet"], check=True, cwd=SOURCE)
+        run = lambda tool, words: subprocess.run(
+            [BIN / tool, *map(str, words), "--quiet"], check=True, cwd=SOURCE
+        )
         c, v, l = (Workbench.made / name for name in ("c.vpl", "v.vpl", "l.vpl"))
         run("vpl-place", [SCENE, "-o", c, "-n", "10k"])
         run("vpl-eliminate", [c, "-o", v, "-n", "500"])
         run("vpl-estimate", [SCENE, v, "-o", l, "--photons", "20k"])
         for part in ("1", "2"):
-            run("vpl-render", [SCENE, l, "--spp", "1", "--shard", f"{part}/2",
-                               "-o", Workbench.made / f"{part}.shard"])
+            run(
+                "vpl-render",
+                [
+                    SCENE,
+                    l,
+                    "--spp",
+                    "1",
+                    "--shard",
+                    f"{part}/2",
+                    "-o",
+                    Workbench.made / f"{part}.shard",
+                ],
+            )
 
     def setUp(self):
         holder = tempfile.TemporaryDirectory(prefix="bnvpl-faults-")
@@ -115,24 +162,41 @@ class Workbench(unittest.TestCase):
 
     def old(self, name: str) -> bytes:
         """An older file of the kind, which alone an output replaces."""
-        begin = {".vpl": b"\x89VPL\r\n\x1a\n", ".exr": b"\x76\x2f\x31\x01", ".png": b"\x89PNG\r\n\x1a\n",
-                 ".shard": b"\x89VPLSHD\n", ".csv": b"old,file\n", ".json": b'{"tool": "vpl-old"}', ".d": b"old: \\\n "}
+        begin = {
+            ".vpl": b"\x89VPL\r\n\x1a\n",
+            ".exr": b"\x76\x2f\x31\x01",
+            ".png": b"\x89PNG\r\n\x1a\n",
+            ".shard": b"\x89VPLSHD\n",
+            ".csv": b"old,file\n",
+            ".json": b'{"tool": "vpl-old"}',
+            ".d": b"old: \\\n ",
+        }
         return begin[Path(name).suffix] + f"old {name}\n".encode()
 
     def put_old(self, command: Command) -> None:
         for name in command.outputs:
             (self.folder / name).write_bytes(self.old(name))
 
-    def start(self, command: Command, faults: dict | None = None, more=(), **settings) -> subprocess.Popen:
+    def start(
+        self, command: Command, faults: dict | None = None, more=(), **settings
+    ) -> subprocess.Popen:
         environment = dict(os.environ)
         if faults:
             # By its name, for a path in LD_PRELOAD ends at a space.
             folder, name = os.path.split(SHIM)
-            environment.update({f"FAULT_{key.upper()}": str(value) for key, value in faults.items()},
-                               LD_PRELOAD=name, LD_LIBRARY_PATH=folder)
-        settings = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | settings
-        return subprocess.Popen([*command.line(self.folder), "--quiet", *more], cwd=SOURCE, env=environment,
-                                **settings)
+            environment.update(
+                {f"FAULT_{key.upper()}": str(value) for key, value in faults.items()},
+                LD_PRELOAD=name,
+                LD_LIBRARY_PATH=folder,
+            )
+        settings = {
+            "stdin": subprocess.DEVNULL,
+            "stdout": subprocess.PIPE,
+            "stderr": subprocess.PIPE,
+        } | settings
+        return subprocess.Popen(
+            [*command.line(self.folder), "--quiet", *more], cwd=SOURCE, env=environment, **settings
+        )
 
     def finish(self, process: subprocess.Popen, begin: float) -> Outcome:
         try:
@@ -140,9 +204,16 @@ class Workbench(unittest.TestCase):
         except subprocess.TimeoutExpired:
             process.kill()
             self.fail(f"{process.args} hangs")
-        return Outcome(process.returncode, (out or b"").decode(), (err or b"").decode(), time.monotonic() - begin)
+        return Outcome(
+            process.returncode,
+            (out or b"").decode(),
+            (err or b"").decode(),
+            time.monotonic() - begin,
+        )
 
-    def run_command(self, command: Command, faults: dict | None = None, more=(), **settings) -> Outcome:
+    def run_command(
+        self, command: Command, faults: dict | None = None, more=(), **settings
+    ) -> Outcome:
         begin = time.monotonic()
         return self.finish(self.start(command, faults, more, **settings), begin)
 
@@ -173,7 +244,11 @@ class Workbench(unittest.TestCase):
                 return "new" if json.loads(text)["tool"] == command.tool else "broken"
             except (ValueError, KeyError):
                 return "broken"
-        return "new" if text.replace(str(self.folder).encode(), b"FOLDER") == self.new[name] else "broken"
+        return (
+            "new"
+            if text.replace(str(self.folder).encode(), b"FOLDER") == self.new[name]
+            else "broken"
+        )
 
     def states(self, command: Command) -> dict[str, str]:
         return {name: self.state(command, name) for name in command.outputs}
@@ -184,7 +259,9 @@ class Workbench(unittest.TestCase):
         return sorted({path.name for path in self.folder.iterdir()} - outputs)
 
     def assert_all(self, command: Command, state: str, why: str) -> None:
-        self.assertEqual(self.states(command), dict.fromkeys(command.outputs, state), f"{command.name}: {why}")
+        self.assertEqual(
+            self.states(command), dict.fromkeys(command.outputs, state), f"{command.name}: {why}"
+        )
 
     def assert_one_line(self, command: Command, result: Outcome, *parts: str) -> None:
         what = f"{command.name}: {result}"

@@ -24,8 +24,13 @@ SCENE = "scenes/cornell/scene.toml"
 
 
 def run(tool, *arguments):
-    done = subprocess.run([str(BIN / tool), *map(str, arguments), "--quiet"], cwd=ROOT, check=True,
-                          stdout=subprocess.PIPE, text=True)
+    done = subprocess.run(
+        [str(BIN / tool), *map(str, arguments), "--quiet"],
+        cwd=ROOT,
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     return done.stdout
 
 
@@ -49,7 +54,10 @@ def record_block(record):
 
 
 def inputs_block(records):
-    lines = "".join("| `{}` | {} |\n".format(r["tool"], ", ".join(f"`{name}`" for name in r["inputs"])) for r in records)
+    lines = "".join(
+        "| `{}` | {} |\n".format(r["tool"], ", ".join(f"`{name}`" for name in r["inputs"]))
+        for r in records
+    )
     return "| Tool | Inputs |\n|---|---|\n" + lines
 
 
@@ -85,11 +93,15 @@ class Readme(unittest.TestCase):
         info = json.loads(run("vpl-inspect", "info", self.lit, "--json"))
         self.assertEqual(vpl["position"].shape, (50, 3))
         energy = info["energy_W"]
-        np.testing.assert_allclose(vpl["flux"].sum(axis=0, dtype=float), [energy[c] for c in "RGB"], rtol=1e-12)
+        np.testing.assert_allclose(
+            vpl["flux"].sum(axis=0, dtype=float), [energy[c] for c in "RGB"], rtol=1e-12
+        )
 
     def test_the_numpy_example_reads_columns_of_strategies(self):
         vpl = self.columns(ROOT / "tests/formats/golden/strategies.vpl")
-        self.assertEqual(vpl["rich.lobes"].tolist(), [[0, 0.25, 0.5, 0.75], [-1, -0.75, -0.5, -0.25]])
+        self.assertEqual(
+            vpl["rich.lobes"].tolist(), [[0, 0.25, 0.5, 0.75], [-1, -0.75, -0.5, -0.25]]
+        )
         self.assertEqual(vpl["light-slice.cluster"].dtype, "<u4")
         self.assertEqual(vpl["rich.seeds"].tolist(), [[0, 1], [1 << 33, (1 << 33) + 1]])
 
@@ -99,8 +111,12 @@ def write():
         candidates, _, image = make(Path(folder))
         text = README.read_text()
         record, inputs = record_block(history(candidates)[0]), inputs_block(history(image))
-        text = re.sub(r"```json\n.*?```\n|@RECORD@\n", lambda _: record, text, count=1, flags=re.DOTALL)
-        text = re.sub(r"(\| Tool \| Inputs \|\n(\|.*\n)*)|@INPUTS@\n", lambda _: inputs, text, count=1)
+        text = re.sub(
+            r"```json\n.*?```\n|@RECORD@\n", lambda _: record, text, count=1, flags=re.DOTALL
+        )
+        text = re.sub(
+            r"(\| Tool \| Inputs \|\n(\|.*\n)*)|@INPUTS@\n", lambda _: inputs, text, count=1
+        )
         README.write_text(text)
 
 

@@ -13,9 +13,13 @@ import sys
 import numpy as np
 
 PPD = 3840 * np.pi / 180
-XYZ = np.array([[10135552 / 24577794, 8788810 / 24577794, 4435075 / 24577794],
-                [2613072 / 12288897, 8788810 / 12288897, 887015 / 12288897],
-                [1425312 / 73733382, 8788810 / 73733382, 70074185 / 73733382]])
+XYZ = np.array(
+    [
+        [10135552 / 24577794, 8788810 / 24577794, 4435075 / 24577794],
+        [2613072 / 12288897, 8788810 / 12288897, 887015 / 12288897],
+        [1425312 / 73733382, 8788810 / 73733382, 70074185 / 73733382],
+    ]
+)
 WHITE = XYZ @ np.ones(3)
 
 
@@ -43,8 +47,14 @@ def hunt_lab(rgb: np.ndarray) -> np.ndarray:
     t = rgb @ XYZ.T / WHITE
     f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t / (3 * (6 / 29) ** 2) + 4 / 29)
     light = 116 * f[..., 1] - 16
-    return np.stack([light, light / 100 * 500 * (f[..., 0] - f[..., 1]),
-                     light / 100 * 200 * (f[..., 1] - f[..., 2])], -1)
+    return np.stack(
+        [
+            light,
+            light / 100 * 500 * (f[..., 0] - f[..., 1]),
+            light / 100 * 200 * (f[..., 1] - f[..., 2]),
+        ],
+        -1,
+    )
 
 
 def hyab(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -55,15 +65,19 @@ def convolved(plane: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     r = kernel.shape[0] // 2
     padded = np.pad(plane, r, mode="edge")
     h, w = plane.shape
-    return sum(kernel[j, i] * padded[j:j + h, i:i + w]
-               for j in range(2 * r + 1) for i in range(2 * r + 1))
+    return sum(
+        kernel[j, i] * padded[j : j + h, i : i + w]
+        for j in range(2 * r + 1)
+        for i in range(2 * r + 1)
+    )
 
 
 def sensitivity(terms: list[tuple[float, float]]) -> np.ndarray:
-    r = int(np.ceil(3 * np.sqrt(0.04 / (2 * np.pi ** 2)) * PPD))
+    r = int(np.ceil(3 * np.sqrt(0.04 / (2 * np.pi**2)) * PPD))
     x, y = np.meshgrid(np.arange(-r, r + 1) / PPD, np.arange(-r, r + 1) / PPD)
-    kernel = sum(a * np.sqrt(np.pi / b) * np.exp(-np.pi ** 2 * (x * x + y * y) / b)
-                 for a, b in terms)
+    kernel = sum(
+        a * np.sqrt(np.pi / b) * np.exp(-(np.pi**2) * (x * x + y * y) / b) for a, b in terms
+    )
     return kernel / kernel.sum()
 
 
@@ -71,9 +85,10 @@ def feature_kernel(point: bool) -> np.ndarray:
     sd = 0.5 * 0.082 * PPD
     r = int(np.ceil(3 * sd))
     x, y = np.meshgrid(np.arange(-r, r + 1), np.arange(-r, r + 1))
-    kernel = (x * x / sd ** 2 - 1 if point else -x) * np.exp(-(x * x + y * y) / (2 * sd * sd))
-    return np.where(kernel > 0, kernel / kernel[kernel > 0].sum(),
-                    -kernel / kernel[kernel < 0].sum())
+    kernel = (x * x / sd**2 - 1 if point else -x) * np.exp(-(x * x + y * y) / (2 * sd * sd))
+    return np.where(
+        kernel > 0, kernel / kernel[kernel > 0].sum(), -kernel / kernel[kernel < 0].sum()
+    )
 
 
 def strength(grey: np.ndarray, kernel: np.ndarray) -> np.ndarray:
@@ -82,8 +97,11 @@ def strength(grey: np.ndarray, kernel: np.ndarray) -> np.ndarray:
 
 def ldr_flip(reference: np.ndarray, test: np.ndarray) -> np.ndarray:
     """Both in sRGB, 0..1."""
-    filters = [sensitivity([(1, 0.0047)]), sensitivity([(1, 0.0053)]),
-               sensitivity([(34.1, 0.04), (13.5, 0.025)])]
+    filters = [
+        sensitivity([(1, 0.0047)]),
+        sensitivity([(1, 0.0053)]),
+        sensitivity([(34.1, 0.04), (13.5, 0.025)]),
+    ]
     seen, features = [], []
     for image in (reference, test):
         colour = opponent(decode(image))
@@ -91,10 +109,11 @@ def ldr_flip(reference: np.ndarray, test: np.ndarray) -> np.ndarray:
         seen.append(hunt_lab(rgb_of(np.stack(parts, -1))))
         grey = (colour[..., 0] + 16) / 116
         features.append([strength(grey, feature_kernel(p)) for p in (False, True)])
-    largest = hyab(hunt_lab(np.array([0., 1, 0])), hunt_lab(np.array([0., 0, 1]))) ** 0.7
+    largest = hyab(hunt_lab(np.array([0.0, 1, 0])), hunt_lab(np.array([0.0, 0, 1]))) ** 0.7
     power, knee = hyab(*seen) ** 0.7, 0.4 * largest
-    colour_error = np.where(power < knee, 0.95 * power / knee,
-                            0.95 + 0.05 * (power - knee) / (largest - knee))
+    colour_error = np.where(
+        power < knee, 0.95 * power / knee, 0.95 + 0.05 * (power - knee) / (largest - knee)
+    )
     steps = [np.abs(features[0][p] - features[1][p]) for p in range(2)]
     return colour_error ** (1 - np.sqrt(np.maximum(*steps) / np.sqrt(2)))
 
@@ -105,8 +124,10 @@ def aces(x: np.ndarray) -> np.ndarray:
 
 
 def hdr_flip(reference: np.ndarray, test: np.ndarray, start: float, stop: float) -> np.ndarray:
-    maps = [ldr_flip(encode(aces(reference * 2 ** ev)), encode(aces(test * 2 ** ev)))
-            for ev in np.linspace(start, stop, max(2, int(np.ceil(stop - start))))]
+    maps = [
+        ldr_flip(encode(aces(reference * 2**ev)), encode(aces(test * 2**ev)))
+        for ev in np.linspace(start, stop, max(2, int(np.ceil(stop - start))))
+    ]
     return np.max(maps, 0)
 
 
@@ -118,6 +139,7 @@ def pattern(crossed: bool) -> np.ndarray:
 
 def load(name: str) -> np.ndarray:
     import OpenImageIO
+
     image = OpenImageIO.ImageInput.open(name)
     names = list(image.spec().channelnames)
     pixels = np.asarray(image.read_image(), dtype=np.float64)
@@ -133,7 +155,7 @@ def main() -> None:
         start, stop = -4.0, 10.0
     else:
         test, reference, ev, start, stop = pattern(True), pattern(False), 0.0, -2.0, 3.0
-    screen = [encode(np.clip(image * 2 ** ev, 0, 1)) for image in (reference, test)]
+    screen = [encode(np.clip(image * 2**ev, 0, 1)) for image in (reference, test)]
     ldr, hdr = ldr_flip(*screen), hdr_flip(reference, test, start, stop)
     print(f"LDR-FLIP at {ev:+g} EV: mean {ldr.mean():.7f}, pixels {ldr[5, 7]:.7f} {ldr[0, 39]:.7f}")
     print(f"HDR-FLIP {start:g}:{stop:g}: mean {hdr.mean():.7f}, pixel {hdr[5, 7]:.7f}")

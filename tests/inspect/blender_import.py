@@ -21,10 +21,15 @@ colour_of = {}
 if colours is not None:
     for i, item in enumerate(colours.data):
         colour_of[corners[i] if colours.domain == "CORNER" else i] = list(item.color_srgb)[:3]
-print("IMPORTED " + json.dumps({
-    "version": bpy.app.version_string,
-    "positions": [list(v.co) for v in mesh.vertices],
-    "normals": [list(v.normal) for v in mesh.vertices],
-    "faces": len(mesh.polygons),
-    "colours": [colour_of.get(i) for i in range(len(mesh.vertices))],
-}))
+print(
+    "IMPORTED "
+    + json.dumps(
+        {
+            "version": bpy.app.version_string,
+            "positions": [list(v.co) for v in mesh.vertices],
+            "normals": [list(v.normal) for v in mesh.vertices],
+            "faces": len(mesh.polygons),
+            "colours": [colour_of.get(i) for i in range(len(mesh.vertices))],
+        }
+    )
+)

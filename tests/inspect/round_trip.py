@@ -44,7 +44,9 @@ def blocks(images: np.ndarray, side: int) -> np.ndarray:
     n, height, width, channels = images.shape
     rows, columns = max(1, height // side), max(1, width // side)
     cut = images[:, : rows * min(side, height), : columns * min(side, width)]
-    return cut.reshape(n, rows, cut.shape[1] // rows, columns, cut.shape[2] // columns, channels).mean(axis=(2, 4))
+    return cut.reshape(
+        n, rows, cut.shape[1] // rows, columns, cut.shape[2] // columns, channels
+    ).mean(axis=(2, 4))
 
 
 def student(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -67,7 +69,11 @@ def difference(a: np.ndarray, b: np.ndarray) -> str:
         side *= 2
     t = np.abs(np.concatenate(ts))
     freedom = len(a) - 1  # Wallace's normal deviate for Student's t
-    z = (8 * freedom + 1) / (8 * freedom + 3) * math.sqrt(freedom * math.log1p(t.max() ** 2 / freedom))
+    z = (
+        (8 * freedom + 1)
+        / (8 * freedom + 3)
+        * math.sqrt(freedom * math.log1p(t.max() ** 2 / freedom))
+    )
     p = -math.expm1(t.size * math.log1p(-min(math.erfc(z / math.sqrt(2)), 1 - 1e-16)))  # Sidak
     return f"t = {t.max():.3g} among {t.size}, p = {p:.2g}" if p < SIGNIFICANCE else ""
 
@@ -77,8 +83,22 @@ def compare(options, scene: Path, copy: Path, first: list, second: list) -> str:
     for file, view in ((scene, first), (copy, second)):
         for seed in range(1, options.seeds + 1):
             out = copy.parent.parent / "image.exr"
-            problem = run(options.bin / "vpl-render", file, *view, "-o", out, "--integrator", "path", "--spp",
-                          options.spp, "--size", options.size, "--seed", seed, "--quiet")
+            problem = run(
+                options.bin / "vpl-render",
+                file,
+                *view,
+                "-o",
+                out,
+                "--integrator",
+                "path",
+                "--spp",
+                options.spp,
+                "--size",
+                options.size,
+                "--seed",
+                seed,
+                "--quiet",
+            )
             if problem:
                 return problem
             images.append(pixels(out))
@@ -89,8 +109,11 @@ def check(options, scene: Path) -> str | None:
     """Empty: the same; None: passed over."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "copy"
-        described = subprocess.run([str(options.bin / "vpl-inspect"), "scene", "--json", str(scene)],
-                                   capture_output=True, text=True)
+        described = subprocess.run(
+            [str(options.bin / "vpl-inspect"), "scene", "--json", str(scene)],
+            capture_output=True,
+            text=True,
+        )
         if described.returncode:
             print(f"passed over: {(described.stderr.strip().splitlines() or ['?'])[-1]}")
             return None
@@ -108,7 +131,9 @@ def check(options, scene: Path) -> str | None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("bin", type=Path, help="folder of the tools")
     parser.add_argument("scenes", type=Path, nargs="+")
     parser.add_argument("--size", default="16x12", help="pixels")

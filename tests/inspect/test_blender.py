@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What `vpl-inspect export` writes comes into Blender with positions, normals and colours.
 
-  test_blender.py BIN       # folder of the executables; skipped where Blender is missing
+test_blender.py BIN       # folder of the executables; skipped where Blender is missing
 """
 
 import csv
@@ -20,14 +20,25 @@ BIN = Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else ROOT / "build/releas
 
 
 def run(*command):
-    return subprocess.run([str(part) for part in command], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+    return subprocess.run(
+        [str(part) for part in command], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True
+    ).stdout
 
 
 def blender_import(file):
-    out = run("blender", "--background", "--factory-startup", "--python-exit-code", "1",
-              "--python", Path(__file__).with_name("blender_import.py"), "--", file)
+    out = run(
+        "blender",
+        "--background",
+        "--factory-startup",
+        "--python-exit-code",
+        "1",
+        "--python",
+        Path(__file__).with_name("blender_import.py"),
+        "--",
+        file,
+    )
     line = next(line for line in out.splitlines() if line.startswith("IMPORTED "))
-    return json.loads(line[len("IMPORTED "):])
+    return json.loads(line[len("IMPORTED ") :])
 
 
 def encode_srgb(linear):
@@ -49,10 +60,19 @@ class Blender(unittest.TestCase):
 
     def columns(self, stage):
         for kind in ("ply", "csv"):
-            run(BIN / "vpl-inspect", "export", self.folder / f"{stage}.vpl", "-o", self.folder / f"{stage}.{kind}", "--quiet")
+            run(
+                BIN / "vpl-inspect",
+                "export",
+                self.folder / f"{stage}.vpl",
+                "-o",
+                self.folder / f"{stage}.{kind}",
+                "--quiet",
+            )
         with open(self.folder / f"{stage}.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        return lambda name, parts: np.array([[float(row[f"{name}_{p}"]) for p in parts] for row in rows])
+        return lambda name, parts: np.array(
+            [[float(row[f"{name}_{p}"]) for p in parts] for row in rows]
+        )
 
     def check(self, stage, place, normal, colour):
         columns = self.columns(stage)
@@ -73,6 +93,7 @@ class Blender(unittest.TestCase):
             strongest = np.sort(flux.max(axis=1))
             strongest = strongest[strongest > 0]
             return flux / strongest[round(0.99 * (len(strongest) - 1))]
+
         self.check("l", "emit_position_0", "emit_normal_0", colour)
 
     def test_candidates_show_their_albedo(self):

@@ -32,16 +32,36 @@ class Stage:
 STAGES = [
     Stage("place", "vpl-place", [SCENE, "-n", "800k"], "candidates.vpl"),
     Stage("estimate", "vpl-estimate", [SCENE, "vpls.vpl", "--photons", "8M"], "lit.vpl"),
-    Stage("estimate by paths", "vpl-estimate", [SCENE, "vpls.vpl", "--method", "paths", "--points", "16"], "paths.vpl"),
+    Stage(
+        "estimate by paths",
+        "vpl-estimate",
+        [SCENE, "vpls.vpl", "--method", "paths", "--points", "16"],
+        "paths.vpl",
+    ),
     Stage("render", "vpl-render", [SCENE, "lit.vpl", *SMALL_FILM, "--spp", "8"], "image.exr"),
-    Stage("render path", "vpl-render", [SCENE, "--integrator", "path", *SMALL_FILM, "--spp", "16"], "path.exr"),
-    Stage("render light", "vpl-render", [SCENE, "--integrator", "light", *SMALL_FILM, "--spp", "64"], "light.exr"),
+    Stage(
+        "render path",
+        "vpl-render",
+        [SCENE, "--integrator", "path", *SMALL_FILM, "--spp", "16"],
+        "path.exr",
+    ),
+    Stage(
+        "render light",
+        "vpl-render",
+        [SCENE, "--integrator", "light", *SMALL_FILM, "--spp", "64"],
+        "light.exr",
+    ),
 ]
 
 
 class Runner:
     def __init__(self, bin_folder, folder, threads, kills, seed):
-        self.bin, self.folder, self.threads, self.kills = Path(bin_folder).resolve(), Path(folder), threads, kills
+        self.bin, self.folder, self.threads, self.kills = (
+            Path(bin_folder).resolve(),
+            Path(folder),
+            threads,
+            kills,
+        )
         self.random = random.Random(seed)
         self.killed = 0
 
@@ -83,7 +103,9 @@ class Runner:
             if part in struck:
                 saved = ["--checkpoint", "work", "--checkpoint-every", "0"]
                 each = (time.monotonic() - began) / (part - 1) if part > 1 else 0.1
-                spent += self.run_and_kill(stage.tool, arguments + saved, self.random.uniform(0, each))
+                spent += self.run_and_kill(
+                    stage.tool, arguments + saved, self.random.uniform(0, each)
+                )
             else:
                 spent += self.run(stage.tool, *arguments)
         self.random.shuffle(parts)
@@ -91,18 +113,25 @@ class Runner:
         merging = self.run("vpl-merge", *parts, "-o", merged)
         same = filecmp.cmp(self.folder / merged, self.folder / stage.product, shallow=False)
         size = sum((self.folder / part).stat().st_size for part in parts) / 1e6
-        print(f"{stage.name}: {shards} shards {'the same' if same else 'DIFFERENT'}; whole {whole:.2f} s, "
-              f"shards {spent:.2f} s, merge {merging:.2f} s, files {size:.1f} MB", flush=True)
+        print(
+            f"{stage.name}: {shards} shards {'the same' if same else 'DIFFERENT'}; whole {whole:.2f} s, "
+            f"shards {spent:.2f} s, merge {merging:.2f} s, files {size:.1f} MB",
+            flush=True,
+        )
         for part in parts:
             (self.folder / part).unlink()
         return same
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", default=SOURCE / "build/release/bin")
     parser.add_argument("--shards", type=int, default=1000)
-    parser.add_argument("--kills", type=int, default=20, help="tasks of each stage that are killed once")
+    parser.add_argument(
+        "--kills", type=int, default=20, help="tasks of each stage that are killed once"
+    )
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--stages", default="", help="names, with commas; all unless given")
@@ -113,7 +142,9 @@ def main():
         runner.run("vpl-place", SCENE, "-n", "50k", "-o", "few.vpl")
         runner.run("vpl-eliminate", "few.vpl", "-n", "2000", "-o", "vpls.vpl")
         runner.run("vpl-estimate", SCENE, "vpls.vpl", "-o", "lit.vpl")
-        same = [runner.check(stage, args.shards) for stage in STAGES if not named or stage.name in named]
+        same = [
+            runner.check(stage, args.shards) for stage in STAGES if not named or stage.name in named
+        ]
         print(f"{runner.killed} tasks killed")
     sys.exit(0 if all(same) else 1)
 

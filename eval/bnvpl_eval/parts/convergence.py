@@ -14,7 +14,10 @@ def run(context: Context) -> None:
             for count in plan["counts"]:
                 context.say(f"convergence: {view.name}, {method}, {count} VPLs")
                 c = sampled(context.configuration(view, method), plan).but(
-                    vpls=count, candidates=count * plan["candidates_per_vpl"], photons=plan["photons"])
+                    vpls=count,
+                    candidates=count * plan["candidates_per_vpl"],
+                    photons=plan["photons"],
+                )
                 rows.append(context.judge("convergence", view, c, seeds))
         path = []
         for spp in plan["path_spp"]:
@@ -37,14 +40,25 @@ def add_plots(context: Context, view, found: dict, path: list[dict]) -> None:
     common = {"y_label": "RMSE / mean of the indirect light", "x_log": True, "y_log": True}
     name = view.scene.id
     plan = context.size["convergence"]
-    context.plots.append({
-        "id": f"convergence-vpls-{name}", "title": f"{view.scene.title}: error against VPLs",
-        "caption": f"{plan['photons'] // 1000}k photons, {plan['candidates_per_vpl']} candidates a VPL, {told(plan)}; "
-                   f"{plan['seeds']} seeds.",
-        "x_label": "VPLs", "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()], **common})
-    context.plots.append({
-        "id": f"convergence-time-{name}", "title": f"{view.scene.title}: error against time",
-        "caption": f"CPU time of all stages, a film of {path[0]['film']} pixels.",
-        "x_label": "CPU seconds",
-        "series": [series(METHODS[m], rows, "cpu_s") for m, rows in found.items()] +
-                  [{**series("path tracer", path, "cpu_s"), "dash": True}], **common})
+    context.plots.append(
+        {
+            "id": f"convergence-vpls-{name}",
+            "title": f"{view.scene.title}: error against VPLs",
+            "caption": f"{plan['photons'] // 1000}k photons, {plan['candidates_per_vpl']} candidates a VPL, {told(plan)}; "
+            f"{plan['seeds']} seeds.",
+            "x_label": "VPLs",
+            "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()],
+            **common,
+        }
+    )
+    context.plots.append(
+        {
+            "id": f"convergence-time-{name}",
+            "title": f"{view.scene.title}: error against time",
+            "caption": f"CPU time of all stages, a film of {path[0]['film']} pixels.",
+            "x_label": "CPU seconds",
+            "series": [series(METHODS[m], rows, "cpu_s") for m, rows in found.items()]
+            + [{**series("path tracer", path, "cpu_s"), "dash": True}],
+            **common,
+        }
+    )

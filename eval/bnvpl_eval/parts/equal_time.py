@@ -13,18 +13,26 @@ from ..context import Context
 from ..pipeline import sampled, told
 from ..tables import column, table
 
-COLUMNS = [column("vpls", "VPLs"), column("spp", "samples a pixel"), column("film", "film"),
-           column("pipeline_s", "pipeline", "CPU s"), column("pipeline_relmse", "its relMSE"),
-           column("path_spp", "path tracer in that time", "spp"), column("path_relmse", "its relMSE"),
-           column("gain", "path tracer / pipeline", better="high"),
-           column("wall_gain", "the same by wall time", better="high")]
+COLUMNS = [
+    column("vpls", "VPLs"),
+    column("spp", "samples a pixel"),
+    column("film", "film"),
+    column("pipeline_s", "pipeline", "CPU s"),
+    column("pipeline_relmse", "its relMSE"),
+    column("path_spp", "path tracer in that time", "spp"),
+    column("path_relmse", "its relMSE"),
+    column("gain", "path tracer / pipeline", better="high"),
+    column("wall_gain", "the same by wall time", better="high"),
+]
 MEASURED_SPP = 64
 TRIAL_SPP = 2, 16  # of the images that tell how long a sample takes, and how long loading
 
 
 def picture_spp(context: Context, view, c, target_s: float) -> int:
     few, many = TRIAL_SPP
-    few_s, many_s = (pipeline.traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s for spp in TRIAL_SPP)
+    few_s, many_s = (
+        pipeline.traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s for spp in TRIAL_SPP
+    )
     sample_s = max((many_s - few_s) / (many - few), 1e-6)
     loading_s = max(0.0, few_s - few * sample_s)
     return max(1, round((target_s - loading_s) / sample_s))
@@ -32,8 +40,11 @@ def picture_spp(context: Context, view, c, target_s: float) -> int:
 
 def balanced(c: pipeline.Configuration, size: dict) -> pipeline.Configuration:
     plan = size["equal_time"]
-    return sampled(c, plan).but(vpls=plan["vpls"], candidates=plan["vpls"] * plan["candidates_per_vpl"],
-                                photons=plan["photons"])
+    return sampled(c, plan).but(
+        vpls=plan["vpls"],
+        candidates=plan["vpls"] * plan["candidates_per_vpl"],
+        photons=plan["photons"],
+    )
 
 
 def run(context: Context) -> None:
@@ -56,15 +67,30 @@ def run(context: Context) -> None:
             gain = relmse / judged["relmse"] if judged["relmse"] > 0 else None
             # The path tracer keeps both cores busier than the stages do.
             fewer = pipeline_s / picture[0].cpu_s / (pipeline_wall_s / picture[0].record["wall_s"])
-            row = {"view": view.name, "vpls": c.vpls, "spp": c.spp, "film": c.film, "pipeline_s": pipeline_s,
-                   "pipeline_relmse": judged["relmse"], "path_spp": round(equal_spp), "path_relmse": relmse,
-                   "gain": gain, "wall_gain": gain * fewer if gain else None, "pipeline_wall_s": pipeline_wall_s}
+            row = {
+                "view": view.name,
+                "vpls": c.vpls,
+                "spp": c.spp,
+                "film": c.film,
+                "pipeline_s": pipeline_s,
+                "pipeline_relmse": judged["relmse"],
+                "path_spp": round(equal_spp),
+                "path_relmse": relmse,
+                "gain": gain,
+                "wall_gain": gain * fewer if gain else None,
+                "pipeline_wall_s": pipeline_wall_s,
+            }
             rows.append({"group": f"{view.scene.title}, {view.title}", **row})
             context.results.append({"part": "equal-time", "method": "local", **row})
-    context.tables.append(table(
-        "equal-time", "Equal time: whole pipeline against the path tracer",
-        "All stages with loading, seed 1; relMSE of the indirect light over all seeds, the path tracer's from the small "
-        f"film at {MEASURED_SPP} spp, as 1 / spp. The first row of a view is the comparison above; the second has "
-        f"{plan['vpls']} VPLs of {plan['candidates_per_vpl']} candidates each, {plan['photons'] // 1000}k photons and "
-        f"{told(plan)}.",
-        COLUMNS, rows))
+    context.tables.append(
+        table(
+            "equal-time",
+            "Equal time: whole pipeline against the path tracer",
+            "All stages with loading, seed 1; relMSE of the indirect light over all seeds, the path tracer's from the small "
+            f"film at {MEASURED_SPP} spp, as 1 / spp. The first row of a view is the comparison above; the second has "
+            f"{plan['vpls']} VPLs of {plan['candidates_per_vpl']} candidates each, {plan['photons'] // 1000}k photons and "
+            f"{told(plan)}.",
+            COLUMNS,
+            rows,
+        )
+    )

@@ -6,8 +6,22 @@ from ..context import Context
 from ..pipeline import METHODS
 from ..tables import column, table
 
-COLUMNS = [column(key) for key in ("label", "seeds", "mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean",
-                                   "relmse", "smape", "flip", "hdr_flip", "cpu_s")]
+COLUMNS = [
+    column(key)
+    for key in (
+        "label",
+        "seeds",
+        "mean_ratio",
+        "rmse_over_mean",
+        "bias_over_mean",
+        "std_over_mean",
+        "relmse",
+        "smape",
+        "flip",
+        "hdr_flip",
+        "cpu_s",
+    )
+]
 
 
 def run(context: Context) -> None:
@@ -19,12 +33,17 @@ def run(context: Context) -> None:
             row = context.judge("methods", view, c, context.seeds(view), label=METHODS[method])
             row |= measures.compare_all(context, view, row["images"])
             rows.append(row | {"group": group(view, c.vpls)})
-    context.tables.append(table(
-        "methods", "Where VPLs come from: indirect light against the reference",
-        "Means over the seeds. RMSE, bias and noise are root mean squares over pixels and channels over "
-        "the reference's mean; bias is the mean image against the reference, noise the standard deviation "
-        "of one image. Time is the CPU time of all stages together.",
-        COLUMNS, rows))
+    context.tables.append(
+        table(
+            "methods",
+            "Where VPLs come from: indirect light against the reference",
+            "Means over the seeds. RMSE, bias and noise are root mean squares over pixels and channels over "
+            "the reference's mean; bias is the mean image against the reference, noise the standard deviation "
+            "of one image. Time is the CPU time of all stages together.",
+            COLUMNS,
+            rows,
+        )
+    )
 
 
 def group(view, vpls: int) -> str:

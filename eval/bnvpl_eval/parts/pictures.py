@@ -14,19 +14,37 @@ def run(context: Context) -> None:
     plan = context.size["pictures"]
     for view in (view for view in context.views() if view.id in plan["views"]):
         context.say(f"pictures: {view.name}")
-        film, spp, integrator = view.scene.film(plan["width"]), plan["reference_spp"], view.reference_integrator
+        film, spp, integrator = (
+            view.scene.film(plan["width"]),
+            plan["reference_spp"],
+            view.reference_integrator,
+        )
         reference, _ = pipeline.traced(context.runner, view, film, spp, REFERENCE_SEED, integrator)
-        shown = [{"id": "reference", "label": f"{integrator} tracer, {spp} a pixel", "file": reference}]
+        shown = [
+            {"id": "reference", "label": f"{integrator} tracer, {spp} a pixel", "file": reference}
+        ]
         cuts = []
         leaking = LEAKING if view.id == "main" else []  # as many as the comparison of scatters
         for method in [*reversed(plan["methods"]), *leaking]:  # ours first, beside the reference
             c = pipeline.sampled(context.configuration(view, method, plan["width"]), plan)
             file, _ = pipeline.image(context.runner, view, c, 1)
-            shown.append({"id": method, "label": METHODS[method], "file": file,
-                          "numbers": numbers(context, view, method)})
+            shown.append(
+                {
+                    "id": method,
+                    "label": METHODS[method],
+                    "file": file,
+                    "numbers": numbers(context, view, method),
+                }
+            )
             if method == "local":
-                cuts.append({"id": "cut", "label": "Cut size, clusters a sample (tile cuts)", "file": file,
-                             "channel": "cutsize"})
+                cuts.append(
+                    {
+                        "id": "cut",
+                        "label": "Cut size, clusters a sample (tile cuts)",
+                        "file": file,
+                        "channel": "cutsize",
+                    }
+                )
                 cuts.append(lightcuts(context, view, c))
                 shown.append(equal_time(context, view, c))
         context.pictures[view.name] = {"images": shown, "overlays": dots(context, view) + cuts}
@@ -35,14 +53,23 @@ def run(context: Context) -> None:
 def numbers(context: Context, view: View, method: str) -> str:
     """By the small film's reference, which is far better than the one that the viewer can show."""
     for row in context.results:
-        if row["view"] == view.name and row["method"] == method and row["part"] in ("methods", "scatter"):
+        if (
+            row["view"] == view.name
+            and row["method"] == method
+            and row["part"] in ("methods", "scatter")
+        ):
             return f"in the tables: mean ratio {row['mean_ratio']:.3f}, relMSE {row['relmse']:.3g} ({row['seeds']} seeds)"
     return ""
 
 
 def lightcuts(context: Context, view: View, c: pipeline.Configuration) -> dict:
     file, _ = pipeline.image(context.runner, view, c.but(render=("--gather", "lightcuts")), 1)
-    return {"id": "cut-lightcuts", "label": "Cut size, clusters a sample (Lightcuts)", "file": file, "channel": "cutsize"}
+    return {
+        "id": "cut-lightcuts",
+        "label": "Cut size, clusters a sample (Lightcuts)",
+        "file": file,
+        "channel": "cutsize",
+    }
 
 
 def equal_time(context: Context, view: View, c: pipeline.Configuration) -> dict:
@@ -60,11 +87,35 @@ def dots(context: Context, view: View) -> list[dict]:
     for method in ("random", "uniform", "local"):
         c = context.configuration(view, method).but(vpls=count, candidates=10 * count)
         placed = pipeline.candidates(context.runner, view, c, 1)
-        kept = context.runner.run("vpl-eliminate", ["{c}", "-n", count, *pipeline.ELIMINATE[method],
-                                                    "-o", "@v.vpl", "--quiet"],
-                                  {"c": placed["candidates.vpl"]}, ["v.vpl"])
-        plot = context.runner.run("vpl-inspect", ["plot", "{v}", "--scene", "{scene}", "-o", "@dots.png", "--quiet",
-                                                  "--dot", 3, "--size", view.scene.film(640)],
-                                  {"v": kept["v.vpl"], "scene": ROOT / view.file}, ["dots.png"])
-        made.append({"id": f"dots-{method}", "label": f"{count} VPLs, {METHODS[method]}", "file": plot["dots.png"]})
+        kept = context.runner.run(
+            "vpl-eliminate",
+            ["{c}", "-n", count, *pipeline.ELIMINATE[method], "-o", "@v.vpl", "--quiet"],
+            {"c": placed["candidates.vpl"]},
+            ["v.vpl"],
+        )
+        plot = context.runner.run(
+            "vpl-inspect",
+            [
+                "plot",
+                "{v}",
+                "--scene",
+                "{scene}",
+                "-o",
+                "@dots.png",
+                "--quiet",
+                "--dot",
+                3,
+                "--size",
+                view.scene.film(640),
+            ],
+            {"v": kept["v.vpl"], "scene": ROOT / view.file},
+            ["dots.png"],
+        )
+        made.append(
+            {
+                "id": f"dots-{method}",
+                "label": f"{count} VPLs, {METHODS[method]}",
+                "file": plot["dots.png"],
+            }
+        )
     return made

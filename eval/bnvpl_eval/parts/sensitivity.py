@@ -5,9 +5,20 @@ from ..pipeline import sampled, told
 from ..settings import View
 from ..tables import column, table
 
-COLUMNS = [column("value", "value"),
-           *(column(key) for key in ("mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean", "relmse",
-                                     "cpu_s"))]
+COLUMNS = [
+    column("value", "value"),
+    *(
+        column(key)
+        for key in (
+            "mean_ratio",
+            "rmse_over_mean",
+            "bias_over_mean",
+            "std_over_mean",
+            "relmse",
+            "cpu_s",
+        )
+    ),
+]
 
 
 def varied(context: Context, view: View, entry: dict, value):
@@ -30,10 +41,21 @@ def run(context: Context) -> None:
             for value in entry["values"]:
                 context.say(f"sensitivity: {view.name}, {entry['title']} {value}")
                 c = varied(context, view, entry, value)
-                row = context.judge("sensitivity", view, c, range(1, 1 + plan["seeds"]),
-                                    option=entry["id"], value=value)
+                row = context.judge(
+                    "sensitivity",
+                    view,
+                    c,
+                    range(1, 1 + plan["seeds"]),
+                    option=entry["id"],
+                    value=value,
+                )
                 rows.append({"group": f"{entry['title']}: {view.scene.title}", **row})
-    context.tables.append(table(
-        "sensitivity", "Sensitivity: one option at a time",
-        f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the other options at their defaults.",
-        COLUMNS, rows))
+    context.tables.append(
+        table(
+            "sensitivity",
+            "Sensitivity: one option at a time",
+            f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the other options at their defaults.",
+            COLUMNS,
+            rows,
+        )
+    )

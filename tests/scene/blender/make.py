@@ -1,7 +1,8 @@
 """Writes my room.obj and .mtl with Blender's own exporter: names with blanks, umlauts and dots.
 
-    blender --background --python tests/scene/blender/make.py      # made with Blender 3.4.1
+blender --background --python tests/scene/blender/make.py      # made with Blender 3.4.1
 """
+
 import pathlib
 
 import bpy
@@ -39,10 +40,16 @@ picture.file_format = "PNG"
 picture.save()
 node = tiles.node_tree.nodes.new("ShaderNodeTexImage")
 node.image = picture
-tiles.node_tree.links.new(node.outputs["Color"], tiles.node_tree.nodes["Principled BSDF"].inputs["Base Color"])
+tiles.node_tree.links.new(
+    node.outputs["Color"], tiles.node_tree.nodes["Principled BSDF"].inputs["Base Color"]
+)
 
 square("Boden", (0, 0, 0), (0, 0, 0), [tiles])
 square("Wände & Türen.001", (-1, 0, 1), (0, 1.5707963, 0), [material("my left", (0.8, 0.1, 0.1))])
-square("Wände & Türen.002", (1, 0, 1), (0, -1.5707963, 0), [material("my.right 2", (0.1, 0.8, 0.1))])
-square("Lampe 40 W", (0, 0, 1.9), (3.1415927, 0, 0), [material("Lampe  weiß.001", (0, 0, 0), 10)], 0.5)
+square(
+    "Wände & Türen.002", (1, 0, 1), (0, -1.5707963, 0), [material("my.right 2", (0.1, 0.8, 0.1))]
+)
+square(
+    "Lampe 40 W", (0, 0, 1.9), (3.1415927, 0, 0), [material("Lampe  weiß.001", (0, 0, 0), 10)], 0.5
+)
 bpy.ops.wm.obj_export(filepath=str(HERE / "my room.obj"), path_mode="RELATIVE")
