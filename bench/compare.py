@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Runs the benchmarks and compares them with the last figures that were committed.
+"""Runs the benchmarks and compares them with the committed figures of bench/baseline.json.
 
-  bench/compare.py                 all; prints a table of now, then and their ratio
-  bench/compare.py --filter place  benchmarks whose name matches a regular expression
-  bench/compare.py --save          and writes bench/baseline.json
+    bench/compare.py                 run all, and print a table of now, then and their ratio
+    bench/compare.py --filter place  run the benchmarks whose name matches a regular expression
+    bench/compare.py --save          also write bench/baseline.json
 
-Times are wall time per iteration, the least of --runs runs, for what else a machine does only adds to it: run it on a
-quiet machine, and compare ratios of one machine. The scene is Sponza where SPONZA_DIR is set, else the U-shape; figures of the other one are not compared.
+A figure is the wall time per iteration, the least of --runs runs, since other load only adds to it.
+Run it on a quiet machine, and compare ratios of one machine only. The scene is Sponza where
+SPONZA_DIR is set, else the U-shape. Figures of the other scene are not compared.
 """
 
 import argparse
@@ -16,11 +17,12 @@ import platform
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 BASELINE = ROOT / "bench/baseline.json"
 PROGRAMS = ["bench_stages", "bench_eliminate"]
-NOTABLE = 0.1  # a change by more than this is marked
+NOTABLE = 0.1  # relative change above which a row is marked
 
 
 def measure(folder: Path, name_filter: str, seconds: float) -> dict[str, float]:
@@ -29,7 +31,8 @@ def measure(folder: Path, name_filter: str, seconds: float) -> dict[str, float]:
     for program in PROGRAMS:
         if not (folder / program).is_file():
             sys.exit(
-                f"compare.py: {folder / program}: no such program; build it: cmake --build --preset release"
+                f"compare.py: {folder / program}: no such program; build it: cmake --build "
+                "--preset release"
             )
         done = subprocess.run(
             [
@@ -44,7 +47,7 @@ def measure(folder: Path, name_filter: str, seconds: float) -> dict[str, float]:
         if done.returncode != 0:
             sys.exit(f"compare.py: {program} failed: {done.stderr.strip()}")
         if not done.stdout.strip():
-            continue  # nothing of that name
+            continue  # no benchmark of this program matches the filter
         for row in json.loads(done.stdout)["benchmarks"]:
             where = f"{scene}: " if program == "bench_stages" else ""
             found[where + row["name"].replace("/process_time", "").replace("/real_time", "")] = row[
@@ -53,7 +56,7 @@ def measure(folder: Path, name_filter: str, seconds: float) -> dict[str, float]:
     return found
 
 
-def show(now: dict[str, float], then: dict) -> None:
+def show(now: dict[str, float], then: dict[str, Any]) -> None:
     print(f"{'benchmark':52} {'now, ms':>10} {'then, ms':>10} {'ratio':>7}")
     for name, value in now.items():
         before = then.get("milliseconds", {}).get(name)

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Time of the gathers at equal error, against the number of VPLs.
+"""Measures the time of the gathers at equal error, against the number of VPLs.
 
-  bench/gather.py --scenes u-shape,sponza --counts 1000,10000,100000 --plot docs/images/gather-growth.png
+    bench/gather.py --scenes u-shape,sponza --counts 1000,10000,100000 --plot growth.png
 
-The error is relMSE against all VPLs for the same samples, up to --most-all VPLs; beyond, against tile
-cuts of a twelfth of the default error. The time is CPU time less that of the same render without indirect
-light. Tile cuts are timed at the error that Lightcuts has at 2 %, between two settings.
+The error is relMSE against the sum over all VPLs for the same samples, up to --most-all VPLs.
+Beyond that the reference is tile cuts with a twelfth of the default error. The time is CPU time
+minus that of the same render without indirect light. The time of tile cuts is interpolated between
+two settings to the error that Lightcuts has at 2 %.
 """
 
 import argparse
@@ -16,9 +17,11 @@ import resource
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
+import numpy.typing as npt
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -39,8 +42,8 @@ FIGURES = output_guard.json_kind(
 TILE_ERRORS = [0.025, 0.05, 0.1, 0.2, 0.4]
 
 
-def run(command: list) -> float:
-    """CPU seconds of a tool."""
+def run(command: list[Any]) -> float:
+    """Runs a tool. Returns its CPU seconds."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
     if done.returncode != 0:
@@ -50,14 +53,15 @@ def run(command: list) -> float:
 
 
 class Bench:
-    def __init__(self, options: argparse.Namespace):
+    def __init__(self, options: argparse.Namespace) -> None:
         self.options = options
-        self.bin = options.bin
+        self.work: Path = options.work
+        self.bin: Path = options.bin
         options.work.mkdir(parents=True, exist_ok=True)
 
     def lit(self, scene: str, count: int) -> Path:
         toml = ROOT / "scenes" / scene / "scene.toml"
-        parts = [self.options.work / f"{scene}.{count}.{stage}.vpl" for stage in ("c", "v", "l")]
+        parts = [self.work / f"{scene}.{count}.{stage}.vpl" for stage in ("c", "v", "l")]
         if not parts[2].is_file():
             run([self.bin / "vpl-place", toml, "-n", 10 * count, "-o", parts[0], "--quiet"])
             run([self.bin / "vpl-eliminate", parts[0], "-n", count, "-o", parts[1], "--quiet"])
@@ -76,7 +80,7 @@ class Bench:
             parts[0].unlink()
         return parts[2]
 
-    def render(self, scene: str, count: int, *extra) -> tuple[np.ndarray, float]:
+    def render(self, scene: str, count: int, *extra: object) -> tuple[npt.NDArray[Any], float]:
         image = self.options.work / "image.exr"
         seconds = run(
             [
@@ -99,15 +103,17 @@ class Bench:
         )
         return images.read(image), seconds
 
-    def measure(self, scene: str, count: int) -> dict:
+    def measure(self, scene: str, count: int) -> dict[str, Any]:
         exact = count <= self.options.most_all
-        how = ["--gather", "all"] if exact else ["--error", 0.004, "--max-cut", 100000]
+        how: list[object] = ["--gather", "all"]
+        if not exact:
+            how = ["--error", 0.004, "--max-cut", 100000]
         reference, all_s = self.render(scene, count, "--only", "indirect", *how)
         _, idle_s = self.render(
             scene, count, "--only", "direct", "--direct-samples", 1, "--light-rays", 1
         )
 
-        def judged(*words) -> tuple[float, float]:
+        def judged(*words: object) -> tuple[float, float]:
             image, seconds = self.render(scene, count, "--only", "indirect", *words)
             relmse = statistics.summarise([image], (reference, reference))["relmse"]
             return relmse, max(1e-3, seconds - idle_s)
@@ -130,7 +136,7 @@ class Bench:
         }
 
 
-def plot(rows: list[dict], path: Path) -> None:
+def plot(rows: list[dict[str, Any]], path: Path) -> None:
     figure, axes = plt.subplots(figsize=(6.4, 4.8))
     for number, scene in enumerate(dict.fromkeys(row["scene"] for row in rows)):
         mine = [row for row in rows if row["scene"] == scene]
@@ -162,7 +168,7 @@ def plot(rows: list[dict], path: Path) -> None:
     axes.grid(True, which="both", alpha=0.3)
     axes.legend(
         fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=2
-    )  # below the lines
+    )  # below the plot
     figure.tight_layout()
     figure.savefig(path, dpi=110)
 
@@ -198,7 +204,8 @@ def main() -> None:
             sys.exit(f"gather.py: {name} needs {variable}; set it (scenes/README.md)")
     bench, rows = Bench(options), []
     print(
-        "| scene | VPLs | relMSE of Lightcuts at 2 % | Lightcuts, CPU s | tile cuts at that error | ratio | all VPLs "
+        "| scene | VPLs | relMSE of Lightcuts at 2 % | Lightcuts, CPU s | tile cuts at that "
+        "error | ratio | all VPLs "
         "| tile cuts at 0.05: relMSE, CPU s |\n|---|---|---|---|---|---|---|---|"
     )
     for scene in options.scenes.split(","):
@@ -207,8 +214,10 @@ def main() -> None:
             rows.append(r)
             every = f"{r['all_s']:.1f}" if r["all_s"] else ""
             print(
-                f"| {scene} | {r['vpls']} | {r['relmse']:.2e} | {r['lightcuts_s']:.2f} | {r['tilecuts_s']:.2f} "
-                f"| {r['ratio']:.1f}x | {every} | {r['default_relmse']:.2e}, {r['default_s']:.2f} |",
+                f"| {scene} | {r['vpls']} | {r['relmse']:.2e} | {r['lightcuts_s']:.2f} | "
+                f"{r['tilecuts_s']:.2f} "
+                f"| {r['ratio']:.1f}x | {every} | {r['default_relmse']:.2e}, "
+                f"{r['default_s']:.2f} |",
                 flush=True,
             )
     if options.json:

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Time and memory of the stages as the work grows: triangles, candidates, VPLs, lights.
+"""Measures time and memory of the stages as triangles, candidates, VPLs and lights grow in number.
 
-  bench/size.py                          all, about four minutes and 3 GiB
-  bench/size.py --parts lights,vpls      some
-  bench/size.py --most 0.01              a hundredth of each size, to see that it works
-  bench/size.py --parts instances,many_vpls,shard,file,hundredth   the largest: fifteen minutes, 14 GiB, 5 GB of disk
-  bench/size.py --cpu ...                CPU seconds of all threads in place of seconds, on a machine that is not quiet
+    bench/size.py                          the core parts: about four minutes and 3 GiB
+    bench/size.py --parts lights,vpls      some parts
+    bench/size.py --most 0.01              a hundredth of each size, as a quick test
+    bench/size.py --parts instances,many_vpls,shard,file,hundredth
+                                           the largest parts: fifteen minutes, 14 GiB, 5 GB of disk
+    bench/size.py --cpu ...                CPU seconds of all threads, for a busy machine
 
-Prints Markdown; docs/lab has former figures.
+The output is Markdown. docs/lab/ has figures.
 """
 
 import argparse
@@ -17,13 +18,14 @@ import resource
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 U_SHAPE = ROOT / "scenes/u-shape/scene.toml"
 CORE_PARTS = ("triangles", "candidates", "vpls", "lights")
 LARGE_PARTS = ("instances", "many_vpls", "shard", "file", "hundredth")
-BUMPY = 224  # squares along the side of a mesh that is instanced: 100k triangles
+BUMPY = 224  # squares along the side of the instanced mesh, which has 100k triangles
 MTL = "newmtl grey\nKd 0.6 0.6 0.6\nnewmtl lamp\nKd 0 0 0\nKe 20 20 20\n"
 CAMERA = """[film]
 width = 64
@@ -44,11 +46,11 @@ def cpu_of_children() -> float:
 
 
 class Size:
-    def __init__(self, options: argparse.Namespace, folder: Path):
+    def __init__(self, options: argparse.Namespace, folder: Path) -> None:
         self.bin, self.most, self.cpu, self.folder = options.bin, options.most, options.cpu, folder
 
-    def run(self, tool: str, *words) -> tuple[float, float]:
-        """Seconds and MiB."""
+    def run(self, tool: str, *words: object) -> tuple[float, float]:
+        """Runs a tool. Returns its seconds and peak memory in MiB."""
         stats, before = self.folder / "stats.json", cpu_of_children()
         done = subprocess.run(
             [str(w) for w in (self.bin / tool, *words, "--quiet", "--stats", stats)],
@@ -64,7 +66,7 @@ class Size:
         return [max(1, round(n * self.most)) for n in full]
 
     def room(self, triangles: int, lamps: int, lights: int) -> Path:
-        """A wavy floor and ceiling of so many triangles, lamps among them, and point lights between them."""
+        """Writes a wavy floor and ceiling, lamps below the ceiling, and point lights in between."""
         side = max(1, round(math.sqrt(triangles / 4)))
         with open(self.folder / "size.obj", "w") as obj:
             obj.write("mtllib size.mtl\nusemtl grey\n")
@@ -74,7 +76,8 @@ class Size:
                     wave = 0.03 * math.cos(9 * z)
                     obj.write(
                         "".join(
-                            f"v {2 * i / side - 1:.7f} {base + wave * math.sin(9 * i / side):.7f} {z:.7f}\n"
+                            f"v {2 * i / side - 1:.7f} "
+                            f"{base + wave * math.sin(9 * i / side):.7f} {z:.7f}\n"
                             for i in range(side + 1)
                         )
                     )
@@ -83,7 +86,8 @@ class Size:
                     row = first + j * (side + 1)
                     obj.write(
                         "".join(
-                            f"f {row + i} {row + i + b} {row + i + a}\nf {row + i + a} {row + i + b} "
+                            f"f {row + i} {row + i + b} {row + i + a}\nf {row + i + a} "
+                            f"{row + i + b} "
                             f"{row + i + side + 2}\n"
                             for i in range(side)
                         )
@@ -93,12 +97,13 @@ class Size:
             for k in range(lamps):
                 x, z = (2 * (v + 0.3) / columns - 1 for v in (k % columns, k // columns))
                 obj.write(
-                    f"v {x} 0.9 {z}\nv {x + 0.3 / columns} 0.9 {z}\nv {x} 0.9 {z + 0.3 / columns}\nf -3 -2 -1\n"
+                    f"v {x} 0.9 {z}\nv {x + 0.3 / columns} 0.9 {z}\nv {x} 0.9 "
+                    f"{z + 0.3 / columns}\nf -3 -2 -1\n"
                 )
         (self.folder / "size.mtl").write_text(MTL)
         toml = CAMERA
         for k in range(lights):
-            angle = 2.4 * k  # the golden angle: no two close together
+            angle = 2.4 * k  # a multiple of the golden angle keeps the lights apart
             r = 0.9 * math.sqrt((k + 0.5) / lights)
             toml += (
                 '[[light]]\ntype = "point"\n'
@@ -117,7 +122,8 @@ class Size:
 
     def candidates(self) -> None:
         print(
-            "\n| candidates | vpl-place: s | MiB | vpl-eliminate, a fifth, uniform: s | MiB | local: s | MiB |\n"
+            "\n| candidates | vpl-place: s | MiB | vpl-eliminate, a fifth, uniform: s | MiB | "
+            "local: s | MiB |\n"
             "|---|---|---|---|---|---|---|"
         )
         for n in self.sizes(1_250_000, 5_000_000, 20_000_000):
@@ -131,7 +137,8 @@ class Size:
 
     def vpls(self) -> None:
         print(
-            "\n| VPLs | vpl-estimate, 1M photons: s | MiB | vpl-render, 64x48, 1 spp: s | MiB |\n|---|---|---|---|---|"
+            "\n| VPLs | vpl-estimate, 1M photons: s | MiB | vpl-render, 64x48, 1 spp: s | MiB "
+            "|\n|---|---|---|---|---|"
         )
         for n in self.sizes(10_000, 100_000, 1_000_000):
             c, v, lit = (self.folder / f"{x}.vpl" for x in "cvl")
@@ -155,9 +162,10 @@ class Size:
 
     def lights(self) -> None:
         print(
-            "\n| lights | vpl-estimate, 1M photons: s | path tracer, 64x48, 16 spp: s | MiB |\n|---|---|---|---|"
+            "\n| lights | vpl-estimate, 1M photons: s | path tracer, 64x48, 16 spp: s | MiB "
+            "|\n|---|---|---|---|"
         )
-        kinds = [
+        kinds: list[tuple[str, Callable[[int], Path], list[int]]] = [
             ("point lights", lambda n: self.room(10_000, 0, n), self.sizes(10, 100, 1000)),
             ("emissive triangles", lambda n: self.room(10_000, n, 0), self.sizes(64, 512, 4096)),
         ]
@@ -181,7 +189,7 @@ class Size:
                 print(f"| {n} {kind} | {estimate:.2f} | {path:.2f} | {mib:.0f} |", flush=True)
 
     def instances(self) -> None:
-        """A bumpy sheet, many times on a floor, in pbrt's form."""
+        """Measures many instances of a bumpy sheet, in a scene of pbrt's format."""
         n = BUMPY
         points = " ".join(
             f"{i / n:.6g} {0.05 * math.sin(40 * i / n) * math.cos(40 * j / n):.6g} {j / n:.6g}"
@@ -191,21 +199,26 @@ class Size:
         corners = ((j * (n + 1) + i, (j + 1) * (n + 1) + i) for j in range(n) for i in range(n))
         indices = " ".join(f"{a} {b} {a + 1} {a + 1} {b} {b + 1}" for a, b in corners)
         print(
-            "\n| triangles, of 100k stored | vpl-place -n 10k: s | MiB | path tracer, 64x48, 1 spp: s | MiB |\n|---|---|---|---|---|"
+            "\n| triangles, of 100k stored | vpl-place -n 10k: s | MiB | path tracer, 64x48, 1 "
+            "spp: s | MiB |\n|---|---|---|---|---|"
         )
         for copies in self.sizes(1, 20, 500, 5000):
             side = math.ceil(math.sqrt(copies))
             placed = "".join(
-                f'AttributeBegin Translate {k % side} {0.2 * (k % 5)} {k // side} ObjectInstance "sheet" AttributeEnd\n'
+                f"AttributeBegin Translate {k % side} {0.2 * (k % 5)} {k // side} ObjectInstance "
+                '"sheet" AttributeEnd\n'
                 for k in range(copies)
             )
             scene = self.folder / "instances.pbrt"
             scene.write_text(
-                f'LookAt {side / 2} 3 {-1} {side / 2} 0 {side / 2} 0 1 0\nCamera "perspective" "float fov" 60\n'
+                f'LookAt {side / 2} 3 {-1} {side / 2} 0 {side / 2} 0 1 0\nCamera "perspective" '
+                '"float fov" 60\n'
                 'Film "rgb" "integer xresolution" 64 "integer yresolution" 48\nWorldBegin\n'
-                f'LightSource "point" "point3 from" [{side / 2} 5 {side / 2}] "rgb I" [{side**2} {side**2} {side**2}]\n'
+                f'LightSource "point" "point3 from" [{side / 2} 5 {side / 2}] "rgb I" [{side**2} '
+                f"{side**2} {side**2}]\n"
                 'Material "diffuse" "rgb reflectance" [.6 .6 .6]\nObjectBegin "sheet"\n'
-                f'Shape "trianglemesh" "point3 P" [{points}] "integer indices" [{indices}]\nObjectEnd\n{placed}'
+                f'Shape "trianglemesh" "point3 P" [{points}] "integer indices" '
+                f"[{indices}]\nObjectEnd\n{placed}"
             )
             place = self.run("vpl-place", scene, "-o", self.folder / "c.vpl", "-n", "10k")
             path = self.run(
@@ -226,9 +239,10 @@ class Size:
             )
 
     def many_vpls(self) -> None:
-        """VPLs that vpl-place --method light makes lit, so that their number is free."""
+        """Measures many VPLs. vpl-place --method light makes them lit, so their number is free."""
         print(
-            "\n| VPLs from the lamp | vpl-place: s | MiB | vpl-render, 64x48, 1 spp, no near field: s | MiB |\n|---|---|---|---|---|"
+            "\n| VPLs from the lamp | vpl-place: s | MiB | vpl-render, 64x48, 1 spp, no near "
+            "field: s | MiB |\n|---|---|---|---|---|"
         )
         for n in self.sizes(100_000, 1_000_000, 10_000_000):
             lit = self.folder / "l.vpl"
@@ -251,12 +265,13 @@ class Size:
             )
 
     def shard(self) -> None:
-        """A hundredth of 10^10 photons: more than 2^32."""
+        """Measures one of 100 shards of 10^10 photons, a number above 2^32."""
         c, v, part = (self.folder / f"{x}" for x in ("c.vpl", "v.vpl", "1.shard"))
         self.run("vpl-place", U_SHAPE, "-o", c, "-n", "100k")
         self.run("vpl-eliminate", c, "-o", v, "-n", "3k")
         print(
-            "\n| photons, one of 100 shards, guarded | s | MiB | all shards, s, were each like it |\n|---|---|---|---|"
+            "\n| photons, one of 100 shards, guarded | s | MiB | all shards, s, were each like "
+            "it |\n|---|---|---|---|"
         )
         for photons in self.sizes(10**9, 10**10):
             s, mib = self.run(
@@ -275,10 +290,11 @@ class Size:
             print(f"| {photons} | {s:.2f} | {mib:.0f} | {100 * s:.0f} |", flush=True)
 
     def file(self) -> None:
-        """A file above 4 GiB, written and read."""
+        """Measures writing and reading a file above 4 GiB."""
         c = self.folder / "c.vpl"
         print(
-            "\n| candidates | file, bytes | vpl-place: s | MiB | vpl-inspect check: s | MiB |\n|---|---|---|---|---|---|"
+            "\n| candidates | file, bytes | vpl-place: s | MiB | vpl-inspect check: s | MiB "
+            "|\n|---|---|---|---|---|---|"
         )
         for n in self.sizes(110_000_000):
             place = self.run("vpl-place", U_SHAPE, "-o", c, "-n", n)
@@ -291,7 +307,7 @@ class Size:
             )
 
     def hundredth(self) -> None:
-        """Few VPLs of many candidates, the way to the best spacing."""
+        """Measures the elimination of 99 % of the candidates, which yields the best spacing."""
         print("\n| candidates | VPLs | vpl-eliminate: s | MiB |\n|---|---|---|---|")
         for n in self.sizes(1_000_000, 10_000_000):
             c = self.folder / "c.vpl"

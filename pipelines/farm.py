@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""How long a sequence takes on a farm: the graph of generate_ninja.py or submit.py on simulated nodes.
+"""Simulates how long a sequence takes on a farm that runs generate_ninja.py's or submit.py's graph.
 
-  pipelines/farm.py --frames 1000 --size 3840x2160 --vpls 100k --photons 1G --spp 64 --nodes 1,10,100,1000
+    pipelines/farm.py --frames 1000 --size 3840x2160 --vpls 100k --photons 1G --spp 64 \
+        --nodes 1,10,100,1000
   pipelines/farm.py ... --nodes 1000 --failure-hours 500 --svg farm.svg
 
-What a task takes is predicted by cost_model.json, with a scatter. The same options and seed print the same.
+cost_model.json predicts the cost of each task, and a random factor scatters its time. The output
+depends only on the options and the seed.
 """
 
 import argparse
@@ -13,6 +15,7 @@ import pathlib
 import re
 import sys
 import tempfile
+from typing import Any
 
 import cost
 import farm_graph
@@ -24,39 +27,39 @@ import stages
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
 
 
-def count(text):
+def count(text: str) -> float:
     try:
         return cost.count(text)
     except ValueError as problem:
         raise argparse.ArgumentTypeError(str(problem)) from None
 
 
-def positive(text):
+def positive(text: str) -> float:
     value = count(text)
     if value <= 0:
         raise argparse.ArgumentTypeError(f"'{text}' is not above 0")
     return value
 
 
-def node_counts(text):
+def node_counts(text: str) -> list[int]:
     chosen = sorted({int(count(word)) for word in text.split(",")})
     if chosen[0] < 1:
         raise argparse.ArgumentTypeError(f"'{text}': a farm has one node at least")
     return chosen
 
 
-def film(text):
+def film(text: str) -> int:
     if not (match := re.fullmatch(r"([1-9]\d*)x([1-9]\d*)", text)):
         raise argparse.ArgumentTypeError(f"'{text}' is no size such as 3840x2160")
     return int(match[1]) * int(match[2])
 
 
-def arguments(words):
+def arguments(words: list[str]) -> argparse.Namespace:
     p = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     stages.add_arguments(p)
-    p.set_defaults(bin="bin")  # of no tool: nothing is run
+    p.set_defaults(bin="bin")  # no tool runs, so any name will do
     p.add_argument("--frames", type=int, default=1, help="images of the one scene (default 1)")
     p.add_argument(
         "--size",
@@ -125,7 +128,8 @@ def arguments(words):
         "--order",
         choices=("stages", "files"),
         default="stages",
-        help="a task waits for whole stages, as with Slurm, or for its files, as with ninja (default stages)",
+        help="a task waits for whole stages, as with Slurm, or for its files, as with ninja "
+        "(default stages)",
     )
     p.add_argument(
         "--chance", type=int, default=1, metavar="SEED", help="of scatter and failures (default 1)"
@@ -147,12 +151,14 @@ def arguments(words):
         getattr(options, f"{stage}_flags") for stage in KINDS[:4]
     ):
         p.error(
-            "the cost model is of the tools' default options; leave out --quality and flags, and give counts and --scale"
+            "the cost model is of the tools' default options; leave out --quality and flags, and "
+            "give counts and --scale"
         )
     widest = max(map(int, options.cpus.values()))
     if widest > options.cores:
         p.error(
-            f"--cpus: a task of {widest} cores does not fit on a node of {options.cores}; raise --cores"
+            f"--cpus: a task of {widest} cores does not fit on a node of {options.cores}; raise "
+            "--cores"
         )
     stages.complete(options)
     if options.svg:
@@ -160,12 +166,14 @@ def arguments(words):
     return options
 
 
-def picture_of(options):
+def picture_of(
+    options: argparse.Namespace,
+) -> tuple[pathlib.Path, output_guard.Kind, str, dict[str, pathlib.Path]]:
     return options.svg, output_guard.SVG, "--svg", {"--model": options.model}
 
 
-def tasks_of(options):
-    """Those of stages.py, with a view for each frame. It looks for the views, and reads none."""
+def tasks_of(options: argparse.Namespace) -> list[stages.Task]:
+    """Tasks of stages.py, with one view a frame. The views are empty files, as none is read."""
     with tempfile.TemporaryDirectory(prefix="bnvpl-farm-") as folder:
         if options.frames > 1:
             options.views = [f"{folder}/{frame:06d}.toml" for frame in range(1, options.frames + 1)]
@@ -174,7 +182,7 @@ def tasks_of(options):
         return stages.tasks_of("film/scene.toml", options)
 
 
-def jobs_of(options):
+def jobs_of(options: argparse.Namespace) -> list[farm_graph.Job]:
     conditions = farm_graph.Conditions(
         {kind: int(n) for kind, n in options.cpus.items()},
         options.efficiency,
@@ -200,7 +208,7 @@ def jobs_of(options):
     )
 
 
-def farm_of(options, nodes):
+def farm_of(options: argparse.Namespace, nodes: int) -> farm_schedule.Farm:
     return farm_schedule.Farm(
         nodes,
         options.cores,
@@ -212,14 +220,14 @@ def farm_of(options, nodes):
     )
 
 
-def time_text(s):
+def time_text(s: float) -> str:
     for unit, size in (("d", 86400), ("h", 3600), ("min", 60)):
         if s >= 2 * size:
             return f"{s / size:.1f} {unit}"
     return f"{s:.1f} s"
 
 
-def size_text(n):
+def size_text(n: float) -> str:
     if n == 0:
         return "-"
     for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6)):
@@ -228,20 +236,22 @@ def size_text(n):
     return f"{n / 1e3:.1f} kB"
 
 
-def print_stages(jobs):
+def print_stages(jobs: list[farm_graph.Job]) -> None:
     print(
-        f"{'stage':15}{'tasks':>7}{'CPU hours':>11}{'longest task':>14}{'memory of one':>15}{'files':>11}"
+        f"{'stage':15}{'tasks':>7}{'CPU hours':>11}{'longest task':>14}{'memory of one':>15}"
+        f"{'files':>11}"
     )
     for stage in dict.fromkeys(job.stage for job in jobs):
         mine = [job for job in jobs if job.stage == stage and job.cores]
         print(
             f"{stage:15}{len(mine):7}{sum(job.cpu_s for job in mine) / 3600:11.2f}"
-            f"{time_text(max(job.wall_s for job in mine)):>14}{max(job.memory_mib for job in mine):11.0f} MiB"
+            f"{time_text(max(job.wall_s for job in mine)):>14}"
+            f"{max(job.memory_mib for job in mine):11.0f} MiB"
             f"{size_text(sum(job.file_bytes for job in mine)):>11}"
         )
 
 
-def print_path(jobs, start_s):
+def print_path(jobs: list[farm_graph.Job], start_s: float) -> None:
     path = farm_graph.critical_path(jobs)
     total = sum(job.wall_s + start_s for job in path)
     print(
@@ -250,7 +260,12 @@ def print_path(jobs, start_s):
     )
 
 
-def row_of(jobs, farm, outcome, cpu_s):
+def row_of(
+    jobs: list[farm_graph.Job],
+    farm: farm_schedule.Farm,
+    outcome: farm_schedule.Outcome,
+    cpu_s: float,
+) -> dict[str, Any]:
     core_s = sum(jobs[a.job].cores * (a.end_s - a.begin_s) for a in outcome.attempts)
     once_s = sum(job.cores * (job.wall_s + farm.start_s) for job in jobs if job.cores)
     whole_s = farm.nodes * farm.cores * outcome.wall_s
@@ -265,34 +280,37 @@ def row_of(jobs, farm, outcome, cpu_s):
     }
 
 
-def print_rows(rows):
+def print_rows(rows: list[dict[str, Any]]) -> None:
     print(
-        f"\n{'nodes':>6}{'wall time':>12}{'times faster':>14}{'cores taken':>13}{'CPU used':>10}{'failures':>10}"
+        f"\n{'nodes':>6}{'wall time':>12}{'times faster':>14}{'cores taken':>13}{'CPU used':>10}"
+        f"{'failures':>10}"
         f"{'attempts':>10}{'lost':>11}"
     )
     for row in rows:
         print(
-            f"{row['nodes']:6}{time_text(row['wall_s']):>12}{rows[0]['wall_s'] / row['wall_s']:14.1f}"
-            f"{100 * row['busy']:11.0f} %{100 * row['cpu_share']:8.0f} %{row['failures']:10}{row['attempts']:10}"
+            f"{row['nodes']:6}{time_text(row['wall_s']):>12}"
+            f"{rows[0]['wall_s'] / row['wall_s']:14.1f}"
+            f"{100 * row['busy']:11.0f} %{100 * row['cpu_share']:8.0f} %{row['failures']:10}"
+            f"{row['attempts']:10}"
             f"{row['lost_h']:9.1f} h"
         )
 
 
-def print_limit(rows):
-    """Where it stops scaling: at the first farm of which tasks hold less than half."""
+def print_limit(rows: list[dict[str, Any]]) -> None:
+    """Prints where scaling ends: the first farm on which tasks hold less than half of the cores."""
     for row in rows:
         if row["busy"] < 0.5:
             print(f"\nof {row['nodes']} nodes, half of the cores and more stand idle")
             return
 
 
-def main(words):
+def main(words: list[str]) -> None:
     options = arguments(words)
     jobs = jobs_of(options)
     print_stages(jobs)
     print_path(jobs, options.start)
     cpu_s = sum(job.cpu_s for job in jobs)
-    rows, outcome = [], None
+    rows: list[dict[str, Any]] = []
     for nodes in options.nodes:
         try:
             outcome = farm_schedule.simulate(jobs, farm_of(options, nodes))

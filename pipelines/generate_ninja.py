@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Writes a build.ninja that renders scenes by the four stages, keeping every intermediate file.
+"""Writes a build.ninja that renders scenes by the four stages and keeps every intermediate file.
 
   pipelines/generate_ninja.py scenes/u-shape/scene.toml --quality draft
   ninja -f out/build.ninja
 
-With --shards N place, estimate and render are N edges each and a vpl-merge, with the same files in the end;
---shards place=4,estimate=16,render=64 gives each its own N. --launcher starts the shards elsewhere:
+With --shards N, place, estimate and render become N edges each and one of vpl-merge. The merged
+files are the same. --shards place=4,estimate=16,render=64 gives each stage its own N. --launcher
+starts the shards elsewhere:
 
-  pipelines/generate_ninja.py scenes/u-shape/scene.toml --shards 16,render=64 --launcher 'srun -n1 -c8'
+    pipelines/generate_ninja.py scenes/u-shape/scene.toml --shards 16,render=64 \
+        --launcher 'srun -n1 -c8'
   ninja -j 64 -f out/build.ninja
 
 Ninja remembers each stage's command and reads its depfile, so a stage runs again when an input,
@@ -21,7 +23,8 @@ import shlex
 import output_guard
 import stages
 
-# Stages take all cores, so one runs at a time whatever -j says. So do shards, unless they are launched elsewhere.
+# A stage uses all cores, so one runs at a time, whatever -j is. The same holds for shards, unless a
+# launcher starts them elsewhere.
 MARK = "# Made by generate_ninja.py"
 HEADER = (
     MARK
@@ -48,7 +51,7 @@ rule shard
 )
 
 
-def arguments():
+def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
     p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
     stages.add_arguments(p)
@@ -56,7 +59,8 @@ def arguments():
         "--launcher",
         default="",
         metavar="COMMAND",
-        help="goes before the command of each shard, such as 'srun -n1 -c8'; ninja -j says how many at once",
+        help="goes before the command of each shard, such as 'srun -n1 -c8'; ninja -j says how "
+        "many at once",
     )
     p.add_argument(
         "--record",
@@ -70,7 +74,7 @@ def arguments():
     return options
 
 
-def build(task, out, options):
+def build(task: stages.Task, out: str, options: argparse.Namespace) -> list[str]:
     """One build statement."""
     command = task.command
     if options.record:
@@ -96,8 +100,8 @@ def build(task, out, options):
     return rows
 
 
-def write_graph(target, text):
-    """Over nobody else's graph, such as that of CMake."""
+def write_graph(target: pathlib.Path, text: str) -> None:
+    """Writes the graph, but does not replace another program's, such as CMake's."""
     output_guard.or_exit(
         output_guard.write,
         target,
@@ -107,7 +111,7 @@ def write_graph(target, text):
     )
 
 
-def main():
+def main() -> None:
     options = arguments()
     for scene in options.scenes:
         stages.check_scene(scene)
@@ -120,7 +124,8 @@ def main():
         rows += [
             "",
             *(row for task in tasks for row in build(task, out, options)),
-            f"build {stages.name_of(scene)}: phony {' '.join(image for image, _ in stages.images_in(scene, options))}",
+            f"build {stages.name_of(scene)}: phony "
+            f"{' '.join(image for image, _ in stages.images_in(scene, options))}",
         ]
     target = pathlib.Path(options.out) / "build.ninja"
     text = "\n".join(rows) + "\n"

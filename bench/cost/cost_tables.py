@@ -1,11 +1,13 @@
-"""cost_model.json as Markdown."""
+"""Prints cost_model.json as Markdown."""
 
 import statistics
+from typing import Any
 
+Json = dict[str, Any]
 FIGURES = {"cpu_s": "CPU s", "memory_MiB": "MiB", "file_bytes": "bytes"}
 
 
-def rates(model):
+def rates(model: Json) -> list[str]:
     rows = ["| stage | CPU seconds | memory, MiB | bytes of the file |", "|---|---|---|---|"]
     for stage, figures in model["rates"].items():
         cells = []
@@ -21,14 +23,14 @@ def rates(model):
     return rows
 
 
-def short(n):
+def short(n: float) -> str:
     for size, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
         if n >= size:
             return f"{n / size:.3g}{letter}"
     return f"{n:g}"
 
 
-def counts(check):
+def counts(check: Json) -> str:
     given = check["counts"]
     words = [
         f"{short(given[key])} {name}"
@@ -50,15 +52,16 @@ def counts(check):
     return ", ".join(words)
 
 
-def error(measured, predicted):
+def error(measured: float, predicted: float) -> float:
     return 100 * (predicted / measured - 1)
 
 
-def summary(model):
-    def line(what, errors):
+def summary(model: Json) -> list[str]:
+    def line(what: str, errors: list[float]) -> str:
+        median = statistics.median([abs(e) for e in errors])
         return (
             f"- {what}: {sum(abs(e) <= 20 for e in errors)} of {len(errors)} within 20 %, median "
-            f"{statistics.median(map(abs, errors)):.0f} %, most {max(errors, key=abs):+.0f} %."
+            f"{median:.0f} %, most {max(errors, key=abs):+.0f} %."
         )
 
     own = [c for c in model["checks"] if "scaled_cpu_s" not in c]
@@ -85,11 +88,12 @@ def summary(model):
     ]
 
 
-def checks(model):
+def checks(model: Json) -> list[str]:
     rows = [
         *summary(model),
         "",
-        "| scene, triangles | stage | counts | CPU s: took | predicted | error | scaled, error | MiB: took | predicted | error |",
+        "| scene, triangles | stage | counts | CPU s: took | predicted | error | scaled, error | "
+        "MiB: took | predicted | error |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for check in model["checks"]:
@@ -97,7 +101,8 @@ def checks(model):
         mib = check["figures"]["memory_MiB"]
         scaled = check.get("scaled_cpu_s")
         rows.append(
-            f"| {check['scene']}, {short(check['triangles'])} | {check['stage']} | {counts(check)} | {took:.2f} | {said:.2f} | "
+            f"| {check['scene']}, {short(check['triangles'])} | {check['stage']} | "
+            f"{counts(check)} | {took:.2f} | {said:.2f} | "
             f"{error(took, said):+.0f} % | "
             + (f"{scaled:.2f}, {error(took, scaled):+.0f} %" if scaled else "")
             + f" | {mib[0]:.0f} | {mib[1]:.0f} | {error(*mib):+.0f} % |"
@@ -105,5 +110,5 @@ def checks(model):
     return rows
 
 
-def tables(model):
+def tables(model: Json) -> str:
     return "\n".join([*rates(model), "", *checks(model)]) + "\n"

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Renders a scene on a Slurm cluster: place, estimate and render as arrays of shards, each with a merge after it.
+"""Renders a scene on a Slurm cluster. Place, estimate and render are arrays of shards with a merge.
 
-  pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 16,render=64 --memory 8G,eliminate=32G --time 2:00:00
+    pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 16,render=64 \
+        --memory 8G,eliminate=32G --time 2:00:00
 
-Run it in a folder that all nodes see at the same path; paths are relative to it. The images are those of one run,
-byte for byte. Logs, records and a summary go to OUT/SCENE/run. The same command again submits what is missing.
+Run it in a folder that all nodes see at the same path; paths are relative to it. The images equal
+those of a run on one machine, byte for byte. Logs, records and a summary go to OUT/SCENE/run. The
+same command again submits only what is missing.
 """
 
 import argparse
@@ -15,6 +17,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Collection, Iterable
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -25,7 +28,7 @@ import stages  # noqa: E402
 import task as task_program  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
-SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
+SECONDS_TO_SAVE = 60  # time before the limit at which a task begins to save its checkpoint
 JOB = output_guard.json_object("a job of this program", "threads", "retries", "tasks")
 IDS = output_guard.json_kind(
     "a list of jobs of this program",
@@ -36,11 +39,11 @@ IDS = output_guard.json_kind(
 )
 
 
-def per_stage(value, **others):
+def per_stage(value: str, **others: str) -> dict[str, str]:
     return dict.fromkeys(KINDS, value) | others
 
 
-def arguments():
+def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -73,7 +76,8 @@ def arguments():
         pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
         what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)",
         default=per_stage("auto"),
-        help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and render are queued again when they reach it, and go on",
+        help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and "
+        "render are queued again when they reach it, and go on",
     )
     p.add_argument(
         "--at-once",
@@ -86,7 +90,8 @@ def arguments():
         type=int,
         default=3,
         metavar="N",
-        help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count",
+        help="times that a task whose tool is killed is queued again (default 3); failed nodes "
+        "do not count",
     )
     p.add_argument(
         "--sbatch",
@@ -105,21 +110,21 @@ def arguments():
     return options
 
 
-def kind_of(stage):
+def kind_of(stage: str) -> str:
     return "merge" if stage.startswith("merge-") else stage
 
 
-def jobs_of(scene, options):
-    """[(stage, its tasks)] in the order in which they run."""
-    jobs = {}
+def jobs_of(scene: str, options: argparse.Namespace) -> list[tuple[str, list[stages.Task]]]:
+    """Pairs (stage, its tasks) in the order in which they run."""
+    jobs: dict[str, list[stages.Task]] = {}
     for task in stages.tasks_of(scene, options):
         jobs.setdefault(task.stage, []).append(task)
     return list(jobs.items())
 
 
-def ranges(numbers):
-    """1-3,7 for 1, 2, 3, 7."""
-    parts = []
+def ranges(numbers: Iterable[int]) -> str:
+    """Ranges in the notation of sbatch --array: 1-3,7 for 1, 2, 3, 7."""
+    parts: list[list[int]] = []
     for n in numbers:
         if parts and parts[-1][1] == n - 1:
             parts[-1][1] = n
@@ -129,28 +134,29 @@ def ranges(numbers):
 
 
 class Submission:
-    def __init__(self, scene, options):
+    def __init__(self, scene: str, options: argparse.Namespace) -> None:
         self.options, self.scene = options, scene
         self.run = pathlib.Path(stages.folder_of(scene, options)) / "run"
-        self.submitted = {}  # stage: id
+        self.submitted: dict[str, str] = {}  # number of the Slurm job of each stage
         self.needs = needs.Needs(options)
         self.ids = self.run / "jobs.json"
 
-    def job_file(self, name):
+    def job_file(self, name: str) -> pathlib.Path:
         return self.run / f"{name}.job.json"
 
-    def check_files(self, names):
-        """All that will be written, before anything is."""
+    def check_files(self, names: Iterable[str]) -> None:
+        """Checks every file that the run will write, before it writes any."""
         for folder in (self.run, self.run / "earlier"):
             if folder.exists() and not folder.is_dir():
                 stages.refuse(
-                    f"{folder}: is no folder, which the run needs there; give another --out, or remove it"
+                    f"{folder}: is no folder, which the run needs there; give another --out, or "
+                    "remove it"
                 )
         for file, kind in [(self.ids, IDS), *((self.job_file(name), JOB) for name in names)]:
             output_guard.or_exit(output_guard.check, file, kind)
 
-    def refuse_while_queued(self):
-        """Two runs of one scene would do the same work twice."""
+    def refuse_while_queued(self) -> None:
+        """Refuses to submit while an earlier run of the scene is queued: it does the same work."""
         if not self.ids.exists():
             return
         known = set(json.loads(self.ids.read_text()).values())
@@ -159,18 +165,19 @@ class Submission:
         } & known
         if queued:
             stages.refuse(
-                f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end them with scancel"
+                f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end "
+                "them with scancel"
             )
 
-    def put_aside(self, names):
-        """Records of tasks that this run does not have, such as those of another number of shards."""
+    def put_aside(self, names: Collection[str]) -> None:
+        """Moves away records of tasks that this run lacks, such as those of other shard counts."""
         earlier = self.run / "earlier"
         for file in self.run.glob(f"*{record.SUFFIX}"):
             if file.name.removesuffix(record.SUFFIX).rpartition(".")[0] not in names:
                 earlier.mkdir(exist_ok=True)
                 file.replace(earlier / file.name)
 
-    def slurm(self, *command):
+    def slurm(self, *command: str) -> str:
         try:
             done = subprocess.run(command, text=True, stdout=subprocess.PIPE)
         except FileNotFoundError:
@@ -180,11 +187,11 @@ class Submission:
             stages.refuse(f"{command[0]} failed, as it says above; no job of this run is left")
         return done.stdout
 
-    def undo(self):
+    def undo(self) -> None:
         if self.submitted:
             subprocess.run(["scancel", *self.submitted.values()])
 
-    def limits(self, name, kind):
+    def limits(self, name: str, kind: str) -> tuple[str, str, str]:
         memory, time, cores = (
             each[kind] for each in (self.options.memory, self.options.time, self.options.cpus)
         )
@@ -194,7 +201,7 @@ class Submission:
             cores,
         )
 
-    def submit(self, name, kind, words, command, note):
+    def submit(self, name: str, kind: str, words: list[str], command: list[str], note: str) -> None:
         chosen = self.options
         memory, time, cores = self.limits(name, kind)
         full = [
@@ -218,7 +225,7 @@ class Submission:
         output_guard.or_exit(output_guard.write, self.ids, json.dumps(self.submitted) + "\n", IDS)
         print(f"{self.submitted[name]}  {name}: {note}", flush=True)
 
-    def submit_stage(self, name, tasks):
+    def submit_stage(self, name: str, tasks: list[stages.Task]) -> None:
         before = [self.submitted[stage] for stage in tasks[0].after if stage in self.submitted]
         described = [dataclasses.asdict(task) for task in tasks]
         wanted = [
@@ -259,7 +266,7 @@ class Submission:
         program = [sys.executable, str(HERE / "task.py"), str(self.job_file(name))]
         self.submit(name, kind, words, program, note)
 
-    def submit_summary(self):
+    def submit_summary(self) -> None:
         command = [
             f"{self.options.bin}/vpl-inspect",
             "run",
@@ -274,7 +281,7 @@ class Submission:
         ]
         self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
 
-    def submit_all(self):
+    def submit_all(self) -> None:
         jobs = jobs_of(self.scene, self.options)
         if not self.options.dry_run:
             for command in ("sbatch", "squeue", "scancel"):
@@ -284,7 +291,7 @@ class Submission:
                     )
             self.check_files([name for name, _ in jobs])
             self.refuse_while_queued()
-            for name, _ in jobs:  # what cannot be known is refused before anything is done
+            for name, _ in jobs:  # refuses unknown needs before anything is written
                 self.limits(name, kind_of(name))
             self.run.mkdir(parents=True, exist_ok=True)
             self.put_aside({task.name for _, tasks in jobs for task in tasks})
@@ -296,7 +303,7 @@ class Submission:
         self.submit_summary()
 
 
-def main():
+def main() -> None:
     options = arguments()
     Submission(options.scene, options).submit_all()
 
