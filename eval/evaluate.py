@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The evaluation: runs the comparisons of settings.toml through the tools and writes one report.
+"""Runs the comparisons of settings.toml through the tools and writes one report.
 
 eval/evaluate.py --size standard
 eval/evaluate.py --size quick --parts methods,gather
@@ -13,12 +13,13 @@ import platform
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from bnvpl_eval import output, settings
 from bnvpl_eval.context import Context
 from bnvpl_eval.runner import Runner
 
-# In the order in which they may use each other's rows.
+# Parts run in this order, so that later ones may use the rows of earlier ones.
 PARTS = [
     "methods",
     "scatter",
@@ -62,7 +63,7 @@ def commit() -> str:
     return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
 
 
-def provenance(size: str, runner: Runner) -> dict:
+def provenance(size: str, runner: Runner) -> dict[str, Any]:
     return {
         **runner.provenance,
         "size": size,
@@ -144,7 +145,7 @@ def main() -> int:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
     output.check(folder)
-    # What holds at the beginning: hours later the working tree may be another.
+    # The state at the beginning counts, as the working tree may have changed hours later.
     begin = {
         "commit": arguments.commit or commit(),
         "processor": processor(),

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Scenes of other programs: the gallery of docs/results.md, and how three ways to light them agree.
+"""Makes the gallery of docs/results.md: scenes of other programs, lit by three integrators.
 
   PBRT_SCENES=/folder/of/pbrt/scenes eval/gallery.py
 
-Renders each scene by the path tracer, the light tracer and VPLs, compares their means, and those of blocks with
-the author's own render where there is one. Writes docs/images/gallery-*.jpg, docs/images/author-*.jpg and the table
-'gallery' of docs/results.md. Scenes whose folder is not there are left out.
+Renders each scene by the path tracer, the light tracer and VPLs and compares their means. Where an
+author's render exists, means of blocks are compared with it. Writes docs/images/gallery-*.jpg,
+docs/images/author-*.jpg and the table 'gallery' of docs/results.md. Scenes whose folder does not
+exist are left out.
 """
 
 import argparse
@@ -15,8 +16,10 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image
 
 import write_docs
@@ -24,15 +27,15 @@ from bnvpl_eval import images, output, settings
 from bnvpl_eval.runner import Run, Runner
 from evaluate import commit
 
-WIDTH = 960  # pixels, of the gallery
-BLOCKS = 8  # a side, of the comparison with an author's render
+WIDTH = 960  # width of the gallery's pictures in pixels
+BLOCKS = 8  # blocks along each side in the comparison with an author's render
 
 
 @dataclass(frozen=True)
 class Scene:
     id: str
     title: str
-    file: str  # below PBRT_SCENES, or below the project's folder
+    file: str  # path below PBRT_SCENES, or below the project's folder
     aspect: tuple[int, int] = (16, 9)
     options: tuple[str, ...] = ()
     author: str = ""
@@ -183,11 +186,11 @@ class Gallery:
             )
 
 
-def beside_author(scene: Scene, ours: np.ndarray) -> str:
-    """Ratios of blocks, ours over the author's: the middle one, and where four fifths of them lie."""
+def beside_author(scene: Scene, ours: npt.NDArray[Any]) -> str:
+    """Ratios of blocks, ours over the author's: median, 10th and 90th percentile."""
     if not scene.author:
         return ""
-    theirs = resized(images.read(scene.path.parent / scene.author), ours.shape[:2])
+    theirs = resized(images.read(scene.path.parent / scene.author), (ours.shape[0], ours.shape[1]))
     ratios = np.sort(blocks(ours) / np.maximum(blocks(theirs), 1e-6))
     low, middle, high = (
         ratios[len(ratios) // 10],
@@ -197,7 +200,7 @@ def beside_author(scene: Scene, ours: np.ndarray) -> str:
     return f"{middle:.2f} ({low:.2f} to {high:.2f})"
 
 
-def ratio(values: np.ndarray, to: np.ndarray) -> str:
+def ratio(values: npt.NDArray[Any], to: npt.NDArray[Any]) -> str:
     error = np.hypot(values.std(ddof=1) / values.mean(), to.std(ddof=1) / to.mean()) / np.sqrt(
         len(values)
     )
@@ -205,27 +208,31 @@ def ratio(values: np.ndarray, to: np.ndarray) -> str:
     return f"{value:.3f} ± {value * error:.3f}"
 
 
-def exposure(pixels: np.ndarray) -> float:
-    """Middle grey for the logarithmic mean, as vpl-render --exposure auto."""
+def exposure(pixels: npt.NDArray[Any]) -> float:
+    """Scale that maps the logarithmic mean to middle grey, as vpl-render --exposure auto does."""
     luminance = pixels @ np.array([0.2126, 0.7152, 0.0722])
-    return 0.18 / np.exp(np.log(luminance[luminance > 0]).mean())
+    result: float = 0.18 / np.exp(np.log(luminance[luminance > 0]).mean())
+    return result
 
 
-def blocks(pixels: np.ndarray) -> np.ndarray:
+def blocks(pixels: npt.NDArray[Any]) -> npt.NDArray[Any]:
     height, width = (side // BLOCKS * BLOCKS for side in pixels.shape[:2])
     cut = pixels[:height, :width].mean(axis=2)
-    return cut.reshape(BLOCKS, height // BLOCKS, BLOCKS, width // BLOCKS).mean(axis=(1, 3)).ravel()
+    result: npt.NDArray[Any] = (
+        cut.reshape(BLOCKS, height // BLOCKS, BLOCKS, width // BLOCKS).mean(axis=(1, 3)).ravel()
+    )
+    return result
 
 
-def resized(pixels: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """By means over what falls into each pixel; `shape`: height, width."""
+def resized(pixels: npt.NDArray[Any], shape: tuple[int, int]) -> npt.NDArray[Any]:
+    """Resizes by a box filter to `shape` = (height, width)."""
     channels = [
         Image.fromarray(pixels[:, :, c]).resize((shape[1], shape[0]), Image.BOX) for c in range(3)
     ]
     return np.stack([np.asarray(channel) for channel in channels], axis=2)
 
 
-def save(pixels: np.ndarray, name: str) -> None:
+def save(pixels: npt.NDArray[Any], name: str) -> None:
     output.save(
         write_docs.DOCS / "images" / f"{name}.jpg",
         output.output_guard.JPEG,
@@ -235,7 +242,10 @@ def save(pixels: np.ndarray, name: str) -> None:
 
 def write_table(rows: list[str]) -> None:
     path = write_docs.DOCS / "results.md"
-    heads = "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / author's render |\n|---|---|---|---|"
+    heads = (
+        "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / "
+        "author's render |\n|---|---|---|---|"
+    )
     made = f"<!-- tools of {commit()}, {datetime.date.today().isoformat()} -->"
     text = "\n".join(["<!-- gallery -->", heads, *rows, "", made, "<!-- end -->"])
     output.write_page(

@@ -32,7 +32,8 @@ def main() -> int:
         references.require(view, film)
         halves = references.load(view, film, "indirect")
         print(
-            f"{view.name} {film}: halves differ by {references.half_difference(halves):.4f} of the mean (RMS)",
+            f"{view.name} {film}: halves differ by {references.half_difference(halves):.4f} of "
+            "the mean (RMS)",
             flush=True,
         )
     return 0

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""Equal time, the full image: how far VPLs at default options are ahead of path tracing, room by room.
+"""Compares VPLs at default options with path tracing at equal time, room by room, full image.
 
-  export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder
-  eval/rooms.py --also light guided spread-path cycles
-  eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom   # as published ratios
+  export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder SPONZA_DIR=/folder
+  VEACH_AJAR_DIR=/folder eval/rooms.py --also light guided spread-path cycles
+    eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom
 
-For each room: the pipeline with two settings, the path tracer with the samples that take the CPU time of all four
-stages, and others if they are asked for; against two halves of a reference: means over its mean, relMSE, RMSE / mean,
-SMAPE and FLIP. Each room's rows go into docs/rooms.csv, in place of those of an earlier run; from them rooms_page.py
-makes table and picture of docs/results.md. Rooms whose files are not there are left out, and for Cycles those that it
-cannot read (eval/cycles).
+The last command yields the published ratios. Each room is rendered by the pipeline with two
+settings, by the path tracer with as many samples as fit in the CPU time of all four stages, and by
+others on request. All are judged by two halves of a reference: means over its mean, relMSE,
+RMSE / mean, SMAPE and FLIP.
+
+The rows of each room replace those of an earlier run in docs/rooms.csv, from which rooms_page.py
+makes a table and a picture of docs/results.md. Rooms whose files do not exist are left out, as are,
+for Cycles, those that it cannot read (eval/cycles).
 """
 
 import argparse
@@ -20,8 +23,10 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "pipelines"))
 import gallery
@@ -61,8 +66,8 @@ SCENES = (
 )
 
 
-def options_of(counts: dict) -> tuple[list, list, list, list]:
-    """Of the stages, for one of the presets that pipelines read."""
+def options_of(counts: dict[str, Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
+    """Options of the four stages for the counts of a preset of the pipelines."""
     return (
         ["-n", counts["CANDIDATES"]],
         ["-n", counts["VPLS"]],
@@ -74,18 +79,18 @@ def options_of(counts: dict) -> tuple[list, list, list, list]:
 SETTINGS = {
     name: options_of(counts) for name, counts in stages.presets().items() if name != "final"
 }
-# Integrators that are not a method's name alone.
+# Names for integrators with options.
 VARIANTS = {
     "unlit-path": ["path", "--light-sampling", "off"],
     "spread-path": ["path", "--fireflies", "redistribute"],
 }
-# How far the mean is off, and four measures of error.
+# Mean over the reference's mean, and four measures of error.
 COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
 CYCLES = settings.ROOT / "eval/cycles/render_cycles.py"
 
 
 def missing(scene: gallery.Scene) -> str:
-    """What it needs and has not, or nothing."""
+    """What the scene lacks, or nothing."""
     if not scene.path.is_file():
         return f"{scene.path} is not there"
     if scene.path.suffix != ".toml":
@@ -101,18 +106,22 @@ def missing(scene: gallery.Scene) -> str:
 @dataclass
 class Rooms:
     runner: Runner
-    references: Runner  # their tools may be those of an earlier build
+    references: Runner  # runs the tools that render references; another build is allowed
     width: int
     reference_spp: int
-    truth: str = "vpl"  # who renders the reference
-    path_length: int = 0  # segments from the camera to a light; 0: as long as they get
+    truth: str = "vpl"  # method that renders the reference
+    path_length: int = 0  # maximum number of segments from camera to light; 0 for no limit
 
-    def bounces(self) -> list:
-        """Neither the first surface nor the light is one."""
+    def bounces(self) -> list[Any]:
+        """Option for the bounces of a path, which exclude the first surface and the light."""
         return ["--max-bounces", self.path_length - 2] if self.path_length else []
 
     def render(
-        self, scene: gallery.Scene, options: list, lit: Path | None = None, by: Runner | None = None
+        self,
+        scene: gallery.Scene,
+        options: list[Any],
+        lit: Path | None = None,
+        by: Runner | None = None,
     ) -> Run:
         inputs = {"scene": scene.path} | ({"lit": lit} if lit else {})
         return (by or self.runner).run(
@@ -135,7 +144,7 @@ class Rooms:
         )
 
     def lit(
-        self, scene: gallery.Scene, setting: tuple, by: Runner | None = None
+        self, scene: gallery.Scene, setting: tuple[Any, ...], by: Runner | None = None
     ) -> tuple[Path, float]:
         """Lit VPLs, and CPU seconds of the stages before render."""
         (place, eliminate, estimate, _), tools = setting, by or self.runner
@@ -161,7 +170,7 @@ class Rooms:
         return lit["lit.vpl"], sum(run.cpu_s for run in (placed, kept, lit))
 
     def ours(self, scene: gallery.Scene, setting: str) -> tuple[Path, float]:
-        """The image, and CPU seconds of all stages."""
+        """The image of the pipeline, and CPU seconds of all stages."""
         lit, before_s = self.lit(scene, SETTINGS[setting])
         shown = self.render(scene, SETTINGS[setting][3], lit)
         return shown["image.exr"], before_s + shown.cpu_s
@@ -169,7 +178,7 @@ class Rooms:
     def timed(
         self, scene: gallery.Scene, setting: str, other: str, seconds: float
     ) -> tuple[Path, int]:
-        """By another, with the samples a pixel that take as long."""
+        """The image of another integrator, with the samples a pixel that fit in `seconds`."""
         few, more = (self.by_samples(scene, setting, other, spp)[1] for spp in (4, 20))
         per_sample = max(1e-3, more - few) / 16
         spp = max(1, round((seconds - max(0.0, few - 4 * per_sample)) / per_sample))
@@ -178,7 +187,7 @@ class Rooms:
     def by_samples(
         self, scene: gallery.Scene, setting: str, other: str, spp: int
     ) -> tuple[Path, float]:
-        """The image, and CPU seconds of all that it takes."""
+        """The image of another integrator, and CPU seconds of all its stages."""
         sampled = ["--spp", spp, "--seed", 2, *self.bounces()]
         if other == "guided":
             lit, before_s = self.lit(scene, SETTINGS[setting])
@@ -247,8 +256,10 @@ class Rooms:
             "image.exr"
         ]
 
-    def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray | None:
-        """COLUMNS; none where there is no light."""
+    def measures(
+        self, scene: gallery.Scene, image: Path, layer: str = ""
+    ) -> npt.NDArray[Any] | None:
+        """Values for COLUMNS, or None where the layer has no light."""
         halves = self.halves(scene)
         truth = np.mean([images.read(half, layer) for half in halves])
         if not truth > 0:
@@ -278,7 +289,7 @@ class Rooms:
             ]
         )
 
-    def rows(self, scene: gallery.Scene, also: list[str]) -> list[dict]:
+    def rows(self, scene: gallery.Scene, also: list[str]) -> list[dict[str, Any]]:
         rows = []
         direct, all_light = (
             np.mean([images.read(half, layer) for half in self.halves(scene)])
@@ -294,13 +305,13 @@ class Rooms:
             for layer in ("", "direct", "indirect"):
                 ours = self.measures(scene, image, layer)
                 for other, (picture, spp) in others.items():
-                    # Cycles' image is one layer.
+                    # The image of Cycles has one layer.
                     theirs = (
                         None
                         if ours is None or other == "cycles" and layer
                         else self.measures(scene, picture, layer)
                     )
-                    if theirs is not None:
+                    if ours is not None and theirs is not None:
                         rows.append(
                             {
                                 "room": scene.title,
@@ -310,10 +321,13 @@ class Rooms:
                                 "cpu_s": f"{seconds:.0f}",
                                 "its_spp": spp,
                                 "indirect_share": f"{1 - direct / all_light:.2f}",
-                                **{column: f"{value:.4g}" for column, value in zip(COLUMNS, ours)},
+                                **{
+                                    column: f"{value:.4g}"
+                                    for column, value in zip(COLUMNS, ours, strict=True)
+                                },
                                 **{
                                     f"its_{column}": f"{value:.4g}"
-                                    for column, value in zip(COLUMNS, theirs)
+                                    for column, value in zip(COLUMNS, theirs, strict=True)
                                 },
                             }
                         )
@@ -337,7 +351,8 @@ def main() -> int:
         choices=("vpl", "path"),
         default="vpl",
         help="who renders the reference: VPLs, 12k of them "
-        "with seeds of their own, which have less noise, or the path tracer, which shares nothing with them",
+        "with seeds of their own, which have less noise, or the path tracer, which shares "
+        "nothing with them",
     )
     parser.add_argument("--reference-spp", type=int, default=64, help="of each half")
     parser.add_argument(
@@ -346,7 +361,8 @@ def main() -> int:
         default=[],
         choices=("light", "guided", *VARIANTS, "cycles"),
         metavar="OTHER",
-        help="light, guided, unlit-path (without light sampling), spread-path (its fireflies redistributed), cycles",
+        help="light, guided, unlit-path (without light sampling), spread-path (its fireflies "
+        "redistributed), cycles",
     )
     parser.add_argument(
         "--path-length",

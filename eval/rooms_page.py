@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Table 'rooms' and picture rooms.svg of docs/results.md, and the table of guided paths in their theory, from docs/rooms.csv, which
-rooms.py writes."""
+"""Makes tables and a picture from docs/rooms.csv, which rooms.py writes.
+
+They are the table 'rooms' and the picture rooms.svg of docs/results.md, and the table in the theory
+of guided paths.
+"""
 
 import csv
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import write_docs
 from bnvpl_eval import output
@@ -30,39 +34,40 @@ COLOURS = {
 KEY = ("room", "setting", "light", "beside", "path_length")
 
 
-def read() -> list[dict]:
+def read() -> list[dict[str, Any]]:
     return list(csv.DictReader(RESULTS.open(newline=""))) if RESULTS.is_file() else []
 
 
-def add(rows: list[dict]) -> None:
-    """In place of older rows of the same."""
+def add(rows: list[dict[str, Any]]) -> None:
+    """Adds rows, which replace older ones with the same values in the columns KEY."""
     of = {tuple(str(row[key]) for key in KEY): row for row in (*read(), *rows)}
     output.write_csv(RESULTS, list(of.values()))
 
 
-def ratio(row: dict, column: str) -> float:
-    """Theirs over ours."""
+def ratio(row: dict[str, Any], column: str) -> float:
+    """Value of the other integrator over ours."""
     return float(row[f"its_{column}"]) / max(1e-9, float(row[column]))
 
 
 def two(value: float) -> str:
-    """Two digits, never as a power of ten."""
+    """Two significant digits, without an exponent for the usual range."""
     return f"{float(f'{value:.2g}'):g}"
 
 
-def indirect_mean(rows: list[dict]) -> float:
-    """Ours over that of all others, each weighted by its noise."""
+def indirect_mean(rows: list[dict[str, Any]]) -> float:
+    """Our indirect mean over that of all others, weighted by their inverse squared RMSE."""
     weights = [float(row["its_rmse"]) ** -2 for row in rows]
     return (
         float(rows[0]["mean"])
         * sum(weights)
-        / sum(w * float(row["its_mean"]) for w, row in zip(weights, rows))
+        / sum(w * float(row["its_mean"]) for w, row in zip(weights, rows, strict=True))
     )
 
 
-def table(rows: list[dict]) -> str:
-    """Of the default setting's full images."""
-    shown, indirect = {}, {}
+def table(rows: list[dict[str, Any]]) -> str:
+    """Table of the full images at the default setting."""
+    shown: dict[str, dict[str, dict[str, Any]]] = {}
+    indirect: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
         if row["setting"] != "default":
             continue
@@ -72,7 +77,8 @@ def table(rows: list[dict]) -> str:
             indirect.setdefault(row["room"], []).append(row)
     others = [other for other in OTHERS if any(other in of for of in shown.values())]
     lines = [
-        "| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | relMSE: "
+        "| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | "
+        "relMSE: "
         + ", ".join(OTHERS[other] for other in others)
         + " / ours | path tracer: RMSE, SMAPE, FLIP / ours |",
         "|---|---|---|---|---|---|---|",
@@ -98,34 +104,39 @@ def table(rows: list[dict]) -> str:
         )
     made = sorted(
         {
-            f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference {row['reference']}"
+            f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference "
+            f"{row['reference']}"
             for row in rows
         }
     )
     return "\n".join([*lines, "", *(f"<!-- {line} -->" for line in made)])
 
 
-def guided_table(rows: list[dict]) -> str:
-    """The path tracer's errors over those of guided paths, full image, in the time of the default setting. Empty where
-    these are of two builds."""
-    of = {}
+def guided_table(rows: list[dict[str, Any]]) -> str:
+    """Table of the path tracer's errors over those of guided paths, in the default setting's time.
+
+    It is empty where their rows come from two builds.
+    """
+    of: dict[str, dict[str, dict[str, Any]]] = {}
     for row in rows:
         if (row["setting"], row["light"]) == ("default", "full"):
             of.setdefault(row["room"], {})[row["beside"]] = row
     both = [(room, by["path"], by["guided"]) for room, by in of.items() if "guided" in by]
     if apart := [room for room, path, guided in both if guided["tools"] != path["tools"]]:
         print(
-            f"rooms: {GUIDED.name} keeps its table of guided paths, as theirs and the path tracer's are of two builds in {', '.join(apart)}; "
+            f"rooms: {GUIDED.name} keeps its table of guided paths, as theirs and the path "
+            f"tracer's are of two builds in {', '.join(apart)}; "
             "cure: rooms.py --also guided",
             file=sys.stderr,
         )
         return ""
 
-    def times(path: dict, guided: dict, column: str) -> float:
+    def times(path: dict[str, Any], guided: dict[str, Any], column: str) -> float:
         return float(path[f"its_{column}"]) / max(1e-9, float(guided[f"its_{column}"]))
 
     lines = [
-        "| view | CPU s | spp, guided, path tracer's | relMSE | RMSE | SMAPE | FLIP | means, guided, path tracer's |",
+        "| view | CPU s | spp, guided, path tracer's | relMSE | RMSE | SMAPE | FLIP | means, "
+        "guided, path tracer's |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for room, path, guided in sorted(both, key=lambda row: -times(row[1], row[2], "relmse")):
@@ -149,7 +160,7 @@ def guided_table(rows: list[dict]) -> str:
 
 
 def put(page: Path, name: str, table: str) -> None:
-    """Between the page's comments of that name."""
+    """Replaces the text between the page's comments of that name."""
     text = f"<!-- {name} -->\n{table}\n<!-- end of {name} -->"
     output.write_page(
         page,
@@ -162,13 +173,13 @@ def put(page: Path, name: str, table: str) -> None:
     )
 
 
-def plot(rows: list[dict], path: Path) -> None:
-    """How many times our relMSE and FLIP the others have: filled at the default, hollow as a draft."""
+def plot(rows: list[dict[str, Any]], path: Path) -> None:
+    """Plots the others' relMSE and FLIP over ours: filled at default, hollow at draft."""
     rooms = list(dict.fromkeys(row["room"] for row in rows))
     figure, axes = plt.subplots(
         1, 2, figsize=(11, 0.36 * len(rooms) + 1.6), sharey=True, layout="constrained"
     )
-    for ax, column, title in zip(axes, ("relmse", "flip"), ("relMSE", "FLIP")):
+    for ax, column, title in zip(axes, ("relmse", "flip"), ("relMSE", "FLIP"), strict=True):
         for row in rows:
             if row["light"] != "full" or row["beside"] not in OTHERS:
                 continue
@@ -188,7 +199,7 @@ def plot(rows: list[dict], path: Path) -> None:
         ax.set_xlabel(f"{title} at equal CPU time, theirs / ours")
     axes[0].set_yticks(range(len(rooms)), rooms)
     axes[0].invert_yaxis()
-    marks = dict(zip(*reversed(axes[0].get_legend_handles_labels())))
+    marks = dict(zip(*reversed(axes[0].get_legend_handles_labels()), strict=True))
     figure.suptitle(" ")  # room for the legend
     figure.legend(marks.values(), marks.keys(), loc="upper center", ncols=len(marks), frameon=False)
     output.save(

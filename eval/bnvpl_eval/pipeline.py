@@ -1,14 +1,16 @@
-"""A configuration of the four stages, and its runs."""
+"""Runs the four stages for a configuration."""
 
 import json
 import subprocess
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from .runner import Run, Runner
 from .settings import ROOT, View
 
-# How the VPLs of a set come about; options that are not here are the tools' defaults.
+# Methods of the comparison, and the options that differ from the tools' defaults.
 METHODS = {
     "light": "from the light (instant radiosity)",
     "rejection": "from the light, by rejection",
@@ -33,7 +35,7 @@ ESTIMATE = {
     "even": ("--method", "even"),
     "literal": ("--method", "even", "--emit-points", "0"),
 }
-REJECTION_CANDIDATES = 10  # photons' VPLs for each that is to be kept
+REJECTION_CANDIDATES = 10  # VPLs from photons for each VPL that is kept
 RENDER = {
     "literal": ("--compensate", "none", "--fireflies", "keep"),
 }
@@ -44,43 +46,45 @@ class Configuration:
     method: str
     vpls: int
     photons: int
-    candidates: int  # of the camera's methods
+    candidates: int  # count for methods that place from the camera
     spp: int
     film: str  # WIDTHxHEIGHT
-    place: tuple = ()
-    eliminate: tuple = ()
-    estimate: tuple = ()
-    render: tuple = ()
+    place: tuple[Any, ...] = ()
+    eliminate: tuple[Any, ...] = ()
+    estimate: tuple[Any, ...] = ()
+    render: tuple[Any, ...] = ()
 
-    def but(self, **changes) -> "Configuration":
+    def but(self, **changes: Any) -> "Configuration":
         return replace(self, **changes)
 
 
-def sampled(c: Configuration, plan: dict) -> Configuration:
-    """With the samples a pixel, near-field rays and error of cuts that a part of settings.toml asks for."""
+def sampled(c: Configuration, plan: dict[str, Any]) -> Configuration:
+    """The configuration with the samples, near-field rays and error of a part of settings.toml."""
     return c.but(
         spp=plan["spp"],
         render=(*c.render, "--near-field-rays", plan["near_field_rays"], "--error", plan["error"]),
     )
 
 
-def told(plan: dict) -> str:
+def told(plan: dict[str, Any]) -> str:
     return (
-        f"{plan['spp']} samples a pixel with {plan['near_field_rays']} near-field rays each and an error of cuts of "
+        f"{plan['spp']} samples a pixel with {plan['near_field_rays']} near-field rays each and "
+        "an error of cuts of "
         f"{plan['error']}"
     )
 
 
 def options_of(c: Configuration) -> dict[str, str]:
-    """Of each stage, beside its counts: what tells two configurations of one method apart."""
+    """Options of each stage besides counts, which tell configurations of one method apart."""
+    methods: dict[str, Mapping[str, Any]] = {
+        "place": {},
+        "eliminate": ELIMINATE,
+        "estimate": ESTIMATE,
+        "render": RENDER,
+    }
     return {
         f"{stage}_options": " ".join(map(str, (*method.get(c.method, ()), *getattr(c, stage))))
-        for stage, method in (
-            ("place", {}),
-            ("eliminate", ELIMINATE),
-            ("estimate", ESTIMATE),
-            ("render", RENDER),
-        )
+        for stage, method in methods.items()
     }
 
 
@@ -93,10 +97,11 @@ def methods_of(runner: Runner, tool: str, slot: str) -> list[str]:
 
 
 def shadow_rays(runner: Runner, view: View, c: Configuration, seed: int) -> float:
-    """Rays towards VPLs, a sample."""
-    return json.loads(image(runner, view, c, seed)[1][-1]["stats.json"].read_text())[
+    """Shadow rays towards VPLs, a sample."""
+    result: float = json.loads(image(runner, view, c, seed)[1][-1]["stats.json"].read_text())[
         "mean_shadow_rays"
     ]
+    return result
 
 
 def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:

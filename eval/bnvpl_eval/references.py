@@ -1,21 +1,24 @@
-"""The references: images traced path by path in two independent halves, kept in eval/references/.
+"""Renders the references: traced images in two independent halves, kept in eval/references/.
 
-A half is the mean of renders of CHUNK samples a pixel with different seeds: a stopped run goes on where it
-was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples, half,
-integrator); a stored reference whose key differs is refused.
+A half is the mean of renders of CHUNK samples a pixel with different seeds, so a stopped run
+resumes and a stored half can take more samples. `key` hashes all that the image depends on:
+content of the scene, film, samples, half, integrator. A stored reference whose key differs is
+refused.
 """
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import images
 from .guard import guarded, output_guard
 from .runner import Runner, digest, scene_key
 from .settings import EVAL, ROOT, View
 
-CHUNK = 2048  # spp of one render
+CHUNK = 2048  # samples a pixel of one render
 FOLDER = EVAL / "references"
 RECORD = output_guard.json_object(
     "the record of a reference", "key", "scene", "film", "spp", "half"
@@ -27,8 +30,11 @@ def path(view: View, film: str, half: str) -> Path:
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
-    """At least `spp` samples a pixel. A stored half of the same scene and integrator is gone on with, not begun anew: its
-    samples keep their weight (that it was rounded to half floats costs 0.02 %)."""
+    """Renders a half with at least `spp` samples a pixel.
+
+    A stored half of the same scene and integrator is continued: its samples keep their weight. Its
+    rounding to half floats costs 0.02 %.
+    """
     target = path(view, film, half)
     stored = _stored(view, film, half)
     done = stored["spp"] if stored else 0
@@ -37,7 +43,7 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     chunk = min(spp - done, CHUNK)
     first_seed = (
         stored["seeds"][1] + 2 if stored else 1000 + (half == "b")
-    )  # away from the seeds that are judged
+    )  # differs from the seeds that are judged
     seeds = range(first_seed, first_seed + 2 * -(-(spp - done) // chunk), 2)
     sums = {
         layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0
@@ -91,8 +97,8 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     )
 
 
-def _stored(view: View, film: str, half: str) -> dict | None:
-    """The record of a half that is there, if it is of this scene and integrator."""
+def _stored(view: View, film: str, half: str) -> dict[str, Any] | None:
+    """Record of a stored half, if its scene and integrator match."""
     record_file = path(view, film, half).with_suffix(".json")
     if not record_file.is_file():
         return None
@@ -101,15 +107,15 @@ def _stored(view: View, film: str, half: str) -> dict | None:
 
 
 def reference_key(view: View, film: str, spp: int, half: str) -> str:
-    """The path tracer's, which is most scenes', goes unnamed."""
+    """Key of a reference. It names the integrator only where that is not the path tracer."""
     what = [scene_key(ROOT / view.file), film, spp, half]
     if view.reference_integrator != "path":
         what.append(view.reference_integrator)
     return digest(json.dumps(what).encode())
 
 
-def require(view: View, film: str) -> dict:
-    """The records of both halves; ends the program where one is missing or made otherwise."""
+def require(view: View, film: str) -> dict[str, Any]:
+    """Records of both halves. Ends the program where one is missing or has another key."""
     records = {}
     cure = f"eval/references.py --film-width {film.split('x')[0]} {view.name}"
     for half in "ab":
@@ -125,13 +131,13 @@ def require(view: View, film: str) -> dict:
     return records
 
 
-def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
-    """Both halves. require() has looked at them: hashing a model for each image would take longer than reading it."""
+def load(view: View, film: str, layer: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """Both halves. They are not checked; require() does that once, as hashing a model is slow."""
     halves = [images.read(path(view, film, half), layer) for half in "ab"]
     return halves[0], halves[1]
 
 
-def half_difference(halves: tuple[np.ndarray, np.ndarray]) -> float:
-    """RMS of the difference of the halves over the mean. The mean of both has half of that as its error."""
+def half_difference(halves: tuple[npt.NDArray[Any], npt.NDArray[Any]]) -> float:
+    """RMS difference of the halves over the mean: twice the error of the mean of both."""
     a, b = (half.astype(np.float64) for half in halves)
     return float(np.sqrt(np.mean((a - b) ** 2)) / np.mean((a + b) / 2))

@@ -1,8 +1,8 @@
-"""Runs the tools, each command once: outputs are kept under a key of what they depend on.
+"""Runs each command of the tools once: outputs are cached under a key of all that they depend on.
 
-A key is the hash of the executable, the options, and the keys (or bytes) of the inputs; so a changed option,
-tool or scene reruns exactly what depends on it. Each run leaves run.json beside its outputs: command, key,
-wall and CPU seconds, peak memory.
+A key is the hash of the executable, the options, and the keys or bytes of the inputs. A changed
+option, tool or scene reruns exactly the commands that depend on it. Each run writes run.json beside
+its outputs: command, key, wall and CPU seconds, peak memory.
 """
 
 import hashlib
@@ -15,6 +15,7 @@ import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from .settings import ROOT
 
@@ -24,7 +25,7 @@ def digest(data: bytes) -> str:
 
 
 def scene_key(scene: Path) -> str:
-    """Of a scene.toml and every model, material and picture in its folder and in the folders that it names."""
+    """Key of a scene.toml and all models, materials and pictures in its and the named folders."""
     text = scene.read_text()
     folders = [scene.parent] + [
         (scene.parent / os.path.expandvars(name)).resolve().parent
@@ -37,7 +38,7 @@ def scene_key(scene: Path) -> str:
             for file in folder.iterdir()
             if file.suffix in (".obj", ".mtl", ".png")
         },
-        key=lambda file: file.name,
+        key=lambda file: str(file.name),
     )
     return digest(text.encode() + b"".join(file.read_bytes() for file in files))
 
@@ -45,14 +46,15 @@ def scene_key(scene: Path) -> str:
 @dataclass
 class Run:
     folder: Path
-    record: dict
+    record: dict[str, Any]
 
     def __getitem__(self, name: str) -> Path:
         return self.folder / name
 
     @property
     def cpu_s(self) -> float:
-        return self.record["cpu_s"]
+        result: float = self.record["cpu_s"]
+        return result
 
 
 @dataclass
@@ -60,16 +62,17 @@ class Runner:
     bin: Path
     cache: Path
     quiet: bool = False
-    provenance: dict = field(
+    provenance: dict[str, Any] = field(
         default_factory=dict
-    )  # commit, processor, date: goes into every run.json
-    runs: dict[str, Run] = field(default_factory=dict)  # every run that was asked for, by key
+    )  # commit, processor and date, for every run.json
+    runs: dict[str, Run] = field(default_factory=dict)  # all requested runs, by key
     _files: dict[Path, str] = field(default_factory=dict)
-    _tools: dict[Path, tuple] = field(default_factory=dict)  # time and size when first used
+    _tools: dict[Path, tuple[Any, ...]] = field(
+        default_factory=dict
+    )  # time and size when first used
 
     def file_key(self, path: Path) -> str:
-        """A product of ours by its key, so that no bytes need be read; another file by its bytes, a scene with
-        its models."""
+        """Key of a file: that of the run that made it, or a hash of its bytes and models."""
         if path.is_relative_to(self.cache):
             return path.parent.name + "/" + path.name
         if path not in self._files:
@@ -78,8 +81,13 @@ class Runner:
             )
         return self._files[path]
 
-    def run(self, tool: str, options: list, inputs: dict[str, Path], outputs: list[str]) -> Run:
-        """`options` may hold '{name}' for an input and '@name' for an output, which stands in the run's folder."""
+    def run(
+        self, tool: str, options: list[Any], inputs: dict[str, Path], outputs: list[str]
+    ) -> Run:
+        """Runs a command unless it is cached.
+
+        `options` may hold '{name}' for an input and '@name' for an output in the run's folder.
+        """
         words = [str(word) for word in options]
         executable = self.bin / tool
         self._require_unchanged(executable)
@@ -108,14 +116,15 @@ class Runner:
         return run
 
     def _require_unchanged(self, executable: Path) -> None:
-        """Results of two versions of a tool must not meet in one report."""
+        """Ends the program if a tool has changed, so that no report mixes two versions of it."""
         now = executable.stat()
         if self._tools.setdefault(executable, (now.st_mtime_ns, now.st_size)) != (
             now.st_mtime_ns,
             now.st_size,
         ):
             raise SystemExit(
-                f"eval: {executable}: was built anew during the run; start again, or evaluate a copy of "
+                f"eval: {executable}: was built anew during the run; start again, or evaluate a "
+                "copy of "
                 "the tools (--bin)"
             )
 
@@ -159,5 +168,5 @@ class Runner:
         (partial / "run.json").write_text(json.dumps(record, indent=1))
         try:
             os.rename(partial, folder)
-        except OSError:  # another evaluation has made the same run meanwhile: equal bytes
+        except OSError:  # another evaluation has made the same run meanwhile, with equal bytes
             shutil.rmtree(partial)

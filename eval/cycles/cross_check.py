@@ -1,15 +1,14 @@
 #!/usr/bin/python3
-"""Cross-checks our path tracer against Blender's Cycles on the CPU.
+"""Cross-checks the path tracer of vpl-render with Blender's Cycles on the CPU.
 
   eval/cycles/cross_check.py                   all cases
   eval/cycles/cross_check.py cornell u-shape   two of them
   eval/cycles/cross_check.py --list
   eval/cycles/cross_check.py --table --results eval/cycles/results.json
 
-Each view is rendered with several seeds by both; the ratio of the image means is printed with its
-standard error. Exit codes: 0 all means agree within --tolerance; 2 options that make no sense;
-3 Blender, vpl-render or an input is missing or fails; 5 a mean differs by more, or is too noisy
-to tell.
+Both render each view with several seeds. The ratio of the image means is printed with its standard
+error. Exit codes: 0 if all means agree within --tolerance; 2 for wrong options; 3 if Blender,
+vpl-render or an input is missing or fails; 5 if a mean differs by more, or is too noisy to tell.
 """
 
 from __future__ import annotations
@@ -24,8 +23,10 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import compare
 import walk
@@ -35,12 +36,12 @@ from scene_source import SceneError
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-WALKS = 64  # batches of walk.py
+WALKS = 64  # number of batches of walk.py
 EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
 
 
 class ToolError(Exception):
-    """A program that is missing or failed: one line."""
+    """A program is missing or failed; the message is one line."""
 
 
 def parse_arguments(arguments: list[str]) -> argparse.Namespace:
@@ -108,7 +109,10 @@ def require_program(name: str, cure: str) -> str:
 
 
 def run(command: list[str], log: Path, wanted: list[Path]) -> float:
-    """Wall time in s. Blender can fail with code 0, so what it should have written is looked at."""
+    """Runs a command. Returns its wall time in s.
+
+    Blender may fail with exit code 0, so its outputs are checked.
+    """
     start = time.monotonic()
     with open(log, "w") as out:
         done = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, check=False)
@@ -131,7 +135,9 @@ def samples(case: Case, options: argparse.Namespace) -> tuple[int, int]:
     )
 
 
-def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
+def render_ours(
+    case: Case, scene: Path, options: argparse.Namespace
+) -> tuple[dict[View, npt.NDArray[Any]], float]:
     spp, seconds = samples(case, options)[0], 0.0
     stacks = {}
     for view in case.views:
@@ -157,7 +163,7 @@ def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[d
                 "--size",
                 "x".join(map(str, case.size)),
             ]
-            if view.quantity != "direct":  # which has no bounce
+            if view.quantity != "direct":  # direct light has no bounce
                 command += ["--max-bounces", str(view.bounces)]
             if not (options.reuse and image.is_file()):
                 image.unlink(missing_ok=True)
@@ -168,7 +174,7 @@ def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[d
 
 
 def cycles_bounces(views: tuple[View, ...]) -> list[int]:
-    """Limits to render: Cycles has no indirect picture alone; it is the whole less the direct."""
+    """Limits of bounces to render. Cycles' indirect picture is the whole minus the direct one."""
     limits = {view.bounces for view in views}
     return sorted(limits | ({0} if any(v.quantity == "indirect" for v in views) else set()))
 
@@ -176,7 +182,7 @@ def cycles_bounces(views: tuple[View, ...]) -> list[int]:
 def missing_images(
     limits: list[int], seeds: range, path: Callable[[int, int], Path], reuse: bool
 ) -> dict[tuple[int, ...], list[int]]:
-    """Seeds to render -> the bounce limits that lack them: each entry is one start of Blender."""
+    """Limits of bounces to render for each set of seeds. Each entry is one start of Blender."""
     jobs: dict[tuple[int, ...], list[int]] = {}
     for bounces in limits:
         todo = tuple(s for s in seeds if not (reuse and path(bounces, s).is_file()))
@@ -185,7 +191,9 @@ def missing_images(
     return jobs
 
 
-def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
+def render_cycles(
+    case: Case, scene: Path, options: argparse.Namespace
+) -> tuple[dict[View, npt.NDArray[Any]], float]:
     spp, seconds = samples(case, options)[1], 0.0
     limits, seeds = cycles_bounces(case.views), range(1, case.seeds + 1)
     kind = "cycles-encoded" if options.encoded_textures else "cycles"
@@ -227,10 +235,10 @@ def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple
     }, seconds
 
 
-def verdict(figures: dict, tolerance: float) -> str:
-    """`noisy` where the error bar is too wide to hold the claim either way."""
+def verdict(figures: dict[str, Any], tolerance: float) -> str:
+    """agrees, differs, or noisy, where the error bar is too wide for either."""
     ratio, error = figures["mean"]["ratio"], figures["mean"]["error"]
-    error = None if error is None else np.hypot(error, figures.get("expected_error", 0.0))
+    error = 0.0 if error is None else np.hypot(error, figures.get("expected_error", 0.0))
     difference = None if ratio is None else abs(ratio - figures.get("expected", 1.0))
     if difference is None or difference > tolerance + 3.0 * error:
         return "differs"
@@ -239,13 +247,13 @@ def verdict(figures: dict, tolerance: float) -> str:
     return "agrees" if difference <= tolerance else "differs"
 
 
-def check(case: Case, options: argparse.Namespace) -> dict:
+def check(case: Case, options: argparse.Namespace) -> dict[str, Any]:
     folder = options.out / case.name
     scene = prepare(case, ROOT / "scenes", folder)
     ours, our_seconds = render_ours(case, scene, options)
     cycles, cycles_seconds = render_cycles(case, scene, options)
     spp, cycles_spp = samples(case, options)
-    result = {
+    result: dict[str, Any] = {
         "scene": case.scene,
         "note": case.note,
         "size": list(case.size),
@@ -253,7 +261,7 @@ def check(case: Case, options: argparse.Namespace) -> dict:
         "spp": spp,
         "cycles_spp": cycles_spp,
         "views": {},
-        # null: nothing was rendered, thanks to --reuse
+        # null if nothing was rendered, with --reuse
         "time_s": round(our_seconds, 1) or None,
         "cycles_time_s": round(cycles_seconds, 1) or None,
     }
@@ -272,7 +280,7 @@ def check(case: Case, options: argparse.Namespace) -> dict:
     return result
 
 
-def report(case: Case, view: View, figures: dict) -> None:
+def report(case: Case, view: View, figures: dict[str, Any]) -> None:
     mean, blocks = figures["mean"], figures["blocks"]
     ratio = "-" if mean["ratio"] is None else f"{mean['ratio']:.4f} +- {mean['error']:.4f}"
     if "expected" in figures:
@@ -289,7 +297,7 @@ def first_line(command: list[str]) -> str:
     return (done.stdout.splitlines() or [""])[0].strip()
 
 
-def describe_run(options: argparse.Namespace) -> dict:
+def describe_run(options: argparse.Namespace) -> dict[str, Any]:
     git = ["git", "-C", str(ROOT)]
     parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render", "transport"]
     changed = first_line([*git, "status", "--porcelain", "--", *parts]) != ""
@@ -307,13 +315,13 @@ def describe_run(options: argparse.Namespace) -> dict:
     }
 
 
-def write_results(path: Path, runs: dict) -> None:
+def write_results(path: Path, runs: dict[str, Any]) -> None:
     output_guard.write(
         path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results"
     )
 
 
-def table(results: dict) -> str:
+def table(results: dict[str, Any]) -> str:
     heads = (
         "case",
         "view",

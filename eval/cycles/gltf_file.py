@@ -1,4 +1,4 @@
-"""model_scenes.Sketch -> .glb, for our reader and for Blender's own importer."""
+"""Writes a model_scenes.Sketch as .glb, for our reader and for Blender's own importer."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import json
 import struct
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import model_scenes as scenes
 import scene_source as source
@@ -17,10 +19,12 @@ FLOAT = 5126
 
 
 class Bytes:
-    """The binary chunk, with the views and accessors into it."""
+    """The binary chunk, with views and accessors into it."""
 
     def __init__(self) -> None:
-        self.data, self.views, self.accessors = b"", [], []
+        self.data = b""
+        self.views: list[dict[str, int]] = []
+        self.accessors: list[dict[str, Any]] = []
 
     def view(self, data: bytes) -> int:
         self.data += b"\0" * (-len(self.data) % 4)
@@ -28,7 +32,7 @@ class Bytes:
         self.data += data
         return len(self.views) - 1
 
-    def accessor(self, values: np.ndarray) -> int:
+    def accessor(self, values: npt.NDArray[Any]) -> int:
         rows = np.ascontiguousarray(values.reshape(-1, values.shape[-1]), "<f4")
         self.accessors.append(
             {
@@ -43,8 +47,8 @@ class Bytes:
         return len(self.accessors) - 1
 
 
-def png(pixels: np.ndarray) -> bytes:
-    """8-bit RGB, rows from the top."""
+def png(pixels: npt.NDArray[Any]) -> bytes:
+    """Bytes of a PNG file of 8-bit RGB, with rows from the top."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return (
@@ -62,8 +66,8 @@ def png(pixels: np.ndarray) -> bytes:
     )
 
 
-def material(name: str, data: dict) -> dict:
-    """Diffuse ones are Lambert: KHR_materials_specular takes all gloss away."""
+def material(name: str, data: dict[str, Any]) -> dict[str, Any]:
+    """A material of glTF. Diffuse ones are Lambert, as KHR_materials_specular removes the gloss."""
     if data["type"] == "metallicroughness":
         pbr = {
             "baseColorFactor": [*data["reflectance"], 1.0],
@@ -71,7 +75,7 @@ def material(name: str, data: dict) -> dict:
             "roughnessFactor": data["roughness"],
         }
         return {"name": name, "pbrMetallicRoughness": pbr}
-    made = {
+    made: dict[str, Any] = {
         "name": name,
         "extensions": {"KHR_materials_specular": {"specularFactor": 0.0}},
         "pbrMetallicRoughness": {
@@ -80,7 +84,7 @@ def material(name: str, data: dict) -> dict:
             "roughnessFactor": 1.0,
         },
     }
-    if "radiance" in data:  # both sides shine: Blender's importer knows no other lamps
+    if "radiance" in data:  # both sides emit, as Blender's importer supports no one-sided lamps
         peak = max(data["radiance"])
         made["emissiveFactor"] = [c / peak for c in data["radiance"]]
         made["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": peak}
@@ -90,11 +94,11 @@ def material(name: str, data: dict) -> dict:
     return made
 
 
-def camera_node() -> dict:
+def camera_node() -> dict[str, Any]:
     camera = source.read_camera(scenes.CAMERA)
     matrix = np.eye(4)
     matrix[:3] = np.stack([camera.right, camera.up, -camera.forward, camera.position], 1)
-    return {"camera": 0, "matrix": matrix.T.ravel().tolist()}  # column by column
+    return {"camera": 0, "matrix": matrix.T.ravel().tolist()}  # in column-major order
 
 
 def write(path: Path, sketch: scenes.Sketch) -> None:
@@ -109,9 +113,10 @@ def write(path: Path, sketch: scenes.Sketch) -> None:
             {"primitives": [{"attributes": attributes, "material": names.index(part.material)}]}
         )
     nodes = [camera_node()] + [{"mesh": n} for n in range(len(meshes) - bool(sketch.nodes))]
-    nodes += [node | {"mesh": len(meshes) - 1} for node in sketch.nodes]  # all of the last part
+    # All nodes of the sketch are instances of the last part.
+    nodes += [node | {"mesh": len(meshes) - 1} for node in sketch.nodes]
     fov = np.radians(scenes.CAMERA["vertical_fov_deg"])
-    whole = {
+    whole: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": MAKER},
         "scene": 0,
         "scenes": [{"nodes": list(range(len(nodes)))}],

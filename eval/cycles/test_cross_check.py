@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of the cross-check; those that need Blender are skipped where it is missing.
+"""Tests the cross-check. Tests that need Blender are skipped where it is missing.
 
 python3 eval/cycles/test_cross_check.py
 """
@@ -16,8 +16,11 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+import OpenImageIO as oiio
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
@@ -50,7 +53,7 @@ f 1 2 4
 MTL = "newmtl A\nKd 0.1 0.2 0.3\nnewmtl B\nKd 0.5 0.5 0.5\nKe 1 2 3\nemission_sides 2\n"
 
 
-def command(*arguments: str) -> subprocess.CompletedProcess:
+def command(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, str(HERE / "cross_check.py"), *arguments],
         capture_output=True,
@@ -72,7 +75,7 @@ class InFolder(unittest.TestCase):
 
 
 class Reader(InFolder):
-    def mesh(self, matrix: np.ndarray, mtl: str = MTL) -> source.Mesh:
+    def mesh(self, matrix: npt.NDArray[Any], mtl: str = MTL) -> source.Mesh:
         self.write("m.mtl", mtl)
         return source.read_mesh(self.write("m.obj", OBJ), None, matrix)
 
@@ -99,7 +102,7 @@ class Reader(InFolder):
         matrix = source.read_transform(
             {"scale": [2, 1, 1], "rotate_deg": [90, 0, 90], "translate": [0, 0, 5]}
         )
-        # (1, 1, 0) -> scale (2, 1, 0) -> about x (2, 0, 1) -> about z (0, 2, 1) -> shift
+        # (1, 1, 0) is scaled to (2, 1, 0), rotated about x to (2, 0, 1) and about z to (0, 2, 1).
         np.testing.assert_allclose(matrix @ [1, 1, 0, 1], [0, 2, 6, 1], atol=1e-12)
 
     def test_a_reflection_keeps_the_lit_side(self) -> None:
@@ -120,7 +123,7 @@ class Reader(InFolder):
         fine = source.split_emitters(mesh, 1.0)
         lamp = fine.position[fine.material == 1]
         twice = np.cross(lamp[:, 1] - lamp[:, 0], lamp[:, 2] - lamp[:, 0])
-        self.assertEqual(len(lamp), 16)  # edges 2, 3, 3.6 -> 0.5, 0.75, 0.9
+        self.assertEqual(len(lamp), 16)  # edges 2, 3, 3.6 become 0.5, 0.75, 0.9
         np.testing.assert_allclose(twice, np.tile([0, 0, 6 / 16], (16, 1)))
         np.testing.assert_array_equal(fine.position[fine.material == 0], mesh.position[:2])
 
@@ -147,7 +150,7 @@ class Preparation(InFolder):
     def test_every_own_case_is_read(self) -> None:
         for case in cases.CASES:
             if case.scene.startswith("veach-ajar") or case.scene.endswith((".pbrt", ".glb")):
-                continue  # a download; what render_cycles.py does not read here
+                continue  # downloads, and files that scene_source.py cannot read
             scene = source.read_scene(cases.prepare(case, ROOT / "scenes", self.folder / case.name))
             self.assertEqual((scene.width, scene.height), case.size)
             lit = any(any(m.ke) for mesh in scene.meshes for m in mesh.materials)
@@ -155,8 +158,8 @@ class Preparation(InFolder):
             self.assertEqual(scene.lights, list(case.lights))
 
 
-def volume(position: np.ndarray) -> float:
-    """Enclosed by triangles that run anti-clockwise from outside."""
+def volume(position: npt.NDArray[Any]) -> float:
+    """Volume enclosed by triangles that run anti-clockwise seen from outside."""
     a, b, c = position[:, 0], position[:, 1], position[:, 2]
     return float((a * np.cross(b, c)).sum() / 6)
 
@@ -211,23 +214,30 @@ class ModelScenes(InFolder):
 
 def oiio_size(path: Path, data: bytes) -> tuple[int, int]:
     path.write_bytes(data)
-    spec = cases.oiio.ImageBuf(str(path)).spec()
+    spec = oiio.ImageBuf(str(path)).spec()
     return spec.width, spec.height
 
 
 class Walks(unittest.TestCase):
-    def both(self, scatter: walk.Scatter, cosine: float = 0.6, inside: bool = False) -> np.ndarray:
-        """Reflected and transmitted share: ours, Cycles'; the mean of the channels."""
+    def both(
+        self, scatter: walk.Scatter, cosine: float = 0.6, inside: bool = False
+    ) -> npt.NDArray[Any]:
+        """Scattered share of the light by our model and by that of Cycles, over all channels."""
         u = np.random.default_rng(3).random((1 << 15, 4))
         wo = np.tile([np.sqrt(1 - cosine**2), 0.0, cosine], (len(u), 1))
-        return scatter(wo, np.full(len(u), inside), u)[1].mean(axis=(0, 2))
+        result: npt.NDArray[Any] = scatter(wo, np.full(len(u), inside), u)[1].mean(axis=(0, 2))
+        return result
 
     def test_smooth_facets_lose_nothing_and_are_the_same(self) -> None:
         for scatter in (walk.conductor(1e-3), walk.dielectric(1e-3, 1.5)):
             np.testing.assert_allclose(self.both(scatter), [1.0, 1.0], atol=1e-3)
 
     def test_rough_metal_loses_what_the_theory_page_says(self) -> None:
-        for alpha, lost in ((0.2, 0.05), (0.5, 0.31), (1.0, 0.67)):  # ggx/theory.md, seen at 27 deg
+        for alpha, lost in (
+            (0.2, 0.05),
+            (0.5, 0.31),
+            (1.0, 0.67),
+        ):  # values of ggx/theory.md at 27 degrees
             ours, cycles = self.both(walk.conductor(alpha), np.cos(np.radians(27)))
             self.assertAlmostEqual(1 - ours, lost, delta=0.02)
             self.assertLess(cycles, ours)
@@ -265,7 +275,7 @@ class Statistics(unittest.TestCase):
 
     def test_ratio_and_its_error(self) -> None:
         mean = compare.compare(self.a, self.b)["mean"]
-        # 4 seeds x 1440 pixels x 3 channels of deviation 0.5 in each image
+        # Each image has 4 seeds x 1440 pixels x 3 channels with a standard deviation of 0.5.
         self.assertAlmostEqual(mean["error"], np.sqrt(2) * 0.5 / np.sqrt(4 * 1440 * 3), delta=2e-3)
         self.assertLess(abs(mean["ratio"] - 1.02), 3 * mean["error"])
 
@@ -324,13 +334,13 @@ class CommandLine(InFolder):
             cross_check.missing_images([0, 1], seeds, path, False), {(1, 2, 3): [0, 1]}
         )
 
-    def assert_one_line(self, done: subprocess.CompletedProcess, code: int, said: str) -> None:
+    def assert_one_line(self, done: subprocess.CompletedProcess[str], code: int, said: str) -> None:
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1)
         self.assertIn(said, done.stderr)
 
     def test_files_of_others_stay(self) -> None:
-        """OUT may be the folder of the scenes themselves."""
+        """Files of others stay, even where OUT is the folder of the scenes."""
         scene = self.folder / "room-point" / "scene.toml"
         cases.prepare(
             next(case for case in cases.CASES if case.name == "room-point"),
@@ -422,8 +432,9 @@ class CommandLine(InFolder):
 
     @unittest.skipUnless(shutil.which("blender") and Path(VPL_RENDER).is_file(), "no Blender")
     def test_flat_faces_of_a_mesh_with_normals_stay_flat(self) -> None:
-        # The knobs' normals once made Cycles shade the walls of that mesh as if round: 12 % too
-        # much direct light. The mirror teapot shows light that must count as direct.
+        # Without explicit flat normals, the normals of the knobs make Cycles shade the walls of
+        # that mesh as if round, with 12 % too much direct light. The mirror teapot shows light that
+        # must count as direct.
         command(
             "veach-door", "--effort", "0.06", "--vpl-render", VPL_RENDER, "--out", str(self.folder)
         )

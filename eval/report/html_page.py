@@ -1,4 +1,4 @@
-"""The page: everything of a checked report in one HTML file that needs nothing from outside."""
+"""Makes the page: a checked report as one HTML file that needs nothing else."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def page_html(report: dict[str, Any]) -> str:
 
 def head_html(title: str, script: str) -> str:
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    # The policy makes the browser itself refuse whatever would use the network.
+    # The policy makes the browser refuse all use of the network.
     policy = (
         f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
         f"script-src 'sha256-{digest}'"
@@ -131,7 +131,9 @@ def view_html(
         width, height, data = read_png(picture["file"])
         at = f"picture-{index}-{k}"
         figures.append(figure_html(picture, at, width, height, data))
-        if width * size[1] == height * size[0]:  # of another shape: below the viewer alone
+        if (
+            width * size[1] == height * size[0]
+        ):  # pictures of another shape appear below the viewer only
             pictures.append(
                 {
                     "id": picture["id"],
@@ -163,17 +165,20 @@ def view_html(
     )
 
 
-def pack_images(view: dict[str, Any], store: HdrStore) -> tuple[list[dict[str, Any]], tuple]:
-    """What the viewer must know of each image, and the one size that all of them have."""
-    result, size, first = [], None, None
-    order = sorted(view["images"], key=lambda i: i["id"] != view["reference"])
+def pack_images(
+    view: dict[str, Any], store: HdrStore
+) -> tuple[list[dict[str, Any]], tuple[int, int]]:
+    """Data of each image for the viewer, and the size that all images share."""
+    result: list[dict[str, Any]] = []
+    size, first = (0, 0), None
+    order = sorted(view["images"], key=lambda i: bool(i["id"] != view["reference"]))
     indices: dict[str, dict[str, int]] = {}
-    for image in order:  # the reference first: the others are held against its size
+    for image in order:  # the reference comes first, as its size decides
         indices[image["id"]] = {}
         for layer, (path, channel) in image["files"].items():
             at = store.add(path, channel)
             found = (store.images[at].width, store.images[at].height)
-            size, first = size or found, first or path
+            size, first = size if first else found, first or path
             if found != size:
                 raise ReportError(
                     f"{path}: {found[0]}x{found[1]} pixels, but {first} has "
@@ -219,7 +224,7 @@ def plots_html(plots: list[dict[str, Any]]) -> str:
 
 
 def data_html(plot: dict[str, Any]) -> str:
-    """The numbers behind the lines, for those who cannot see them or want to copy them."""
+    """Table of the values of a plot, for readers who cannot see it or want to copy them."""
     rows = []
     for s in plot["series"]:
         slope = "" if s["slope"] is None else f" <small>{slope_text(s['slope'])}</small>"
@@ -227,7 +232,7 @@ def data_html(plot: dict[str, Any]) -> str:
             f'<tbody><tr class="group"><th colspan="3" scope="rowgroup">'
             f"<span>{escape(s['label'])}{slope}</span></th></tr>"
         )
-        for i, (x, y) in enumerate(zip(s["x"], s["y"])):
+        for i, (x, y) in enumerate(zip(s["x"], s["y"], strict=True)):
             error = number_text(s["error"][i], 3) if s["error"] else "–"
             rows.append(
                 f"<tr><td>{number_text(x, 5)}</td><td>{number_text(y, 4)}</td><td>{error}</td></tr>"

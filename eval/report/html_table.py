@@ -1,4 +1,4 @@
-"""Tables with the best value of each group marked."""
+"""Makes tables that mark the best value of each group."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MINUS = "−"
 
 
 def number_text(value: float, digits: int) -> str:
-    """`digits` significant digits, no exponent where a reader would not want one."""
+    """A number with `digits` significant digits; very small and large ones get an exponent."""
     if value == 0:
         return "0"
     size = math.floor(math.log10(abs(value)))
@@ -23,7 +23,7 @@ def number_text(value: float, digits: int) -> str:
 
 
 def cell_text(value: Any, digits: int, fixed: int | None = None) -> str:
-    """`fixed` decimals where given, else `digits` significant ones."""
+    """Text of a cell with `fixed` decimals if given, else `digits` significant digits."""
     if value is None:
         return "–"
     if isinstance(value, str):
@@ -41,18 +41,19 @@ def cell_text(value: Any, digits: int, fixed: int | None = None) -> str:
 
 
 def badness(value: Any, better: str) -> float | None:
-    """Small is good; None where the value is not to be judged."""
+    """A rank that is smaller for better values, or None where the value is not judged."""
     if isinstance(value, tuple):
         value = value[0]
     if value is None or isinstance(value, str):
         return None
     if better == "one":
         return abs(math.log(value)) if value > 0 else math.inf
-    return value if better == "low" else -value
+    result: float | None = value if better == "low" else -value
+    return result
 
 
 def groups_of(rows: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
-    """Consecutive rows of one group stand together."""
+    """Groups of consecutive rows with equal names."""
     groups: list[tuple[str, list[dict[str, Any]]]] = []
     for row in rows:
         if not groups or groups[-1][0] != row["group"]:
@@ -62,7 +63,7 @@ def groups_of(rows: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]
 
 
 def best_rows(rows: list[dict[str, Any]], column: dict[str, Any]) -> set[int]:
-    """Of one group; none where there is nothing to choose between."""
+    """Best rows of a group for a column; empty where fewer than two are judged."""
     if column["better"] is None:
         return set()
     found = {
@@ -83,7 +84,7 @@ def is_text(column: dict[str, Any], rows: list[dict[str, Any]]) -> bool:
 def head(columns: list[dict[str, Any]], text: list[bool]) -> str:
     hints = {"low": "lower is better", "high": "higher is better", "one": "1 is best"}
     cells = []
-    for column, left in zip(columns, text):
+    for column, left in zip(columns, text, strict=True):
         hint = hints.get(column["better"], "")
         below = " · ".join(t for t in (column["unit"], hint) if t)
         small = f"<small>{escape(below)}</small>" if below else ""
@@ -99,7 +100,7 @@ def table_html(table: dict[str, Any]) -> str:
     parts = [f'<section class="block" id="table-{table["id"]}"><h2>{escape(table["title"])}</h2>']
     if table["note"]:
         parts.append(f'<p class="note">{escape(table["note"])}</p>')
-    # Focusable, so that arrow keys scroll it where it is wider than the page.
+    # The table takes focus, so that arrow keys scroll it where it is wider than the page.
     parts.append(
         f'<div class="scroll" tabindex="0" role="region" '
         f'aria-label="{escape(table["title"])}"><table class="numbers">'

@@ -17,7 +17,7 @@ from html_page import page_html
 from report_json import ReportError, load
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "pipelines"))
-import output_guard  # noqa: E402  (after the path that it needs)
+import output_guard  # noqa: E402
 
 EXIT_INPUT = 3
 EXIT_OUTPUT = 4
@@ -26,7 +26,7 @@ EXIT_OUTPUT = 4
 def write_output(
     program: str, path: Path, data: bytes, kind: output_guard.Kind, report: Path
 ) -> int:
-    """The exit code; what is wrong is printed."""
+    """Writes the output. Returns the exit code, and prints the problem if there is one."""
     try:
         output_guard.write(path, data, kind, "-o", {"the report": report})
         return 0

@@ -18,12 +18,13 @@ from typing import Any
 import matplotlib
 
 matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402  (after the choice of backend)
+from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.axis import Axis as PlotAxis  # noqa: E402
 
+import output_guard  # noqa: E402
 from axis import Axis, axes_of, ticks  # noqa: E402
-from make_report import EXIT_INPUT, output_guard, write_output  # noqa: E402
+from make_report import EXIT_INPUT, write_output  # noqa: E402
 from palette import LIGHT, MARKERS  # noqa: E402
 from report_json import ReportError, load  # noqa: E402
 from svg_plot import name_lines  # noqa: E402
@@ -49,7 +50,7 @@ STYLE = {
 }
 
 
-def tick_text(factor: float | None, power: int) -> str:
+def tick_text(factor: float | None, power: int | None) -> str:
     if factor is None:
         return f"$10^{{{power}}}$"
     return f"{factor:.6g}" if power == 0 else f"${factor:.0f}\\cdot10^{{{power}}}$"
@@ -95,7 +96,7 @@ def draw(axes: Axes, plot: dict[str, Any]) -> None:
 
 
 def picture(plot: dict[str, Any], kind: str, dpi: int) -> bytes:
-    # No date and no version: equal input, equal bytes.
+    # The file has no date and no version, so that equal input gives equal bytes.
     metadata = {"svg": {"Date": None, "Creator": None}, "png": {"Software": None}}[kind]
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(7.6, 4.2))

@@ -1,7 +1,7 @@
-"""Reads report.json and checks it: what comes out is complete, so that the writers need no checks.
+"""Reads and checks report.json. The result is complete, so that the writers need no checks.
 
-Every problem is a ReportError with one line: file, place inside it, problem, cure. The format is
-described in README.md.
+Every problem is a ReportError with one line: file, place inside it, problem, cure. README.md
+describes the format.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ BETTER = ("low", "high", "one", None)
 
 
 class ReportError(Exception):
-    """Input that cannot become a report; the message is one line."""
+    """An error of the input; the message is one line."""
 
 
 class Node:
-    """A JSON value that knows where it stands, for messages that name the place."""
+    """A JSON value with its place in the file, which messages name."""
 
     def __init__(self, value: Any, source: Path, place: str = "") -> None:
         self.value, self.source, self.place = value, source, place
@@ -38,7 +38,7 @@ class Node:
         return self.value
 
     def get(self, key: str, kind: type | tuple[type, ...], name: str, default: Any = None) -> Any:
-        """An optional member; null counts as absent."""
+        """An optional member. null counts as absent."""
         if self.value.get(key) is None:
             return default
         return self.child(key).typed(kind, name)
@@ -48,7 +48,8 @@ class Node:
             if default is None:
                 raise self.fail(f"'{key}' is missing", "add it, a text")
             return default
-        return self.child(key).typed(str, "a text")
+        result: str = self.child(key).typed(str, "a text")
+        return result
 
     def items(self, key: str, required: bool = False) -> list[Node]:
         if key not in self.value:
@@ -72,7 +73,7 @@ def shown(value: Any) -> str:
 
 
 def load(path: Path) -> dict[str, Any]:
-    """The checked report; file names are Paths, absent optional members have their defaults."""
+    """The checked report. File names are Paths; absent optional members have their defaults."""
     try:
         data = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as e:
@@ -162,7 +163,7 @@ def table(node: Node) -> dict[str, Any]:
 
 
 def cell(row: Node, key: str) -> Any:
-    """A text, a number, None, or (value, error)."""
+    """Value of a cell: a text, a number, None, or (value, error)."""
     value = row.value.get(key)
     if isinstance(value, dict):
         inner = row.child(key)

@@ -1,8 +1,8 @@
-"""A plot as inline SVG. Colours come from classes, so that the page's style decides light or dark.
+"""Draws a plot as inline SVG. The colours are classes, so the page's style decides light or dark.
 
-Two sizes of each are written and the style shows one: a wide one with the names at the ends of the
-lines, and a narrow one, for phones, with the names below. One drawing scaled to both would have
-letters too small on a phone.
+Two sizes of each plot are written, and the style shows one: a wide one with the names at the ends
+of the lines, and a narrow one for phones with the names below. A single drawing, scaled, would have
+too small letters on a phone.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Label:
     index: int
     x: float
     y: float
-    at: float  # where the text goes
+    at: float  # top of the text
 
 
 def plot_svg(plot: dict[str, Any], wide: bool) -> str:
@@ -56,7 +56,10 @@ def plot_svg(plot: dict[str, Any], wide: bool) -> str:
     parts += grid(frame, x_axis, y_axis)
     parts += axis_titles(frame, plot)
     points = [
-        [(frame.x(x_axis.at(x)), frame.y(y_axis.at(y))) for x, y in zip(s["x"], s["y"])]
+        [
+            (frame.x(x_axis.at(x)), frame.y(y_axis.at(y)))
+            for x, y in zip(s["x"], s["y"], strict=True)
+        ]
         for s in plot["series"]
     ]
     for i, s in enumerate(plot["series"]):
@@ -78,7 +81,7 @@ def name_lines(s: dict[str, Any]) -> list[str]:
 
 
 def tick_label(tick: Tick) -> str:
-    """Empty for a minor tick."""
+    """Label of a tick; empty for a minor tick."""
     if tick.power is None:
         return ""
     exponent = str(tick.power).replace("-", "−")
@@ -178,23 +181,23 @@ def series(
 def end_labels(
     names: list[list[str]], points: list[list[tuple[float, float]]], frame: Frame
 ) -> list[str]:
-    """The names right of the lines, pushed apart until none overlaps."""
+    """The names at the right ends of the lines, moved apart so that none overlap."""
     labels = sorted(
         (Label(i, *p[-1], p[-1][1]) for i, p in enumerate(points)),
         key=lambda label: (label.y, label.index),
     )
     heights = [16.0 * len(names[label.index]) + 5 for label in labels]
     lowest = frame.top + 2.0
-    for label, height in zip(labels, heights):
+    for label, height in zip(labels, heights, strict=True):
         label.at = max(label.y - height / 2, lowest)
         lowest = label.at + height
     limit = frame.height - 6.0
-    for label, height in zip(reversed(labels), reversed(heights)):
+    for label, height in zip(reversed(labels), reversed(heights), strict=True):
         label.at = min(label.at, limit - height)
         limit = label.at
     text_x = frame.x(1) + 24
     parts = []
-    for label, height in zip(labels, heights):
+    for label, height in zip(labels, heights, strict=True):
         middle = label.at + height / 2
         number_of = label.index % len(LIGHT)
         parts.append(

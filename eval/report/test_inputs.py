@@ -1,4 +1,4 @@
-"""What the scripts write, and what they refuse."""
+"""Tests what the scripts write, and what they refuse."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class InputTest(unittest.TestCase):
         return self.page.read_text(encoding="utf-8")
 
     def refused(self, *expected: str) -> None:
-        """One line with these parts, exit code 3, and no page."""
+        """Checks a refusal: one line with these parts, exit code 3, and no page."""
         made = call(make_report.main, self.json, "-o", self.page)
         self.assertEqual(made.returncode, 3, made.stderr)
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
@@ -69,7 +69,8 @@ class InputTest(unittest.TestCase):
         marks = [
             [("best" in c) for c in re.findall(r"<t[hd][^>]*>.*?</t[hd]>", r)][1:4] for r in rows
         ]
-        # Columns rmse, ratio, rays. Row r is not judged; one value is no choice; a tie marks both.
+        # The columns are rmse, ratio, rays. Row r is not judged, a single value is not marked,
+        # and a tie marks both.
         self.assertEqual(
             marks,
             [
@@ -92,9 +93,9 @@ class InputTest(unittest.TestCase):
         self.assertEqual(svg.count('class="bar"'), 24)
 
     def test_names_at_the_lines_ends_stay_apart(self) -> None:
-        for end in (1.0, 0.0001):  # all lines end near the top, near the bottom
+        for end in (1.0, 0.0001):  # all lines end near the top, or near the bottom
 
-            def edit(data: dict[str, Any]) -> None:
+            def edit(data: dict[str, Any], end: float = end) -> None:
                 for i, series in enumerate(data["plots"][0]["series"]):
                     series.update(y=[0.01, 0.02, end * (1 + 0.01 * i)], error=None)
 
@@ -111,11 +112,11 @@ class InputTest(unittest.TestCase):
     def test_plots_as_files(self) -> None:
         for name, start in (("p.png", b"\x89PNG"), ("p.svg", b"<?xml")):
             files = [self.folder / f"{i}{name}" for i in range(2)]
-            made = [
+            both = [
                 call(plots.main, self.json, "conv", "-o", files[0]),
                 run("plots.py", self.json, "conv", "-o", files[1]),
             ]
-            self.assertEqual([m.returncode for m in made], [0, 0], made[1].stderr)
+            self.assertEqual([m.returncode for m in both], [0, 0], both[1].stderr)
             first, second = (f.read_bytes() for f in files)
             self.assertEqual(first[: len(start)], start)
             self.assertEqual(first, second)
@@ -202,18 +203,20 @@ class InputTest(unittest.TestCase):
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
 
     def test_outputs_replace_only_their_kind(self) -> None:
-        for main, words, name in (
+        cases: list[tuple[Any, list[str], str]] = [
             (make_report.main, [], "r.html"),
             (plots.main, ["conv"], "p.svg"),
             (plots.main, ["conv"], "p.png"),
-        ):
+        ]
+        for main, words, name in cases:
             file = self.folder / name
             file.write_bytes(b"\x89VPL\r\n\x1a\n")
             made = call(main, self.json, *words, "-o", file)
             self.assertEqual(made.returncode, 4)
             self.assertRegex(
                 made.stderr,
-                rf"\A[^\n]*/{name}: is not an? [^\n]*, which -o would replace it with; name [^\n]*\n\Z",
+                rf"\A[^\n]*/{name}: is not an? [^\n]*, which -o would replace it with; name "
+                r"[^\n]*\n\Z",
             )
             self.assertEqual(file.read_bytes(), b"\x89VPL\r\n\x1a\n")
             file.unlink()

@@ -1,4 +1,4 @@
-"""The page as a whole: what it asks of the network, its width, its colours, its names."""
+"""Tests the page as a whole: use of the network, width, colours, names."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class PageTest(PageCase):
             "(e) => done(e.effectiveDirective)); fetch('https://example.invalid/').catch(() => {})"
         )
         self.assertEqual(blocked, "connect-src")
-        self.driver.get_log("browser")  # the browser reports what it refused
+        self.driver.get_log("browser")  # the browser's report of the refusal
 
     def test_viewers_far_below_wait(self) -> None:
         made = "return [...document.querySelectorAll('.viewer')].map((v) => v.children.length > 1)"
-        # In force before any script of the page runs.
+        # The emulation takes effect before any script of the page runs.
         style = (
             "const s = new CSSStyleSheet();"
             "s.replaceSync('.view {margin-top: 9000px !important}');"
@@ -138,7 +138,7 @@ def rgb(text: str) -> list[float]:
 
 
 def contrast(a: list[float], b: list[float]) -> float:
-    """WCAG 2."""
+    """Contrast ratio by WCAG 2."""
 
     def luminance(colour: list[float]) -> float:
         v = np.array(colour) / 255

@@ -1,4 +1,4 @@
-"""A small report with known pixels, and a headless Chromium that shows it."""
+"""Makes a small report with known pixels, and a headless Chromium that shows it."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import OpenImageIO as oiio
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -29,7 +31,7 @@ class Made:
 
 
 def run(script: str, *arguments: str | Path) -> Made:
-    """A script in a process of its own."""
+    """Runs a script in a process of its own."""
     made = subprocess.run(
         [sys.executable, str(HERE / script), *map(str, arguments)], capture_output=True, text=True
     )
@@ -37,14 +39,16 @@ def run(script: str, *arguments: str | Path) -> Made:
 
 
 def call(main: Callable[[list[str]], int], *arguments: str | Path) -> Made:
-    """A script's main() in this process: most of a process's time goes into its imports."""
+    """Runs a script's main() in this process, as most of a process's time goes into its imports."""
     stderr = io.StringIO()
     with contextlib.redirect_stderr(stderr):
         code = main([str(a) for a in arguments])
     return Made(code, stderr.getvalue())
 
 
-def write_exr(path: Path, pixels: np.ndarray, names: tuple[str, ...] = ("R", "G", "B")) -> None:
+def write_exr(
+    path: Path, pixels: npt.NDArray[Any], names: tuple[str, ...] = ("R", "G", "B")
+) -> None:
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT)
     spec.channelnames = names
@@ -61,19 +65,19 @@ def write_png(path: Path, width: int, height: int, colour: tuple[int, int, int])
     target.close()
 
 
-def flat(r: float, g: float, b: float) -> np.ndarray:
-    return np.tile(np.float32([r, g, b]), (HEIGHT, WIDTH, 1))
+def flat(r: float, g: float, b: float) -> npt.NDArray[Any]:
+    return np.tile(np.array([r, g, b], np.float32), (HEIGHT, WIDTH, 1))
 
 
-def wild() -> np.ndarray:
-    """Every kind of value: zero, negative, tiny, huge."""
+def wild() -> npt.NDArray[Any]:
+    """Pixels with all kinds of values: zero, negative, tiny, huge."""
     values = np.random.default_rng(7).lognormal(0, 4, (HEIGHT, WIDTH, 3)).astype(np.float32)
     values[0, 0] = 0
     values[1, 2] = [-0.5, 1e-6, 2e5]
     return values
 
 
-def images() -> dict[str, np.ndarray]:
+def images() -> dict[str, npt.NDArray[Any]]:
     full = flat(0.5, 0.5, 0.5)
     full[2, 3] = [0.0625, 0.125, 0.25]
     return {
@@ -96,7 +100,7 @@ def report() -> dict[str, Any]:
         }
 
     layers = [{"id": "indirect", "title": "Indirect light"}, {"id": "full", "title": "Full image"}]
-    main = {
+    main: dict[str, Any] = {
         "id": "main",
         "title": "Main view",
         "note": "8x6 pixels",
@@ -212,8 +216,8 @@ def browser() -> webdriver.Chrome:
     return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
 
 
-def to_srgb8(linear: np.ndarray, ev: float = 0.0) -> list[int]:
-    """formats/tonemap.h."""
+def to_srgb8(linear: npt.ArrayLike, ev: float = 0.0) -> list[int]:
+    """The encoding of formats/tonemap.h."""
     v = np.clip(np.asarray(linear, np.float64) * 2.0**ev, 0, 1)
     encoded = np.where(v <= 0.0031308, 12.92 * v, 1.055 * v ** (1 / 2.4) - 0.055)
     return [int(x) for x in np.floor(encoded * 255 + 0.5)]

@@ -1,4 +1,4 @@
-"""What a person does to the viewer, and the pixels and numbers that must follow."""
+"""Tests the viewer: a person's input, and the pixels and numbers that must follow."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
@@ -100,7 +101,7 @@ class ViewerTest(PageCase):
         self.keys(*[Keys.ARROW_LEFT] * 2, *[Keys.ARROW_UP] * 1, "z", "z", "z")
         full = images()["reference-full"]
         self.assertEqual(self.one(".zoom-text").text, "8×")
-        # One image pixel covers 8 times its place: the odd one fills its mark.
+        # One image pixel covers 8 x 8 places; the odd pixel must fill its mark.
         mark = self.js(
             """const m = arguments[0].querySelector('.mark'),
             c = arguments[0].querySelector('.stage canvas');
@@ -147,7 +148,7 @@ class ViewerTest(PageCase):
     def test_every_value_arrives(self) -> None:
         expected = wild_as_stored()
         self.keys("4", *[Keys.ARROW_LEFT] * WIDTH, *[Keys.ARROW_UP] * HEIGHT)
-        # Real keys bring the first pixel; the other 47 would take half a minute.
+        # Real keys select the first pixel; for the other 47 they would take half a minute.
         found = self.js(
             """
             const stage = arguments[0].querySelector('.stage'), found = [];
@@ -181,7 +182,7 @@ class ViewerTest(PageCase):
 
     def test_list_says_how_good(self) -> None:
         rows = [r.text for r in self.viewer.find_elements("css selector", ".list tbody tr")]
-        reference = np.float64([0.25, 0.125, 0.0625])
+        reference = np.array([0.25, 0.125, 0.0625])
         epsilon = 1e-4 * reference.mean() ** 2
         error = np.mean(reference**2 / (reference**2 + epsilon))
         self.assertIn(f"mean ratio 2.000, relMSE {error:.2f}", rows[1])
@@ -205,7 +206,7 @@ class ViewerTest(PageCase):
         self.keys("m", "m")
         self.choose_range("10")
         self.assertEqual(self.ticks(), ["10−3", "10−2", "10−1", "1", "101"])
-        error = float(re.search(r"relMSE ([\d.]+)", self.viewer.text)[1])
+        error = float(re.findall(r"relMSE ([\d.]+)", self.viewer.text)[0])
         self.assertEqual(self.colour(1.5, 2.5), self.legend(1 + np.log10(error / 10) / 4))
         self.keys("m", "m")
         self.assertFalse(self.one(".legend").is_displayed())
@@ -241,12 +242,13 @@ class ViewerTest(PageCase):
         ]
 
     def legend(self, share: float) -> list[int]:
-        return self.js(
+        result: list[int] = self.js(
             "return readPixel(arguments[0].querySelector('.legend canvas'),"
             "Math.round(255 * arguments[1]), 0);" + READ_PIXEL,
             self.viewer,
             share,
         )
+        return result
 
     def test_pictures(self) -> None:
         names = [n.text for n in self.viewer.find_elements("css selector", ".list .name")]
@@ -264,15 +266,16 @@ class ViewerTest(PageCase):
 
 @functools.cache
 def flip_oracle() -> Any:
-    """The one that checks vpl-inspect's FLIP."""
+    """The oracle that also checks the FLIP of vpl-inspect."""
     path = Path(__file__).resolve().parents[2] / "tests/images/flip_oracle.py"
     spec = importlib.util.spec_from_file_location("flip_oracle", path)
+    assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
-def wild_as_stored() -> np.ndarray:
+def wild_as_stored() -> npt.NDArray[Any]:
     values = images()["wild"].astype(np.float64)
     exponent = np.frexp(np.abs(values).max())[1] - 15
     return np.ldexp(np.ldexp(values, -exponent).astype(np.float16).astype(np.float64), exponent)

@@ -1,19 +1,23 @@
-"""Tables get to their places in the page, and what was not asked for stays."""
+"""Tests that tables are put in their places in the page, and that the rest of it stays."""
 
 import json
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import write_docs  # noqa: E402 (after the path that it needs)
 
-PAGE = "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- table two -->\nold two\n<!-- end -->\nlast\n"
+PAGE = (
+    "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- table two -->\nold "
+    "two\n<!-- end -->\nlast\n"
+)
 
 
-def report(*ids: str) -> dict:
+def report(*ids: str) -> dict[str, Any]:
     columns = [
         {"key": "label", "label": "VPLs"},
         {"key": "relmse", "label": "relMSE", "better": "low"},
@@ -28,13 +32,13 @@ def report(*ids: str) -> dict:
 
 
 class Tables(unittest.TestCase):
-    def setUp(self):
+    def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
         (self.folder / "results.md").write_text(PAGE)
 
-    def write(self, made: dict, *options: str) -> str:
+    def write(self, made: dict[str, Any], *options: str) -> str:
         (self.folder / "report.json").write_text(json.dumps(made))
         with (
             mock.patch.object(write_docs, "DOCS", self.folder),
@@ -43,7 +47,7 @@ class Tables(unittest.TestCase):
             write_docs.main()
         return (self.folder / "results.md").read_text()
 
-    def test_only_what_is_named(self):
+    def test_only_what_is_named(self) -> None:
         page = self.write(report("one", "two"), "--only", "two")
         self.assertIn("old one", page)
         self.assertNotIn("old two", page)
@@ -51,7 +55,7 @@ class Tables(unittest.TestCase):
         self.assertIn("<!-- tools of abc1234, 2026-11-22 -->", page)
         self.assertTrue(page.endswith("<!-- end -->\nlast\n"))
 
-    def test_what_is_not_there_is_refused(self):
+    def test_what_is_not_there_is_refused(self) -> None:
         for made, only, message in (
             (report("one"), "two", "wants table 'two'"),
             (report("one"), "three", "named 'three'"),
@@ -61,7 +65,7 @@ class Tables(unittest.TestCase):
             self.assertIn(message, str(refused.exception))
             self.assertEqual((self.folder / "results.md").read_text(), PAGE)
 
-    def test_pictures_alone(self):
+    def test_pictures_alone(self) -> None:
         with mock.patch.object(write_docs, "write_pictures") as write:
             page = self.write(report("one", "two"), "--only", "pictures")
             self.assertEqual(page, PAGE)

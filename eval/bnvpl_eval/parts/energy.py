@@ -1,10 +1,9 @@
-"""Energy: mean image over the reference, and where the photons' energy went."""
+"""Tabulates energy: mean image over the reference, and the destinations of the photons' energy."""
 
 import json
 
 from .. import pipeline
 from ..context import Context
-from ..pipeline import METHODS
 from ..tables import column, table
 
 COLUMNS = [
@@ -31,7 +30,7 @@ def run(context: Context) -> None:
                 if runs[-1].record["tool"] == "vpl-estimate"
                 else {}
             )
-            if account := stats.get("energy_W"):  # of its photons
+            if account := stats.get("energy_W"):  # energy account of the photons
                 whole = account["reflected"]
                 shown |= {"deposited": 100 * account["deposited"] / whole}
                 shown |= {
@@ -43,8 +42,10 @@ def run(context: Context) -> None:
         table(
             "energy",
             "Energy",
-            "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because no VPL reaches the "
-            "hit (outside: it lights nothing in view), none on a compatible surface (gap), none in sight (hidden). "
+            "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because "
+            "no VPL reaches the "
+            "hit (outside: it lights nothing in view), none on a compatible surface (gap), none "
+            "in sight (hidden). "
             "Near-field rays bring what gap and hidden lose.",
             COLUMNS,
             rows,

@@ -1,9 +1,13 @@
-"""Where VPLs come from: light, random, blue noise at uniform and at local density, and the thesis to the letter
-(its comparisons (a)/(b), blue noise against random, literal against guarded scatter)."""
+"""Compares sources of VPLs: the light, random, blue noise of uniform and local density, the thesis.
+
+These are the thesis' comparisons (a) and (b), blue noise against random, and literal against
+guarded scatter.
+"""
 
 from .. import measures
 from ..context import Context
 from ..pipeline import METHODS
+from ..settings import View
 from ..tables import column, table
 
 COLUMNS = [
@@ -37,8 +41,10 @@ def run(context: Context) -> None:
         table(
             "methods",
             "Where VPLs come from: indirect light against the reference",
-            "Means over the seeds. RMSE, bias and noise are root mean squares over pixels and channels over "
-            "the reference's mean; bias is the mean image against the reference, noise the standard deviation "
+            "Means over the seeds. RMSE, bias and noise are root mean squares over pixels and "
+            "channels over "
+            "the reference's mean; bias is the mean image against the reference, noise the "
+            "standard deviation "
             "of one image. Time is the CPU time of all stages together.",
             COLUMNS,
             rows,
@@ -46,5 +52,5 @@ def run(context: Context) -> None:
     )
 
 
-def group(view, vpls: int) -> str:
+def group(view: View, vpls: int) -> str:
     return f"{view.scene.title}, {view.title}, {vpls} VPLs"

@@ -1,6 +1,9 @@
-"""How good the references are, beside what they judge: the error of a half's mean by its difference to the other."""
+"""Compares the error of the references, by the difference of their halves, with what they judge."""
+
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .. import references
 from ..context import Context
@@ -17,8 +20,8 @@ COLUMNS = [
 ]
 
 
-def own_relmse(halves: tuple[np.ndarray, np.ndarray]) -> float:
-    """Of the mean of the halves, whose error is half of their difference."""
+def own_relmse(halves: tuple[npt.NDArray[Any], npt.NDArray[Any]]) -> float:
+    """relMSE of the mean of the halves, whose error is estimated as half of their difference."""
     a, b = (half.astype(np.float64) for half in halves)
     return float((((a - b) / 2) ** 2 * relative_weight((a + b) / 2)).mean())
 
@@ -49,7 +52,8 @@ def run(context: Context) -> None:
         table(
             "references",
             "The references",
-            "Errors are products of the differences to both halves, which are right on average however noisy the halves are; "
+            "Errors are products of the differences to both halves, which are right on average "
+            "however noisy the halves are; "
             "SMAPE and FLIP, which have no such product, hold the references' noise.",
             COLUMNS,
             rows,

@@ -1,6 +1,7 @@
-"""The thesis' scatter, to all VPLs within reach, against the guarded one: how much leaks, and where."""
+"""Compares the thesis' scatter, to all VPLs within reach, with the guarded one: how much leaks."""
 
 import json
+from typing import Any
 
 from ..context import Context
 from ..pipeline import METHODS
@@ -21,7 +22,7 @@ ROOMS = (
 
 
 def run(context: Context) -> None:
-    rows = []
+    rows: list[dict[str, Any]] = []
     for view in context.views("main"):
         for method in ("local", "even", "literal"):
             context.say(f"scatter: {view.name}, {method}")
@@ -46,15 +47,17 @@ def run(context: Context) -> None:
         table(
             "scatter",
             "The thesis' scatter against the guarded one",
-            "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter also spreads VPLs "
-            f"uniformly, shines from where VPLs stand and has no near-field rays. {context.size['scatter']['seeds']} seeds.",
+            "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter "
+            "also spreads VPLs "
+            "uniformly, shines from where VPLs stand and has no near-field rays. "
+            f"{context.size['scatter']['seeds']} seeds.",
             COLUMNS,
             rows,
         )
     )
 
 
-def dark_room(context: Context, scatter: str) -> dict:
+def dark_room(context: Context, scatter: str) -> dict[str, Any]:
     run, scene = context.runner.run, {"scene": ROOMS}
     placed = run("vpl-place", ["{scene}", "-n", 20000, "-o", "@c.vpl", "--quiet"], scene, ["c.vpl"])
     kept = run(

@@ -1,7 +1,12 @@
-"""One option at a time, main views alone; the others at their defaults, but samples and rays as settings.toml says."""
+"""Varies one option at a time, on main views. settings.toml sets samples and rays.
+
+The other options have their defaults.
+"""
+
+from typing import Any
 
 from ..context import Context
-from ..pipeline import sampled, told
+from ..pipeline import Configuration, sampled, told
 from ..settings import View
 from ..tables import column, table
 
@@ -21,7 +26,7 @@ COLUMNS = [
 ]
 
 
-def varied(context: Context, view: View, entry: dict, value):
+def varied(context: Context, view: View, entry: dict[str, Any], value: Any) -> Configuration:
     plan = context.size["sensitivity"]
     c = sampled(context.configuration(view, "local"), plan).but(photons=plan["photons"])
     match entry["stage"]:
@@ -54,7 +59,8 @@ def run(context: Context) -> None:
         table(
             "sensitivity",
             "Sensitivity: one option at a time",
-            f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the other options at their defaults.",
+            f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the "
+            "other options at their defaults.",
             COLUMNS,
             rows,
         )
