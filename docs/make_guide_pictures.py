@@ -1,30 +1,34 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/guide.md: each artefact beside its cure, from the tools themselves.
 
-docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # a quarter of an hour on two cores
-docs/make_guide_pictures.py --table                                 # the table of docs/images/README.md
+docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # 15 minutes on two cores
+docs/make_guide_pictures.py --table                      # the table of docs/images/README.md
 """
 
 import argparse
 import subprocess
 import tempfile
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import numpy.typing as npt
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
 @dataclass
 class Case:
-    """A scene, its film, and for each of two pictures the options of place, eliminate, estimate and render."""
+    """A scene, its film, and the options of the four stages for each of two pictures."""
 
     scene: str
     size: str
     exposure: float
-    left: tuple
-    right: tuple
-    crop: tuple = ()  # x, y, width, height
-    zoom: int = 1  # nearest neighbour
+    left: tuple[str, str, str, str]
+    right: tuple[str, str, str, str]
+    crop: tuple[int, ...] = ()  # x, y, width, height
+    zoom: int = 1  # magnification, by nearest neighbour
 
 
 CASES = {
@@ -110,27 +114,31 @@ CASES = {
 }
 
 
-def table():
+def table() -> Iterator[str]:
     yield "| picture | scene, film | crop: x, y, width, height | left | right |"
     yield "|---|---|---|---|---|"
     for name, case in CASES.items():
         columns = [
             "; ".join(
                 f"`{tool} {o}`"
-                for tool, o in zip(("place", "eliminate", "estimate", "render"), options)
+                for tool, o in zip(
+                    ("place", "eliminate", "estimate", "render"), options, strict=True
+                )
                 if o
             )
             for options in (case.left, case.right)
         ]
         crop = ", ".join(map(str, case.crop)) or "none"
-        yield f"| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {' | '.join(columns)} |"
+        yield (
+            f"| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {' | '.join(columns)} |"
+        )
 
 
-def run(tools, folder, tool, *words):
+def run(tools: Path, folder: Path, tool: str, *words: object) -> None:
     subprocess.run([tools / tool, *map(str, words), "--quiet"], cwd=folder, check=True)
 
 
-def render(tools, case, options, folder, to):
+def render(tools: Path, case: Case, options: Iterable[str], folder: Path, to: str) -> None:
     scene = ROOT / case.scene
     place, eliminate, estimate, image = (o.split() for o in options)
     run(tools, folder, "vpl-place", scene, "-o", "c.vpl", *place)
@@ -154,13 +162,14 @@ def render(tools, case, options, folder, to):
     )
 
 
-def shown(file, kind):
+def shown(file: Path, kind: Any) -> npt.NDArray[Any]:
     import OpenImageIO
 
-    return OpenImageIO.ImageBuf(str(file)).get_pixels(kind)[:, :, :3]
+    result: npt.NDArray[Any] = OpenImageIO.ImageBuf(str(file)).get_pixels(kind)[:, :, :3]
+    return result
 
 
-def write(name, panels):
+def write(name: str, panels: Sequence[npt.NDArray[Any]]) -> None:
     import numpy
     import OpenImageIO
 
@@ -175,7 +184,7 @@ def write(name, panels):
     print(f"docs/images/guide-{name}.png", flush=True)
 
 
-def make(name, tools, folder):
+def make(name: str, tools: Path, folder: Path) -> None:
     import numpy
     import OpenImageIO
 
@@ -189,7 +198,7 @@ def make(name, tools, folder):
     write(name, [numpy.repeat(numpy.repeat(p, case.zoom, 0), case.zoom, 1) for p in panels])
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -1,6 +1,8 @@
-"""Tiny scenes that tests know the answer of, and one OBJ full of oddities."""
+"""Makes tiny scenes for tests with known answers, and an OBJ file with unusual content."""
 
-from .mesh import Mesh, grey, mtl
+from typing import Any
+
+from .mesh import Mesh, Vector, grey, mtl
 from .png import png
 from .rooms import LAMP, SUNK, lamp_box
 
@@ -16,11 +18,11 @@ DIFFUSE = {
 ROOM = {"-y": "Floor", "+y": "Ceiling"}
 
 
-def only(*names):
+def only(*names: str) -> dict[str, dict[str, Any]]:
     return {name: DIFFUSE[name] for name in names}
 
 
-def two_rooms():
+def two_rooms() -> dict[str, str | bytes]:
     mesh = Mesh(f"Two closed rooms, 0.02 m apart, a lamp in the right one; {MADE}", "two-rooms.mtl")
     mesh.object("DarkRoom")
     mesh.box((-2.01, 0, 0), (-0.01, 2, 2), "Wall", ROOM, inward=True)
@@ -32,7 +34,7 @@ def two_rooms():
     return {"test/two-rooms.obj": mesh.text(), "test/two-rooms.mtl": mtl("", only(*names))}
 
 
-def divider():
+def divider() -> dict[str, str | bytes]:
     mesh = Mesh(
         f"One room cut in two by a 0.02 m divider over one common floor; {MADE}", "divider.mtl"
     )
@@ -45,15 +47,15 @@ def divider():
     return {"test/divider.obj": mesh.text(), "test/divider.mtl": mtl("", only(*DIFFUSE))}
 
 
-def square(mesh, material, corner, side_a, side_b):
-    """Faces along side_a x side_b."""
-    a = tuple(c + s for c, s in zip(corner, side_a))
-    b = tuple(c + s for c, s in zip(a, side_b))
-    c = tuple(c + s for c, s in zip(corner, side_b))
+def square(mesh: Mesh, material: str, corner: Vector, side_a: Vector, side_b: Vector) -> None:
+    """Adds a parallelogram whose front is towards side_a x side_b."""
+    a = tuple(c + s for c, s in zip(corner, side_a, strict=True))
+    b = tuple(c + s for c, s in zip(a, side_b, strict=True))
+    c = tuple(c + s for c, s in zip(corner, side_b, strict=True))
     mesh.face(material, [corner, a, b, c])
 
 
-def two_patches():
+def two_patches() -> dict[str, str | bytes]:
     mesh = Mesh(
         f"A shining square 1 m above a diffuse one, face to face; {MADE}", "two-patches.mtl"
     )
@@ -65,7 +67,7 @@ def two_patches():
     return {"test/two-patches.obj": mesh.text(), "test/two-patches.mtl": mtl("", materials)}
 
 
-def one_bounce():
+def one_bounce() -> dict[str, str | bytes]:
     mesh = Mesh(
         "Floor, wall, and a lamp that lies level with the floor and faces up: it reaches the\n"
         f"wall alone, so all light on the floor has bounced there; {MADE}",
@@ -85,8 +87,8 @@ def one_bounce():
     return {"test/one-bounce.obj": mesh.text(), "test/one-bounce.mtl": mtl("", materials)}
 
 
-# What it holds, face by face: a quad by negative indices, a quad, a concave pentagon, two triangles
-# without area, one of an unknown material, one whose texture is missing, one masked by d 0.
+# Its faces are, in order: a quad with negative indices, a quad, a concave pentagon, two triangles
+# without area, one with an unknown material, one with a missing texture, one hidden by d 0.
 QUIRKS_OBJ = """\
 # Oddities on purpose; see README.md
 mtllib quirks.mtl
@@ -146,11 +148,11 @@ d 0
 """
 
 
-def dos(text):
+def dos(text: str) -> bytes:
     return text.replace("\n", "\r\n").encode()
 
 
-def files():
+def files() -> dict[str, str | bytes]:
     squares = png(8, 8, lambda x, y: (230,) * 3 if (x + y) % 2 else (40,) * 3)
     return {
         **two_rooms(),

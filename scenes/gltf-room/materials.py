@@ -1,19 +1,20 @@
-"""The room's materials, by name, and the images that they use."""
+"""Makes the room's materials and the images that they use."""
 
 import pathlib
 import tempfile
 import types
+from typing import Any
 
 import bpy
 import numpy as np
 
 import textures
 
-IMAGES = tempfile.TemporaryDirectory()  # read when the scene is exported
+IMAGES = tempfile.TemporaryDirectory()  # the exporter reads this folder
 
 
-def image(name, pixels, kind="png", colour=True):
-    """A texture of the given array, by way of a file so that the exporter keeps its format."""
+def image(name: str, pixels, kind="png", colour=True) -> Any:
+    """Makes a texture of an array, through a file so that the exporter keeps its format."""
     if pixels.ndim == 2:
         pixels = np.repeat(pixels[..., None], 3, -1)
     height, width, channels = pixels.shape
@@ -31,8 +32,10 @@ def image(name, pixels, kind="png", colour=True):
     return made
 
 
-def material(name, colour=(1, 1, 1), base=None, normal=None, rough=None, cutout=False, **inputs):
-    """A Principled material: `colour` is linear; `base`, `normal` and `rough` are images."""
+def material(
+    name: str, colour=(1, 1, 1), base=None, normal=None, rough=None, cutout=False, **inputs
+) -> Any:
+    """Makes a Principled material. `colour` is linear; `base`, `normal` and `rough` are images."""
     made = bpy.data.materials.new(name)
     made.use_nodes = True
     nodes, link = made.node_tree.nodes, made.node_tree.links.new
@@ -41,7 +44,7 @@ def material(name, colour=(1, 1, 1), base=None, normal=None, rough=None, cutout=
     for key, value in inputs.items():
         shader[key.replace("_", " ")].default_value = value
 
-    def texture(of):
+    def texture(of) -> Any:
         node = nodes.new("ShaderNodeTexImage")
         node.image = of
         return node.outputs
@@ -63,13 +66,13 @@ def material(name, colour=(1, 1, 1), base=None, normal=None, rough=None, cutout=
     return made
 
 
-def light_material(name, colour, radiance, both_sides=False):
+def light_material(name: str, colour, radiance, both_sides=False) -> Any:
     made = material(name, (0.8, 0.8, 0.8), Emission=(*colour, 1), Emission_Strength=radiance)
     made.use_backface_culling = not both_sides
     return made
 
 
-def make_materials():
+def make_materials() -> types.SimpleNamespace:
     mat = types.SimpleNamespace()
     colour, normal, rough = textures.planks()
     mat.planks = material(

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Compares what two builds of the tools compute, byte by byte.
+"""Compares the results of two builds of the tools, byte by byte.
 
-    tests/bytes/bytes.py record --bin OLD/bin -o table.json     # what a build computes
-    tests/bytes/bytes.py compare --bin NEW/bin table.json       # and whether another computes the same
+      tests/bytes/bytes.py record --bin OLD/bin -o table.json   # records results of a build
+      tests/bytes/bytes.py compare --bin NEW/bin table.json       # compares another build
 
-Bits depend on the processor, so the table is made on the machine at hand, from the commit that the
-work started from. Two hashes are kept for each file: of its values (columns of a .vpl, channels of
-an image), and of the whole file, which also holds the record of the options. `compare` fails when
-values differ; --files makes it fail for whole files too. --only TEXT limits it to cases whose
-name holds the text. Scenes that are not in the project are taken from --shared, where it exists.
+Bits depend on the processor, so the table is recorded on the same machine, with a build of the
+commit from which the work started. Each file has two hashes: one of its values (columns of a .vpl,
+channels of an image), and one of the whole file, which also holds the record of the options.
+`compare` fails when values differ; with --files also when whole files differ. --only TEXT limits it
+to cases whose name contains the text. Scenes that are not in the project come from --shared, where
+that exists.
 """
 
 import argparse
@@ -17,6 +18,7 @@ import json
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy
@@ -27,8 +29,8 @@ sys.path.append(str(ROOT / "pipelines"))
 import output_guard  # noqa: E402
 
 
-def scenes(shared):
-    """Name, scene file and defines of every scene: those of the project and those beside it."""
+def scenes(shared: Path) -> dict[str, tuple[Path, list[str]]]:
+    """Scene file and options --define of every scene, by name, in the project and in `shared`."""
     found = {}
     for file in sorted(ROOT.glob("scenes/*/*.toml")):
         folder = file.parent.name
@@ -43,18 +45,18 @@ def scenes(shared):
     return found
 
 
-# Scenes on which every variant is run; the others run the defaults.
+# All variants run on these scenes, and the defaults on the others.
 FULL = ("u-shape/scene", "cornell/scene", "test/quirks")
 
 
 class Tools:
-    """Runs the tools of one build. Commands are written for today's options."""
+    """Runs the tools of one build. Commands have the options of this version."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: str) -> None:
         self.folder = Path(folder).resolve()
         self.renames = self._renames()
 
-    def run(self, tool, *arguments):
+    def run(self, tool: str, *arguments: object) -> tuple[int, str]:
         command = [str(self.folder / tool), "--quiet", *map(str, arguments)]
         for new, old in self.renames:
             for i in range(len(command) - len(new) + 1):
@@ -64,12 +66,12 @@ class Tools:
         done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
         return done.returncode, done.stderr
 
-    def _renames(self):
-        """Pairs of what today's options say and how an older build spells it."""
+    def _renames(self) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+        """Pairs of options of this version and their spelling in an older build."""
         text = subprocess.run(
             [self.folder / "vpl-render", "--help"], capture_output=True, text=True
         ).stdout
-        older = []
+        older: list[tuple[tuple[str, ...], tuple[str, ...]]] = []
         if "--fireflies" not in text:
             older += [
                 (("--fireflies", "redistribute"), ("--specks", "spread")),
@@ -84,8 +86,8 @@ class Tools:
         return older
 
 
-def hash_vpl(file):
-    """Of every column and of the header's figures, without the provenance."""
+def hash_vpl(file: Path) -> str:
+    """Hash of all columns and of the numbers of the header, without the provenance."""
     data = file.read_bytes()
     head = numpy.frombuffer(data, numpy.uint64, 16)
     columns = int(numpy.frombuffer(data, numpy.uint32, 1, 56)[0])
@@ -97,13 +99,13 @@ def hash_vpl(file):
     return f"{int(head[2])} rows {values.hexdigest()[:16]}"
 
 
-def hash_image(file):
+def hash_image(file: Path) -> str:
     image = OpenImageIO.ImageInput.open(str(file))
     spec = image.spec()
     pixels = image.read_image(OpenImageIO.FLOAT)
     image.close()
     values = hashlib.sha256()
-    order = sorted(range(spec.nchannels), key=lambda c: spec.channelnames[c])
+    order = sorted(range(spec.nchannels), key=lambda c: str(spec.channelnames[c]))
     for c in order:
         values.update(
             spec.channelnames[c].encode() + numpy.ascontiguousarray(pixels[:, :, c]).tobytes()
@@ -111,18 +113,18 @@ def hash_image(file):
     return f"{spec.width}x{spec.height} {values.hexdigest()[:16]}"
 
 
-def hashes(file):
+def hashes(file: Path) -> dict[str, str]:
     values = hash_image(file) if file.suffix == ".exr" else hash_vpl(file)
     return {"values": values, "file": hashlib.sha256(file.read_bytes()).hexdigest()[:16]}
 
 
-def cases(name):
-    """(name of the file, tool, arguments that follow the scene, name of the input) in order."""
+def cases(name: str) -> Iterator[tuple[str, str, list[str], str | None]]:
+    """Yields in order: name of the file, tool, arguments after the scene, name of the input."""
     full = name in FULL
     count = "3k" if name == "u-shape/scene" else "1k"
     yield "candidates.vpl", "vpl-place", ["-n", "20k"], None
     yield "light.vpl", "vpl-place", ["-n", "1k", "--method", "light"], None
-    variants = {"vpls.vpl": [], "uniform.vpl": ["--density", "uniform"]}
+    variants: dict[str, list[str]] = {"vpls.vpl": [], "uniform.vpl": ["--density", "uniform"]}
     if full:
         variants["random.vpl"] = ["--method", "random", "--seed", "7"]
     for file, options in variants.items():
@@ -170,10 +172,12 @@ def cases(name):
         yield "light.exr", "vpl-render", [*film, "--integrator", "light"], None
 
 
-def run_scene(tools, name, scene, defines, only):
+def run_scene(
+    tools: Tools, name: str, scene: Path, defines: list[str], only: str | None
+) -> dict[str, dict[str, str]]:
     table = {}
-    with tempfile.TemporaryDirectory(prefix="bnvpl-bytes.") as folder:
-        folder = Path(folder)
+    with tempfile.TemporaryDirectory(prefix="bnvpl-bytes.") as name_of_folder:
+        folder = Path(name_of_folder)
         for file, tool, options, source in cases(name):
             key = f"{name} {file}"
             if only and only not in key and file.endswith(".exr"):
@@ -187,7 +191,7 @@ def run_scene(tools, name, scene, defines, only):
             table[key] = (
                 hashes(folder / file) if code == 0 else {"values": f"exit {code}", "file": ""}
             )
-            if code not in (0, 3):  # some scenes have nowhere to put a VPL, or no light
+            if code not in (0, 3):  # exit code 3: a scene without places for VPLs, or without light
                 print(f"{key}: {errors}", file=sys.stderr)
     return table
 
@@ -201,7 +205,7 @@ TABLE = output_guard.json_kind(
 )
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -216,7 +220,8 @@ def main():
 
     if options.what == "record":
         output_guard.or_exit(output_guard.check, options.output, TABLE, "-o")
-    tools, table = Tools(options.bin), {}
+    tools = Tools(options.bin)
+    table: dict[str, dict[str, str]] = {}
     for name, (scene, defines) in scenes(options.shared.resolve()).items():
         if options.only and not any(options.only in f"{name} {c[0]}" for c in cases(name)):
             continue

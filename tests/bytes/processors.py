@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""Every stage on emulated processors, against the processor at hand.
+r"""Compares all stages on emulated processors with this machine's processor.
 
     tests/bytes/processors.py --bin build/release/bin
-    tests/bytes/processors.py --bin build/release/bin --scene scenes/cornell/scene.toml -n 20k --photons 1M --size 128x96
+    tests/bytes/processors.py --bin build/release/bin --scene scenes/cornell/scene.toml -n 20k \
+          --photons 1M --size 128x96
 
-With --processor any, all files must be the same bytes on all processors, and shards of different ones must merge to
-the file of one run. Without it, files may differ: then processor ids must differ too, and vpl-merge must refuse the
-mixture by both. Each stage reads what the processor at hand has made, so that a difference is its own.
+With --processor any, all files must have the same bytes on all processors, and shards of different
+processors must merge to the file of one run. Without it, files may differ. Then the processor ids
+must differ too, and vpl-merge must refuse the mixture and name both ids. Each stage reads files
+that this machine's processor has made, so a difference arises in that stage.
 
-Prints a line for each processor and fails (exit code 1) where that does not hold. Exit code 77: qemu-x86_64, of
-Debian's package qemu-user, is not installed.
+Prints a line for each processor, and fails with exit code 1 where that does not hold. Exit code 77
+means that qemu-x86_64 of Debian's package qemu-user is not installed.
 """
 
 import argparse
@@ -20,28 +22,32 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 QEMU = "qemu-x86_64"
-# What --processor any starts a tool anew for. Emulated, that would start it without its emulator.
+# The setting for which --processor any restarts a tool. An emulated tool has it from the start, as
+# a restart would leave the emulator.
 PINNED = "glibc.cpu.hwcaps=-FMA,-FMA4"
 HERE = "this machine"
 
 
 class Processor:
-    """Runs the tools on a processor, into a folder of its own. `mode` is of --processor."""
+    """Runs the tools on a processor, in a folder of its own. `mode` is the value of --processor."""
 
-    def __init__(self, name, mode, options, folder):
+    def __init__(self, name: str, mode: str, options: argparse.Namespace, folder: Path) -> None:
         self.name, self.mode, self.options = name, mode, options
         self.folder = folder / f"{name}-{mode}".replace(" ", "-")
         self.folder.mkdir()
-        self.part = 1 if name == HERE else 2  # of two shards
+        self.part = 1 if name == HERE else 2  # which of two shards it makes
         self.prefix = [] if name == HERE else [QEMU, "-cpu", name]
         self.environment = {k: v for k, v in os.environ.items() if k != "GLIBC_TUNABLES"}
         if mode == "any" and name != HERE:
             self.environment["GLIBC_TUNABLES"] = PINNED
 
-    def start(self, tool, *arguments, prefix=None):
+    def start(
+        self, tool: str, *arguments: object, prefix: list[str] | None = None
+    ) -> subprocess.CompletedProcess[str]:
         command = [*(prefix or self.prefix), str(self.options.bin / tool), *map(str, arguments)]
         if tool != "vpl-merge":
             command += ["--processor", self.mode]
@@ -49,16 +55,17 @@ class Processor:
             command, env=self.environment, capture_output=True, text=True, check=False
         )
 
-    def run(self, tool, *arguments):
+    def run(self, tool: str, *arguments: object) -> None:
         result = self.start(tool, "--quiet", *arguments)
         if result.returncode:
             sys.exit(
-                f"{self.name}: {tool} {' '.join(map(str, arguments))}: exit code {result.returncode}: "
+                f"{self.name}: {tool} {' '.join(map(str, arguments))}: exit code "
+                f"{result.returncode}: "
                 f"{result.stderr}"
             )
 
-    def stages(self, inputs):
-        """Name, tool and arguments of each stage, which reads its inputs from that folder."""
+    def stages(self, inputs: Path) -> list[tuple[str, str, list[Any]]]:
+        """Output, tool and arguments of each stage, which reads from the folder `inputs`."""
         o = self.options
         return [
             ("candidates.vpl", "vpl-place", [o.scene, "-n", o.candidates]),
@@ -76,16 +83,16 @@ class Processor:
             ),
         ]
 
-    def make(self, inputs):
+    def make(self, inputs: Path) -> None:
         for product, tool, arguments in self.stages(inputs):
             self.run(tool, *arguments, "-o", self.folder / product)
             if product != "vpls.vpl":
                 self.run(tool, *arguments, "--shard", f"{self.part}/2", "-o", self.shard(product))
 
-    def shard(self, product):
+    def shard(self, product: str) -> Path:
         return self.folder / f"{product}.{self.part}.shard"
 
-    def id(self):
+    def id(self) -> str:
         shard = self.shard("candidates.vpl")
         info = subprocess.run(
             [self.options.bin / "vpl-inspect", "info", "--json", shard],
@@ -93,25 +100,26 @@ class Processor:
             text=True,
             check=True,
         )
-        return json.loads(info.stdout)["processor"]
+        result: str = json.loads(info.stdout)["processor"]
+        return result
 
 
-def same(a, b):
+def same(a: Path, b: Path) -> bool:
     return a.read_bytes() == b.read_bytes()
 
 
 class Check:
-    def __init__(self):
+    def __init__(self) -> None:
         self.failed = False
 
-    def require(self, holds, problem):
+    def require(self, holds: bool, problem: str) -> None:
         if not holds:
             print(f"FAILED: {problem}")
             self.failed = True
 
 
-def compare(check, home, other):
-    """What `other` has made with what `home` has, and their shards mixed."""
+def compare(check: Check, home: Processor, other: Processor) -> None:
+    """Compares the files of `other` with those of `home`, and merges shards of both."""
     products = [product for product, _, _ in home.stages(home.folder)]
     differ = [p for p in products if not same(home.folder / p, other.folder / p)]
     print(
@@ -147,7 +155,7 @@ def compare(check, home, other):
             )
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument(
         "--bin", type=lambda text: Path(text).resolve(), default=ROOT / "build/release/bin"

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""The whole pipeline on a real Slurm whose tasks and nodes are killed, against the pipeline in one run.
+"""Runs the pipeline on a real Slurm, kills tasks and nodes, and compares with a plain run.
 
-  tests/cluster/run.py --bin build/release/bin            # 16 shards of each stage, 30 kills: some minutes
+    tests/cluster/run.py --bin build/release/bin    # 16 shards of each stage, 30 kills: minutes
 
-Starts a cluster of four nodes on this host (slurm_cluster.py), submits the U-shape by pipelines/slurm/submit.py, and
-at random moments kills the tool of a task, or a node with all that runs on it, which comes back a little later. Then
-compares every file, byte for byte. Should a run end before all kills are done, another one with another seed follows.
-Exit code 1 when anything is lost or differs, 77 where Slurm is not installed.
+Starts a cluster of four nodes on this host (slurm_cluster.py) and submits the U-shape by
+pipelines/slurm/submit.py. At random moments it kills the tool of a task, or a node with all that
+runs on it, which comes back a little later. Then it compares every file, byte for byte. If a run
+ends before all kills are done, another one with another seed follows. The exit code is 1 when
+anything is lost or differs, and 77 where Slurm is not installed.
 """
 
 import argparse
@@ -22,6 +23,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from slurm_cluster import Cluster, kill, missing_programs, processes
 
@@ -30,7 +32,7 @@ SKIPPED = 77
 SCENE = "scenes/u-shape/scene.toml"
 PRODUCTS = ("candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr", "image.png")
 RENDER = "--render-flags=--size 240x180 --layers all"
-ESTIMATE = "--estimate-flags=--irradiance-error 0"  # all photons
+ESTIMATE = "--estimate-flags=--irradiance-error 0"  # uses all photons
 SIZES = ["--candidates", "200k", "--vpls", "1500"]
 SAVE_OFTEN = [
     "--place-flags=--checkpoint-every 0",
@@ -39,28 +41,29 @@ SAVE_OFTEN = [
 ]
 
 
-def say(text):
+def say(text: str) -> None:
     print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
 
 
 class Killer:
-    """Strikes at random moments as long as the run goes on.
+    """Kills tools and nodes at random moments while the run lasts.
 
-    A task is struck twice at most, and a third of the kills is left for estimate, and one for render."""
+    A task is killed at most twice. One third of the kills is for estimate, and one for render.
+    """
 
     THIRDS = (r"place|candidates|vpls", r"estimate|lit", r"render|image")
 
-    def __init__(self, cluster, chance, most):
+    def __init__(self, cluster: Cluster, chance: random.Random, most: int) -> None:
         self.cluster, self.chance, self.most = cluster, chance, most
         self.struck = {"tool": 0, "node": 0}
         self.next = time.monotonic() + chance.uniform(0.5, 5)
-        self.returns = {}  # node: when
-        self.victims = {}  # task: how often
+        self.returns: dict[str, float] = {}  # time at which each node comes back
+        self.victims: dict[str, int] = {}  # number of kills of each task
 
-    def count(self):
+    def count(self) -> int:
         return sum(self.struck.values())
 
-    def step(self):
+    def step(self) -> None:
         now = time.monotonic()
         for node in [node for node, when in self.returns.items() if when <= now]:
             del self.returns[node]
@@ -70,13 +73,13 @@ class Killer:
         if self.strike():
             self.next = now + self.chance.uniform(0.5, 5)
 
-    def strike(self):
-        """Whether there was something to kill."""
+    def strike(self) -> bool:
+        """Kills a tool or a node. Returns whether there was one to kill."""
         steps, running = self.cluster.steps(), processes()
-        tools = {pid: self.task_of(running, pid) for pid in sorted(steps) if pid in running}
+        tasks = {pid: self.task_of(running, pid) for pid in sorted(steps) if pid in running}
         tools = [
             pid
-            for pid, task in tools.items()
+            for pid, task in tasks.items()
             if task
             and self.victims.get(task, 0) < 2
             and self.count() < self.most * self.third(task) / 3
@@ -99,12 +102,12 @@ class Killer:
             say(f"kill {self.count()}: {node} with {what}, back in {away:.1f} s")
         return True
 
-    def third(self, task):
+    def third(self, task: str) -> int:
         return next((i for i, names in enumerate(self.THIRDS, 1) if re.match(names, task)), 3)
 
     @staticmethod
-    def task_of(running, pid):
-        """The name of what a tool makes that pipelines/slurm/task.py has started; '' for other processes."""
+    def task_of(running: dict[int, tuple[int, list[str]]], pid: int) -> str:
+        """Name of the output of a tool that slurm/task.py has started; '' for other processes."""
         parent, words = running[pid]
         if (
             not words
@@ -117,19 +120,21 @@ class Killer:
 
 
 class Test:
-    def __init__(self, options, folder):
+    def __init__(self, options: argparse.Namespace, folder: str) -> None:
         self.options, self.folder = options, Path(folder)
         self.bin = Path(options.bin).resolve()
-        self.named_bin = os.path.relpath(self.bin, SOURCE)  # the pipelines take no space in it
-        self.failures = []
+        self.named_bin = os.path.relpath(
+            self.bin, SOURCE
+        )  # a relative path, as the pipelines refuse spaces
+        self.failures: list[str] = []
         self.environment = os.environ | {"PATH": f"/usr/bin:/bin:{os.environ.get('PATH', '')}"}
 
-    def expect(self, holds, problem):
+    def expect(self, holds: bool, problem: str) -> None:
         if not holds:
             self.failures.append(problem)
             say(f"FAILED: {problem}")
 
-    def arguments(self, out, seed):
+    def arguments(self, out: str, seed: int) -> list[str]:
         return [
             SCENE,
             "--out",
@@ -147,8 +152,8 @@ class Test:
             RENDER,
         ]
 
-    def run_here(self, seed):
-        """All of it in one process a stage."""
+    def run_here(self, seed: int) -> None:
+        """Runs the pipeline with one process a stage."""
         began = time.monotonic()
         generate = [
             sys.executable,
@@ -162,7 +167,7 @@ class Test:
             sys.exit(f"the run without shards failed:\n{done.stdout}")
         say(f"the run in one process a stage took {time.monotonic() - began:.0f} s")
 
-    def submit(self, cluster, seed):
+    def submit(self, cluster: Cluster, seed: int) -> str:
         command = [
             sys.executable,
             "pipelines/slurm/submit.py",
@@ -191,7 +196,7 @@ class Test:
             sys.exit(f"submit.py failed:\n{done.stdout}")
         return done.stdout
 
-    def run_there(self, cluster, seed, killer):
+    def run_there(self, cluster: Cluster, seed: int, killer: Killer) -> None:
         began = time.monotonic()
         say("submitted:\n" + self.submit(cluster, seed).rstrip())
         asked = 0.0
@@ -201,17 +206,19 @@ class Test:
             if time.monotonic() - asked > 2 and not killer.returns:
                 asked = time.monotonic()
                 jobs = cluster.ask("squeue", "-h", "-o", "%i %T")
-                # An empty answer may be one that did not come: the summary is the last to end.
+                # An empty answer may mean that squeue failed, so sinfo must answer too. The summary
+                # is the last job to end.
                 if not jobs.strip() and cluster.ask("sinfo", "-h"):
                     break
         else:
             self.expect(
                 False,
-                f"not done after {self.options.limit} s:\n{cluster.ask('squeue')}{cluster.ask('sinfo')}",
+                f"not done after {self.options.limit} s:\n{cluster.ask('squeue')}"
+                f"{cluster.ask('sinfo')}",
             )
         say(f"the run on the cluster took {time.monotonic() - began:.0f} s")
 
-    def check(self, cluster, seed):
+    def check(self, cluster: Cluster, seed: int) -> dict[str, Any]:
         here, there = (
             self.folder / f"here-{seed}" / "u-shape",
             self.folder / f"there-{seed}" / "u-shape",
@@ -234,7 +241,7 @@ class Test:
             stdout=subprocess.PIPE,
         )
         self.expect(inspected.returncode == 0, "vpl-inspect run failed")
-        run = json.loads(inspected.stdout or "{}")
+        run: dict[str, Any] = json.loads(inspected.stdout or "{}")
         self.expect(
             run.get("tasks") == 3 * self.options.shards + 4,
             f"{run.get('tasks')} tasks are recorded",
@@ -252,11 +259,11 @@ class Test:
             self.show_logs(there)
         return run
 
-    def show_logs(self, there):
+    def show_logs(self, there: Path) -> None:
         for file in sorted((there / "run").glob("*.log")):
             say(f"{file.name}:\n{file.read_text(errors='replace')[-800:]}")
 
-    def run(self):
+    def run(self) -> bool:
         chance = random.Random(self.options.seed)
         requeued = resumed = 0
         struck = {"tool": 0, "node": 0}
@@ -277,13 +284,14 @@ class Test:
         if self.options.kills:
             self.expect(resumed > 0, "no task went on from a checkpoint")
         print(
-            f"{'FAILED' if self.failures else 'the same bytes'}: {struck['tool']} tools and {struck['node']} nodes killed, "
+            f"{'FAILED' if self.failures else 'the same bytes'}: {struck['tool']} tools and "
+            f"{struck['node']} nodes killed, "
             f"{requeued} attempts more than tasks, {resumed} of them resumed from checkpoints"
         )
         return not self.failures
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -302,7 +310,8 @@ def main():
     options = parser.parse_args()
     if missing := missing_programs():
         print(
-            f"skipped: {', '.join(missing)} not found; apt-get install slurmctld slurmd slurm-client munge"
+            f"skipped: {', '.join(missing)} not found; apt-get install slurmctld slurmd "
+            "slurm-client munge"
         )
         sys.exit(SKIPPED)
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pipelines/slurm without Slurm: its commands are stand-ins that run each task at once.
+"""Tests pipelines/slurm without Slurm: stand-ins for its commands run each task at once.
 
 tests/cluster/test_submit.py build/release/bin
 """
@@ -14,6 +14,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from typing import Any
 
 SOURCE = Path(__file__).resolve().parents[2]
 BIN = Path("build/release/bin")
@@ -29,7 +30,7 @@ SIZES = [
     "--render-flags=--size 32x24",
 ]
 
-# sbatch: runs the tasks of a job one after the other if all jobs that it waits for went well.
+# This sbatch runs the tasks of a job one after the other if all jobs that it depends on succeeded.
 SBATCH = """\
 import json, os, pathlib, shlex, subprocess, sys
 state = pathlib.Path(os.environ["FAKE_SLURM"])
@@ -56,22 +57,26 @@ print(number)
 SQUEUE = (
     "import os, pathlib\nprint((pathlib.Path(os.environ['FAKE_SLURM']) / 'queued').read_text())\n"
 )
-# scontrol requeue: notes it, and fails, so that the task ends.
+# This scontrol logs a requeue and fails, so that the task ends.
 SCONTROL = """\
 import os, pathlib, sys
-with open(pathlib.Path(os.environ["FAKE_SLURM"]) / "requeued", "a") as log: print(*sys.argv[1:], file=log)
+with open(pathlib.Path(os.environ["FAKE_SLURM"]) / "requeued", "a") as log: \
+print(*sys.argv[1:], file=log)
 sys.exit(1)
 """
-# A tool that is killed, or that saves a checkpoint when it is asked to stop.
+# Tools: one that is killed, and one that saves a checkpoint when it is asked to stop.
 KILLED = "#!/bin/sh\nkill -9 $$\n"
-SAVES = "#!/bin/sh\ntrap 'echo saved > $2; trap - TERM; kill -TERM $$' TERM\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
-# The time limit, as soon as a tool begins.
+SAVES = (
+    "#!/bin/sh\ntrap 'echo saved > $2; trap - TERM; kill -TERM $$' TERM\ntouch "
+    "$2.ready\nwhile :; do sleep 0.1; done\n"
+)
+# A tool that signals the time limit as soon as it begins.
 LATE = SAVES.replace("touch $2.ready", "kill -USR1 $PPID")
 SLOW = "#!/bin/sh\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
 
 
 class SubmitTest(unittest.TestCase):
-    def setUp(self):
+    def setUp(self) -> None:
         self.keep = tempfile.TemporaryDirectory(prefix="bnvpl-submit-")
         self.folder = Path(self.keep.name)
         self.addCleanup(self.keep.cleanup)
@@ -90,16 +95,16 @@ class SubmitTest(unittest.TestCase):
             "PATH": f"{self.folder}/slurm:{os.environ['PATH']}",
         }
 
-    def program(self, name, text):
+    def program(self, name: str, text: str) -> str:
         file = self.folder / name
         file.parent.mkdir(exist_ok=True)
         file.write_text(text)
         file.chmod(0o755)
         return str(file)
 
-    def call(self, *command):
+    def call(self, *command: object) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [sys.executable, *command],
+            [sys.executable, *map(str, command)],
             cwd=SOURCE,
             env=self.environment,
             text=True,
@@ -107,7 +112,7 @@ class SubmitTest(unittest.TestCase):
             stderr=subprocess.STDOUT,
         )
 
-    def submit(self, *more):
+    def submit(self, *more: str) -> subprocess.CompletedProcess[str]:
         return self.call(
             "pipelines/slurm/submit.py",
             "scenes/u-shape/scene.toml",
@@ -119,17 +124,17 @@ class SubmitTest(unittest.TestCase):
             *more,
         )
 
-    def jobs(self):
-        """{name without the scene's: job} of those that ran since this was last asked."""
+    def jobs(self) -> dict[str, Any]:
+        """Jobs since the last call, by their names without the scene's."""
         file = self.folder / "jobs.json"
         found = json.loads(file.read_text())
         file.write_text("{}")
         return {job["name"].removeprefix("u-shape-"): job for job in found.values()}
 
-    def at(self, name):
+    def at(self, name: str) -> Path:
         return self.folder / "out/u-shape" / name
 
-    def test_makes_what_one_run_makes_and_later_only_what_is_missing(self):
+    def test_makes_what_one_run_makes_and_later_only_what_is_missing(self) -> None:
         done = self.submit("--shards", "3")
         self.assertEqual(done.returncode, 0, done.stdout)
         jobs = self.jobs()
@@ -185,14 +190,14 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(
             list(self.jobs()), ["estimate", "merge-estimate", "render", "merge-render", "summary"]
         )
-        # A task that is done is not done again when Slurm starts it twice.
+        # A task that is done does nothing when Slurm starts it again.
         task = self.call("pipelines/slurm/task.py", str(self.at("run/eliminate.job.json")))
         self.assertIn("is up to date", task.stdout)
 
-    def logs(self):
+    def logs(self) -> str:
         return "".join(file.read_text() for file in sorted(self.at("run").glob("*.log")))
 
-    def test_what_fails_stops_what_comes_after_it_and_is_made_by_the_next_submission(self):
+    def test_what_fails_stops_what_comes_after_it_and_is_made_by_the_next_submission(self) -> None:
         self.submit("--shards", "2", "--estimate-flags=--photon-count 3")
         jobs = self.jobs()
         self.assertFalse(jobs["estimate"]["well"])
@@ -212,7 +217,7 @@ class SubmitTest(unittest.TestCase):
             "not done", self.at("run/summary.log").read_text().rpartition("tasks in")[2]
         )
 
-    def test_ninja_records_what_its_tasks_take(self):
+    def test_ninja_records_what_its_tasks_take(self) -> None:
         self.call(
             "pipelines/generate_ninja.py",
             "scenes/u-shape/scene.toml",
@@ -249,7 +254,7 @@ class SubmitTest(unittest.TestCase):
         again = subprocess.run(ninja, cwd=SOURCE, text=True, stdout=subprocess.PIPE)
         self.assertIn("no work to do", again.stdout)
 
-    def test_records_of_other_shards_are_put_aside(self):
+    def test_records_of_other_shards_are_put_aside(self) -> None:
         self.submit("--shards", "2")
         self.submit("--shards", "3")
         names = {file.name.split(".")[0] for file in self.at("run").glob("*.task.json")}
@@ -257,7 +262,7 @@ class SubmitTest(unittest.TestCase):
         self.assertNotIn("place-1-of-2", names)
         self.assertTrue(self.at("run/earlier/place-1-of-2.1.task.json").exists())
 
-    def test_shards_of_each_stage(self):
+    def test_shards_of_each_stage(self) -> None:
         done = self.submit("--dry-run", "--shards", "place=2,render=5")
         rows = {
             row.split("--job-name=u-shape-")[1].split()[0]: row for row in done.stdout.splitlines()
@@ -274,7 +279,7 @@ class SubmitTest(unittest.TestCase):
         self.assertTrue(all(job["well"] for job in jobs.values()), self.logs())
         self.assertEqual(jobs["render"]["tasks"], [1, 2])
 
-    def test_limits_of_each_stage(self):
+    def test_limits_of_each_stage(self) -> None:
         done = self.submit(
             "--dry-run",
             "--memory",
@@ -297,8 +302,8 @@ class SubmitTest(unittest.TestCase):
         self.assertTrue(all("--partition=long --nice" in row for row in rows.values()))
         self.assertFalse(self.at("run").exists())
 
-    def test_memory_and_time_follow_the_counts(self):
-        def asked(*more):
+    def test_memory_and_time_follow_the_counts(self) -> None:
+        def asked(*more: str) -> dict[str, list[int]]:
             done = self.submit("--dry-run", *more)
             self.assertEqual(done.returncode, 0, done.stdout)
             rows = {
@@ -306,7 +311,7 @@ class SubmitTest(unittest.TestCase):
                 for row in done.stdout.splitlines()
             }
             return {
-                name: [int(re.search(f"--{what}=(\\d+)", row)[1]) for what in ("mem", "time")]
+                name: [int(re.findall(f"--{what}=(\\d+)", row)[0]) for what in ("mem", "time")]
                 for name, row in rows.items()
             }
 
@@ -327,14 +332,14 @@ class SubmitTest(unittest.TestCase):
         )
         for stage in ("place", "eliminate", "estimate", "render", "merge-render"):
             self.assertGreater(large[stage][0], small[stage][0], stage)
-        self.assertGreater(large["eliminate"][0], 15000)  # 100M candidates take 15 GiB
+        self.assertGreater(large["eliminate"][0], 15000)  # 100M candidates need 15 GiB
         for stage in ("eliminate", "estimate", "render"):
             self.assertGreater(large[stage][1], small[stage][1] + 5, stage)
         done = self.submit("--dry-run", "--bin", "nowhere")
         self.assertIn("nowhere/vpl-inspect", done.stdout)
         self.assertIn("--memory and --time", done.stdout)
 
-    def test_errors_name_what_is_wrong(self):
+    def test_errors_name_what_is_wrong(self) -> None:
         for more, problem in (
             (["--memory", "much"], "'much' is not a size"),
             (["--time", "paint=3"], "'paint' is none of"),
@@ -353,7 +358,7 @@ class SubmitTest(unittest.TestCase):
         self.environment["PATH"] = f"{self.folder}/slurm"
         self.assertIn("there is no sbatch here", self.submit().stdout)
 
-    def test_what_is_refused_moves_no_records_and_submits_nothing(self):
+    def test_what_is_refused_moves_no_records_and_submits_nothing(self) -> None:
         self.submit("--shards", "2")
         before = sorted(file.name for file in self.at("run").rglob("*"))
         self.jobs()
@@ -364,9 +369,11 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(sorted(file.name for file in self.at("run").rglob("*")), before)
         self.assertEqual(self.jobs(), {})
 
-    def test_files_of_others_stay(self):
+    def test_files_of_others_stay(self) -> None:
         self.submit("--shards", "2")
-        self.assertEqual(self.submit("--shards", "2", "--seed", "3").returncode, 0)  # over its own
+        self.assertEqual(
+            self.submit("--shards", "2", "--seed", "3").returncode, 0
+        )  # replaces its own files
         self.jobs()
         for name, content in (
             ("jobs.json", '{"asset": {"version": "2.0"}}'),
@@ -380,7 +387,8 @@ class SubmitTest(unittest.TestCase):
             done = self.submit("--shards", "2", "--seed", "4")
             self.assertRegex(
                 done.stdout,
-                rf"\Asubmit.py: \S*/{name}: is not a .* of this program, [^\n]*; name another [^\n]*\n\Z",
+                rf"\Asubmit.py: \S*/{name}: is not a .* of this program, [^\n]*; name another "
+                r"[^\n]*\n\Z",
             )
             self.assertEqual(done.returncode, 1)
             self.assertEqual(file.read_text(), content)
@@ -394,15 +402,15 @@ class SubmitTest(unittest.TestCase):
             self.submit("--out", str(self.folder / "other")).stdout,
         )
 
-    def test_a_run_that_is_queued_is_not_submitted_again(self):
+    def test_a_run_that_is_queued_is_not_submitted_again(self) -> None:
         self.submit("--shards", "1")
         (self.folder / "queued").write_text("101 101")
         done = self.submit("--shards", "1")
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("101 of this run are still queued", done.stdout)
 
-    def start_task(self, tool, retries=2, **more):
-        """task.py as job 9, for a tool of these tests."""
+    def start_task(self, tool: str, retries: int = 2, **more: Any) -> subprocess.Popen[bytes]:
+        """Starts task.py as job 9 for a tool of these tests."""
         saved = str(self.folder / "saved")
         task = {
             "name": "t",
@@ -425,25 +433,25 @@ class SubmitTest(unittest.TestCase):
             **more,
         )
 
-    def wait_until_ready(self):
+    def wait_until_ready(self) -> None:
         while not (self.folder / "saved.ready").exists():
             time.sleep(0.05)
 
-    def requeued(self):
+    def requeued(self) -> list[str]:
         file = self.folder / "requeued"
         return file.read_text().splitlines() if file.exists() else []
 
-    def record(self, number):
+    def record(self, number: int) -> Any:
         return json.loads((self.folder / f"run/t.{number}.task.json").read_text())
 
-    def test_a_killed_tool_is_queued_again_so_many_times(self):
+    def test_a_killed_tool_is_queued_again_so_many_times(self) -> None:
         tool = self.program("killed", KILLED)
         for attempt, requeued in ((1, 1), (2, 2), (3, 2)):
             self.assertEqual(self.start_task(tool).wait(), 137)
             self.assertEqual(self.requeued(), ["requeue 9"] * requeued)
             self.assertEqual(self.record(attempt)["exit"], 137)
 
-    def test_near_its_time_limit_a_task_saves_and_is_queued_again(self):
+    def test_near_its_time_limit_a_task_saves_and_is_queued_again(self) -> None:
         tool = self.program("saves", SAVES)
         for attempt in (1, 2):
             (self.folder / "saved.ready").unlink(missing_ok=True)
@@ -454,13 +462,13 @@ class SubmitTest(unittest.TestCase):
             self.assertEqual(self.requeued(), ["requeue 9"] * attempt)
             self.assertEqual(self.record(attempt)["resumed"], attempt == 2)
 
-    def test_a_time_limit_is_heard_while_the_tool_begins(self):
+    def test_a_time_limit_is_heard_while_the_tool_begins(self) -> None:
         tool = self.program("late", LATE)
         for _ in range(30):  # the signal comes before or after the tool is known
             self.assertEqual(self.start_task(tool).wait(timeout=60), 128 + 15)
 
-    def test_whole_tasks_go_on_from_their_checkpoints(self):
-        """A render that nears its time limit, as one task of the pipeline."""
+    def test_whole_tasks_go_on_from_their_checkpoints(self) -> None:
+        """Stops a render, one whole task of the pipeline, near its time limit."""
         arguments = [
             "--shards",
             "1",
@@ -478,7 +486,8 @@ class SubmitTest(unittest.TestCase):
         self.submit(*arguments)
         whole = self.at("image.exr").read_bytes()
         self.at("image.exr").unlink()
-        task = [sys.executable, SOURCE / "pipelines/slurm/task.py", self.at("run/render.job.json")]
+        program, job = SOURCE / "pipelines/slurm/task.py", self.at("run/render.job.json")
+        task = [sys.executable, str(program), str(job)]
         begun = subprocess.Popen(
             task,
             cwd=SOURCE,
@@ -502,7 +511,7 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(self.at("image.exr").read_bytes(), whole)
         self.assertFalse(self.at("render.checkpoint").exists())
 
-    def test_a_task_that_saves_nothing_before_its_time_limit_fails(self):
+    def test_a_task_that_saves_nothing_before_its_time_limit_fails(self) -> None:
         tool = self.program("slow", SLOW)
         task = self.start_task(tool)
         self.wait_until_ready()
@@ -510,7 +519,7 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(task.wait(), 128 + 15)
         self.assertEqual(self.requeued(), [])
 
-    def test_a_task_that_is_ended_is_not_queued_again(self):
+    def test_a_task_that_is_ended_is_not_queued_again(self) -> None:
         tool = self.program("saves", SAVES)
         task = self.start_task(tool, start_new_session=True)
         self.wait_until_ready()
@@ -518,7 +527,7 @@ class SubmitTest(unittest.TestCase):
         self.assertEqual(task.wait(), 128 + 15)
         self.assertEqual(self.requeued(), [])
 
-    def test_a_tool_ends_with_its_task(self):
+    def test_a_tool_ends_with_its_task(self) -> None:
         tool = self.program("saves", SAVES)
         task = self.start_task(tool)
         self.wait_until_ready()
@@ -535,7 +544,7 @@ class SubmitTest(unittest.TestCase):
         self.assertNotIn("exit", self.record(1))
 
     @staticmethod
-    def lives(pid):
+    def lives(pid: int) -> bool:
         try:
             return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
         except OSError:
@@ -546,5 +555,5 @@ if __name__ == "__main__":
     if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
         BIN = Path(
             os.path.relpath(Path(sys.argv.pop(1)).resolve(), SOURCE)
-        )  # the pipelines take no space in it
+        )  # a relative path, as the pipelines refuse spaces
     unittest.main()

@@ -1,8 +1,9 @@
-"""stdout and stderr that are closed, full or left by their reader."""
+"""Tests stdout and stderr that are closed, full, or abandoned by their reader."""
 
 import os
 import subprocess
 import unittest
+from collections.abc import Iterator, Sequence
 
 from workbench import BIN, COMMANDS, OK, OUTPUT, SOURCE, Workbench
 
@@ -16,8 +17,10 @@ ASKED_FOR = [
 
 
 class Streams(Workbench):
-    def shell(self, words, redirection):
-        """Not quiet: the words get what `redirection` makes of the standard streams."""
+    def shell(
+        self, words: Sequence[str | os.PathLike[str]], redirection: str
+    ) -> subprocess.CompletedProcess[str]:
+        """Runs the words, without --quiet, with redirected standard streams."""
         line = ' "$@" ' + redirection
         return subprocess.run(
             ["bash", "-c", line, "bash", *words],
@@ -27,14 +30,14 @@ class Streams(Workbench):
             timeout=60,
         )
 
-    def asked_for(self):
+    def asked_for(self) -> Iterator[tuple[str, list[str]]]:
         for words in ASKED_FOR:
             yield (
                 words[0],
                 [str(BIN / words[0]), *(word.format(made=self.made) for word in words[1:])],
             )
 
-    def test_a_summary_that_cannot_be_printed_costs_no_output(self):
+    def test_a_summary_that_cannot_be_printed_costs_no_output(self) -> None:
         for command in COMMANDS:
             self.right(command)
             for redirection, reason in (
@@ -49,8 +52,8 @@ class Streams(Workbench):
                 )
                 self.assert_all(command, "new", redirection)
 
-    def test_closed_streams_are_not_taken_by_files(self):
-        """What opens first would get number 0, 1 or 2, and then what is printed."""
+    def test_closed_streams_are_not_taken_by_files(self) -> None:
+        """The first file would get a closed descriptor 0, 1 or 2, and then the printed text."""
         for command in COMMANDS:
             self.right(command)
             for redirection in ("2>&-", ">&- 2>&-", "<&- >&- 2>&-"):
@@ -59,17 +62,17 @@ class Streams(Workbench):
                 self.assert_all(command, "new", redirection)
                 self.assertEqual(self.left_over(), [])
 
-    def test_errors_keep_their_code_without_stderr(self):
+    def test_errors_keep_their_code_without_stderr(self) -> None:
         for redirection in ("2>&-", "2>/dev/full", ">&- 2>&-"):
             for words, code in (
-                (["vpl-place", "absent.toml", "-o", self.folder / "x"], 3),
-                (["vpl-place", "--nonsense"], 2),
-                (["vpl-place", "absent.toml", "-o", self.folder / "absent/x"], OUTPUT),
+                (["absent.toml", "-o", str(self.folder / "x")], 3),
+                (["--nonsense"], 2),
+                (["absent.toml", "-o", str(self.folder / "absent/x")], OUTPUT),
             ):
-                result = self.shell([BIN / words[0], *words[1:]], redirection)
+                result = self.shell([BIN / "vpl-place", *words], redirection)
                 self.assertEqual(result.returncode, code, f"{words} {redirection}: {result}")
 
-    def test_text_that_was_asked_for_must_arrive(self):
+    def test_text_that_was_asked_for_must_arrive(self) -> None:
         for tool, words in self.asked_for():
             for redirection, reason in (
                 (">&-", "Bad file descriptor"),
@@ -81,8 +84,8 @@ class Streams(Workbench):
                     result.stderr, f"{tool}: standard output: cannot write: {reason}\n"
                 )
 
-    def test_a_reader_that_leaves(self):
-        """SIGPIPE ends the tool in silence, as `head` expects; where it is ignored, the write fails."""
+    def test_a_reader_that_leaves(self) -> None:
+        """SIGPIPE ends the tool silently, as `head` expects. If it is ignored, the write fails."""
         reading, writing = os.pipe()
         os.close(reading)
         for tool, words in self.asked_for():

@@ -1,4 +1,4 @@
-"""Writes my room.obj and .mtl with Blender's own exporter: names with blanks, umlauts and dots.
+"""Writes my room.obj and .mtl with Blender's exporter: names with blanks, umlauts and dots.
 
 blender --background --python tests/scene/blender/make.py      # made with Blender 3.4.1
 """
@@ -11,7 +11,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
-def material(name, colour, emission=0.0):
+def material(name: str, colour, emission=0.0):
     made = bpy.data.materials.new(name)
     made.use_nodes = True
     shader = made.node_tree.nodes["Principled BSDF"]
@@ -23,7 +23,7 @@ def material(name, colour, emission=0.0):
     return made
 
 
-def square(name, location, rotation, materials, size=2):
+def square(name: str, location, rotation, materials, size=2):
     bpy.ops.mesh.primitive_plane_add(size=size, location=location, rotation=rotation)
     made = bpy.context.object
     made.name = name

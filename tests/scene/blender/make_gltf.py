@@ -1,5 +1,7 @@
-"""Writes gltf room.glb with Blender's own exporter: two cameras, a lamp of 40 W, a panel, a mirror
-of rough metal, instances of a mesh, a texture, alpha and glass.
+"""Writes gltf room.glb with Blender's exporter.
+
+It has two cameras, a lamp of 40 W, a panel, a mirror of rough metal, instances of a mesh, a
+texture, alpha and glass.
 
     blender --background --python tests/scene/blender/make_gltf.py      # made with Blender 3.4.1
 """
@@ -13,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
-def material(name, colour, **inputs):
+def material(name: str, colour, **inputs):
     made = bpy.data.materials.new(name)
     made.use_nodes = True
     shader = made.node_tree.nodes["Principled BSDF"]
@@ -23,7 +25,7 @@ def material(name, colour, **inputs):
     return made
 
 
-def square(name, location, rotation, of, size=2):
+def square(name: str, location, rotation, of, size=2):
     bpy.ops.mesh.primitive_plane_add(size=size, location=location, rotation=rotation)
     made = bpy.context.object
     made.name = name
@@ -31,7 +33,7 @@ def square(name, location, rotation, of, size=2):
     return made
 
 
-def look(name, location, rotation, angle):
+def look(name: str, location, rotation, angle):
     data = bpy.data.cameras.new(name)
     data.angle = angle
     made = bpy.data.objects.new(name, data)
