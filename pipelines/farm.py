@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Simulates how long a sequence takes on a farm that runs generate_ninja.py's or submit.py's graph.
+r"""Simulates how long a sequence takes on a farm with the graph of generate_ninja.py or submit.py.
 
     pipelines/farm.py --frames 1000 --size 3840x2160 --vpls 100k --photons 1G --spp 64 \
         --nodes 1,10,100,1000

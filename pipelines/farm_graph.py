@@ -33,9 +33,8 @@ class Conditions:
         0.95  # CPU seconds of one thread over cores times wall time, where threads share work
     )
     scatter: float = 0.1  # standard deviation of log(time)
-    scales: dict[str, float] = dataclasses.field(
-        default_factory=dict
-    )  # of a stage but for loading, in scenes unlike the model's
+    # Factors of the stages' times without loading, for scenes unlike that of the model.
+    scales: dict[str, float] = dataclasses.field(default_factory=dict)
     seed: int = 1
 
 

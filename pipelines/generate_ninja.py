@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes a build.ninja that renders scenes by the four stages and keeps every intermediate file.
+r"""Writes a build.ninja that renders scenes by the four stages and keeps every intermediate file.
 
   pipelines/generate_ninja.py scenes/u-shape/scene.toml --quality draft
   ninja -f out/build.ninja

@@ -90,8 +90,8 @@ CHECKED: list[tuple[str, int, list[Run]]] = [
 ]
 # fmt: on
 
-# Predictions for other scenes, without the time of loading, are scaled by one short run of the stage
-# in that scene.
+# Predictions for other scenes, without the time of loading, are scaled by one short run of the
+# stage in that scene.
 SCALED_BY = [
     place(800 * K),
     eliminate(100 * K, 2500),

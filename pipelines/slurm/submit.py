@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Renders a scene on a Slurm cluster. Place, estimate and render are arrays of shards with a merge.
+r"""Renders a scene on a Slurm cluster: place, estimate and render as arrays of shards with a merge.
 
     pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 16,render=64 \
         --memory 8G,eliminate=32G --time 2:00:00
