@@ -19,6 +19,8 @@ from report_json import ReportError, load
 sys.path.append(str(Path(__file__).resolve().parents[2] / "pipelines"))
 import output_guard  # noqa: E402
 
+__all__ = ["EXIT_INPUT", "EXIT_OUTPUT", "main", "output_guard", "write_output"]
+
 EXIT_INPUT = 3
 EXIT_OUTPUT = 4
 

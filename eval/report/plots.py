@@ -22,9 +22,8 @@ from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.axis import Axis as PlotAxis  # noqa: E402
 
-import output_guard  # noqa: E402
 from axis import Axis, axes_of, ticks  # noqa: E402
-from make_report import EXIT_INPUT, write_output  # noqa: E402
+from make_report import EXIT_INPUT, output_guard, write_output  # noqa: E402
 from palette import LIGHT, MARKERS  # noqa: E402
 from report_json import ReportError, load  # noqa: E402
 from svg_plot import name_lines  # noqa: E402
