@@ -166,9 +166,8 @@ def plot(rows: list[dict[str, Any]], path: Path) -> None:
     axes.set_xlabel("VPLs")
     axes.set_ylabel("CPU seconds of the gather")
     axes.grid(True, which="both", alpha=0.3)
-    axes.legend(
-        fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=2
-    )  # below the plot
+    # The legend stands below the plot.
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncol=2)
     figure.tight_layout()
     figure.savefig(path, dpi=110)
 

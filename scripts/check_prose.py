@@ -7,8 +7,8 @@ Without PATH, every tracked file is read. Each finding is one line, FILE:LINE: p
 finding makes the exit status 1. The rules:
 
 - No comment begins with "Of", "By" or "As"; no trailing comment begins with "of".
-- Outside docs/lab/ and CHANGELOG.md nothing names a commit, a date or an earlier state, which belong
-  into the history.
+- Outside docs/lab/ and CHANGELOG.md nothing names a commit, a date or an earlier state. They are
+  the history's.
 - In the README, the guide, the options' help and the theory pages no sentence has more than 35
   words.
 """

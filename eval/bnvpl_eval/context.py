@@ -19,14 +19,12 @@ class Context:
     settings: dict[str, Any]
     scenes: list[Scene]  # scenes of this size whose models are available
     runner: Runner
-    results: list[dict[str, Any]] = field(
-        default_factory=list
-    )  # one row a configuration, from all parts
+    # Each configuration of each part is a row.
+    results: list[dict[str, Any]] = field(default_factory=list)
     tables: list[dict[str, Any]] = field(default_factory=list)  # tables of the report
     plots: list[dict[str, Any]] = field(default_factory=list)
-    pictures: dict[str, dict[str, list[dict[str, Any]]]] = field(
-        default_factory=dict
-    )  # by view name
+    # The pictures are grouped by the view's name.
+    pictures: dict[str, dict[str, list[dict[str, Any]]]] = field(default_factory=dict)
 
     def views(self, only: str = "") -> list[View]:
         return [

@@ -41,9 +41,8 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     if done >= spp:
         return
     chunk = min(spp - done, CHUNK)
-    first_seed = (
-        stored["seeds"][1] + 2 if stored else 1000 + (half == "b")
-    )  # differs from the seeds that are judged
+    # The seeds differ from those of the images that are judged.
+    first_seed = stored["seeds"][1] + 2 if stored else 1000 + (half == "b")
     seeds = range(first_seed, first_seed + 2 * -(-(spp - done) // chunk), 2)
     sums = {
         layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0

@@ -62,14 +62,12 @@ class Runner:
     bin: Path
     cache: Path
     quiet: bool = False
-    provenance: dict[str, Any] = field(
-        default_factory=dict
-    )  # commit, processor and date, for every run.json
+    # Commit, processor and date go into every run.json.
+    provenance: dict[str, Any] = field(default_factory=dict)
     runs: dict[str, Run] = field(default_factory=dict)  # all requested runs, by key
     _files: dict[Path, str] = field(default_factory=dict)
-    _tools: dict[Path, tuple[Any, ...]] = field(
-        default_factory=dict
-    )  # time and size when first used
+    # Time and size of each tool when it was first used.
+    _tools: dict[Path, tuple[Any, ...]] = field(default_factory=dict)
 
     def file_key(self, path: Path) -> str:
         """Key of a file: that of the run that made it, or a hash of its bytes and models."""

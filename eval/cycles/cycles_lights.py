@@ -33,9 +33,8 @@ def make_lamp(light: dict[str, Any], name: str) -> None:
         lamp.energy = peak  # irradiance in W/m2 of a facing surface
         lamp.angle = math.radians(light.get("angular_diameter_deg", 0.0))
     else:
-        lamp.energy = (
-            peak * 4.0 * math.pi
-        )  # W over the whole sphere, even for a cone; scene.toml: W/sr
+        # The unit is W over the whole sphere, even for a cone. scene.toml has W/sr.
+        lamp.energy = peak * 4.0 * math.pi
         lamp.shadow_soft_size = 0.0
     if light["type"] == "spot":
         if light.get("falloff_deg", 0.0) > 0.0:

@@ -46,9 +46,8 @@ class Sketch:
 
     materials: dict[str, dict[str, Any]]
     parts: list[Part] = field(default_factory=list)
-    nodes: list[dict[str, Any]] = field(
-        default_factory=list
-    )  # nodes of glTF, which are instances of the last part
+    # Nodes of glTF, which are instances of the last part.
+    nodes: list[dict[str, Any]] = field(default_factory=list)
 
 
 def quad(

@@ -34,12 +34,10 @@ class Material:
     opacity: float = 1.0
     map_kd: Path | None = None
     two_sided: bool = False
-    maps: list[str] = field(
-        default_factory=list
-    )  # other maps, which are refused if a face uses them
-    model: dict[str, Any] = field(
-        default_factory=dict
-    )  # parameters of model_scenes.py, which replace the MTL fields
+    # Other maps, which are refused if a face uses them.
+    maps: list[str] = field(default_factory=list)
+    # Parameters of model_scenes.py, which replace the MTL fields.
+    model: dict[str, Any] = field(default_factory=dict)
 
     @property
     def mirror(self) -> bool:

@@ -110,9 +110,8 @@ class QuickRun(unittest.TestCase):
                 for m in ("local", "even", "literal")
             )
             self.assertGreater(literal, 4 * ours)
-            self.assertGreater(
-                even, 1.5 * ours
-            )  # emission points lie in the lit part, so the factor is less here
+            # Emission points lie in the lit part, so the factor is less here.
+            self.assertGreater(even, 1.5 * ours)
 
     def test_energy_is_about_right_even_at_this_size(self) -> None:
         for row in self.rows("methods", method="local"):

@@ -27,9 +27,8 @@ class KnownErrors(unittest.TestCase):
     def test_noise_alone(self) -> None:
         found = self.judged(0.0, 0.1)
         self.assertAlmostEqual(found["std_over_mean"], 0.1, delta=0.003)
-        self.assertAlmostEqual(
-            found["rmse_over_mean"], 0.1, delta=0.005
-        )  # not the reference's 0.2 / sqrt 2
+        # The noise of the reference, 0.2 / sqrt 2, must not add to it.
+        self.assertAlmostEqual(found["rmse_over_mean"], 0.1, delta=0.005)
         self.assertLess(found["bias_over_mean"], 0.02)
         self.assertAlmostEqual(found["mean_ratio"], 1.0, delta=0.003)
 

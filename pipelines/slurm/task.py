@@ -134,9 +134,8 @@ class Job:
 
     def queue_again(self) -> None:
         print(f"task.py: {self.task['name']} is queued again, to go on", flush=True)
-        signal.signal(
-            signal.SIGTERM, signal.SIG_DFL
-        )  # the work is saved, so scontrol may end this process
+        # The work is saved, so scontrol may end this process.
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         if subprocess.run(["scontrol", "requeue", os.environ["SLURM_JOB_ID"]]).returncode == 0:
             time.sleep(600)  # until Slurm ends this attempt
 

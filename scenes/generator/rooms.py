@@ -27,9 +27,8 @@ def u_shape() -> dict[str, str | bytes]:
     mesh.box((-4, 0, -1.5), (4, 3, 6.5), "Wall", walls, inward=True)
     mesh.object("Divider")
     mesh.box((-0.05, -SUNK, 0), (0.05, 3 + SUNK, 6.5 + SUNK), "Divider")
-    mesh.object(
-        "Wing"
-    )  # hides all that the camera sees from the lamp, so the view is indirect light only
+    # The wing hides all that the camera sees from the lamp, so the view is indirect light only.
+    mesh.object("Wing")
     mesh.box((0, -SUNK, 0.02), (2.6, 3 + SUNK, 0.12), "Divider")
     mesh.object("Lamp")
     lamp_box(mesh, (2.5, 2.9, 1.2), (3.5, 3 + SUNK, 2.2))

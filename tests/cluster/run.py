@@ -123,9 +123,8 @@ class Test:
     def __init__(self, options: argparse.Namespace, folder: str) -> None:
         self.options, self.folder = options, Path(folder)
         self.bin = Path(options.bin).resolve()
-        self.named_bin = os.path.relpath(
-            self.bin, SOURCE
-        )  # a relative path, as the pipelines refuse spaces
+        # The path is relative, as the pipelines refuse spaces.
+        self.named_bin = os.path.relpath(self.bin, SOURCE)
         self.failures: list[str] = []
         self.environment = os.environ | {"PATH": f"/usr/bin:/bin:{os.environ.get('PATH', '')}"}
 

@@ -232,9 +232,8 @@ class Command(unittest.TestCase):
         graph = [Job("a", "s", [], 2, 10, 100, checkpoints=True)]
         site = failing([55], cores=2, checkpoint_s=20, repair_s=7)
         row = farm.row_of(graph, site, simulate(graph, site), 0)
-        self.assertAlmostEqual(
-            row["lost_h"] * 3600, 2 * (5 + 10)
-        )  # work since the checkpoint, and the repeated set-up
+        # The work since the checkpoint is lost, and the set-up is repeated.
+        self.assertAlmostEqual(row["lost_h"] * 3600, 2 * (5 + 10))
 
     def test_the_picture_is_whole(self) -> None:
         import xml.etree.ElementTree

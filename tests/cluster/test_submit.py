@@ -371,9 +371,8 @@ class SubmitTest(unittest.TestCase):
 
     def test_files_of_others_stay(self) -> None:
         self.submit("--shards", "2")
-        self.assertEqual(
-            self.submit("--shards", "2", "--seed", "3").returncode, 0
-        )  # replaces its own files
+        # A run replaces its own files.
+        self.assertEqual(self.submit("--shards", "2", "--seed", "3").returncode, 0)
         self.jobs()
         for name, content in (
             ("jobs.json", '{"asset": {"version": "2.0"}}'),
@@ -553,7 +552,6 @@ class SubmitTest(unittest.TestCase):
 
 if __name__ == "__main__":
     if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        BIN = Path(
-            os.path.relpath(Path(sys.argv.pop(1)).resolve(), SOURCE)
-        )  # a relative path, as the pipelines refuse spaces
+        # The path is relative, as the pipelines refuse spaces.
+        BIN = Path(os.path.relpath(Path(sys.argv.pop(1)).resolve(), SOURCE))
     unittest.main()

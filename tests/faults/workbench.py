@@ -22,9 +22,8 @@ from typing import Any
 
 BIN = Path(os.environ["BNVPL_BIN"])
 SOURCE = Path(os.environ["BNVPL_SOURCE"])
-SHIM = os.environ.get(
-    "BNVPL_SHIM", ""
-)  # empty for builds with a sanitizer, which allow no preloading
+# The shim is empty for builds with a sanitizer, which allow no preloading.
+SHIM = os.environ.get("BNVPL_SHIM", "")
 FULL = os.environ.get("BNVPL_FAULTS") == "full"
 SCENE = SOURCE / "scenes/test/one-bounce.toml"
 OK, INTERNAL, USAGE, INPUT, OUTPUT, DIFFERENT, MEMORY = range(7)  # core/errors.h

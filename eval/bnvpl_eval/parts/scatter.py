@@ -16,9 +16,8 @@ COLUMNS = [
     ),
     column("dark_room", "light in the dark room", "W/(m2 sr)", "low"),
 ]
-ROOMS = (
-    ROOT / "scenes/test/two-rooms.toml"
-)  # a lit and a dark room that share floor, ceiling and a thin wall
+# The scene is a lit and a dark room that share floor, ceiling and a thin wall.
+ROOMS = ROOT / "scenes/test/two-rooms.toml"
 
 
 def run(context: Context) -> None:
