@@ -5,10 +5,10 @@
   VEACH_AJAR_DIR=/folder eval/rooms.py --also light guided spread-path cycles
     eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom
 
-The last command yields the published ratios. Each room is rendered by the pipeline with two
-settings, by the path tracer with as many samples as fit in the CPU time of all four stages, and by
-others on request. All are judged by two halves of a reference: means over its mean, relMSE,
-RMSE / mean, SMAPE and FLIP.
+The last command measures under the conditions of published ratios. Each room is rendered by the
+pipeline with two settings, by the path tracer with as many samples as fit in the CPU time of all
+four stages, and by others on request. All are judged by two halves of a reference: means over its
+mean, relMSE, RMSE / mean, SMAPE and FLIP.
 
 The rows of each room replace those of an earlier run in docs/rooms.csv, from which rooms_page.py
 makes a table and a picture of docs/results.md. Rooms whose files do not exist are left out, as are,
