@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Fits pipelines/cost_model.json, the cost of each stage, to runs, and checks it on other runs.
 
-  bench/cost_model.py              measure, fit, check; about ten minutes of one core
-  bench/cost_model.py --keep F     keep the measurements in F, and do not repeat those that it has
-  bench/cost_model.py --table      print the tables of docs/scaling.md from cost_model.json
+    bench/cost_model.py              measure, fit, check; about ten minutes of one core
+    bench/cost_model.py --keep F     keep the measurements in F, and do not repeat those that it has
+    bench/cost_model.py --table      print the tables of docs/scaling.md from cost_model.json
 
 CPU seconds are user and system time of one thread. Runs are repeated two to eight times, until the
 two least agree within 4 %; the least counts. cost/design.py lists the runs.

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Compares 1,000 lamps with ten of the same power: CPU seconds of vpl-render, noise of two seeds.
 
-  bench/lamps.py                   # a minute
-  bench/lamps.py --lamps 10,100,10000
+    bench/lamps.py                   # a minute
+    bench/lamps.py --lamps 10,100,10000
 
 The scene is a room of 10 x 3 x 10 m with four shelves, which hide lamps from most places.
 bench/RESULTS.md has the figures.

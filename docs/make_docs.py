@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the tools' output that the docs show, from the tools themselves, and checks links.
 
-    docs/make_docs.py            # rewrite the blocks that differ, docs/options.md and the tables
+    docs/make_docs.py            # rewrite the blocks that differ and docs/options.md
     docs/make_docs.py --check    # write nothing; exit 1 and name what differs
 
 A block is a session in a shell. Each line with a $ is a command; its output follows.

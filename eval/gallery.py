@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the gallery of docs/results.md: scenes of other programs, lit by three integrators.
 
-  PBRT_SCENES=/folder/of/pbrt/scenes eval/gallery.py
+    PBRT_SCENES=/folder/of/pbrt/scenes eval/gallery.py
 
 Renders each scene by the path tracer, the light tracer and VPLs and compares their means. Where an
 author's render exists, means of blocks are compared with it. Writes docs/images/gallery-*.jpg,

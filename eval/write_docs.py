@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts the tables of a run into docs/results.md and README.md, and its pictures into docs/images.
 
-  eval/write_docs.py build/eval/standard
+    eval/write_docs.py build/eval/standard
 
 --only limits it to some tables and pictures, for a run of some parts. A table stands between
 '<!-- table ID -->' and '<!-- end -->', with the ID of report.json.

@@ -3,7 +3,7 @@ r"""Simulates how long a sequence takes on a farm with the graph of generate_nin
 
     pipelines/farm.py --frames 1000 --size 3840x2160 --vpls 100k --photons 1G --spp 64 \
         --nodes 1,10,100,1000
-  pipelines/farm.py ... --nodes 1000 --failure-hours 500 --svg farm.svg
+    pipelines/farm.py ... --nodes 1000 --failure-hours 500 --svg farm.svg
 
 cost_model.json predicts the cost of each task, and a random factor scatters its time. The output
 depends only on the options and the seed.

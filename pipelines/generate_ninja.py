@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 r"""Writes a build.ninja that renders scenes by the four stages and keeps every intermediate file.
 
-  pipelines/generate_ninja.py scenes/u-shape/scene.toml --quality draft
-  ninja -f out/build.ninja
+    pipelines/generate_ninja.py scenes/u-shape/scene.toml --quality draft
+    ninja -f out/build.ninja
 
 With --shards N, place, estimate and render become N edges each and one of vpl-merge. The merged
 files are the same. --shards place=4,estimate=16,render=64 gives each stage its own N. --launcher
@@ -10,7 +10,7 @@ starts the shards elsewhere:
 
     pipelines/generate_ninja.py scenes/u-shape/scene.toml --shards 16,render=64 \
         --launcher 'srun -n1 -c8'
-  ninja -j 64 -f out/build.ninja
+    ninja -j 64 -f out/build.ninja
 
 Ninja remembers each stage's command and reads its depfile, so a stage runs again when an input,
 its executable or its own options have changed. Paths are relative to the folder in which both run.

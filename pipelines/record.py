@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the command of a task and records what it took, for vpl-inspect run.
 
-  pipelines/record.py out/u-shape/run place-3-of-64 --stage place -- vpl-place ...
+    pipelines/record.py out/u-shape/run place-3-of-64 --stage place -- vpl-place ...
 
 Each attempt has a file of its own, FOLDER/TASK.ATTEMPT.task.json, which is written when the attempt
 begins and again when it ends. A record without an end belongs to an attempt that was killed
@@ -9,7 +9,7 @@ together with this program, for example when its machine failed.
 
     task, stage, attempt       names of the task and its stage; number of the attempt, from 1
     after                      the stages whose files the task reads
-  command, host, job         words of the command; node; the scheduler's job, _INDEX in an array
+    command, host, job         words of the command; node; the scheduler's job, _INDEX in an array
     resumed                    whether a checkpoint existed from which the command could resume
     start_s, end_s             seconds since 1970; there is no end_s while it runs
     cpu_s, peak_memory_MiB     cost of the command and its children; absent while it runs

@@ -2,7 +2,7 @@
 
 Let x_s be the images of S seeds, m their mean, and a and b halves of the reference, whose noise is
 independent. Means are over pixels and channels:
-  MSE       mean over s of mean (x_s - a)(x_s - b)        the noise of a and b cancels on average
+    MSE       mean over s of mean (x_s - a)(x_s - b)        the noise of a and b cancels on average
     variance  mean of the sample variance over s            noise of one image
     bias^2    mean (m - a)(m - b) - variance / S            without the noise of the mean image
 Each root is divided by the mean of the reference. Negative estimates, due to noise, count as 0.

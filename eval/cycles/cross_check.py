@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Cross-checks the path tracer of vpl-render with Blender's Cycles on the CPU.
 
-  eval/cycles/cross_check.py                   all cases
-  eval/cycles/cross_check.py cornell u-shape   two of them
-  eval/cycles/cross_check.py --list
-  eval/cycles/cross_check.py --table --results eval/cycles/results.json
+    eval/cycles/cross_check.py                   all cases
+    eval/cycles/cross_check.py cornell u-shape   two of them
+    eval/cycles/cross_check.py --list
+    eval/cycles/cross_check.py --table --results eval/cycles/results.json
 
 Both render each view with several seeds. The ratio of the image means is printed with its standard
 error. Exit codes: 0 if all means agree within --tolerance; 2 for wrong options; 3 if Blender,

@@ -1,7 +1,7 @@
 """Renders a scene.toml with Blender's Cycles. Runs inside Blender, on the CPU, without a window.
 
-  blender -b --factory-startup --python-exit-code 3 --python render_cycles.py -- SCENE.toml
-      --output image.{bounces}.{seed}.exr --bounces 0,32 --seeds 1,2 --spp 256 [--threads 2]
+    blender -b --factory-startup --python-exit-code 3 --python render_cycles.py -- SCENE.toml
+        --output image.{bounces}.{seed}.exr --bounces 0,32 --seeds 1,2 --spp 256 [--threads 2]
 
 The geometry keeps its axes: y is not turned to Blender's z. Each pair of position and normal is one
 vertex of Blender, so that shading normals stay unchanged. README.md lists all conventions that are

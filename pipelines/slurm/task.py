@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs one task of a job of submit.py, unless its files are up to date.
 
-  task.py out/u-shape/run/place.job.json      # as task SLURM_ARRAY_TASK_ID of an array
+    task.py out/u-shape/run/place.job.json      # as task SLURM_ARRAY_TASK_ID of an array
 
 The task is queued again and resumes from its checkpoint when it nears its time limit (SIGUSR1), and
 when its tool is killed, as often as the job allows. Slurm itself requeues it when a node fails.

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Compares the results of two builds of the tools, byte by byte.
 
-      tests/bytes/bytes.py record --bin OLD/bin -o table.json   # records results of a build
-      tests/bytes/bytes.py compare --bin NEW/bin table.json       # compares another build
+    tests/bytes/bytes.py record --bin OLD/bin -o table.json   # records a build
+    tests/bytes/bytes.py compare --bin NEW/bin table.json     # compares another build
 
 Bits depend on the processor, so the table is recorded on the same machine, with a build of the
 commit from which the work started. Each file has two hashes: one of its values (columns of a .vpl,

@@ -3,7 +3,7 @@ r"""Compares all stages on emulated processors with this machine's processor.
 
     tests/bytes/processors.py --bin build/release/bin
     tests/bytes/processors.py --bin build/release/bin --scene scenes/cornell/scene.toml -n 20k \
-          --photons 1M --size 128x96
+        --photons 1M --size 128x96
 
 With --processor any, all files must have the same bytes on all processors, and shards of different
 processors must merge to the file of one run. Without it, files may differ. Then the processor ids

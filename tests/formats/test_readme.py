@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Tests that formats/README.md shows .vpl files as the tools write them.
 
-  test_readme.py BIN              # folder of the executables
-  test_readme.py BIN --write      # renews the record and the table of inputs in the README
+    test_readme.py BIN              # folder of the executables
+    test_readme.py BIN --write      # renews the record and the table of inputs in the README
 
 Hashes and versions differ between builds and are not compared.
 """

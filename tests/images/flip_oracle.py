@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Computes FLIP without separable filters, for the figures of flip_test.cpp.
 
-      tests/images/flip_oracle.py                  # figures of the test's pattern
-      tests/images/flip_oracle.py A.exr REF.exr    # figures of two images, as vpl-inspect compare
+    tests/images/flip_oracle.py                  # figures of the test's pattern
+    tests/images/flip_oracle.py A.exr REF.exr    # figures of two images, as vpl-inspect compare
 
 Every filter is a full two-dimensional sum in double precision. Linear input is encoded in sRGB,
 which FLIP decodes again.

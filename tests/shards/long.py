@@ -2,7 +2,7 @@
 """Runs each stage in many shards, kills tasks at random moments, and compares with a single run.
 
     tests/shards/long.py --bin build/release/bin        # 1,000 shards of each stage: half an hour
-  tests/shards/long.py --bin build/release/bin --shards 64 --kills 100
+    tests/shards/long.py --bin build/release/bin --shards 64 --kills 100
 
 Prints a line for each stage: whether the files are the same, and CPU seconds of shards and merge.
 The exit code is 1 when a file differs.
