@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes what the docs show of the tools' output, from the tools themselves, and checks their links.
+"""Writes the tools' output that the docs show, from the tools themselves, and checks links.
 
-    docs/make_docs.py            # rewrite the blocks that differ, docs/options.md and the table of pictures
+    docs/make_docs.py            # rewrite the blocks that differ and docs/options.md
     docs/make_docs.py --check    # write nothing; exit 1 and name what differs
 
-A block is a session in a shell: what follows each line with a $ is what that command prints.
+A block is a session in a shell. Each line with a $ is a command; its output follows.
 
     <!-- session -->
     ```
@@ -13,11 +13,15 @@ A block is a session in a shell: what follows each line with a $ is what that co
     ```
     <!-- end of session -->
 
-Each session begins in a fresh folder where SETUP has made small files, with the tools on the PATH. One that
-begins with <!-- session goes on --> runs in the folder that the session before it in the same file has left.
-Hashes and builds differ from run to run: NORMAL says what is written instead. Lines of progress, times and
-memory are left out. Both modes fail where a relative link in any page leads to no file or no heading.
+Each session begins in a fresh folder where SETUP has made small files, with the tools on the PATH.
+A session that begins with <!-- session goes on --> runs in the folder that the previous session of
+the same file has left. NORMAL replaces hashes and builds, which differ from run to run, and drops
+lines of progress, times and memory. Both modes fail where a relative link in any page leads to no
+file or no heading.
 """
+
+from __future__ import annotations
+
 import argparse
 import json
 import os
@@ -27,17 +31,20 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import make_guide_pictures
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.append(str(ROOT / 'bench/cost'))
+sys.path.append(str(ROOT / "bench/cost"))
 import cost_tables  # noqa: E402
-STAGES = ('vpl-place', 'vpl-eliminate', 'vpl-estimate', 'vpl-render')
 
-# What the blocks' commands find. Small, so that a test can run it.
-SETUP = '''
+STAGES = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render")
+
+# Makes the files that the commands of the blocks use. They are small, so that a test can run it.
+SETUP = """
 ln -s '{root}/scenes' scenes
 ln -s '{root}/pipelines' pipelines
 mkdir -p build/release
@@ -46,220 +53,301 @@ vpl-place scenes/cornell/scene.toml -o candidates.vpl -n 20k --quiet
 vpl-eliminate candidates.vpl -o vpls.vpl -n 1k --quiet
 vpl-estimate scenes/cornell/scene.toml vpls.vpl -o lit.vpl --photons 200k --quiet
 vpl-render scenes/cornell/scene.toml lit.vpl -o image.exr --size 80x80 --layers all --quiet
-vpl-render scenes/cornell/scene.toml -o reference.exr --integrator path --spp 64 --size 80x80 --layers all --quiet
-'''
+vpl-render scenes/cornell/scene.toml -o reference.exr --integrator path --spp 64 \
+--size 80x80 --layers all --quiet
+"""
 
-# Build identities and hashes; progress, seconds and memory.
-NORMAL = ((re.compile(r'\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b'), r'\1'),
-          (re.compile(r'\b[0-9a-f]{16}\b'), '0123456789abcdef'),
-          (re.compile(r'^vpl-\w+: (.* of \S+ \(\d+ %\)(, .* left)?|\d+\.\d\d s, peak memory \d+ MiB)\n', re.M), ''))
+# Patterns and replacements for build identities and hashes; lines of progress, times and memory.
+NORMAL = (
+    (re.compile(r"\b(\d+\.\d+\.\d+)\+[0-9a-f]{12}\b"), r"\1"),
+    (re.compile(r"\b[0-9a-f]{16}\b"), "0123456789abcdef"),
+    (
+        re.compile(
+            r"^vpl-\w+: (.* of \S+ \(\d+ %\)(, .* left)?|\d+\.\d\d s, peak memory \d+ MiB)\n", re.M
+        ),
+        "",
+    ),
+)
 
-SESSION = re.compile(r'(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)',
-                     re.S)
-# Blocks that other text than a session fills: <!-- made: NAME --> ... <!-- end -->
-MADE = re.compile(r'(<!-- made: (?P<name>\w+) -->\n)(?P<text>.*?)(<!-- end -->)', re.S)
+SESSION = re.compile(
+    r"(<!-- session(?P<on> goes on)? -->\n```[a-z]*\n)(?P<text>.*?)(```\n<!-- end of session -->)",
+    re.S,
+)
+# Blocks that a function of BLOCKS fills: <!-- made: NAME --> ... <!-- end -->
+MADE = re.compile(r"(<!-- made: (?P<name>\w+) -->\n)(?P<text>.*?)(<!-- end -->)", re.S)
 
 
-def setup_block(_):
-    return '```sh\n' + ''.join(f'{line.removesuffix(" --quiet")}\n' for line in SETUP.split('\n')
-                               if line.startswith('vpl-')) + '```\n'
+def setup_block(_: object) -> str:
+    return (
+        "```sh\n"
+        + "".join(
+            f"{line.removesuffix(' --quiet')}\n"
+            for line in SETUP.split("\n")
+            if line.startswith("vpl-")
+        )
+        + "```\n"
+    )
 
 
-def recipes_block(_):
-    return ''.join(f'{row}\n' for row in make_guide_pictures.table())
+def recipes_block(_: object) -> str:
+    return "".join(f"{row}\n" for row in make_guide_pictures.table())
 
 
-def methods_block(bench):
-    """The methods of all stages, each with its page; for pages of docs/."""
-    rows = ['| option | methods |', '|---|---|']
+def methods_block(bench: Bench) -> str:
+    """The methods of all stages with links to their theory, for pages in docs/."""
+    rows = ["| option | methods |", "|---|---|"]
     for tool in STAGES:
-        for slot in bench.spec(tool)['slots']:
-            folder = f'../tools/{tool.removeprefix("vpl-")}/' + ('' if slot['name'] == 'method' else f'{slot["name"]}/')
-            names = sorted((m['name'] for m in slot['methods']), key=lambda name: (name != slot['default'], name))
-            links = [f'[{name}]({folder}{name.replace("-", "_")}/theory.md)' for name in names]
-            rows.append(f'| `{tool} --{slot["name"]}` | **{links[0]}**{"".join(f", {link}" for link in links[1:])} |')
-    return ''.join(f'{row}\n' for row in rows)
+        for slot in bench.spec(tool)["slots"]:
+            folder = f"../tools/{tool.removeprefix('vpl-')}/" + (
+                "" if slot["name"] == "method" else f"{slot['name']}/"
+            )
+            names = sorted(
+                (m["name"] for m in slot["methods"]),
+                key=lambda name: (name != slot["default"], name),
+            )
+            links = [f"[{name}]({folder}{name.replace('-', '_')}/theory.md)" for name in names]
+            rows.append(
+                f"| `{tool} --{slot['name']}` | "
+                f"**{links[0]}**{''.join(f', {link}' for link in links[1:])} |"
+            )
+    return "".join(f"{row}\n" for row in rows)
 
 
-def cost_block(part):
-    """A table of pipelines/cost_model.json, which bench/cost_model.py has measured."""
-    return ''.join(f'{row}\n' for row in part(json.loads((ROOT / 'pipelines/cost_model.json').read_text())))
+def cost_block(part: Callable[[dict[str, Any]], list[str]]) -> str:
+    """A table of pipelines/cost_model.json, which bench/cost_model.py measures."""
+    return "".join(
+        f"{row}\n" for row in part(json.loads((ROOT / "pipelines/cost_model.json").read_text()))
+    )
 
 
-BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block,
-          'cost_rates': lambda _: cost_block(cost_tables.rates), 'cost_checks': lambda _: cost_block(cost_tables.checks)}
+BLOCKS: dict[str, Callable[[Bench], str]] = {
+    "setup": setup_block,
+    "recipes": recipes_block,
+    "methods": methods_block,
+    "cost_rates": lambda _: cost_block(cost_tables.rates),
+    "cost_checks": lambda _: cost_block(cost_tables.checks),
+}
 
 
-def normal(text):
+def normal(text: str) -> str:
     for pattern, instead in NORMAL:
         text = pattern.sub(instead, text)
-    return '\n'.join(line.rstrip() for line in text.splitlines()) + '\n'
+    return "\n".join(line.rstrip() for line in text.splitlines()) + "\n"
 
 
-def same(a, b):
-    """Equal but for the last digits of numbers, which depend on the processor: by 2 % or a unit of the last one shown."""
-    number = re.compile(r'-?\d+(?:\.\d+)?(?:e[-+]?\d+)?')
-    if number.sub('#', a) != number.sub('#', b):
+def same(a: str, b: str) -> bool:
+    """Whether texts are equal but for numbers that differ by 2 % or a unit of the last digit.
+
+    The last digits of numbers depend on the processor.
+    """
+    number = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+    if number.sub("#", a) != number.sub("#", b):
         return False
 
-    def unit(x):
-        digits, _, exponent = x.partition('e')
-        return 10.0 ** (int(exponent or 0) - len(digits.partition('.')[2]))
+    def unit(x: str) -> float:
+        digits, _, exponent = x.partition("e")
+        return 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
 
-    return all(abs(float(x) - float(y)) <= max(0.02 * max(abs(float(x)), abs(float(y))), 1.001 * max(unit(x), unit(y)))
-               for x, y in zip(number.findall(a), number.findall(b)))
+    return all(
+        abs(float(x) - float(y))
+        <= max(0.02 * max(abs(float(x)), abs(float(y))), 1.001 * max(unit(x), unit(y)))
+        for x, y in zip(number.findall(a), number.findall(b), strict=True)
+    )
 
 
 class Bench:
-    def __init__(self, bin_folder, folder):
+    def __init__(self, bin_folder: Path, folder: Path) -> None:
         self.folder = folder
         folder.mkdir()
-        self.environment = dict(os.environ, PATH=f'{bin_folder}:{os.environ["PATH"]}', COLUMNS='100', LC_ALL='C.UTF-8')
-        for name in 'MAKEFLAGS', 'MAKELEVEL', 'NINJA_STATUS':
+        self.environment = dict(
+            os.environ, PATH=f"{bin_folder}:{os.environ['PATH']}", COLUMNS="100", LC_ALL="C.UTF-8"
+        )
+        for name in "MAKEFLAGS", "MAKELEVEL", "NINJA_STATUS":
             self.environment.pop(name, None)
         done = self.run(SETUP.format(root=ROOT, bin=bin_folder))
         if done.returncode:
-            raise SystemExit(f'make_docs: the set-up failed: {done.stderr}')
+            raise SystemExit(f"make_docs: the set-up failed: {done.stderr}")
 
-    def run(self, command):
-        return subprocess.run(['bash', '-euc', command], cwd=self.folder, env=self.environment, text=True,
-                              capture_output=True)
+    def run(self, command: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            ["bash", "-euc", command],
+            cwd=self.folder,
+            env=self.environment,
+            text=True,
+            capture_output=True,
+        )
 
-    def spec(self, tool):
-        """The tool's options and methods."""
-        return json.loads(self.run(f'{tool} --help-json').stdout)
+    def spec(self, tool: str) -> Any:
+        """Options and methods of a tool."""
+        return json.loads(self.run(f"{tool} --help-json").stdout)
 
-    def copy(self, folder):
+    def copy(self, folder: Path) -> Path:
         shutil.copytree(self.folder, folder, symlinks=True)
         return folder
 
-    def session(self, text, folder):
-        """The commands of a session, each with what it prints, as one shell runs them in the folder."""
-        commands = [line[2:] for line in text.splitlines() if line.startswith('$ ')]
-        marker = '\x1e'
-        script = 'status=0\n' + ''.join(
-            f"printf '{marker}'; (exit $status); {{ {command}\n}} 2>&1; status=$?\n" for command in commands)
-        done = subprocess.run(['bash', '-c', script], cwd=folder, env=self.environment, text=True, capture_output=True)
+    def session(self, text: str, folder: Path) -> str:
+        """Runs the commands of a session in one shell. Returns them with their outputs."""
+        commands = [line[2:] for line in text.splitlines() if line.startswith("$ ")]
+        marker = "\x1e"
+        script = "status=0\n" + "".join(
+            f"printf '{marker}'; (exit $status); {{ {command}\n}} 2>&1; status=$?\n"
+            for command in commands
+        )
+        done = subprocess.run(
+            ["bash", "-c", script], cwd=folder, env=self.environment, text=True, capture_output=True
+        )
         printed = done.stdout.split(marker)[1:]
-        return ''.join(f'$ {command}\n{normal(output) if output.strip() else ""}'
-                       for command, output in zip(commands, printed))
+        return "".join(
+            f"$ {command}\n{normal(output) if output.strip() else ''}"
+            for command, output in zip(commands, printed, strict=False)
+        )
 
 
-def option_rows(options):
+def option_rows(options: list[dict[str, Any]]) -> Iterator[str]:
     for o in options:
-        facts = ', '.join(x for x in (o['unit'], o['range']) if x)
-        needs = f' Needs `{o["needs"]}`.' if o['needs'] else ''
-        kind = o['type'].replace('|', '\\|')
-        text = o['help'].replace('\n  ', '<br>')
-        yield f'| `--{o["name"]}` | {kind} | {o["default"] or "-"} | {facts or "-"} | {text}.{needs} |'
+        facts = ", ".join(x for x in (o["unit"], o["range"]) if x)
+        needs = f" Needs `{o['needs']}`." if o["needs"] else ""
+        kind = o["type"].replace("|", "\\|")
+        text = o["help"].replace("\n  ", "<br>")
+        yield (
+            f"| `--{o['name']}` | {kind} | {o['default'] or '-'} | {facts or '-'} | "
+            f"{text}.{needs} |"
+        )
 
 
-def options_page(bench):
-    lines = ['# Options', '',
-             'Every option of the stages, as `--help` shows them; made by `docs/make_docs.py` from the tables in the code.',
-             'An option of a method is refused while another method is chosen.', '']
-    head = ['| option | type | default | unit, range | |', '|---|---|---|---|---|']
+def options_page(bench: Bench) -> str:
+    lines = [
+        "# Options",
+        "",
+        "Every option of the stages, as `--help` shows them; made by `docs/make_docs.py` from "
+        "the tables in the code.",
+        "An option of a method is refused while another method is chosen.",
+        "",
+    ]
+    head = ["| option | type | default | unit, range | |", "|---|---|---|---|---|"]
     for tool in STAGES:
         spec = bench.spec(tool)
-        lines += [f'## {tool}', '', *head, *option_rows(spec['options']), '']
-        for slot in spec['slots']:
-            needs = f' Needs `{slot["needs"]}`.' if slot['needs'] else ''
-            lines += [f'### {tool} --{slot["name"]}', '',
-                      f'{slot["help"][0].upper()}{slot["help"][1:]}; default `{slot["default"]}`.{needs}', '']
-            for method in slot['methods']:
-                lines += [f'- `{method["name"]}`: {method["summary"]}']
-            lines += ['']
-            for method in slot['methods']:
-                if method['options']:
-                    lines += [f'With `--{slot["name"]} {method["name"]}`:', '', *head,
-                              *option_rows(method['options']), '']
-    return '\n'.join(lines)
+        lines += [f"## {tool}", "", *head, *option_rows(spec["options"]), ""]
+        for slot in spec["slots"]:
+            needs = f" Needs `{slot['needs']}`." if slot["needs"] else ""
+            lines += [
+                f"### {tool} --{slot['name']}",
+                "",
+                f"{slot['help'][0].upper()}{slot['help'][1:]}; default `{slot['default']}`.{needs}",
+                "",
+            ]
+            for method in slot["methods"]:
+                lines += [f"- `{method['name']}`: {method['summary']}"]
+            lines += [""]
+            for method in slot["methods"]:
+                if method["options"]:
+                    lines += [
+                        f"With `--{slot['name']} {method['name']}`:",
+                        "",
+                        *head,
+                        *option_rows(method["options"]),
+                        "",
+                    ]
+    return "\n".join(lines)
 
 
-def pages():
-    found = subprocess.run(['git', 'ls-files', '-co', '--exclude-standard', '*.md'], cwd=ROOT, capture_output=True,
-                           text=True).stdout.splitlines()
-    return [f for f in ([ROOT / f for f in found] or sorted(ROOT.glob('**/*.md'))) if f.exists()]
+def pages() -> list[Path]:
+    found = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard", "*.md"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    ).stdout.splitlines()
+    return [f for f in ([ROOT / f for f in found] or sorted(ROOT.glob("**/*.md"))) if f.exists()]
 
 
-def prose(text):
-    """The text without code, in which brackets are no links."""
-    return re.sub(r'`[^`\n]*`', '', re.sub(r'^```.*?^```', '', text, flags=re.S | re.M))
+def prose(text: str) -> str:
+    """The text without code, where brackets are no links."""
+    return re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```", "", text, flags=re.S | re.M))
 
 
-def anchors(file):
-    """Of the file's headings, as GitHub makes them: lower case, blanks as hyphens, other marks dropped."""
-    seen = {}
-    for heading in re.findall(r'^#+ +(.*?) *$', re.sub(r'^```.*?^```', '', file.read_text(), flags=re.S | re.M), re.M):
-        name = re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
+def anchors(file: Path) -> Iterator[str]:
+    """Anchors of the file's headings by GitHub's rules: lower case, hyphens for blanks."""
+    seen: dict[str, int] = {}
+    for heading in re.findall(
+        r"^#+ +(.*?) *$", re.sub(r"^```.*?^```", "", file.read_text(), flags=re.S | re.M), re.M
+    ):
+        name = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
         seen[name] = seen.get(name, -1) + 1
-        yield f'{name}-{seen[name]}' if seen[name] else name
+        yield f"{name}-{seen[name]}" if seen[name] else name
 
 
-def broken_links(file):
-    for link in re.findall(r'\]\(([^)\s]+)\)', prose(file.read_text())):
-        if re.match(r'[a-z]+:', link):
+def broken_links(file: Path) -> Iterator[str]:
+    for link in re.findall(r"\]\(([^)\s]+)\)", prose(file.read_text())):
+        if re.match(r"[a-z]+:", link):
             continue
-        path, _, anchor = link.partition('#')
+        path, _, anchor = link.partition("#")
         target = (file.parent / path).resolve() if path else file
         if not target.exists():
-            yield f'{link}: no such file'
-        elif anchor and (target.suffix != '.md' or anchor not in anchors(target)):
-            yield f'{link}: no such heading'
+            yield f"{link}: no such file"
+        elif anchor and (target.suffix != ".md" or anchor not in anchors(target)):
+            yield f"{link}: no such heading"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--check', action='store_true', help='write nothing')
-    parser.add_argument('--bin', default=ROOT / 'build/release/bin', type=Path, help='folder of the executables')
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--check", action="store_true", help="write nothing")
+    parser.add_argument(
+        "--bin", default=ROOT / "build/release/bin", type=Path, help="folder of the executables"
+    )
     arguments = parser.parse_args()
-    # A shell's background jobs ignore SIGINT, which a session sends; what has a handler here is not ignored there.
+    # A session sends SIGINT, which background jobs of a shell ignore. A handler here undoes that:
+    # an inherited SIG_IGN would persist in the session's processes.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     differing = 0
-    with tempfile.TemporaryDirectory(prefix='bnvpl-docs.') as folder:
-        bench = Bench(arguments.bin.resolve(), Path(folder) / 'files')
+    with tempfile.TemporaryDirectory(prefix="bnvpl-docs.") as folder:
+        bench = Bench(arguments.bin.resolve(), Path(folder) / "files")
 
-        def renew(file, old, new, what):
+        def renew(file: Path, old: str, new: str, what: str) -> None:
             nonlocal differing
             differing += 1
-            print(f'{file.relative_to(ROOT)}: {what} differs')
+            print(f"{file.relative_to(ROOT)}: {what} differs")
             if not arguments.check:
                 file.write_text(new)
 
         for file in pages():
             text = file.read_text()
-            if 'docs/lab' in str(file):
+            if "docs/lab" in str(file):
                 continue
             sessions = 0
 
-            def block(match):
+            def block(match: re.Match[str], file: Path = file) -> str:
                 nonlocal sessions
-                if not match['on']:
+                if not match["on"]:
                     sessions += 1
-                here = Path(folder) / f'{file.stem}-{sessions}'
-                now = bench.session(match['text'], here if here.exists() else bench.copy(here))
-                if same(now, match['text']):
+                here = Path(folder) / f"{file.stem}-{sessions}"
+                now = bench.session(match["text"], here if here.exists() else bench.copy(here))
+                if same(now, match["text"]):
                     return match[0]
-                print(f'  {match["text"].splitlines()[0]}')
+                print(f"  {match['text'].splitlines()[0]}")
                 if arguments.check:
                     print(now)
-                return f'{match[1]}{now}{match[4]}'
+                return f"{match[1]}{now}{match[4]}"
 
             new = SESSION.sub(block, text)
-            new = MADE.sub(lambda match: f'{match[1]}{BLOCKS[match["name"]](bench)}{match[4]}', new)
+            new = MADE.sub(lambda match: f"{match[1]}{BLOCKS[match['name']](bench)}{match[4]}", new)
             if new != text:
-                renew(file, text, new, 'output')
-        table = ROOT / 'docs/options.md'
+                renew(file, text, new, "output")
+        table = ROOT / "docs/options.md"
         page = options_page(bench)
         if not table.exists() or table.read_text() != page:
-            renew(table, '', page, 'the table of options')
+            renew(table, "", page, "the table of options")
     if differing and arguments.check:
-        print('run docs/make_docs.py')
-    broken = [f'{file.relative_to(ROOT)}: {what}' for file in pages() for what in broken_links(file)]
+        print("run docs/make_docs.py")
+    broken = [
+        f"{file.relative_to(ROOT)}: {what}" for file in pages() for what in broken_links(file)
+    ]
     if broken:
-        print('\n'.join(broken))
+        print("\n".join(broken))
     return 1 if broken or (differing and arguments.check) else 0
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     sys.exit(main())

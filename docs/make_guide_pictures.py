@@ -1,123 +1,220 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/guide.md: each artefact beside its cure, from the tools themselves.
 
-    docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # a quarter of an hour on two cores
-    docs/make_guide_pictures.py --table                                 # the table of docs/images/README.md
+docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # 15 minutes on two cores
+docs/make_guide_pictures.py --table                      # the table of docs/images/README.md
 """
+
 import argparse
 import subprocess
 import tempfile
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import numpy.typing as npt
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
 @dataclass
 class Case:
-    """A scene, its film, and for each of two pictures the options of place, eliminate, estimate and render."""
+    """A scene, its film, and the options of the four stages for each of two pictures."""
+
     scene: str
     size: str
     exposure: float
-    left: tuple
-    right: tuple
-    crop: tuple = ()  # x, y, width, height
-    zoom: int = 1     # nearest neighbour
+    left: tuple[str, str, str, str]
+    right: tuple[str, str, str, str]
+    crop: tuple[int, ...] = ()  # x, y, width, height
+    zoom: int = 1  # magnification, by nearest neighbour
 
 
 CASES = {
-    'blotches': Case('scenes/u-shape/scene.toml', '320x240', 6,
-                     ('-n 15k', '-n 1500', '--photons 30k', '--spp 8'),
-                     ('-n 60k', '-n 3k', '--photons 4M', '--spp 8'), (100, 120, 220, 120), 2),
-    'arcs': Case('scenes/veach-door/scene.toml', '640x360', 1.5,
-                 ('-n 20k', '-n 500', '--photons 4M', '--gather lightcuts --error 0.1 --spp 8 --only indirect'),
-                 ('-n 240k', '-n 12k', '--photons 10M', '--spp 16 --only indirect'), (300, 0, 340, 360)),
-    'dark-corners': Case('scenes/cornell/scene.toml', '240x240', 1.5,
-                         ('-n 12k', '-n 300', '--photons 2M', '--compensate none --spp 32 --only indirect'),
-                         ('-n 12k', '-n 300', '--photons 2M', '--spp 32 --only indirect'), (40, 125, 150, 100), 3),
-    'leaks': Case('scenes/u-shape/scene.toml', '480x360', 3,
-                  ('-n 60k', '-n 3k', '--photons 2M --method even --emit-points 0', '--compensate none --spp 16'),
-                  ('-n 60k', '-n 3k', '--photons 2M', '--spp 16')),
-    'fireflies': Case('scenes/veach-door/table.toml', '320x180', 2.5,
-                   ('-n 60k', '-n 3k', '--photons 2M', '--spp 8 --fireflies keep'),
-                   ('-n 60k', '-n 3k', '--photons 2M', '--spp 8'), (100, 70, 140, 90), 3),
-    'gloss': Case('scenes/gltf-room/room.glb', '320x180', 1.2,
-                  ('-n 120k --camera Room', '-n 3k', '', '--camera Room --fireflies keep'),
-                  ('-n 120k --camera Room', '-n 3k', '', '--camera Room'), (0, 40, 140, 90), 3),
-    'direct-noise': Case('scenes/cornell/scene.toml', '480x480', 0,
-                         ('-n 12k', '-n 300', '--photons 200k', '--spp 1 --direct-samples 1 --near-field-rays 1 --only direct'),
-                         ('-n 12k', '-n 300', '--photons 200k', '--spp 64 --direct-samples 1 --near-field-rays 1 --only direct'),
-                         (0, 190, 400, 290)),
+    "blotches": Case(
+        "scenes/u-shape/scene.toml",
+        "320x240",
+        6,
+        ("-n 15k", "-n 1500", "--photons 30k", "--spp 8"),
+        ("-n 60k", "-n 3k", "--photons 4M", "--spp 8"),
+        (100, 120, 220, 120),
+        2,
+    ),
+    "arcs": Case(
+        "scenes/veach-door/scene.toml",
+        "640x360",
+        1.5,
+        (
+            "-n 20k",
+            "-n 500",
+            "--photons 4M",
+            "--gather lightcuts --error 0.1 --spp 8 --only indirect",
+        ),
+        ("-n 240k", "-n 12k", "--photons 10M", "--spp 16 --only indirect"),
+        (300, 0, 340, 360),
+    ),
+    "dark-corners": Case(
+        "scenes/cornell/scene.toml",
+        "240x240",
+        1.5,
+        ("-n 12k", "-n 300", "--photons 2M", "--compensate none --spp 32 --only indirect"),
+        ("-n 12k", "-n 300", "--photons 2M", "--spp 32 --only indirect"),
+        (40, 125, 150, 100),
+        3,
+    ),
+    "leaks": Case(
+        "scenes/u-shape/scene.toml",
+        "480x360",
+        3,
+        (
+            "-n 60k",
+            "-n 3k",
+            "--photons 2M --method even --emit-points 0",
+            "--compensate none --spp 16",
+        ),
+        ("-n 60k", "-n 3k", "--photons 2M", "--spp 16"),
+    ),
+    "fireflies": Case(
+        "scenes/veach-door/table.toml",
+        "320x180",
+        2.5,
+        ("-n 60k", "-n 3k", "--photons 2M", "--spp 8 --fireflies keep"),
+        ("-n 60k", "-n 3k", "--photons 2M", "--spp 8"),
+        (100, 70, 140, 90),
+        3,
+    ),
+    "gloss": Case(
+        "scenes/gltf-room/room.glb",
+        "320x180",
+        1.2,
+        ("-n 120k --camera Room", "-n 3k", "", "--camera Room --fireflies keep"),
+        ("-n 120k --camera Room", "-n 3k", "", "--camera Room"),
+        (0, 40, 140, 90),
+        3,
+    ),
+    "direct-noise": Case(
+        "scenes/cornell/scene.toml",
+        "480x480",
+        0,
+        (
+            "-n 12k",
+            "-n 300",
+            "--photons 200k",
+            "--spp 1 --direct-samples 1 --near-field-rays 1 --only direct",
+        ),
+        (
+            "-n 12k",
+            "-n 300",
+            "--photons 200k",
+            "--spp 64 --direct-samples 1 --near-field-rays 1 --only direct",
+        ),
+        (0, 190, 400, 290),
+    ),
 }
 
 
-def table():
-    yield '| picture | scene, film | crop: x, y, width, height | left | right |'
-    yield '|---|---|---|---|---|'
+def table() -> Iterator[str]:
+    yield "| picture | scene, film | crop: x, y, width, height | left | right |"
+    yield "|---|---|---|---|---|"
     for name, case in CASES.items():
-        columns = ['; '.join(f'`{tool} {o}`' for tool, o in zip(('place', 'eliminate', 'estimate', 'render'), options) if o)
-                   for options in (case.left, case.right)]
-        crop = ', '.join(map(str, case.crop)) or 'none'
-        yield f'| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {" | ".join(columns)} |'
+        columns = [
+            "; ".join(
+                f"`{tool} {o}`"
+                for tool, o in zip(
+                    ("place", "eliminate", "estimate", "render"), options, strict=True
+                )
+                if o
+            )
+            for options in (case.left, case.right)
+        ]
+        crop = ", ".join(map(str, case.crop)) or "none"
+        yield (
+            f"| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {' | '.join(columns)} |"
+        )
 
 
-def run(tools, folder, tool, *words):
-    subprocess.run([tools / tool, *map(str, words), '--quiet'], cwd=folder, check=True)
+def run(tools: Path, folder: Path, tool: str, *words: object) -> None:
+    subprocess.run([tools / tool, *map(str, words), "--quiet"], cwd=folder, check=True)
 
 
-def render(tools, case, options, folder, to):
+def render(tools: Path, case: Case, options: Iterable[str], folder: Path, to: str) -> None:
     scene = ROOT / case.scene
     place, eliminate, estimate, image = (o.split() for o in options)
-    run(tools, folder, 'vpl-place', scene, '-o', 'c.vpl', *place)
-    run(tools, folder, 'vpl-eliminate', 'c.vpl', '-o', 'v.vpl', *eliminate)
-    run(tools, folder, 'vpl-estimate', scene, 'v.vpl', '-o', 'l.vpl', *estimate)
-    run(tools, folder, 'vpl-render', scene, 'l.vpl', '-o', f'{to}.exr', '--png', f'{to}.png', '--size', case.size,
-        '--exposure', case.exposure, *image)
+    run(tools, folder, "vpl-place", scene, "-o", "c.vpl", *place)
+    run(tools, folder, "vpl-eliminate", "c.vpl", "-o", "v.vpl", *eliminate)
+    run(tools, folder, "vpl-estimate", scene, "v.vpl", "-o", "l.vpl", *estimate)
+    run(
+        tools,
+        folder,
+        "vpl-render",
+        scene,
+        "l.vpl",
+        "-o",
+        f"{to}.exr",
+        "--png",
+        f"{to}.png",
+        "--size",
+        case.size,
+        "--exposure",
+        case.exposure,
+        *image,
+    )
 
 
-def shown(file, kind):
+def shown(file: Path, kind: Any) -> npt.NDArray[Any]:
     import OpenImageIO
-    return OpenImageIO.ImageBuf(str(file)).get_pixels(kind)[:, :, :3]
+
+    result: npt.NDArray[Any] = OpenImageIO.ImageBuf(str(file)).get_pixels(kind)[:, :, :3]
+    return result
 
 
-def write(name, panels):
+def write(name: str, panels: Sequence[npt.NDArray[Any]]) -> None:
     import numpy
     import OpenImageIO
+
     gap = numpy.full((panels[0].shape[0], 8, 3), 255, numpy.uint8)
     row = [x for p in panels for x in (gap, p)][1:]
     whole = numpy.ascontiguousarray(numpy.hstack(row))
-    out = OpenImageIO.ImageBuf(OpenImageIO.ImageSpec(whole.shape[1], whole.shape[0], 3, OpenImageIO.UINT8))
+    out = OpenImageIO.ImageBuf(
+        OpenImageIO.ImageSpec(whole.shape[1], whole.shape[0], 3, OpenImageIO.UINT8)
+    )
     out.set_pixels(OpenImageIO.ROI(), whole)
-    out.write(str(ROOT / 'docs/images' / f'guide-{name}.png'))
-    print(f'docs/images/guide-{name}.png', flush=True)
+    out.write(str(ROOT / "docs/images" / f"guide-{name}.png"))
+    print(f"docs/images/guide-{name}.png", flush=True)
 
 
-def make(name, tools, folder):
+def make(name: str, tools: Path, folder: Path) -> None:
     import numpy
     import OpenImageIO
+
     case = CASES[name]
-    for options, to in (case.left, 'left'), (case.right, 'right'):
+    for options, to in (case.left, "left"), (case.right, "right"):
         render(tools, case, options, folder, to)
-    panels = [shown(folder / f'{x}.png', OpenImageIO.UINT8) for x in ('left', 'right')]
+    panels = [shown(folder / f"{x}.png", OpenImageIO.UINT8) for x in ("left", "right")]
     if case.crop:
         x, y, width, height = case.crop
-        panels = [p[y:y + height, x:x + width] for p in panels]
+        panels = [p[y : y + height, x : x + width] for p in panels]
     write(name, [numpy.repeat(numpy.repeat(p, case.zoom, 0), case.zoom, 1) for p in panels])
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('names', nargs='*', help=f'some of {", ".join(CASES)}')
-    parser.add_argument('--bin', default=ROOT / 'build/release/bin', type=Path, help='folder of the executables')
-    parser.add_argument('--table', action='store_true', help='print the recipes instead')
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", help=f"some of {', '.join(CASES)}")
+    parser.add_argument(
+        "--bin", default=ROOT / "build/release/bin", type=Path, help="folder of the executables"
+    )
+    parser.add_argument("--table", action="store_true", help="print the recipes instead")
     options = parser.parse_args()
     if options.table:
-        print('\n'.join(table()))
+        print("\n".join(table()))
         return
     for name in options.names or CASES:
-        with tempfile.TemporaryDirectory(prefix='bnvpl-guide.') as folder:
+        with tempfile.TemporaryDirectory(prefix="bnvpl-guide.") as folder:
             make(name, options.bin.resolve(), Path(folder))
 
 
-if __name__ == '__main__':
+if __name__ == "__main__":
     main()

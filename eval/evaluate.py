@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The evaluation: runs the comparisons of settings.toml through the tools and writes one report.
+"""Runs the comparisons of settings.toml through the tools and writes one report.
 
-  eval/evaluate.py --size standard
-  eval/evaluate.py --size quick --parts methods,gather
+eval/evaluate.py --size standard
+eval/evaluate.py --size quick --parts methods,gather
 """
 
 import argparse
@@ -13,13 +13,25 @@ import platform
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from bnvpl_eval import output, settings
 from bnvpl_eval.context import Context
 from bnvpl_eval.runner import Runner
 
-# In the order in which they may use each other's rows.
-PARTS = ["methods", "scatter", "gather", "claims", "equal_time", "energy", "reference_quality", "convergence", "sensitivity", "pictures"]
+# Parts run in this order, so that later ones may use the rows of earlier ones.
+PARTS = [
+    "methods",
+    "scatter",
+    "gather",
+    "claims",
+    "equal_time",
+    "energy",
+    "reference_quality",
+    "convergence",
+    "sensitivity",
+    "pictures",
+]
 NEED_METHODS = {"energy", "reference_quality"}
 JUDGE_NOTHING = {"pictures"}
 
@@ -37,31 +49,60 @@ def git(*words: str) -> str:
 
 
 def commit() -> str:
-    changed = git("status", "--porcelain", "--untracked-files=no", "--", "core", "formats", "scene", "spatial", "tools")
+    changed = git(
+        "status",
+        "--porcelain",
+        "--untracked-files=no",
+        "--",
+        "core",
+        "formats",
+        "scene",
+        "spatial",
+        "tools",
+    )
     return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
 
 
-def provenance(size: str, runner: Runner) -> dict:
-    return {**runner.provenance, "size": size, "runs": len(runner.runs),
-            "commits of the runs": ", ".join(sorted({run.record.get("commit", "unknown")
-                                                     for run in runner.runs.values()})),
-            "CPU seconds": round(sum(run.cpu_s for run in runner.runs.values())),
-            "peak memory MiB": max((run.record["peak_mib"] for run in runner.runs.values()), default=0)}
+def provenance(size: str, runner: Runner) -> dict[str, Any]:
+    return {
+        **runner.provenance,
+        "size": size,
+        "runs": len(runner.runs),
+        "commits of the runs": ", ".join(
+            sorted({run.record.get("commit", "unknown") for run in runner.runs.values()})
+        ),
+        "CPU seconds": round(sum(run.cpu_s for run in runner.runs.values())),
+        "peak memory MiB": max((run.record["peak_mib"] for run in runner.runs.values()), default=0),
+    }
 
 
 def arguments_of() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--size", default="standard", help="of settings.toml: quick, standard, full")
-    parser.add_argument("--quick", action="store_const", dest="size", const="quick", help="the same as --size quick")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--size", default="standard", help="of settings.toml: quick, standard, full"
+    )
+    parser.add_argument(
+        "--quick", action="store_const", dest="size", const="quick", help="the same as --size quick"
+    )
     parser.add_argument("--parts", default=",".join(PARTS), help=f"some of {','.join(PARTS)}")
     parser.add_argument("--settings", type=Path, default=settings.EVAL / "settings.toml")
     parser.add_argument("--scenes", help="some of the size's scenes, by id")
     parser.add_argument("--views", help="some of main,second")
-    parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools")
+    parser.add_argument(
+        "--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools"
+    )
     parser.add_argument("-o", "--output", type=Path, help="folder; build/eval/SIZE unless given")
-    parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache",
-                        help="where runs are kept for the next time")
-    parser.add_argument("--commit", help="of the tools in --bin; that of the working tree unless given")
+    parser.add_argument(
+        "--cache",
+        type=Path,
+        default=settings.ROOT / "build/eval/cache",
+        help="where runs are kept for the next time",
+    )
+    parser.add_argument(
+        "--commit", help="of the tools in --bin; that of the working tree unless given"
+    )
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
 
@@ -70,7 +111,9 @@ def main() -> int:
     arguments = arguments_of()
     scenes, table = settings.load(arguments.settings)
     if arguments.size not in table["size"]:
-        raise SystemExit(f"eval: no size '{arguments.size}'; settings.toml has {', '.join(table['size'])}")
+        raise SystemExit(
+            f"eval: no size '{arguments.size}'; settings.toml has {', '.join(table['size'])}"
+        )
     parts = arguments.parts.split(",")
     if unknown := [part for part in parts if part not in PARTS]:
         raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(PARTS)}")
@@ -81,25 +124,38 @@ def main() -> int:
     if arguments.views:
         size["views"] = arguments.views.split(",")
     wanted = arguments.scenes.split(",") if arguments.scenes else size["scenes"]
-    for kind, asked, there in (("scene", wanted, {scene.id for scene in scenes}),
-                               ("view", size["views"], {view.id for scene in scenes for view in scene.views})):
+    for kind, asked, there in (
+        ("scene", wanted, {scene.id for scene in scenes}),
+        ("view", size["views"], {view.id for scene in scenes for view in scene.views}),
+    ):
         if unknown := [name for name in asked if name not in there]:
-            raise SystemExit(f"eval: no {kind} '{unknown[0]}'; settings.toml has {', '.join(sorted(there))}")
+            raise SystemExit(
+                f"eval: no {kind} '{unknown[0]}'; settings.toml has {', '.join(sorted(there))}"
+            )
     chosen = []
     for scene in (scene for scene in scenes if scene.id in wanted):
         if scene.available:
             chosen.append(scene)
         else:
-            print(f"eval: {scene.title} is left out: set {scene.define} to the model's folder", file=sys.stderr)
+            print(
+                f"eval: {scene.title} is left out: set {scene.define} to the model's folder",
+                file=sys.stderr,
+            )
     if not chosen:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
     output.check(folder)
-    # What holds at the beginning: hours later the working tree may be another.
-    begin = {"commit": arguments.commit or commit(), "processor": processor(),
-             "threads": len(os.sched_getaffinity(0)), "date": datetime.date.today().isoformat()}
+    # The state at the beginning counts, as the working tree may have changed hours later.
+    begin = {
+        "commit": arguments.commit or commit(),
+        "processor": processor(),
+        "threads": len(os.sched_getaffinity(0)),
+        "date": datetime.date.today().isoformat(),
+    }
     runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet, begin)
-    modules = [importlib.import_module(f"bnvpl_eval.parts.{part}") for part in PARTS if part in parts]
+    modules = [
+        importlib.import_module(f"bnvpl_eval.parts.{part}") for part in PARTS if part in parts
+    ]
     context = Context(arguments.size, size, table, chosen, runner)
     if set(parts) - JUDGE_NOTHING:
         context.require_references()

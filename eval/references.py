@@ -31,8 +31,11 @@ def main() -> int:
             references.render_half(runner, view, film, arguments.spp or view.reference_spp, half)
         references.require(view, film)
         halves = references.load(view, film, "indirect")
-        print(f"{view.name} {film}: halves differ by {references.half_difference(halves):.4f} of the mean (RMS)",
-              flush=True)
+        print(
+            f"{view.name} {film}: halves differ by {references.half_difference(halves):.4f} of "
+            "the mean (RMS)",
+            flush=True,
+        )
     return 0
 
 

@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
-"""Equal time, the full image: how far VPLs at default options are ahead of path tracing, room by room.
+"""Compares VPLs at default options with path tracing at equal time, room by room, full image.
 
-  export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder
-  eval/rooms.py --also light guided spread-path cycles
-  eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom   # as published ratios
+    export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder
+    export SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder
+    eval/rooms.py --also light guided spread-path cycles
+    eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom
 
-For each room: the pipeline with two settings, the path tracer with the samples that take the CPU time of all four
-stages, and others if they are asked for; against two halves of a reference: means over its mean, relMSE, RMSE / mean,
-SMAPE and FLIP. Each room's rows go into docs/rooms.csv, in place of those of an earlier run; from them rooms_page.py
-makes table and picture of docs/results.md. Rooms whose files are not there are left out, and for Cycles those that it
-cannot read (eval/cycles).
+The last command measures under the conditions of published ratios. Each room is rendered by the
+pipeline with two settings, by the path tracer with as many samples as fit in the CPU time of all
+four stages, and by others on request. All are judged by two halves of a reference: means over its
+mean, relMSE, RMSE / mean, SMAPE and FLIP.
+
+The rows of each room replace those of an earlier run in docs/rooms.csv, from which rooms_page.py
+makes a table and a picture of docs/results.md. Rooms whose files do not exist are left out, as are,
+for Cycles, those that it cannot read (eval/cycles).
 """
 
 import argparse
@@ -20,8 +24,10 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "pipelines"))
 import gallery
@@ -31,16 +37,20 @@ from bnvpl_eval import images, settings
 from bnvpl_eval.runner import Run, Runner
 from evaluate import commit
 
-OURS = tuple(gallery.Scene(name, title, f"scenes/{file}.toml", aspect) for name, title, file, aspect in (
-    ("cornell", "Cornell box", "cornell/scene", (1, 1)),
-    ("u-shape", "U-shape", "u-shape/scene", (4, 3)),
-    ("u-shape-back", "U-shape, from the far wall", "u-shape/back", (4, 3)),
-    ("veach-door", "Veach door", "veach-door/scene", (16, 9)),
-    ("veach-door-table", "Veach door, across the table", "veach-door/table", (16, 9)),
-    ("sponza", "Sponza", "sponza/scene", (16, 9)),
-    ("sponza-gallery", "Sponza, from the gallery", "sponza/gallery", (16, 9)),
-    ("veach-ajar", "Veach, Ajar, diffuse", "veach-ajar/scene", (16, 9)),
-    ("veach-ajar-table", "Veach, Ajar, diffuse, across the table", "veach-ajar/table", (16, 9))))
+OURS = tuple(
+    gallery.Scene(name, title, f"scenes/{file}.toml", aspect)
+    for name, title, file, aspect in (
+        ("cornell", "Cornell box", "cornell/scene", (1, 1)),
+        ("u-shape", "U-shape", "u-shape/scene", (4, 3)),
+        ("u-shape-back", "U-shape, from the far wall", "u-shape/back", (4, 3)),
+        ("veach-door", "Veach door", "veach-door/scene", (16, 9)),
+        ("veach-door-table", "Veach door, across the table", "veach-door/table", (16, 9)),
+        ("sponza", "Sponza", "sponza/scene", (16, 9)),
+        ("sponza-gallery", "Sponza, from the gallery", "sponza/gallery", (16, 9)),
+        ("veach-ajar", "Veach, Ajar, diffuse", "veach-ajar/scene", (16, 9)),
+        ("veach-ajar-table", "Veach, Ajar, diffuse, across the table", "veach-ajar/table", (16, 9)),
+    )
+)
 
 
 @dataclass(frozen=True)
@@ -50,79 +60,135 @@ class LivingRoom(gallery.Scene):
         return Path(os.environ.get("LIVING_ROOM_DIR", "/nowhere")) / self.file
 
 
-SCENES = (*OURS, LivingRoom("living-room-diffuse", "Living room, diffuse", "scene.toml"), *gallery.SCENES)
+SCENES = (
+    *OURS,
+    LivingRoom("living-room-diffuse", "Living room, diffuse", "scene.toml"),
+    *gallery.SCENES,
+)
 
 
-def options_of(counts: dict) -> tuple[list, list, list, list]:
-    """Of the stages, for one of the presets that pipelines read."""
-    return (["-n", counts["CANDIDATES"]], ["-n", counts["VPLS"]], ["--photons", counts["PHOTONS"], *counts["ESTIMATE"].split()],
-            ["--spp", counts["SPP"], *counts["RENDER"].split()])
+def options_of(counts: dict[str, Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
+    """Options of the four stages for the counts of a preset of the pipelines."""
+    return (
+        ["-n", counts["CANDIDATES"]],
+        ["-n", counts["VPLS"]],
+        ["--photons", counts["PHOTONS"], *counts["ESTIMATE"].split()],
+        ["--spp", counts["SPP"], *counts["RENDER"].split()],
+    )
 
 
-SETTINGS = {name: options_of(counts) for name, counts in stages.presets().items() if name != "final"}
-# Integrators that are not a method's name alone.
-VARIANTS = {"unlit-path": ["path", "--light-sampling", "off"], "spread-path": ["path", "--fireflies", "redistribute"]}
-# How far the mean is off, and four measures of error.
+SETTINGS = {
+    name: options_of(counts) for name, counts in stages.presets().items() if name != "final"
+}
+# Names for integrators with options.
+VARIANTS = {
+    "unlit-path": ["path", "--light-sampling", "off"],
+    "spread-path": ["path", "--fireflies", "redistribute"],
+}
+# Mean over the reference's mean, and four measures of error.
 COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
 CYCLES = settings.ROOT / "eval/cycles/render_cycles.py"
 
 
 def missing(scene: gallery.Scene) -> str:
-    """What it needs and has not, or nothing."""
+    """What the scene lacks, or nothing."""
     if not scene.path.is_file():
         return f"{scene.path} is not there"
     if scene.path.suffix != ".toml":
         return ""
-    unset = [name for name in re.findall(r"\$\{(\w+)\}", scene.path.read_text()) if name not in os.environ]
+    unset = [
+        name
+        for name in re.findall(r"\$\{(\w+)\}", scene.path.read_text())
+        if name not in os.environ
+    ]
     return f"{', '.join(unset)} is not set" if unset else ""
 
 
 @dataclass
 class Rooms:
     runner: Runner
-    references: Runner  # their tools may be those of an earlier build
+    references: Runner  # runs the tools that render references; another build is allowed
     width: int
     reference_spp: int
-    truth: str = "vpl"  # who renders the reference
-    path_length: int = 0  # segments from the camera to a light; 0: as long as they get
+    truth: str = "vpl"  # method that renders the reference
+    path_length: int = 0  # maximum number of segments from camera to light; 0 for no limit
 
-    def bounces(self) -> list:
-        """Neither the first surface nor the light is one."""
+    def bounces(self) -> list[Any]:
+        """Option for the bounces of a path, which exclude the first surface and the light."""
         return ["--max-bounces", self.path_length - 2] if self.path_length else []
 
-    def render(self, scene: gallery.Scene, options: list, lit: Path | None = None, by: Runner | None = None) -> Run:
+    def render(
+        self,
+        scene: gallery.Scene,
+        options: list[Any],
+        lit: Path | None = None,
+        by: Runner | None = None,
+    ) -> Run:
         inputs = {"scene": scene.path} | ({"lit": lit} if lit else {})
-        return (by or self.runner).run("vpl-render", ["{scene}", *(["{lit}"] if lit else []), *scene.options, "--size",
-                                              scene.film(self.width), *options, "--layers", "direct,indirect", "-o",
-                                              "@image.exr", "--quiet"], inputs, ["image.exr"])
+        return (by or self.runner).run(
+            "vpl-render",
+            [
+                "{scene}",
+                *(["{lit}"] if lit else []),
+                *scene.options,
+                "--size",
+                scene.film(self.width),
+                *options,
+                "--layers",
+                "direct,indirect",
+                "-o",
+                "@image.exr",
+                "--quiet",
+            ],
+            inputs,
+            ["image.exr"],
+        )
 
-    def lit(self, scene: gallery.Scene, setting: tuple, by: Runner | None = None) -> tuple[Path, float]:
+    def lit(
+        self, scene: gallery.Scene, setting: tuple[Any, ...], by: Runner | None = None
+    ) -> tuple[Path, float]:
         """Lit VPLs, and CPU seconds of the stages before render."""
         (place, eliminate, estimate, _), tools = setting, by or self.runner
         inputs = {"scene": scene.path}
-        placed = tools.run("vpl-place", ["{scene}", *scene.options, *place, "-o", "@candidates.vpl", "--quiet"], inputs,
-                           ["candidates.vpl"])
-        kept = tools.run("vpl-eliminate", ["{candidates}", *eliminate, "-o", "@vpls.vpl", "--quiet"],
-                         {"candidates": placed["candidates.vpl"]}, ["vpls.vpl"])
-        lit = tools.run("vpl-estimate", ["{scene}", "{vpls}", *estimate, *self.bounces(), "-o", "@lit.vpl", "--quiet"],
-                        {**inputs, "vpls": kept["vpls.vpl"]}, ["lit.vpl"])
+        placed = tools.run(
+            "vpl-place",
+            ["{scene}", *scene.options, *place, "-o", "@candidates.vpl", "--quiet"],
+            inputs,
+            ["candidates.vpl"],
+        )
+        kept = tools.run(
+            "vpl-eliminate",
+            ["{candidates}", *eliminate, "-o", "@vpls.vpl", "--quiet"],
+            {"candidates": placed["candidates.vpl"]},
+            ["vpls.vpl"],
+        )
+        lit = tools.run(
+            "vpl-estimate",
+            ["{scene}", "{vpls}", *estimate, *self.bounces(), "-o", "@lit.vpl", "--quiet"],
+            {**inputs, "vpls": kept["vpls.vpl"]},
+            ["lit.vpl"],
+        )
         return lit["lit.vpl"], sum(run.cpu_s for run in (placed, kept, lit))
 
     def ours(self, scene: gallery.Scene, setting: str) -> tuple[Path, float]:
-        """The image, and CPU seconds of all stages."""
+        """The image of the pipeline, and CPU seconds of all stages."""
         lit, before_s = self.lit(scene, SETTINGS[setting])
         shown = self.render(scene, SETTINGS[setting][3], lit)
         return shown["image.exr"], before_s + shown.cpu_s
 
-    def timed(self, scene: gallery.Scene, setting: str, other: str, seconds: float) -> tuple[Path, int]:
-        """By another, with the samples a pixel that take as long."""
+    def timed(
+        self, scene: gallery.Scene, setting: str, other: str, seconds: float
+    ) -> tuple[Path, int]:
+        """The image of another integrator, with the samples a pixel that fit in `seconds`."""
         few, more = (self.by_samples(scene, setting, other, spp)[1] for spp in (4, 20))
         per_sample = max(1e-3, more - few) / 16
         spp = max(1, round((seconds - max(0.0, few - 4 * per_sample)) / per_sample))
         return self.by_samples(scene, setting, other, spp)[0], spp
 
-    def by_samples(self, scene: gallery.Scene, setting: str, other: str, spp: int) -> tuple[Path, float]:
-        """The image, and CPU seconds of all that it takes."""
+    def by_samples(
+        self, scene: gallery.Scene, setting: str, other: str, spp: int
+    ) -> tuple[Path, float]:
+        """The image of another integrator, and CPU seconds of all its stages."""
         sampled = ["--spp", spp, "--seed", 2, *self.bounces()]
         if other == "guided":
             lit, before_s = self.lit(scene, SETTINGS[setting])
@@ -140,16 +206,39 @@ class Rooms:
         try:
             self.by_cycles(scene, 4)
         except SystemExit as problem:
-            print(f"rooms: {scene.title} without Cycles: {str(problem).splitlines()[-1]}", file=sys.stderr)
+            print(
+                f"rooms: {scene.title} without Cycles: {str(problem).splitlines()[-1]}",
+                file=sys.stderr,
+            )
             return False
         return True
 
     def by_cycles(self, scene: gallery.Scene, spp: int) -> Run:
         bounces = self.path_length - 2 if self.path_length else 32
         blender = Runner(Path("/usr/bin"), self.runner.cache, quiet=True)
-        return blender.run("blender", ["-b", "--factory-startup", "--python-exit-code", 3, "--python", "{script}", "--",
-                                       "{scene}", "--size", scene.film(self.width), "--bounces", bounces, "--spp", spp,
-                                       "--output", "@image.exr"], {"script": CYCLES, "scene": scene.path}, ["image.exr"])
+        return blender.run(
+            "blender",
+            [
+                "-b",
+                "--factory-startup",
+                "--python-exit-code",
+                3,
+                "--python",
+                "{script}",
+                "--",
+                "{scene}",
+                "--size",
+                scene.film(self.width),
+                "--bounces",
+                bounces,
+                "--spp",
+                spp,
+                "--output",
+                "@image.exr",
+            ],
+            {"script": CYCLES, "scene": scene.path},
+            ["image.exr"],
+        )
 
     def halves(self, scene: gallery.Scene) -> list[Path]:
         return [self.half(scene, seed) for seed in (101, 102)]
@@ -159,64 +248,160 @@ class Rooms:
         if self.truth == "path":
             options = ["--integrator", "path", *sampled, *self.bounces()]
             return self.render(scene, options, by=self.references)["image.exr"]
-        lit, _ = self.lit(scene, (["-n", "240k", "--seed", seed], ["-n", "12k"], ["--seed", seed], []), self.references)
-        return self.render(scene, [*sampled, "--fireflies", "keep"], lit, self.references)["image.exr"]
+        lit, _ = self.lit(
+            scene,
+            (["-n", "240k", "--seed", seed], ["-n", "12k"], ["--seed", seed], []),
+            self.references,
+        )
+        return self.render(scene, [*sampled, "--fireflies", "keep"], lit, self.references)[
+            "image.exr"
+        ]
 
-    def measures(self, scene: gallery.Scene, image: Path, layer: str = "") -> np.ndarray | None:
-        """COLUMNS; none where there is no light."""
+    def measures(
+        self, scene: gallery.Scene, image: Path, layer: str = ""
+    ) -> npt.NDArray[Any] | None:
+        """Values for COLUMNS, or None where the layer has no light."""
         halves = self.halves(scene)
         truth = np.mean([images.read(half, layer) for half in halves])
         if not truth > 0:
             return None
-        run = self.runner.run("vpl-inspect", ["compare", "{image}", "{a}", "--second-half", "{b}", "--json",
-                                              *(["--layer", layer] if layer else [])],
-                              {"image": image, "a": halves[0], "b": halves[1]}, [])
+        run = self.runner.run(
+            "vpl-inspect",
+            [
+                "compare",
+                "{image}",
+                "{a}",
+                "--second-half",
+                "{b}",
+                "--json",
+                *(["--layer", layer] if layer else []),
+            ],
+            {"image": image, "a": halves[0], "b": halves[1]},
+            [],
+        )
         of = json.loads(run["log.txt"].read_text())
-        return np.array([images.read(image, layer).mean() / truth, of["relmse"], of["rmse"] / truth, of["smape"], of["flip"]])
+        return np.array(
+            [
+                images.read(image, layer).mean() / truth,
+                of["relmse"],
+                of["rmse"] / truth,
+                of["smape"],
+                of["flip"],
+            ]
+        )
 
-    def rows(self, scene: gallery.Scene, also: list[str]) -> list[dict]:
+    def rows(self, scene: gallery.Scene, also: list[str]) -> list[dict[str, Any]]:
         rows = []
-        direct, all_light = (np.mean([images.read(half, layer) for half in self.halves(scene)]) for layer in ("direct", ""))
+        direct, all_light = (
+            np.mean([images.read(half, layer) for half in self.halves(scene)])
+            for layer in ("direct", "")
+        )
         for name in SETTINGS:
             image, seconds = self.ours(scene, name)
-            others = {other: self.timed(scene, name, other, seconds) for other in ("path", *also)
-                      if other != "cycles" or self.cycles_reads(scene)}
+            others = {
+                other: self.timed(scene, name, other, seconds)
+                for other in ("path", *also)
+                if other != "cycles" or self.cycles_reads(scene)
+            }
             for layer in ("", "direct", "indirect"):
                 ours = self.measures(scene, image, layer)
                 for other, (picture, spp) in others.items():
-                    # Cycles' image is one layer.
-                    theirs = None if ours is None or other == "cycles" and layer else self.measures(scene, picture, layer)
-                    if theirs is not None:
-                        rows.append({"room": scene.title, "setting": name, "light": layer or "full", "beside": other,
-                                     "cpu_s": f"{seconds:.0f}", "its_spp": spp, "indirect_share": f"{1 - direct / all_light:.2f}",
-                                     **{column: f"{value:.4g}" for column, value in zip(COLUMNS, ours)},
-                                     **{f"its_{column}": f"{value:.4g}" for column, value in zip(COLUMNS, theirs)}})
+                    # The image of Cycles has one layer.
+                    theirs = (
+                        None
+                        if ours is None or other == "cycles" and layer
+                        else self.measures(scene, picture, layer)
+                    )
+                    if ours is not None and theirs is not None:
+                        rows.append(
+                            {
+                                "room": scene.title,
+                                "setting": name,
+                                "light": layer or "full",
+                                "beside": other,
+                                "cpu_s": f"{seconds:.0f}",
+                                "its_spp": spp,
+                                "indirect_share": f"{1 - direct / all_light:.2f}",
+                                **{
+                                    column: f"{value:.4g}"
+                                    for column, value in zip(COLUMNS, ours, strict=True)
+                                },
+                                **{
+                                    f"its_{column}": f"{value:.4g}"
+                                    for column, value in zip(COLUMNS, theirs, strict=True)
+                                },
+                            }
+                        )
         return rows
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("rooms", nargs="*", help=", ".join(scene.id for scene in SCENES) + "; all unless given")
-    parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "rooms", nargs="*", help=", ".join(scene.id for scene in SCENES) + "; all unless given"
+    )
+    parser.add_argument(
+        "--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools"
+    )
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache")
     parser.add_argument("--width", type=int, default=320, help="pixels")
-    parser.add_argument("--truth", choices=("vpl", "path"), default="vpl", help="who renders the reference: VPLs, 12k of them "
-                        "with seeds of their own, which have less noise, or the path tracer, which shares nothing with them")
+    parser.add_argument(
+        "--truth",
+        choices=("vpl", "path"),
+        default="vpl",
+        help="who renders the reference: VPLs, 12k of them "
+        "with seeds of their own, which have less noise, or the path tracer, which shares "
+        "nothing with them",
+    )
     parser.add_argument("--reference-spp", type=int, default=64, help="of each half")
-    parser.add_argument("--also", nargs="*", default=[], choices=("light", "guided", *VARIANTS, "cycles"), metavar="OTHER",
-                        help="light, guided, unlit-path (without light sampling), spread-path (its fireflies redistributed), cycles")
-    parser.add_argument("--path-length", type=int, default=0, metavar="L",
-                        help="segments from the camera to a light, those at mirrors and glass not counted")
-    parser.add_argument("--reference-bin", type=Path, metavar="FOLDER",
-                        help="tools that render the references, with --fireflies keep; --bin unless given")
-    parser.add_argument("--references-only", action="store_true", help="render the references, and stop")
+    parser.add_argument(
+        "--also",
+        nargs="*",
+        default=[],
+        choices=("light", "guided", *VARIANTS, "cycles"),
+        metavar="OTHER",
+        help="light, guided, unlit-path (without light sampling), spread-path (its fireflies "
+        "redistributed), cycles",
+    )
+    parser.add_argument(
+        "--path-length",
+        type=int,
+        default=0,
+        metavar="L",
+        help="segments from the camera to a light, those at mirrors and glass not counted",
+    )
+    parser.add_argument(
+        "--reference-bin",
+        type=Path,
+        metavar="FOLDER",
+        help="tools that render the references, with --fireflies keep; --bin unless given",
+    )
+    parser.add_argument(
+        "--references-only", action="store_true", help="render the references, and stop"
+    )
     parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
     arguments = parser.parse_args()
-    runner, references = (Runner(folder.resolve(), arguments.cache.resolve(), quiet=True)
-                          for folder in (arguments.bin, arguments.reference_bin or arguments.bin))
-    rooms = Rooms(runner, references, arguments.width, arguments.reference_spp, arguments.truth, arguments.path_length)
-    made = {"tools": commit(), "date": datetime.date.today().isoformat(), "width": arguments.width,
-            "reference": f"2 x {arguments.reference_spp} spp, {arguments.truth}", "path_length": arguments.path_length}
+    runner, references = (
+        Runner(folder.resolve(), arguments.cache.resolve(), quiet=True)
+        for folder in (arguments.bin, arguments.reference_bin or arguments.bin)
+    )
+    rooms = Rooms(
+        runner,
+        references,
+        arguments.width,
+        arguments.reference_spp,
+        arguments.truth,
+        arguments.path_length,
+    )
+    made = {
+        "tools": commit(),
+        "date": datetime.date.today().isoformat(),
+        "width": arguments.width,
+        "reference": f"2 x {arguments.reference_spp} spp, {arguments.truth}",
+        "path_length": arguments.path_length,
+    }
     for scene in SCENES:
         if arguments.rooms and scene.id not in arguments.rooms:
             continue

@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Table 'rooms' and picture rooms.svg of docs/results.md, and the table of guided paths in their theory, from docs/rooms.csv, which
-rooms.py writes."""
+"""Makes tables and a picture from docs/rooms.csv, which rooms.py writes.
+
+They are the table 'rooms' and the picture rooms.svg of docs/results.md, and the table in the theory
+of guided paths.
+"""
 
 import csv
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import write_docs
 from bnvpl_eval import output
@@ -13,41 +17,57 @@ from bnvpl_eval.output import plt
 
 RESULTS = write_docs.DOCS / "rooms.csv"
 GUIDED = write_docs.DOCS.parent / "tools/render/integrator/guided/theory.md"
-OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs",
-          "spread-path": "path tracer with fireflies redistributed", "cycles": "Cycles"}
-COLOURS = {"path": "#0b62a3", "light": "#c77700", "guided": "#3a7d34", "spread-path": "#7fb2dd", "cycles": "#8b2f8f"}
+OTHERS = {
+    "path": "path tracer",
+    "light": "light tracer",
+    "guided": "guided by VPLs",
+    "spread-path": "path tracer with fireflies redistributed",
+    "cycles": "Cycles",
+}
+COLOURS = {
+    "path": "#0b62a3",
+    "light": "#c77700",
+    "guided": "#3a7d34",
+    "spread-path": "#7fb2dd",
+    "cycles": "#8b2f8f",
+}
 KEY = ("room", "setting", "light", "beside", "path_length")
 
 
-def read() -> list[dict]:
+def read() -> list[dict[str, Any]]:
     return list(csv.DictReader(RESULTS.open(newline=""))) if RESULTS.is_file() else []
 
 
-def add(rows: list[dict]) -> None:
-    """In place of older rows of the same."""
+def add(rows: list[dict[str, Any]]) -> None:
+    """Adds rows, which replace older ones with the same values in the columns KEY."""
     of = {tuple(str(row[key]) for key in KEY): row for row in (*read(), *rows)}
     output.write_csv(RESULTS, list(of.values()))
 
 
-def ratio(row: dict, column: str) -> float:
-    """Theirs over ours."""
+def ratio(row: dict[str, Any], column: str) -> float:
+    """Value of the other integrator over ours."""
     return float(row[f"its_{column}"]) / max(1e-9, float(row[column]))
 
 
 def two(value: float) -> str:
-    """Two digits, never as a power of ten."""
+    """Two significant digits, without an exponent for the usual range."""
     return f"{float(f'{value:.2g}'):g}"
 
 
-def indirect_mean(rows: list[dict]) -> float:
-    """Ours over that of all others, each weighted by its noise."""
-    weights = [float(row["its_rmse"])**-2 for row in rows]
-    return float(rows[0]["mean"]) * sum(weights) / sum(w * float(row["its_mean"]) for w, row in zip(weights, rows))
+def indirect_mean(rows: list[dict[str, Any]]) -> float:
+    """Our indirect mean over that of all others, weighted by their inverse squared RMSE."""
+    weights = [float(row["its_rmse"]) ** -2 for row in rows]
+    return (
+        float(rows[0]["mean"])
+        * sum(weights)
+        / sum(w * float(row["its_mean"]) for w, row in zip(weights, rows, strict=True))
+    )
 
 
-def table(rows: list[dict]) -> str:
-    """Of the default setting's full images."""
-    shown, indirect = {}, {}
+def table(rows: list[dict[str, Any]]) -> str:
+    """Table of the full images at the default setting."""
+    shown: dict[str, dict[str, dict[str, Any]]] = {}
+    indirect: dict[str, list[dict[str, Any]]] = {}
     for row in rows:
         if row["setting"] != "default":
             continue
@@ -56,70 +76,137 @@ def table(rows: list[dict]) -> str:
         if row["light"] == "indirect":
             indirect.setdefault(row["room"], []).append(row)
     others = [other for other in OTHERS if any(other in of for of in shown.values())]
-    lines = ["| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | relMSE: " +
-             ", ".join(OTHERS[other] for other in others) + " / ours | path tracer: RMSE, SMAPE, FLIP / ours |", "|---|---|---|---|---|---|---|"]
+    lines = [
+        "| room | indirect | CPU s | mean, ours, path tracer's | indirect mean, ours / others' | "
+        "relMSE: "
+        + ", ".join(OTHERS[other] for other in others)
+        + " / ours | path tracer: RMSE, SMAPE, FLIP / ours |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for room, of in shown.items():
         path = of["path"]
-        lines.append("| " + " | ".join([
-            room, f"{float(path['indirect_share']):.0%}", path["cpu_s"], f"{float(path['mean']):.3f}, {float(path['its_mean']):.3f}",
-            f"{indirect_mean(indirect[room]):.3f}",
-            ", ".join(two(ratio(of[other], 'relmse')) if other in of else "-" for other in others),
-            ", ".join(two(ratio(path, column)) for column in ("rmse", "smape", "flip"))]) + " |")
-    made = sorted({f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference {row['reference']}" for row in rows})
+        lines.append(
+            "| "
+            + " | ".join(
+                [
+                    room,
+                    f"{float(path['indirect_share']):.0%}",
+                    path["cpu_s"],
+                    f"{float(path['mean']):.3f}, {float(path['its_mean']):.3f}",
+                    f"{indirect_mean(indirect[room]):.3f}",
+                    ", ".join(
+                        two(ratio(of[other], "relmse")) if other in of else "-" for other in others
+                    ),
+                    ", ".join(two(ratio(path, column)) for column in ("rmse", "smape", "flip")),
+                ]
+            )
+            + " |"
+        )
+    made = sorted(
+        {
+            f"tools of {row['tools']}, {row['date']}, {row['width']} pixels wide, reference "
+            f"{row['reference']}"
+            for row in rows
+        }
+    )
     return "\n".join([*lines, "", *(f"<!-- {line} -->" for line in made)])
 
 
-def guided_table(rows: list[dict]) -> str:
-    """The path tracer's errors over those of guided paths, full image, in the time of the default setting. Empty where
-    these are of two builds."""
-    of = {}
+def guided_table(rows: list[dict[str, Any]]) -> str:
+    """Table of the path tracer's errors over those of guided paths, in the default setting's time.
+
+    It is empty where their rows come from two builds.
+    """
+    of: dict[str, dict[str, dict[str, Any]]] = {}
     for row in rows:
         if (row["setting"], row["light"]) == ("default", "full"):
             of.setdefault(row["room"], {})[row["beside"]] = row
     both = [(room, by["path"], by["guided"]) for room, by in of.items() if "guided" in by]
     if apart := [room for room, path, guided in both if guided["tools"] != path["tools"]]:
-        print(f"rooms: {GUIDED.name} keeps its table of guided paths, as theirs and the path tracer's are of two builds in {', '.join(apart)}; "
-              "cure: rooms.py --also guided", file=sys.stderr)
+        print(
+            f"rooms: {GUIDED.name} keeps its table of guided paths, as theirs and the path "
+            f"tracer's are of two builds in {', '.join(apart)}; "
+            "cure: rooms.py --also guided",
+            file=sys.stderr,
+        )
         return ""
 
-    def times(path: dict, guided: dict, column: str) -> float:
+    def times(path: dict[str, Any], guided: dict[str, Any], column: str) -> float:
         return float(path[f"its_{column}"]) / max(1e-9, float(guided[f"its_{column}"]))
 
-    lines = ["| view | CPU s | spp, guided, path tracer's | relMSE | RMSE | SMAPE | FLIP | means, guided, path tracer's |", "|---|---|---|---|---|---|---|---|"]
+    lines = [
+        "| view | CPU s | spp, guided, path tracer's | relMSE | RMSE | SMAPE | FLIP | means, "
+        "guided, path tracer's |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
     for room, path, guided in sorted(both, key=lambda row: -times(row[1], row[2], "relmse")):
-        errors = [two(times(path, guided, column)) for column in ("relmse", "rmse", "smape", "flip")]
-        lines.append("| " + " | ".join([room, guided["cpu_s"], f"{guided['its_spp']}, {path['its_spp']}", *errors,
-                                        f"{float(guided['its_mean']):.3f}, {float(path['its_mean']):.3f}"]) + " |")
+        errors = [
+            two(times(path, guided, column)) for column in ("relmse", "rmse", "smape", "flip")
+        ]
+        lines.append(
+            "| "
+            + " | ".join(
+                [
+                    room,
+                    guided["cpu_s"],
+                    f"{guided['its_spp']}, {path['its_spp']}",
+                    *errors,
+                    f"{float(guided['its_mean']):.3f}, {float(path['its_mean']):.3f}",
+                ]
+            )
+            + " |"
+        )
     return "\n".join(lines)
 
 
 def put(page: Path, name: str, table: str) -> None:
-    """Between the page's comments of that name."""
+    """Replaces the text between the page's comments of that name."""
     text = f"<!-- {name} -->\n{table}\n<!-- end of {name} -->"
-    output.write_page(page, re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: text, page.read_text(), flags=re.S))
+    output.write_page(
+        page,
+        re.sub(
+            f"<!-- {name} -->.*?<!-- end of {name} -->",
+            lambda _: text,
+            page.read_text(),
+            flags=re.S,
+        ),
+    )
 
 
-def plot(rows: list[dict], path: Path) -> None:
-    """How many times our relMSE and FLIP the others have: filled at the default, hollow as a draft."""
+def plot(rows: list[dict[str, Any]], path: Path) -> None:
+    """Plots the others' relMSE and FLIP over ours: filled at default, hollow at draft."""
     rooms = list(dict.fromkeys(row["room"] for row in rows))
-    figure, axes = plt.subplots(1, 2, figsize=(11, 0.36 * len(rooms) + 1.6), sharey=True, layout="constrained")
-    for ax, column, title in zip(axes, ("relmse", "flip"), ("relMSE", "FLIP")):
+    figure, axes = plt.subplots(
+        1, 2, figsize=(11, 0.36 * len(rooms) + 1.6), sharey=True, layout="constrained"
+    )
+    for ax, column, title in zip(axes, ("relmse", "flip"), ("relMSE", "FLIP"), strict=True):
         for row in rows:
             if row["light"] != "full" or row["beside"] not in OTHERS:
                 continue
             colour, filled = COLOURS[row["beside"]], row["setting"] == "default"
-            ax.plot(ratio(row, column), rooms.index(row["room"]), "o", color=colour, markersize=7,
-                    markerfacecolor=colour if filled else "none", label=OTHERS[row["beside"]] if filled else None)
+            ax.plot(
+                ratio(row, column),
+                rooms.index(row["room"]),
+                "o",
+                color=colour,
+                markersize=7,
+                markerfacecolor=colour if filled else "none",
+                label=OTHERS[row["beside"]] if filled else None,
+            )
         ax.axvline(1, color="#444444", linewidth=1)
         ax.set_xscale("log")
         ax.grid(axis="x", alpha=0.3)
         ax.set_xlabel(f"{title} at equal CPU time, theirs / ours")
     axes[0].set_yticks(range(len(rooms)), rooms)
     axes[0].invert_yaxis()
-    marks = dict(zip(*reversed(axes[0].get_legend_handles_labels())))
+    marks = dict(zip(*reversed(axes[0].get_legend_handles_labels()), strict=True))
     figure.suptitle(" ")  # room for the legend
     figure.legend(marks.values(), marks.keys(), loc="upper center", ncols=len(marks), frameon=False)
-    output.save(path, output.output_guard.SVG, lambda partial: figure.savefig(partial, metadata={"Date": None}))
+    output.save(
+        path,
+        output.output_guard.SVG,
+        lambda partial: figure.savefig(partial, metadata={"Date": None}),
+    )
     plt.close(figure)
 
 

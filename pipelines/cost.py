@@ -1,7 +1,8 @@
-"""What a task takes: CPU seconds, memory and the size of its file, by counts; the model behind farm.py.
+"""Predicts the cost of a task, in CPU seconds, memory and size of its file: the model of farm.py.
 
-A figure of a stage is a sum of terms, each a rate times a function of counts. bench/cost_model.py fits the rates to
-measured runs and writes cost_model.json; here are the terms, and what evaluates them.
+Each figure of a stage is a sum of terms. A term is a rate times a function of the counts.
+bench/cost_model.py fits the rates to measured runs and writes cost_model.json. This module
+defines the terms and evaluates them.
 """
 
 import dataclasses
@@ -9,6 +10,7 @@ import json
 import math
 import pathlib
 import re
+from collections.abc import Callable
 
 MODEL = pathlib.Path(__file__).resolve().parent / "cost_model.json"
 DIVIDED = ("place", "estimate", "render")
@@ -22,48 +24,49 @@ class Counts:
     photons: float = 0
     pixels: float = 0
     spp: float = 0
-    shards: int = 1  # a task does one part of so many; a merge reads so many files
+    shards: int = 1  # parts of the stage, of which a task does one and a merge reads all
 
     @property
-    def share(self):
+    def share(self) -> float:
         return 1 / self.shards
 
 
-def count(text):
-    """Of 3k, 10M or 1G. Raises ValueError."""
+def count(text: str) -> float:
+    """Parses a count such as 3k, 10M or 1G. Raises ValueError."""
     match = re.fullmatch(r"(\d+(?:\.\d+)?)([kMG]?)", text)
     if not match:
         raise ValueError(f"'{text}' is no count such as 3k, 10M or 1G")
     return float(match[1]) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[match[2]]
 
 
-def with_shards(whole, stage, shards):
-    """Counts of one task of a stage, or of its merge, where {stage: count} shards are wanted."""
+def with_shards(whole: Counts, stage: str, shards: dict[str, int]) -> Counts:
+    """Counts of one task or merge of a stage, given the shards of each stage as {stage: count}."""
     return dataclasses.replace(whole, shards=shards.get(stage.removeprefix("merge-"), 1))
 
 
-def depth(n):
-    """Levels of a tree over n things."""
+def depth(n: float) -> float:
+    """Levels of a balanced binary tree with n leaves."""
     return math.log2(max(2, n))
 
 
-def pairs(c):
-    """Candidates times competitors of each, in the steps of stepsFor() (tools/eliminate/elimination)."""
+def pairs(c: Counts) -> float:
+    """Pairs of competing candidates, over the steps of stepsFor() (tools/eliminate/elimination)."""
     steps = [max(1.0, c.vpls)]
     while (each := c.candidates / steps[-1]) > 60 and each * c.candidates > 2**22:
         steps.append(30 * steps[-1])
     left = [c.candidates, *reversed(steps[1:])]
-    return sum(before**2 / kept for before, kept in zip(left, reversed(steps)))
+    return sum(before**2 / kept for before, kept in zip(left, reversed(steps), strict=True))
 
 
-def pilots(c):
-    """Samples by which --allocate finds its marginal cost, the same of any film that has so many tiles."""
+def pilots(c: Counts) -> float:
+    """Samples that --allocate spends on its marginal cost: all pixels of at most 48 tiles."""
     return 4 * min(c.pixels, 48 * 64)
 
 
-# {stage: {figure: {term: function of counts}}}. What is multiplied by the share is divided among shards; the rest is
-# what every shard does again.
-TERMS = {
+# {stage: {figure: {term: function of counts}}}. Terms with the factor `share` are divided among
+# the shards. Every shard repeats the work of the others.
+Rates = dict[str, dict[str, dict[str, float]]]
+TERMS: dict[str, dict[str, dict[str, Callable[[Counts], float]]]] = {
     "place": {
         "cpu_s": {
             "start": lambda c: 1,
@@ -87,7 +90,11 @@ TERMS = {
             "pairs": pairs,
             "VPLs": lambda c: c.vpls,
         },
-        "memory_MiB": {"start": lambda c: 1, "candidates": lambda c: c.candidates, "VPLs": lambda c: c.vpls},
+        "memory_MiB": {
+            "start": lambda c: 1,
+            "candidates": lambda c: c.candidates,
+            "VPLs": lambda c: c.vpls,
+        },
         "file_bytes": {"VPLs": lambda c: c.vpls},
     },
     "estimate": {
@@ -100,7 +107,11 @@ TERMS = {
             "photons log2(triangles)": lambda c: c.photons * c.share * depth(c.triangles),
             "photons sqrt(triangles)": lambda c: c.photons * c.share * math.sqrt(c.triangles),
         },
-        "memory_MiB": {"start": lambda c: 1, "triangles": lambda c: c.triangles, "VPLs": lambda c: c.vpls},
+        "memory_MiB": {
+            "start": lambda c: 1,
+            "triangles": lambda c: c.triangles,
+            "VPLs": lambda c: c.vpls,
+        },
         "file_bytes": {
             "VPLs": lambda c: c.vpls if c.shards == 1 else 0,
             "VPLs, in shards": lambda c: c.vpls if c.shards > 1 else 0,
@@ -121,7 +132,9 @@ TERMS = {
             "samples": lambda c: c.pixels * c.spp * c.share,
             "samples log2(VPLs)": lambda c: c.pixels * c.spp * c.share * depth(c.vpls),
             "samples log2(triangles)": lambda c: c.pixels * c.spp * c.share * depth(c.triangles),
-            "samples sqrt(triangles)": lambda c: c.pixels * c.spp * c.share * math.sqrt(c.triangles),
+            "samples sqrt(triangles)": lambda c: (
+                c.pixels * c.spp * c.share * math.sqrt(c.triangles)
+            ),
         },
         "memory_MiB": {
             "start": lambda c: 1,
@@ -136,7 +149,11 @@ TERMS = {
         },
     },
     "merge-place": {
-        "cpu_s": {"start": lambda c: 1, "candidates": lambda c: c.candidates, "shards": lambda c: c.shards},
+        "cpu_s": {
+            "start": lambda c: 1,
+            "candidates": lambda c: c.candidates,
+            "shards": lambda c: c.shards,
+        },
         "memory_MiB": {"start": lambda c: 1, "candidates": lambda c: c.candidates},
     },
     "merge-estimate": {
@@ -146,7 +163,11 @@ TERMS = {
             "VPLs": lambda c: c.vpls,
             "VPLs x shards": lambda c: c.vpls * c.shards,
         },
-        "memory_MiB": {"start": lambda c: 1, "triangles": lambda c: c.triangles, "VPLs": lambda c: c.vpls},
+        "memory_MiB": {
+            "start": lambda c: 1,
+            "triangles": lambda c: c.triangles,
+            "VPLs": lambda c: c.vpls,
+        },
     },
     "merge-render": {
         "cpu_s": {"start": lambda c: 1, "pixels": lambda c: c.pixels, "shards": lambda c: c.shards},
@@ -156,26 +177,26 @@ TERMS = {
 
 
 class Model:
-    """Predicts by rates, {stage: {figure: {term: rate}}}."""
+    """Predicts figures from the rates {stage: {figure: {term: rate}}}."""
 
-    def __init__(self, rates):
+    def __init__(self, rates: Rates) -> None:
         self.rates = rates
 
-    def predict(self, stage, figure, counts):
+    def predict(self, stage: str, figure: str, counts: Counts) -> float:
         terms = TERMS[stage][figure]
         return sum(rate * terms[name](counts) for name, rate in self.rates[stage][figure].items())
 
-    def setup_s(self, stage, counts):
-        """CPU seconds before the work: of a stage in shards, those that each shard takes again."""
+    def setup_s(self, stage: str, counts: Counts) -> float:
+        """CPU seconds before the work starts. Each shard of a stage spends them again."""
         if stage not in DIVIDED:
             return self.loading_s(stage, counts)
         return self.predict(stage, "cpu_s", dataclasses.replace(counts, shards=10**15))
 
-    def loading_s(self, stage, counts):
+    def loading_s(self, stage: str, counts: Counts) -> float:
         """CPU seconds of starting and reading the scene."""
         rates = self.rates[stage]["cpu_s"]
         return rates.get("start", 0) + rates.get("triangles", 0) * counts.triangles
 
 
-def load(file=MODEL):
+def load(file: pathlib.Path = MODEL) -> Model:
     return Model(json.loads(pathlib.Path(file).read_text())["rates"])

@@ -1,7 +1,7 @@
-"""A farm of equal nodes that runs jobs: first come, first served in the order of the graph, and nodes that fail.
+"""Simulates jobs on a farm of equal nodes, which may fail. Jobs start in the order of the graph.
 
-A node that fails ends what runs on it and comes back after a while. A job begins again on any node: its start and
-set-up anew, its work from the last checkpoint.
+A failing node ends the jobs that run on it and comes back after the repair time. These jobs begin
+again on any node: they repeat start and set-up, and resume their work from the last checkpoint.
 """
 
 import dataclasses
@@ -9,6 +9,10 @@ import heapq
 import itertools
 import math
 import random
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from farm_graph import Job
 
 MOST_ATTEMPTS = 1000
 
@@ -17,14 +21,14 @@ MOST_ATTEMPTS = 1000
 class Farm:
     nodes: int = 100
     cores: int = 16
-    start_s: float = 1.0  # from a free node to a running task, each time
+    start_s: float = 1.0  # time of each attempt from a free node to a running task
     checkpoint_s: float = 60.0
     failure_s: float = math.inf  # mean time of a node between failures
     repair_s: float = 600.0
     seed: int = 1
 
-    def failures(self, node):
-        """Times that the node runs until it fails, one after the other."""
+    def failures(self, node: int) -> Iterator[float]:
+        """Yields the times for which the node runs between its failures."""
         chance = random.Random(f"{self.seed}/node {node}")
         while self.failure_s < math.inf:
             yield chance.expovariate(1 / self.failure_s)
@@ -42,25 +46,26 @@ class Attempt:
 @dataclasses.dataclass
 class Outcome:
     wall_s: float
-    attempts: list
+    attempts: list[Attempt]
     failures: int
 
 
 class Nodes:
-    """Free cores of each node; the fullest node with room is taken first, and the first of these."""
+    """Free cores of each node. Jobs go to the fullest node with room, and the first of these."""
 
-    def __init__(self, count, cores):
+    def __init__(self, count: int, cores: int) -> None:
         self.free = [cores] * count
-        self.by_free = [[] for _ in range(cores)] + [list(range(count))]
+        self.by_free: list[list[int]] = [[] for _ in range(cores + 1)]
+        self.by_free[cores] = list(range(count))
 
-    def set(self, node, free):
+    def set(self, node: int, free: int) -> None:
         self.free[node] = free
         heapq.heappush(self.by_free[free], node)
 
-    def with_room(self, cores):
+    def with_room(self, cores: int) -> int | None:
         for free in range(max(1, cores), len(self.by_free)):
             heap = self.by_free[free]
-            while heap and self.free[heap[0]] != free:  # has changed since
+            while heap and self.free[heap[0]] != free:  # this entry is stale
                 heapq.heappop(heap)
             if heap:
                 return heap[0]
@@ -68,50 +73,54 @@ class Nodes:
 
 
 class Simulation:
-    def __init__(self, jobs, farm):
+    def __init__(self, jobs: list[Job], farm: Farm) -> None:
         self.jobs, self.farm = jobs, farm
-        if widest := max((job.cores for job in jobs), default=0):
-            if widest > farm.cores:
-                raise ValueError(f"a task wants {widest} cores, a node has {farm.cores}")
+        if (widest := max((job.cores for job in jobs), default=0)) > farm.cores:
+            raise ValueError(f"a task wants {widest} cores, a node has {farm.cores}")
         self.missing = [len(set(job.needs)) for job in jobs]
-        self.then = [[] for _ in jobs]
+        self.then: list[list[int]] = [[] for _ in jobs]
         for k, job in enumerate(jobs):
             for need in set(job.needs):
                 self.then[need].append(k)
         self.left = [job.work_s for job in jobs]
         self.begun = [0] * len(jobs)
-        self.ready = {}  # cores: heap of jobs
+        self.ready: dict[int, list[int]] = {}  # heap of the waiting jobs, by their cores
         self.nodes = Nodes(farm.nodes, farm.cores)
-        self.running = [{} for _ in range(farm.nodes)]  # job: Attempt
-        self.attempts, self.failed, self.now, self.finished = [], 0, 0.0, 0
-        self.order, self.events = itertools.count(), []
+        self.running: list[dict[int, Attempt]] = [{} for _ in range(farm.nodes)]
+        self.attempts: list[Attempt] = []
+        self.failed, self.now, self.finished = 0, 0.0, 0
+        self.order = itertools.count()
+        self.events: list[tuple[float, int, Callable[..., None], tuple[Any, ...]]] = []
         self.fails = [farm.failures(node) for node in range(farm.nodes)]
 
-    def at(self, time, what, *about):
+    def at(self, time: float, what: Callable[..., None], *about: Any) -> None:
         heapq.heappush(self.events, (time, next(self.order), what, about))
 
-    def fail_later(self, node):
+    def fail_later(self, node: int) -> None:
         if (lasts := next(self.fails[node], None)) is not None:
             self.at(self.now + lasts, self.fail, node)
 
-    def release(self, k):
-        """Its needs are done."""
+    def release(self, k: int) -> None:
+        """Makes job k, whose needs are all done, ready to run."""
         if self.jobs[k].cores == 0:
             self.complete(k)
         else:
             heapq.heappush(self.ready.setdefault(self.jobs[k].cores, []), k)
 
-    def complete(self, k):
+    def complete(self, k: int) -> None:
         self.finished += 1
         for follower in self.then[k]:
             self.missing[follower] -= 1
             if self.missing[follower] == 0:
                 self.release(follower)
 
-    def begin_all(self):
+    def begin_all(self) -> None:
         while True:
-            fits = [(heap[0], node) for cores, heap in self.ready.items()
-                    if heap and (node := self.nodes.with_room(cores)) is not None]
+            fits = [
+                (heap[0], node)
+                for cores, heap in self.ready.items()
+                if heap and (node := self.nodes.with_room(cores)) is not None
+            ]
             if not fits:
                 return
             k, node = min(fits)
@@ -119,14 +128,17 @@ class Simulation:
             heapq.heappop(self.ready[job.cores])
             self.begun[k] += 1
             if self.begun[k] > MOST_ATTEMPTS:
-                raise ValueError(f"{job.name} has failed {MOST_ATTEMPTS} times: nodes do not last as long as it takes")
+                raise ValueError(
+                    f"{job.name} has failed {MOST_ATTEMPTS} times: nodes do not last as long as "
+                    "it takes"
+                )
             attempt = Attempt(k, node, self.now, math.nan, False)
             self.attempts.append(attempt)
             self.running[node][k] = attempt
             self.nodes.set(node, self.nodes.free[node] - job.cores)
             self.at(self.now + self.farm.start_s + job.setup_s + self.left[k], self.end, attempt)
 
-    def end(self, attempt):
+    def end(self, attempt: Attempt) -> None:
         if not math.isnan(attempt.end_s):
             return  # its node had failed
         attempt.end_s, attempt.done = self.now, True
@@ -134,7 +146,7 @@ class Simulation:
         self.nodes.set(attempt.node, self.nodes.free[attempt.node] + self.jobs[attempt.job].cores)
         self.complete(attempt.job)
 
-    def fail(self, node):
+    def fail(self, node: int) -> None:
         self.failed += 1
         for k, attempt in self.running[node].items():
             attempt.end_s = self.now
@@ -146,11 +158,11 @@ class Simulation:
         self.nodes.set(node, 0)
         self.at(self.now + self.farm.repair_s, self.come_back, node)
 
-    def come_back(self, node):
+    def come_back(self, node: int) -> None:
         self.nodes.set(node, self.farm.cores)
         self.fail_later(node)
 
-    def run(self):
+    def run(self) -> Outcome:
         for node in range(self.farm.nodes):
             self.fail_later(node)
         for k, missing in enumerate(self.missing):
@@ -167,5 +179,5 @@ class Simulation:
         return Outcome(self.now, self.attempts, self.failed)
 
 
-def simulate(jobs, farm):
+def simulate(jobs: list[Job], farm: Farm) -> Outcome:
     return Simulation(jobs, farm).run()

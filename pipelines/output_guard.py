@@ -1,9 +1,13 @@
-"""Outputs of the scripts: whole or absent, and over nothing but an older file of their kind, as those of the tools.
+"""Writes the outputs of scripts by the rules of the tools' outputs.
+
+An output is whole or absent, and it replaces nothing but an older file of its kind:
 
     write(options.svg, text, SVG, option="--svg", reads={"--model": options.model})
 
-Refused is one line: file, problem; cure. A kind is told by content, whatever the name; an empty file is of every kind.
+The content of a file tells its kind, not its name. An empty file is of every kind.
 """
+
+from __future__ import annotations
 
 import dataclasses
 import json
@@ -11,47 +15,56 @@ import os
 import pathlib
 import re
 import sys
-import typing
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
 
-HEAD = 4096  # bytes that tell a kind
+T = TypeVar("T")
+File = str | os.PathLike[str]
+HEAD = 4096  # number of leading bytes that tell a file's kind
 
 
 class Refused(Exception):
-    """One line: file, problem; cure."""
+    """A refusal in one line: file, problem; cure."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Kind:
-    content: str  # "an SVG picture"
-    begins: typing.Callable[[bytes], bool] | None  # of the first HEAD bytes
-    whole: typing.Callable[[bytes], bool] | None = None  # of all bytes, where the head tells too little
+    content: str  # what messages call it, such as "an SVG picture"
+    begins: Callable[[bytes], bool] | None  # tells the kind from the first HEAD bytes
+    whole: Callable[[bytes], bool] | None = (
+        None  # tells the kind from all bytes, if the head cannot
+    )
 
 
-def _svg(head):
+def _svg(head: bytes) -> bool:
     return head.startswith(b"<svg") or (head.startswith(b"<?xml") and b"<svg" in head)
 
 
-def _csv(head):
+def _csv(head: bytes) -> bool:
     line = head.split(b"\n", 1)[0]
     return b"," in line and re.fullmatch(rb"[\w,.\r]+", line) is not None
 
 
-def json_kind(content, fits):
-    """A JSON file of which fits(value) tells whether it is of this kind."""
-    def whole(data):
+def json_kind(content: str, fits: Callable[[Any], bool]) -> Kind:
+    """A kind of JSON files; fits(value) tells whether the value of a file is of this kind."""
+
+    def whole(data: bytes) -> bool:
         try:
             return bool(fits(json.loads(data)))
         except (ValueError, RecursionError):
             return False
+
     return Kind(content, None, whole)
 
 
-def json_object(content, *keys):
-    return json_kind(content, lambda value: isinstance(value, dict) and all(key in value for key in keys))
+def json_object(content: str, *keys: str) -> Kind:
+    return json_kind(
+        content, lambda value: isinstance(value, dict) and all(key in value for key in keys)
+    )
 
 
-def text_kind(content, mark):
-    """A text that begins with a mark of ours, or with one of several."""
+def text_kind(content: str, mark: str | Iterable[str]) -> Kind:
+    """A kind of texts that begin with a mark of this project, or with one of several."""
     marks = (mark,) if isinstance(mark, str) else mark
     return Kind(content, lambda head: head.startswith(tuple(each.encode() for each in marks)))
 
@@ -64,37 +77,56 @@ HTML = Kind("an HTML page", lambda head: head.lower().startswith(b"<!doctype htm
 CSV = Kind("a CSV table", _csv)
 
 
-def _is(file, kind):
+def _is(file: pathlib.Path, kind: Kind) -> bool:
     try:
         with open(file, "rb") as found:
             data = found.read(-1 if kind.whole else HEAD)
     except OSError:
-        return True  # whoever replaces it reports that
-    return not data or (kind.whole or kind.begins)(data)
+        return True  # the caller reports this error when it replaces the file
+    tells = kind.whole or kind.begins
+    return not data or (tells is not None and tells(data))
 
 
-def check(file, kind, option="", reads=None):
-    """Refuses a file that is read, a folder, and a file of another kind. `reads`: {option: file}. Writes nothing."""
+def check(
+    file: File, kind: Kind, option: str = "", reads: Mapping[str, File] | None = None
+) -> None:
+    """Raises Refused where `file` is an input, a folder, or a file of another kind.
+
+    `reads` maps options to the files that the run reads. Nothing is written.
+    """
     file = pathlib.Path(file)
     if not file.exists():
         return
     if file.is_dir():
         raise Refused(f"{file}: is a folder; name a file for {option or kind.content}")
     if not file.is_file():
-        return  # such as /dev/stdout
+        return  # a device such as /dev/stdout
     for name, other in (reads or {}).items():
         if os.path.exists(other) and os.path.samefile(file, other):
-            raise Refused(f"{file}: is the file of {name}, which the run reads; name another file"
-                          f"{f' for {option}' if option else ''}")
+            raise Refused(
+                f"{file}: is the file of {name}, which the run reads; name another file"
+                f"{f' for {option}' if option else ''}"
+            )
     if not _is(file, kind):
-        raise Refused(f"{file}: is not {kind.content}, which {option or 'this run'} would replace it with; "
-                      "name another file, or remove this one")
+        raise Refused(
+            f"{file}: is not {kind.content}, which {option or 'this run'} would replace it with; "
+            "name another file, or remove this one"
+        )
 
 
-def replace(file, kind, make, option="", reads=None):
-    """The same for what others write: make(partial) writes a file beside, of the same extension."""
+def replace(
+    file: File,
+    kind: Kind,
+    make: Callable[[pathlib.Path], T],
+    option: str = "",
+    reads: Mapping[str, File] | None = None,
+) -> T:
+    """Checks `file`, then replaces it by the file that make(partial) writes beside it.
+
+    `partial` has the extension of `file`. Returns what `make` returns.
+    """
     check(file, kind, option, reads)
-    target = pathlib.Path(os.path.realpath(file))  # a link stays one
+    target = pathlib.Path(os.path.realpath(file))  # a symbolic link keeps its place
     if target.exists() and not target.is_file():
         return make(target)
     partial = target.with_name(f".{target.stem}.partial-{os.getpid()}{target.suffix}")
@@ -106,14 +138,20 @@ def replace(file, kind, make, option="", reads=None):
         partial.unlink(missing_ok=True)
 
 
-def write(file, data, kind, option="", reads=None):
-    """Bytes or a text. Throws Refused, or OSError; the file is then as it was."""
-    data = data.encode() if isinstance(data, str) else data
-    replace(file, kind, lambda partial: partial.write_bytes(data), option, reads)
+def write(
+    file: File,
+    data: str | bytes,
+    kind: Kind,
+    option: str = "",
+    reads: Mapping[str, File] | None = None,
+) -> None:
+    """Writes bytes or a text. Raises Refused or OSError, and then leaves the file as it was."""
+    content = data.encode() if isinstance(data, str) else data
+    replace(file, kind, lambda partial: partial.write_bytes(content), option, reads)
 
 
-def or_exit(act, *arguments, program=""):
-    """One of the above; its problem ends the program in one line, with exit code 1."""
+def or_exit(act: Callable[..., T], *arguments: Any, program: str = "") -> T:
+    """Calls a function of this module. Refused and OSError become one line and exit code 1."""
     try:
         return act(*arguments)
     except Refused as problem:

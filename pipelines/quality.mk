@@ -1,5 +1,5 @@
-# What draft, default and final are: counts of all stages, and options of two. Makefile
-# includes this file, generate_ninja.py reads it; docs/guide.md, "Presets", has the errors.
+# The presets draft, default and final: counts of all stages, and options of two. Makefile includes
+# this file, and generate_ninja.py reads it. docs/guide.md, "Presets", lists their errors.
 #   VARIABLE.quality := value
 
 CANDIDATES.draft := 15k
@@ -9,7 +9,7 @@ SPP.draft        := 16
 ESTIMATE.draft   := --irradiance-error 0.02
 RENDER.draft     := --near-field-rays 2 --error 0.1
 
-# Those of the tools, but for VPLS, which vpl-eliminate wants to be told.
+# The defaults of the tools, and VPLS, for which vpl-eliminate has no default.
 CANDIDATES.default := 120k
 VPLS.default       := 3k
 PHOTONS.default    := 10M

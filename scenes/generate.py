@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Makes the OBJ, MTL and PNG files of the project's own scenes, beside their scene.toml.
 
-  scenes/generate.py           rewrite the files that differ
-  scenes/generate.py --check   write nothing; exit 1 if a file differs or is missing
+    scenes/generate.py           rewrite the files that differ
+    scenes/generate.py --check   write nothing; exit 1 if a file differs or is missing
 
-Same bytes on every machine: standard library only, six significant digits.
+The bytes are the same on every machine: it uses only the standard library and writes six
+significant digits.
 """
 
 import argparse
@@ -12,18 +13,18 @@ import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-from generator import rooms, teapot, test_scenes  # noqa: E402 (after the line that it depends on)
+from generator import rooms, teapot, test_scenes  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-def made_files():
-    """Path below scenes/ -> bytes."""
+def made_files() -> dict[str, bytes]:
+    """Bytes of the files, by their paths below scenes/."""
     made = {**teapot.files(HERE / "teapot"), **rooms.files(), **test_scenes.files()}
     return {name: data if isinstance(data, bytes) else data.encode() for name, data in made.items()}
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(description="Make the models of the project's own scenes.")
     parser.add_argument("--check", action="store_true", help="only compare; exit 1 on a difference")
     check = parser.parse_args().check

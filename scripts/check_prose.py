@@ -7,8 +7,8 @@ Without PATH, every tracked file is read. Each finding is one line, FILE:LINE: p
 finding makes the exit status 1. The rules:
 
 - No comment begins with "Of", "By" or "As"; no trailing comment begins with "of".
-- Outside docs/lab/ and CHANGELOG.md nothing names a commit, a date or a former state: a comment
-  tells what is, and the history tells what was.
+- Outside docs/lab/ and CHANGELOG.md nothing names a commit, a date or an earlier state. They are
+  the history's.
 - In the README, the guide, the options' help and the theory pages no sentence has more than 35
   words.
 """
@@ -42,7 +42,9 @@ Block = tuple[int, str, bool]  # first line, text, whether it stands behind code
 
 def slashed_comments(text: str) -> Iterator[Block]:
     """Comments of C++: runs of // lines are one block. Strings are skipped."""
-    token = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'|//[^\n]*|/\*.*?\*/', re.DOTALL)
+    token = re.compile(
+        r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'|//[^\n]*|/\*.*?\*/', re.DOTALL
+    )
     run: list[str] = []
     first = last = 0
     for match in token.finditer(text):
@@ -108,7 +110,11 @@ def python_comments(path: Path) -> Iterator[Block]:
                 first = line
             run.append(body)
             last = line
-        elif token.type == tokenize.STRING and before in (tokenize.NEWLINE, tokenize.INDENT, tokenize.ENCODING):
+        elif token.type == tokenize.STRING and before in (
+            tokenize.NEWLINE,
+            tokenize.INDENT,
+            tokenize.ENCODING,
+        ):
             yield line, token.string.strip("rR\"'").strip(), False
         if token.type not in (tokenize.NL, tokenize.COMMENT):
             before = token.type
@@ -124,7 +130,11 @@ def paragraphs(text: str) -> Iterator[Block]:
     for number, line in enumerate(text.splitlines() + [""], 1):
         bare = line.strip()
         if bare.startswith(("```", "$$")):
-            fenced = not fenced if not (bare.startswith("$$") and bare.endswith("$$") and len(bare) > 3) else fenced
+            fenced = (
+                not fenced
+                if not (bare.startswith("$$") and bare.endswith("$$") and len(bare) > 3)
+                else fenced
+            )
             bare = ""
         elif fenced or line.startswith("    ") and not run:
             continue
@@ -164,12 +174,19 @@ def problems_of(path: Path, name: str) -> Iterator[tuple[int, str]]:
         if path.suffix != ".md":
             opening = OPENING.match(text)
             if opening:
-                yield line, f'a comment begins with "{opening[1]}": give the sentence its subject first'
+                yield (
+                    line,
+                    f'a comment begins with "{opening[1]}": give the sentence its subject first',
+                )
             if trailing and text.startswith("of "):
                 yield line, 'a trailing comment begins with "of": name the thing itself'
         if not HISTORY_IS_TOLD_IN.search(name):
             plain = without_code(text)
-            for pattern, what in ((COMMIT, "a commit"), (DATE, "a date"), (FORMER, "a former state")):
+            for pattern, what in (
+                (COMMIT, "a commit"),
+                (DATE, "a date"),
+                (FORMER, "a former state"),
+            ):
                 found = pattern.search(plain)
                 if found:
                     yield line, f'"{found[0]}" is {what}: it belongs into CHANGELOG.md or docs/lab/'
@@ -177,16 +194,23 @@ def problems_of(path: Path, name: str) -> Iterator[tuple[int, str]]:
             for sentence in re.split(r"(?<=[.!?:;])\s+", without_code(text)):
                 count = len(re.findall(r"\w[\w'’-]*", sentence))
                 if count > MAX_WORDS:
-                    yield line, f'a sentence has {count} words, at most {MAX_WORDS}: "{sentence[:60]}…"'
+                    yield (
+                        line,
+                        f'a sentence has {count} words, at most {MAX_WORDS}: "{sentence[:60]}…"',
+                    )
 
 
 def tracked_files() -> list[str]:
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True).stdout
+    listed = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True
+    ).stdout
     return [name for name in listed.decode().split("\0") if name]
 
 
 def main() -> int:
-    names = [str(Path(name).resolve().relative_to(ROOT)) for name in sys.argv[1:]] or tracked_files()
+    names = [
+        str(Path(name).resolve().relative_to(ROOT)) for name in sys.argv[1:]
+    ] or tracked_files()
     found = 0
     for name in names:
         path = ROOT / name

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh clone to a picture: installs what is missing, builds the tools, and renders the
+# Turns a fresh clone into a picture: installs missing packages, builds the tools, and renders the
 # U-shaped scene through the four stages. Settings may be added: scripts/demo.sh SPP=8
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that the build and the tests need, and those named as arguments;
-# does nothing when all are there.
+# Installs the Debian 12 packages that the build and the tests need, and those named as arguments.
+# Does nothing when all are installed.
 set -euo pipefail
 
 packages=(
   build-essential cmake ninja-build pkg-config python3
   libembree-dev libtbb-dev                                # ray tracing, threads
   libflann-dev liblz4-dev                                 # kd-tree; FLANN's headers need lz4
-  libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB asks for Boost
+  libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB requires Boost
   libopenexr-dev zlib1g-dev libstb-dev                    # images
   libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
   libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions

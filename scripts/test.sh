@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything, runs every test, and fuzzes the readers for a moment:
-# what fails soonest comes first, and a table at the end says what was done and how long it took.
-# Options go to ctest, which then is the only step after the build: scripts/test.sh -R pipeline
+# Installs missing packages, builds everything, runs all tests, and fuzzes the readers for a moment.
+# The steps that fail soonest come first. A table at the end lists the steps and their times.
+# With options, ctest is the only step after the build, and gets them: scripts/test.sh -R pipeline
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The tests under ThreadSanitizer. Options go to ctest: scripts/tsan.sh -R estimate
+# Runs the tests under ThreadSanitizer. Options go to ctest: scripts/tsan.sh -R estimate
 # Debian's oneTBB is not compiled for it: the sanitizer does not see that a task begins after it was
-# spawned, and takes that for races everywhere. So the same version is built with it, into
-# build/tsan-tbb, from Debian's archive. The other libraries stay as they are.
+# spawned, and reports races everywhere. So the same version is built with the sanitizer from Debian's
+# archive, into build/tsan-tbb. The other libraries are those of Debian.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,23 +1,41 @@
-"""Runs the tools and measures them: CPU seconds of one thread, peak memory, size of the file."""
+"""Runs the tools and measures CPU seconds of one thread, peak memory, and size of the file."""
 
+from __future__ import annotations
+
+import functools
 import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cost import Counts
+
+if TYPE_CHECKING:
+    from cost_model import Scene
 
 
 class Bench:
-    """Makes what a run reads, once, and keeps it in the folder."""
+    """Measures runs. The files that they read are made once, in `folder`."""
 
-    def __init__(self, bin_folder, folder):
-        self.bin, self.folder, self.spent_s, self.made = bin_folder, folder, 0.0, {}
+    def __init__(self, bin_folder: Path, folder: Path) -> None:
+        self.bin, self.folder, self.spent_s = bin_folder, folder, 0.0
+        self.made: dict[str, Path] = {}
 
-    def run(self, tool, *words):
-        """(CPU seconds, MiB)"""
+    def run(self, tool: str, *words: object) -> tuple[float, float]:
+        """Runs a tool. Returns CPU seconds and peak memory in MiB."""
         stats = self.folder / "stats.json"
-        command = [str(w) for w in (self.bin / tool, *words, "--quiet", "--threads", "1", "--stats", stats)]
-        # A shell between, which forks: Linux counts the memory of the process that starts a tool as the tool's.
-        process = subprocess.Popen(["sh", "-c", '"$@"; exit $?', "sh", *command], stderr=subprocess.PIPE, text=True)
+        command = [
+            str(w) for w in (self.bin / tool, *words, "--quiet", "--threads", "1", "--stats", stats)
+        ]
+        # Linux counts the memory of the process that starts a tool as the tool's. A shell in
+        # between forks, so its small memory is counted instead of this program's.
+        process = subprocess.Popen(
+            ["sh", "-c", '"$@"; exit $?', "sh", *command], stderr=subprocess.PIPE, text=True
+        )
+        assert process.stderr is not None
         said = process.stderr.read()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -27,55 +45,108 @@ class Bench:
         self.spent_s += cpu_s
         return cpu_s, json.loads(stats.read_text())["peak_memory_MiB"]
 
-    def once(self, name, make):
-        """The file of this name, which make(file) writes the first time."""
+    def once(self, name: str, make: Callable[[Path], object]) -> Path:
+        """The file of this name. make(file) writes it the first time."""
         if name not in self.made:
             self.made[name] = self.folder / name
             make(self.made[name])
         return self.made[name]
 
-    def candidates(self, scene, n):
-        return self.once(f"{scene.name}.{n:.0f}.candidates.vpl",
-                         lambda file: self.run("vpl-place", scene.file, "-o", file, "-n", f"{n:.0f}"))
+    def candidates(self, scene: Scene, n: float) -> Path:
+        return self.once(
+            f"{scene.name}.{n:.0f}.candidates.vpl",
+            lambda file: self.run("vpl-place", scene.file, "-o", file, "-n", f"{n:.0f}"),
+        )
 
-    def vpls(self, scene, n):
-        return self.once(f"{scene.name}.{n:.0f}.vpls.vpl", lambda file: self.run(
-            "vpl-eliminate", self.candidates(scene, 10 * n), "-o", file, "-n", f"{n:.0f}"))
+    def vpls(self, scene: Scene, n: float) -> Path:
+        return self.once(
+            f"{scene.name}.{n:.0f}.vpls.vpl",
+            lambda file: self.run(
+                "vpl-eliminate", self.candidates(scene, 10 * n), "-o", file, "-n", f"{n:.0f}"
+            ),
+        )
 
-    def lit(self, scene, n):
-        return self.once(f"{scene.name}.{n:.0f}.lit.vpl", lambda file: self.run(
-            "vpl-estimate", scene.file, self.vpls(scene, n), "-o", file, "--method", "guarded", "--photons", f"{50 * n:.0f}"))
+    def lit(self, scene: Scene, n: float) -> Path:
+        return self.once(
+            f"{scene.name}.{n:.0f}.lit.vpl",
+            lambda file: self.run(
+                "vpl-estimate",
+                scene.file,
+                self.vpls(scene, n),
+                "-o",
+                file,
+                "--method",
+                "guarded",
+                "--photons",
+                f"{50 * n:.0f}",
+            ),
+        )
 
-    def command(self, scene, stage, c, part=1):
-        """(tool, words without -o, ending)"""
+    def command(
+        self, scene: Scene, stage: str, c: Counts, part: int = 1
+    ) -> tuple[str, list[Any], str]:
+        """Tool, words without -o, and extension of the output."""
         shard = ["--shard", f"{part}/{c.shards}"] if c.shards > 1 else []
         if stage == "place":
             return "vpl-place", [scene.file, "-n", f"{c.candidates:.0f}", *shard], "vpl"
         if stage == "eliminate":
-            return "vpl-eliminate", [self.candidates(scene, c.candidates), "-n", f"{c.vpls:.0f}"], "vpl"
+            return (
+                "vpl-eliminate",
+                [self.candidates(scene, c.candidates), "-n", f"{c.vpls:.0f}"],
+                "vpl",
+            )
         if stage == "estimate":
-            return "vpl-estimate", [scene.file, self.vpls(scene, c.vpls), "--photons", f"{c.photons:.0f}",
-                                    "--irradiance-error", "0", *shard], "vpl"
-        width = round((c.pixels * 4 / 3)**0.5)
-        return "vpl-render", [scene.file, self.lit(scene, c.vpls), "--size", f"{width}x{c.pixels / width:.0f}",
-                              "--spp", f"{c.spp:.0f}", *shard], "exr"
+            return (
+                "vpl-estimate",
+                [
+                    scene.file,
+                    self.vpls(scene, c.vpls),
+                    "--photons",
+                    f"{c.photons:.0f}",
+                    "--irradiance-error",
+                    "0",
+                    *shard,
+                ],
+                "vpl",
+            )
+        width = round((c.pixels * 4 / 3) ** 0.5)
+        return (
+            "vpl-render",
+            [
+                scene.file,
+                self.lit(scene, c.vpls),
+                "--size",
+                f"{width}x{c.pixels / width:.0f}",
+                "--spp",
+                f"{c.spp:.0f}",
+                *shard,
+            ],
+            "exr",
+        )
 
-    def shards(self, scene, stage, c):
-        """Those that a merge reads. Pixels are the same whatever has lit them: path tracing is fast."""
-        def make(file, part):
+    def shards(self, scene: Scene, stage: str, c: Counts) -> list[Path]:
+        """Shards that a merge reads. Those of images are path traced, which is fast."""
+
+        def make(part: int, file: Path) -> None:
             tool, words, _ = self.command(scene, stage, c, part)
             words = [words[0], "--integrator", "path", *words[2:]] if stage == "render" else words
             self.run(tool, *words, "-o", file)
 
         beside = f"{scene.name}.{stage}.{c.candidates:.0f}-{c.vpls:.0f}-{c.pixels:.0f}"
-        return [self.once(f"{beside}.{part}-of-{c.shards}.shard", lambda file, part=part: make(file, part))
-                for part in range(1, c.shards + 1)]
+        return [
+            self.once(f"{beside}.{part}-of-{c.shards}.shard", functools.partial(make, part))
+            for part in range(1, c.shards + 1)
+        ]
 
-    def measure(self, scene, stage, c):
-        """{figure: value}, of one run."""
+    def measure(self, scene: Scene, stage: str, c: Counts) -> dict[str, float]:
+        """Figures of one run."""
         if stage.startswith("merge-"):
             kind = stage.removeprefix("merge-")
-            tool, words, ending = "vpl-merge", self.shards(scene, kind, c), "exr" if kind == "render" else "vpl"
+            tool, words, ending = (
+                "vpl-merge",
+                self.shards(scene, kind, c),
+                "exr" if kind == "render" else "vpl",
+            )
         else:
             tool, words, ending = self.command(scene, stage, c)
         output = self.folder / f"out.{'shard' if tool != 'vpl-merge' and c.shards > 1 else ending}"
@@ -85,17 +156,24 @@ class Bench:
 
 
 class Repeated:
-    """A run that is measured until its two least CPU times agree: other work on the machine only adds to them."""
+    """A run, repeated until its two least CPU times agree, as other load only adds to them."""
 
     AGREE, MOST = 1.04, 8
 
-    def __init__(self, row):
-        self.row, self.taken = row, []
+    def __init__(self, row: dict[str, Any]) -> None:
+        self.row = row
+        self.taken: list[dict[str, float]] = []
 
-    def wanted(self):
+    def wanted(self) -> bool:
         least = sorted(each["cpu_s"] for each in self.taken)[:2]
         return len(self.taken) < self.MOST and (len(least) < 2 or least[1] > self.AGREE * least[0])
 
-    def result(self):
-        return self.row | {figure: round(min(each[figure] for each in self.taken), 4) for figure in self.taken[0]} | \
-            {"repeats": len(self.taken)}
+    def result(self) -> dict[str, Any]:
+        return (
+            self.row
+            | {
+                figure: round(min(each[figure] for each in self.taken), 4)
+                for figure in self.taken[0]
+            }
+            | {"repeats": len(self.taken)}
+        )

@@ -1,4 +1,4 @@
-"""The guard of outputs, which the pipelines share: its problems end the program in one line."""
+"""Guards the outputs as the pipelines do: a refusal ends the program in one line."""
 
 import functools
 import sys
@@ -7,5 +7,7 @@ from .settings import ROOT
 
 sys.path.append(str(ROOT / "pipelines"))
 import output_guard  # noqa: E402
+
+__all__ = ["guarded", "output_guard"]
 
 guarded = functools.partial(output_guard.or_exit, program="eval")

@@ -1,23 +1,28 @@
-"""The references: images traced path by path in two independent halves, kept in eval/references/.
+"""Renders the references: traced images in two independent halves, kept in eval/references/.
 
-A half is the mean of renders of CHUNK samples a pixel with different seeds: a stopped run goes on where it
-was, and a stored half takes more samples. `key` names what the image depends on (scene content, film, samples, half,
-integrator); a stored reference whose key differs is refused.
+A half is the mean of renders of CHUNK samples a pixel with different seeds, so a stopped run
+resumes and a stored half can take more samples. `key` hashes all that the image depends on:
+content of the scene, film, samples, half, integrator. A stored reference whose key differs is
+refused.
 """
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import images
 from .guard import guarded, output_guard
 from .runner import Runner, digest, scene_key
 from .settings import EVAL, ROOT, View
 
-CHUNK = 2048  # spp of one render
+CHUNK = 2048  # samples a pixel of one render
 FOLDER = EVAL / "references"
-RECORD = output_guard.json_object("the record of a reference", "key", "scene", "film", "spp", "half")
+RECORD = output_guard.json_object(
+    "the record of a reference", "key", "scene", "film", "spp", "half"
+)
 
 
 def path(view: View, film: str, half: str) -> Path:
@@ -25,37 +30,74 @@ def path(view: View, film: str, half: str) -> Path:
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
-    """At least `spp` samples a pixel. A stored half of the same scene and integrator is gone on with, not begun anew: its
-    samples keep their weight (that it was rounded to half floats costs 0.02 %)."""
+    """Renders a half with at least `spp` samples a pixel.
+
+    A stored half of the same scene and integrator is continued: its samples keep their weight. Its
+    rounding to half floats costs 0.02 %.
+    """
     target = path(view, film, half)
     stored = _stored(view, film, half)
     done = stored["spp"] if stored else 0
     if done >= spp:
         return
     chunk = min(spp - done, CHUNK)
-    first_seed = stored["seeds"][1] + 2 if stored else 1000 + (half == "b")  # away from the seeds that are judged
+    # The seeds differ from those of the images that are judged.
+    first_seed = stored["seeds"][1] + 2 if stored else 1000 + (half == "b")
     seeds = range(first_seed, first_seed + 2 * -(-(spp - done) // chunk), 2)
-    sums = {layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0 for layer in ("", "indirect")}
+    sums = {
+        layer: done * images.read(target, layer).astype(np.float64) if stored else 0.0
+        for layer in ("", "indirect")
+    }
     cpu_s = stored["cpu_s"] if stored else 0.0
     for seed in seeds:
-        run = runner.run("vpl-render",
-                         ["{scene}", "--size", film, "--integrator", view.reference_integrator, "--spp", chunk,
-                          "--seed", seed, "--layers", "direct,indirect", "-o", "@image.exr", "--quiet"],
-                         {"scene": ROOT / view.file}, ["image.exr"])
+        run = runner.run(
+            "vpl-render",
+            [
+                "{scene}",
+                "--size",
+                film,
+                "--integrator",
+                view.reference_integrator,
+                "--spp",
+                chunk,
+                "--seed",
+                seed,
+                "--layers",
+                "direct,indirect",
+                "-o",
+                "@image.exr",
+                "--quiet",
+            ],
+            {"scene": ROOT / view.file},
+            ["image.exr"],
+        )
         cpu_s += run.cpu_s
         for layer in sums:
-            sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(np.float64)
+            sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(
+                np.float64
+            )
     total = done + chunk * len(seeds)
-    note = f"bnvpl {view.reference_integrator} tracer, {view.file}, {film}, {total} spp, half {half}"
+    note = (
+        f"bnvpl {view.reference_integrator} tracer, {view.file}, {film}, {total} spp, half {half}"
+    )
     images.write_half(target, {layer: sum_ / total for layer, sum_ in sums.items()}, note)
-    record = {"key": reference_key(view, film, total, half), "scene": view.file, "film": film,
-              "integrator": view.reference_integrator, "spp": total, "half": half,
-              "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]], "cpu_s": round(cpu_s, 1)}
-    guarded(output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD)
+    record = {
+        "key": reference_key(view, film, total, half),
+        "scene": view.file,
+        "film": film,
+        "integrator": view.reference_integrator,
+        "spp": total,
+        "half": half,
+        "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]],
+        "cpu_s": round(cpu_s, 1),
+    }
+    guarded(
+        output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD
+    )
 
 
-def _stored(view: View, film: str, half: str) -> dict | None:
-    """The record of a half that is there, if it is of this scene and integrator."""
+def _stored(view: View, film: str, half: str) -> dict[str, Any] | None:
+    """Record of a stored half, if its scene and integrator match."""
     record_file = path(view, film, half).with_suffix(".json")
     if not record_file.is_file():
         return None
@@ -64,15 +106,15 @@ def _stored(view: View, film: str, half: str) -> dict | None:
 
 
 def reference_key(view: View, film: str, spp: int, half: str) -> str:
-    """The path tracer's, which is most scenes', goes unnamed."""
+    """Key of a reference. It names the integrator only where that is not the path tracer."""
     what = [scene_key(ROOT / view.file), film, spp, half]
     if view.reference_integrator != "path":
         what.append(view.reference_integrator)
     return digest(json.dumps(what).encode())
 
 
-def require(view: View, film: str) -> dict:
-    """The records of both halves; ends the program where one is missing or made otherwise."""
+def require(view: View, film: str) -> dict[str, Any]:
+    """Records of both halves. Ends the program where one is missing or has another key."""
     records = {}
     cure = f"eval/references.py --film-width {film.split('x')[0]} {view.name}"
     for half in "ab":
@@ -81,18 +123,20 @@ def require(view: View, film: str) -> dict:
             raise SystemExit(f"eval: {file}: no such reference; make it with '{cure}'")
         records[half] = json.loads(file.with_suffix(".json").read_text())
         if records[half]["key"] != reference_key(view, film, records[half]["spp"], half):
-            raise SystemExit(f"eval: {file}: made from another version of {view.file} or by another integrator; "
-                             f"run '{cure}'")
+            raise SystemExit(
+                f"eval: {file}: made from another version of {view.file} or by another integrator; "
+                f"run '{cure}'"
+            )
     return records
 
 
-def load(view: View, film: str, layer: str) -> tuple[np.ndarray, np.ndarray]:
-    """Both halves. require() has looked at them: hashing a model for each image would take longer than reading it."""
+def load(view: View, film: str, layer: str) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
+    """Both halves. They are not checked; require() does that once, as hashing a model is slow."""
     halves = [images.read(path(view, film, half), layer) for half in "ab"]
     return halves[0], halves[1]
 
 
-def half_difference(halves: tuple[np.ndarray, np.ndarray]) -> float:
-    """RMS of the difference of the halves over the mean. The mean of both has half of that as its error."""
+def half_difference(halves: tuple[npt.NDArray[Any], npt.NDArray[Any]]) -> float:
+    """RMS difference of the halves over the mean: twice the error of the mean of both."""
     a, b = (half.astype(np.float64) for half in halves)
-    return float(np.sqrt(np.mean((a - b)**2)) / np.mean((a + b) / 2))
+    return float(np.sqrt(np.mean((a - b) ** 2)) / np.mean((a + b) / 2))

@@ -1,8 +1,8 @@
-"""Runs the tools, each command once: outputs are kept under a key of what they depend on.
+"""Runs each command of the tools once: outputs are cached under a key of all that they depend on.
 
-A key is the hash of the executable, the options, and the keys (or bytes) of the inputs; so a changed option,
-tool or scene reruns exactly what depends on it. Each run leaves run.json beside its outputs: command, key,
-wall and CPU seconds, peak memory.
+A key is the hash of the executable, the options, and the keys or bytes of the inputs. A changed
+option, tool or scene reruns exactly the commands that depend on it. Each run writes run.json beside
+its outputs: command, key, wall and CPU seconds, peak memory.
 """
 
 import hashlib
@@ -15,6 +15,7 @@ import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from .settings import ROOT
 
@@ -24,26 +25,36 @@ def digest(data: bytes) -> str:
 
 
 def scene_key(scene: Path) -> str:
-    """Of a scene.toml and every model, material and picture in its folder and in the folders that it names."""
+    """Key of a scene.toml and all models, materials and pictures in its and the named folders."""
     text = scene.read_text()
-    folders = [scene.parent] + [(scene.parent / os.path.expandvars(name)).resolve().parent
-                                for name in re.findall(r'^(?:file|materials) = "(.*)"', text, re.M)]
-    files = sorted({file for folder in folders for file in folder.iterdir()
-                    if file.suffix in (".obj", ".mtl", ".png")}, key=lambda file: file.name)
+    folders = [scene.parent] + [
+        (scene.parent / os.path.expandvars(name)).resolve().parent
+        for name in re.findall(r'^(?:file|materials) = "(.*)"', text, re.M)
+    ]
+    files = sorted(
+        {
+            file
+            for folder in folders
+            for file in folder.iterdir()
+            if file.suffix in (".obj", ".mtl", ".png")
+        },
+        key=lambda file: str(file.name),
+    )
     return digest(text.encode() + b"".join(file.read_bytes() for file in files))
 
 
 @dataclass
 class Run:
     folder: Path
-    record: dict
+    record: dict[str, Any]
 
     def __getitem__(self, name: str) -> Path:
         return self.folder / name
 
     @property
     def cpu_s(self) -> float:
-        return self.record["cpu_s"]
+        result: float = self.record["cpu_s"]
+        return result
 
 
 @dataclass
@@ -51,27 +62,43 @@ class Runner:
     bin: Path
     cache: Path
     quiet: bool = False
-    provenance: dict = field(default_factory=dict)  # commit, processor, date: goes into every run.json
-    runs: dict[str, Run] = field(default_factory=dict)  # every run that was asked for, by key
+    # Commit, processor and date go into every run.json.
+    provenance: dict[str, Any] = field(default_factory=dict)
+    runs: dict[str, Run] = field(default_factory=dict)  # all requested runs, by key
     _files: dict[Path, str] = field(default_factory=dict)
-    _tools: dict[Path, tuple] = field(default_factory=dict)  # time and size when first used
+    # Time and size of each tool when it was first used.
+    _tools: dict[Path, tuple[Any, ...]] = field(default_factory=dict)
 
     def file_key(self, path: Path) -> str:
-        """A product of ours by its key, so that no bytes need be read; another file by its bytes, a scene with
-        its models."""
+        """Key of a file: that of the run that made it, or a hash of its bytes and models."""
         if path.is_relative_to(self.cache):
             return path.parent.name + "/" + path.name
         if path not in self._files:
-            self._files[path] = scene_key(path) if path.suffix == ".toml" else digest(path.read_bytes())
+            self._files[path] = (
+                scene_key(path) if path.suffix == ".toml" else digest(path.read_bytes())
+            )
         return self._files[path]
 
-    def run(self, tool: str, options: list, inputs: dict[str, Path], outputs: list[str]) -> Run:
-        """`options` may hold '{name}' for an input and '@name' for an output, which stands in the run's folder."""
+    def run(
+        self, tool: str, options: list[Any], inputs: dict[str, Path], outputs: list[str]
+    ) -> Run:
+        """Runs a command unless it is cached.
+
+        `options` may hold '{name}' for an input and '@name' for an output in the run's folder.
+        """
         words = [str(word) for word in options]
         executable = self.bin / tool
         self._require_unchanged(executable)
-        key = digest(json.dumps([tool, self.file_key(executable), words,
-                                 {name: self.file_key(path) for name, path in inputs.items()}]).encode())
+        key = digest(
+            json.dumps(
+                [
+                    tool,
+                    self.file_key(executable),
+                    words,
+                    {name: self.file_key(path) for name, path in inputs.items()},
+                ]
+            ).encode()
+        )
         if key in self.runs:
             return self.runs[key]
         folder = self.cache / key
@@ -79,20 +106,29 @@ class Runner:
             self._execute(key, executable, words, inputs, folder)
         for name in outputs:
             if not (folder / name).is_file():
-                raise SystemExit(f"eval: {folder / name}: missing from the cache; delete {folder} and rerun")
+                raise SystemExit(
+                    f"eval: {folder / name}: missing from the cache; delete {folder} and rerun"
+                )
         run = Run(folder, json.loads((folder / "run.json").read_text()))
         self.runs[key] = run
         return run
 
     def _require_unchanged(self, executable: Path) -> None:
-        """Results of two versions of a tool must not meet in one report."""
+        """Ends the program if a tool has changed, so that no report mixes two versions of it."""
         now = executable.stat()
-        if self._tools.setdefault(executable, (now.st_mtime_ns, now.st_size)) != (now.st_mtime_ns, now.st_size):
-            raise SystemExit(f"eval: {executable}: was built anew during the run; start again, or evaluate a copy of "
-                             "the tools (--bin)")
+        if self._tools.setdefault(executable, (now.st_mtime_ns, now.st_size)) != (
+            now.st_mtime_ns,
+            now.st_size,
+        ):
+            raise SystemExit(
+                f"eval: {executable}: was built anew during the run; start again, or evaluate a "
+                "copy of "
+                "the tools (--bin)"
+            )
 
-    def _execute(self, key: str, executable: Path, words: list[str], inputs: dict[str, Path],
-                 folder: Path) -> None:
+    def _execute(
+        self, key: str, executable: Path, words: list[str], inputs: dict[str, Path], folder: Path
+    ) -> None:
         partial = folder.with_name(f".{key}.partial-{os.getpid()}")
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
@@ -114,13 +150,21 @@ class Runner:
         if child.returncode != 0:
             text = (partial / "log.txt").read_text(errors="replace").strip()
             shutil.rmtree(partial)
-            raise SystemExit(f"eval: {' '.join(command)}\nfailed with exit code {child.returncode}: {text}")
-        record = {"tool": executable.name, "options": words,
-                  "inputs": {name: self.file_key(path) for name, path in inputs.items()}, "key": key,
-                  "wall_s": round(wall, 3), "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
-                  "peak_mib": round(usage.ru_maxrss / 1024, 1), **self.provenance}
+            raise SystemExit(
+                f"eval: {' '.join(command)}\nfailed with exit code {child.returncode}: {text}"
+            )
+        record = {
+            "tool": executable.name,
+            "options": words,
+            "inputs": {name: self.file_key(path) for name, path in inputs.items()},
+            "key": key,
+            "wall_s": round(wall, 3),
+            "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
+            "peak_mib": round(usage.ru_maxrss / 1024, 1),
+            **self.provenance,
+        }
         (partial / "run.json").write_text(json.dumps(record, indent=1))
         try:
             os.rename(partial, folder)
-        except OSError:  # another evaluation has made the same run meanwhile: equal bytes
+        except OSError:  # another evaluation has made the same run meanwhile, with equal bytes
             shutil.rmtree(partial)

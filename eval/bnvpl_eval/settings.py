@@ -1,11 +1,12 @@
-"""settings.toml as objects."""
+"""Loads settings.toml into objects."""
 
 import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]  # of the project
+ROOT = Path(__file__).resolve().parents[2]  # folder of the project
 EVAL = ROOT / "eval"
 
 
@@ -15,7 +16,7 @@ class View:
     id: str
     title: str
     file: str  # scene.toml, relative to the project
-    reference_spp: int  # of each half, at the film that numbers are taken from
+    reference_spp: int  # samples a pixel of each half, on the small film
     reference_integrator: str = "path"  # vpl-render's --integrator
 
     @property
@@ -27,13 +28,13 @@ class View:
 class Scene:
     id: str
     title: str
-    vpls: int  # the thesis' count
+    vpls: int  # number of VPLs in the thesis
     aspect: tuple[int, int]
     define: str  # environment variable with the model's folder; '' when the project holds the model
     views: list[View]
 
     def film(self, width: int) -> str:
-        """'80x60' for a width of 80."""
+        """Size of the film, such as '80x60' for a width of 80 and an aspect of 4:3."""
         return f"{width}x{width * self.aspect[1] // self.aspect[0]}"
 
     @property
@@ -41,14 +42,20 @@ class Scene:
         return not self.define or bool(os.environ.get(self.define))
 
 
-def load(path: Path = EVAL / "settings.toml") -> tuple[list[Scene], dict]:
-    """The scenes, and the tables of settings.toml as they stand."""
+def load(path: Path = EVAL / "settings.toml") -> tuple[list[Scene], dict[str, Any]]:
+    """The scenes, and the tables of settings.toml as parsed."""
     with path.open("rb") as file:
         table = tomllib.load(file)
     scenes = []
     for entry in table["scene"]:
-        scene = Scene(entry["id"], entry["title"], entry["vpls"], tuple(entry["aspect"]),
-                      entry.get("define", ""), [])
+        scene = Scene(
+            entry["id"],
+            entry["title"],
+            entry["vpls"],
+            (entry["aspect"][0], entry["aspect"][1]),
+            entry.get("define", ""),
+            [],
+        )
         scene.views.extend(View(scene, **view) for view in entry["views"])
         scenes.append(scene)
     return scenes, table

@@ -1,15 +1,14 @@
 #!/usr/bin/python3
-"""Cross-checks our path tracer against Blender's Cycles on the CPU.
+"""Cross-checks the path tracer of vpl-render with Blender's Cycles on the CPU.
 
-  eval/cycles/cross_check.py                   all cases
-  eval/cycles/cross_check.py cornell u-shape   two of them
-  eval/cycles/cross_check.py --list
-  eval/cycles/cross_check.py --table --results eval/cycles/results.json
+    eval/cycles/cross_check.py                   all cases
+    eval/cycles/cross_check.py cornell u-shape   two of them
+    eval/cycles/cross_check.py --list
+    eval/cycles/cross_check.py --table --results eval/cycles/results.json
 
-Each view is rendered with several seeds by both; the ratio of the image means is printed with its
-standard error. Exit codes: 0 all means agree within --tolerance; 2 options that make no sense;
-3 Blender, vpl-render or an input is missing or fails; 5 a mean differs by more, or is too noisy
-to tell.
+Both render each view with several seeds. The ratio of the image means is printed with its standard
+error. Exit codes: 0 if all means agree within --tolerance; 2 for wrong options; 3 if Blender,
+vpl-render or an input is missing or fails; 5 if a mean differs by more, or is too noisy to tell.
 """
 
 from __future__ import annotations
@@ -24,8 +23,10 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import compare
 import walk
@@ -35,37 +36,60 @@ from scene_source import SceneError
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-WALKS = 64  # batches of walk.py
+WALKS = 64  # number of batches of walk.py
 EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
 
 
 class ToolError(Exception):
-    """A program that is missing or failed: one line."""
+    """A program is missing or failed; the message is one line."""
 
 
 def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
-        prog="cross_check.py", description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+        prog="cross_check.py",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="default: all")
     parser.add_argument("--list", action="store_true", help="print the cases and stop")
-    parser.add_argument("--table", action="store_true",
-                        help="print --results as a Markdown table and stop")
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "cycles",
-                        help="folder for images (default out/cycles)")
-    parser.add_argument("--results", type=Path,
-                        help="JSON to write; cases already in it stay (default OUT/results.json)")
+    parser.add_argument(
+        "--table", action="store_true", help="print --results as a Markdown table and stop"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=ROOT / "out" / "cycles",
+        help="folder for images (default out/cycles)",
+    )
+    parser.add_argument(
+        "--results",
+        type=Path,
+        help="JSON to write; cases already in it stay (default OUT/results.json)",
+    )
     parser.add_argument("--blender", default="blender", help="program (default blender)")
-    parser.add_argument("--vpl-render", default=str(ROOT / "build/release/bin/vpl-render"),
-                        help="program (default build/release/bin/vpl-render)")
+    parser.add_argument(
+        "--vpl-render",
+        default=str(ROOT / "build/release/bin/vpl-render"),
+        help="program (default build/release/bin/vpl-render)",
+    )
     parser.add_argument("--effort", type=float, default=1.0, help="factor on samples (default 1)")
-    parser.add_argument("--tolerance", type=float, default=0.01,
-                        help="allowed difference of the means (default 0.01)")
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        default=0.01,
+        help="allowed difference of the means (default 0.01)",
+    )
     parser.add_argument("--threads", type=int, default=2, help="default 2")
-    parser.add_argument("--reuse", action="store_true",
-                        help="keep images of an earlier run with the same samples and seeds")
-    parser.add_argument("--encoded-textures", action="store_true",
-                        help="Cycles filters textures before decoding them, as it does by itself")
+    parser.add_argument(
+        "--reuse",
+        action="store_true",
+        help="keep images of an earlier run with the same samples and seeds",
+    )
+    parser.add_argument(
+        "--encoded-textures",
+        action="store_true",
+        help="Cycles filters textures before decoding them, as it does by itself",
+    )
     options = parser.parse_args(arguments)
     names = [case.name for case in CASES]
     for name in options.cases:
@@ -85,35 +109,61 @@ def require_program(name: str, cure: str) -> str:
 
 
 def run(command: list[str], log: Path, wanted: list[Path]) -> float:
-    """Wall time in s. Blender can fail with code 0, so what it should have written is looked at."""
+    """Runs a command. Returns its wall time in s.
+
+    Blender may fail with exit code 0, so its outputs are checked.
+    """
     start = time.monotonic()
     with open(log, "w") as out:
         done = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, check=False)
     missing = [path for path in wanted if not path.is_file()]
     if done.returncode != 0 or missing:
-        told = [line for line in log.read_text().splitlines()
-                if re.match(r"\S+: ", line) and not line.startswith("Fra:")]
+        told = [
+            line
+            for line in log.read_text().splitlines()
+            if re.match(r"\S+: ", line) and not line.startswith("Fra:")
+        ]
         cause = told[-1] if told else f"exit code {done.returncode}"
         raise ToolError(f"{Path(command[0]).name} failed: {cause}; all it said is in {log}")
     return time.monotonic() - start
 
 
 def samples(case: Case, options: argparse.Namespace) -> tuple[int, int]:
-    return (max(1, round(case.spp * options.effort)),
-            max(1, round(case.cycles_spp * options.effort)))
+    return (
+        max(1, round(case.spp * options.effort)),
+        max(1, round(case.cycles_spp * options.effort)),
+    )
 
 
-def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
+def render_ours(
+    case: Case, scene: Path, options: argparse.Namespace
+) -> tuple[dict[View, npt.NDArray[Any]], float]:
     spp, seconds = samples(case, options)[0], 0.0
     stacks = {}
     for view in case.views:
         images = []
         for seed in range(1, case.seeds + 1):
             image = scene.parent / f"ours.{view.name}.{spp}spp.{seed}.exr"
-            command = [options.vpl_render, str(scene), "-o", str(image), "--integrator", "path",
-                       "--only", view.quantity, "--spp", str(spp), "--seed", str(seed), "--threads",
-                       str(options.threads), "--quiet", "--size", "x".join(map(str, case.size))]
-            if view.quantity != "direct":  # which has no bounce
+            command = [
+                options.vpl_render,
+                str(scene),
+                "-o",
+                str(image),
+                "--integrator",
+                "path",
+                "--only",
+                view.quantity,
+                "--spp",
+                str(spp),
+                "--seed",
+                str(seed),
+                "--threads",
+                str(options.threads),
+                "--quiet",
+                "--size",
+                "x".join(map(str, case.size)),
+            ]
+            if view.quantity != "direct":  # direct light has no bounce
                 command += ["--max-bounces", str(view.bounces)]
             if not (options.reuse and image.is_file()):
                 image.unlink(missing_ok=True)
@@ -124,14 +174,15 @@ def render_ours(case: Case, scene: Path, options: argparse.Namespace) -> tuple[d
 
 
 def cycles_bounces(views: tuple[View, ...]) -> list[int]:
-    """Limits to render: Cycles has no indirect picture alone; it is the whole less the direct."""
+    """Limits of bounces to render. Cycles' indirect picture is the whole minus the direct one."""
     limits = {view.bounces for view in views}
     return sorted(limits | ({0} if any(v.quantity == "indirect" for v in views) else set()))
 
 
-def missing_images(limits: list[int], seeds: range, path: Callable[[int, int], Path],
-                   reuse: bool) -> dict[tuple[int, ...], list[int]]:
-    """Seeds to render -> the bounce limits that lack them: each entry is one start of Blender."""
+def missing_images(
+    limits: list[int], seeds: range, path: Callable[[int, int], Path], reuse: bool
+) -> dict[tuple[int, ...], list[int]]:
+    """Limits of bounces to render for each set of seeds. Each entry is one start of Blender."""
     jobs: dict[tuple[int, ...], list[int]] = {}
     for bounces in limits:
         todo = tuple(s for s in seeds if not (reuse and path(bounces, s).is_file()))
@@ -140,7 +191,9 @@ def missing_images(limits: list[int], seeds: range, path: Callable[[int, int], P
     return jobs
 
 
-def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple[dict, float]:
+def render_cycles(
+    case: Case, scene: Path, options: argparse.Namespace
+) -> tuple[dict[View, npt.NDArray[Any]], float]:
     spp, seconds = samples(case, options)[1], 0.0
     limits, seeds = cycles_bounces(case.views), range(1, case.seeds + 1)
     kind = "cycles-encoded" if options.encoded_textures else "cycles"
@@ -153,22 +206,39 @@ def render_cycles(case: Case, scene: Path, options: argparse.Namespace) -> tuple
         wanted = [path(b, s) for b in bounces for s in todo]
         for image in wanted:
             image.unlink(missing_ok=True)
-        command = [options.blender, "-b", "--factory-startup", "--python-exit-code", "3",
-                   "--python", str(HERE / "render_cycles.py"), "--", str(scene),
-                   "--output", str(scene.parent / name), "--spp", str(spp),
-                   "--bounces", ",".join(map(str, bounces)), "--seeds", ",".join(map(str, todo)),
-                   "--threads", str(options.threads)]
+        command = [
+            options.blender,
+            "-b",
+            "--factory-startup",
+            "--python-exit-code",
+            "3",
+            "--python",
+            str(HERE / "render_cycles.py"),
+            "--",
+            str(scene),
+            "--output",
+            str(scene.parent / name),
+            "--spp",
+            str(spp),
+            "--bounces",
+            ",".join(map(str, bounces)),
+            "--seeds",
+            ",".join(map(str, todo)),
+            "--threads",
+            str(options.threads),
+        ]
         command += ["--encoded-textures"] if options.encoded_textures else []
         seconds += run(command, scene.parent / "cycles.log", wanted)
     stacks = {b: np.stack([compare.read_exr(path(b, s)) for s in seeds]) for b in limits}
-    return {v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0)
-            for v in case.views}, seconds
+    return {
+        v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0) for v in case.views
+    }, seconds
 
 
-def verdict(figures: dict, tolerance: float) -> str:
-    """`noisy` where the error bar is too wide to hold the claim either way."""
+def verdict(figures: dict[str, Any], tolerance: float) -> str:
+    """agrees, differs, or noisy, where the error bar is too wide for either."""
     ratio, error = figures["mean"]["ratio"], figures["mean"]["error"]
-    error = None if error is None else np.hypot(error, figures.get("expected_error", 0.0))
+    error = 0.0 if error is None else np.hypot(error, figures.get("expected_error", 0.0))
     difference = None if ratio is None else abs(ratio - figures.get("expected", 1.0))
     if difference is None or difference > tolerance + 3.0 * error:
         return "differs"
@@ -177,38 +247,49 @@ def verdict(figures: dict, tolerance: float) -> str:
     return "agrees" if difference <= tolerance else "differs"
 
 
-def check(case: Case, options: argparse.Namespace) -> dict:
+def check(case: Case, options: argparse.Namespace) -> dict[str, Any]:
     folder = options.out / case.name
     scene = prepare(case, ROOT / "scenes", folder)
     ours, our_seconds = render_ours(case, scene, options)
     cycles, cycles_seconds = render_cycles(case, scene, options)
     spp, cycles_spp = samples(case, options)
-    result = {"scene": case.scene, "note": case.note, "size": list(case.size), "seeds": case.seeds,
-              "spp": spp, "cycles_spp": cycles_spp, "views": {},
-              # null: nothing was rendered, thanks to --reuse
-              "time_s": round(our_seconds, 1) or None,
-              "cycles_time_s": round(cycles_seconds, 1) or None}
+    result: dict[str, Any] = {
+        "scene": case.scene,
+        "note": case.note,
+        "size": list(case.size),
+        "seeds": case.seeds,
+        "spp": spp,
+        "cycles_spp": cycles_spp,
+        "views": {},
+        # null if nothing was rendered, with --reuse
+        "time_s": round(our_seconds, 1) or None,
+        "cycles_time_s": round(cycles_seconds, 1) or None,
+    }
     for view in case.views:
         figures = compare.compare(ours[view], cycles[view])
         if case.model or case.name == "gltf-normal-map":
             figures["expected"], figures["expected_error"] = walk.expected_ratio(
-                case.model, max(2, round(WALKS * options.effort)))
+                case.model, max(2, round(WALKS * options.effort))
+            )
         figures["verdict"] = verdict(figures, options.tolerance)
         result["views"][view.name] = figures
         report(case, view, figures)
-        compare.write_picture(folder / f"{view.name}.png", f"{case.name}, {view.name}", ours[view],
-                              cycles[view])
+        compare.write_picture(
+            folder / f"{view.name}.png", f"{case.name}, {view.name}", ours[view], cycles[view]
+        )
     return result
 
 
-def report(case: Case, view: View, figures: dict) -> None:
+def report(case: Case, view: View, figures: dict[str, Any]) -> None:
     mean, blocks = figures["mean"], figures["blocks"]
     ratio = "-" if mean["ratio"] is None else f"{mean['ratio']:.4f} +- {mean['error']:.4f}"
     if "expected" in figures:
         ratio += f" (expected {figures['expected']:.4f} +- {figures['expected_error']:.4f})"
-    print(f"{case.name:15} {view.name:12} ours {mean['ours']:.5g}  Cycles {mean['cycles']:.5g}  "
-          f"ratio {ratio}  blocks z^2 {blocks['mean_square_z']:.2f}  {figures['verdict']}",
-          flush=True)
+    print(
+        f"{case.name:15} {view.name:12} ours {mean['ours']:.5g}  Cycles {mean['cycles']:.5g}  "
+        f"ratio {ratio}  blocks z^2 {blocks['mean_square_z']:.2f}  {figures['verdict']}",
+        flush=True,
+    )
 
 
 def first_line(command: list[str]) -> str:
@@ -216,35 +297,52 @@ def first_line(command: list[str]) -> str:
     return (done.stdout.splitlines() or [""])[0].strip()
 
 
-def describe_run(options: argparse.Namespace) -> dict:
+def describe_run(options: argparse.Namespace) -> dict[str, Any]:
     git = ["git", "-C", str(ROOT)]
     parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render", "transport"]
     changed = first_line([*git, "status", "--porcelain", "--", *parts]) != ""
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
-    return {"commit": first_line([*git, "rev-parse", "--short=10", "HEAD"]),
-            "sources_changed": changed,
-            "blender": first_line([options.blender, "--version"]),
-            "vpl_render": first_line([options.vpl_render, "--version"]),
-            "cpu": cpu[1] if cpu else platform.machine(), "threads": options.threads,
-            "effort": options.effort, "tolerance": options.tolerance,
-            "encoded_textures": options.encoded_textures}
+    return {
+        "commit": first_line([*git, "rev-parse", "--short=10", "HEAD"]),
+        "sources_changed": changed,
+        "blender": first_line([options.blender, "--version"]),
+        "vpl_render": first_line([options.vpl_render, "--version"]),
+        "cpu": cpu[1] if cpu else platform.machine(),
+        "threads": options.threads,
+        "effort": options.effort,
+        "tolerance": options.tolerance,
+        "encoded_textures": options.encoded_textures,
+    }
 
 
-def write_results(path: Path, runs: dict) -> None:
-    output_guard.write(path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results")
+def write_results(path: Path, runs: dict[str, Any]) -> None:
+    output_guard.write(
+        path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results"
+    )
 
 
-def table(results: dict) -> str:
-    heads = ("case", "view", "ours", "Cycles", "ratio", "standard error", "expected",
-             "blocks: mean z²")
+def table(results: dict[str, Any]) -> str:
+    heads = (
+        "case",
+        "view",
+        "ours",
+        "Cycles",
+        "ratio",
+        "standard error",
+        "expected",
+        "blocks: mean z²",
+    )
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     for case in (case.name for case in CASES if case.name in results):
         for view, figures in results[case]["views"].items():
             mean, z2 = figures["mean"], figures["blocks"]["mean_square_z"]
-            ratio, error = ("-" if mean[key] is None else f"{mean[key]:.4f}"
-                            for key in ("ratio", "error"))
-            lines.append(f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
-                         f"| {ratio} | {error} | {figures.get('expected', 1.0):.4f} | {z2:.2f} |")
+            ratio, error = (
+                "-" if mean[key] is None else f"{mean[key]:.4f}" for key in ("ratio", "error")
+            )
+            lines.append(
+                f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
+                f"| {ratio} | {error} | {figures.get('expected', 1.0):.4f} | {z2:.2f} |"
+            )
     return "\n".join(lines)
 
 
@@ -259,7 +357,8 @@ def main(arguments: list[str]) -> int:
         print(table(json.loads(options.results.read_text())))
         return EXIT_OK
     options.blender = require_program(
-        options.blender, "apt-get install --no-install-recommends blender, or name it by --blender")
+        options.blender, "apt-get install --no-install-recommends blender, or name it by --blender"
+    )
     options.vpl_render = require_program(options.vpl_render, "build it, or name it by --vpl-render")
     output_guard.check(options.results, RESULTS, "--results")
     options.out.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""A .glb in Blender, by Blender's own importer. Runs inside Blender."""
+"""Reads a .glb by Blender's own importer. Runs inside Blender."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 def _replace(tree: bpy.types.NodeTree, old: bpy.types.Node, kind: str) -> bpy.types.Node:
-    """A plain node in place of the Principled BSDF, with its colour and normal."""
+    """Replaces the Principled BSDF by a plain node with its colour and normal."""
     node = tree.nodes.new(kind)
     node.inputs["Color"].default_value = old.inputs["Base Color"].default_value
     for link in old.inputs["Normal"].links if "Normal" in node.inputs else ():
@@ -21,12 +21,16 @@ def _replace(tree: bpy.types.NodeTree, old: bpy.types.Node, kind: str) -> bpy.ty
 
 
 def _plain(tree: bpy.types.NodeTree) -> None:
-    """Lambert and lamps have exact counterparts; the Principled BSDF would be another model. In
-    gltf_file.py, what is of roughness 1 and no metal is Lambert by KHR_materials_specular, whose
-    factor of 0 Blender's importer keeps to itself."""
+    """Replaces the Principled BSDF by exact counterparts of Lambert and of lamps.
+
+    Materials of gltf_file.py with roughness 1 and without metal are Lambert, as a specularFactor of
+    0 in KHR_materials_specular says, which Blender's importer ignores.
+    """
     for old in [n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"]:
-        glow = [c * old.inputs["Emission Strength"].default_value
-                for c in old.inputs["Emission"].default_value[:3]]
+        glow = [
+            c * old.inputs["Emission Strength"].default_value
+            for c in old.inputs["Emission"].default_value[:3]
+        ]
         if any(glow):
             node = _replace(tree, old, "ShaderNodeEmission")
             node.inputs["Color"].default_value = (*glow, 1.0)
@@ -36,7 +40,7 @@ def _plain(tree: bpy.types.NodeTree) -> None:
 
 
 def import_gltf(path: Path) -> None:
-    np.bool = bool  # Debian's importer takes it from NumPy, which has dropped it
+    setattr(np, "bool", bool)  # noqa: B010  # Debian's importer uses this alias, which NumPy lacks
     bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
     bpy.ops.import_scene.gltf(filepath=str(path), import_pack_images=True)
     for material in bpy.data.materials:

@@ -1,9 +1,10 @@
-"""Lights of a scene.toml as lamps and world of Cycles. Runs inside Blender."""
+"""Turns lights of a scene.toml into lamps and world of Cycles. Runs inside Blender."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
@@ -14,14 +15,14 @@ from scene_source import SceneError
 
 
 def place(thing: bpy.types.Object, right, up, forward, position) -> None:
-    """Cameras and lamps of Blender look along their own -z."""
+    """Places a camera or lamp, which in Blender looks along its own -z."""
     matrix = np.eye(4)
     matrix[:3, 0], matrix[:3, 1], matrix[:3, 2] = right, up, -np.asarray(forward)
     matrix[:3, 3] = position
     thing.matrix_world = Matrix(matrix.tolist())
 
 
-def make_lamp(light: dict, name: str) -> None:
+def make_lamp(light: dict[str, Any], name: str) -> None:
     kinds = {"point": "POINT", "spot": "SPOT", "directional": "SUN"}
     lamp = bpy.data.lights.new(name, kinds[light["type"]])
     colour = light["irradiance" if light["type"] == "directional" else "intensity"]
@@ -29,10 +30,11 @@ def make_lamp(light: dict, name: str) -> None:
     lamp.color = [c / peak for c in colour]
     thing = bpy.data.objects.new(name, lamp)
     if light["type"] == "directional":
-        lamp.energy = peak  # W/m2 on a facing surface
+        lamp.energy = peak  # irradiance in W/m2 of a facing surface
         lamp.angle = math.radians(light.get("angular_diameter_deg", 0.0))
     else:
-        lamp.energy = peak * 4.0 * math.pi  # W over the sphere, cone or not; ours is W/sr
+        # The unit is W over the whole sphere, even for a cone. scene.toml has W/sr.
+        lamp.energy = peak * 4.0 * math.pi
         lamp.shadow_soft_size = 0.0
     if light["type"] == "spot":
         if light.get("falloff_deg", 0.0) > 0.0:
@@ -52,7 +54,7 @@ def make_lamp(light: dict, name: str) -> None:
 
 
 def undo_cosine(lamp: bpy.types.Light) -> None:
-    """Cycles' spot dims by the cosine to its axis; ours is even inside the cone."""
+    """Divides by the cosine to the axis, by which Cycles dims spots. Ours are uniform."""
     lamp.use_nodes = True
     tree = lamp.node_tree
     coordinates = tree.nodes.new("ShaderNodeTexCoord")
@@ -68,7 +70,7 @@ def undo_cosine(lamp: bpy.types.Light) -> None:
     tree.links.new(inverse.outputs[0], tree.nodes["Emission"].inputs["Strength"])
 
 
-def make_world(lights: list[dict], scene_folder: Path) -> None:
+def make_world(lights: list[dict[str, Any]], scene_folder: Path) -> None:
     world = bpy.data.worlds.new("world")
     bpy.context.scene.world = world
     world.use_nodes = True
@@ -87,9 +89,12 @@ def make_world(lights: list[dict], scene_folder: Path) -> None:
         world.cycles.sampling_method = "AUTOMATIC"
 
 
-def environment_image(tree: bpy.types.NodeTree, light: dict, folder: Path):
-    """Our image has -z at its centre and goes round over +x, about +y; Cycles' has +x at its
-    centre and goes round over -y, about +z. Ours is looked up texel by texel."""
+def environment_image(tree: bpy.types.NodeTree, light: dict[str, Any], folder: Path):
+    """Maps our image to that of Cycles, without interpolation.
+
+    Ours has -z at its centre, +x to the right, and +y up. That of Cycles has +x at its centre, -y
+    to the right, and +z up.
+    """
     image = tree.nodes.new("ShaderNodeTexEnvironment")
     image.image = bpy.data.images.load(str(source.resolve(folder / "x", light["image"])))
     image.interpolation = "Closest"

@@ -1,4 +1,4 @@
-"""MTL materials as Cycles shader nodes. Runs inside Blender."""
+"""Turns MTL materials into shader nodes of Cycles. Runs inside Blender."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ from scene_source import SceneError
 
 
 def linear_image(path: Path) -> bpy.types.Image:
-    """The texture as linear floats. Cycles filters 8-bit sRGB images before it decodes them; ours
-    decodes first, as light adds up."""
+    """The texture as linear floats.
+
+    Cycles filters 8-bit sRGB images before it decodes them. vpl-render decodes first, as only
+    linear values average like light.
+    """
     encoded = bpy.data.images.load(str(path))
     encoded.alpha_mode = "NONE"
     width, height = encoded.size
@@ -30,14 +33,15 @@ def linear_image(path: Path) -> bpy.types.Image:
 
 
 def albedo_socket(tree: bpy.types.NodeTree, material: source.Material, encoded: bool):
-    """The node output that has Kd times map_Kd, or None for a plain colour."""
+    """The output of a node with Kd times map_Kd, or None for a plain colour."""
     if material.map_kd is None:
         return None
     if not material.map_kd.is_file():
         raise SceneError(f"{material.map_kd}: no such texture; supply it")
     texture = tree.nodes.new("ShaderNodeTexImage")
-    texture.image = (bpy.data.images.load(str(material.map_kd)) if encoded
-                     else linear_image(material.map_kd))
+    texture.image = (
+        bpy.data.images.load(str(material.map_kd)) if encoded else linear_image(material.map_kd)
+    )
     texture.interpolation = "Linear"
     texture.extension = "REPEAT"
     scale = tree.nodes.new("ShaderNodeVectorMath")
@@ -54,7 +58,7 @@ def reflection_shader(tree: bpy.types.NodeTree, material: source.Material, encod
         glass.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
         glass.inputs["IOR"].default_value = material.ior
         return glass.outputs[0]
-    diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")  # roughness 0: Lambert
+    diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")  # Lambert where the roughness is 0
     diffuse.inputs["Roughness"].default_value = 0.0
     diffuse.inputs["Color"].default_value = (*material.kd, 1.0)
     socket = albedo_socket(tree, material, encoded)
@@ -76,7 +80,7 @@ def add_shaders(tree: bpy.types.NodeTree, a, b):
 
 
 def emission_shader(tree: bpy.types.NodeTree, material: source.Material):
-    """Radiance Ke; on the side of the winding only, unless the material says otherwise."""
+    """Emits radiance Ke, from the front by the winding only, unless the material is two-sided."""
     emission = tree.nodes.new("ShaderNodeEmission")
     emission.inputs["Color"].default_value = (*material.ke, 1.0)
     emission.inputs["Strength"].default_value = 1.0
@@ -95,8 +99,11 @@ def make_material(material: source.Material, encoded: bool) -> bpy.types.Materia
     made.use_nodes = True
     tree = made.node_tree
     tree.nodes.clear()
-    shader = (model_shader(tree, material.model) if material.model
-              else reflection_shader(tree, material, encoded))
+    shader = (
+        model_shader(tree, material.model)
+        if material.model
+        else reflection_shader(tree, material, encoded)
+    )
     if any(material.ke):
         shader = add_shaders(tree, shader, emission_shader(tree, material))
     output = tree.nodes.new("ShaderNodeOutputMaterial")

@@ -1,8 +1,9 @@
-"""Materials of model_scenes.py as Cycles shader nodes. Runs inside Blender."""
+"""Turns materials of model_scenes.py into shader nodes of Cycles. Runs inside Blender."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import bpy
 
@@ -12,7 +13,7 @@ WHITE = (1.0, 1.0, 1.0)
 
 
 def _bsdf(tree: bpy.types.NodeTree, kind: str, colour, alpha: float | None = None):
-    """Cycles' alpha is the square of its roughness. GGX scatters once."""
+    """A BSDF node. The alpha of Cycles is the square of its roughness. GGX is single-scattering."""
     node = tree.nodes.new("ShaderNodeBsdf" + kind)
     node.inputs["Color"].default_value = (*colour, 1.0)
     node.inputs["Roughness"].default_value = math.sqrt(alpha or 0.0)
@@ -29,9 +30,12 @@ def _mix(tree: bpy.types.NodeTree, amount, first, second):
     return node.outputs[0]
 
 
-def _coat(tree: bpy.types.NodeTree, data: dict):
-    """A coat over black is the gloss of the Principled BSDF, whose Fresnel is that of facets; over
-    a colour, what users of Cycles build: the Fresnel node picks between Glossy and Diffuse."""
+def _coat(tree: bpy.types.NodeTree, data: dict[str, Any]):
+    """A coated diffuse surface.
+
+    Over black it is the gloss of the Principled BSDF, with Fresnel's term of the facets. Over a
+    colour it is what users of Cycles build: the Fresnel node mixes Glossy and Diffuse.
+    """
     if not any(data["reflectance"]):
         node = tree.nodes.new("ShaderNodeBsdfPrincipled")
         node.distribution = "GGX"
@@ -46,7 +50,7 @@ def _coat(tree: bpy.types.NodeTree, data: dict):
     return _mix(tree, fresnel.outputs[0], base.outputs[0], gloss.outputs[0])
 
 
-def model_shader(tree: bpy.types.NodeTree, data: dict):
+def model_shader(tree: bpy.types.NodeTree, data: dict[str, Any]):
     kind = data["type"]
     if kind == "diffuse":
         return _bsdf(tree, "Diffuse", data["reflectance"]).outputs[0]

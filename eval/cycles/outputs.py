@@ -1,4 +1,4 @@
-"""What the cross-check writes, and the guard that keeps it from files of others; also inside Blender."""
+"""Guards the outputs of the cross-check, which replace only its own files; also inside Blender."""
 
 from __future__ import annotations
 
@@ -8,13 +8,24 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[2] / "pipelines"))
 import output_guard  # noqa: E402
 
+__all__ = ["GLB", "MAKER", "RESULTS", "output_guard", "write_scene"]
+
 MAKER = "eval/cycles/cross_check.py"
-MARK = f"# Made by {MAKER}\n"  # a comment in TOML, OBJ, MTL and pbrt
+MARK = f"# Made by {MAKER}\n"  # is a comment in TOML, OBJ, MTL and pbrt
 SCENE = output_guard.text_kind("a scene that cross_check.py made", MARK)
-GLB = output_guard.Kind("a scene that cross_check.py made",
-                        lambda head: head.startswith(b"glTF") and MAKER.encode() in head)
-RESULTS = output_guard.json_kind("results of cross_check.py", lambda cases: isinstance(cases, dict) and all(
-    isinstance(case, dict) and "run" in case and "views" in case for case in cases.values()))
+GLB = output_guard.Kind(
+    "a scene that cross_check.py made",
+    lambda head: head.startswith(b"glTF") and MAKER.encode() in head,
+)
+RESULTS = output_guard.json_kind(
+    "results of cross_check.py",
+    lambda cases: (
+        isinstance(cases, dict)
+        and all(
+            isinstance(case, dict) and "run" in case and "views" in case for case in cases.values()
+        )
+    ),
+)
 
 
 def write_scene(path: Path, text: str) -> None:

@@ -1,11 +1,11 @@
-"""Renders a scene.toml with Blender's Cycles. Runs inside Blender, on the CPU, without a window:
+"""Renders a scene.toml with Blender's Cycles. Runs inside Blender, on the CPU, without a window.
 
-  blender -b --factory-startup --python-exit-code 3 --python render_cycles.py -- SCENE.toml
-      --output image.{bounces}.{seed}.exr --bounces 0,32 --seeds 1,2 --spp 256 [--threads 2]
+    blender -b --factory-startup --python-exit-code 3 --python render_cycles.py -- SCENE.toml
+        --output image.{bounces}.{seed}.exr --bounces 0,32 --seeds 1,2 --spp 256 [--threads 2]
 
-Geometry goes in as it is (our y is not turned to Blender's z), with one Blender vertex for each
-pair of position and normal, so that shading normals arrive unchanged. README.md lists every
-convention that is matched here.
+The geometry keeps its axes: y is not turned to Blender's z. Each pair of position and normal is one
+vertex of Blender, so that shading normals stay unchanged. README.md lists all conventions that are
+matched here.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ import argparse
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
+import numpy.typing as npt
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import model_cases  # noqa: E402
@@ -28,31 +30,43 @@ from cycles_materials import make_material  # noqa: E402
 from outputs import output_guard  # noqa: E402
 from scene_source import SceneError  # noqa: E402
 
-# Cycles 3.4 samples a triangle by solid angle where its longest edge exceeds the distance of its
-# plane divided by twice its area, and takes that angle from arc cosines good to 5e-5 rad: up to
-# 1.4 % of the light of a distant 3 m lamp was lost. Triangles of this size are sampled by area.
+# Emitting triangles are split to this size, at which Cycles 3.4 samples them by area. It samples a
+# triangle by solid angle where its longest edge exceeds the distance of its plane divided by twice
+# its area. That angle comes from arc cosines with errors of 5e-5 rad, which can lose 1.4 % of the
+# light of a distant lamp of 3 m.
 EMITTER_EDGE = 0.1  # scene units
 
 
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="render_cycles.py", description=__doc__.split("\n")[0])
     parser.add_argument("scene", type=Path)
-    parser.add_argument("--output", required=True, help="{bounces} and {seed} in its name are replaced")
+    parser.add_argument(
+        "--output", required=True, help="{bounces} and {seed} in its name are replaced"
+    )
     parser.add_argument("--size", help="WIDTHxHEIGHT in pixels; the scene's unless given")
     parser.add_argument("--bounces", default="32", help="limits as our --max-bounces: 0,32")
     parser.add_argument("--seeds", default="1")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--encoded-textures", action="store_true",
-                        help="let Cycles filter the sRGB values, as it does by itself")
-    parser.add_argument("--whole-emitters", action="store_true",
-                        help="leave emitting triangles as large as they are: shows Cycles' bias")
-    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
+    parser.add_argument(
+        "--encoded-textures",
+        action="store_true",
+        help="let Cycles filter the sRGB values, as it does by itself",
+    )
+    parser.add_argument(
+        "--whole-emitters",
+        action="store_true",
+        help="leave emitting triangles as large as they are: shows Cycles' bias",
+    )
+    return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
 
 
-def corner_normals(mesh: source.Mesh) -> tuple[np.ndarray, bool]:
-    """Shading normals, and whether the file has any. One smooth face makes Cycles interpolate
-    normals on all faces of a mesh, so flat ones get their own."""
+def corner_normals(mesh: source.Mesh) -> tuple[npt.NDArray[Any], bool]:
+    """Shading normals, and whether the file has any.
+
+    One smooth face makes Cycles interpolate normals on all faces of a mesh, so flat faces get
+    explicit normals.
+    """
     missing = np.isnan(mesh.normal).any(axis=(1, 2))
     p = mesh.position
     flat = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
@@ -84,12 +98,12 @@ def make_mesh(mesh: source.Mesh, name: str, encoded: bool) -> None:
     if len(made.polygons) != count:
         raise SceneError(f"{name}: Blender dropped triangles; report this")
     if smooth:
-        made.use_auto_smooth = True  # without it Blender ignores custom normals
+        made.use_auto_smooth = True  # Blender ignores custom normals without it
         made.auto_smooth_angle = math.pi
         made.normals_split_custom_set_from_vertices(vertices[:, 3:].tolist())
 
     thing = bpy.data.objects.new(name, made)
-    # Both default to hiding the terminator of coarse meshes, by moving light.
+    # The defaults of both hide the terminator of coarse meshes, but bias the light.
     thing.cycles.shadow_terminator_offset = 0.0
     thing.cycles.shadow_terminator_geometry_offset = 0.0
     bpy.context.scene.collection.objects.link(thing)
@@ -123,7 +137,7 @@ def set_film(width: int, height: int, threads: int) -> None:
 
 
 def set_unbiased(spp: int) -> None:
-    """Off: whatever trades a right mean for less noise."""
+    """Turns off all settings that reduce noise at the cost of bias."""
     cycles = bpy.context.scene.cycles
     cycles.device = "CPU"
     cycles.samples = spp
@@ -141,30 +155,29 @@ def set_unbiased(spp: int) -> None:
     cycles.pixel_filter_type = "BOX"  # one pixel wide
     cycles.film_exposure = 1.0
     cycles.use_animated_seed = False
-    # The default tables are shared by all pixels and seeds: 0.3 % off at 256 samples of a lamp of
-    # 2048 triangles, whatever the seed, where Sobol-Burley is right to 0.01 %.
+    # All pixels and seeds share the default tables. With 256 samples of a lamp of 2048 triangles
+    # they are off by 0.3 % for any seed, where Sobol-Burley is right to 0.01 %.
     cycles.sampling_pattern = "SOBOL"
 
 
 def set_bounces(bounces: int) -> None:
-    """As our --max-bounces: diffuse vertices are limited, mirrors and glass are passed through."""
+    """Limits diffuse vertices, but not mirrors and glass, as --max-bounces does."""
     cycles = bpy.context.scene.cycles
     cycles.diffuse_bounces = bounces
     cycles.max_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 1024
     cycles.transparent_max_bounces = 8
-    cycles.min_light_bounces = 0  # Russian roulette from the start, as ours
+    cycles.min_light_bounces = 0  # Russian roulette starts at once, as in vpl-render
 
 
 def read(path: Path) -> source.Scene:
-    """A .pbrt is not read, but built again from what it was written from."""
+    """Reads a scene. A .pbrt is not parsed, but built again from its description."""
     if path.suffix == ".pbrt":
-        return model_scenes.source_scene(
-            model_scenes.sphere_in_box(model_cases.SPHERES[path.stem]))
+        return model_scenes.source_scene(model_scenes.sphere_in_box(model_cases.SPHERES[path.stem]))
     return source.read_scene(path)
 
 
 def build(options: argparse.Namespace) -> tuple[int, int]:
-    """Scene and camera; returns the size of the film."""
+    """Makes scene and camera. Returns the size of the film."""
     scene = read(options.scene)
     for number, mesh in enumerate(scene.meshes):
         if not options.whole_emitters:
@@ -194,7 +207,8 @@ def run() -> None:
     else:
         film = build(options)
     if options.size:
-        film = tuple(int(side) for side in options.size.split("x"))
+        width, height = options.size.split("x")
+        film = int(width), int(height)
     set_film(*film, options.threads)
     set_unbiased(options.spp)
     for bounces in options.bounces.split(","):
@@ -202,7 +216,9 @@ def run() -> None:
         for seed in options.seeds.split(","):
             bpy.context.scene.cycles.seed = int(seed)
             name = options.output.replace("{bounces}", bounces).replace("{seed}", seed)
-            output_guard.replace(name, output_guard.EXR, render, "--output", {"the scene": options.scene})
+            output_guard.replace(
+                name, output_guard.EXR, render, "--output", {"the scene": options.scene}
+            )
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""scene.toml, OBJ and MTL -> plain NumPy arrays, without any code of the renderer under test.
+"""Reads scene.toml, OBJ and MTL into NumPy arrays, without any code of the renderer under test.
 
-It reads the subset of docs/scene-format.md that the cross-check needs and refuses the rest by name:
-a feature that one renderer drew and the other ignored would look like an error of one of them.
-Used by cross_check.py and, inside Blender, by render_cycles.py.
+It reads the subset of docs/scene-format.md that the cross-check needs, and refuses the rest by
+name. A feature that only one renderer supports would look like an error. cross_check.py uses it,
+and render_cycles.py inside Blender.
 """
 
 from __future__ import annotations
@@ -12,12 +12,14 @@ import re
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 
 class SceneError(Exception):
-    """Bad input: one line that names file, problem and cure."""
+    """Bad input. The message is one line with file, problem and cure."""
 
 
 @dataclass
@@ -32,8 +34,10 @@ class Material:
     opacity: float = 1.0
     map_kd: Path | None = None
     two_sided: bool = False
-    maps: list[str] = field(default_factory=list)  # other maps, refused if a face uses them
-    model: dict = field(default_factory=dict)  # of model_scenes.py, in place of the MTL fields
+    # Other maps, which are refused if a face uses them.
+    maps: list[str] = field(default_factory=list)
+    # Parameters of model_scenes.py, which replace the MTL fields.
+    model: dict[str, Any] = field(default_factory=dict)
 
     @property
     def mirror(self) -> bool:
@@ -46,21 +50,21 @@ class Material:
 
 @dataclass
 class Mesh:
-    """Triangles of one OBJ. `normal` and `uv` hold NaN where the file has none."""
+    """Triangles of an OBJ file. `normal` and `uv` are NaN where the file has none."""
 
-    position: np.ndarray  # float64 (n, 3, 3): triangle, corner, xyz
-    normal: np.ndarray  # (n, 3, 3)
-    uv: np.ndarray  # (n, 3, 2)
-    material: np.ndarray  # int (n): into `materials`
+    position: npt.NDArray[Any]  # float64 of shape (n, 3, 3): triangle, corner, xyz
+    normal: npt.NDArray[Any]  # shape (n, 3, 3)
+    uv: npt.NDArray[Any]  # shape (n, 3, 2)
+    material: npt.NDArray[Any]  # int of shape (n): indices into `materials`
     materials: list[Material]
 
 
 @dataclass
 class Camera:
-    position: np.ndarray
-    right: np.ndarray
-    up: np.ndarray
-    forward: np.ndarray
+    position: npt.NDArray[Any]
+    right: npt.NDArray[Any]
+    up: npt.NDArray[Any]
+    forward: npt.NDArray[Any]
     vertical_fov_deg: float
 
 
@@ -70,10 +74,10 @@ class Scene:
     height: int
     camera: Camera
     meshes: list[Mesh]
-    lights: list[dict]
+    lights: list[dict[str, Any]]
 
 
-def read_toml(path: Path) -> dict:
+def read_toml(path: Path) -> dict[str, Any]:
     try:
         with open(path, "rb") as file:
             return tomllib.load(file)
@@ -84,7 +88,7 @@ def read_toml(path: Path) -> dict:
 
 
 def resolve(scene: Path, name: str) -> Path:
-    """A file that a scene.toml names: ${NAME} from the environment, relative to the toml."""
+    """Path of a file that a scene.toml names, with ${NAME} replaced from the environment."""
 
     def value(match: re.Match[str]) -> str:
         if match[1] not in os.environ:
@@ -94,11 +98,12 @@ def resolve(scene: Path, name: str) -> Path:
     return (scene.parent / re.sub(r"\$\{(\w+)\}", value, name)).resolve()
 
 
-def _unit(v: np.ndarray) -> np.ndarray:
-    return v / np.linalg.norm(v)
+def _unit(v: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    result: npt.NDArray[Any] = v / np.linalg.norm(v)
+    return result
 
 
-def read_camera(table: dict) -> Camera:
+def read_camera(table: dict[str, Any]) -> Camera:
     position = np.array(table["position"], float)
     if "forward" in table:
         forward = _unit(np.array(table["forward"], float))
@@ -109,8 +114,8 @@ def read_camera(table: dict) -> Camera:
     return Camera(position, right, up, forward, float(table["vertical_fov_deg"]))
 
 
-def read_transform(table: dict) -> np.ndarray:
-    """4x4 matrix: `transform`, or scale, then turns about x, y, z, then a shift."""
+def read_transform(table: dict[str, Any]) -> npt.NDArray[Any]:
+    """4x4 matrix: `transform`, or scale, then rotations about x, y, z, then translation."""
     if "transform" in table:
         return np.array(table["transform"], float)
     turn = np.eye(3)
@@ -157,12 +162,12 @@ def read_mtl(path: Path, obj: Path) -> dict[str, Material]:
 
 
 def check_supported(material: Material, path: Path) -> None:
-    """Refuses what has no exact counterpart in Cycles."""
+    """Refuses a material that has no exact counterpart in Cycles."""
     problem = ""
-    if material.glass:  # black stands for white in both fields
+    if material.glass:  # black means white in both fields
         if any(c not in ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for c in (material.ks, material.tf)):
             problem = "is coloured glass"
-        elif material.ior < 1.0:  # ours warns and takes 1.5
+        elif material.ior < 1.0:  # vpl-render warns and uses 1.5
             problem = "has a refractive index below 1 (Ni)"
     elif any(material.ks) and not material.mirror:
         problem = "has a Phong lobe (Ks)"
@@ -171,14 +176,21 @@ def check_supported(material: Material, path: Path) -> None:
     elif max(np.add(material.kd, material.ks)) > 1.0:
         problem = "reflects more than it receives (Kd + Ks > 1)"
     if problem:
-        raise SceneError(f"{path}: material '{material.name}' {problem}, which the cross-check does"
-                         " not map; name a diffuse variant in 'materials'")
+        raise SceneError(
+            f"{path}: material '{material.name}' {problem}, which the cross-check does"
+            " not map; name a diffuse variant in 'materials'"
+        )
 
 
-def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
-    """Columns v, vt, vn; corner index triples (-1: none); a name for each triangle; libraries."""
-    columns: dict[str, list] = {"v": [], "vt": [], "vn": []}
-    corners, names, libraries = [], [], []
+Corner = tuple[int, int, int]
+
+
+def _parse_obj(path: Path) -> tuple[dict[str, list[Any]], list[Any], list[Any], list[str]]:
+    """Columns v, vt, vn; index triples of corners (-1: none); materials of triangles; libraries."""
+    columns: dict[str, list[Any]] = {"v": [], "vt": [], "vn": []}
+    corners: list[tuple[Corner, Corner, Corner]] = []
+    names: list[str] = []
+    libraries: list[str] = []
     name = ""
     with open(path) as file:
         for line in file:
@@ -187,7 +199,7 @@ def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
                 continue
             key = parts[0]
             if key in columns:
-                columns[key].append([float(x) for x in parts[1:3 if key == "vt" else 4]])
+                columns[key].append([float(x) for x in parts[1 : 3 if key == "vt" else 4]])
             elif key == "usemtl":
                 name = parts[1]
             elif key == "mtllib":
@@ -200,30 +212,34 @@ def _parse_obj(path: Path) -> tuple[dict[str, list], list, list, list[str]]:
     return columns, corners, names, libraries
 
 
-def _corner(text: str, columns: dict[str, list]) -> tuple[int, int, int]:
+def _corner(text: str, columns: dict[str, list[Any]]) -> tuple[int, int, int]:
     ids = (text.split("/") + ["", ""])[:3]
     sizes = (len(columns["v"]), len(columns["vt"]), len(columns["vn"]))
-    return tuple(-1 if not i else int(i) - 1 if int(i) > 0 else size + int(i)
-                 for i, size in zip(ids, sizes))
+    v, vt, vn = (
+        -1 if not i else int(i) - 1 if int(i) > 0 else size + int(i)
+        for i, size in zip(ids, sizes, strict=True)
+    )
+    return v, vt, vn
 
 
-def read_mesh(obj: Path, mtl: Path | None, matrix: np.ndarray) -> Mesh:
+def read_mesh(obj: Path, mtl: Path | None, matrix: npt.NDArray[Any]) -> Mesh:
     if not obj.is_file():
         raise SceneError(f"{obj}: no such OBJ file; check 'file' in the scene.toml")
     columns, corners, names, libraries = _parse_obj(obj)
     library = read_mtl(mtl or obj.parent / libraries[0], obj)
     index = np.array(corners, int).reshape(-1, 3, 3)
 
-    def take(key: str, which: int, width: int) -> np.ndarray:
+    def take(key: str, which: int, width: int) -> npt.NDArray[Any]:
         rows = np.array(columns[key] + [[np.nan] * width], float)
-        return rows[index[:, :, which]]  # -1 is the NaN row
+        result: npt.NDArray[Any] = rows[index[:, :, which]]  # index -1 selects the row of NaN
+        return result
 
     position = take("v", 0, 3) @ matrix[:3, :3].T + matrix[:3, 3]
-    normal = take("vn", 2, 3) @ np.linalg.inv(matrix[:3, :3])
+    normal: npt.NDArray[Any] = take("vn", 2, 3) @ np.linalg.inv(matrix[:3, :3])
     with np.errstate(invalid="ignore"):
-        normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+        normal = normal / np.linalg.norm(normal, axis=2, keepdims=True)
     uv = take("vt", 1, 2)
-    if np.linalg.det(matrix[:3, :3]) < 0:  # a reflection turns faces inside out; turn them back
+    if np.linalg.det(matrix[:3, :3]) < 0:  # a reflection inverts the winding, which is restored
         position, normal, uv = position[:, ::-1], normal[:, ::-1], uv[:, ::-1]
 
     used = sorted(set(names))
@@ -238,25 +254,31 @@ def read_mesh(obj: Path, mtl: Path | None, matrix: np.ndarray) -> Mesh:
 
 
 def split_emitters(mesh: Mesh, longest: float) -> Mesh:
-    """The same surface with every emitting triangle quartered until no edge exceeds `longest`."""
+    """Splits every emitting triangle into quarters until no edge exceeds `longest`."""
     emits = np.array([any(m.ke) for m in mesh.materials])
-    columns = [mesh.position, mesh.normal, mesh.uv]
+    position, normal, uv = mesh.position, mesh.normal, mesh.uv
     material = mesh.material
     while True:
-        p = columns[0]
+        p = position
         edge = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
         split = emits[material] & (edge > longest)
         if not split.any():
-            return Mesh(*columns, material, mesh.materials)
-        columns = [np.concatenate([c[~split], _quarters(c[split])]) for c in columns]
+            return Mesh(position, normal, uv, material, mesh.materials)
+        position, normal, uv = (
+            np.concatenate([c[~split], _quarters(c[split])]) for c in (position, normal, uv)
+        )
         material = np.concatenate([material[~split], np.tile(material[split], 4)])
 
 
-def _quarters(corners: np.ndarray) -> np.ndarray:
+def _quarters(corners: npt.NDArray[Any]) -> npt.NDArray[Any]:
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-    return np.concatenate([np.stack(triangle, axis=1) for triangle in
-                           ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    return np.concatenate(
+        [
+            np.stack(triangle, axis=1)
+            for triangle in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        ]
+    )
 
 
 def read_scene(path: Path) -> Scene:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Tests of the cross-check; those that need Blender are skipped where it is missing.
+"""Tests the cross-check. Tests that need Blender are skipped where it is missing.
 
-  python3 eval/cycles/test_cross_check.py
+python3 eval/cycles/test_cross_check.py
 """
 
 from __future__ import annotations
@@ -16,8 +16,11 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+import OpenImageIO as oiio
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
@@ -50,9 +53,13 @@ f 1 2 4
 MTL = "newmtl A\nKd 0.1 0.2 0.3\nnewmtl B\nKd 0.5 0.5 0.5\nKe 1 2 3\nemission_sides 2\n"
 
 
-def command(*arguments: str) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, str(HERE / "cross_check.py"), *arguments],
-                          capture_output=True, text=True, check=False)
+def command(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, str(HERE / "cross_check.py"), *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 class InFolder(unittest.TestCase):
@@ -68,15 +75,20 @@ class InFolder(unittest.TestCase):
 
 
 class Reader(InFolder):
-    def mesh(self, matrix: np.ndarray, mtl: str = MTL) -> source.Mesh:
+    def mesh(self, matrix: npt.NDArray[Any], mtl: str = MTL) -> source.Mesh:
         self.write("m.mtl", mtl)
         return source.read_mesh(self.write("m.obj", OBJ), None, matrix)
 
     def test_quads_negative_indices_and_triangles_without_area(self) -> None:
         mesh = self.mesh(np.eye(4))
-        self.assertEqual(mesh.position.tolist(), [
-            [[0, 0, 0], [2, 0, 0], [2, 3, 0]], [[0, 0, 0], [2, 3, 0], [0, 3, 0]],
-            [[0, 0, 0], [2, 0, 0], [0, 3, 0]]])
+        self.assertEqual(
+            mesh.position.tolist(),
+            [
+                [[0, 0, 0], [2, 0, 0], [2, 3, 0]],
+                [[0, 0, 0], [2, 3, 0], [0, 3, 0]],
+                [[0, 0, 0], [2, 0, 0], [0, 3, 0]],
+            ],
+        )
         self.assertEqual([mesh.materials[m].name for m in mesh.material], ["A", "A", "B"])
         self.assertEqual(mesh.uv[0].tolist(), [[0, 0], [1, 0], [1, 0]])
         self.assertTrue(np.isnan(mesh.normal[2]).all() and np.isnan(mesh.uv[2]).all())
@@ -87,9 +99,10 @@ class Reader(InFolder):
         self.assertEqual((b.ke, b.two_sided), ((1, 2, 3), True))
 
     def test_scale_then_turns_then_shift(self) -> None:
-        matrix = source.read_transform({"scale": [2, 1, 1], "rotate_deg": [90, 0, 90],
-                                        "translate": [0, 0, 5]})
-        # (1, 1, 0) -> scale (2, 1, 0) -> about x (2, 0, 1) -> about z (0, 2, 1) -> shift
+        matrix = source.read_transform(
+            {"scale": [2, 1, 1], "rotate_deg": [90, 0, 90], "translate": [0, 0, 5]}
+        )
+        # (1, 1, 0) is scaled to (2, 1, 0), rotated about x to (2, 0, 1) and about z to (0, 2, 1).
         np.testing.assert_allclose(matrix @ [1, 1, 0, 1], [0, 2, 6, 1], atol=1e-12)
 
     def test_a_reflection_keeps_the_lit_side(self) -> None:
@@ -110,14 +123,18 @@ class Reader(InFolder):
         fine = source.split_emitters(mesh, 1.0)
         lamp = fine.position[fine.material == 1]
         twice = np.cross(lamp[:, 1] - lamp[:, 0], lamp[:, 2] - lamp[:, 0])
-        self.assertEqual(len(lamp), 16)  # edges 2, 3, 3.6 -> 0.5, 0.75, 0.9
+        self.assertEqual(len(lamp), 16)  # edges 2, 3, 3.6 become 0.5, 0.75, 0.9
         np.testing.assert_allclose(twice, np.tile([0, 0, 6 / 16], (16, 1)))
         np.testing.assert_array_equal(fine.position[fine.material == 0], mesh.position[:2])
 
     def test_what_has_no_counterpart_is_refused_by_name(self) -> None:
-        for line, said in (("Ks 0.1 0.1 0.1", "Phong"), ("map_d a.png", "mask"),
-                           ("illum 7\nTf 0.5 1 1", "coloured glass"), ("illum 7\nNi 0.6", "below 1"),
-                           ("Ks 0.9 0.9 0.9\nillum 3", "more than it receives")):
+        for line, said in (
+            ("Ks 0.1 0.1 0.1", "Phong"),
+            ("map_d a.png", "mask"),
+            ("illum 7\nTf 0.5 1 1", "coloured glass"),
+            ("illum 7\nNi 0.6", "below 1"),
+            ("Ks 0.9 0.9 0.9\nillum 3", "more than it receives"),
+        ):
             with self.assertRaisesRegex(source.SceneError, f"material 'B'.*{said}"):
                 self.mesh(np.eye(4), MTL + line + "\n")
 
@@ -125,13 +142,15 @@ class Reader(InFolder):
 class Preparation(InFolder):
     def test_edited_library_keeps_mirrors(self) -> None:
         text = "# c\nnewmtl A\nKs 1 1 1\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n"
-        self.assertEqual(cases.edit_mtl(text, ("Ks",)),
-                         "# c\nnewmtl A\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n")
+        self.assertEqual(
+            cases.edit_mtl(text, ("Ks",)),
+            "# c\nnewmtl A\nKd 1 0 0\nnewmtl M\nKs 0.9 0.9 0.9\nillum 3\n",
+        )
 
     def test_every_own_case_is_read(self) -> None:
         for case in cases.CASES:
             if case.scene.startswith("veach-ajar") or case.scene.endswith((".pbrt", ".glb")):
-                continue  # a download; what render_cycles.py does not read here
+                continue  # downloads, and files that scene_source.py cannot read
             scene = source.read_scene(cases.prepare(case, ROOT / "scenes", self.folder / case.name))
             self.assertEqual((scene.width, scene.height), case.size)
             lit = any(any(m.ke) for mesh in scene.meshes for m in mesh.materials)
@@ -139,8 +158,8 @@ class Preparation(InFolder):
             self.assertEqual(scene.lights, list(case.lights))
 
 
-def volume(position: np.ndarray) -> float:
-    """Enclosed by triangles that run anti-clockwise from outside."""
+def volume(position: npt.NDArray[Any]) -> float:
+    """Volume enclosed by triangles that run anti-clockwise seen from outside."""
     a, b, c = position[:, 0], position[:, 1], position[:, 2]
     return float((a * np.cross(b, c)).sum() / 6)
 
@@ -172,7 +191,7 @@ class ModelScenes(InFolder):
             data = path.read_bytes()
             self.assertEqual(struct.unpack("<4sII", data[:12]), (b"glTF", 2, len(data)))
             (size,) = struct.unpack("<I", data[12:16])
-            scene, binary = json.loads(data[20:20 + size]), data[28 + size:]
+            scene, binary = json.loads(data[20 : 20 + size]), data[28 + size :]
             self.assertIn(len(binary) - scene["buffers"][0]["byteLength"], range(4))  # padding
             for accessor in scene["accessors"]:
                 view = scene["bufferViews"][accessor["bufferView"]]
@@ -195,23 +214,30 @@ class ModelScenes(InFolder):
 
 def oiio_size(path: Path, data: bytes) -> tuple[int, int]:
     path.write_bytes(data)
-    spec = cases.oiio.ImageBuf(str(path)).spec()
+    spec = oiio.ImageBuf(str(path)).spec()
     return spec.width, spec.height
 
 
 class Walks(unittest.TestCase):
-    def both(self, scatter: walk.Scatter, cosine: float = 0.6, inside: bool = False) -> np.ndarray:
-        """Reflected and transmitted share: ours, Cycles'; the mean of the channels."""
+    def both(
+        self, scatter: walk.Scatter, cosine: float = 0.6, inside: bool = False
+    ) -> npt.NDArray[Any]:
+        """Scattered share of the light by our model and by that of Cycles, over all channels."""
         u = np.random.default_rng(3).random((1 << 15, 4))
         wo = np.tile([np.sqrt(1 - cosine**2), 0.0, cosine], (len(u), 1))
-        return scatter(wo, np.full(len(u), inside), u)[1].mean(axis=(0, 2))
+        result: npt.NDArray[Any] = scatter(wo, np.full(len(u), inside), u)[1].mean(axis=(0, 2))
+        return result
 
     def test_smooth_facets_lose_nothing_and_are_the_same(self) -> None:
         for scatter in (walk.conductor(1e-3), walk.dielectric(1e-3, 1.5)):
             np.testing.assert_allclose(self.both(scatter), [1.0, 1.0], atol=1e-3)
 
     def test_rough_metal_loses_what_the_theory_page_says(self) -> None:
-        for alpha, lost in ((0.2, 0.05), (0.5, 0.31), (1.0, 0.67)):  # ggx/theory.md, seen at 27 deg
+        for alpha, lost in (
+            (0.2, 0.05),
+            (0.5, 0.31),
+            (1.0, 0.67),
+        ):  # values of ggx/theory.md at 27 degrees
             ours, cycles = self.both(walk.conductor(alpha), np.cos(np.radians(27)))
             self.assertAlmostEqual(1 - ours, lost, delta=0.02)
             self.assertLess(cycles, ours)
@@ -249,7 +275,7 @@ class Statistics(unittest.TestCase):
 
     def test_ratio_and_its_error(self) -> None:
         mean = compare.compare(self.a, self.b)["mean"]
-        # 4 seeds x 1440 pixels x 3 channels of deviation 0.5 in each image
+        # Each image has 4 seeds x 1440 pixels x 3 channels with a standard deviation of 0.5.
         self.assertAlmostEqual(mean["error"], np.sqrt(2) * 0.5 / np.sqrt(4 * 1440 * 3), delta=2e-3)
         self.assertLess(abs(mean["ratio"] - 1.02), 3 * mean["error"])
 
@@ -300,29 +326,54 @@ class CommandLine(InFolder):
         for name in ("0.1", "0.2", "1.1"):
             self.write(name, "")
         seeds = range(1, 4)
-        self.assertEqual(cross_check.missing_images([0, 1, 32], seeds, path, True),
-                         {(3,): [0], (2, 3): [1], (1, 2, 3): [32]})
-        self.assertEqual(cross_check.missing_images([0, 1], seeds, path, False),
-                         {(1, 2, 3): [0, 1]})
+        self.assertEqual(
+            cross_check.missing_images([0, 1, 32], seeds, path, True),
+            {(3,): [0], (2, 3): [1], (1, 2, 3): [32]},
+        )
+        self.assertEqual(
+            cross_check.missing_images([0, 1], seeds, path, False), {(1, 2, 3): [0, 1]}
+        )
 
-    def assert_one_line(self, done: subprocess.CompletedProcess, code: int, said: str) -> None:
+    def assert_one_line(self, done: subprocess.CompletedProcess[str], code: int, said: str) -> None:
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertEqual(done.stderr.count("\n"), 1)
         self.assertIn(said, done.stderr)
 
     def test_files_of_others_stay(self) -> None:
-        """OUT may be the folder of the scenes themselves."""
+        """Files of others stay, even where OUT is the folder of the scenes."""
         scene = self.folder / "room-point" / "scene.toml"
-        cases.prepare(next(case for case in cases.CASES if case.name == "room-point"), ROOT / "scenes", scene.parent)
-        cases.prepare(next(case for case in cases.CASES if case.name == "room-point"), ROOT / "scenes", scene.parent)
+        cases.prepare(
+            next(case for case in cases.CASES if case.name == "room-point"),
+            ROOT / "scenes",
+            scene.parent,
+        )
+        cases.prepare(
+            next(case for case in cases.CASES if case.name == "room-point"),
+            ROOT / "scenes",
+            scene.parent,
+        )
         scene.write_text("[film]\nwidth = 8\n")
         fake = self.write("fake", "#!/bin/sh\nexit 0\n")
         fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
-        words = ("room-point", "--blender", str(fake), "--vpl-render", str(fake), "--out", str(self.folder))
-        self.assert_one_line(command(*words), 3, "scene.toml: is not a scene that cross_check.py made")
+        words = (
+            "room-point",
+            "--blender",
+            str(fake),
+            "--vpl-render",
+            str(fake),
+            "--out",
+            str(self.folder),
+        )
+        self.assert_one_line(
+            command(*words), 3, "scene.toml: is not a scene that cross_check.py made"
+        )
         self.assertEqual(scene.read_text(), "[film]\nwidth = 8\n")
         results = self.write("results.json", '{"asset": {"version": "2.0"}}')
-        self.assert_one_line(command(*words), 3, "results.json: is not results of cross_check.py, which --results would")
+        self.assert_one_line(
+            command(*words),
+            3,
+            "results.json: is not results of cross_check.py, which --results would",
+        )
         self.assertEqual(results.read_text(), '{"asset": {"version": "2.0"}}')
 
     def test_no_blender_is_one_line_and_code_3(self) -> None:
@@ -343,28 +394,50 @@ class CommandLine(InFolder):
         fake.chmod(fake.stat().st_mode | stat.S_IXUSR)
         if not Path(VPL_RENDER).is_file():
             self.skipTest("no vpl-render")
-        done = command("room-point", "--effort", "0.004", "--blender", str(fake), "--vpl-render",
-                       VPL_RENDER, "--out", str(self.folder / "out"))
+        done = command(
+            "room-point",
+            "--effort",
+            "0.004",
+            "--blender",
+            str(fake),
+            "--vpl-render",
+            VPL_RENDER,
+            "--out",
+            str(self.folder / "out"),
+        )
         self.assert_one_line(done, 3, "fake failed: exit code 0; all it said is in")
         self.assertFalse((self.folder / "out" / "results.json").exists())
 
     @unittest.skipUnless(shutil.which("blender") and Path(VPL_RENDER).is_file(), "no Blender")
     def test_a_small_cornell_box_agrees(self) -> None:
-        done = command("cornell", "--effort", "0.03", "--tolerance", "0.05", "--vpl-render",
-                       VPL_RENDER, "--out", str(self.folder))
+        done = command(
+            "cornell",
+            "--effort",
+            "0.03",
+            "--tolerance",
+            "0.05",
+            "--vpl-render",
+            VPL_RENDER,
+            "--out",
+            str(self.folder),
+        )
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(done.stdout.count("agrees"), 3)
         table = command("--table", "--out", str(self.folder)).stdout.splitlines()
-        self.assertEqual([row.split(" | ")[:2] for row in table[2:]],
-                         [["| cornell", v.name] for v in cases.CASES[0].views])
+        self.assertEqual(
+            [row.split(" | ")[:2] for row in table[2:]],
+            [["| cornell", v.name] for v in cases.CASES[0].views],
+        )
         self.assertTrue((self.folder / "cornell" / "indirect-32.png").is_file())
 
     @unittest.skipUnless(shutil.which("blender") and Path(VPL_RENDER).is_file(), "no Blender")
     def test_flat_faces_of_a_mesh_with_normals_stay_flat(self) -> None:
-        # The knobs' normals once made Cycles shade the walls of that mesh as if round: 12 % too
-        # much direct light. The mirror teapot shows light that must count as direct.
-        command("veach-door", "--effort", "0.06", "--vpl-render", VPL_RENDER, "--out",
-                str(self.folder))
+        # Without explicit flat normals, the normals of the knobs make Cycles shade the walls of
+        # that mesh as if round, with 12 % too much direct light. The mirror teapot shows light that
+        # must count as direct.
+        command(
+            "veach-door", "--effort", "0.06", "--vpl-render", VPL_RENDER, "--out", str(self.folder)
+        )
         results = json.loads((self.folder / "results.json").read_text())
         mean = results["veach-door"]["views"]["direct-0"]["mean"]
         self.assertLess(abs(mean["ratio"] - 1.0), 0.05)

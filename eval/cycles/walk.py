@@ -1,47 +1,54 @@
-"""A third renderer, tiny and slow: model_scenes.sphere_in_box by random walks in NumPy.
+"""A third renderer, tiny and slow: it renders model_scenes.sphere_in_box by random walks in NumPy.
 
-It says how far two material models are apart: ours as transport/bsdf/*/theory.md states it and
-Cycles' of Blender 3.4 as its source has it, followed with the same random numbers. No light
-sampling, no meshes: rays meet the box, the lamp and the true sphere. Directions are local, z along
-the normal on the side of `wo`; arrays have one row for each path.
+It computes the difference of two material models with common random numbers: ours by
+transport/bsdf/*/theory.md, and that of Cycles in Blender 3.4 by its source. It has no light
+sampling and no meshes: rays hit the box, the lamp and an exact sphere. Directions are local, with z
+along the normal on the side of `wo`. Arrays have one row for each path.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 import model_scenes as scenes
 import scene_source as source
 
-# (wo, inside, random numbers (n, 4)) -> (wi, weights f |cos| / pdf (n, 2, 1 or 3): ours, Cycles')
-Scatter = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
-FACES = ("left", "floor", "back", "right", "ceiling", "front")  # -x -y -z +x +y +z
+# Maps wo, inside, and random numbers (n, 4) to wi and the weights f |cos| / pdf of shape
+# (n, 2, 1 or 3), first ours, then those of Cycles.
+Array = npt.NDArray[Any]
+Scatter = Callable[[Array, Array, Array], tuple[Array, Array]]
+FACES = ("left", "floor", "back", "right", "ceiling", "front")  # walls at -x, -y, -z, +x, +y, +z
 
 
-def dot(a, b):
-    return (a * b).sum(-1)
+def dot(a: Array, b: Array) -> Array:
+    result: Array = (a * b).sum(-1)
+    return result
 
 
-def unit(v):
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+def unit(v: Array) -> Array:
+    result: Array = v / np.linalg.norm(v, axis=-1, keepdims=True)
+    return result
 
 
-def g1(w, alpha):
-    """Smith's share of the facets that `w` sees."""
+def g1(w: Array, alpha: float) -> Array:
+    """Smith's masking function G1 of GGX."""
     z2 = np.maximum(w[:, 2] ** 2, 1e-12)
-    return 2 / (1 + np.sqrt(1 + alpha**2 * (1 - np.minimum(z2, 1)) / z2))
+    result: Array = 2 / (1 + np.sqrt(1 + alpha**2 * (1 - np.minimum(z2, 1)) / z2))
+    return result
 
 
-def shadowing(wo, wi, alpha):
-    """G2 / G1(wo) of both: ours has heights correlated, Cycles 3.4 multiplies G1(wo) G1(wi)."""
+def shadowing(wo: Array, wi: Array, alpha: float) -> Array:
+    """G2 / G1(wo): ours has the height-correlated G2, Cycles 3.4 has G2 = G1(wo) G1(wi)."""
     a, b = g1(wo, alpha), g1(wi, alpha)
     return np.stack([b / (a + b - a * b), b], 1)
 
 
-def visible_facet(wo, alpha, u):
-    """Heitz 2018: a facet's normal by the area that `wo` sees of it."""
+def visible_facet(wo: Array, alpha: float, u: Array) -> Array:
+    """Samples a facet's normal by its area visible from `wo` (Heitz 2018)."""
     v = unit(wo * [alpha, alpha, 1.0])
     flat = np.hypot(v[:, 0], v[:, 1])
     t1 = np.stack([-v[:, 1], v[:, 0], np.zeros(len(v))], 1) / np.maximum(flat, 1e-12)[:, None]
@@ -55,13 +62,13 @@ def visible_facet(wo, alpha, u):
     return unit(np.stack([alpha * h[:, 0], alpha * h[:, 1], np.maximum(h[:, 2], 1e-9)], 1))
 
 
-def cosine_direction(u):
+def cosine_direction(u: Array) -> Array:
     r, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
     return np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - u[:, 0])], 1)
 
 
-def fresnel(cosine, eta):
-    """Of a dielectric; also the cosine of the refracted way (0: total reflection)."""
+def fresnel(cosine: Array, eta: Array | float) -> tuple[Array, Array]:
+    """Fresnel reflectance of a dielectric, and the refracted cosine (0 for total reflection)."""
     sin2 = (1 - cosine**2) / eta**2
     t = np.sqrt(np.maximum(0, 1 - sin2))
     across = (cosine - eta * t) / (cosine + eta * t)
@@ -69,22 +76,27 @@ def fresnel(cosine, eta):
     return np.where(sin2 >= 1, 1.0, (across**2 + along**2) / 2), t
 
 
-def reflected(wo, h):
+def reflected(wo: Array, h: Array) -> Array:
     return 2 * dot(wo, h)[:, None] * h - wo
 
 
 def conductor(alpha: float) -> Scatter:
-    def scatter(wo, inside, u):
+    def scatter(wo: Array, inside: Array, u: Array) -> tuple[Array, Array]:
         wi = reflected(wo, visible_facet(wo, alpha, u))
         both = shadowing(wo, wi, alpha)
         return wi, np.where(wi[:, 2:] > 0, both, 0.0)[:, :, None]
+
     return scatter
 
 
 def dielectric(alpha: float, index: float) -> Scatter:
-    """Ours reflects the Fresnel share of the facet; Cycles' Glass BSDF takes that of the mean
-    normal, and loses light where a facet then reflects totally."""
-    def scatter(wo, inside, u):
+    """Glass. Ours has the Fresnel reflectance of the facet.
+
+    The Glass BSDF of Cycles has that of the mean normal, and loses light where a facet reflects
+    totally.
+    """
+
+    def scatter(wo: Array, inside: Array, u: Array) -> tuple[Array, Array]:
         eta = np.where(inside, 1 / index, index)
         h = visible_facet(wo, alpha, u)
         o = np.minimum(dot(wo, h), 1.0)
@@ -99,11 +111,12 @@ def dielectric(alpha: float, index: float) -> Scatter:
         drawn = np.where(mirror[:, None], share, 1 - share)
         both = shadowing(wo, wi, alpha) * drawn / np.where(mirror, chance, 1 - chance)[:, None]
         return wi, np.where(good[:, None], both, 0.0)[:, :, None]
+
     return scatter
 
 
-def coat_albedo(alpha: float, index: float) -> tuple[Callable, float]:
-    """E of our coat over 33 cosines, interpolated, and its cosine-weighted mean."""
+def coat_albedo(alpha: float, index: float) -> tuple[Callable[[Array], Array], float]:
+    """Albedo E of our coat, interpolated between 33 cosines, and its cosine-weighted mean."""
     cosines = np.linspace(0, 1, 33)
     u = np.random.default_rng(1).random((1 << 14, 2))
     table = []
@@ -116,14 +129,17 @@ def coat_albedo(alpha: float, index: float) -> tuple[Callable, float]:
     return lambda c: np.interp(c, cosines, table), float(np.trapz(2 * cosines * table, cosines))
 
 
-def coated(alpha: float, index: float, reflectance) -> Scatter:
-    """Half of the paths take the gloss, half the base. Cycles' Mix has the Fresnel share of the
-    mean normal on the viewer's side alone; its gloss over black has that of the facet."""
+def coated(alpha: float, index: float, reflectance: Sequence[float]) -> Scatter:
+    """Coated diffuse. Half of the paths sample the gloss, half the base.
+
+    The Mix of Cycles has the Fresnel reflectance of the mean normal for `wo` only. Its gloss over
+    black has that of the facet.
+    """
     albedo, mean = coat_albedo(alpha, index)
     base = np.array(reflectance, float)
     our_base = base / (index**2 * (1 - base * (1 - (1 - mean) / index**2)))
 
-    def scatter(wo, inside, u):
+    def scatter(wo: Array, inside: Array, u: Array) -> tuple[Array, Array]:
         h = visible_facet(wo, alpha, u)
         gloss = u[:, 2] < 0.5
         wi = np.where(gloss[:, None], reflected(wo, h), cosine_direction(u[:, :2]))
@@ -134,19 +150,22 @@ def coated(alpha: float, index: float, reflectance) -> Scatter:
         below = np.stack([ours, (1 - mixed)[:, None] * base], 1)
         both = np.where(gloss[:, None, None], shine[:, :, None], below)
         return wi, 2 * np.where(wi[:, 2:, None] > 0, both, 0.0)
+
     return scatter
 
 
-def metallic_roughness(colour, metallic: float, roughness: float) -> Scatter:
-    """Appendix B of glTF 2.0 as transport/bsdf/metallic_roughness/theory.md has it; the Principled
-    BSDF: Disney's diffuse without any share taken by the gloss, and a Fresnel term whose shape is
-    that of index 1.5 in place of Schlick's."""
-    alpha, colour = roughness**2, np.array(colour, float)
-    f0 = 0.04 * (1 - metallic) + colour * metallic
-    base = colour * (1 - metallic)
-    kept = _kept_base(alpha, 0.04)  # the base lies below the non-metal alone
+def metallic_roughness(colour: Sequence[float], metallic: float, roughness: float) -> Scatter:
+    """glTF's model. Ours follows appendix B of glTF 2.0 by metallic_roughness/theory.md.
 
-    def scatter(wo, inside, u):
+    The Principled BSDF has Disney's diffuse term, which the gloss does not reduce, and a Fresnel
+    term with the shape of index 1.5 instead of Schlick's.
+    """
+    alpha, tint = roughness**2, np.array(colour, float)
+    f0 = 0.04 * (1 - metallic) + tint * metallic
+    base = tint * (1 - metallic)
+    kept = _kept_base(alpha, 0.04)  # only a non-metal has a base
+
+    def scatter(wo: Array, inside: Array, u: Array) -> tuple[Array, Array]:
         gloss = u[:, 2] < 0.5
         h = visible_facet(wo, alpha, u)
         wi = np.where(gloss[:, None], reflected(wo, h), cosine_direction(u[:, :2]))
@@ -163,11 +182,12 @@ def metallic_roughness(colour, metallic: float, roughness: float) -> Scatter:
         below = base * np.stack([ours, np.repeat(disney[:, None], 3, 1)], 1)
         both = np.where(gloss[:, None, None], shine, below)
         return wi, 2 * np.where(wi[:, 2:, None] > 0, both, 0.0)
+
     return scatter
 
 
-def _kept_base(alpha: float, f0: float) -> Callable:
-    """k(w) of equation 3 over 33 cosines, interpolated."""
+def _kept_base(alpha: float, f0: float) -> Callable[[Array], Array]:
+    """k(w) of equation 3, interpolated between 33 cosines."""
     cosines = np.linspace(0, 1, 33)
     u = np.random.default_rng(1).random((1 << 14, 2))
     table = []
@@ -182,8 +202,8 @@ def _kept_base(alpha: float, f0: float) -> Callable:
     return lambda c: np.interp(c, cosines, table)
 
 
-def scatter_of(data: dict) -> Scatter:
-    """Ours by transport/bsdf/<model>/theory.md, Cycles' as the nodes of cycles_models.py."""
+def scatter_of(data: dict[str, Any]) -> Scatter:
+    """Our model by transport/bsdf/<model>/theory.md, that of Cycles by cycles_models.py."""
     if data["type"] == "conductor":
         return conductor(data["roughness"])
     if data["type"] == "dielectric":
@@ -193,28 +213,31 @@ def scatter_of(data: dict) -> Scatter:
     return coated(data["roughness"], data["eta"], data["reflectance"])
 
 
-def relief_factors(p, axis, wo, n, wi):
-    """Of Lambert under a normal map, over plain Lambert: (n, 2, 1)."""
+def relief_factors(p: Array, axis: Array, wo: Array, n: Array, wi: Array) -> Array:
+    """Ratio of Lambert under a normal map to plain Lambert, of shape (n, 2, 1)."""
     floor = (axis == 1)[:, None]
     u, v = (p[:, 0] + 1) / 2, np.where(axis == 1, 1 - p[:, 2], 1 + p[:, 1]) / 2
-    green = np.where(floor, [[0.0, 0.0, 1.0]], [[0.0, -1.0, 0.0]])  # against glTF's v
+    green = np.where(floor, [[0.0, 0.0, 1.0]], [[0.0, -1.0, 0.0]])  # opposite to glTF's v
     c = scenes.mapped_normal(u, v)
     normal = unit(c[:, :1] * [1.0, 0.0, 0.0] + c[:, 1:2] * green + c[:, 2:] * n)
     cosine = dot(wi, n)
     ours, theirs = our_bend(normal, wo, n), cycles_bend(normal, wo, n)
     lit = np.stack([dot(ours, wi), dot(theirs, wi) * softened(theirs, wi, n)], 1)
-    return (np.maximum(lit, 0.0) / np.maximum(cosine, 1e-9)[:, None])[:, :, None]
+    result: Array = (np.maximum(lit, 0.0) / np.maximum(cosine, 1e-9)[:, None])[:, :, None]
+    return result
 
 
-def softened(normal, wi, n):
-    """Cycles dims what a map turns to the light (Chiang et al. 2019, "Taming the shadow
-    terminator")."""
+def softened(normal: Array, wi: Array, n: Array) -> Array:
+    """Factor by which Cycles dims surfaces that a map turns to the light.
+
+    See Chiang et al. 2019, "Taming the shadow terminator".
+    """
     g = dot(n, wi) / np.maximum(dot(normal, wi) * dot(n, normal), 1e-9)
     return np.where(g < 1, g + g**2 - g**3, 1.0)
 
 
-def our_bend(normal, wo, n):
-    """transport/bsdf/ggx/theory.md, shading normals: the mirror image of wo stays above n."""
+def our_bend(normal: Array, wo: Array, n: Array) -> Array:
+    """Bends a normal so that the mirror direction of wo stays above n (ggx/theory.md)."""
     mirror, o = reflected(wo, normal), dot(wo, n)
     least = np.minimum(0.01, 0.9 * o)[:, None]
     up = dot(mirror, n)[:, None]
@@ -223,10 +246,11 @@ def our_bend(normal, wo, n):
     return np.where((up >= least) & (dot(normal, wo) > 0)[:, None], normal, bent)
 
 
-def cycles_bend(normal, wo, n):
-    """The same of Cycles (ensure_valid_reflection), which turns the normal straight towards n."""
+def cycles_bend(normal: Array, wo: Array, n: Array) -> Array:
+    """The same in Cycles (ensure_valid_reflection), which turns the normal straight towards n."""
     least = np.minimum(0.01, 0.9 * dot(wo, n))
-    x = unit(normal - dot(normal, n)[:, None] * n + 1e-12)
+    flat: Array = normal - dot(normal, n)[:, None] * n
+    x = unit(flat + 1e-12)
     ix, iz = dot(wo, x), dot(wo, n)
     a = ix**2 + iz**2
     b, c = np.sqrt(np.maximum(0, ix**2 * (a - least**2))), iz * least + a
@@ -247,16 +271,18 @@ def cycles_bend(normal, wo, n):
     return np.where(keep[:, None], normal, bent)
 
 
-def camera_rays(count: int, random) -> tuple[np.ndarray, np.ndarray]:
+def camera_rays(
+    count: int, random: np.random.Generator
+) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
     camera = source.read_camera(scenes.CAMERA)
     reach = np.tan(np.radians(camera.vertical_fov_deg) / 2)
-    x, y = (2 * random.random((2, count)) - 1) * reach  # a square film
+    x, y = (2 * random.random((2, count)) - 1) * reach  # the film is square
     way = camera.forward + x[:, None] * camera.right + y[:, None] * camera.up
     return np.tile(camera.position, (count, 1)), unit(way)
 
 
-def to_sphere(o, d):
-    """Distance along the ray; infinite on a miss."""
+def to_sphere(o: Array, d: Array) -> Array:
+    """Distance to the sphere along the ray; infinite on a miss."""
     away = o - np.array(scenes.CENTRE)
     b, c = dot(away, d), dot(away, away) - scenes.RADIUS**2
     root = b * b - c
@@ -265,17 +291,20 @@ def to_sphere(o, d):
     return np.where((root > 0) & (t > 1e-6), t, np.inf)
 
 
-def frame(n):
-    """Two axes beside each normal."""
+def frame(n: Array) -> tuple[Array, Array]:
+    """Two axes that complete each normal to a frame."""
     other = np.where(np.abs(n[:, :1]) > 0.7, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
     x = unit(np.cross(other, n))
     return x, np.cross(n, x)
 
 
-def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
-         mapped: bool = False) -> np.ndarray:
-    """Radiance (count, 2, 3) of random points of the film: with our model, and with Cycles'.
-    `mapped`: of model_scenes.mapped_box, which has no sphere."""
+def walk(
+    scatter: Scatter, colours: npt.NDArray[Any], count: int, seed: int, mapped: bool = False
+) -> npt.NDArray[Any]:
+    """Radiance (count, 2, 3) of random points of the film, with our model and with that of Cycles.
+
+    `mapped` selects model_scenes.mapped_box, which has no sphere.
+    """
     random = np.random.default_rng(seed)
     o, d = camera_rays(count, random)
     found, weight, row = np.zeros((count, 2, 3)), np.ones((count, 2, 3)), np.arange(count)
@@ -286,7 +315,7 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
         axis, ball = planes.argmin(axis=1), np.full(len(o), np.inf) if mapped else to_sphere(o, d)
         t = np.minimum(planes.min(axis=1), ball)
         p, on_ball, sign = o + t[:, None] * d, ball <= t, np.sign(d[np.arange(len(d)), axis])
-        lit = ~on_ball & (axis == 1) & (sign > 0)  # the lamp's gap of 0.001 is left out
+        lit = ~on_ball & (axis == 1) & (sign > 0)  # ignores the gap of 0.001 above the lamp
         lit &= (np.abs(p[:, [0, 2]]) < scenes.LAMP_HALF).all(axis=1)
         found[row[lit]] = weight[lit] * scenes.RADIANCE
         n = -np.eye(3)[axis] * sign[:, None]
@@ -301,8 +330,9 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
         wi[b], factor[b] = scatter(wo, inside[b], u[b])
         if mapped:
             b = np.flatnonzero((sign < 0) & (axis > 0))
-            factor[b] *= relief_factors(p[b], axis[b], -d[b], n[b],
-                                        wi[b, :1] * x[b] + wi[b, 1:2] * y[b] + wi[b, 2:] * n[b])
+            factor[b] *= relief_factors(
+                p[b], axis[b], -d[b], n[b], wi[b, :1] * x[b] + wi[b, 1:2] * y[b] + wi[b, 2:] * n[b]
+            )
         weight = weight * factor
         stay = np.minimum(weight.max(axis=(1, 2)), 1.0) * ~lit  # Russian roulette
         live = u[:, 3] < stay
@@ -312,18 +342,21 @@ def walk(scatter: Scatter, colours: np.ndarray, count: int, seed: int,
     return found
 
 
-def image_means(data: dict, batches: int, batch: int = 1 << 15) -> np.ndarray:
-    """Mean grey radiance (batch, 2) with our model and with Cycles', by the same paths. `data`: the
-    sphere's material; none: of mapped_box."""
+def image_means(data: dict[str, Any], batches: int, batch: int = 1 << 15) -> npt.NDArray[Any]:
+    """Mean grey radiance (batches, 2) with our model and with that of Cycles, by the same paths.
+
+    `data` is the sphere's material; an empty one selects mapped_box.
+    """
     materials = scenes.box_materials()
     colours = np.array([materials[name]["reflectance"] for name in FACES], float)
     scatter = scatter_of(data) if data else conductor(1.0)
-    return np.array([walk(scatter, colours, batch, seed, not data).mean(axis=(0, 2))
-                     for seed in range(batches)])
+    return np.array(
+        [walk(scatter, colours, batch, seed, not data).mean(axis=(0, 2)) for seed in range(batches)]
+    )
 
 
-def expected_ratio(data: dict, batches: int) -> tuple[float, float]:
-    """Ours / Cycles, and its standard error."""
+def expected_ratio(data: dict[str, Any], batches: int) -> tuple[float, float]:
+    """Expected ratio ours / Cycles, and its standard error."""
     means = image_means(data, batches)
     ours, cycles = means.mean(axis=0)
     scatter = (means[:, 0] - ours / cycles * means[:, 1]).std(ddof=1) / np.sqrt(batches)

@@ -1,4 +1,4 @@
-"""Where an axis begins and ends, and which ticks it has."""
+"""Computes the range of an axis and its ticks."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 @dataclass(frozen=True)
 class Tick:
     value: float
-    factor: float | None  # label is factor * 10^power; factor None: power alone; no label: minor
-    power: int | None
+    factor: float | None  # the label is factor * 10^power, or 10^power where None
+    power: int | None  # None marks a minor tick, which has no label
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Axis:
     high: float
 
     def at(self, value: float) -> float:
-        """0 at the low end, 1 at the high end; below 0 for what a log axis cannot show."""
+        """Position on the axis from 0 to 1; below 0 for values that a log axis cannot show."""
         if not self.log:
             return (value - self.low) / (self.high - self.low)
         if value <= 0:
@@ -30,7 +30,7 @@ class Axis:
 
 
 def axis_over(values: list[float], log: bool) -> Axis:
-    """Room for every value, and a margin of 5 %."""
+    """An axis that covers all values with a margin of 5 %."""
     low, high = min(values), max(values)
     if log:
         if high / low < 1.2:
@@ -62,14 +62,14 @@ def ticks(axis: Axis) -> list[Tick]:
 
 def log_ticks(axis: Axis) -> list[Tick]:
     first, last = math.floor(math.log10(axis.low)), math.ceil(math.log10(axis.high))
-    decades = [n for n in range(first, last + 1) if axis.low <= 10.0 ** n <= axis.high]
+    decades = [n for n in range(first, last + 1) if axis.low <= 10.0**n <= axis.high]
     step = max(1, math.ceil(len(decades) / 8))
-    # One or two decades alone leave most of an axis unlabelled.
+    # Labels at one or two decades alone would leave most of the axis unlabelled.
     labelled = {1: (2, 5), 2: (3,)}.get(len(decades), (2, 3, 5) if not decades else ())
     result = []
     for n in range(first, last + 1):
         for factor in range(1, 10):
-            value = factor * 10.0 ** n
+            value = factor * 10.0**n
             if not axis.low <= value <= axis.high:
                 continue
             if factor == 1 and n % step == 0:

@@ -1,11 +1,12 @@
-"""EXR layers and PNG pictures, packed for the page.
+"""Packs EXR layers and PNG pictures for the page.
 
-An HDR image travels as half floats, times a power of two that brings its largest value just below
-2^15, so that dark images keep their digits. The 16 bits of green, and those of red and blue minus
-green's, are predicted from the neighbours (median of left, above, and left + above - corner, as in
-lossless JPEG); the residuals, low bytes before high bytes, are deflated. Half bits are nearly a
-logarithm, so that minus green leaves the hue, smooth even where the light is noisy: that halves the
-size of a VPL image against plain deflate. web/hdr.js undoes it.
+An HDR image is stored as half floats, times a power of two that scales its largest value to just
+below 2^15, so that dark images keep their precision. The 16 bits of green, and those of red and
+blue minus those of green, are predicted from their neighbours: by the median of left, above, and
+left + above - corner, as in lossless JPEG. The residuals are deflated, low bytes before high bytes.
+The bits of a half float are nearly its logarithm, so subtracting green leaves the hue, which is
+smooth even where the light is noisy. That halves the size of a VPL image against plain deflate.
+web/hdr.js decodes it.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ import math
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import OpenImageIO as oiio
 
 from report_json import ReportError
@@ -27,36 +30,40 @@ class HdrImage:
     width: int
     height: int
     exponent: int  # value = half * 2^exponent
-    data: str      # base64
+    data: str  # base64
 
 
-def read_layer(path: Path, layer: str) -> np.ndarray:
-    """height x width x 3 linear floats; the channels are `layer`.R or, without a layer, R."""
+def read_layer(path: Path, layer: str) -> npt.NDArray[Any]:
+    """Linear floats (height, width, 3) of a layer, whose channels are `layer`.R, or R if empty."""
     if not path.is_file():
         raise ReportError(f"{path}: no such file; render it, or correct its name in the report")
     source = oiio.ImageInput.open(str(path))
     if source is None:
-        oiio.geterror()  # its text names no cure, and stays queued if it is not fetched
+        oiio.geterror()  # fetching the error removes it from OpenImageIO's queue
         raise ReportError(f"{path}: no image that can be read; render it again")
     names = list(source.spec().channelnames)
     wanted = [f"{layer}.{c}" if layer else c for c in "RGB"]
     if not set(wanted) <= set(names):
-        raise ReportError(f"{path}: no channels {' '.join(wanted)} (it has {' '.join(names)}); "
-                          "name another layer, or render with --layers")
-    pixels = source.read_image(oiio.FLOAT)
+        raise ReportError(
+            f"{path}: no channels {' '.join(wanted)} (it has {' '.join(names)}); "
+            "name another layer, or render with --layers"
+        )
+    pixels: npt.NDArray[Any] | None = source.read_image(oiio.FLOAT)
     if pixels is None:
         raise ReportError(f"{path}: cut short or damaged; render it again")
     pixels = pixels[:, :, [names.index(name) for name in wanted]]
     bad = np.argwhere(~np.isfinite(pixels).all(axis=2))
     if len(bad):
         y, x = bad[0]
-        raise ReportError(f"{path}: pixel ({x}, {y}): not finite, and {len(bad) - 1} more; see "
-                          "vpl-inspect check, and render it again")
+        raise ReportError(
+            f"{path}: pixel ({x}, {y}): not finite, and {len(bad) - 1} more; see "
+            "vpl-inspect check, and render it again"
+        )
     return pixels
 
 
-def residuals(plane: np.ndarray) -> np.ndarray:
-    """What the predictor misses, as unsigned 16 bits with the small ones near 0."""
+def residuals(plane: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Residuals of the predictor in 16 bits, mapped so that small ones of either sign are small."""
     p = plane.astype(np.int32)
     left, above, corner = np.zeros_like(p), np.zeros_like(p), np.zeros_like(p)
     left[:, 1:] = p[:, :-1]
@@ -70,7 +77,7 @@ def residuals(plane: np.ndarray) -> np.ndarray:
     return np.where(missed < 0, -2 * missed - 1, 2 * missed).astype(np.uint16)
 
 
-def pack(pixels: np.ndarray) -> HdrImage:
+def pack(pixels: npt.NDArray[Any]) -> HdrImage:
     height, width = pixels.shape[:2]
     largest = float(np.abs(pixels).max())
     exponent = math.frexp(largest)[1] - 15 if largest > 0 else 0
@@ -84,7 +91,7 @@ def pack(pixels: np.ndarray) -> HdrImage:
 
 
 class HdrStore:
-    """Every image of a page once, however many views show it."""
+    """Stores every image of a page once, however many views show it."""
 
     def __init__(self) -> None:
         self.images: list[HdrImage] = []
@@ -99,13 +106,14 @@ class HdrStore:
 
 
 def read_png(path: Path) -> tuple[int, int, str]:
-    """Width, height and the file's own bytes as base64."""
+    """Width, height, and the bytes of the file as base64."""
     try:
         data = path.read_bytes()
     except OSError as e:
-        raise ReportError(f"{path}: {e.strerror}; make it, or correct its name in the "
-                          "report") from e
+        raise ReportError(
+            f"{path}: {e.strerror}; make it, or correct its name in the report"
+        ) from e
     if data[:8] != b"\x89PNG\r\n\x1a\n" or data[12:16] != b"IHDR" or data[-8:-4] != b"IEND":
         raise ReportError(f"{path}: not a whole PNG file; make it again")
-    width, height = (int.from_bytes(data[at:at + 4], "big") for at in (16, 20))
+    width, height = (int.from_bytes(data[at : at + 4], "big") for at in (16, 20))
     return width, height, base64.b64encode(data).decode()

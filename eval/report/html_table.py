@@ -1,4 +1,4 @@
-"""Tables with the best value of each group marked."""
+"""Makes tables that mark the best value of each group."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ MINUS = "−"
 
 
 def number_text(value: float, digits: int) -> str:
-    """`digits` significant digits, no exponent where a reader would not want one."""
+    """A number with `digits` significant digits; very small and large ones get an exponent."""
     if value == 0:
         return "0"
     size = math.floor(math.log10(abs(value)))
@@ -23,7 +23,7 @@ def number_text(value: float, digits: int) -> str:
 
 
 def cell_text(value: Any, digits: int, fixed: int | None = None) -> str:
-    """`fixed` decimals where given, else `digits` significant ones."""
+    """Text of a cell with `fixed` decimals if given, else `digits` significant digits."""
     if value is None:
         return "–"
     if isinstance(value, str):
@@ -35,24 +35,25 @@ def cell_text(value: Any, digits: int, fixed: int | None = None) -> str:
         return f"{centre} ± {error}"
     if fixed is not None:
         return f"{value:.{fixed}f}".replace("-", MINUS)
-    if isinstance(value, int) and abs(value) >= 10 ** digits:
+    if isinstance(value, int) and abs(value) >= 10**digits:
         return f"{value:,}".replace(",", "\u2009").replace("-", MINUS)
     return number_text(value, digits)
 
 
 def badness(value: Any, better: str) -> float | None:
-    """Small is good; None where the value is not to be judged."""
+    """A rank that is smaller for better values, or None where the value is not judged."""
     if isinstance(value, tuple):
         value = value[0]
     if value is None or isinstance(value, str):
         return None
     if better == "one":
         return abs(math.log(value)) if value > 0 else math.inf
-    return value if better == "low" else -value
+    result: float | None = value if better == "low" else -value
+    return result
 
 
 def groups_of(rows: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
-    """Consecutive rows of one group stand together."""
+    """Groups of consecutive rows with equal names."""
     groups: list[tuple[str, list[dict[str, Any]]]] = []
     for row in rows:
         if not groups or groups[-1][0] != row["group"]:
@@ -62,11 +63,14 @@ def groups_of(rows: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]
 
 
 def best_rows(rows: list[dict[str, Any]], column: dict[str, Any]) -> set[int]:
-    """Of one group; none where there is nothing to choose between."""
+    """Best rows of a group for a column; empty where fewer than two are judged."""
     if column["better"] is None:
         return set()
-    found = {i: badness(row["cells"][column["key"]], column["better"])
-             for i, row in enumerate(rows) if row["judged"]}
+    found = {
+        i: badness(row["cells"][column["key"]], column["better"])
+        for i, row in enumerate(rows)
+        if row["judged"]
+    }
     judged = {i: v for i, v in found.items() if v is not None}
     if len(judged) < 2:
         return set()
@@ -80,12 +84,13 @@ def is_text(column: dict[str, Any], rows: list[dict[str, Any]]) -> bool:
 def head(columns: list[dict[str, Any]], text: list[bool]) -> str:
     hints = {"low": "lower is better", "high": "higher is better", "one": "1 is best"}
     cells = []
-    for column, left in zip(columns, text):
+    for column, left in zip(columns, text, strict=True):
         hint = hints.get(column["better"], "")
         below = " · ".join(t for t in (column["unit"], hint) if t)
         small = f"<small>{escape(below)}</small>" if below else ""
-        cells.append(f'<th scope="col"{" class=text" if left else ""}>'
-                     f'{escape(column["label"])}{small}</th>')
+        cells.append(
+            f'<th scope="col"{" class=text" if left else ""}>{escape(column["label"])}{small}</th>'
+        )
     return "<thead><tr>" + "".join(cells) + "</tr></thead>"
 
 
@@ -95,15 +100,19 @@ def table_html(table: dict[str, Any]) -> str:
     parts = [f'<section class="block" id="table-{table["id"]}"><h2>{escape(table["title"])}</h2>']
     if table["note"]:
         parts.append(f'<p class="note">{escape(table["note"])}</p>')
-    # Focusable, so that arrow keys scroll it where it is wider than the page.
-    parts.append(f'<div class="scroll" tabindex="0" role="region" '
-                 f'aria-label="{escape(table["title"])}"><table class="numbers">')
+    # The table takes focus, so that arrow keys scroll it where it is wider than the page.
+    parts.append(
+        f'<div class="scroll" tabindex="0" role="region" '
+        f'aria-label="{escape(table["title"])}"><table class="numbers">'
+    )
     parts.append(head(columns, text))
     for group, rows in groups_of(table["rows"]):
         parts.append("<tbody>")
         if group:
-            parts.append(f'<tr class="group"><th colspan="{len(columns)}" scope="rowgroup">'
-                         f"<span>{escape(group)}</span></th></tr>")
+            parts.append(
+                f'<tr class="group"><th colspan="{len(columns)}" scope="rowgroup">'
+                f"<span>{escape(group)}</span></th></tr>"
+            )
         best = [best_rows(rows, c) for c in columns]
         parts += [row_html(i, row, columns, text, best) for i, row in enumerate(rows)]
         parts.append("</tbody>")
@@ -113,16 +122,20 @@ def table_html(table: dict[str, Any]) -> str:
     return "\n".join(parts + ["</section>"])
 
 
-def row_html(i: int, row: dict[str, Any], columns: list[dict[str, Any]], text: list[bool],
-             best: list[set[int]]) -> str:
+def row_html(
+    i: int,
+    row: dict[str, Any],
+    columns: list[dict[str, Any]],
+    text: list[bool],
+    best: list[set[int]],
+) -> str:
     cells = []
     for k, column in enumerate(columns):
-        shown = escape(cell_text(row["cells"][column["key"]], column["digits"],
-                                 column["decimals"]))
+        shown = escape(cell_text(row["cells"][column["key"]], column["digits"], column["decimals"]))
         if i in best[k]:
             shown = f'<b class="best">{shown}<span class="hidden"> (best)</span></b>'
         if k == 0:
             cells.append(f'<th scope="row"{" class=text" if text[k] else ""}>{shown}</th>')
         else:
-            cells.append(f'<td{" class=text" if text[k] else ""}>{shown}</td>')
+            cells.append(f"<td{' class=text' if text[k] else ''}>{shown}</td>")
     return "<tr>" + "".join(cells) + "</tr>"

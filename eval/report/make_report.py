@@ -17,14 +17,18 @@ from html_page import page_html
 from report_json import ReportError, load
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "pipelines"))
-import output_guard  # noqa: E402  (after the path that it needs)
+import output_guard  # noqa: E402
+
+__all__ = ["EXIT_INPUT", "EXIT_OUTPUT", "main", "output_guard", "write_output"]
 
 EXIT_INPUT = 3
 EXIT_OUTPUT = 4
 
 
-def write_output(program: str, path: Path, data: bytes, kind: output_guard.Kind, report: Path) -> int:
-    """The exit code; what is wrong is printed."""
+def write_output(
+    program: str, path: Path, data: bytes, kind: output_guard.Kind, report: Path
+) -> int:
+    """Writes the output. Returns the exit code, and prints the problem if there is one."""
     try:
         output_guard.write(path, data, kind, "-o", {"the report": report})
         return 0
@@ -37,7 +41,8 @@ def write_output(program: str, path: Path, data: bytes, kind: output_guard.Kind,
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("report", type=Path, help="what to show (.json)")
     parser.add_argument("-o", "--output", type=Path, required=True, help="the page (.html)")
     parser.add_argument("--quiet", action="store_true", help="no line about the page's size")

@@ -1,20 +1,20 @@
-"""The page in a real browser, and ways to look at it."""
+"""A test case with the page in a real browser, and functions to inspect it."""
 
 from __future__ import annotations
 
 import tempfile
 import time
 import unittest
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from test_support import WIDTH, browser, run, write_report
 
-
-# By way of a canvas of its own: Chromium complains in the console of reading the page's repeatedly.
+# It reads a canvas of its own, as Chromium warns in the console of repeated reads of the page's.
 READ_PIXEL = """
     function readPixel(canvas, x, y) {
       const own = document.createElement('canvas');
@@ -26,6 +26,10 @@ READ_PIXEL = """
 
 
 class PageCase(unittest.TestCase):
+    folder: tempfile.TemporaryDirectory[str]
+    url: str
+    driver: Any
+
     @classmethod
     def setUpClass(cls) -> None:
         cls.folder = tempfile.TemporaryDirectory()
@@ -45,15 +49,19 @@ class PageCase(unittest.TestCase):
         self.assertEqual(found, [], "the console is not silent")
 
     def open(self, width: int, scheme: str) -> None:
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
-            "width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False})
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
-            "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        self.driver.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": False},
+        )
+        self.driver.execute_cdp_cmd(
+            "Emulation.setEmulatedMedia",
+            {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
+        )
         self.driver.get(self.url)
         self.viewer = self.reach(0)
 
     def reach(self, index: int) -> Any:
-        """The viewer, in sight and with all its images decoded."""
+        """The viewer, scrolled into view and with all its images decoded."""
         viewer = self.all(".viewer")[index]
         self.js("arguments[0].scrollIntoView({behavior: 'instant'})", viewer)
         self.until(lambda: viewer.get_attribute("aria-busy") == "false" and "relMSE" in viewer.text)
@@ -69,7 +77,8 @@ class PageCase(unittest.TestCase):
         return self.driver.execute_script(script, *arguments)
 
     def all(self, selector: str) -> list[Any]:
-        return self.driver.find_elements("css selector", selector)
+        result: list[Any] = self.driver.find_elements("css selector", selector)
+        return result
 
     def one(self, selector: str) -> Any:
         return self.viewer.find_element("css selector", selector)
@@ -84,16 +93,27 @@ class PageCase(unittest.TestCase):
             else:
                 chain.send_keys(key)
         chain.perform()
-        self.until(lambda: self.viewer.get_attribute("aria-busy") == "false")  # decoding
+        # All images are decoded then.
+        self.until(lambda: bool(self.viewer.get_attribute("aria-busy") == "false"))
 
     def colour(self, x: float, y: float) -> list[int]:
-        """What the canvas shows at a place given in image pixels at zoom 1."""
-        return self.js("""
+        """Colour of the canvas at a place given in image pixels at zoom 1."""
+        result: list[int] = self.js(
+            """
             const c = arguments[0].querySelector('.stage canvas'), s = c.width / arguments[3];
-            return readPixel(c, arguments[1] * s, arguments[2] * s);""" + READ_PIXEL,
-                       self.viewer, x, y, WIDTH)
+            return readPixel(c, arguments[1] * s, arguments[2] * s);"""
+            + READ_PIXEL,
+            self.viewer,
+            x,
+            y,
+            WIDTH,
+        )
+        return result
 
     def readout(self) -> list[list[str]]:
-        return self.js("return [...arguments[0].querySelectorAll('.readout tbody tr')].map("
-                       "(r) => [...r.querySelectorAll('td')].map((c) => c.textContent))",
-                       self.viewer)
+        result: list[list[str]] = self.js(
+            "return [...arguments[0].querySelectorAll('.readout tbody tr')].map("
+            "(r) => [...r.querySelectorAll('td')].map((c) => c.textContent))",
+            self.viewer,
+        )
+        return result

@@ -1,7 +1,7 @@
-"""The look of plot lines: colour, marker and dash, the same in the page and in plots.py.
+"""Colours and markers of plot lines, which the page and plots.py share.
 
-The hues keep apart under the common colour-vision deficiencies (they follow Okabe and Ito), have a
-contrast of at least 3:1 on their background, and no line is known by its colour alone.
+The hues follow Okabe and Ito, so that they differ under the common colour-vision deficiencies.
+Their contrast with the background is at least 3:1. No line is identified by its colour alone.
 """
 
 LIGHT = ("#0067b3", "#cc4b00", "#00795a", "#a8327e", "#846500", "#4a4f57", "#5b4bc4", "#b3261e")

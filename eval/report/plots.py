@@ -18,7 +18,7 @@ from typing import Any
 import matplotlib
 
 matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402  (after the choice of backend)
+from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.axis import Axis as PlotAxis  # noqa: E402
 
@@ -28,14 +28,28 @@ from palette import LIGHT, MARKERS  # noqa: E402
 from report_json import ReportError, load  # noqa: E402
 from svg_plot import name_lines  # noqa: E402
 
-SYMBOLS = {"circle": "o", "square": "s", "triangle": "^", "diamond": "D", "down": "v",
-           "plus": "P", "cross": "X"}
-STYLE = {"font.family": "DejaVu Sans", "font.size": 10, "axes.spines.top": False,
-         "axes.spines.right": False, "axes.edgecolor": "#6b7076", "svg.hashsalt": "bnvpl",
-         "svg.fonttype": "path", "path.simplify": False}
+SYMBOLS = {
+    "circle": "o",
+    "square": "s",
+    "triangle": "^",
+    "diamond": "D",
+    "down": "v",
+    "plus": "P",
+    "cross": "X",
+}
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#6b7076",
+    "svg.hashsalt": "bnvpl",
+    "svg.fonttype": "path",
+    "path.simplify": False,
+}
 
 
-def tick_text(factor: float | None, power: int) -> str:
+def tick_text(factor: float | None, power: int | None) -> str:
     if factor is None:
         return f"$10^{{{power}}}$"
     return f"{factor:.6g}" if power == 0 else f"${factor:.0f}\\cdot10^{{{power}}}$"
@@ -52,9 +66,19 @@ def set_ticks(target: PlotAxis, axis: Axis) -> None:
 def draw(axes: Axes, plot: dict[str, Any]) -> None:
     for i, s in enumerate(plot["series"]):
         marker = SYMBOLS[MARKERS[i % len(MARKERS)]]
-        axes.errorbar(s["x"], s["y"], yerr=s["error"] or None, label=", ".join(name_lines(s)),
-                      color=LIGHT[i % len(LIGHT)], marker=marker, markersize=5, linewidth=1.6,
-                      linestyle="--" if s["dash"] else "-", capsize=2.5, elinewidth=1)
+        axes.errorbar(
+            s["x"],
+            s["y"],
+            yerr=s["error"] or None,
+            label=", ".join(name_lines(s)),
+            color=LIGHT[i % len(LIGHT)],
+            marker=marker,
+            markersize=5,
+            linewidth=1.6,
+            linestyle="--" if s["dash"] else "-",
+            capsize=2.5,
+            elinewidth=1,
+        )
     x_axis, y_axis = axes_of(plot)
     axes.set_xscale("log" if x_axis.log else "linear")
     axes.set_yscale("log" if y_axis.log else "linear")
@@ -71,21 +95,23 @@ def draw(axes: Axes, plot: dict[str, Any]) -> None:
 
 
 def picture(plot: dict[str, Any], kind: str, dpi: int) -> bytes:
-    # No date and no version: equal input, equal bytes.
+    # The file has no date and no version, so that equal input gives equal bytes.
     metadata = {"svg": {"Date": None, "Creator": None}, "png": {"Software": None}}[kind]
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(7.6, 4.2))
         draw(axes, plot)
         buffer = io.BytesIO()
-        figure.savefig(buffer, format=kind, dpi=dpi, bbox_inches="tight", facecolor="white",
-                       metadata=metadata)
+        figure.savefig(
+            buffer, format=kind, dpi=dpi, bbox_inches="tight", facecolor="white", metadata=metadata
+        )
         plt.close(figure)
     return buffer.getvalue()
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("report", type=Path, help="the report (.json)")
     parser.add_argument("plot", help="id of the plot")
     parser.add_argument("-o", "--output", type=Path, required=True, help="picture (.png or .svg)")
@@ -99,13 +125,20 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         plots = {p["id"]: p for p in load(options.report)["plots"]}
         if options.plot not in plots:
-            raise ReportError(f"{options.report}: no plot has the id '{options.plot}'; it has "
-                              f"{', '.join(plots) or 'none'}")
+            raise ReportError(
+                f"{options.report}: no plot has the id '{options.plot}'; it has "
+                f"{', '.join(plots) or 'none'}"
+            )
     except ReportError as e:
         print(f"plots.py: {e}", file=sys.stderr)
         return EXIT_INPUT
-    return write_output("plots.py", options.output, picture(plots[options.plot], kind, options.dpi),
-                        {"png": output_guard.PNG, "svg": output_guard.SVG}[kind], options.report)
+    return write_output(
+        "plots.py",
+        options.output,
+        picture(plots[options.plot], kind, options.dpi),
+        {"png": output_guard.PNG, "svg": output_guard.SVG}[kind],
+        options.report,
+    )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""Reads report.json and checks it: what comes out is complete, so that the writers need no checks.
+"""Reads and checks report.json. The result is complete, so that the writers need no checks.
 
-Every problem is a ReportError with one line: file, place inside it, problem, cure. The format is
-described in README.md.
+Every problem is a ReportError with one line: file, place inside it, problem, cure. README.md
+describes the format.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ BETTER = ("low", "high", "one", None)
 
 
 class ReportError(Exception):
-    """Input that cannot become a report; the message is one line."""
+    """An error of the input; the message is one line."""
 
 
 class Node:
-    """A JSON value that knows where it stands, for messages that name the place."""
+    """A JSON value with its place in the file, which messages name."""
 
     def __init__(self, value: Any, source: Path, place: str = "") -> None:
         self.value, self.source, self.place = value, source, place
@@ -38,7 +38,7 @@ class Node:
         return self.value
 
     def get(self, key: str, kind: type | tuple[type, ...], name: str, default: Any = None) -> Any:
-        """An optional member; null counts as absent."""
+        """An optional member. null counts as absent."""
         if self.value.get(key) is None:
             return default
         return self.child(key).typed(kind, name)
@@ -48,7 +48,8 @@ class Node:
             if default is None:
                 raise self.fail(f"'{key}' is missing", "add it, a text")
             return default
-        return self.child(key).typed(str, "a text")
+        result: str = self.child(key).typed(str, "a text")
+        return result
 
     def items(self, key: str, required: bool = False) -> list[Node]:
         if key not in self.value:
@@ -72,7 +73,7 @@ def shown(value: Any) -> str:
 
 
 def load(path: Path) -> dict[str, Any]:
-    """The checked report; file names are Paths, absent optional members have their defaults."""
+    """The checked report. File names are Paths; absent optional members have their defaults."""
     try:
         data = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as e:
@@ -82,8 +83,10 @@ def load(path: Path) -> dict[str, Any]:
     try:
         value = json.loads(data, parse_constant=refuse_constant)
     except json.JSONDecodeError as e:
-        raise ReportError(f"{path}: line {e.lineno}, column {e.colno}: {e.msg}; correct it, or "
-                          "rerun the evaluation that writes it") from e
+        raise ReportError(
+            f"{path}: line {e.lineno}, column {e.colno}: {e.msg}; correct it, or "
+            "rerun the evaluation that writes it"
+        ) from e
     except ValueError as e:
         raise ReportError(f"{path}: {e}") from e
     root = Node(value, path)
@@ -125,32 +128,51 @@ def table(node: Node) -> dict[str, Any]:
     for c in node.objects("columns", required=True):
         better = c.value.get("better")
         if better not in BETTER:
-            raise c.child("better").fail(f"{shown(better)} is unknown",
-                                         'use "low", "high", "one" or null')
-        columns.append({"key": c.text("key"), "label": c.text("label"),
-                        "unit": c.get("unit", str, "a text", ""), "better": better,
-                        "digits": c.get("digits", int, "a number of digits", 3),
-                        "decimals": c.get("decimals", int, "a number of decimals")})
+            raise c.child("better").fail(
+                f"{shown(better)} is unknown", 'use "low", "high", "one" or null'
+            )
+        columns.append(
+            {
+                "key": c.text("key"),
+                "label": c.text("label"),
+                "unit": c.get("unit", str, "a text", ""),
+                "better": better,
+                "digits": c.get("digits", int, "a number of digits", 3),
+                "decimals": c.get("decimals", int, "a number of decimals"),
+            }
+        )
     if not columns:
         raise node.child("columns").fail("no columns", "list at least one")
     rows = []
     for r in node.objects("rows", required=True):
         cells = {c["key"]: cell(r, c["key"]) for c in columns}
-        rows.append({"group": r.get("group", str, "a text", ""), "cells": cells,
-                     "judged": not r.get("unjudged", bool, "true or false", False)})
-    return {"id": identity(node), "title": node.text("title"), "note": node.text("note", ""),
-            "columns": columns, "rows": rows}
+        rows.append(
+            {
+                "group": r.get("group", str, "a text", ""),
+                "cells": cells,
+                "judged": not r.get("unjudged", bool, "true or false", False),
+            }
+        )
+    return {
+        "id": identity(node),
+        "title": node.text("title"),
+        "note": node.text("note", ""),
+        "columns": columns,
+        "rows": rows,
+    }
 
 
 def cell(row: Node, key: str) -> Any:
-    """A text, a number, None, or (value, error)."""
+    """Value of a cell: a text, a number, None, or (value, error)."""
     value = row.value.get(key)
     if isinstance(value, dict):
         inner = row.child(key)
         return number(inner, "value"), number(inner, "error")
     if value is not None and (isinstance(value, bool) or not isinstance(value, (str, int, float))):
-        raise row.child(key).fail(f"{shown(value)} is neither text nor number",
-                                  'use those, null, or {"value": v, "error": e}')
+        raise row.child(key).fail(
+            f"{shown(value)} is neither text nor number",
+            'use those, null, or {"value": v, "error": e}',
+        )
     return value
 
 
@@ -163,32 +185,52 @@ def number(node: Node, key: str) -> float:
 def scene(node: Node) -> dict[str, Any]:
     views = node.objects("views", required=True)
     unique_id = identity(node)
-    result = {"id": unique_id, "title": node.text("title"), "note": node.text("note", ""),
-              "views": [view(v) for v in views]}
+    result = {
+        "id": unique_id,
+        "title": node.text("title"),
+        "note": node.text("note", ""),
+        "views": [view(v) for v in views],
+    }
     unique(views)
     return result
 
 
 def view(node: Node) -> dict[str, Any]:
-    layers = [{"id": identity(n), "title": n.text("title")}
-              for n in node.objects("layers", required=True)]
+    layers = [
+        {"id": identity(n), "title": n.text("title")} for n in node.objects("layers", required=True)
+    ]
     names = [layer["id"] for layer in layers]
     images = [image(n, names) for n in node.objects("images", required=True)]
     unique(node.objects("layers"))
     unique(node.objects("images"))
-    pictures = [{"id": identity(n), "label": n.text("label"), "caption": n.text("caption", ""),
-                 "file": node.source.parent / n.text("file")} for n in node.objects("pictures")]
+    pictures = [
+        {
+            "id": identity(n),
+            "label": n.text("label"),
+            "caption": n.text("caption", ""),
+            "file": node.source.parent / n.text("file"),
+        }
+        for n in node.objects("pictures")
+    ]
     unique(node.objects("pictures"))
     if not images:
         raise node.child("images").fail("no images", "list at least one")
     reference = node.get("reference", str, "the id of an image")
     if reference is not None and reference not in [i["id"] for i in images]:
-        raise node.child("reference").fail(f"no image has the id '{reference}'",
-                                           "name one of 'images', or null")
+        raise node.child("reference").fail(
+            f"no image has the id '{reference}'", "name one of 'images', or null"
+        )
     exposure = node.get("exposure", (int, float), "a number of stops (EV)")
-    return {"id": identity(node), "title": node.text("title"), "note": node.text("note", ""),
-            "reference": reference, "exposure": exposure, "layers": layers, "images": images,
-            "pictures": pictures}
+    return {
+        "id": identity(node),
+        "title": node.text("title"),
+        "note": node.text("note", ""),
+        "reference": reference,
+        "exposure": exposure,
+        "layers": layers,
+        "images": images,
+        "pictures": pictures,
+    }
 
 
 def image(node: Node, layers: list[str]) -> dict[str, Any]:
@@ -198,16 +240,21 @@ def image(node: Node, layers: list[str]) -> dict[str, Any]:
     found = {}
     for layer in files.value:
         if layer not in layers:
-            raise files.child(layer).fail(f"no layer has the id '{layer}'",
-                                          "name one of the view's 'layers'")
+            raise files.child(layer).fail(
+                f"no layer has the id '{layer}'", "name one of the view's 'layers'"
+            )
         entry = files.child(layer)
         if isinstance(entry.value, dict):
             found[layer] = (node.source.parent / entry.text("file"), entry.text("layer", ""))
         else:
             found[layer] = (node.source.parent / entry.typed(str, "a file name"), "")
-    return {"id": identity(node), "label": node.text("label"),
-            "caption": node.text("caption", ""), "numbers": node.text("numbers", ""),
-            "files": found}
+    return {
+        "id": identity(node),
+        "label": node.text("label"),
+        "caption": node.text("caption", ""),
+        "numbers": node.text("numbers", ""),
+        "files": found,
+    }
 
 
 def plot(node: Node) -> dict[str, Any]:
@@ -215,9 +262,16 @@ def plot(node: Node) -> dict[str, Any]:
     series = [line(n, log) for n in node.objects("series", required=True)]
     if not series:
         raise node.child("series").fail("no series", "list at least one")
-    return {"id": identity(node), "title": node.text("title"), "caption": node.text("caption", ""),
-            "x_label": node.text("x_label"), "y_label": node.text("y_label"),
-            "x_log": log["x"], "y_log": log["y"], "series": series}
+    return {
+        "id": identity(node),
+        "title": node.text("title"),
+        "caption": node.text("caption", ""),
+        "x_label": node.text("x_label"),
+        "y_label": node.text("y_label"),
+        "x_log": log["x"],
+        "y_log": log["y"],
+        "series": series,
+    }
 
 
 def line(node: Node, log: dict[str, bool]) -> dict[str, Any]:
@@ -232,13 +286,19 @@ def line(node: Node, log: dict[str, bool]) -> dict[str, Any]:
             if not math.isfinite(n.value):
                 raise n.fail("not a finite number", "leave the point out")
             if axis != "error" and log[axis] and n.value <= 0:
-                raise n.fail(f"{shown(n.value)} has no place on a logarithmic axis",
-                             f'leave the point out, or set "{axis}_log": false')
+                raise n.fail(
+                    f"{shown(n.value)} has no place on a logarithmic axis",
+                    f'leave the point out, or set "{axis}_log": false',
+                )
             if axis == "error" and n.value < 0:
                 raise n.fail("a negative error", "write half the height of the bar")
     sizes = {len(data["x"]), len(data["y"]), len(data["error"] or data["x"])}
     if len(sizes) != 1 or not data["x"]:
         counts = ", ".join(f"{len(v)} of {k}" for k, v in data.items() if v or k != "error")
         raise node.fail(f"{counts}: lists of unequal length, or empty", "give each x its y")
-    return {"label": node.text("label"), **data, "slope": node.get("slope", (int, float),
-            "a number"), "dash": node.get("dash", bool, "true or false", False)}
+    return {
+        "label": node.text("label"),
+        **data,
+        "slope": node.get("slope", (int, float), "a number"),
+        "dash": node.get("dash", bool, "true or false", False),
+    }

@@ -1,8 +1,8 @@
-"""A plot as inline SVG. Colours come from classes, so that the page's style decides light or dark.
+"""Draws a plot as inline SVG. The colours are classes, so the page's style decides light or dark.
 
-Two sizes of each are written and the style shows one: a wide one with the names at the ends of the
-lines, and a narrow one, for phones, with the names below. One drawing scaled to both would have
-letters too small on a phone.
+Two sizes of each plot are written, and the style shows one: a wide one with the names at the ends
+of the lines, and a narrow one for phones with the names below. A single drawing, scaled, would have
+too small letters on a phone.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Label:
     index: int
     x: float
     y: float
-    at: float  # where the text goes
+    at: float  # top of the text
 
 
 def plot_svg(plot: dict[str, Any], wide: bool) -> str:
@@ -49,12 +49,19 @@ def plot_svg(plot: dict[str, Any], wide: bool) -> str:
     x_axis, y_axis = axes_of(plot)
     title = escape(f"{plot['title']}: {plot['y_label']} against {plot['x_label']}")
     kind = "wide" if wide else "narrow"
-    parts = [f'<svg class="plot {kind}" viewBox="0 0 {frame.width} {frame.height}" role="img" '
-             f'aria-label="{title}"><title>{title}</title>']
+    parts = [
+        f'<svg class="plot {kind}" viewBox="0 0 {frame.width} {frame.height}" role="img" '
+        f'aria-label="{title}"><title>{title}</title>'
+    ]
     parts += grid(frame, x_axis, y_axis)
     parts += axis_titles(frame, plot)
-    points = [[(frame.x(x_axis.at(x)), frame.y(y_axis.at(y))) for x, y in zip(s["x"], s["y"])]
-              for s in plot["series"]]
+    points = [
+        [
+            (frame.x(x_axis.at(x)), frame.y(y_axis.at(y)))
+            for x, y in zip(s["x"], s["y"], strict=True)
+        ]
+        for s in plot["series"]
+    ]
     for i, s in enumerate(plot["series"]):
         parts += series(i, s, points[i], frame, y_axis)
     parts += end_labels(names, points, frame) if wide else legend(names, plot, frame)
@@ -74,7 +81,7 @@ def name_lines(s: dict[str, Any]) -> list[str]:
 
 
 def tick_label(tick: Tick) -> str:
-    """Empty for a minor tick."""
+    """Label of a tick; empty for a minor tick."""
     if tick.power is None:
         return ""
     exponent = str(tick.power).replace("-", "−")
@@ -92,31 +99,41 @@ def grid(frame: Frame, x_axis: Axis, y_axis: Axis) -> list[str]:
     for tick in ticks(x_axis):
         x, text = number(frame.x(x_axis.at(tick.value))), tick_label(tick)
         kind = "grid" if text else "minor"
-        parts.append(f'<line class="{kind}" x1="{x}" x2="{x}" y1="{number(bottom)}" '
-                     f'y2="{number(top if text else bottom - 4)}"/>')
+        parts.append(
+            f'<line class="{kind}" x1="{x}" x2="{x}" y1="{number(bottom)}" '
+            f'y2="{number(top if text else bottom - 4)}"/>'
+        )
         if text:
-            parts.append(f'<text x="{x}" y="{number(bottom + 20)}" text-anchor="middle">{text}'
-                         "</text>")
+            parts.append(
+                f'<text x="{x}" y="{number(bottom + 20)}" text-anchor="middle">{text}</text>'
+            )
     for tick in ticks(y_axis):
         y, text = frame.y(y_axis.at(tick.value)), tick_label(tick)
         kind = "grid" if text else "minor"
-        parts.append(f'<line class="{kind}" y1="{number(y)}" y2="{number(y)}" '
-                     f'x1="{number(left)}" x2="{number(right if text else left + 4)}"/>')
+        parts.append(
+            f'<line class="{kind}" y1="{number(y)}" y2="{number(y)}" '
+            f'x1="{number(left)}" x2="{number(right if text else left + 4)}"/>'
+        )
         if text:
-            parts.append(f'<text x="{number(left - 8)}" y="{number(y + 4.5)}" '
-                         f'text-anchor="end">{text}</text>')
-    parts.append(f'<path class="axis" d="M{number(left)} {number(top)}V{number(bottom)}'
-                 f'H{number(right)}"/>')
+            parts.append(
+                f'<text x="{number(left - 8)}" y="{number(y + 4.5)}" '
+                f'text-anchor="end">{text}</text>'
+            )
+    parts.append(
+        f'<path class="axis" d="M{number(left)} {number(top)}V{number(bottom)}H{number(right)}"/>'
+    )
     return parts
 
 
 def axis_titles(frame: Frame, plot: dict[str, Any]) -> list[str]:
     x, y = number(frame.x(0.5)), number(frame.y(0) + 46)
     middle = number(frame.y(0.5))
-    return [f'<text class="title" x="{x}" y="{y}" text-anchor="middle">'
-            f'{escape(plot["x_label"])}</text>',
-            f'<text class="title" transform="translate(15 {middle}) rotate(-90)" '
-            f'text-anchor="middle">{escape(plot["y_label"])}</text>']
+    return [
+        f'<text class="title" x="{x}" y="{y}" text-anchor="middle">'
+        f"{escape(plot['x_label'])}</text>",
+        f'<text class="title" transform="translate(15 {middle}) rotate(-90)" '
+        f'text-anchor="middle">{escape(plot["y_label"])}</text>',
+    ]
 
 
 def marker(shape: str, x: float, y: float) -> str:
@@ -128,62 +145,76 @@ def marker(shape: str, x: float, y: float) -> str:
         "down": "M0 4.8L4.6-3.4H-4.6z",
         "plus": "M-1.5-4.5h3v3h3v3h-3v3h-3v-3h-3v-3h3z",
         "cross": "M-4.2-2.1L-2.1-4.2L0-2.1L2.1-4.2L4.2-2.1L2.1 0L4.2 2.1L2.1 4.2L0 2.1L-2.1 4.2"
-                 "L-4.2 2.1L-2.1 0z",
+        "L-4.2 2.1L-2.1 0z",
     }
-    return (f'<path class="marker" transform="translate({number(x)} {number(y)})" '
-            f'd="{paths[shape]}"/>')
+    return (
+        f'<path class="marker" transform="translate({number(x)} {number(y)})" d="{paths[shape]}"/>'
+    )
 
 
-def series(index: int, s: dict[str, Any], points: list[tuple[float, float]], frame: Frame,
-           y_axis: Axis) -> list[str]:
+def series(
+    index: int, s: dict[str, Any], points: list[tuple[float, float]], frame: Frame, y_axis: Axis
+) -> list[str]:
     shape = MARKERS[index % len(MARKERS)]
     parts = [f'<g class="series s{index % len(LIGHT)}">']
     for i, (x, _) in enumerate(points):
         if not s["error"] or s["error"][i] == 0:
             continue
-        ends = [min(max(y_axis.at(s["y"][i] + sign * s["error"][i]), 0.0), 1.0)
-                for sign in (1, -1)]
+        ends = [min(max(y_axis.at(s["y"][i] + sign * s["error"][i]), 0.0), 1.0) for sign in (1, -1)]
         high, low = (number(frame.y(e)) for e in ends)
         cap, end = number(x - 3.5), number(x + 3.5)
-        parts.append(f'<path class="bar" d="M{cap} {high}H{end}M{number(x)} {high}V{low}'
-                     f'M{cap} {low}H{end}"/>')
+        parts.append(
+            f'<path class="bar" d="M{cap} {high}H{end}M{number(x)} {high}V{low}'
+            f'M{cap} {low}H{end}"/>'
+        )
     path = "L".join(f"{number(x)} {number(y)}" for x, y in points)
     dash = ' stroke-dasharray="7 5"' if s["dash"] else ""
     parts.append(f'<path class="line" d="M{path}"{dash}/>')
     for i, (x, y) in enumerate(points):
-        parts.append(marker(shape, x, y)[:-2] + f'><title>{escape(s["label"])}: '
-                     f'{s["x"][i]:.6g}, {s["y"][i]:.4g}</title></path>')
+        parts.append(
+            marker(shape, x, y)[:-2] + f"><title>{escape(s['label'])}: "
+            f"{s['x'][i]:.6g}, {s['y'][i]:.4g}</title></path>"
+        )
     return parts + ["</g>"]
 
 
-def end_labels(names: list[list[str]], points: list[list[tuple[float, float]]],
-               frame: Frame) -> list[str]:
-    """The names right of the lines, pushed apart until none overlaps."""
-    labels = sorted((Label(i, *p[-1], p[-1][1]) for i, p in enumerate(points)),
-                    key=lambda label: (label.y, label.index))
+def end_labels(
+    names: list[list[str]], points: list[list[tuple[float, float]]], frame: Frame
+) -> list[str]:
+    """The names at the right ends of the lines, moved apart so that none overlap."""
+    labels = sorted(
+        (Label(i, *p[-1], p[-1][1]) for i, p in enumerate(points)),
+        key=lambda label: (label.y, label.index),
+    )
     heights = [16.0 * len(names[label.index]) + 5 for label in labels]
     lowest = frame.top + 2.0
-    for label, height in zip(labels, heights):
+    for label, height in zip(labels, heights, strict=True):
         label.at = max(label.y - height / 2, lowest)
         lowest = label.at + height
     limit = frame.height - 6.0
-    for label, height in zip(reversed(labels), reversed(heights)):
+    for label, height in zip(reversed(labels), reversed(heights), strict=True):
         label.at = min(label.at, limit - height)
         limit = label.at
     text_x = frame.x(1) + 24
     parts = []
-    for label, height in zip(labels, heights):
+    for label, height in zip(labels, heights, strict=True):
         middle = label.at + height / 2
         number_of = label.index % len(LIGHT)
-        parts.append(f'<path class="leader s{number_of}" d="M{number(label.x + 7)} '
-                     f'{number(label.y)}L{number(text_x - 5)} {number(middle)}"/>')
+        parts.append(
+            f'<path class="leader s{number_of}" d="M{number(label.x + 7)} '
+            f'{number(label.y)}L{number(text_x - 5)} {number(middle)}"/>'
+        )
         lines = names[label.index]
         first = middle + 5 - 8 * (len(lines) - 1)
-        parts.append(f'<text class="name s{number_of}" x="{number(text_x)}" '
-                     f'y="{number(first)}">{escape(lines[0])}</text>')
+        parts.append(
+            f'<text class="name s{number_of}" x="{number(text_x)}" '
+            f'y="{number(first)}">{escape(lines[0])}</text>'
+        )
         if len(lines) > 1:
-            parts.append(f'<text class="slope" x="{number(text_x)}" y="{number(first + 16)}">'
-                         f'{escape(lines[1])}</text>')
+            parts.append(
+                f'<text class="slope" x="{number(text_x)}" y="{number(first + 16)}">'
+                f"{escape(lines[1])}</text>"
+            )
     return parts
 
 
@@ -192,11 +223,13 @@ def legend(names: list[list[str]], plot: dict[str, Any], frame: Frame) -> list[s
     for i, lines in enumerate(names):
         y = frame.y(0) + 72 + 22 * i
         dash = ' stroke-dasharray="7 5"' if plot["series"][i]["dash"] else ""
-        parts.append(f'<g class="series s{i % len(LIGHT)}"><path class="line" '
-                     f'd="M8 {number(y)}H36"{dash}/>'
-                     f'{marker(MARKERS[i % len(MARKERS)], 22, y)}</g>'
-                     f'<text class="name s{i % len(LIGHT)}" x="44" y="{number(y + 4.5)}">'
-                     f'{escape(lines[0])}')
+        parts.append(
+            f'<g class="series s{i % len(LIGHT)}"><path class="line" '
+            f'd="M8 {number(y)}H36"{dash}/>'
+            f"{marker(MARKERS[i % len(MARKERS)], 22, y)}</g>"
+            f'<text class="name s{i % len(LIGHT)}" x="44" y="{number(y + 4.5)}">'
+            f"{escape(lines[0])}"
+        )
         if len(lines) > 1:
             parts.append(f'<tspan class="slope">  {escape(lines[1])}</tspan>')
         parts.append("</text>")

@@ -1,4 +1,4 @@
-"""What the scripts write, and what they refuse."""
+"""Tests what the scripts write, and what they refuse."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class InputTest(unittest.TestCase):
         return self.page.read_text(encoding="utf-8")
 
     def refused(self, *expected: str) -> None:
-        """One line with these parts, exit code 3, and no page."""
+        """Checks a refusal: one line with these parts, exit code 3, and no page."""
         made = call(make_report.main, self.json, "-o", self.page)
         self.assertEqual(made.returncode, 3, made.stderr)
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
@@ -55,39 +55,54 @@ class InputTest(unittest.TestCase):
         self.assertNotIn(str(self.folder), first)
 
     def test_text_is_escaped(self) -> None:
-        self.change(lambda r: r["scenes"][0]["views"][0]["images"][0].update(
-            label="</script><script>alert(1)</script>"))
+        self.change(
+            lambda r: r["scenes"][0]["views"][0]["images"][0].update(
+                label="</script><script>alert(1)</script>"
+            )
+        )
         page = self.make()
         self.assertIn("<h1>A report &lt;of&gt; tests</h1>", page)
         self.assertNotIn("<script>alert", page)
 
     def test_best_of_each_group(self) -> None:
         rows = re.findall(r"<tr><th scope=\"row\".*?</tr>", self.make())
-        marks = [[("best" in c) for c in re.findall(r"<t[hd][^>]*>.*?</t[hd]>", r)][1:4]
-                 for r in rows]
-        # Columns rmse, ratio, rays. Row r is not judged; one value is no choice; a tie marks both.
-        self.assertEqual(marks, [[False, True, False], [True, False, True], [False] * 3,
-                                 [False, False, True], [False, True, True]])
+        marks = [
+            [("best" in c) for c in re.findall(r"<t[hd][^>]*>.*?</t[hd]>", r)][1:4] for r in rows
+        ]
+        # The columns are rmse, ratio, rays. Row r is not judged, a single value is not marked,
+        # and a tie marks both.
+        self.assertEqual(
+            marks,
+            [
+                [False, True, False],
+                [True, False, True],
+                [False] * 3,
+                [False, False, True],
+                [False, True, True],
+            ],
+        )
         self.assertIn("0.100 ± 0.013", self.page.read_text())
 
     def test_plot_labels(self) -> None:
         page = self.make()
-        svg = page[page.index('<svg class="plot wide"'):]
-        svg = svg[:svg.index("</svg>")]
+        svg = page[page.index('<svg class="plot wide"') :]
+        svg = svg[: svg.index("</svg>")]
         powers = re.findall(r'10<tspan class="power" dy="-5">([^<]*)</tspan>', svg)
         self.assertEqual(set(powers), {"3", "4", "−3", "−2", "−1", "0"})
         self.assertIn("slope −1.02", svg)
         self.assertEqual(svg.count('class="bar"'), 24)
 
     def test_names_at_the_lines_ends_stay_apart(self) -> None:
-        for end in (1.0, 0.0001):  # all lines end near the top, near the bottom
-            def edit(data: dict[str, Any]) -> None:
+        for end in (1.0, 0.0001):  # all lines end near the top, or near the bottom
+
+            def edit(data: dict[str, Any], end: float = end) -> None:
                 for i, series in enumerate(data["plots"][0]["series"]):
                     series.update(y=[0.01, 0.02, end * (1 + 0.01 * i)], error=None)
+
             self.change(edit)
             page = self.make()
-            svg = page[page.index('<svg class="plot wide"'):]
-            svg = svg[:svg.index("</svg>")]
+            svg = page[page.index('<svg class="plot wide"') :]
+            svg = svg[: svg.index("</svg>")]
             places = sorted(float(y) for y in re.findall(r'class="name[^>]* y="([-\d.]+)"', svg))
             self.assertEqual(len(places), 8)
             self.assertGreaterEqual(np.diff(places).min(), 32, "names overlap")
@@ -97,11 +112,13 @@ class InputTest(unittest.TestCase):
     def test_plots_as_files(self) -> None:
         for name, start in (("p.png", b"\x89PNG"), ("p.svg", b"<?xml")):
             files = [self.folder / f"{i}{name}" for i in range(2)]
-            made = [call(plots.main, self.json, "conv", "-o", files[0]),
-                    run("plots.py", self.json, "conv", "-o", files[1])]
-            self.assertEqual([m.returncode for m in made], [0, 0], made[1].stderr)
+            both = [
+                call(plots.main, self.json, "conv", "-o", files[0]),
+                run("plots.py", self.json, "conv", "-o", files[1]),
+            ]
+            self.assertEqual([m.returncode for m in both], [0, 0], both[1].stderr)
             first, second = (f.read_bytes() for f in files)
-            self.assertEqual(first[:len(start)], start)
+            self.assertEqual(first[: len(start)], start)
             self.assertEqual(first, second)
         made = call(plots.main, self.json, "none", "-o", self.folder / "n.png")
         self.assertEqual(made.returncode, 3)
@@ -148,20 +165,32 @@ class InputTest(unittest.TestCase):
         view = "scenes[0].views[0]"
         cases = [
             (lambda r: r.pop("title"), "top level: 'title' is missing"),
-            (lambda r: r["tables"][0]["columns"][1].update(better="lower"),
-             'tables[0].columns[1].better: "lower" is unknown; use "low"'),
-            (lambda r: r["tables"][0]["rows"][0].update(rmse=[1]),
-             "tables[0].rows[0].rmse: [1] is neither text nor number"),
-            (lambda r: r["scenes"][0]["views"][0].update(reference="x"),
-             f"{view}.reference: no image has the id 'x'"),
-            (lambda r: r["scenes"][0]["views"][0]["images"][1]["files"].update(direct="a.exr"),
-             f"{view}.images[1].files.direct: no layer has the id 'direct'"),
+            (
+                lambda r: r["tables"][0]["columns"][1].update(better="lower"),
+                'tables[0].columns[1].better: "lower" is unknown; use "low"',
+            ),
+            (
+                lambda r: r["tables"][0]["rows"][0].update(rmse=[1]),
+                "tables[0].rows[0].rmse: [1] is neither text nor number",
+            ),
+            (
+                lambda r: r["scenes"][0]["views"][0].update(reference="x"),
+                f"{view}.reference: no image has the id 'x'",
+            ),
+            (
+                lambda r: r["scenes"][0]["views"][0]["images"][1]["files"].update(direct="a.exr"),
+                f"{view}.images[1].files.direct: no layer has the id 'direct'",
+            ),
             (lambda r: r["scenes"][0]["views"][1].update(id="main"), "id 'main' is used twice"),
             (lambda r: r["scenes"][0].update(id="a b"), "scenes[0].id: 'a b' is no id"),
-            (lambda r: r["plots"][0]["series"][2]["x"].pop(),
-             "plots[0].series[2]: 2 of x, 3 of y, 3 of error: lists of unequal length"),
-            (lambda r: r["plots"][0]["series"][0]["y"].__setitem__(1, 0),
-             "plots[0].series[0].y[1]: 0 has no place on a logarithmic axis"),
+            (
+                lambda r: r["plots"][0]["series"][2]["x"].pop(),
+                "plots[0].series[2]: 2 of x, 3 of y, 3 of error: lists of unequal length",
+            ),
+            (
+                lambda r: r["plots"][0]["series"][0]["y"].__setitem__(1, 0),
+                "plots[0].series[0].y[1]: 0 has no place on a logarithmic axis",
+            ),
         ]
         for edit, expected in cases:
             with self.subTest(expected):
@@ -174,13 +203,21 @@ class InputTest(unittest.TestCase):
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
 
     def test_outputs_replace_only_their_kind(self) -> None:
-        for main, words, name in ((make_report.main, [], "r.html"), (plots.main, ["conv"], "p.svg"),
-                                  (plots.main, ["conv"], "p.png")):
+        cases: list[tuple[Any, list[str], str]] = [
+            (make_report.main, [], "r.html"),
+            (plots.main, ["conv"], "p.svg"),
+            (plots.main, ["conv"], "p.png"),
+        ]
+        for main, words, name in cases:
             file = self.folder / name
             file.write_bytes(b"\x89VPL\r\n\x1a\n")
             made = call(main, self.json, *words, "-o", file)
             self.assertEqual(made.returncode, 4)
-            self.assertRegex(made.stderr, rf"\A[^\n]*/{name}: is not an? [^\n]*, which -o would replace it with; name [^\n]*\n\Z")
+            self.assertRegex(
+                made.stderr,
+                rf"\A[^\n]*/{name}: is not an? [^\n]*, which -o would replace it with; name "
+                r"[^\n]*\n\Z",
+            )
             self.assertEqual(file.read_bytes(), b"\x89VPL\r\n\x1a\n")
             file.unlink()
             for _ in range(2):
@@ -196,7 +233,7 @@ class InputTest(unittest.TestCase):
 
         def write_half(path: Path, data: bytes) -> None:
             with open(path, "wb") as file:
-                file.write(data[:len(data) // 2])
+                file.write(data[: len(data) // 2])
             raise OSError(errno.ENOSPC, "No space left on device")
 
         with mock.patch.object(Path, "write_bytes", write_half):

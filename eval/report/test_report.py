@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""All tests of the report: what the scripts read and write, and the page in headless Chromium.
+"""Runs all tests of the report: what the scripts read and write, and the page in Chromium.
 
 Needs chromium, chromium-driver, python3-selenium, python3-openimageio, python3-matplotlib.
 """
 
 import unittest
 
-from test_inputs import InputTest  # noqa: F401  (unittest finds them here)
+from test_inputs import InputTest  # noqa: F401
 from test_page import PageTest  # noqa: F401
 from test_viewer import ViewerTest  # noqa: F401
 

@@ -1,4 +1,4 @@
-"""A small report with known pixels, and a headless Chromium that shows it."""
+"""Makes a small report with known pixels, and a headless Chromium that shows it."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import OpenImageIO as oiio
 from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
@@ -29,21 +31,24 @@ class Made:
 
 
 def run(script: str, *arguments: str | Path) -> Made:
-    """A script in a process of its own."""
-    made = subprocess.run([sys.executable, str(HERE / script), *map(str, arguments)],
-                          capture_output=True, text=True)
+    """Runs a script in a process of its own."""
+    made = subprocess.run(
+        [sys.executable, str(HERE / script), *map(str, arguments)], capture_output=True, text=True
+    )
     return Made(made.returncode, made.stderr)
 
 
 def call(main: Callable[[list[str]], int], *arguments: str | Path) -> Made:
-    """A script's main() in this process: most of a process's time goes into its imports."""
+    """Runs a script's main() in this process, as most of a process's time goes into its imports."""
     stderr = io.StringIO()
     with contextlib.redirect_stderr(stderr):
         code = main([str(a) for a in arguments])
     return Made(code, stderr.getvalue())
 
 
-def write_exr(path: Path, pixels: np.ndarray, names: tuple[str, ...] = ("R", "G", "B")) -> None:
+def write_exr(
+    path: Path, pixels: npt.NDArray[Any], names: tuple[str, ...] = ("R", "G", "B")
+) -> None:
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT)
     spec.channelnames = names
@@ -60,66 +65,123 @@ def write_png(path: Path, width: int, height: int, colour: tuple[int, int, int])
     target.close()
 
 
-def flat(r: float, g: float, b: float) -> np.ndarray:
-    return np.tile(np.float32([r, g, b]), (HEIGHT, WIDTH, 1))
+def flat(r: float, g: float, b: float) -> npt.NDArray[Any]:
+    return np.tile(np.array([r, g, b], np.float32), (HEIGHT, WIDTH, 1))
 
 
-def wild() -> np.ndarray:
-    """Every kind of value: zero, negative, tiny, huge."""
+def wild() -> npt.NDArray[Any]:
+    """Pixels with all kinds of values: zero, negative, tiny, huge."""
     values = np.random.default_rng(7).lognormal(0, 4, (HEIGHT, WIDTH, 3)).astype(np.float32)
     values[0, 0] = 0
     values[1, 2] = [-0.5, 1e-6, 2e5]
     return values
 
 
-def images() -> dict[str, np.ndarray]:
+def images() -> dict[str, npt.NDArray[Any]]:
     full = flat(0.5, 0.5, 0.5)
     full[2, 3] = [0.0625, 0.125, 0.25]
-    return {"reference": flat(0.25, 0.125, 0.0625), "a": flat(0.5, 0.25, 0.125),
-            "b": flat(0.125, 0.0625, 0.03125), "wild": wild(), "reference-full": full,
-            "a-full": full * 1.5}
+    return {
+        "reference": flat(0.25, 0.125, 0.0625),
+        "a": flat(0.5, 0.25, 0.125),
+        "b": flat(0.125, 0.0625, 0.03125),
+        "wild": wild(),
+        "reference-full": full,
+        "a-full": full * 1.5,
+    }
 
 
 def report() -> dict[str, Any]:
     def image(name: str, **layers: Any) -> dict[str, Any]:
-        return {"id": name, "label": f"Image {name}", "caption": f"Caption of {name}.",
-                "files": {"indirect": f"{name}.exr", **layers}}
+        return {
+            "id": name,
+            "label": f"Image {name}",
+            "caption": f"Caption of {name}.",
+            "files": {"indirect": f"{name}.exr", **layers},
+        }
 
     layers = [{"id": "indirect", "title": "Indirect light"}, {"id": "full", "title": "Full image"}]
-    main = {"id": "main", "title": "Main view", "note": "8x6 pixels", "reference": "reference",
-            "exposure": 0, "layers": layers,
-            "images": [image("reference", full={"file": "layers.exr", "layer": "full"}),
-                       image("a", full="a-full.exr"),
-                       {**image("b"), "numbers": "relMSE 0.5 of seven seeds"}, image("wild")],
-            "pictures": [{"id": "dots", "label": "Dots", "file": "dots.png", "caption": "VPLs."},
-                         {"id": "tall", "label": "Tall", "file": "tall.png"}]}
+    main: dict[str, Any] = {
+        "id": "main",
+        "title": "Main view",
+        "note": "8x6 pixels",
+        "reference": "reference",
+        "exposure": 0,
+        "layers": layers,
+        "images": [
+            image("reference", full={"file": "layers.exr", "layer": "full"}),
+            image("a", full="a-full.exr"),
+            {**image("b"), "numbers": "relMSE 0.5 of seven seeds"},
+            image("wild"),
+        ],
+        "pictures": [
+            {"id": "dots", "label": "Dots", "file": "dots.png", "caption": "VPLs."},
+            {"id": "tall", "label": "Tall", "file": "tall.png"},
+        ],
+    }
     second = {**main, "id": "second", "title": "Second view", "pictures": []}
     del second["exposure"]
     return {
-        "title": "A report <of> tests", "lead": "First & last.\n\nSecond paragraph.",
+        "title": "A report <of> tests",
+        "lead": "First & last.\n\nSecond paragraph.",
         "provenance": {"commit": "0123abc", "options": {"spp": 8}},
-        "tables": [{"id": "sum", "title": "Summary", "columns": [
-            {"key": "set", "label": "Set"},
-            {"key": "rmse", "label": "RMSE", "better": "low", "unit": "W"},
-            {"key": "ratio", "label": "Ratio", "better": "one", "decimals": 3},
-            {"key": "rays", "label": "Rays/s", "better": "high"}] + [
-            {"key": f"extra{i}", "label": f"A column that takes room {i}"} for i in range(4)],
-            "rows": [
-                {"group": "One", "set": "p", "rmse": 0.2, "ratio": 0.9, "rays": 10},
-                {"group": "One", "set": "q", "rmse": {"value": 0.1, "error": 0.013}, "ratio": 1.25,
-                 "rays": 30},
-                {"group": "One", "set": "r", "rmse": 0.05, "ratio": 1, "unjudged": True},
-                {"group": "Two", "set": "p", "rmse": None, "ratio": 2, "rays": 5},
-                {"group": "Two", "set": "q", "rmse": 123456.0, "ratio": 1.01, "rays": 5}]}],
+        "tables": [
+            {
+                "id": "sum",
+                "title": "Summary",
+                "columns": [
+                    {"key": "set", "label": "Set"},
+                    {"key": "rmse", "label": "RMSE", "better": "low", "unit": "W"},
+                    {"key": "ratio", "label": "Ratio", "better": "one", "decimals": 3},
+                    {"key": "rays", "label": "Rays/s", "better": "high"},
+                ]
+                + [
+                    {"key": f"extra{i}", "label": f"A column that takes room {i}"} for i in range(4)
+                ],
+                "rows": [
+                    {"group": "One", "set": "p", "rmse": 0.2, "ratio": 0.9, "rays": 10},
+                    {
+                        "group": "One",
+                        "set": "q",
+                        "rmse": {"value": 0.1, "error": 0.013},
+                        "ratio": 1.25,
+                        "rays": 30,
+                    },
+                    {"group": "One", "set": "r", "rmse": 0.05, "ratio": 1, "unjudged": True},
+                    {"group": "Two", "set": "p", "rmse": None, "ratio": 2, "rays": 5},
+                    {"group": "Two", "set": "q", "rmse": 123456.0, "ratio": 1.01, "rays": 5},
+                ],
+            }
+        ],
         "scenes": [{"id": "room", "title": "Room", "views": [main, second]}],
         "plots": [
-            {"id": "conv", "title": "Convergence", "caption": "Caption.", "x_label": "VPLs",
-             "y_label": "relMSE", "x_log": True, "y_log": True, "series": [
-                 {"label": f"series {i}", "x": [750, 3000, 48000],
-                  "y": [0.1 * (i + 1), 0.02, 0.001 * (i + 1)], "slope": -1.02 + 0.1 * i,
-                  "error": [0.01, 0.03, 0.0001], "dash": i == 1} for i in range(8)]},
-            {"id": "lin", "title": "Linear", "x_label": "radius", "y_label": "RMSE",
-             "series": [{"label": "only", "x": [1, 2, 3], "y": [0.3, 0.1, 0.2]}]}],
+            {
+                "id": "conv",
+                "title": "Convergence",
+                "caption": "Caption.",
+                "x_label": "VPLs",
+                "y_label": "relMSE",
+                "x_log": True,
+                "y_log": True,
+                "series": [
+                    {
+                        "label": f"series {i}",
+                        "x": [750, 3000, 48000],
+                        "y": [0.1 * (i + 1), 0.02, 0.001 * (i + 1)],
+                        "slope": -1.02 + 0.1 * i,
+                        "error": [0.01, 0.03, 0.0001],
+                        "dash": i == 1,
+                    }
+                    for i in range(8)
+                ],
+            },
+            {
+                "id": "lin",
+                "title": "Linear",
+                "x_label": "radius",
+                "y_label": "RMSE",
+                "series": [{"label": "only", "x": [1, 2, 3], "y": [0.3, 0.1, 0.2]}],
+            },
+        ],
     }
 
 
@@ -127,8 +189,11 @@ def write_report(folder: Path, change: dict[str, Any] | None = None) -> Path:
     for name, pixels in images().items():
         write_exr(folder / f"{name}.exr", pixels)
     full = images()["reference-full"]
-    write_exr(folder / "layers.exr", np.concatenate([full * 9, full], axis=2),
-              ("R", "G", "B", "full.R", "full.G", "full.B"))
+    write_exr(
+        folder / "layers.exr",
+        np.concatenate([full * 9, full], axis=2),
+        ("R", "G", "B", "full.R", "full.G", "full.B"),
+    )
     write_png(folder / "dots.png", WIDTH // 2, HEIGHT // 2, (10, 200, 30))
     write_png(folder / "tall.png", WIDTH, HEIGHT + 26, (1, 2, 3))
     path = folder / "report.json"
@@ -151,8 +216,8 @@ def browser() -> webdriver.Chrome:
     return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
 
 
-def to_srgb8(linear: np.ndarray, ev: float = 0.0) -> list[int]:
-    """formats/tonemap.h."""
-    v = np.clip(np.asarray(linear, np.float64) * 2.0 ** ev, 0, 1)
+def to_srgb8(linear: npt.ArrayLike, ev: float = 0.0) -> list[int]:
+    """The encoding of formats/tonemap.h."""
+    v = np.clip(np.asarray(linear, np.float64) * 2.0**ev, 0, 1)
     encoded = np.where(v <= 0.0031308, 12.92 * v, 1.055 * v ** (1 / 2.4) - 0.055)
     return [int(x) for x in np.floor(encoded * 255 + 0.5)]

@@ -1,11 +1,11 @@
-"""Stored references: taken where they are of the scene and the integrator that are asked for, refused elsewhere."""
+"""Tests that stored references are used only if their scene and integrator match the request."""
 
 import dataclasses
-import json
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from typing import Any, cast
 from unittest import mock
 
 import numpy as np
@@ -13,22 +13,24 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from bnvpl_eval import images, references, settings  # noqa: E402
+from bnvpl_eval.runner import Runner  # noqa: E402
 
 FILM = "4x3"
 
 
-class FakeRun(dict):
+class FakeRun(dict[str, Path]):
     cpu_s = 1.5
 
 
 class FakeRunner:
-    """Renders grey images: each of its seed's value."""
+    """Renders grey images whose value is their seed."""
 
-    def __init__(self, folder: Path):
-        self.folder, self.asked = folder, []
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.asked: list[tuple[str, int, int]] = []
 
-    def run(self, tool, arguments, _inputs, _outputs):
-        options = dict(zip(arguments[1::2], arguments[2::2]))
+    def run(self, tool: str, arguments: list[Any], _inputs: object, _outputs: object) -> FakeRun:
+        options = dict(zip(arguments[1::2], arguments[2::2], strict=False))
         self.asked.append((options["--integrator"], options["--spp"], options["--seed"]))
         file = self.folder / f"{options['--seed']}.exr"
         grey = np.full((3, 4, 3), float(options["--seed"]), np.float32)
@@ -37,7 +39,7 @@ class FakeRunner:
 
 
 class References(unittest.TestCase):
-    def setUp(self):
+    def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.runner = FakeRunner(Path(folder.name))
@@ -48,25 +50,30 @@ class References(unittest.TestCase):
         self.addCleanup(patch.stop)
         self.view = settings.load()[0][0].views[0]
 
-    def render(self, view, spp):
+    def render(self, view: settings.View, spp: int) -> None:
         for half in "ab":
-            references.render_half(self.runner, view, FILM, spp, half)
+            references.render_half(cast(Runner, self.runner), view, FILM, spp, half)
 
-    def test_halves_have_seeds_of_their_own_and_take_more_samples(self):
+    def test_halves_have_seeds_of_their_own_and_take_more_samples(self) -> None:
         self.render(self.view, 2 * references.CHUNK)
         self.assertEqual([seed for _, _, seed in self.runner.asked], [1000, 1002, 1001, 1003])
         a, b = references.load(self.view, FILM, "indirect")
         self.assertAlmostEqual(float(a.mean()), 1001, delta=0.5)
         self.assertAlmostEqual(float(b.mean()), 1002, delta=0.5)
-        self.render(self.view, 2 * references.CHUNK)  # is there
+        self.render(self.view, 2 * references.CHUNK)  # exists already
         self.assertEqual(len(self.runner.asked), 4)
-        self.render(self.view, 4 * references.CHUNK)  # goes on
+        self.render(self.view, 4 * references.CHUNK)  # continues the stored half
         self.assertEqual([seed for _, _, seed in self.runner.asked[4:]], [1004, 1006, 1005, 1007])
-        self.assertAlmostEqual(float(references.load(self.view, FILM, "indirect")[0].mean()), 1003, delta=0.5)
+        self.assertAlmostEqual(
+            float(references.load(self.view, FILM, "indirect")[0].mean()), 1003, delta=0.5
+        )
         record = references.require(self.view, FILM)["a"]
-        self.assertEqual((record["spp"], record["seeds"], record["cpu_s"]), (4 * references.CHUNK, [1000, 1006], 6.0))
+        self.assertEqual(
+            (record["spp"], record["seeds"], record["cpu_s"]),
+            (4 * references.CHUNK, [1000, 1006], 6.0),
+        )
 
-    def test_another_integrator_begins_anew(self):
+    def test_another_integrator_begins_anew(self) -> None:
         path = dataclasses.replace(self.view, reference_integrator="path")
         light = dataclasses.replace(self.view, reference_integrator="light")
         self.render(path, 8)
@@ -76,7 +83,7 @@ class References(unittest.TestCase):
         self.assertEqual(self.runner.asked[2:], [("light", 8, 1000), ("light", 8, 1001)])
         self.assertEqual(references.require(light, FILM)["b"]["integrator"], "light")
 
-    def test_another_scene_is_refused_and_none_is_told(self):
+    def test_another_scene_is_refused_and_none_is_told(self) -> None:
         with self.assertRaisesRegex(SystemExit, "no such reference"):
             references.require(self.view, FILM)
         self.render(self.view, 8)
@@ -84,7 +91,7 @@ class References(unittest.TestCase):
         with self.assertRaisesRegex(SystemExit, "another version"):
             references.require(other, FILM)
 
-    def test_the_stored_ones_are_those_of_the_settings(self):
+    def test_the_stored_ones_are_those_of_the_settings(self) -> None:
         mock.patch.stopall()
         for scene in settings.load()[0]:
             for view in scene.views if scene.available else []:

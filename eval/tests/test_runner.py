@@ -1,4 +1,4 @@
-"""A command runs once; a changed option, input or tool runs it again; a failed one leaves nothing."""
+"""Tests the cache of runs: only a changed option, input or tool reruns; failures leave nothing."""
 
 import sys
 import tempfile
@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from bnvpl_eval.runner import Runner, scene_key  # noqa: E402 (after the path that it needs)
+from bnvpl_eval.runner import Run, Runner, scene_key  # noqa: E402 (after the path that it needs)
 
 TOOL = """#!/bin/sh
 # copies its input behind a line with its options; every run is one line of calls.log
@@ -17,7 +17,7 @@ echo x >> "{log}"
 
 
 class Caching(unittest.TestCase):
-    def setUp(self):
+    def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
@@ -28,14 +28,14 @@ class Caching(unittest.TestCase):
         self.input = self.folder / "in.txt"
         self.input.write_text("input\n")
 
-    def run_tool(self, option="a", runner=None):
+    def run_tool(self, option: str = "a", runner: Runner | None = None) -> Run:
         runner = runner or Runner(self.folder, self.folder / "cache", quiet=True)
         return runner.run("vpl-fake", ["{in}", option, "@out.txt"], {"in": self.input}, ["out.txt"])
 
     def calls(self) -> int:
         return len(self.log.read_text().splitlines())
 
-    def test_runs_once(self):
+    def test_runs_once(self) -> None:
         first, second = self.run_tool(), self.run_tool()
         self.assertEqual(self.calls(), 1)
         self.assertEqual(first["out.txt"].read_text(), "a\ninput\n")
@@ -43,7 +43,7 @@ class Caching(unittest.TestCase):
         self.assertGreater(first.record["peak_mib"], 0)
         self.assertEqual(first.record["options"], ["{in}", "a", "@out.txt"])
 
-    def test_what_changes_runs_again(self):
+    def test_what_changes_runs_again(self) -> None:
         folders = {self.run_tool().folder, self.run_tool("b").folder}
         self.input.write_text("other\n")
         folders.add(self.run_tool().folder)
@@ -51,14 +51,14 @@ class Caching(unittest.TestCase):
         folders.add(self.run_tool().folder)
         self.assertEqual((self.calls(), len(folders)), (4, 4))
 
-    def test_a_changed_product_reruns_what_follows(self):
+    def test_a_changed_product_reruns_what_follows(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", quiet=True)
         for option in ("a", "b", "a"):
             made = self.run_tool(option, runner)["out.txt"]
             runner.run("vpl-fake", ["{in}", "next", "@out.txt"], {"in": made}, ["out.txt"])
         self.assertEqual(self.calls(), 4)
 
-    def test_a_tool_that_is_built_anew_ends_the_evaluation(self):
+    def test_a_tool_that_is_built_anew_ends_the_evaluation(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", quiet=True)
         self.run_tool("a", runner)
         self.tool.write_text(self.tool.read_text() + "# another version\n")
@@ -66,16 +66,16 @@ class Caching(unittest.TestCase):
             self.run_tool("b", runner)
         self.assertEqual(self.calls(), 1)
 
-    def test_provenance_is_in_every_run(self):
+    def test_provenance_is_in_every_run(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", True, {"commit": "0123abc"})
         self.assertEqual(self.run_tool("a", runner).record["commit"], "0123abc")
 
-    def test_failure_tells_why_and_leaves_nothing(self):
+    def test_failure_tells_why_and_leaves_nothing(self) -> None:
         with self.assertRaisesRegex(SystemExit, "exit code 3: made to fail"):
             self.run_tool("fail")
         self.assertEqual(list((self.folder / "cache").iterdir()), [])
 
-    def test_scene_key_holds_the_models(self):
+    def test_scene_key_holds_the_models(self) -> None:
         scene, model = self.folder / "scene.toml", self.folder / "room.obj"
         scene.write_text('[[mesh]]\nfile = "room.obj"\n')
         model.write_text("v 0 0 0\n")

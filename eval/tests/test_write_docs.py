@@ -1,40 +1,53 @@
-"""Tables get to their places in the page, and what was not asked for stays."""
+"""Tests that tables are put in their places in the page, and that the rest of it stays."""
 
 import json
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import write_docs  # noqa: E402 (after the path that it needs)
 
-PAGE = "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- table two -->\nold two\n<!-- end -->\nlast\n"
+PAGE = (
+    "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- table two -->\nold "
+    "two\n<!-- end -->\nlast\n"
+)
 
 
-def report(*ids: str) -> dict:
-    columns = [{"key": "label", "label": "VPLs"}, {"key": "relmse", "label": "relMSE", "better": "low"}]
+def report(*ids: str) -> dict[str, Any]:
+    columns = [
+        {"key": "label", "label": "VPLs"},
+        {"key": "relmse", "label": "relMSE", "better": "low"},
+    ]
     rows = [{"group": "a room", "label": "ours", "relmse": {"value": 0.0123456, "error": 0.0004}}]
-    return {"tables": [{"id": name, "columns": columns, "rows": rows} for name in ids], "plots": [], "scenes": [],
-            "provenance": {"commits of the runs": "abc1234", "date": "2026-11-22"}}
+    return {
+        "tables": [{"id": name, "columns": columns, "rows": rows} for name in ids],
+        "plots": [],
+        "scenes": [],
+        "provenance": {"commits of the runs": "abc1234", "date": "2026-11-22"},
+    }
 
 
 class Tables(unittest.TestCase):
-    def setUp(self):
+    def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
         (self.folder / "results.md").write_text(PAGE)
 
-    def write(self, made: dict, *options: str) -> str:
+    def write(self, made: dict[str, Any], *options: str) -> str:
         (self.folder / "report.json").write_text(json.dumps(made))
-        with mock.patch.object(write_docs, "DOCS", self.folder), \
-                mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]):
+        with (
+            mock.patch.object(write_docs, "DOCS", self.folder),
+            mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]),
+        ):
             write_docs.main()
         return (self.folder / "results.md").read_text()
 
-    def test_only_what_is_named(self):
+    def test_only_what_is_named(self) -> None:
         page = self.write(report("one", "two"), "--only", "two")
         self.assertIn("old one", page)
         self.assertNotIn("old two", page)
@@ -42,14 +55,17 @@ class Tables(unittest.TestCase):
         self.assertIn("<!-- tools of abc1234, 2026-11-22 -->", page)
         self.assertTrue(page.endswith("<!-- end -->\nlast\n"))
 
-    def test_what_is_not_there_is_refused(self):
-        for made, only, message in ((report("one"), "two", "wants table 'two'"), (report("one"), "three", "named 'three'")):
+    def test_what_is_not_there_is_refused(self) -> None:
+        for made, only, message in (
+            (report("one"), "two", "wants table 'two'"),
+            (report("one"), "three", "named 'three'"),
+        ):
             with self.assertRaises(SystemExit) as refused:
                 self.write(made, "--only", only)
             self.assertIn(message, str(refused.exception))
             self.assertEqual((self.folder / "results.md").read_text(), PAGE)
 
-    def test_pictures_alone(self):
+    def test_pictures_alone(self) -> None:
         with mock.patch.object(write_docs, "write_pictures") as write:
             page = self.write(report("one", "two"), "--only", "pictures")
             self.assertEqual(page, PAGE)

@@ -1,12 +1,16 @@
-"""Memory and time to ask Slurm for, where none is given: what cost.py predicts for the scene's triangles, the counts
-and the film, with room for scenes in which light takes more work than in that to which its rates were fitted.
+"""Chooses the memory and time to request from Slurm where the options give none.
+
+cost.py predicts both from the triangles of the scene, the counts and the film. The factors add room
+for scenes that take more work than the one to which the rates were fitted.
 """
 
+import argparse
 import json
 import math
 import re
 import shlex
 import subprocess
+from typing import Any
 
 import cost
 import stages
@@ -15,26 +19,32 @@ ROOM_MEMORY, SPARE_MIB = 1.5, 256
 ROOM_TIME, SPARE_MIN = 4, 10
 
 
-def look(scene, options, *more):
-    """What vpl-inspect understands of the scene."""
+def look(scene: str, options: argparse.Namespace, *more: str) -> Any:
+    """The scene as vpl-inspect scene --json describes it."""
     defines = [word for pair in options.define for word in ("--define", pair)]
     command = [f"{options.bin}/vpl-inspect", "scene", scene, "--json", *defines, *more]
     try:
-        done = subprocess.run(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        done = subprocess.run(command, text=True, capture_output=True)
     except FileNotFoundError:
-        stages.refuse(f"there is no {command[0]}, which looks at the scene; build the tools, or give --memory and --time")
+        stages.refuse(
+            f"there is no {command[0]}, which looks at the scene; build the tools, or give "
+            "--memory and --time"
+        )
     if done.returncode:
         stages.refuse(done.stderr.strip() + "; or give --memory and --time")
     return json.loads(done.stdout)
 
 
-def pixels_of(seen, options):
-    """Of the largest film."""
+def pixels_of(seen: dict[str, Any], options: argparse.Namespace) -> int:
+    """Pixels of the largest film."""
     words = shlex.split(options.render_flags)
     if "--size" in words[:-1]:
         films = [words[words.index("--size") + 1]]
     elif options.views:
-        films = [look(options.scene, options, "--view", view)["cameras"][0]["film"] for view in options.views]
+        films = [
+            look(options.scene, options, "--view", view)["cameras"][0]["film"]
+            for view in options.views
+        ]
     else:
         films = [seen["cameras"][0]["film"]]
     sizes = [re.fullmatch(r"(\d+)x(\d+)", film) for film in films]
@@ -42,28 +52,36 @@ def pixels_of(seen, options):
 
 
 class Needs:
-    """Looks at the scene when it is first asked."""
+    """Memory and time of each stage. The scene is inspected at the first question."""
 
-    def __init__(self, options):
-        self.options, self.model, self.whole = options, cost.load(), None
+    def __init__(self, options: argparse.Namespace) -> None:
+        self.options, self.model = options, cost.load()
+        self.whole: cost.Counts | None = None
 
-    def predict(self, stage, figure):
+    def predict(self, stage: str, figure: str) -> float:
         if self.whole is None:
             o = self.options
             seen = look(o.scene, o)
             try:
-                counts = [cost.count(text) for text in (o.candidates, o.vpls, o.photons, o.spp or "256")]
+                counts = [
+                    cost.count(text) for text in (o.candidates, o.vpls, o.photons, o.spp or "256")
+                ]
             except ValueError as problem:
                 stages.refuse(str(problem))
-            self.whole = cost.Counts(seen["triangles"], *counts[:3], pixels_of(seen, o), counts[3])
-        return self.model.predict(stage, figure, cost.with_shards(self.whole, stage, self.options.shards))
+            candidates, vpls, photons, spp = counts
+            self.whole = cost.Counts(
+                seen["triangles"], candidates, vpls, photons, pixels_of(seen, o), spp
+            )
+        return self.model.predict(
+            stage, figure, cost.with_shards(self.whole, stage, self.options.shards)
+        )
 
-    def memory(self, stage):
-        """As of sbatch --mem."""
+    def memory(self, stage: str) -> str:
+        """Memory in the notation of sbatch --mem."""
         mib = 0 if stage == "summary" else self.predict(stage, "memory_MiB")
         return f"{math.ceil((ROOM_MEMORY * mib + SPARE_MIB) / 64) * 64}M"
 
-    def time(self, stage, cores):
-        """In minutes, as of sbatch --time."""
+    def time(self, stage: str, cores: int) -> str:
+        """Time in minutes, in the notation of sbatch --time."""
         seconds = 0 if stage == "summary" else self.predict(stage, "cpu_s") / cores
         return str(SPARE_MIN + math.ceil(ROOM_TIME * seconds / 60))

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Renders a scene on a Slurm cluster: place, estimate and render as arrays of shards, each with a merge after it.
+r"""Renders a scene on a Slurm cluster: place, estimate and render as arrays of shards with a merge.
 
-  pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 16,render=64 --memory 8G,eliminate=32G --time 2:00:00
+    pipelines/slurm/submit.py scenes/u-shape/scene.toml --shards 16,render=64 \
+        --memory 8G,eliminate=32G --time 2:00:00
 
-Run it in a folder that all nodes see at the same path; paths are relative to it. The images are those of one run,
-byte for byte. Logs, records and a summary go to OUT/SCENE/run. The same command again submits what is missing.
+Run it in a folder that all nodes see at the same path; paths are relative to it. The images equal
+those of a run on one machine, byte for byte. Logs, records and a summary go to OUT/SCENE/run. The
+same command again submits only what is missing.
 """
 
 import argparse
@@ -15,6 +17,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Collection, Iterable
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -25,34 +28,77 @@ import stages  # noqa: E402
 import task as task_program  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
-SECONDS_TO_SAVE = 60  # before the time limit, for a checkpoint
+SECONDS_TO_SAVE = 60  # time before the limit at which a task begins to save its checkpoint
 JOB = output_guard.json_object("a job of this program", "threads", "retries", "tasks")
-IDS = output_guard.json_kind("a list of jobs of this program", lambda ids: isinstance(ids, dict) and
-                             all(isinstance(job, str) and job.isdigit() for job in ids.values()))
+IDS = output_guard.json_kind(
+    "a list of jobs of this program",
+    lambda ids: (
+        isinstance(ids, dict)
+        and all(isinstance(job, str) and job.isdigit() for job in ids.values())
+    ),
+)
 
 
-def per_stage(value, **others):
+def per_stage(value: str, **others: str) -> dict[str, str]:
     return dict.fromkeys(KINDS, value) | others
 
 
-def arguments():
+def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.")
+        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.",
+    )
     p.add_argument("scene", metavar="SCENE", help="scene.toml")
     stages.add_arguments(p, shards="16")
-    p.add_argument("--cpus", action=stages.PerStage, stages=KINDS, pattern=r"[1-9]\d*", what="a count from 1",
-                   default=per_stage("4", merge="1"), help="of a task; default 4, and merge=1")
-    p.add_argument("--memory", action=stages.PerStage, stages=KINDS, pattern=r"\d+[KMGT]?|auto", what="a size such as 4G",
-                   default=per_stage("auto"), help="of a task; default auto: by what is known of the tools (docs/scaling.md)")
-    p.add_argument("--time", action=stages.PerStage, stages=KINDS, pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
-                   what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)", default=per_stage("auto"),
-                   help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and render are queued again when they reach it, and go on")
-    p.add_argument("--at-once", type=int, metavar="N", help="most tasks of an array that run together; default: all")
-    p.add_argument("--retries", type=int, default=3, metavar="N",
-                   help="times that a task whose tool is killed is queued again (default 3); failed nodes do not count")
-    p.add_argument("--sbatch", default="", metavar="OPTIONS", help="for every job: --sbatch='--partition=long --account=x'")
+    p.add_argument(
+        "--cpus",
+        action=stages.PerStage,
+        stages=KINDS,
+        pattern=r"[1-9]\d*",
+        what="a count from 1",
+        default=per_stage("4", merge="1"),
+        help="of a task; default 4, and merge=1",
+    )
+    p.add_argument(
+        "--memory",
+        action=stages.PerStage,
+        stages=KINDS,
+        pattern=r"\d+[KMGT]?|auto",
+        what="a size such as 4G",
+        default=per_stage("auto"),
+        help="of a task; default auto: by what is known of the tools (docs/scaling.md)",
+    )
+    p.add_argument(
+        "--time",
+        action=stages.PerStage,
+        stages=KINDS,
+        pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
+        what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)",
+        default=per_stage("auto"),
+        help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and "
+        "render are queued again when they reach it, and go on",
+    )
+    p.add_argument(
+        "--at-once",
+        type=int,
+        metavar="N",
+        help="most tasks of an array that run together; default: all",
+    )
+    p.add_argument(
+        "--retries",
+        type=int,
+        default=3,
+        metavar="N",
+        help="times that a task whose tool is killed is queued again (default 3); failed nodes "
+        "do not count",
+    )
+    p.add_argument(
+        "--sbatch",
+        default="",
+        metavar="OPTIONS",
+        help="for every job: --sbatch='--partition=long --account=x'",
+    )
     p.add_argument("--dry-run", action="store_true", help="print what would be submitted")
     options = p.parse_args()
     if options.at_once is not None and options.at_once < 1:
@@ -64,21 +110,21 @@ def arguments():
     return options
 
 
-def kind_of(stage):
+def kind_of(stage: str) -> str:
     return "merge" if stage.startswith("merge-") else stage
 
 
-def jobs_of(scene, options):
-    """[(stage, its tasks)] in the order in which they run."""
-    jobs = {}
+def jobs_of(scene: str, options: argparse.Namespace) -> list[tuple[str, list[stages.Task]]]:
+    """Pairs (stage, its tasks) in the order in which they run."""
+    jobs: dict[str, list[stages.Task]] = {}
     for task in stages.tasks_of(scene, options):
         jobs.setdefault(task.stage, []).append(task)
     return list(jobs.items())
 
 
-def ranges(numbers):
-    """1-3,7 for 1, 2, 3, 7."""
-    parts = []
+def ranges(numbers: Iterable[int]) -> str:
+    """Ranges in the notation of sbatch --array: 1-3,7 for 1, 2, 3, 7."""
+    parts: list[list[int]] = []
     for n in numbers:
         if parts and parts[-1][1] == n - 1:
             parts[-1][1] = n
@@ -88,42 +134,50 @@ def ranges(numbers):
 
 
 class Submission:
-    def __init__(self, scene, options):
+    def __init__(self, scene: str, options: argparse.Namespace) -> None:
         self.options, self.scene = options, scene
         self.run = pathlib.Path(stages.folder_of(scene, options)) / "run"
-        self.submitted = {}  # stage: id
+        self.submitted: dict[str, str] = {}  # number of the Slurm job of each stage
         self.needs = needs.Needs(options)
         self.ids = self.run / "jobs.json"
 
-    def job_file(self, name):
+    def job_file(self, name: str) -> pathlib.Path:
         return self.run / f"{name}.job.json"
 
-    def check_files(self, names):
-        """All that will be written, before anything is."""
+    def check_files(self, names: Iterable[str]) -> None:
+        """Checks every file that the run will write, before it writes any."""
         for folder in (self.run, self.run / "earlier"):
             if folder.exists() and not folder.is_dir():
-                stages.refuse(f"{folder}: is no folder, which the run needs there; give another --out, or remove it")
+                stages.refuse(
+                    f"{folder}: is no folder, which the run needs there; give another --out, or "
+                    "remove it"
+                )
         for file, kind in [(self.ids, IDS), *((self.job_file(name), JOB) for name in names)]:
             output_guard.or_exit(output_guard.check, file, kind)
 
-    def refuse_while_queued(self):
-        """Two runs of one scene would do the same work twice."""
+    def refuse_while_queued(self) -> None:
+        """Refuses to submit while an earlier run of the scene is queued: it does the same work."""
         if not self.ids.exists():
             return
         known = set(json.loads(self.ids.read_text()).values())
-        queued = {line for line in self.slurm("squeue", "--noheader", "--format=%A %F", "--me").split()} & known
+        queued = {
+            line for line in self.slurm("squeue", "--noheader", "--format=%A %F", "--me").split()
+        } & known
         if queued:
-            stages.refuse(f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end them with scancel")
+            stages.refuse(
+                f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end "
+                "them with scancel"
+            )
 
-    def put_aside(self, names):
-        """Records of tasks that this run does not have, such as those of another number of shards."""
+    def put_aside(self, names: Collection[str]) -> None:
+        """Moves away records of tasks that this run lacks, such as those of other shard counts."""
         earlier = self.run / "earlier"
         for file in self.run.glob(f"*{record.SUFFIX}"):
             if file.name.removesuffix(record.SUFFIX).rpartition(".")[0] not in names:
                 earlier.mkdir(exist_ok=True)
                 file.replace(earlier / file.name)
 
-    def slurm(self, *command):
+    def slurm(self, *command: str) -> str:
         try:
             done = subprocess.run(command, text=True, stdout=subprocess.PIPE)
         except FileNotFoundError:
@@ -133,22 +187,36 @@ class Submission:
             stages.refuse(f"{command[0]} failed, as it says above; no job of this run is left")
         return done.stdout
 
-    def undo(self):
+    def undo(self) -> None:
         if self.submitted:
             subprocess.run(["scancel", *self.submitted.values()])
 
-    def limits(self, name, kind):
-        memory, time, cores = (each[kind] for each in (self.options.memory, self.options.time, self.options.cpus))
-        return (self.needs.memory(name) if memory == "auto" else memory,
-                self.needs.time(name, int(cores)) if time == "auto" else time, cores)
+    def limits(self, name: str, kind: str) -> tuple[str, str, str]:
+        memory, time, cores = (
+            each[kind] for each in (self.options.memory, self.options.time, self.options.cpus)
+        )
+        return (
+            self.needs.memory(name) if memory == "auto" else memory,
+            self.needs.time(name, int(cores)) if time == "auto" else time,
+            cores,
+        )
 
-    def submit(self, name, kind, words, command, note):
+    def submit(self, name: str, kind: str, words: list[str], command: list[str], note: str) -> None:
         chosen = self.options
         memory, time, cores = self.limits(name, kind)
-        full = ["sbatch", "--parsable", f"--job-name={stages.name_of(self.scene)}-{name}",
-                f"--cpus-per-task={cores}", f"--mem={memory}", f"--time={time}",
-                "--requeue", "--open-mode=append", *words, *shlex.split(chosen.sbatch),
-                f"--wrap=exec {shlex.join(command)}"]
+        full = [
+            "sbatch",
+            "--parsable",
+            f"--job-name={stages.name_of(self.scene)}-{name}",
+            f"--cpus-per-task={cores}",
+            f"--mem={memory}",
+            f"--time={time}",
+            "--requeue",
+            "--open-mode=append",
+            *words,
+            *shlex.split(chosen.sbatch),
+            f"--wrap=exec {shlex.join(command)}",
+        ]
         if chosen.dry_run:
             print(shlex.join(full))
             self.submitted[name] = f"ID_OF_{name}"
@@ -157,17 +225,31 @@ class Submission:
         output_guard.or_exit(output_guard.write, self.ids, json.dumps(self.submitted) + "\n", IDS)
         print(f"{self.submitted[name]}  {name}: {note}", flush=True)
 
-    def submit_stage(self, name, tasks):
+    def submit_stage(self, name: str, tasks: list[stages.Task]) -> None:
         before = [self.submitted[stage] for stage in tasks[0].after if stage in self.submitted]
         described = [dataclasses.asdict(task) for task in tasks]
-        wanted = [i for i, task in enumerate(described, 1) if before or not task_program.up_to_date(self.run, task)]
+        wanted = [
+            i
+            for i, task in enumerate(described, 1)
+            if before or not task_program.up_to_date(self.run, task)
+        ]
         if not wanted:
             return
         kind = kind_of(name)
         if not self.options.dry_run:
-            job = {"threads": int(self.options.cpus[kind]), "retries": self.options.retries, "tasks": described}
-            output_guard.or_exit(output_guard.write, self.job_file(name), json.dumps(job, indent=1), JOB)
-        words = [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"] if before else []
+            job = {
+                "threads": int(self.options.cpus[kind]),
+                "retries": self.options.retries,
+                "tasks": described,
+            }
+            output_guard.or_exit(
+                output_guard.write, self.job_file(name), json.dumps(job, indent=1), JOB
+            )
+        words = (
+            [f"--dependency=afterok:{':'.join(before)}", "--kill-on-invalid-dep=yes"]
+            if before
+            else []
+        )
         if len(tasks) > 1:  # shards, and images of several views
             at_once = f"%{self.options.at_once}" if self.options.at_once else ""
             log = stages.shard_name(name, "%a", len(tasks))
@@ -176,26 +258,40 @@ class Submission:
             log = name
         words += [f"--signal=B:USR1@{SECONDS_TO_SAVE}"] if tasks[0].checkpoint else []
         words.append(f"--output={self.run}/{log}.log")
-        note = f"{len(wanted)} of {len(tasks)} tasks" if len(wanted) < len(tasks) else \
-            f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
+        note = (
+            f"{len(wanted)} of {len(tasks)} tasks"
+            if len(wanted) < len(tasks)
+            else f"{len(tasks)} task{'s' if len(tasks) > 1 else ''}"
+        )
         program = [sys.executable, str(HERE / "task.py"), str(self.job_file(name))]
         self.submit(name, kind, words, program, note)
 
-    def submit_summary(self):
-        command = [f"{self.options.bin}/vpl-inspect", "run", str(self.run), "--svg", f"{self.run}/timeline.svg"]
-        words = [f"--dependency=afterany:{':'.join(self.submitted.values())}", "--open-mode=truncate",
-                 f"--output={self.run}/summary.log"]
+    def submit_summary(self) -> None:
+        command = [
+            f"{self.options.bin}/vpl-inspect",
+            "run",
+            str(self.run),
+            "--svg",
+            f"{self.run}/timeline.svg",
+        ]
+        words = [
+            f"--dependency=afterany:{':'.join(self.submitted.values())}",
+            "--open-mode=truncate",
+            f"--output={self.run}/summary.log",
+        ]
         self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
 
-    def submit_all(self):
+    def submit_all(self) -> None:
         jobs = jobs_of(self.scene, self.options)
         if not self.options.dry_run:
             for command in ("sbatch", "squeue", "scancel"):
                 if not shutil.which(command):
-                    stages.refuse(f"there is no {command} here; run this where Slurm's commands are")
+                    stages.refuse(
+                        f"there is no {command} here; run this where Slurm's commands are"
+                    )
             self.check_files([name for name, _ in jobs])
             self.refuse_while_queued()
-            for name, _ in jobs:  # what cannot be known is refused before anything is done
+            for name, _ in jobs:  # refuses unknown needs before anything is written
                 self.limits(name, kind_of(name))
             self.run.mkdir(parents=True, exist_ok=True)
             self.put_aside({task.name for _, tasks in jobs for task in tasks})
@@ -207,7 +303,7 @@ class Submission:
         self.submit_summary()
 
 
-def main():
+def main() -> None:
     options = arguments()
     Submission(options.scene, options).submit_all()
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What a job of submit.py runs: one task of a stage, unless its files are up to date.
+"""Runs one task of a job of submit.py, unless its files are up to date.
 
-  task.py out/u-shape/run/place.job.json      # as task SLURM_ARRAY_TASK_ID of an array
+    task.py out/u-shape/run/place.job.json      # as task SLURM_ARRAY_TASK_ID of an array
 
-It is queued again, and goes on from its checkpoint, when it nears its time limit (SIGUSR1) and when its tool is
-killed (so many times as the job allows). Slurm itself does so when a node fails.
+The task is queued again and resumes from its checkpoint when it nears its time limit (SIGUSR1), and
+when its tool is killed, as often as the job allows. Slurm itself requeues it when a node fails.
 """
 
 import json
@@ -15,6 +15,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
+from typing import Any
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import record  # noqa: E402
@@ -22,19 +24,21 @@ import record  # noqa: E402
 ASKED_TO_STOP = {128 + number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
 
 
-def signature(files):
-    """Size and time of each; None where there is no such file. Of a command that is a name alone, nothing is known."""
-    def of(file):
+def signature(files: Iterable[str]) -> dict[str, list[int] | None]:
+    """Size and time of each file; None where it does not exist, as for a bare command name."""
+
+    def of(file: str) -> list[int] | None:
         try:
             state = os.stat(file)
             return [state.st_size, state.st_mtime_ns]
         except OSError:
             return None
+
     return {file: of(file) for file in files}
 
 
-def dependencies(depfile):
-    """The files that a depfile names, whose spaces, # and $ are escaped as Make wants."""
+def dependencies(depfile: str) -> list[str]:
+    """The files that a depfile names. Spaces, # and $ in it are escaped for Make."""
     try:
         text = pathlib.Path(depfile).read_text().split(":", 1)[1]
     except (OSError, IndexError):
@@ -43,74 +47,100 @@ def dependencies(depfile):
     return [re.sub(r"\\(.)", r"\1", word).replace("$$", "$") for word in words]
 
 
-def up_to_date(folder, task):
-    """Whether this command has made these outputs from these inputs, as they are now."""
+def up_to_date(folder: pathlib.Path, task: dict[str, Any]) -> bool:
+    """Whether the command of the task has made its present outputs from its present inputs."""
     if any(state is None for state in signature(task["outputs"]).values()):
         return False
     for earlier in record.attempts(folder, task["name"]):
-        if earlier and earlier.get("exit") == 0 and earlier.get("command") == task["command"] and \
-                all("made" in earlier and signature(earlier["made"][kind]) == earlier["made"][kind]
-                    for kind in ("inputs", "outputs")):
+        if (
+            earlier
+            and earlier.get("exit") == 0
+            and earlier.get("command") == task["command"]
+            and all(
+                "made" in earlier and signature(earlier["made"][kind]) == earlier["made"][kind]
+                for kind in ("inputs", "outputs")
+            )
+        ):
             return True
     return False
 
 
 class Job:
-    def __init__(self, file):
+    def __init__(self, file: str) -> None:
         self.folder = pathlib.Path(file).parent
         described = json.loads(pathlib.Path(file).read_text())
         self.retries, self.threads = described["retries"], described["threads"]
         self.task = described["tasks"][int(os.environ.get("SLURM_ARRAY_TASK_ID", "1")) - 1]
-        self.attempt, self.out_of_time = None, False
+        self.attempt: record.Attempt  # set by run()
+        self.out_of_time = False
 
-    def on_time_limit(self, *_):
+    def on_time_limit(self, *_: object) -> None:
         self.out_of_time = True
         self.attempt.ask_to_stop()
 
-    def run(self):
+    def run(self) -> int:
         task = self.task
         for output in task["outputs"]:
             pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
-        self.attempt = record.Attempt(self.folder, task["name"], task["stage"], task["after"], task["command"],
-                                      task["checkpoint"])
-        if task["checkpoint"]:  # without one, stopping early would only lose the work
+        self.attempt = record.Attempt(
+            self.folder,
+            task["name"],
+            task["stage"],
+            task["after"],
+            task["command"],
+            task["checkpoint"],
+        )
+        if task["checkpoint"]:  # a task without a checkpoint would lose its work by stopping early
             signal.signal(signal.SIGUSR1, self.on_time_limit)
         before = {"inputs": signature(task["inputs"])}
         code = self.attempt.run([*task["command"], "--threads", str(self.threads)])
         if code == 0:
-            made = {"inputs": before["inputs"] | signature(dependencies(task["depfile"])),
-                    "outputs": signature(task["outputs"])}
+            made = {
+                "inputs": before["inputs"] | signature(dependencies(task["depfile"])),
+                "outputs": signature(task["outputs"]),
+            }
             self.attempt.record["made"] = made
             self.attempt.save()
         elif self.shall_run_again(code):
             self.queue_again()
         return code
 
-    def shall_run_again(self, code):
+    def shall_run_again(self, code: int) -> bool:
         if self.attempt.stopped or "SLURM_JOB_ID" not in os.environ:
             return False
         if self.out_of_time:
             begun = os.path.exists(self.task["checkpoint"])
             if not begun:
-                print(f"task.py: {self.task['name']} saved nothing before its time limit; give it more --time", flush=True)
+                print(
+                    f"task.py: {self.task['name']} saved nothing before its time limit; give it "
+                    "more --time",
+                    flush=True,
+                )
             return begun
         return code > 128 and code not in ASKED_TO_STOP and self.killed_before() < self.retries
 
-    def killed_before(self):
-        """Attempts within this job whose tools were killed."""
+    def killed_before(self) -> int:
+        """Number of attempts of this job whose tools were killed."""
         mine = self.attempt.record
-        return sum(1 for earlier in record.attempts(self.folder, self.task["name"])
-                   if earlier and earlier["job"] == mine["job"] and earlier["attempt"] != mine["attempt"]
-                   and earlier.get("exit", 0) > 128 and earlier["exit"] not in ASKED_TO_STOP)
+        return sum(
+            1
+            for earlier in record.attempts(self.folder, self.task["name"])
+            if earlier
+            and earlier["job"] == mine["job"]
+            and earlier["attempt"] != mine["attempt"]
+            and earlier.get("exit", 0) > 128
+            and earlier["exit"] not in ASKED_TO_STOP
+        )
 
-    def queue_again(self):
+    def queue_again(self) -> None:
         print(f"task.py: {self.task['name']} is queued again, to go on", flush=True)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the work is saved: nothing to wait for
+        # The work is saved, so scontrol may end this process.
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         if subprocess.run(["scontrol", "requeue", os.environ["SLURM_JOB_ID"]]).returncode == 0:
             time.sleep(600)  # until Slurm ends this attempt
 
 
-def main():
+def main() -> None:
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         print(__doc__.strip())
         sys.exit(0 if sys.argv[1:] in (["-h"], ["--help"]) else 2)

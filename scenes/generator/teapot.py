@@ -1,21 +1,23 @@
-"""The Utah teapot, tessellated from Martin Newell's bicubic Bezier patches.
+"""Tessellates the Utah teapot from Martin Newell's bicubic Bezier patches.
 
-Normals come from the patches' own derivatives. Newell's numbers leave two openings that a table
-hides or a pot has: the bottom, and the tip of the spout. A third, between lid and rim, would let
-light into the pot; a flat ring, which is not Newell's, closes it.
+Normals come from the derivatives of the patches. Newell's data has three openings. The bottom and
+the tip of the spout stay open. The one between lid and rim would let light into the pot; a flat
+ring, which is not Newell's, closes it.
 """
 
 import math
+from pathlib import Path
 
-from .mesh import Mesh, grey, mtl
+from .mesh import Mesh, Vector, grey, mtl
 
-STEPS = 8  # segments along each side of a patch: 28 * 8 * 8 * 2 triangles
-POINT_SIZE = 2e-3  # a row of control points smaller than this is one point (tip of the lid's knob)
-NUDGE = 1e-4  # how far from such a point, in patch parameters, the normal is taken
+STEPS = 8  # segments along each side of a patch; 28 * 8 * 8 * 2 triangles in all
+POINT_SIZE = 2e-3  # size below which a row of control points is one point (the tip of the knob)
+NUDGE = 1e-4  # distance from such a point, in patch parameters, at which the normal is evaluated
 
 
-def read_patches(path):
-    points, patches = {}, []
+def read_patches(path: Path) -> list[list[Vector]]:
+    points: dict[int, Vector] = {}
+    patches: list[list[Vector]] = []
     for row in path.read_text().splitlines():
         words = row.split()
         if words and words[0] == "v":
@@ -25,8 +27,8 @@ def read_patches(path):
     return [snap_points(patch) for patch in patches]
 
 
-def snap_points(patch):
-    """Replaces a border row that is a point but for rounding by that point."""
+def snap_points(patch: list[Vector]) -> list[Vector]:
+    """Replaces a border row that is a point up to rounding by that point."""
     for row in ((0, 1, 2, 3), (12, 13, 14, 15)):
         if all(math.dist(patch[row[0]], patch[i]) < POINT_SIZE for i in row):
             for i in row:
@@ -34,41 +36,45 @@ def snap_points(patch):
     return patch
 
 
-def bernstein(t):
+def bernstein(t: float) -> Vector:
     s = 1 - t
     return (s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t)
 
 
-def bernstein_slope(t):
+def bernstein_slope(t: float) -> Vector:
     s = 1 - t
     return (-3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t)
 
 
-def blend(patch, row_weights, column_weights):
+def blend(patch: list[Vector], row_weights: Vector, column_weights: Vector) -> Vector:
     return tuple(
-        sum(row_weights[i] * column_weights[j] * patch[4 * i + j][axis]
-            for i in range(4) for j in range(4))
-        for axis in range(3))
+        sum(
+            row_weights[i] * column_weights[j] * patch[4 * i + j][axis]
+            for i in range(4)
+            for j in range(4)
+        )
+        for axis in range(3)
+    )
 
 
-def cross(a, b):
+def cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def normal_at(patch, row, column):
-    """Unit normal that points out of the pot: Newell's patches all run the same way round."""
+def normal_at(patch: list[Vector], row: float, column: float) -> Vector:
+    """Unit normal, which points out of the pot, as all of Newell's patches have one orientation."""
     along_row = blend(patch, bernstein(row), bernstein_slope(column))
     along_column = blend(patch, bernstein_slope(row), bernstein(column))
     n = cross(along_column, along_row)
     size = math.hypot(*n)
-    if size < 1e-7:  # a side of the patch has shrunk to a point here: step inside
+    if size < 1e-7:  # a side of the patch is a point here: evaluate inside
         inside = NUDGE if row < 0.5 else 1 - NUDGE
         return normal_at(patch, inside, column)
     return tuple(c / size for c in n)
 
 
-def add_patch(mesh, patch, steps):
-    def corner(i, j):
+def add_patch(mesh: Mesh, patch: list[Vector], steps: int) -> None:
+    def corner(i: int, j: int) -> tuple[Vector, Vector]:
         row, column = i / steps, j / steps
         return blend(patch, bernstein(row), bernstein(column)), normal_at(patch, row, column)
 
@@ -77,13 +83,13 @@ def add_patch(mesh, patch, steps):
         for j in range(steps):
             a, b, c, d = grid[i][j], grid[i + 1][j], grid[i + 1][j + 1], grid[i][j + 1]
             for triangle in ((a, b, c), (a, c, d)):
-                mesh.face("Teapot", *zip(*triangle))
+                mesh.face("Teapot", *zip(*triangle, strict=True))
 
 
-def add_ring(mesh, patches, steps):
-    """Joins the lid's edge (last row of patches 24..27) to the rim's (first row of 0..3)."""
+def add_ring(mesh: Mesh, patches: list[list[Vector]], steps: int) -> None:
+    """Joins the edge of the lid (last row of patches 24..27) to the rim (first row of 0..3)."""
     up = (0, 1, 0)
-    for lid, rim in zip(patches[24:28], patches[0:4]):
+    for lid, rim in zip(patches[24:28], patches[0:4], strict=True):
         inner = [blend(lid, bernstein(1), bernstein(j / steps)) for j in range(steps + 1)]
         outer = [blend(rim, bernstein(0), bernstein(j / steps)) for j in range(steps + 1)]
         for j in range(steps):
@@ -91,9 +97,11 @@ def add_ring(mesh, patches, steps):
             mesh.face("Teapot", quad, (up,) * 4)
 
 
-def files(folder):
+def files(folder: Path) -> dict[str, str | bytes]:
     patches = read_patches(folder / "newell-patches.txt")
-    mesh = Mesh("Utah teapot, tessellated by scenes/generate.py from Newell's patches", "teapot.mtl")
+    mesh = Mesh(
+        "Utah teapot, tessellated by scenes/generate.py from Newell's patches", "teapot.mtl"
+    )
     mesh.object("Teapot")
     for patch in patches:
         add_patch(mesh, patch, STEPS)

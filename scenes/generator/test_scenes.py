@@ -1,20 +1,28 @@
-"""Tiny scenes that tests know the answer of, and one OBJ full of oddities."""
+"""Makes tiny scenes for tests with known answers, and an OBJ file with unusual content."""
 
-from .mesh import Mesh, grey, mtl
+from typing import Any
+
+from .mesh import Mesh, Vector, grey, mtl
 from .png import png
 from .rooms import LAMP, SUNK, lamp_box
 
 MADE = "made by scenes/generate.py"
-DIFFUSE = {"Floor": {"Kd": grey(0.7)}, "Ceiling": {"Kd": grey(0.7)}, "Wall": {"Kd": grey(0.7)},
-           "Divider": {"Kd": grey(0.7)}, "Housing": {"Kd": grey(0.7)}, LAMP: {"Ke": grey(20)}}
+DIFFUSE = {
+    "Floor": {"Kd": grey(0.7)},
+    "Ceiling": {"Kd": grey(0.7)},
+    "Wall": {"Kd": grey(0.7)},
+    "Divider": {"Kd": grey(0.7)},
+    "Housing": {"Kd": grey(0.7)},
+    LAMP: {"Ke": grey(20)},
+}
 ROOM = {"-y": "Floor", "+y": "Ceiling"}
 
 
-def only(*names):
+def only(*names: str) -> dict[str, dict[str, Any]]:
     return {name: DIFFUSE[name] for name in names}
 
 
-def two_rooms():
+def two_rooms() -> dict[str, str | bytes]:
     mesh = Mesh(f"Two closed rooms, 0.02 m apart, a lamp in the right one; {MADE}", "two-rooms.mtl")
     mesh.object("DarkRoom")
     mesh.box((-2.01, 0, 0), (-0.01, 2, 2), "Wall", ROOM, inward=True)
@@ -26,8 +34,10 @@ def two_rooms():
     return {"test/two-rooms.obj": mesh.text(), "test/two-rooms.mtl": mtl("", only(*names))}
 
 
-def divider():
-    mesh = Mesh(f"One room cut in two by a 0.02 m divider over one common floor; {MADE}", "divider.mtl")
+def divider() -> dict[str, str | bytes]:
+    mesh = Mesh(
+        f"One room cut in two by a 0.02 m divider over one common floor; {MADE}", "divider.mtl"
+    )
     mesh.object("Shell")
     mesh.box((-2, 0, 0), (2, 2, 2), "Wall", ROOM, inward=True)
     mesh.object("Divider")
@@ -37,16 +47,18 @@ def divider():
     return {"test/divider.obj": mesh.text(), "test/divider.mtl": mtl("", only(*DIFFUSE))}
 
 
-def square(mesh, material, corner, side_a, side_b):
-    """Faces along side_a x side_b."""
-    a = tuple(c + s for c, s in zip(corner, side_a))
-    b = tuple(c + s for c, s in zip(a, side_b))
-    c = tuple(c + s for c, s in zip(corner, side_b))
+def square(mesh: Mesh, material: str, corner: Vector, side_a: Vector, side_b: Vector) -> None:
+    """Adds a parallelogram whose front is towards side_a x side_b."""
+    a = tuple(c + s for c, s in zip(corner, side_a, strict=True))
+    b = tuple(c + s for c, s in zip(a, side_b, strict=True))
+    c = tuple(c + s for c, s in zip(corner, side_b, strict=True))
     mesh.face(material, [corner, a, b, c])
 
 
-def two_patches():
-    mesh = Mesh(f"A shining square 1 m above a diffuse one, face to face; {MADE}", "two-patches.mtl")
+def two_patches() -> dict[str, str | bytes]:
+    mesh = Mesh(
+        f"A shining square 1 m above a diffuse one, face to face; {MADE}", "two-patches.mtl"
+    )
     mesh.object("Emitter")
     square(mesh, "Emitter", (-0.1, 1, -0.1), (0.2, 0, 0), (0, 0, 0.2))
     mesh.object("Receiver")
@@ -55,21 +67,28 @@ def two_patches():
     return {"test/two-patches.obj": mesh.text(), "test/two-patches.mtl": mtl("", materials)}
 
 
-def one_bounce():
-    mesh = Mesh("Floor, wall, and a lamp that lies level with the floor and faces up: it reaches the\n"
-                f"wall alone, so all light on the floor has bounced there; {MADE}", "one-bounce.mtl")
+def one_bounce() -> dict[str, str | bytes]:
+    mesh = Mesh(
+        "Floor, wall, and a lamp that lies level with the floor and faces up: it reaches the\n"
+        f"wall alone, so all light on the floor has bounced there; {MADE}",
+        "one-bounce.mtl",
+    )
     mesh.object("Floor")
     square(mesh, "Floor", (-1, 0, -1), (0, 0, 2), (2, 0, 0))
     mesh.object("Wall")
     square(mesh, "Wall", (-1, 0, -1), (0, 2, 0), (0, 0, 2))
     mesh.object("Lamp")
     square(mesh, LAMP, (1, 0, -0.5), (0, 0, 1), (0.5, 0, 0))
-    materials = {"Floor": {"Kd": grey(0.6)}, "Wall": {"Kd": (0.8, 0.4, 0.2)}, LAMP: {"Ke": grey(10)}}
+    materials = {
+        "Floor": {"Kd": grey(0.6)},
+        "Wall": {"Kd": (0.8, 0.4, 0.2)},
+        LAMP: {"Ke": grey(10)},
+    }
     return {"test/one-bounce.obj": mesh.text(), "test/one-bounce.mtl": mtl("", materials)}
 
 
-# What it holds, face by face: a quad by negative indices, a quad, a concave pentagon, two triangles
-# without area, one of an unknown material, one whose texture is missing, one masked by d 0.
+# Its faces are, in order: a quad with negative indices, a quad, a concave pentagon, two triangles
+# without area, one with an unknown material, one with a missing texture, one hidden by d 0.
 QUIRKS_OBJ = """\
 # Oddities on purpose; see README.md
 mtllib quirks.mtl
@@ -129,12 +148,18 @@ d 0
 """
 
 
-def dos(text):
+def dos(text: str) -> bytes:
     return text.replace("\n", "\r\n").encode()
 
 
-def files():
+def files() -> dict[str, str | bytes]:
     squares = png(8, 8, lambda x, y: (230,) * 3 if (x + y) % 2 else (40,) * 3)
-    return {**two_rooms(), **divider(), **two_patches(), **one_bounce(),
-            "test/quirks.obj": dos(QUIRKS_OBJ), "test/quirks.mtl": dos(QUIRKS_MTL),
-            "test/textures/checker.png": squares}
+    return {
+        **two_rooms(),
+        **divider(),
+        **two_patches(),
+        **one_bounce(),
+        "test/quirks.obj": dos(QUIRKS_OBJ),
+        "test/quirks.mtl": dos(QUIRKS_MTL),
+        "test/textures/checker.png": squares,
+    }

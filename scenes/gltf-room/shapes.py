@@ -1,4 +1,5 @@
-"""Meshes of the room: boxes, curved sheets and turned shapes, with normals and texture coordinates."""
+"""Makes the room's meshes: boxes, sheets and turned shapes with normals and uv."""
+
 import math
 
 import bmesh
@@ -6,15 +7,15 @@ import bpy
 from mathutils import Matrix, Vector
 
 
-def add(name, mesh, parent=None, matrix=Matrix()):
+def add(name: str, mesh, parent=None, matrix=None):
     made = bpy.data.objects.new(name, mesh)
-    made.parent, made.matrix_local = parent, matrix
+    made.parent, made.matrix_local = parent, Matrix() if matrix is None else matrix
     bpy.context.collection.objects.link(made)
     return made
 
 
-def finish(bm, name, materials, smooth_deg):
-    """A mesh of `bm`, smooth across edges of up to `smooth_deg`."""
+def finish(bm, name: str, materials, smooth_deg):
+    """Turns `bm` into a mesh that is smooth across edges of up to `smooth_deg`."""
     mesh = bpy.data.meshes.new(name)
     bm.to_mesh(mesh)
     bm.free()
@@ -25,23 +26,33 @@ def finish(bm, name, materials, smooth_deg):
     return mesh
 
 
-def boxes(name, materials, parts, bevel=0.0, segments=2, tile=(1, 1), smooth_deg=0):
-    """One mesh of boxes (low corner, high corner, material's number or none).
+def boxes(name: str, materials, parts, bevel=0.0, segments=2, tile=(1, 1), smooth_deg=0):
+    """Makes one mesh of boxes (low corner, high corner, index of the material if not 0).
 
-    Texture coordinates are metres over `tile`, with u along a face's longer side."""
+    Texture coordinates are metres over `tile`, with u along a face's longer side.
+    """
     whole = bmesh.new()
     layer = whole.loops.layers.uv.new("UVMap")
     for low, high, *slot in parts:
-        size = [b - a for a, b in zip(low, high)]
+        size = [b - a for a, b in zip(low, high, strict=True)]
         centre = (Vector(low) + Vector(high)) / 2
         bm = bmesh.new()
-        bmesh.ops.create_cube(bm, size=1, matrix=Matrix.Translation(centre) @ Matrix.Diagonal((*size, 1)))
+        bmesh.ops.create_cube(
+            bm, size=1, matrix=Matrix.Translation(centre) @ Matrix.Diagonal((*size, 1))
+        )
         if bevel:
-            bmesh.ops.bevel(bm, geom=bm.edges[:], offset=bevel, segments=segments, profile=0.5,
-                            affect="EDGES", clamp_overlap=True)
+            bmesh.ops.bevel(
+                bm,
+                geom=bm.edges[:],
+                offset=bevel,
+                segments=segments,
+                profile=0.5,
+                affect="EDGES",
+                clamp_overlap=True,
+            )
         for face in bm.faces:
-            axis = max(range(3), key=lambda i: abs(face.normal[i]))
-            u, v = sorted((i for i in range(3) if i != axis), key=lambda i: -size[i])
+            axis = max(range(3), key=lambda i: float(abs(face.normal[i])))
+            u, v = sorted((i for i in range(3) if i != axis), key=lambda i: float(-size[i]))
             copy = whole.faces.new([whole.verts.new(vert.co) for vert in face.verts])
             copy.material_index = slot[0] if slot else 0
             for loop in copy.loops:
@@ -51,27 +62,31 @@ def boxes(name, materials, parts, bevel=0.0, segments=2, tile=(1, 1), smooth_deg
     return finish(whole, name, materials, smooth_deg)
 
 
-def sheet(name, of, point, columns, rows, smooth_deg=60):
-    """A mesh of the surface point(u, v), seen from the side where v is to the left of u."""
+def sheet(name: str, of, point, columns, rows, smooth_deg=60):
+    """Makes a mesh of the surface point(u, v), whose front is where v is to the left of u."""
     bm = bmesh.new()
     layer = bm.loops.layers.uv.new("UVMap")
-    grid = [[bm.verts.new(point(i / columns, j / rows)) for i in range(columns + 1)]
-            for j in range(rows + 1)]
+    grid = [
+        [bm.verts.new(point(i / columns, j / rows)) for i in range(columns + 1)]
+        for j in range(rows + 1)
+    ]
     for j in range(rows):
         for i in range(columns):
             corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
             face = bm.faces.new([grid[b][a] for a, b in corners])
-            for loop, (a, b) in zip(face.loops, corners):
+            for loop, (a, b) in zip(face.loops, corners, strict=True):
                 loop[layer].uv = a / columns, b / rows
     bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-5)
     return finish(bm, name, [of], smooth_deg)
 
 
-def lathe(name, of, profile, steps=32, smooth_deg=40):
-    """A mesh of the profile, (radius, height) upwards for an outside, turned about z."""
-    def point(u, v):
+def lathe(name: str, of, profile, steps=32, smooth_deg=40):
+    """Makes a mesh by turning the profile (radius, height) about z; upwards gives an outside."""
+
+    def point(u: float, v: float):
         radius, z = profile[round(v * (len(profile) - 1))]
         return radius * math.cos(2 * math.pi * u), radius * math.sin(2 * math.pi * u), z
+
     return sheet(name, of, point, steps, len(profile) - 1, smooth_deg)
 
 

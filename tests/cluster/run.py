@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""The whole pipeline on a real Slurm whose tasks and nodes are killed, against the pipeline in one run.
+"""Runs the pipeline on a real Slurm, kills tasks and nodes, and compares with a plain run.
 
-  tests/cluster/run.py --bin build/release/bin            # 16 shards of each stage, 30 kills: some minutes
+    tests/cluster/run.py --bin build/release/bin    # 16 shards of each stage, 30 kills: minutes
 
-Starts a cluster of four nodes on this host (slurm_cluster.py), submits the U-shape by pipelines/slurm/submit.py, and
-at random moments kills the tool of a task, or a node with all that runs on it, which comes back a little later. Then
-compares every file, byte for byte. Should a run end before all kills are done, another one with another seed follows.
-Exit code 1 when anything is lost or differs, 77 where Slurm is not installed.
+Starts a cluster of four nodes on this host (slurm_cluster.py) and submits the U-shape by
+pipelines/slurm/submit.py. At random moments it kills the tool of a task, or a node with all that
+runs on it, which comes back a little later. Then it compares every file, byte for byte. If a run
+ends before all kills are done, another one with another seed follows. The exit code is 1 when
+anything is lost or differs, and 77 where Slurm is not installed.
 """
 
 import argparse
@@ -22,6 +23,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from slurm_cluster import Cluster, kill, missing_programs, processes
 
@@ -30,34 +32,38 @@ SKIPPED = 77
 SCENE = "scenes/u-shape/scene.toml"
 PRODUCTS = ("candidates.vpl", "vpls.vpl", "lit.vpl", "image.exr", "image.png")
 RENDER = "--render-flags=--size 240x180 --layers all"
-ESTIMATE = "--estimate-flags=--irradiance-error 0"  # all photons
+ESTIMATE = "--estimate-flags=--irradiance-error 0"  # uses all photons
 SIZES = ["--candidates", "200k", "--vpls", "1500"]
-SAVE_OFTEN = ["--place-flags=--checkpoint-every 0", f"{ESTIMATE} --checkpoint-every 0.2",
-              f"{RENDER} --checkpoint-every 0.2"]
+SAVE_OFTEN = [
+    "--place-flags=--checkpoint-every 0",
+    f"{ESTIMATE} --checkpoint-every 0.2",
+    f"{RENDER} --checkpoint-every 0.2",
+]
 
 
-def say(text):
+def say(text: str) -> None:
     print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
 
 
 class Killer:
-    """Strikes at random moments as long as the run goes on.
+    """Kills tools and nodes at random moments while the run lasts.
 
-    A task is struck twice at most, and a third of the kills is left for estimate, and one for render."""
+    A task is killed at most twice. One third of the kills is for estimate, and one for render.
+    """
 
     THIRDS = (r"place|candidates|vpls", r"estimate|lit", r"render|image")
 
-    def __init__(self, cluster, chance, most):
+    def __init__(self, cluster: Cluster, chance: random.Random, most: int) -> None:
         self.cluster, self.chance, self.most = cluster, chance, most
         self.struck = {"tool": 0, "node": 0}
         self.next = time.monotonic() + chance.uniform(0.5, 5)
-        self.returns = {}  # node: when
-        self.victims = {}  # task: how often
+        self.returns: dict[str, float] = {}  # time at which each node comes back
+        self.victims: dict[str, int] = {}  # number of kills of each task
 
-    def count(self):
+    def count(self) -> int:
         return sum(self.struck.values())
 
-    def step(self):
+    def step(self) -> None:
         now = time.monotonic()
         for node in [node for node, when in self.returns.items() if when <= now]:
             del self.returns[node]
@@ -67,12 +73,17 @@ class Killer:
         if self.strike():
             self.next = now + self.chance.uniform(0.5, 5)
 
-    def strike(self):
-        """Whether there was something to kill."""
+    def strike(self) -> bool:
+        """Kills a tool or a node. Returns whether there was one to kill."""
         steps, running = self.cluster.steps(), processes()
-        tools = {pid: self.task_of(running, pid) for pid in sorted(steps) if pid in running}
-        tools = [pid for pid, task in tools.items()
-                 if task and self.victims.get(task, 0) < 2 and self.count() < self.most * self.third(task) / 3]
+        tasks = {pid: self.task_of(running, pid) for pid in sorted(steps) if pid in running}
+        tools = [
+            pid
+            for pid, task in tasks.items()
+            if task
+            and self.victims.get(task, 0) < 2
+            and self.count() < self.most * self.third(task) / 3
+        ]
         if not tools:
             return False
         pid = self.chance.choice(tools)
@@ -91,40 +102,63 @@ class Killer:
             say(f"kill {self.count()}: {node} with {what}, back in {away:.1f} s")
         return True
 
-    def third(self, task):
+    def third(self, task: str) -> int:
         return next((i for i, names in enumerate(self.THIRDS, 1) if re.match(names, task)), 3)
 
     @staticmethod
-    def task_of(running, pid):
-        """The name of what a tool makes that pipelines/slurm/task.py has started; '' for other processes."""
+    def task_of(running: dict[int, tuple[int, list[str]]], pid: int) -> str:
+        """Name of the output of a tool that slurm/task.py has started; '' for other processes."""
         parent, words = running[pid]
-        if not words or not os.path.basename(words[0]).startswith("vpl-") or "-o" not in words or \
-                not any(word.endswith("task.py") for word in running.get(parent, (0, []))[1]):
+        if (
+            not words
+            or not os.path.basename(words[0]).startswith("vpl-")
+            or "-o" not in words
+            or not any(word.endswith("task.py") for word in running.get(parent, (0, []))[1])
+        ):
             return ""
         return os.path.basename(words[words.index("-o") + 1])
 
 
 class Test:
-    def __init__(self, options, folder):
+    def __init__(self, options: argparse.Namespace, folder: str) -> None:
         self.options, self.folder = options, Path(folder)
         self.bin = Path(options.bin).resolve()
-        self.named_bin = os.path.relpath(self.bin, SOURCE)  # the pipelines take no space in it
-        self.failures = []
+        # The path is relative, as the pipelines refuse spaces.
+        self.named_bin = os.path.relpath(self.bin, SOURCE)
+        self.failures: list[str] = []
         self.environment = os.environ | {"PATH": f"/usr/bin:/bin:{os.environ.get('PATH', '')}"}
 
-    def expect(self, holds, problem):
+    def expect(self, holds: bool, problem: str) -> None:
         if not holds:
             self.failures.append(problem)
             say(f"FAILED: {problem}")
 
-    def arguments(self, out, seed):
-        return [SCENE, "--out", str(self.folder / out), "--bin", self.named_bin, "--seed", str(seed), *SIZES,
-                "--photons", self.options.photons, "--spp", self.options.spp, ESTIMATE, RENDER]
+    def arguments(self, out: str, seed: int) -> list[str]:
+        return [
+            SCENE,
+            "--out",
+            str(self.folder / out),
+            "--bin",
+            self.named_bin,
+            "--seed",
+            str(seed),
+            *SIZES,
+            "--photons",
+            self.options.photons,
+            "--spp",
+            self.options.spp,
+            ESTIMATE,
+            RENDER,
+        ]
 
-    def run_here(self, seed):
-        """All of it in one process a stage."""
+    def run_here(self, seed: int) -> None:
+        """Runs the pipeline with one process a stage."""
         began = time.monotonic()
-        generate = [sys.executable, "pipelines/generate_ninja.py", *self.arguments(f"here-{seed}", seed)]
+        generate = [
+            sys.executable,
+            "pipelines/generate_ninja.py",
+            *self.arguments(f"here-{seed}", seed),
+        ]
         subprocess.run(generate, cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
         ninja = ["ninja", "--quiet", "-f", str(self.folder / f"here-{seed}" / "build.ninja")]
         done = subprocess.run(ninja, cwd=SOURCE, text=True, stdout=subprocess.PIPE)
@@ -132,17 +166,36 @@ class Test:
             sys.exit(f"the run without shards failed:\n{done.stdout}")
         say(f"the run in one process a stage took {time.monotonic() - began:.0f} s")
 
-    def submit(self, cluster, seed):
-        command = [sys.executable, "pipelines/slurm/submit.py", *self.arguments(f"there-{seed}", seed), *SAVE_OFTEN,
-                   "--shards", str(self.options.shards), "--cpus", "1", "--memory", "500M", "--time", "10",
-                   "--retries", str(self.options.kills)]
-        done = subprocess.run(command, cwd=SOURCE, env=cluster.environment | {"PATH": self.environment["PATH"]}, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    def submit(self, cluster: Cluster, seed: int) -> str:
+        command = [
+            sys.executable,
+            "pipelines/slurm/submit.py",
+            *self.arguments(f"there-{seed}", seed),
+            *SAVE_OFTEN,
+            "--shards",
+            str(self.options.shards),
+            "--cpus",
+            "1",
+            "--memory",
+            "500M",
+            "--time",
+            "10",
+            "--retries",
+            str(self.options.kills),
+        ]
+        done = subprocess.run(
+            command,
+            cwd=SOURCE,
+            env=cluster.environment | {"PATH": self.environment["PATH"]},
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
         if done.returncode:
             sys.exit(f"submit.py failed:\n{done.stdout}")
         return done.stdout
 
-    def run_there(self, cluster, seed, killer):
+    def run_there(self, cluster: Cluster, seed: int, killer: Killer) -> None:
         began = time.monotonic()
         say("submitted:\n" + self.submit(cluster, seed).rstrip())
         asked = 0.0
@@ -152,40 +205,64 @@ class Test:
             if time.monotonic() - asked > 2 and not killer.returns:
                 asked = time.monotonic()
                 jobs = cluster.ask("squeue", "-h", "-o", "%i %T")
-                # An empty answer may be one that did not come: the summary is the last to end.
+                # An empty answer may mean that squeue failed, so sinfo must answer too. The summary
+                # is the last job to end.
                 if not jobs.strip() and cluster.ask("sinfo", "-h"):
                     break
         else:
-            self.expect(False, f"not done after {self.options.limit} s:\n{cluster.ask('squeue')}{cluster.ask('sinfo')}")
+            self.expect(
+                False,
+                f"not done after {self.options.limit} s:\n{cluster.ask('squeue')}"
+                f"{cluster.ask('sinfo')}",
+            )
         say(f"the run on the cluster took {time.monotonic() - began:.0f} s")
 
-    def check(self, cluster, seed):
-        here, there = self.folder / f"here-{seed}" / "u-shape", self.folder / f"there-{seed}" / "u-shape"
+    def check(self, cluster: Cluster, seed: int) -> dict[str, Any]:
+        here, there = (
+            self.folder / f"here-{seed}" / "u-shape",
+            self.folder / f"there-{seed}" / "u-shape",
+        )
         for name in PRODUCTS:
-            same = (there / name).is_file() and filecmp.cmp(here / name, there / name, shallow=False)
+            same = (there / name).is_file() and filecmp.cmp(
+                here / name, there / name, shallow=False
+            )
             self.expect(same, f"{name} {'differs' if (there / name).is_file() else 'is missing'}")
-        left = [str(file.relative_to(there)) for file in there.rglob("*") if re.search(r"\.partial|\.checkpoint$", file.name)
-                and "run" not in file.relative_to(there).parts[:1]]
+        left = [
+            str(file.relative_to(there))
+            for file in there.rglob("*")
+            if re.search(r"\.partial|\.checkpoint$", file.name)
+            and "run" not in file.relative_to(there).parts[:1]
+        ]
         self.expect(not left, f"left behind: {', '.join(left)}")
-        inspected = subprocess.run([self.bin / "vpl-inspect", "run", there / "run", "--json"], text=True,
-                                   stdout=subprocess.PIPE)
+        inspected = subprocess.run(
+            [self.bin / "vpl-inspect", "run", there / "run", "--json"],
+            text=True,
+            stdout=subprocess.PIPE,
+        )
         self.expect(inspected.returncode == 0, "vpl-inspect run failed")
-        run = json.loads(inspected.stdout or "{}")
-        self.expect(run.get("tasks") == 3 * self.options.shards + 4, f"{run.get('tasks')} tasks are recorded")
+        run: dict[str, Any] = json.loads(inspected.stdout or "{}")
+        self.expect(
+            run.get("tasks") == 3 * self.options.shards + 4,
+            f"{run.get('tasks')} tasks are recorded",
+        )
         self.expect(run.get("unfinished") == [], f"not done: {run.get('unfinished')}")
         self.expect((there / "run" / "timeline.svg").is_file(), "the summary made no timeline.svg")
         again = self.submit(cluster, seed)
         self.expect("is up to date" in again, f"submitted again, it is not up to date: {again}")
-        print((there / "run" / "summary.log").read_text() if (there / "run" / "summary.log").is_file() else "no summary")
+        print(
+            (there / "run" / "summary.log").read_text()
+            if (there / "run" / "summary.log").is_file()
+            else "no summary"
+        )
         if self.failures:
             self.show_logs(there)
         return run
 
-    def show_logs(self, there):
+    def show_logs(self, there: Path) -> None:
         for file in sorted((there / "run").glob("*.log")):
             say(f"{file.name}:\n{file.read_text(errors='replace')[-800:]}")
 
-    def run(self):
+    def run(self) -> bool:
         chance = random.Random(self.options.seed)
         requeued = resumed = 0
         struck = {"tool": 0, "node": 0}
@@ -205,24 +282,36 @@ class Test:
                 print(cluster.log_of("slurmctld"))
         if self.options.kills:
             self.expect(resumed > 0, "no task went on from a checkpoint")
-        print(f"{'FAILED' if self.failures else 'the same bytes'}: {struck['tool']} tools and {struck['node']} nodes killed, "
-              f"{requeued} attempts more than tasks, {resumed} of them resumed from checkpoints")
+        print(
+            f"{'FAILED' if self.failures else 'the same bytes'}: {struck['tool']} tools and "
+            f"{struck['node']} nodes killed, "
+            f"{requeued} attempts more than tasks, {resumed} of them resumed from checkpoints"
+        )
         return not self.failures
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--bin", default=SOURCE / "build/release/bin")
     parser.add_argument("--shards", type=int, default=16)
     parser.add_argument("--kills", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1, help="of the moments and victims")
-    parser.add_argument("--photons", default="12M", help="more make the tasks longer (default %(default)s)")
+    parser.add_argument(
+        "--photons", default="12M", help="more make the tasks longer (default %(default)s)"
+    )
     parser.add_argument("--spp", default="12", help="likewise (default %(default)s)")
-    parser.add_argument("--limit", type=float, default=1200, metavar="S", help="for a run on the cluster")
+    parser.add_argument(
+        "--limit", type=float, default=1200, metavar="S", help="for a run on the cluster"
+    )
     parser.add_argument("--keep", action="store_true", help="keep the folder, and say where it is")
     options = parser.parse_args()
     if missing := missing_programs():
-        print(f"skipped: {', '.join(missing)} not found; apt-get install slurmctld slurmd slurm-client munge")
+        print(
+            f"skipped: {', '.join(missing)} not found; apt-get install slurmctld slurmd "
+            "slurm-client munge"
+        )
         sys.exit(SKIPPED)
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(each, lambda number, _: sys.exit(128 + number))

@@ -1,4 +1,7 @@
-"""Targets that cannot be written, and disks that fill up or fail: exit code 4, one line, and every file as it was."""
+"""Tests targets that cannot be written, and disks that are full or fail.
+
+They yield exit code 4 and one line, and every file stays as it was.
+"""
 
 import errno
 import os
@@ -8,17 +11,33 @@ import subprocess
 import time
 import unittest
 from dataclasses import replace
+from typing import Any
 
-from workbench import BIN, COMMANDS, FULL, OK, OUTPUT, SOURCE, Workbench, needs_shim, require
+from workbench import (
+    BIN,
+    COMMANDS,
+    FULL,
+    OK,
+    OUTPUT,
+    SOURCE,
+    Command,
+    Workbench,
+    needs_shim,
+    require,
+)
+
+
+def limit_file_size() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
 
 
 class Targets(Workbench):
-    def refused(self, command, *parts, **settings):
+    def refused(self, command: Command, *parts: str, **settings: Any) -> None:
         result = self.run_command(command, **settings)
         self.assertEqual(result.code, OUTPUT, f"{command.name}: {result}")
         self.assert_one_line(command, result, *parts)
 
-    def test_missing_folder(self):
+    def test_missing_folder(self) -> None:
         whole = self.folder
         for command in COMMANDS:
             self.folder = whole / "absent"
@@ -26,21 +45,21 @@ class Targets(Workbench):
         self.folder = whole
         self.assertEqual(list(whole.iterdir()), [])
 
-    def test_folder_that_vanishes_during_the_work(self):
+    def test_folder_that_vanishes_during_the_work(self) -> None:
         for command in COMMANDS:
             self.right(command)
             whole, self.folder = self.folder, self.folder / "soon gone"
             self.folder.mkdir()
             process = self.start(command)
             time.sleep(self.random.uniform(0, 0.5 * self.seconds[command.name]))
-            shutil.rmtree(self.folder, ignore_errors=True)  # the process may be writing there just now
+            shutil.rmtree(self.folder, ignore_errors=True)  # the process may write there meanwhile
             result = self.finish(process, 0)
             self.assertIn(result.code, (OK, OUTPUT), f"{command.name}: {result}")
             if result.code == OUTPUT:
                 self.assert_one_line(command, result, "No such file or directory")
             self.folder = whole
 
-    def test_one_output_without_a_folder_leaves_all_as_they_were(self):
+    def test_one_output_without_a_folder_leaves_all_as_they_were(self) -> None:
         for command in COMMANDS:
             for name in command.outputs:
                 self.put_old(command)
@@ -48,32 +67,52 @@ class Targets(Workbench):
                 self.refused(replace(command, arguments=elsewhere), "absent/" + name)
                 self.assert_all(command, "old", f"no folder for {name}")
 
-    def test_read_only_file_system(self):
-        """A read-only bind mount, in a mount namespace of its own: root cannot write there either."""
+    def test_read_only_file_system(self) -> None:
+        """Uses a read-only bind mount in a mount namespace, where root cannot write either."""
         require("unshare")
         flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
         script = 'mount --bind "$0" "$0" && mount -o remount,bind,ro "$0" && exec "$@"'
-        probe = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, "true"], capture_output=True)
+        probe = subprocess.run(
+            ["unshare", *flags, "sh", "-c", script, self.folder, "true"], capture_output=True
+        )
         if probe.returncode != 0:
             self.skipTest(f"no read-only mount: {probe.stderr.decode().strip()}")
         for command in COMMANDS:
             for old in (False, True):
                 if old:
                     self.put_old(command)
-                result = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder,
-                                         *command.line(self.folder)], cwd=SOURCE, capture_output=True, text=True)
+                result = subprocess.run(
+                    [
+                        "unshare",
+                        *flags,
+                        "sh",
+                        "-c",
+                        script,
+                        self.folder,
+                        *command.line(self.folder),
+                    ],
+                    cwd=SOURCE,
+                    capture_output=True,
+                    text=True,
+                )
                 self.assertEqual(result.returncode, OUTPUT, f"{command.name}: {result}")
-                self.assertRegex(result.stderr, rf"\A{command.tool}: [^\n]*Read-only file system[^\n]*\n\Z")
+                self.assertRegex(
+                    result.stderr, rf"\A{command.tool}: [^\n]*Read-only file system[^\n]*\n\Z"
+                )
                 self.assert_all(command, "old" if old else "absent", "read-only file system")
 
-    def test_read_only_folder_and_file(self):
-        """As a user without rights; root borrows the number of one."""
-        user = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+    def test_read_only_folder_and_file(self) -> None:
+        """Runs as a user without rights; root takes the id of such a user."""
+        user: dict[str, Any] = {}
+        if os.geteuid() == 0:
+            user = {"user": 65534, "group": 65534, "extra_groups": []}
         if user:
             for folder in (self.folder, self.made):
                 folder.chmod(0o755)
             try:
-                probe = subprocess.run([BIN / "vpl-place", "--version"], capture_output=True, **user)
+                probe = subprocess.run(
+                    [BIN / "vpl-place", "--version"], capture_output=True, **user
+                )
             except PermissionError:
                 self.skipTest(f"cannot run {BIN} as another user")
             if probe.returncode != 0:
@@ -93,48 +132,66 @@ class Targets(Workbench):
 
 
 class FullDisks(Workbench):
-    def test_small_tmpfs(self):
-        """A tmpfs too small for the product, in a mount namespace of its own."""
+    def test_small_tmpfs(self) -> None:
+        """Uses a tmpfs that is too small for the product, in a mount namespace."""
         require("unshare")
         flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
-        # The listing afterwards is the proof; what the folder holds vanishes with the namespace.
-        script = ('mount -t tmpfs -o size=8k none "$0" && cd "$0" && printf "" > "$1" && shift && "$@"; code=$?; '
-                  'cd "$0" && echo "left: $(ls -A) $(cat *)"; exit $code')
-        probe = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, "x", "true"], capture_output=True)
+        # The script lists the folder itself, as its content vanishes with the namespace.
+        script = (
+            'mount -t tmpfs -o size=8k none "$0" && cd "$0" && printf "" > "$1" && shift && '
+            '"$@"; code=$?; '
+            'cd "$0" && echo "left: $(ls -A) $(cat *)"; exit $code'
+        )
+        probe = subprocess.run(
+            ["unshare", *flags, "sh", "-c", script, self.folder, "x", "true"], capture_output=True
+        )
         if probe.returncode != 0:
             self.skipTest(f"no tmpfs: {probe.stderr.decode().strip()}")
         for command in COMMANDS:
             product = command.outputs[0]
             line = command.line(self.folder)
-            result = subprocess.run(["unshare", *flags, "sh", "-c", script, self.folder, product, *line, "--quiet"],
-                                    capture_output=True, text=True)
+            result = subprocess.run(
+                ["unshare", *flags, "sh", "-c", script, self.folder, product, *line, "--quiet"],
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual(result.returncode, OUTPUT, f"{command.name}: {result}")
-            self.assertRegex(result.stderr, rf"\A{command.tool}: [^\n]*No space left on device[^\n]*\n\Z")
+            self.assertRegex(
+                result.stderr, rf"\A{command.tool}: [^\n]*No space left on device[^\n]*\n\Z"
+            )
             self.assertEqual(result.stdout, f"left: {product} \n")
 
-    def test_limit_on_file_size(self):
-        """Without a handler of SIGXFSZ the process would end, and not say why."""
+    def test_limit_on_file_size(self) -> None:
+        """Without a handler of SIGXFSZ the process would end without a message."""
         for command in COMMANDS:
             self.right(command)
             self.put_old(command)
-            limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, resource.RLIM_INFINITY))
-            result = self.run_command(command, preexec_fn=limit)
+            result = self.run_command(command, preexec_fn=limit_file_size)
             self.assertEqual(result.code, OUTPUT, f"{command.name}: {result}")
-            self.assert_one_line(command, result, "write failed: File too large; the old file, if any, is unchanged")
+            self.assert_one_line(
+                command, result, "write failed: File too large; the old file, if any, is unchanged"
+            )
             self.assert_all(command, "old", "limit on file size")
             self.assertEqual(self.left_over(), [])
 
     @needs_shim
-    def test_every_call_that_can_fail(self):
-        """Each write (of four, in the quick run), fsync and rename fails in turn, and all later ones of its kind."""
+    def test_every_call_that_can_fail(self) -> None:
+        """Each write, fsync and rename fails in turn, and with it all later calls of its kind.
+
+        The quick run tries the first four writes and every fourth of the others.
+        """
         for command in COMMANDS:
             self.right(command)
-            for call, error in (("write", errno.ENOSPC), ("fsync", errno.EIO), ("rename", errno.EIO)):
+            for call, error in (
+                ("write", errno.ENOSPC),
+                ("fsync", errno.EIO),
+                ("rename", errno.EIO),
+            ):
                 tried = self.fail_each(command, call, error)
                 self.assertGreaterEqual(tried, len(command.outputs), f"{command.name}: {call}")
                 self.say(f"{command.name}: {tried} calls of {call} failed in turn")
 
-    def fail_each(self, command, call, error):
+    def fail_each(self, command: Command, call: str, error: int) -> int:
         tried = 0
         for at in range(1, 1000):
             if not FULL and at > 4 and at % 4 != 0:
@@ -151,7 +208,11 @@ class FullDisks(Workbench):
             self.assertEqual(result.code, OUTPUT, what)
             self.assert_one_line(command, result, os.strerror(error))
             self.assertLessEqual(set(states.values()), {"old", "new"}, what)
-            if call == "write" or (call, at) == ("rename", 1) or (call == "fsync" and at <= len(command.outputs)):
+            if (
+                call == "write"
+                or (call, at) == ("rename", 1)
+                or (call == "fsync" and at <= len(command.outputs))
+            ):
                 self.assertEqual(set(states.values()), {"old"}, what)
             if call == "rename":
                 self.assertEqual(states[command.outputs[0]], "old", what)

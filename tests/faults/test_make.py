@@ -1,23 +1,36 @@
-"""GNU Make is stopped while vpl-render works with a checkpoint: the work is saved, and the next make goes on from it.
+"""Stops GNU Make while vpl-render runs with a checkpoint: its work is saved, and make resumes.
 
-Who stops Make makes one request, but the tool may get several signals: the terminal's, as a member of Make's process
-group, and the SIGTERM that Make sends on to what it runs."""
+One request to stop Make may reach the tool as several signals: that of the terminal, as the tool is
+in Make's process group, and the SIGTERM that Make sends to its children.
+"""
 
 import os
 import signal
 import subprocess
 import time
 import unittest
+from collections.abc import Callable
+from pathlib import Path
 
 from test_signals import heed_interrupts
-from workbench import BIN, OK, SCENE, SOURCE, Workbench, require
+from workbench import BIN, OK, SCENE, SOURCE, Outcome, Workbench, require
 
-SETTINGS = ["-f", "pipelines/Makefile", f"SCENE=scene/{SCENE.name}", "BIN=bin", "CANDIDATES=2k", "VPLS=200", "PHOTONS=50k",
-            "SPP=128", "RENDER_FLAGS=--size 64x48 --checkpoint-every 0", "RUN_FLAGS=--quiet --threads 2"]
+SETTINGS = [
+    "-f",
+    "pipelines/Makefile",
+    f"SCENE=scene/{SCENE.name}",
+    "BIN=bin",
+    "CANDIDATES=2k",
+    "VPLS=200",
+    "PHOTONS=50k",
+    "SPP=128",
+    "RENDER_FLAGS=--size 64x48 --checkpoint-every 0",
+    "RUN_FLAGS=--quiet --threads 2",
+]
 
 
-def terminate_group(pid):
-    """Make is held back: its SIGTERM reaches the tool as a second one, and not together with the group's."""
+def terminate_group(pid: int) -> None:
+    """Pauses Make, so that its SIGTERM reaches the tool as a second one after that of the group."""
     os.kill(pid, signal.SIGSTOP)
     os.killpg(pid, signal.SIGTERM)
     time.sleep(0.05)
@@ -25,24 +38,36 @@ def terminate_group(pid):
 
 
 class UnderMake(Workbench):
-    def setUp(self):
+    def setUp(self) -> None:
         super().setUp()
         require("make")
-        # The project's path may hold a space, which Make cannot handle.
-        for name, target in (("pipelines", SOURCE / "pipelines"), ("scene", SCENE.parent), ("bin", BIN)):
+        # Links avoid the project's path, which may contain a space, which Make cannot handle.
+        for name, target in (
+            ("pipelines", SOURCE / "pipelines"),
+            ("scene", SCENE.parent),
+            ("bin", BIN),
+        ):
             (self.folder / name).symlink_to(target)
 
-    def start_make(self, out, *goals):
-        return subprocess.Popen(["make", *SETTINGS, f"OUT={out}", *(f"{out}/{goal}" for goal in goals)], cwd=self.folder,
-                                start_new_session=True, preexec_fn=heed_interrupts, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    def start_make(self, out: str | Path, *goals: str) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            ["make", *SETTINGS, f"OUT={out}", *(f"{out}/{goal}" for goal in goals)],
+            cwd=self.folder,
+            start_new_session=True,
+            preexec_fn=heed_interrupts,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
 
-    def make(self, out, *goals):
+    def make(self, out: str | Path, *goals: str) -> None:
         result = self.finish(self.start_make(out, *goals), time.monotonic())
         self.assertEqual((result.code, result.err), (OK, ""), result)
 
-    def stop(self, process, checkpoint, send):
-        """Once the tool has saved its work for the first time."""
+    def stop(
+        self, process: subprocess.Popen[bytes], checkpoint: Path, send: Callable[[int], None]
+    ) -> Outcome:
+        """Stops the process once the tool has saved its work for the first time."""
         end = time.monotonic() + 30
         while not checkpoint.exists():
             self.assertIsNone(process.poll(), "vpl-render ends before it saves its work")
@@ -51,7 +76,7 @@ class UnderMake(Workbench):
         send(process.pid)
         return self.finish(process, time.monotonic())
 
-    def test_stopped_and_made_again(self):
+    def test_stopped_and_made_again(self) -> None:
         self.make("whole")
         image = (self.folder / "whole/image.exr").read_bytes()
         requests = {
@@ -69,7 +94,7 @@ class UnderMake(Workbench):
                 self.assertIn("the same command goes on from", result.err)
                 self.assertTrue(checkpoint.exists(), result)
                 self.assertFalse((out / "image.exr").exists(), result)
-                self.make(out.name)  # without a warning that the work begins anew
+                self.make(out.name)  # there is no warning that the work begins anew
                 self.assertFalse(checkpoint.exists())
                 self.assertEqual((out / "image.exr").read_bytes(), image)
 

@@ -1,1 +1,1 @@
-"""One module for each question of the evaluation; each adds rows, tables, plots and pictures to the Context."""
+"""Parts of the evaluation: each module answers one question and adds its results to the Context."""

@@ -1,7 +1,10 @@
-"""Error against the number of VPLs, and against time, beside the path tracer."""
+"""Plots error over the number of VPLs, and over time beside the path tracer."""
+
+from typing import Any
 
 from ..context import Context
 from ..pipeline import METHODS, sampled, told
+from ..settings import View
 from ..statistics import slope
 
 
@@ -9,12 +12,15 @@ def run(context: Context) -> None:
     plan = context.size["convergence"]
     for view in (view for view in context.views("main") if view.scene.id in plan["scenes"]):
         seeds = range(1, 1 + plan["seeds"])
-        found = {method: [] for method in plan["methods"]}
+        found: dict[str, list[dict[str, Any]]] = {method: [] for method in plan["methods"]}
         for method, rows in found.items():
             for count in plan["counts"]:
                 context.say(f"convergence: {view.name}, {method}, {count} VPLs")
                 c = sampled(context.configuration(view, method), plan).but(
-                    vpls=count, candidates=count * plan["candidates_per_vpl"], photons=plan["photons"])
+                    vpls=count,
+                    candidates=count * plan["candidates_per_vpl"],
+                    photons=plan["photons"],
+                )
                 rows.append(context.judge("convergence", view, c, seeds))
         path = []
         for spp in plan["path_spp"]:
@@ -23,28 +29,47 @@ def run(context: Context) -> None:
         add_plots(context, view, found, path)
 
 
-def series(label: str, rows: list[dict], x: str) -> dict:
-    """RMSE / mean over the column x; points whose error is not above its own noise are left out."""
+def series(label: str, rows: list[dict[str, Any]], x: str) -> dict[str, Any]:
+    """RMSE / mean over the column x. Points whose error estimate is not positive are left out."""
     rows = [row for row in rows if row["rmse_over_mean"] > 0]
     xs, ys = [row[x] for row in rows], [row["rmse_over_mean"] for row in rows]
-    made = {"label": label, "x": xs, "y": ys, "error": [row.get("rmse_error", 0.0) for row in rows]}
+    made: dict[str, Any] = {
+        "label": label,
+        "x": xs,
+        "y": ys,
+        "error": [row.get("rmse_error", 0.0) for row in rows],
+    }
     if len(xs) > 1:
         made["slope"] = slope(xs, ys)
     return made
 
 
-def add_plots(context: Context, view, found: dict, path: list[dict]) -> None:
+def add_plots(
+    context: Context, view: View, found: dict[str, Any], path: list[dict[str, Any]]
+) -> None:
     common = {"y_label": "RMSE / mean of the indirect light", "x_log": True, "y_log": True}
     name = view.scene.id
     plan = context.size["convergence"]
-    context.plots.append({
-        "id": f"convergence-vpls-{name}", "title": f"{view.scene.title}: error against VPLs",
-        "caption": f"{plan['photons'] // 1000}k photons, {plan['candidates_per_vpl']} candidates a VPL, {told(plan)}; "
-                   f"{plan['seeds']} seeds.",
-        "x_label": "VPLs", "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()], **common})
-    context.plots.append({
-        "id": f"convergence-time-{name}", "title": f"{view.scene.title}: error against time",
-        "caption": f"CPU time of all stages, a film of {path[0]['film']} pixels.",
-        "x_label": "CPU seconds",
-        "series": [series(METHODS[m], rows, "cpu_s") for m, rows in found.items()] +
-                  [{**series("path tracer", path, "cpu_s"), "dash": True}], **common})
+    context.plots.append(
+        {
+            "id": f"convergence-vpls-{name}",
+            "title": f"{view.scene.title}: error against VPLs",
+            "caption": f"{plan['photons'] // 1000}k photons, {plan['candidates_per_vpl']} "
+            f"candidates a VPL, {told(plan)}; "
+            f"{plan['seeds']} seeds.",
+            "x_label": "VPLs",
+            "series": [series(METHODS[m], rows, "vpls") for m, rows in found.items()],
+            **common,
+        }
+    )
+    context.plots.append(
+        {
+            "id": f"convergence-time-{name}",
+            "title": f"{view.scene.title}: error against time",
+            "caption": f"CPU time of all stages, a film of {path[0]['film']} pixels.",
+            "x_label": "CPU seconds",
+            "series": [series(METHODS[m], rows, "cpu_s") for m, rows in found.items()]
+            + [{**series("path tracer", path, "cpu_s"), "dash": True}],
+            **common,
+        }
+    )

@@ -1,19 +1,26 @@
-"""Every gather that vpl-render lists, on the same lit files: at equal VPLs and samples, and at equal time.
+"""Compares all gathers of vpl-render on the same lit files, at equal samples and at equal time.
 
-At equal time each gather takes as many samples a pixel as the time of the slowest allows it, so that its noise
-and the pixels' own are weighed against its error. Near-field rays are off: they cost the same for all.
+At equal time each gather takes as many samples a pixel as fit in the time of the slowest, so that
+noise counts beside its own error. Near-field rays are off, as they cost the same for all gathers.
 """
 
 from .. import images, pipeline, statistics
 from ..context import Context
+from ..settings import View
 from ..tables import column, table
 
-COLUMNS = [column("label", "gather"), column("mean_ratio"), column("rmse_over_mean"), column("relmse"),
-           column("cut_rmse", "difference to all / mean", better="low"),
-           column("shadow_rays", "shadow rays a sample", better="low"),
-           column("render_cpu_s", "render", "CPU s", "low"),
-           column("equal_spp", "at equal time", "spp"), column("equal_relmse", "its relMSE", better="low")]
-MOST_SPP = 256  # of the fastest, in the time of the slowest
+COLUMNS = [
+    column("label", "gather"),
+    column("mean_ratio"),
+    column("rmse_over_mean"),
+    column("relmse"),
+    column("cut_rmse", "difference to all / mean", better="low"),
+    column("shadow_rays", "shadow rays a sample", better="low"),
+    column("render_cpu_s", "render", "CPU s", "low"),
+    column("equal_spp", "at equal time", "spp"),
+    column("equal_relmse", "its relMSE", better="low"),
+]
+MOST_SPP = 256  # bound on the samples a pixel at equal time
 
 
 def run(context: Context) -> None:
@@ -25,15 +32,20 @@ def run(context: Context) -> None:
         context.say(f"gather: {view.name}")
         made = {}
         for gather in gathers:
-            made[gather] = context.judge("gather", view, configuration(context, view, gather), seeds, label=gather)
-            made[gather]["shadow_rays"] = pipeline.shadow_rays(context.runner, view,
-                                                               configuration(context, view, gather), seeds[0])
-        # The same samples and VPLs, so that only the gather differs.
+            made[gather] = context.judge(
+                "gather", view, configuration(context, view, gather), seeds, label=gather
+            )
+            made[gather]["shadow_rays"] = pipeline.shadow_rays(
+                context.runner, view, configuration(context, view, gather), seeds[0]
+            )
+        # All gathers have the same samples and VPLs, so differences are errors of the gather.
         every = [images.read(file, "indirect") for file in made["all"]["images"]]
         mean = sum(b.mean() for b in every) / len(every)
-        for gather, row in made.items():
+        for row in made.values():
             cut = [images.read(file, "indirect") for file in row["images"]]
-            difference = sum(((a - b)**2).mean() for a, b in zip(cut, every)) / len(cut)
+            difference = sum(((a - b) ** 2).mean() for a, b in zip(cut, every, strict=True)) / len(
+                cut
+            )
             row["cut_rmse"] = statistics.root(difference) / float(mean)
         slowest = max(row["render_cpu_s"] for row in made.values())
         for gather, row in made.items():
@@ -43,12 +55,21 @@ def run(context: Context) -> None:
             row |= {"equal_spp": spp, "equal_relmse": equal["relmse"]}
         title = f"{view.scene.title}, {made['all']['vpls']} VPLs"
         rows += [{"group": title, **row} for row in made.values()]
-    context.tables.append(table(
-        "gather", "Gathers against all VPLs, at equal VPLs and at equal time",
-        f"The same VPLs and rays, {plan['seeds']} seeds, --compensate none; a gather's own error is its "
-        f"difference to all VPLs. At equal time: samples a pixel in the CPU time of the slowest, at most {MOST_SPP}.",
-        COLUMNS, rows))
+    context.tables.append(
+        table(
+            "gather",
+            "Gathers against all VPLs, at equal VPLs and at equal time",
+            f"The same VPLs and rays, {plan['seeds']} seeds, --compensate none; a gather's own "
+            "error is its "
+            "difference to all VPLs. At equal time: samples a pixel in the CPU time of the "
+            f"slowest, at most {MOST_SPP}.",
+            COLUMNS,
+            rows,
+        )
+    )
 
 
-def configuration(context: Context, view, gather: str):
-    return context.configuration(view, "local").but(render=("--gather", gather, "--compensate", "none", "--fireflies", "keep"))
+def configuration(context: Context, view: View, gather: str) -> pipeline.Configuration:
+    return context.configuration(view, "local").but(
+        render=("--gather", gather, "--compensate", "none", "--fireflies", "keep")
+    )

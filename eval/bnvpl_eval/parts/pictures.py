@@ -1,4 +1,9 @@
-"""What the report's viewer shows of each view: images beside the reference, dots, cut sizes. Error maps are its own."""
+"""Makes the pictures of the report's viewer: images, the reference, dots and cut sizes.
+
+The viewer computes error maps itself.
+"""
+
+from typing import Any
 
 from .. import pipeline
 from ..context import Context
@@ -7,64 +12,118 @@ from ..settings import ROOT, View
 from .equal_time import picture_spp
 
 LEAKING = ["even", "literal"]
-REFERENCE_SEED = 1000  # away from the seeds that are judged
+REFERENCE_SEED = 1000  # differs from the seeds of the images that are judged
 
 
 def run(context: Context) -> None:
     plan = context.size["pictures"]
     for view in (view for view in context.views() if view.id in plan["views"]):
         context.say(f"pictures: {view.name}")
-        film, spp, integrator = view.scene.film(plan["width"]), plan["reference_spp"], view.reference_integrator
+        film, spp, integrator = (
+            view.scene.film(plan["width"]),
+            plan["reference_spp"],
+            view.reference_integrator,
+        )
         reference, _ = pipeline.traced(context.runner, view, film, spp, REFERENCE_SEED, integrator)
-        shown = [{"id": "reference", "label": f"{integrator} tracer, {spp} a pixel", "file": reference}]
+        shown = [
+            {"id": "reference", "label": f"{integrator} tracer, {spp} a pixel", "file": reference}
+        ]
         cuts = []
-        leaking = LEAKING if view.id == "main" else []  # as many as the comparison of scatters
+        leaking = LEAKING if view.id == "main" else []  # the methods of the comparison of scatters
         for method in [*reversed(plan["methods"]), *leaking]:  # ours first, beside the reference
             c = pipeline.sampled(context.configuration(view, method, plan["width"]), plan)
             file, _ = pipeline.image(context.runner, view, c, 1)
-            shown.append({"id": method, "label": METHODS[method], "file": file,
-                          "numbers": numbers(context, view, method)})
+            shown.append(
+                {
+                    "id": method,
+                    "label": METHODS[method],
+                    "file": file,
+                    "numbers": numbers(context, view, method),
+                }
+            )
             if method == "local":
-                cuts.append({"id": "cut", "label": "Cut size, clusters a sample (tile cuts)", "file": file,
-                             "channel": "cutsize"})
+                cuts.append(
+                    {
+                        "id": "cut",
+                        "label": "Cut size, clusters a sample (tile cuts)",
+                        "file": file,
+                        "channel": "cutsize",
+                    }
+                )
                 cuts.append(lightcuts(context, view, c))
                 shown.append(equal_time(context, view, c))
         context.pictures[view.name] = {"images": shown, "overlays": dots(context, view) + cuts}
 
 
 def numbers(context: Context, view: View, method: str) -> str:
-    """By the small film's reference, which is far better than the one that the viewer can show."""
+    """Errors against the small film's reference, which is far better than the viewer's."""
     for row in context.results:
-        if row["view"] == view.name and row["method"] == method and row["part"] in ("methods", "scatter"):
-            return f"in the tables: mean ratio {row['mean_ratio']:.3f}, relMSE {row['relmse']:.3g} ({row['seeds']} seeds)"
+        if (
+            row["view"] == view.name
+            and row["method"] == method
+            and row["part"] in ("methods", "scatter")
+        ):
+            return (
+                f"in the tables: mean ratio {row['mean_ratio']:.3f}, relMSE "
+                f"{row['relmse']:.3g} ({row['seeds']} seeds)"
+            )
     return ""
 
 
-def lightcuts(context: Context, view: View, c: pipeline.Configuration) -> dict:
+def lightcuts(context: Context, view: View, c: pipeline.Configuration) -> dict[str, Any]:
     file, _ = pipeline.image(context.runner, view, c.but(render=("--gather", "lightcuts")), 1)
-    return {"id": "cut-lightcuts", "label": "Cut size, clusters a sample (Lightcuts)", "file": file, "channel": "cutsize"}
+    return {
+        "id": "cut-lightcuts",
+        "label": "Cut size, clusters a sample (Lightcuts)",
+        "file": file,
+        "channel": "cutsize",
+    }
 
 
-def equal_time(context: Context, view: View, c: pipeline.Configuration) -> dict:
-    """The path tracer in the time of ours, all stages with loading."""
+def equal_time(context: Context, view: View, c: pipeline.Configuration) -> dict[str, Any]:
+    """The path tracer's image in the time that all stages take, loading included."""
     _, runs = pipeline.image(context.runner, view, c, 1)
     spp = picture_spp(context, view, c, sum(run.cpu_s for run in runs))
     path, _ = pipeline.traced(context.runner, view, c.film, spp, 1)
     return {"id": "path", "label": f"path tracer, time of ours ({spp} spp)", "file": path}
 
 
-def dots(context: Context, view: View) -> list[dict]:
-    """Figure 3.2 of the thesis: the same number of VPLs, random and blue noise, over the view."""
+def dots(context: Context, view: View) -> list[dict[str, Any]]:
+    """Figure 3.2 of the thesis: equal numbers of random and blue-noise VPLs over the view."""
     count = context.size["dots"]
     made = []
     for method in ("random", "uniform", "local"):
         c = context.configuration(view, method).but(vpls=count, candidates=10 * count)
         placed = pipeline.candidates(context.runner, view, c, 1)
-        kept = context.runner.run("vpl-eliminate", ["{c}", "-n", count, *pipeline.ELIMINATE[method],
-                                                    "-o", "@v.vpl", "--quiet"],
-                                  {"c": placed["candidates.vpl"]}, ["v.vpl"])
-        plot = context.runner.run("vpl-inspect", ["plot", "{v}", "--scene", "{scene}", "-o", "@dots.png", "--quiet",
-                                                  "--dot", 3, "--size", view.scene.film(640)],
-                                  {"v": kept["v.vpl"], "scene": ROOT / view.file}, ["dots.png"])
-        made.append({"id": f"dots-{method}", "label": f"{count} VPLs, {METHODS[method]}", "file": plot["dots.png"]})
+        kept = context.runner.run(
+            "vpl-eliminate",
+            ["{c}", "-n", count, *pipeline.ELIMINATE[method], "-o", "@v.vpl", "--quiet"],
+            {"c": placed["candidates.vpl"]},
+            ["v.vpl"],
+        )
+        plot = context.runner.run(
+            "vpl-inspect",
+            [
+                "plot",
+                "{v}",
+                "--scene",
+                "{scene}",
+                "-o",
+                "@dots.png",
+                "--quiet",
+                "--dot",
+                3,
+                "--size",
+                view.scene.film(640),
+            ],
+            {"v": kept["v.vpl"], "scene": ROOT / view.file},
+            ["dots.png"],
+        )
+        made.append(
+            {
+                "id": f"dots-{method}",
+                "label": f"{count} VPLs, {METHODS[method]}",
+                "file": plot["dots.png"],
+            }
+        )
     return made

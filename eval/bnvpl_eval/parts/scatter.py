@@ -1,44 +1,93 @@
-"""The thesis' scatter, to all VPLs within reach, against the guarded one: how much leaks, and where."""
+"""Compares the thesis' scatter, to all VPLs within reach, with the guarded one: how much leaks."""
 
 import json
+from typing import Any
 
 from ..context import Context
 from ..pipeline import METHODS
 from ..settings import ROOT
 from ..tables import column, table
 
-COLUMNS = [column("label", "scatter"),
-           *(column(key) for key in ("mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean", "relmse")),
-           column("dark_room", "light in the dark room", "W/(m2 sr)", "low")]
-ROOMS = ROOT / "scenes/test/two-rooms.toml"  # a lit and a dark room that share floor, ceiling and a thin wall
+COLUMNS = [
+    column("label", "scatter"),
+    *(
+        column(key)
+        for key in ("mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean", "relmse")
+    ),
+    column("dark_room", "light in the dark room", "W/(m2 sr)", "low"),
+]
+# The scene is a lit and a dark room that share floor, ceiling and a thin wall.
+ROOMS = ROOT / "scenes/test/two-rooms.toml"
 
 
 def run(context: Context) -> None:
-    rows = []
+    rows: list[dict[str, Any]] = []
     for view in context.views("main"):
         for method in ("local", "even", "literal"):
             context.say(f"scatter: {view.name}, {method}")
-            row = context.judge("scatter", view, context.configuration(view, method),
-                                range(1, 1 + context.size["scatter"]["seeds"]), label=METHODS[method])
+            row = context.judge(
+                "scatter",
+                view,
+                context.configuration(view, method),
+                range(1, 1 + context.size["scatter"]["seeds"]),
+                label=METHODS[method],
+            )
             rows.append({"group": view.scene.title, **row})
     for scatter in ("guarded", "even"):
-        rows.append({"group": "Two closed rooms, seen in the dark one: the right answer is 0",
-                     "label": f"--method {scatter}", "mean_ratio": None, **dark_room(context, scatter)})
-    context.tables.append(table(
-        "scatter", "The thesis' scatter against the guarded one",
-        "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter also spreads VPLs "
-        f"uniformly, shines from where VPLs stand and has no near-field rays. {context.size['scatter']['seeds']} seeds.",
-        COLUMNS, rows))
+        rows.append(
+            {
+                "group": "Two closed rooms, seen in the dark one: the right answer is 0",
+                "label": f"--method {scatter}",
+                "mean_ratio": None,
+                **dark_room(context, scatter),
+            }
+        )
+    context.tables.append(
+        table(
+            "scatter",
+            "The thesis' scatter against the guarded one",
+            "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter "
+            "also spreads VPLs "
+            "uniformly, shines from where VPLs stand and has no near-field rays. "
+            f"{context.size['scatter']['seeds']} seeds.",
+            COLUMNS,
+            rows,
+        )
+    )
 
 
-def dark_room(context: Context, scatter: str) -> dict:
+def dark_room(context: Context, scatter: str) -> dict[str, Any]:
     run, scene = context.runner.run, {"scene": ROOMS}
     placed = run("vpl-place", ["{scene}", "-n", 20000, "-o", "@c.vpl", "--quiet"], scene, ["c.vpl"])
-    kept = run("vpl-eliminate", ["{c}", "-n", 500, "-o", "@v.vpl", "--quiet"], {"c": placed["c.vpl"]}, ["v.vpl"])
-    lit = run("vpl-estimate", ["{scene}", "{v}", "--photons", "1M", "--method", scatter, "-o", "@lit.vpl",
-                               "--quiet"], {**scene, "v": kept["v.vpl"]}, ["lit.vpl"])
-    image = run("vpl-render", ["{scene}", "{lit}", "--size", "80x60", "--spp", 8, "-o", "@image.exr",
-                               "--stats", "@stats.json", "--quiet"],
-                {**scene, "lit": lit["lit.vpl"]}, ["image.exr", "stats.json"])
+    kept = run(
+        "vpl-eliminate",
+        ["{c}", "-n", 500, "-o", "@v.vpl", "--quiet"],
+        {"c": placed["c.vpl"]},
+        ["v.vpl"],
+    )
+    lit = run(
+        "vpl-estimate",
+        ["{scene}", "{v}", "--photons", "1M", "--method", scatter, "-o", "@lit.vpl", "--quiet"],
+        {**scene, "v": kept["v.vpl"]},
+        ["lit.vpl"],
+    )
+    image = run(
+        "vpl-render",
+        [
+            "{scene}",
+            "{lit}",
+            "--size",
+            "80x60",
+            "--spp",
+            8,
+            "-o",
+            "@image.exr",
+            "--stats",
+            "@stats.json",
+            "--quiet",
+        ],
+        {**scene, "lit": lit["lit.vpl"]},
+        ["image.exr", "stats.json"],
+    )
     stats = json.loads(image["stats.json"].read_text())
     return {"dark_room": stats["mean_indirect"]}

@@ -1,16 +1,32 @@
-"""One option at a time, main views alone; the others at their defaults, but samples and rays as settings.toml says."""
+"""Varies one option at a time, on main views. settings.toml sets samples and rays.
+
+The other options have their defaults.
+"""
+
+from typing import Any
 
 from ..context import Context
-from ..pipeline import sampled, told
+from ..pipeline import Configuration, sampled, told
 from ..settings import View
 from ..tables import column, table
 
-COLUMNS = [column("value", "value"),
-           *(column(key) for key in ("mean_ratio", "rmse_over_mean", "bias_over_mean", "std_over_mean", "relmse",
-                                     "cpu_s"))]
+COLUMNS = [
+    column("value", "value"),
+    *(
+        column(key)
+        for key in (
+            "mean_ratio",
+            "rmse_over_mean",
+            "bias_over_mean",
+            "std_over_mean",
+            "relmse",
+            "cpu_s",
+        )
+    ),
+]
 
 
-def varied(context: Context, view: View, entry: dict, value):
+def varied(context: Context, view: View, entry: dict[str, Any], value: Any) -> Configuration:
     plan = context.size["sensitivity"]
     c = sampled(context.configuration(view, "local"), plan).but(photons=plan["photons"])
     match entry["stage"]:
@@ -30,10 +46,22 @@ def run(context: Context) -> None:
             for value in entry["values"]:
                 context.say(f"sensitivity: {view.name}, {entry['title']} {value}")
                 c = varied(context, view, entry, value)
-                row = context.judge("sensitivity", view, c, range(1, 1 + plan["seeds"]),
-                                    option=entry["id"], value=value)
+                row = context.judge(
+                    "sensitivity",
+                    view,
+                    c,
+                    range(1, 1 + plan["seeds"]),
+                    option=entry["id"],
+                    value=value,
+                )
                 rows.append({"group": f"{entry['title']}: {view.scene.title}", **row})
-    context.tables.append(table(
-        "sensitivity", "Sensitivity: one option at a time",
-        f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the other options at their defaults.",
-        COLUMNS, rows))
+    context.tables.append(
+        table(
+            "sensitivity",
+            "Sensitivity: one option at a time",
+            f"{plan['photons'] // 1000}k photons and {plan['seeds']} seeds; {told(plan)}; the "
+            "other options at their defaults.",
+            COLUMNS,
+            rows,
+        )
+    )
