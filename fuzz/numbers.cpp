@@ -44,7 +44,7 @@ constexpr std::array kStageOptions{letterFor("-n", countOption("count", "1", 0x1
                                    textOption("layers", "", "", "help")};
 constexpr std::array kMethodOptions{
     wholeOption("bounces", "1", 0, 1000, "", "help"),
-    neededBy("recentre=on", realOption("radius", "1", 0.01, 100, "", "help")),
+    neededBy({Condition{"recentre", "on"}}, realOption("radius", "1", 0.01, 100, "", "help")),
     choiceOption("density", "local", "local|uniform", "help")};
 
 void parseTogether(const std::vector<std::string>& arguments) {

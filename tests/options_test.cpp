@@ -12,8 +12,9 @@ namespace {
 
 constexpr std::array kStage{letterFor("-n", countOption("count", "", 100, "VPLs", "how many")),
                             seedOption()};
-constexpr std::array kA{choiceOption("density", "local", "uniform|local", "help"),
-                        neededBy("density=local", realOption("share", "0.2", 0, 1, "", "help"))};
+constexpr std::array kA{
+    choiceOption("density", "local", "uniform|local", "help"),
+    neededBy({Condition{"density", "local"}}, realOption("share", "0.2", 0, 1, "", "help"))};
 constexpr std::array kB{realOption("error", "0.1", 0, 1, "", "of b")};
 constexpr std::array kC{realOption("error", "0.5", 0, 1, "", "of c")};
 
@@ -21,7 +22,7 @@ StageSpec spec() {
   return {"vpl-x",
           kStage,
           {{"method", "a", "help", {{"a", "first", kA}, {"b", "second", kB}, {"c", "third", kC}}},
-           {"inner", "d", "help", {{"d", "only", {}}}, "method=b|c"}}};
+           {"inner", "d", "help", {{"d", "only", {}}}, {Condition{"method", "b|c"}}}}};
 }
 
 std::string refusal(const Given& given) {
@@ -93,8 +94,9 @@ TEST(Options, RealsAreFiniteAndInRange) {
 }
 
 TEST(Options, DurationsAreSeconds) {
-  constexpr std::array kOptions{optional(durationOption("time", "help")),
-                                neededBy("time", realOption("k", "1", 0, 9, "", "help"))};
+  constexpr std::array kOptions{
+      optional(durationOption("time", "help")),
+      neededBy({Condition{"time"}}, realOption("k", "1", 0, 9, "", "help"))};
   const StageSpec timed{"vpl-z", kOptions, {}};
   const auto seconds = [&](const std::string& text) {
     return resolve(timed, {{"time", text}}).real("time");
@@ -113,13 +115,15 @@ TEST(Options, DurationsAreSeconds) {
 }
 
 TEST(Options, NeedsCombine) {
-  constexpr std::array kOptions{
-      choiceOption("only", "all", "all|direct", "help"), realOption("area", "0", 0, 9, "", "help"),
-      neededBy("only=all;area=0", realOption("k", "1", 0, 9, "", "help"))};
-  const StageSpec both{"vpl-y",
-                       kOptions,
-                       {{"method", "a", "help", {{"a", "first", {}}, {"b", "second", {}}}},
-                        {"inner", "d", "help", {{"d", "only", {}}}, "method=a,only=all"}}};
+  constexpr std::array kOptions{choiceOption("only", "all", "all|direct", "help"),
+                                realOption("area", "0", 0, 9, "", "help"),
+                                neededBy({Condition{"only", "all"}, Condition{"area", "0"}},
+                                         realOption("k", "1", 0, 9, "", "help"))};
+  const StageSpec both{
+      "vpl-y",
+      kOptions,
+      {{"method", "a", "help", {{"a", "first", {}}, {"b", "second", {}}}},
+       {"inner", "d", "help", {{"d", "only", {}}}, {AllOf{{"method", "a"}, {"only", "all"}}}}}};
   const auto refused = [&](const Given& given) -> std::string {
     try {
       resolve(both, given);
@@ -137,8 +141,9 @@ TEST(Options, NeedsCombine) {
             "--inner has no effect with --only direct; it needs --only all");
   EXPECT_EQ(refused({{"inner", "d"}, {"method", "b"}}),
             "--inner has no effect with --method b; it needs --method a");
-  EXPECT_EQ(needText("only=all;area=0"), "--only all or --area 0");
-  EXPECT_EQ(needText("method=a|b,only=all"), "--method a or b and --only all");
+  EXPECT_EQ(needText({Condition{"only", "all"}, Condition{"area", "0"}}), "--only all or --area 0");
+  EXPECT_EQ(needText({AllOf{{"method", "a|b"}, {"only", "all"}}}),
+            "--method a or b and --only all");
 }
 
 TEST(Options, TheRecordHoldsAllThatHasAnEffect) {

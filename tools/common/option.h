@@ -16,6 +16,38 @@
 
 namespace bnvpl {
 
+// Another option has one of `values` ("local|even"); it is given, where `values` is empty.
+struct Condition {
+  std::string_view option, values = {};
+};
+
+// Conditions that must all hold.
+struct AllOf {
+  static constexpr size_t kMax = 2;
+  constexpr AllOf() = default;
+  constexpr AllOf(const Condition& only) : first{only}, count(1) {}
+  constexpr AllOf(const Condition& a, const Condition& b) : first{a, b}, count(2) {}
+  constexpr std::span<const Condition> conditions() const { return {first.data(), count}; }
+  std::array<Condition, kMax> first{};
+  size_t count = 0;
+};
+
+// What an option needs to have an effect: one of the alternatives holds. None: it always has.
+class Needs {
+ public:
+  static constexpr size_t kMax = 3;
+  constexpr Needs() = default;
+  constexpr Needs(std::initializer_list<AllOf> alternatives) {
+    for (const AllOf& a : alternatives) alternatives_.at(count_++) = a;
+  }
+  constexpr std::span<const AllOf> alternatives() const { return {alternatives_.data(), count_}; }
+  constexpr bool empty() const { return count_ == 0; }
+
+ private:
+  std::array<AllOf, kMax> alternatives_{};
+  size_t count_ = 0;
+};
+
 struct Option {
   enum class Kind {
     Switch,    // on or off
@@ -33,13 +65,11 @@ struct Option {
   std::string_view unit;      // empty: none
   std::string_view help;
   std::string_view choices = {};  // Choice: "local|uniform"
-  std::string_view needs = {};    // conditions for having an effect: "density=local|even", or
-                                  // "time", which must be given; commas join conditions that must
-                                  // all hold; semicolons separate alternatives
-  std::string_view letter = {};   // a short spelling: "-n"
-  bool recorded = true;           // false: does not change the result
-  bool optional = false;          // has no value unless it is given
-  bool harmless = false;          // where it has no effect, it is ignored instead of refused
+  Needs needs = {};
+  std::string_view letter = {};  // a short spelling: "-n"
+  bool recorded = true;          // false: does not change the result
+  bool optional = false;         // has no value unless it is given
+  bool harmless = false;         // where it has no effect, it is ignored instead of refused
 };
 
 // Makers of table entries, one for each kind.
@@ -82,7 +112,7 @@ constexpr Option letterFor(std::string_view letter, Option option) {
   option.letter = letter;
   return option;
 }
-constexpr Option neededBy(std::string_view needs, Option option) {
+constexpr Option neededBy(const Needs& needs, Option option) {
   option.needs = needs;
   return option;
 }
@@ -111,7 +141,7 @@ using Value = std::variant<bool, uint64_t, double, std::string>;
 // The range of a number for people: "0 to 1000", "1 to 2^32 - 1"; empty for other kinds.
 std::string rangeOf(const Option& option);
 // The conditions for people: "--density local or --area 0"; empty if there are none.
-std::string needText(std::string_view needs);
+std::string needText(const Needs& needs);
 
 // Parses and checks a value. Throws UsageError that names the option, the problem and the remedy.
 Value parseValue(const Option& option, const std::string& text);
@@ -153,7 +183,7 @@ struct MethodSlot {
   std::string_view fallback;
   std::string_view help;
   std::vector<MethodEntry> methods;
-  std::string_view needs = {};  // see Option::needs
+  Needs needs = {};  // see Option::needs
 };
 
 // All options of a stage. Slots are resolved in order; a slot may need an earlier slot or an option

@@ -18,12 +18,12 @@ inline constexpr std::array kRadiusOptions{
                  "uniform: one radius; local: the radius follows the candidates' density"),
     // It bounds the radius by r_max / sqrt(share): an isolated candidate must not stand for half a
     // room.
-    neededBy("density=local",
+    neededBy({Condition{"density", "local"}},
              realOption("uniform-share", "0.2", 0, 1, "share of the VPLs",
                         "how many are spent evenly; the rest follows the candidates")),
     realOption("area", "0", 0, 1e19, "scene units squared",
                "indirectly visible area; 0: estimated from the candidates"),
-    neededBy("density=local;area=0",
+    neededBy({Condition{"density", "local"}, Condition{"area", "0"}},
              wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate"))};
 
 static_assert(kShareNeighbours == 20, "the default of --neighbours");

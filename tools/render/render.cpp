@@ -32,7 +32,7 @@ std::span<const Option> stageOptions() {
       optional(wholeOption("passes", "", kMinPasses, 0x1p40, "",
                            "render by so many passes; with --time or --target-error at most so "
                            "many")),
-      neededBy("time;target-error;passes",
+      neededBy({Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
                switchOption("adaptive", "on",
                             "after the first passes, more samples where the error is larger")),
       choiceOption("only", "all", "all|direct|indirect", "which light the image shows"),
@@ -67,22 +67,27 @@ std::string gathering() {
   for (const IntegratorMethod* m : integratorMethods()) {
     if (m->gathers) names += (names.empty() ? "" : "|") + std::string(m->name);
   }
-  return "integrator=" + names;
+  return names;
 }
 
 }  // namespace
 
 const StageSpec& renderSpec() {
-  // Of direct light alone, near-field rays have a part where the samples themselves are lit.
-  static const std::string vpls = gathering(), shown = vpls + ",only=all|indirect",
-                           compensated = shown + ";" + vpls + ",direct-samples=1";
+  // Near-field rays also have a part in direct light where each sample is lit itself.
+  static const std::string integrators = gathering();
+  static const Condition vpls{"integrator", integrators};
+  static const AllOf indirect{vpls, {"only", "all|indirect"}},
+      sampleLit{vpls, {"direct-samples", "1"}};
   static const StageSpec spec{
       "vpl-render",
       stageOptions(),
       {{"integrator", "vpl", "what finds the light", entriesOf(integratorMethods())},
-       {"gather", "tilecuts", "how VPLs are gathered", entriesOf(gatherMethods()), shown},
-       {"compensate", "near-field", "what makes good the light that VPLs do not bring",
-        entriesOf(compensateMethods()), compensated}}};
+       {"gather", "tilecuts", "how VPLs are gathered", entriesOf(gatherMethods()), {indirect}},
+       {"compensate",
+        "near-field",
+        "what restores the light that clamped or missing VPLs lose",
+        entriesOf(compensateMethods()),
+        {indirect, sampleLit}}}};
   return spec;
 }
 

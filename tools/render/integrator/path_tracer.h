@@ -5,9 +5,10 @@
 namespace bnvpl {
 
 // Of every integrator that traces paths.
-inline constexpr Option kMaxBouncesOption = neededBy(
-    "only=all|indirect", wholeOption("max-bounces", "32", 0, 1000, "",
-                                     "diffuse bounces after the first surface, as vpl-estimate's"));
+inline constexpr Option kMaxBouncesOption =
+    neededBy({Condition{"only", "all|indirect"}},
+             wholeOption("max-bounces", "32", 0, 1000, "",
+                         "diffuse bounces after the first surface, as vpl-estimate's"));
 inline unsigned maxBouncesOf(const Values& options) {  // none counts for direct light
   return options.has("max-bounces") ? static_cast<unsigned>(options.whole("max-bounces")) : 0;
 }

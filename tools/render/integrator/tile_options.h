@@ -7,8 +7,8 @@
 
 namespace bnvpl {
 
-inline constexpr std::string_view kIndirectIsShown = "only=all|indirect",
-                                  kDirectIsShown = "only=all|direct";
+inline constexpr Needs kIndirectIsShown{Condition{"only", "all|indirect"}},
+    kDirectIsShown{Condition{"only", "all|direct"}};
 
 inline constexpr Option kDirectSamplesOption =
     neededBy(kDirectIsShown, wholeOption("direct-samples", "0", 0, 4096, "",
@@ -24,7 +24,8 @@ constexpr Option controlOption(std::string_view fallback) {
                                "prediction along more camera rays, or none"));
 }
 constexpr Option allocateOption(std::string_view help) {
-  return neededBy("only=all|indirect;direct-samples=0", switchOption("allocate", "on", help));
+  return neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "0"}},
+                  switchOption("allocate", "on", help));
 }
 
 // The parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing where the

@@ -11,7 +11,7 @@ namespace bnvpl::methods::integrator::guided {
 
 namespace {
 
-constexpr std::string_view kRaysAreSent = "only=all|indirect;direct-samples=1";
+constexpr Needs kRaysAreSent{Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}};
 constexpr std::array kOptions{
     kMaxBouncesOption,
     kDirectSamplesOption,  // before those that need it

@@ -156,8 +156,8 @@ Scene bulbInGlass() {
   const auto box = [&](double y, double half, uint32_t left, uint32_t others) {
     std::vector<double> positions;
     for (uint32_t k = 0; k < 8; ++k) {
-      for (const double side : {k & 1 ? half : -half, k & 2 ? y + half : y - half,
-                                k & 4 ? half : -half})
+      for (const double side :
+           {k & 1 ? half : -half, k & 2 ? y + half : y - half, k & 4 ? half : -half})
         positions.push_back(side);
     }
     Mesh mesh{positions, {}, {}, {}};

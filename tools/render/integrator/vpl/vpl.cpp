@@ -20,7 +20,7 @@ constexpr std::array kOptions{
                                           "radius of a VPL: 1/d^2 of a point grows no further "
                                           "inside, a disk is so large")),
     kDirectSamplesOption,
-    neededBy("only=all|indirect;direct-samples=1",
+    neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
              wholeOption("near-field-rays", "8", 1, 4096, "",
                          "rays by the BSDF from each shaded point, with --allocate on a quarter of "
                          "them to four times as many: for --compensate, for light over specular "
@@ -36,7 +36,7 @@ constexpr std::array kOptions{
     neededBy(kDirectIsShown, choiceOption("direct", "learned", "learned|each",
                                           "shadow rays to what each tile of the film has learned "
                                           "to see, or one to each light")),
-    neededBy("direct=learned",
+    neededBy({Condition{"direct", "learned"}},
              wholeOption("light-rays", "8", 1, 4096, "",
                          "shadow rays from each shaded point where --direct-samples is 1; by them "
                          "goes in any case how much tiles learn")),

@@ -1,0 +1,20 @@
+// Texts about options: numbers as one types them, lists of choices.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bnvpl {
+
+// "a|b" -> a, b.
+std::vector<std::string_view> choicesIn(std::string_view names);
+bool holds(const std::vector<std::string_view>& names, std::string_view name);
+// "a, b or c"
+std::string orList(const std::vector<std::string_view>& names);
+// Formats a number as a user would type it: "1e300", "0.000001".
+std::string numberText(double number);
+// Formats a limit. Large powers of two, and one less, are written as such: "2^32 - 1".
+std::string limitText(double limit);
+
+}  // namespace bnvpl
