@@ -38,7 +38,7 @@ from typing import Any
 import make_guide_pictures
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.append(str(ROOT / "bench/cost"))
+sys.path.append(str(ROOT / "eval/scaling"))
 import cost_tables  # noqa: E402
 
 STAGES = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render")
@@ -114,7 +114,7 @@ def methods_block(bench: Bench) -> str:
 
 
 def cost_block(part: Callable[[dict[str, Any]], list[str]]) -> str:
-    """A table of pipelines/cost_model.json, which bench/cost_model.py measures."""
+    """A table of pipelines/cost_model.json, which eval/scaling/cost_model.py measures."""
     return "".join(
         f"{row}\n" for row in part(json.loads((ROOT / "pipelines/cost_model.json").read_text()))
     )

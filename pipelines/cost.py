@@ -1,7 +1,7 @@
-"""Predicts the cost of a task, in CPU seconds, memory and size of its file: the model of farm.py.
+"""Predicts the cost of a task, in CPU seconds, memory and size of its file: the model of eval/scaling/farm.py.
 
 Each figure of a stage is a sum of terms. A term is a rate times a function of the counts.
-bench/cost_model.py fits the rates to measured runs and writes cost_model.json. This module
+eval/scaling/cost_model.py fits the rates to measured runs and writes cost_model.json. This module
 defines the terms and evaluates them.
 """
 

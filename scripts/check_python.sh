@@ -27,17 +27,18 @@ check() {
   MYPYPATH=$1 mypy --no-error-summary --explicit-package-bases --python-executable /usr/bin/python3 \
     --cache-dir "build/mypy/${1//[:\/]/_}" "${@:2}" || failed=1
 }
-check bench/cost:bench:pipelines:eval bench/*.py bench/cost/*.py
-check docs:bench/cost docs/*.py
+check bench:pipelines:eval bench/*.py
+check docs:eval/scaling docs/*.py
 check eval:eval/report:pipelines eval/*.py eval/bnvpl_eval eval/tests/*.py
 check eval/cycles:pipelines eval/cycles/*.py
+check eval/scaling:bench:pipelines eval/scaling/*.py
 check eval/report:pipelines eval/report/*.py
 check pipelines:pipelines/slurm pipelines/*.py pipelines/slurm/*.py
 check scenes scenes/generate.py scenes/generator
 check scenes/gltf-room scenes/gltf-room/*.py
 check scripts scripts/*.py
 check tests/bytes:pipelines tests/{bytes,formats,images,inspect,shards}/*.py
-check tests/cluster:pipelines:bench/cost tests/cluster/*.py
+check tests/cluster:pipelines:eval/scaling tests/cluster/*.py
 check tests/faults tests/faults/*.py
 check tests/scene/blender tests/scene/blender/*.py
 ((failed)) || echo "clean"

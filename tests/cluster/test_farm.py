@@ -13,7 +13,7 @@ from typing import Any
 
 SOURCE = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
-sys.path[:0] = [str(SOURCE / "pipelines"), str(SOURCE / "bench/cost")]
+sys.path[:0] = [str(SOURCE / "pipelines"), str(SOURCE / "eval/scaling")]
 import cost  # noqa: E402
 import farm  # noqa: E402
 import farm_graph  # noqa: E402

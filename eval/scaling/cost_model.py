@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Fits pipelines/cost_model.json, the cost of each stage, to runs, and checks it on other runs.
 
-    bench/cost_model.py              measure, fit, check; about ten minutes of one core
-    bench/cost_model.py --keep F     keep the measurements in F, and do not repeat those that it has
-    bench/cost_model.py --table      print the tables of docs/scaling.md from cost_model.json
+    eval/scaling/cost_model.py              measure, fit, check; about ten minutes of one core
+    eval/scaling/cost_model.py --keep F     keep the measurements in F, and do not repeat those that it has
+    eval/scaling/cost_model.py --table      print the tables of docs/scaling.md from cost_model.json
 
 CPU seconds are user and system time of one thread. Runs are repeated two to eight times, until the
-two least agree within 4 %; the least counts. cost/design.py lists the runs.
+two least agree within 4 %; the least counts. design.py lists the runs.
 """
 
 import argparse
@@ -17,9 +17,9 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
-sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "bench/cost"), str(ROOT / "pipelines")]
+sys.path[:0] = [str(ROOT / "bench"), str(ROOT / "pipelines")]
 import cost  # noqa: E402
 import cost_tables  # noqa: E402
 import design  # noqa: E402

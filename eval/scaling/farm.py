@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 r"""Simulates how long a sequence takes on a farm with the graph of generate_ninja.py or submit.py.
 
-    pipelines/farm.py --frames 1000 --size 3840x2160 --vpls 100k --photons 1G --spp 64 \
+    eval/scaling/farm.py --frames 1000 --size 3840x2160 --vpls 100k --photons 1G --spp 64 \
         --nodes 1,10,100,1000
-    pipelines/farm.py ... --nodes 1000 --failure-hours 500 --svg farm.svg
+    eval/scaling/farm.py ... --nodes 1000 --failure-hours 500 --svg farm.svg
 
 cost_model.json predicts the cost of each task, and a random factor scatters its time. The output
 depends only on the options and the seed.
@@ -17,12 +17,14 @@ import sys
 import tempfile
 from typing import Any
 
-import cost
-import farm_graph
-import farm_picture
-import farm_schedule
-import output_guard
-import stages
+sys.dont_write_bytecode = True
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "pipelines"))
+import cost  # noqa: E402
+import farm_graph  # noqa: E402
+import farm_picture  # noqa: E402
+import farm_schedule  # noqa: E402
+import output_guard  # noqa: E402
+import stages  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
 
