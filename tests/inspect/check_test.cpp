@@ -1,4 +1,4 @@
-#include "tools/inspect/check.h"
+#include "tools/inspect/check/check.h"
 
 #include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/inspect_files.h"

@@ -1,5 +1,5 @@
 // What `compare` prints, and its exit codes.
-#include "tools/inspect/compare_report.h"
+#include "tools/inspect/compare/compare_report.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "formats/vpl_columns.h"
 #include "tests/inspect/inspect_files.h"
-#include "tools/inspect/export_table.h"
+#include "tools/inspect/export/export_table.h"
 
 namespace bnvpl {
 namespace {

@@ -1,8 +1,8 @@
-#include "tools/inspect/info.h"
+#include "tools/inspect/info/info.h"
 
 #include "tests/inspect/inspect_files.h"
 #include "tools/common/build_id.h"
-#include "tools/inspect/spacing.h"
+#include "tools/inspect/info/spacing.h"
 
 namespace bnvpl {
 namespace {

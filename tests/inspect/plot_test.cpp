@@ -1,4 +1,4 @@
-#include "tools/inspect/plot.h"
+#include "tools/inspect/plot/plot.h"
 
 #include "scene/load_scene.h"
 #include "tests/inspect/tiny_scene.h"

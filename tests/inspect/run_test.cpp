@@ -3,8 +3,8 @@
 
 #include "tests/inspect/run_inspect.h"
 #include "tools/common/exit_codes.h"
-#include "tools/inspect/run_report.h"
-#include "tools/inspect/run_timeline.h"
+#include "tools/inspect/run/run_report.h"
+#include "tools/inspect/run/run_timeline.h"
 
 namespace bnvpl {
 namespace {

@@ -4,7 +4,7 @@
 #include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
-#include "tools/inspect/scene_difference.h"
+#include "tools/inspect/scene/scene_difference.h"
 
 namespace bnvpl {
 namespace {

@@ -1,0 +1,165 @@
+#include "tools/inspect/plot/plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "formats/tonemap.h"
+#include "formats/vpl_io.h"
+#include "tools/common/streams.h"
+#include "tools/inspect/display_colour.h"
+#include "transport/camera.h"
+#include "transport/walk.h"
+
+namespace bnvpl {
+namespace {
+
+constexpr unsigned kMaxMirrors = 8;           // max number of specular bounces
+constexpr float kDim = 0.4f;                  // dims the view, so that dots stand out
+constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; for rays that leave the scene
+constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
+
+Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
+  Vec3 weight(1.0f);
+  SurfacePoint hit;
+  for (unsigned depth = 0; depth <= kMaxMirrors; ++depth) {
+    if (!rays.closestHit(origin, direction, hit)) return weight * kSky;
+    const Bsdf bsdf(rays.scene(), hit);
+    const Material& material = rays.scene().materials[hit.material];
+    if (!isBlack(material.emission) && (hit.front || material.twoSidedEmission)) return weight;
+    if (bsdf.hasRough() || bsdf.specularProbability() <= 0.0f) {
+      const float headlight = std::max(0.0f, dot(hit.ns, hit.wo));
+      return weight * bsdf.roughAlbedo() * ((0.2f + 0.8f * headlight) * kDim);
+    }
+    BsdfSample sample;
+    Ray next;
+    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+      return {};
+    weight = weight * sample.weight;
+    origin = next.origin;
+    direction = next.direction;
+  }
+  return {};
+}
+
+Vec3 encoded(Vec3 linear) {
+  return {encodeSrgb(linear.x), encodeSrgb(linear.y), encodeSrgb(linear.z)};
+}
+
+// A perceptually even ramp from violet (t = 0) to yellow (t = 1), sRGB.
+Vec3 rampColour(float t) {
+  constexpr std::array<Vec3, 4> kStops{Vec3{0.36f, 0.18f, 0.78f}, Vec3{0.86f, 0.25f, 0.55f},
+                                       Vec3{1.0f, 0.58f, 0.25f}, Vec3{1.0f, 0.95f, 0.4f}};
+  const float at = std::clamp(t, 0.0f, 1.0f) * 3.0f;
+  const size_t from = std::min<size_t>(2, static_cast<size_t>(at));
+  return kStops[from] + (kStops[from + 1] - kStops[from]) * (at - static_cast<float>(from));
+}
+
+// The colour of `value` on a logarithmic scale from `low` to `high`, both above 0, since flux and
+// radius span decades.
+Vec3 logColour(float value, float low, float high) {
+  if (!(value > low)) return rampColour(high > low ? 0.0f : 0.5f);
+  return rampColour(high > low ? std::log(value / low) / std::log(high / low) : 0.5f);
+}
+
+// Colours by the strongest channel of flux: dots with the hue of their flux would be lost on walls
+// of that hue. The weakest 2 % and the strongest 1 % get the ends of the ramp.
+std::vector<Vec3> fluxColours(const VplTable& table) {
+  const float low = fluxPercentile(table, 0.02), high = displayFlux(table);
+  std::vector<Vec3> colours;
+  for (const Vec3& flux : table.flux) colours.push_back(logColour(maxComponent(flux), low, high));
+  return colours;
+}
+
+std::vector<Vec3> radiusColours(const VplTable& table) {
+  std::vector<Vec3> colours;
+  if (table.radius.empty()) return colours;
+  const auto [low, high] = std::minmax_element(table.radius.begin(), table.radius.end());
+  for (const float r : table.radius) colours.push_back(logColour(r, *low, *high));
+  return colours;
+}
+
+std::vector<Vec3> dotColours(const VplTable& table, DotColour colour) {
+  if (colour == DotColour::Flux) {
+    if (table.stage < VplStage::Lit) {
+      throw InputError("the rows have no flux to colour by; name a file from " +
+                       std::string(stageTools(VplStage::Lit)));
+    }
+    return fluxColours(table);
+  }
+  if (colour == DotColour::Radius) {
+    if (table.stage < VplStage::Eliminated) {
+      throw InputError("the rows have no radius to colour by; run vpl-eliminate first");
+    }
+    return radiusColours(table);
+  }
+  return std::vector<Vec3>(table.size(), kPlainDot);
+}
+
+}  // namespace
+
+Canvas shadeView(const RayScene& rays, unsigned samplesPerAxis) {
+  const Scene& scene = rays.scene();
+  Canvas canvas{static_cast<int>(scene.film.width), static_cast<int>(scene.film.height), {}};
+  canvas.pixels.resize(size_t{scene.film.width} * scene.film.height);
+  const uint64_t key = streamKey(0, Stream::Plot);
+  const float n = static_cast<float>(samplesPerAxis);
+  parallelFor(canvas.pixels.size(), 256, [&](size_t i) {
+    const size_t column = i % scene.film.width, row = i / scene.film.width;
+    Rng rng(key, i);
+    Vec3 sum;
+    for (unsigned s = 0; s < samplesPerAxis * samplesPerAxis; ++s) {
+      const unsigned sx = s % samplesPerAxis, sy = s / samplesPerAxis;
+      const float x = static_cast<float>(column) + (static_cast<float>(sx) + 0.5f) / n;
+      const float y = static_cast<float>(row) + (static_cast<float>(sy) + 0.5f) / n;
+      const Vec3 direction =
+          cameraDirection(scene.camera, scene.film, x / static_cast<float>(scene.film.width),
+                          y / static_cast<float>(scene.film.height));
+      sum += min(shadeRay(rays, scene.camera.position, direction, rng), Vec3(1.0f));
+    }
+    canvas.pixels[i] = encoded(sum / (n * n));
+  });
+  return canvas;
+}
+
+std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
+                             const PlotOptions& options, PlotCounts& counts) {
+  enum class Fate : uint8_t { Drawn, Away, AwayInSight, Occluded, Outside };
+  const Scene& scene = rays.scene();
+  const std::vector<Vec3> colours = dotColours(table, options.colour);
+  std::vector<Dot> dots(table.size());
+  std::vector<Fate> fates(table.size());
+  parallelFor(table.size(), 256, [&](size_t i) {
+    const Vec3 position = table.position[i];
+    const FilmPoint film = projectToFilm(scene.camera, scene.film, position);
+    dots[i] = {film.x * static_cast<float>(scene.film.width),
+               film.y * static_cast<float>(scene.film.height), film.depth, colours[i], false};
+    const bool faces = dot(table.normal[i], scene.camera.position - position) > 0.0f;
+    const bool inside =
+        film.depth > 0.0f && film.x >= 0.0f && film.x <= 1.0f && film.y >= 0.0f && film.y <= 1.0f;
+    if (!inside) {
+      fates[i] = faces ? Fate::Outside : Fate::Away;
+      return;
+    }
+    const Vec3 side = faces ? table.normal[i] : -table.normal[i];
+    const bool hidden = rays.occluded(scene.camera.position, rays.offsetOrigin(position, side));
+    if (faces)
+      fates[i] = hidden ? Fate::Occluded : Fate::Drawn;
+    else
+      fates[i] = hidden ? Fate::Away : Fate::AwayInSight;
+  });
+
+  std::vector<Dot> visible;
+  for (size_t i = 0; i < table.size(); ++i) {
+    counts.drawn += fates[i] == Fate::Drawn;
+    counts.facingAway += fates[i] == Fate::Away || fates[i] == Fate::AwayInSight;
+    counts.occluded += fates[i] == Fate::Occluded;
+    counts.outside += fates[i] == Fate::Outside;
+    dots[i].hollow = fates[i] == Fate::AwayInSight;
+    if (fates[i] == Fate::Drawn || (dots[i].hollow && options.showBack)) visible.push_back(dots[i]);
+  }
+  return visible;
+}
+
+}  // namespace bnvpl

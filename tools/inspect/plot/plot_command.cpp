@@ -1,0 +1,98 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "formats/png_io.h"
+#include "formats/vpl_io.h"
+#include "tools/common/choice.h"
+#include "tools/common/depfile.h"
+#include "tools/common/exit_codes.h"
+#include "tools/common/film_size.h"
+#include "tools/common/run_files.h"
+#include "tools/common/scene_options.h"
+#include "tools/inspect/command.h"
+#include "tools/inspect/plot/plot.h"
+
+namespace bnvpl {
+
+namespace {
+
+const Choices<DotColour> kDotColours{
+    {"flux", DotColour::Flux}, {"radius", DotColour::Radius}, {"plain", DotColour::Plain}};
+
+struct PlotRequest {
+  fs::path file, output;
+  SceneOptions scene;
+  PlotOptions plot;
+  bool colourGiven = false;  // false: flux for lit rows, plain for others
+  std::string size;          // WxH, empty: the scene's film
+};
+
+CLI::App* addPlotOptions(CLI::App& cli, PlotRequest& c) {
+  CLI::App* sub =
+      cli.add_subcommand("plot", "Draw the rows as dots over the camera's view of the scene.");
+  addFile(*sub, "file", c.file, ".vpl")->required();
+  addSceneFlag(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
+  addFile(*sub, "-o,--output", c.output, "picture (.png)")->required();
+  addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
+  addChoice(*sub, "--color", c.plot.colour, kDotColours,
+            "quantity that colours the dots, from violet (low) to yellow (high)")
+      ->default_str("flux if lit, else plain");
+  sub->add_flag("--show-back", c.plot.showBack,
+                "draw rings for visible rows whose lit side faces away");
+  sub->add_option("--size", c.size, "size of the picture in pixels; default: the scene's film")
+      ->type_name("WIDTHxHEIGHT");
+  return sub;
+}
+
+int runPlot(const PlotRequest& command, const ToolOptions& tool) {
+  Summary summary("vpl-inspect");
+  RunFiles used;
+  used.reads("file", command.file).reads("--scene", command.scene.file);
+  used.writes("-o", command.output, {OutputKind::Png}).writes(tool).check();
+  const VplTable table = readVpl(command.file);
+  Scene scene = loadSceneFor(command.scene, Warnings::Hold);
+  used.ready(scene.files);
+  requireSameScene(command.file, table.sceneHash, scene,
+                   "name the scene it was made from, or rerun vpl-place");
+  if (!command.size.empty()) scene.film = parseSize(command.size);
+  PlotOptions options = command.plot;
+  if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
+
+  const RayScene rays(scene);
+  PlotCounts counts;
+  std::vector<Dot> dots = visibleDots(table, rays, options, counts);
+  Canvas canvas = shadeView(rays, options.samples);
+  canvas.paint(std::move(dots), static_cast<float>(options.dotPixels));
+  OutputSet files;
+  writePng(files.add(command.output), canvas.width, canvas.height, canvas.rgb8());
+  std::vector<fs::path> read = scene.files;
+  read.push_back(command.file);
+  addDepfile(files, tool.depfile, command.output, read);
+
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "%zu rows: %zu in sight, %zu facing away, %zu hidden, %zu outside the film",
+                table.size(), counts.drawn, counts.facingAway, counts.occluded, counts.outside);
+  summary.add("rows", table.size(), line);
+  summary.add("in_sight", counts.drawn);
+  summary.add("facing_away", counts.facingAway);
+  summary.add("hidden", counts.occluded);
+  summary.add("outside_film", counts.outside);
+  summary.finish(tool, files);
+  return kExitOk;
+}
+
+}  // namespace
+
+Command plotCommand(CLI::App& cli, ToolOptions& tool) {
+  const auto request = std::make_shared<PlotRequest>();
+  CLI::App* sub = addPlotOptions(cli, *request);
+  addDepfileOption(*sub, tool);
+  return {sub, [request, sub](const ToolOptions& options) {
+            request->colourGiven = sub->count("--color") > 0;
+            return runPlot(*request, options);
+          }};
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <optional>
+
+#include "core/number_text.h"
+#include "tools/common/json_text.h"
+#include "tools/inspect/scene/write_scene.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr float kF0PerKs = 0.08f;  // reflectance at normal incidence (docs/scene-format.md)
+
+std::string triple(Vec3 v) {
+  return shortestText(v.x) + " " + shortestText(v.y) + " " + shortestText(v.z);
+}
+
+// The image of an expression that consists of the unmodified image; otherwise kNone.
+uint32_t plainImage(const Scene& scene, uint32_t expression) {
+  if (expression == kNone) return kNone;
+  const TextureExpression& e = scene.expressions[expression];
+  const bool plain = e.kind == TextureExpression::Kind::Image && e.channel == Channel::Rgb &&
+                     !e.invert && e.value == Vec3(1) && e.wrapU == Wrap::Repeat &&
+                     e.wrapV == Wrap::Repeat && e.uv == UvTransform();
+  return plain ? e.image : kNone;
+}
+
+Vec3 atNormalIncidence(const ConductorFresnel& f) {
+  if (f.byReflectance) return f.reflectance.value;
+  const Vec3 k2 = f.k.value * f.k.value, less = f.eta.value - Vec3(1), more = f.eta.value + Vec3(1);
+  const Vec3 mirrored = less * less + k2, all = more * more + k2;
+  return {mirrored.x / all.x, mirrored.y / all.y, mirrored.z / all.z};
+}
+
+// Approximates each model by Lambert, Phong lobe, mirror, glass, or metallic-roughness.
+class NearestMtl {
+ public:
+  explicit NearestMtl(const Scene& scene) : scene_(scene) {}
+
+  PhongModel phong;
+  std::optional<MetallicRoughnessModel> facets;  // written beside Kd; specularColour holds f0
+
+  void operator()(const PhongModel& m) { phong = m; }
+  void operator()(const DiffuseModel& m) { diffuse(m.reflectance); }
+  void operator()(const MetallicRoughnessModel& m) {
+    if (m.transmission.value > 0.5f) return glass(m.ior.value, m.baseColour.value);
+    facets = m;
+    const float normal = (m.ior.value - 1.0f) / (m.ior.value + 1.0f);
+    facets->specularColour.value = m.specularColour.value * (normal * normal * m.specular.value);
+    diffuse(m.baseColour);
+  }
+  void operator()(const ConductorModel& m) { metal(m.fresnel, m.roughness.along.value); }
+  void operator()(const CoatedConductorModel& m) { metal(m.fresnel, m.roughness.along.value); }
+  void operator()(const CoatedDiffuseModel& m) { diffuse(m.reflectance); }
+  void operator()(const DiffuseTransmissionModel& m) { diffuse(m.reflectance); }
+  void operator()(const DielectricModel& m) { glass(m.ior.value, m.transmission.value); }
+  void operator()(const MixModel& m) {
+    const uint32_t part = m.amount.value < 0.5f ? m.first : m.second;
+    if (part != kNone) std::visit(*this, scene_.materials[part].model);
+  }
+
+ private:
+  void diffuse(const Colour& c) {
+    phong.diffuse = min(c.value, Vec3(1));
+    phong.diffuseMap = plainImage(scene_, c.texture);
+  }
+  void metal(const ConductorFresnel& fresnel, float alpha) {
+    constexpr float kSmooth = 0.03f, kMaxExponent = 9999.0f;
+    const Vec3 albedo = min(atNormalIncidence(fresnel), Vec3(1));
+    if (alpha < kSmooth) {
+      phong.mirror = albedo;
+    } else {
+      phong.glossy = albedo;
+      phong.exponent = std::min(kMaxExponent, std::max(0.0f, 2.0f / (alpha * alpha) - 2.0f));
+    }
+  }
+  void glass(float ior, Vec3 colour) {
+    phong.glass = true;
+    phong.ior = std::clamp(ior, 1.0f, 100.0f);
+    phong.transmission = min(colour, Vec3(1));
+    phong.mirror = Vec3(1);
+  }
+
+  const Scene& scene_;
+};
+
+std::string mapLine(const Scene& scene, const std::string& key, const TextureExpression& e,
+                    WrittenMaterials& used) {
+  if (e.kind != TextureExpression::Kind::Image || e.image == kNone) return "";
+  used.textures.insert(e.image);
+  const auto option = [](const char* name, float u, float v) {
+    return std::string(name) + shortestText(u) + " " + shortestText(v) + " 0 ";
+  };
+  const UvTransform uv = uvOfImage(scene, e);
+  std::string line = key + " ";
+  if (uv.a != 1.0f || uv.e != 1.0f) line += option("-s ", uv.a, uv.e);
+  if (uv.c != 0.0f || uv.f != 0.0f) line += option("-o ", uv.c, uv.f);
+  return line + textureFile(e.image) + "\n";
+}
+std::string imageLine(const Scene& scene, const std::string& key, uint32_t image,
+                      WrittenMaterials& used) {
+  return mapLine(scene, key, imageExpression(image), used);
+}
+std::string textureLine(const Scene& scene, const std::string& key, uint32_t expression,
+                        WrittenMaterials& used) {
+  return expression == kNone ? "" : mapLine(scene, key, scene.expressions[expression], used);
+}
+
+std::string facetsText(const MetallicRoughnessModel& m, const PhongModel& p) {
+  return "illum 2\nKd " + triple(p.diffuse) + "\nKs " +
+         triple(m.specularColour.value * (1.0f / kF0PerKs)) + "\nPr " +
+         shortestText(m.roughness.value) + "\nPm " + shortestText(m.metallic.value) + "\nPc " +
+         shortestText(m.clearcoat.value) + "\nPcr " + shortestText(m.clearcoatRoughness.value) +
+         "\naniso " + shortestText(m.anisotropy.value) + "\nanisor " +
+         shortestText(m.anisotropyTurns.value) + "\n";
+}
+
+std::string phongText(const PhongModel& p) {
+  if (p.glass) {
+    return "illum 7\nNi " + shortestText(p.ior) + "\nTf " + triple(p.transmission) + "\nKs " +
+           triple(p.mirror) + "\nNs " + shortestText(p.exponent) + "\n";
+  }
+  const bool mirror = !isBlack(p.mirror);
+  return "illum " + std::string(mirror ? "3" : "2") + "\nKd " + triple(p.diffuse) + "\nKs " +
+         triple(mirror ? p.mirror : p.glossy) + "\nNs " + shortestText(p.exponent) + "\n";
+}
+
+// Properties that are written only for materials that MTL can express exactly.
+std::string moreText(const Scene& scene, const Material& m, WrittenMaterials& used) {
+  std::string text = textureLine(scene, "map_Ke", m.emissionTexture, used);
+  if (m.twoSidedEmission) text += "emission_sides 2\n";
+  if (m.opacity != 1.0f) text += "d " + shortestText(m.opacity) + "\n";
+  return text + textureLine(scene, "norm", m.relief.normalMap, used) +
+         textureLine(scene, "map_Bump -bm " + shortestText(m.relief.strength), m.relief.bumpMap,
+                     used);
+}
+
+std::string materialText(const Scene& scene, const Material& m, WrittenMaterials& used) {
+  NearestMtl nearest(scene);
+  std::visit(nearest, m.model);
+  const PhongModel& p = nearest.phong;
+  std::string text = nearest.facets ? facetsText(*nearest.facets, p) : phongText(p);
+  if (!isBlack(m.emission)) text += "Ke " + triple(m.emission) + "\n";
+  if (std::holds_alternative<PhongModel>(m.model)) text += moreText(scene, m, used);
+  if (p.glass) return text;
+  return text + imageLine(scene, "map_Kd", p.diffuseMap, used) +
+         imageLine(scene, "map_Ks", p.glossyMap, used) +
+         imageLine(scene, "map_d", m.opacityMap, used);
+}
+
+// Replaces characters that have a meaning of their own in OBJ and MTL.
+std::string cleanName(std::string name) {
+  for (char& c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f || c == '\\' || c == '#') c = '_';
+  }
+  name = Json::parse(jsonText(name));  // replaces bytes that are not UTF-8
+  const size_t first = std::min(name.find_first_not_of(' '), name.size());
+  return name.substr(first, name.find_last_not_of(' ') + 1 - first);
+}
+
+}  // namespace
+
+std::vector<std::string> materialNames(const Scene& scene) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Material& m : scene.materials) {
+    const std::string name = cleanName(m.name);
+    const std::string numbered = name + " (" + std::to_string(names.size());
+    std::string own = name.empty() ? numbered + ")" : name;
+    for (size_t copy = 1; !taken.insert(own).second; ++copy)
+      own = numbered + (copy > 1 ? ", " + std::to_string(copy) : "") + ")";
+    names.push_back(own);
+  }
+  return names;
+}
+
+std::string mtlText(const Scene& scene, WrittenMaterials& used) {
+  std::string text =
+      "# scene.toml states the materials that MTL cannot; here they are the nearest that it can.\n";
+  for (const uint32_t i : used.materials) {
+    text += "newmtl " + used.names[i] + "\n" + materialText(scene, scene.materials[i], used);
+  }
+  return text;
+}
+
+}  // namespace bnvpl

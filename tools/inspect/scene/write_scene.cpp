@@ -1,0 +1,204 @@
+#include "tools/inspect/scene/write_scene.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/number_text.h"
+#include "core/sampling.h"
+#include "formats/exr_io.h"
+#include "formats/png_io.h"
+#include "scene/choose_view.h"
+#include "scene/load_scene.h"
+#include "tools/inspect/scene/scene_difference.h"
+
+namespace bnvpl {
+
+std::string listText(Vec3 v) {
+  return "[" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + "]";
+}
+
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+std::string placeText(const Scene& scene, Vec3 p) {
+  const auto [x, y, z] = scene.origin;
+  if (x == 0.0 && y == 0.0 && z == 0.0) return listText(p);
+  return "[" + shortestText(p.x + x) + ", " + shortestText(p.y + y) + ", " + shortestText(p.z + z) +
+         "]";
+}
+// Degrees that read back as exactly this angle, if a float has such a value.
+std::string degText(float rad) {
+  constexpr float kRadPerDeg = kPi / 180.0f;
+  const auto deg = static_cast<float>(double{rad} * kDegPerRad);
+  for (const float d : {deg, std::nextafter(deg, INFINITY), std::nextafter(deg, -INFINITY)}) {
+    if (d * kRadPerDeg == rad) return shortestText(d);
+  }
+  return shortestText(deg);
+}
+
+// Writes `mirrored` only where it differs from `guess`, the value that a reader assumes.
+std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool guess) {
+  std::string text = "[film]\nwidth = " + std::to_string(film.width) +
+                     "\nheight = " + std::to_string(film.height) +
+                     "\n\n[camera]\nposition = " + placeText(scene, c.position) +
+                     "\nforward = " + listText(c.forward) + "\nup = " + listText(c.up) +
+                     "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n";
+  if (c.shift != std::array<float, 2>{})
+    text += "shift = [" + shortestText(c.shift[0]) + ", " + shortestText(c.shift[1]) + "]\n";
+  if (isMirrored(c) != guess) text += std::string("mirrored = ") + (guess ? "false\n" : "true\n");
+  return text;
+}
+
+std::string environmentFile(size_t number) {
+  return "textures/environment-" + std::to_string(number) + ".exr";
+}
+
+std::string lightText(const Scene& scene, const LightSpec& l) {
+  std::string text = "\n[[light]]\n";
+  const auto add = [&](const char* key, const std::string& value) {
+    text += std::string(key) + " = " + value + "\n";
+  };
+  switch (l.type) {
+    case LightType::Point:
+    case LightType::Spot:
+      add("type", l.type == LightType::Point ? "\"point\"" : "\"spot\"");
+      add("position", placeText(scene, l.position));
+      add("intensity", listText(l.emission));
+      if (l.type == LightType::Point) break;
+      add("direction", listText(l.direction));
+      add("cone_deg", degText(l.coneRad));
+      add("falloff_deg", degText(l.falloffRad));
+      break;
+    case LightType::Directional:
+      add("type", "\"directional\"");
+      add("direction", listText(l.direction));
+      add("irradiance", listText(l.emission));
+      add("angular_diameter_deg", degText(2.0f * l.angularRadiusRad));
+      break;
+    case LightType::Environment:
+      add("type", "\"environment\"");
+      if (l.image == kNone)
+        add("radiance", listText(l.emission));
+      else
+        add("image", "\"" + environmentFile(l.image) + "\"");
+      add("rotate_deg", degText(l.rotateRad));
+      add("scale", shortestText(l.scale));
+      break;
+  }
+  return text;
+}
+
+std::string instanceText(const Scene& scene, const Instance& instance) {
+  std::string text = "\n[[mesh.instance]]\ntransform = [";
+  for (size_t r = 0; r < 3; ++r) {
+    const float* row = &instance.toWorld[4 * r];
+    text += "[";
+    for (size_t c = 0; c < 3; ++c) text += shortestText(row[c]) + ", ";
+    text += shortestText(row[3] + scene.origin[r]) + "], ";
+  }
+  return text + "[0, 0, 0, 1]]\n";
+}
+
+void writeText(OutputFolder& folder, const std::string& name, const std::string& text) {
+  AtomicFile file(folder.add(name));
+  file.write(text);
+  file.commit();
+}
+
+// Writes the world, and each prototype with its instances; returns their TOML.
+std::string writeMeshes(const Scene& scene, const std::vector<std::string>& names,
+                        OutputFolder& folder) {
+  std::string toml;
+  const auto write = [&](const std::string& name, uint32_t begin, uint32_t end) {
+    writeText(folder, name, objText(scene, begin, end, names));
+    toml += "\n[[mesh]]\nfile = \"" + name + "\"\n";
+  };
+  if (scene.worldEnd() > 0) write("scene.obj", 0, scene.worldEnd());
+  std::vector<std::string> instances(scene.prototypes.size());
+  for (const Instance& i : scene.instances) instances[i.prototype] += instanceText(scene, i);
+  for (size_t p = 0; p < scene.prototypes.size(); ++p) {
+    if (instances[p].empty()) continue;
+    write("instanced-" + std::to_string(p) + ".obj", scene.prototypes[p].begin,
+          scene.prototypes[p].end);
+    toml += instances[p];
+  }
+  return toml;
+}
+
+void writeTexture(const Scene& scene, uint32_t number, OutputFolder& folder) {
+  const Texture& t = scene.textures[number];
+  if (!t.floats.empty())
+    throw InputError(t.name, "has floats, which a PNG cannot hold; convert it to 8 bits first");
+  bool opaque = true;
+  for (size_t i = 3; i < t.rgba.size(); i += 4) opaque = opaque && t.rgba[i] == 255;
+  std::vector<uint8_t> pixels;
+  pixels.reserve(t.rgba.size());
+  for (size_t i = 0; i < t.rgba.size(); ++i) {
+    if (!opaque || i % 4 < 3) pixels.push_back(t.rgba[i]);
+  }
+  AtomicFile file(folder.add(textureFile(number)));
+  writePng(file, static_cast<int>(t.width), static_cast<int>(t.height), pixels, opaque ? 3 : 4);
+  file.commit();
+}
+
+void writeEnvironment(const EnvironmentImage& e, const std::string& name, OutputFolder& folder) {
+  Image image;
+  image.width = static_cast<int>(e.width);
+  image.height = static_cast<int>(e.height);
+  for (size_t k = 0; k < 3; ++k) {
+    std::vector<float>& channel = image.add(std::string(1, "RGB"[k]));
+    for (size_t p = 0; p < e.radiance.size(); ++p) channel[p] = e.radiance[p][k];
+  }
+  AtomicFile file(folder.add(name));
+  writeExr(file, image, ExrPixelType::Float);
+  file.commit();
+}
+
+// Throws OutputError unless the written scene reads back as the given one.
+void requireSame(const Scene& scene, const OutputFolder& folder) {
+  const fs::path file = folder.partial() / "scene.toml";
+  std::string difference;
+  try {
+    difference = sceneDifference(scene, loadScene(file));
+  } catch (const InputError& e) {
+    difference = e.what();
+    for (size_t at; (at = difference.find(folder.partial().string())) != std::string::npos;)
+      difference.replace(at, folder.partial().string().size(), folder.target().string());
+  }
+  if (!difference.empty())
+    throw OutputError(folder.target(), "scene.toml cannot state this scene: " + difference);
+}
+
+}  // namespace
+
+std::string textureFile(uint32_t texture) { return "textures/" + std::to_string(texture) + ".png"; }
+
+UvTransform uvOfImage(const Scene& scene, const TextureExpression& image) {
+  const Texture& t = scene.textures[image.image];
+  const UvTransform& uv = image.uv;
+  return {uv.a * t.scale[0], uv.b * t.scale[0], uv.c * t.scale[0] + t.offset[0],
+          uv.d * t.scale[1], uv.e * t.scale[1], uv.f * t.scale[1] + t.offset[1]};
+}
+
+void writeSceneToml(const Scene& scene, OutputFolder& folder) {
+  WrittenMaterials used{materialNames(scene), {}, {}};
+  for (const Triangle& t : scene.triangles) used.materials.insert(t.material);
+  const std::string meshes = writeMeshes(scene, used.names, folder);
+  writeText(folder, "scene.mtl", mtlText(scene, used));
+  std::string toml =
+      viewText(scene, scene.film, scene.camera, false) + surfacesText(scene, used) + meshes;
+  for (const LightSpec& light : scene.lights) toml += lightText(scene, light);
+  writeText(folder, "scene.toml", toml);
+  for (size_t i = 0; scene.views.size() > 1 && i < scene.views.size(); ++i) {
+    writeText(
+        folder, "view-" + std::to_string(i) + ".toml",
+        viewText(scene, scene.views[i].film, scene.views[i].camera, isMirrored(scene.camera)));
+  }
+  for (const uint32_t texture : used.textures) writeTexture(scene, texture, folder);
+  for (size_t i = 0; i < scene.environments.size(); ++i)
+    writeEnvironment(scene.environments[i], environmentFile(i), folder);
+  requireSame(scene, folder);
+}
+
+}  // namespace bnvpl
