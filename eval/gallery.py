@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+import results_page
 import write_docs
 from bnvpl_eval import images, output, settings
 from bnvpl_eval.runner import Run, Runner
@@ -138,11 +139,12 @@ def save(pixels: np.ndarray, name: str) -> None:
 
 
 def write_table(rows: list[str]) -> None:
-    path = write_docs.DOCS / "results.md"
+    path = write_docs.DOCS / "lab/evaluation.md"
     heads = "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / author's render |\n|---|---|---|---|"
     made = f"<!-- tools of {commit()}, {datetime.date.today().isoformat()} -->"
     text = "\n".join(["<!-- gallery -->", heads, *rows, "", made, "<!-- end -->"])
     output.write_page(path, re.sub(r"<!-- gallery -->.*?<!-- end -->", lambda _: text, path.read_text(), flags=re.S))
+    results_page.write()
 
 
 def main() -> int:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Table 'rooms' and picture rooms.svg of docs/results.md, and the table of guided paths in their theory, from docs/rooms.csv, which
+"""Tables 'rooms' and 'guided' of docs/lab/evaluation.md and picture rooms.svg of docs/results.md, from docs/rooms.csv, which
 rooms.py writes."""
 
 import csv
@@ -7,12 +7,13 @@ import re
 import sys
 from pathlib import Path
 
+import results_page
 import write_docs
 from bnvpl_eval import output
 from bnvpl_eval.output import plt
 
 RESULTS = write_docs.DOCS / "rooms.csv"
-GUIDED = write_docs.DOCS.parent / "tools/render/integrator/guided/theory.md"
+PAGE = write_docs.DOCS / "lab/evaluation.md"
 OTHERS = {"path": "path tracer", "light": "light tracer", "guided": "guided by VPLs",
           "spread-path": "path tracer with fireflies redistributed", "cycles": "Cycles"}
 COLOURS = {"path": "#0b62a3", "light": "#c77700", "guided": "#3a7d34", "spread-path": "#7fb2dd", "cycles": "#8b2f8f"}
@@ -78,7 +79,7 @@ def guided_table(rows: list[dict]) -> str:
             of.setdefault(row["room"], {})[row["beside"]] = row
     both = [(room, by["path"], by["guided"]) for room, by in of.items() if "guided" in by]
     if apart := [room for room, path, guided in both if guided["tools"] != path["tools"]]:
-        print(f"rooms: {GUIDED.name} keeps its table of guided paths, as theirs and the path tracer's are of two builds in {', '.join(apart)}; "
+        print(f"rooms: {PAGE.name} keeps its table of guided paths, as theirs and the path tracer's are of two builds in {', '.join(apart)}; "
               "cure: rooms.py --also guided", file=sys.stderr)
         return ""
 
@@ -125,9 +126,10 @@ def plot(rows: list[dict], path: Path) -> None:
 
 def write() -> None:
     rows = [row for row in read() if row["path_length"] == "0"]
-    put(write_docs.DOCS / "results.md", "rooms", table(rows))
+    put(PAGE, "rooms", table(rows))
     if guided := guided_table(rows):
-        put(GUIDED, "guided", guided)
+        put(PAGE, "guided", guided)
+    results_page.write()
     plot(rows, write_docs.DOCS / "images/rooms.svg")
 
 

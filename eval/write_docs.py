@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Puts a run's tables into docs/results.md and README.md and its pictures into docs/images: write_docs.py build/eval/standard
+"""Puts a run's tables into docs/lab/evaluation.md, docs/results.md and README.md and its pictures into docs/images: write_docs.py build/eval/standard
 
-With --only these alone, of a run of some parts. A table stands between '<!-- table ID -->' and
-'<!-- end -->'; ID is that of report.json.
+With --only these alone, of a run of some parts. A table stands in docs/lab/evaluation.md between
+'<!-- table ID -->' and '<!-- end -->'; ID is that of report.json. docs/results.md has short forms (results_page.py).
 """
 
 import argparse
@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+import results_page
 from bnvpl_eval import images, output, settings
 
 DOCS = settings.ROOT / "docs"
@@ -58,12 +59,12 @@ def markdown(table: dict) -> str:
 
 
 def table_places() -> list[str]:
-    return re.findall(r"<!-- table ([\w-]+) -->", (DOCS / "results.md").read_text())
+    return re.findall(r"<!-- table ([\w-]+) -->", (DOCS / "lab/evaluation.md").read_text())
 
 
 def write_tables(report: dict, wanted: list[str]) -> None:
     """Each with the tools that made it, in a comment."""
-    path = DOCS / "results.md"
+    path = DOCS / "lab/evaluation.md"
     tables = {table["id"]: table for table in report["tables"]}
     for name in wanted:
         if name not in tables:
@@ -195,6 +196,7 @@ def main() -> int:
     if unknown := set(only) - set(known):
         raise SystemExit(f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join(known)}")
     write_tables(report, [name for name in only if name in places])
+    results_page.write(DOCS)
     write_plots(folder, [name for name in only if name in plots])
     if "summary" in only:
         write_summary(json.loads((folder / "results.json").read_text()))

@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import write_docs  # noqa: E402 (after the path that it needs)
 
 PAGE = "# Results\n<!-- table one -->\nold one\n<!-- end -->\nbetween\n<!-- table two -->\nold two\n<!-- end -->\nlast\n"
+SHORT = "# Results\n"
 
 
 def report(*ids: str) -> dict:
@@ -25,14 +26,16 @@ class Tables(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        (self.folder / "results.md").write_text(PAGE)
+        (self.folder / "lab").mkdir()
+        (self.folder / "lab/evaluation.md").write_text(PAGE)
+        (self.folder / "results.md").write_text(SHORT)
 
     def write(self, made: dict, *options: str) -> str:
         (self.folder / "report.json").write_text(json.dumps(made))
         with mock.patch.object(write_docs, "DOCS", self.folder), \
                 mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]):
             write_docs.main()
-        return (self.folder / "results.md").read_text()
+        return (self.folder / "lab/evaluation.md").read_text()
 
     def test_only_what_is_named(self):
         page = self.write(report("one", "two"), "--only", "two")
@@ -47,7 +50,7 @@ class Tables(unittest.TestCase):
             with self.assertRaises(SystemExit) as refused:
                 self.write(made, "--only", only)
             self.assertIn(message, str(refused.exception))
-            self.assertEqual((self.folder / "results.md").read_text(), PAGE)
+            self.assertEqual((self.folder / "lab/evaluation.md").read_text(), PAGE)
 
     def test_pictures_alone(self):
         with mock.patch.object(write_docs, "write_pictures") as write:
