@@ -87,7 +87,7 @@ def cost_block(part):
 
 
 BLOCKS = {'setup': setup_block, 'recipes': recipes_block, 'methods': methods_block,
-          'cost_rates': lambda _: cost_block(cost_tables.rates), 'cost_checks': lambda _: cost_block(cost_tables.checks)}
+          'cost_rates': lambda _: cost_block(cost_tables.rates), 'cost_summary': lambda _: cost_block(cost_tables.summary)}
 
 
 def normal(text):
