@@ -125,7 +125,7 @@ BLOCKS: dict[str, Callable[[Bench], str]] = {
     "recipes": recipes_block,
     "methods": methods_block,
     "cost_rates": lambda _: cost_block(cost_tables.rates),
-    "cost_checks": lambda _: cost_block(cost_tables.checks),
+    "cost_summary": lambda _: cost_block(cost_tables.summary),
 }
 
 

@@ -5,7 +5,7 @@
 
 Renders each scene by the path tracer, the light tracer and VPLs and compares their means. Where an
 author's render exists, means of blocks are compared with it. Writes docs/images/gallery-*.jpg,
-docs/images/author-*.jpg and the table 'gallery' of docs/results.md. Scenes whose folder does not
+docs/images/author-*.jpg and the table 'gallery' of docs/lab/evaluation.md. Scenes whose folder does not
 exist are left out.
 """
 
@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+import results_page
 import write_docs
 from bnvpl_eval import images, output, settings
 from bnvpl_eval.runner import Run, Runner
@@ -241,7 +242,7 @@ def save(pixels: npt.NDArray[Any], name: str) -> None:
 
 
 def write_table(rows: list[str]) -> None:
-    path = write_docs.DOCS / "results.md"
+    path = write_docs.DOCS / "lab/evaluation.md"
     heads = (
         "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / "
         "author's render |\n|---|---|---|---|"
@@ -252,6 +253,7 @@ def write_table(rows: list[str]) -> None:
         path,
         re.sub(r"<!-- gallery -->.*?<!-- end -->", lambda _: text, path.read_text(), flags=re.S),
     )
+    results_page.write()
 
 
 def main() -> int:
@@ -270,7 +272,7 @@ def main() -> int:
     )
     parser.add_argument("--picture-spp", type=int, default=32)
     parser.add_argument("--photons", default="4M")
-    parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
+    parser.add_argument("--no-table", action="store_true", help="leave the pages as they are")
     arguments = parser.parse_args()
     gallery = Gallery(
         Runner(arguments.bin.resolve(), arguments.cache.resolve()), arguments.spp, arguments.photons

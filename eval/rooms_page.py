@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Makes tables and a picture from docs/rooms.csv, which rooms.py writes.
 
-They are the table 'rooms' and the picture rooms.svg of docs/results.md, and the table in the theory
-of guided paths.
+They are the tables of docs/lab/evaluation.md named rooms and guided, and the picture rooms.svg
+of docs/results.md.
 """
 
 import csv
@@ -11,12 +11,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import results_page
 import write_docs
 from bnvpl_eval import output
 from bnvpl_eval.output import plt
 
 RESULTS = write_docs.DOCS / "rooms.csv"
-GUIDED = write_docs.DOCS.parent / "tools/render/integrator/guided/theory.md"
+PAGE = write_docs.DOCS / "lab/evaluation.md"
 OTHERS = {
     "path": "path tracer",
     "light": "light tracer",
@@ -124,7 +125,7 @@ def guided_table(rows: list[dict[str, Any]]) -> str:
     both = [(room, by["path"], by["guided"]) for room, by in of.items() if "guided" in by]
     if apart := [room for room, path, guided in both if guided["tools"] != path["tools"]]:
         print(
-            f"rooms: {GUIDED.name} keeps its table of guided paths, as theirs and the path "
+            f"rooms: {PAGE.name} keeps its table of guided paths, as theirs and the path "
             f"tracer's are of two builds in {', '.join(apart)}; "
             "cure: rooms.py --also guided",
             file=sys.stderr,
@@ -212,9 +213,10 @@ def plot(rows: list[dict[str, Any]], path: Path) -> None:
 
 def write() -> None:
     rows = [row for row in read() if row["path_length"] == "0"]
-    put(write_docs.DOCS / "results.md", "rooms", table(rows))
+    put(PAGE, "rooms", table(rows))
     if guided := guided_table(rows):
-        put(GUIDED, "guided", guided)
+        put(PAGE, "guided", guided)
+    results_page.write()
     plot(rows, write_docs.DOCS / "images/rooms.svg")
 
 

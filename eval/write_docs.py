@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the tables of a run into docs/results.md and README.md, and its pictures into docs/images.
+"""Puts the tables of a run into docs/lab/evaluation.md, docs/results.md and README.md, and its pictures into docs/images.
 
     eval/write_docs.py build/eval/standard
 
@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+import results_page
 from bnvpl_eval import images, output, settings
 
 DOCS = settings.ROOT / "docs"
@@ -73,12 +74,12 @@ def markdown(table: dict[str, Any]) -> str:
 
 
 def table_places() -> list[str]:
-    return re.findall(r"<!-- table ([\w-]+) -->", (DOCS / "results.md").read_text())
+    return re.findall(r"<!-- table ([\w-]+) -->", (DOCS / "lab/evaluation.md").read_text())
 
 
 def write_tables(report: dict[str, Any], wanted: list[str]) -> None:
     """Writes tables, each with a comment that names the tools' commit."""
-    path = DOCS / "results.md"
+    path = DOCS / "lab/evaluation.md"
     tables = {table["id"]: table for table in report["tables"]}
     for name in wanted:
         if name not in tables:
@@ -277,6 +278,7 @@ def main() -> int:
             f"eval: {folder}: nothing named '{min(unknown)}'; there are {', '.join(known)}"
         )
     write_tables(report, [name for name in only if name in places])
+    results_page.write(DOCS)
     write_plots(folder, [name for name in only if name in plots])
     if "summary" in only:
         write_summary(json.loads((folder / "results.json").read_text()))

@@ -36,7 +36,9 @@ class Tables(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        (self.folder / "results.md").write_text(PAGE)
+        (self.folder / "lab").mkdir()
+        (self.folder / "lab/evaluation.md").write_text(PAGE)
+        (self.folder / "results.md").write_text("# Results\n")
 
     def write(self, made: dict[str, Any], *options: str) -> str:
         (self.folder / "report.json").write_text(json.dumps(made))
@@ -45,7 +47,7 @@ class Tables(unittest.TestCase):
             mock.patch.object(sys, "argv", ["write_docs.py", str(self.folder), *options]),
         ):
             write_docs.main()
-        return (self.folder / "results.md").read_text()
+        return (self.folder / "lab/evaluation.md").read_text()
 
     def test_only_what_is_named(self) -> None:
         page = self.write(report("one", "two"), "--only", "two")
@@ -63,7 +65,7 @@ class Tables(unittest.TestCase):
             with self.assertRaises(SystemExit) as refused:
                 self.write(made, "--only", only)
             self.assertIn(message, str(refused.exception))
-            self.assertEqual((self.folder / "results.md").read_text(), PAGE)
+            self.assertEqual((self.folder / "lab/evaluation.md").read_text(), PAGE)
 
     def test_pictures_alone(self) -> None:
         with mock.patch.object(write_docs, "write_pictures") as write:

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Writes the short tables of docs/results.md from the full ones of docs/lab/evaluation.md.
+
+write_docs.py, rooms_page.py and gallery.py fill that page and then call write(). A short table stands between
+'<!-- short NAME -->' and '<!-- end -->'.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+from bnvpl_eval import output, settings
+
+Rows = list[list[str]]  # cells of a table, its head first; empty first cells repeat the row above
+
+DOCS = settings.ROOT / "docs"
+METHODS = {
+    "from the light (instant radiosity)": "from the light",
+    "from the light, by rejection": "by rejection",
+    "random, from the camera": "random",
+    "blue noise, uniform (thesis)": "uniform (thesis)",
+    "blue noise, local density (ours)": "**local (ours)**",
+}
+
+
+def full_tables(page: str) -> dict[str, Rows]:
+    """The Markdown tables between comments, by name."""
+    found = {}
+    for name, text in re.findall(r"<!-- (?:table )?([\w-]+) -->\n(.*?)<!-- end", page, re.DOTALL):
+        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")]
+                for line in text.splitlines() if line.startswith("|") and not line.startswith("|---")]
+        for above, row in zip(rows, rows[1:]):
+            row[0] = row[0] or above[0]
+        found[name] = rows
+    return found
+
+
+def markdown(rows: Rows) -> str:
+    lines, above = [], ""
+    for row in rows:
+        lines.append("| " + " | ".join(["" if row[0] == above else row[0], *row[1:]]) + " |")
+        above = row[0]
+    return "\n".join([lines[0], "|---" * len(rows[0]) + "|", *lines[1:]])
+
+
+def columns(rows: Rows, *names: str) -> Rows:
+    """These columns of a table."""
+    places = [rows[0].index(name) for name in names]
+    return [[row[place] for place in places] for row in rows]
+
+
+def without_error(value: str) -> str:
+    return value.partition(" ± ")[0]
+
+
+def errors(rows: Rows) -> Rows:
+    """relMSE of each way to place VPLs, a row for each view; mean ratio and CPU time of ours."""
+    head = rows[0]
+    views: dict[str, dict[str, list[str]]] = {}
+    for row in rows[1:]:
+        views.setdefault(row[0], {})[row[head.index("VPLs")]] = row
+    relmse, mean, time = (head.index(name) for name in ("relMSE", "mean ratio", "time, CPU s"))
+    table = [["view", *METHODS.values(), "mean ratio, ours", "CPU s"]]
+    for view, by in views.items():
+        found = [without_error(by[method][relmse]) for method in METHODS]
+        best = min(found, key=float)
+        ours = by[list(METHODS)[-1]]
+        table.append([view, *(f"**{value}**" if value == best else value for value in found), ours[mean], ours[time]])
+    return table
+
+
+def gathers(rows: Rows) -> Rows:
+    table = columns(rows, "scene", "gather", "difference to all / mean", "render, CPU s", "its relMSE")
+    table[0][-1] = "relMSE at equal time"
+    return table
+
+
+def scatters(rows: Rows) -> Rows:
+    """Mean ratio and relMSE of the default, with the thesis' scatter, and of the thesis to the letter."""
+    table = [["scene", "guarded (default): mean ratio", "relMSE", "even: mean ratio", "relMSE",
+              "thesis to the letter: mean ratio", "relMSE"]]
+    for scene, _, mean, relmse in columns(rows, "scene", "scatter", "mean ratio", "relMSE")[1:]:
+        if not mean:
+            continue  # a row of another table's columns
+        if scene != table[-1][0]:
+            table.append([scene])
+        table[-1] += [without_error(mean), without_error(relmse)]
+    return table
+
+
+def rooms(rows: Rows) -> Rows:
+    """The ratios that tell most: relMSE of each other method, and FLIP of the path tracer."""
+    head = ["room", "indirect", "CPU s", "indirect mean, ours / others'"]
+    others = next(name for name in rows[0] if name.startswith("relMSE: "))
+    flip = next(name for name in rows[0] if name.startswith("path tracer: "))
+    names = others.removeprefix("relMSE: ").removesuffix(" / ours").split(", ")
+    table = [[*head, *(f"relMSE, {name}" for name in names if "redistributed" not in name), "FLIP, path tracer"]]
+    for row, ratios, errors_of_path in zip(columns(rows, *head)[1:], columns(rows, others)[1:], columns(rows, flip)[1:]):
+        each = [ratio for name, ratio in zip(names, ratios[0].split(", ")) if "redistributed" not in name]
+        table.append([*row, *each, errors_of_path[0].split(", ")[-1]])
+    return table
+
+
+SHORT = {
+    "errors": lambda full: errors(full["methods"]),
+    "equal-time": lambda full: columns(full["equal-time"], "scene", "VPLs", "samples a pixel", "pipeline, CPU s",
+                                       "its relMSE", "path tracer in that time, spp", "path tracer / pipeline"),
+    "rooms": lambda full: rooms(full["rooms"]),
+    "gallery": lambda full: full["gallery"],
+    "scatter": lambda full: scatters(full["scatter"]),
+    "gather": lambda full: gathers(full["gather"]),
+}
+
+
+def write(docs: Path = DOCS) -> None:
+    page = docs / "results.md"
+    full = full_tables((docs / "lab/evaluation.md").read_text())
+    output.write_page(page, re.sub(
+        r"<!-- short ([\w-]+) -->\n.*?<!-- end -->",
+        lambda match: f"<!-- short {match[1]} -->\n{markdown(SHORT[match[1]](full))}\n<!-- end -->",
+        page.read_text(), flags=re.DOTALL))
+
+
+if __name__ == "__main__":
+    write()
+    sys.exit(0)
