@@ -47,6 +47,7 @@ STAGES = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render")
 SETUP = """
 ln -s '{root}/scenes' scenes
 ln -s '{root}/pipelines' pipelines
+ln -s '{root}/eval' eval
 mkdir -p build/release
 ln -s '{bin}' build/release/bin
 vpl-place scenes/cornell/scene.toml -o candidates.vpl -n 20k --quiet

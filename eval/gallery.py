@@ -5,8 +5,8 @@
 
 Renders each scene by the path tracer, the light tracer and VPLs and compares their means. Where an
 author's render exists, means of blocks are compared with it. Writes docs/images/gallery-*.jpg,
-docs/images/author-*.jpg and the table 'gallery' of docs/lab/evaluation.md. Scenes whose folder does not
-exist are left out.
+docs/images/author-*.jpg and the table 'gallery' of docs/lab/evaluation.md. Scenes whose folder does
+not exist are left out.
 """
 
 import argparse

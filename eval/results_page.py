@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Writes the short tables of docs/results.md from the full ones of docs/lab/evaluation.md.
 
-write_docs.py, rooms_page.py and gallery.py fill that page and then call write(). A short table stands between
-'<!-- short NAME -->' and '<!-- end -->'.
+write_docs.py, rooms_page.py and gallery.py fill that page and then call write(). A short table
+stands between '<!-- short NAME -->' and '<!-- end -->'.
 """
 
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from bnvpl_eval import output, settings
@@ -27,9 +28,12 @@ def full_tables(page: str) -> dict[str, Rows]:
     """The Markdown tables between comments, by name."""
     found = {}
     for name, text in re.findall(r"<!-- (?:table )?([\w-]+) -->\n(.*?)<!-- end", page, re.DOTALL):
-        rows = [[cell.strip() for cell in line.strip().strip("|").split("|")]
-                for line in text.splitlines() if line.startswith("|") and not line.startswith("|---")]
-        for above, row in zip(rows, rows[1:]):
+        rows = [
+            [cell.strip() for cell in line.strip().strip("|").split("|")]
+            for line in text.splitlines()
+            if line.startswith("|") and not line.startswith("|---")
+        ]
+        for above, row in zip(rows, rows[1:], strict=False):
             row[0] = row[0] or above[0]
         found[name] = rows
     return found
@@ -65,20 +69,25 @@ def errors(rows: Rows) -> Rows:
         found = [without_error(by[method][relmse]) for method in METHODS]
         best = min(found, key=float)
         ours = by[list(METHODS)[-1]]
-        table.append([view, *(f"**{value}**" if value == best else value for value in found), ours[mean], ours[time]])
+        marked = (f"**{value}**" if value == best else value for value in found)
+        table.append([view, *marked, ours[mean], ours[time]])
     return table
 
 
 def gathers(rows: Rows) -> Rows:
-    table = columns(rows, "scene", "gather", "difference to all / mean", "render, CPU s", "its relMSE")
+    table = columns(
+        rows, "scene", "gather", "difference to all / mean", "render, CPU s", "its relMSE"
+    )
     table[0][-1] = "relMSE at equal time"
     return table
 
 
 def scatters(rows: Rows) -> Rows:
-    """Mean ratio and relMSE of the default, with the thesis' scatter, and of the thesis to the letter."""
-    table = [["scene", "guarded (default): mean ratio", "relMSE", "even: mean ratio", "relMSE",
-              "thesis to the letter: mean ratio", "relMSE"]]
+    """Mean ratio and relMSE of the default, of the thesis' scatter, and of the thesis as written."""
+    head = ["scene"]
+    for method in ("guarded (default)", "even", "thesis to the letter"):
+        head += [f"{method}: mean ratio", "relMSE"]
+    table = [head]
     for scene, _, mean, relmse in columns(rows, "scene", "scatter", "mean ratio", "relMSE")[1:]:
         if not mean:
             continue  # a row of another table's columns
@@ -94,17 +103,28 @@ def rooms(rows: Rows) -> Rows:
     others = next(name for name in rows[0] if name.startswith("relMSE: "))
     flip = next(name for name in rows[0] if name.startswith("path tracer: "))
     names = others.removeprefix("relMSE: ").removesuffix(" / ours").split(", ")
-    table = [[*head, *(f"relMSE, {name}" for name in names if "redistributed" not in name), "FLIP, path tracer"]]
-    for row, ratios, errors_of_path in zip(columns(rows, *head)[1:], columns(rows, others)[1:], columns(rows, flip)[1:]):
-        each = [ratio for name, ratio in zip(names, ratios[0].split(", ")) if "redistributed" not in name]
-        table.append([*row, *each, errors_of_path[0].split(", ")[-1]])
+    shown = [i for i, name in enumerate(names) if "redistributed" not in name]
+    table = [[*head, *(f"relMSE, {names[i]}" for i in shown), "FLIP, path tracer"]]
+    parts = (columns(rows, *head), columns(rows, others), columns(rows, flip))
+    for row, ratios, errors_of_path in list(zip(*parts, strict=True))[1:]:
+        each = ratios[0].split(", ")
+        last = errors_of_path[0].split(", ")[-1]
+        table.append([*row, *(each[i] for i in shown), last])
     return table
 
 
-SHORT = {
+EQUAL_TIME = (
+    "scene",
+    "VPLs",
+    "samples a pixel",
+    "pipeline, CPU s",
+    "its relMSE",
+    "path tracer in that time, spp",
+    "path tracer / pipeline",
+)
+SHORT: dict[str, Callable[[dict[str, Rows]], Rows]] = {
     "errors": lambda full: errors(full["methods"]),
-    "equal-time": lambda full: columns(full["equal-time"], "scene", "VPLs", "samples a pixel", "pipeline, CPU s",
-                                       "its relMSE", "path tracer in that time, spp", "path tracer / pipeline"),
+    "equal-time": lambda full: columns(full["equal-time"], *EQUAL_TIME),
     "rooms": lambda full: rooms(full["rooms"]),
     "gallery": lambda full: full["gallery"],
     "scatter": lambda full: scatters(full["scatter"]),
@@ -115,10 +135,12 @@ SHORT = {
 def write(docs: Path = DOCS) -> None:
     page = docs / "results.md"
     full = full_tables((docs / "lab/evaluation.md").read_text())
-    output.write_page(page, re.sub(
-        r"<!-- short ([\w-]+) -->\n.*?<!-- end -->",
-        lambda match: f"<!-- short {match[1]} -->\n{markdown(SHORT[match[1]](full))}\n<!-- end -->",
-        page.read_text(), flags=re.DOTALL))
+
+    def filled(match: re.Match[str]) -> str:
+        return f"<!-- short {match[1]} -->\n{markdown(SHORT[match[1]](full))}\n<!-- end -->"
+
+    pattern = r"<!-- short ([\w-]+) -->\n.*?<!-- end -->"
+    output.write_page(page, re.sub(pattern, filled, page.read_text(), flags=re.DOTALL))
 
 
 if __name__ == "__main__":

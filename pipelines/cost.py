@@ -1,4 +1,4 @@
-"""Predicts the cost of a task, in CPU seconds, memory and size of its file: the model of eval/scaling/farm.py.
+"""Predicts the cost of a task, in CPU seconds, memory and size of its file.
 
 Each figure of a stage is a sum of terms. A term is a rate times a function of the counts.
 eval/scaling/cost_model.py fits the rates to measured runs and writes cost_model.json. This module

@@ -1,4 +1,4 @@
-"""Lists the commands that render a scene, for generate_ninja.py, slurm/submit.py and eval/scaling/farm.py.
+"""Lists the commands that render a scene, for generate_ninja.py, slurm/submit.py and farm.py.
 
 A stage in N shards becomes N tasks and one task of vpl-merge. Every task names its files, so its
 runner may skip a task that is up to date. Paths are relative to the folder in which the tasks run.

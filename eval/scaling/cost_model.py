@@ -2,7 +2,7 @@
 """Fits pipelines/cost_model.json, the cost of each stage, to runs, and checks it on other runs.
 
     eval/scaling/cost_model.py              measure, fit, check; about ten minutes of one core
-    eval/scaling/cost_model.py --keep F     keep the measurements in F, and do not repeat those that it has
+    eval/scaling/cost_model.py --keep F     keep measurements in F, repeat none that it has
     eval/scaling/cost_model.py --table      print the tables of docs/scaling.md from cost_model.json
 
 CPU seconds are user and system time of one thread. Runs are repeated two to eight times, until the

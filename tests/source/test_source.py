@@ -103,7 +103,7 @@ def functions_of(text: str) -> list[tuple[int, int]]:
     found = []
     start = None
     for number, line in enumerate(text.splitlines(), 1):
-        if start is None and re.match(r"[A-Za-z_].*\)[^;]*\{$|^\S.*\) (const|override|noexcept).*\{$", line):
+        if start is None and re.match(r"[A-Za-z_].*\)[^;]*\{$", line):
             start = number
         elif start is not None and line == "}":
             found.append((start, number - start + 1))
