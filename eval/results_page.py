@@ -83,7 +83,7 @@ def gathers(rows: Rows) -> Rows:
 
 
 def scatters(rows: Rows) -> Rows:
-    """Mean ratio and relMSE of the default, of the thesis' scatter, and of the thesis as written."""
+    """Mean ratio and relMSE of the default, of thesis scatter, and of the thesis as written."""
     head = ["scene"]
     for method in ("guarded (default)", "even", "thesis to the letter"):
         head += [f"{method}: mean ratio", "relMSE"]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the tables of a run into docs/lab/evaluation.md and the pages, its pictures into docs/images.
+"""Puts tables of a run into docs/lab/evaluation.md and the pages, pictures into docs/images.
 
     eval/write_docs.py build/eval/standard
 
