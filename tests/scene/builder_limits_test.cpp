@@ -5,13 +5,13 @@
 #include "core/random.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_hash.h"
-#include "tests/scene/scene_files.h"
+#include "tests/scene/builder_fixture.h"
 #include "transport/rays.h"
 
 namespace bnvpl {
 namespace {
 
-class BuilderLimits : public SceneFiles {};
+class BuilderLimits : public Builder {};
 
 // Unused vertices have no effect; a stray face does not enlarge ray offsets.
 TEST_F(BuilderLimits, StraysFarAwayLeaveTheBoundsAlone) {

@@ -4,30 +4,11 @@
 #include "core/random.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_hash.h"
-#include "tests/scene/scene_files.h"
+#include "tests/scene/builder_fixture.h"
 #include "transport/rays.h"
 
 namespace bnvpl {
 namespace {
-
-const std::vector<double> kCorners{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, NAN};
-
-Triangle corners(std::array<uint32_t, 3> position, uint32_t material) {
-  return {position, kNoCorners, kNoCorners, material};
-}
-Material lampOf(float radiance) {
-  Material m;
-  m.emission = Vec3(radiance);
-  return m;
-}
-
-class Builder : public SceneFiles {
- protected:
-  // Adds one triangle.
-  static void addTriangle(SceneBuilder& builder, uint32_t material, const Affine& transform = {}) {
-    builder.addMesh("m.obj", {kCorners, {}, {}, {corners({0, 1, 2}, material)}}, transform);
-  }
-};
 
 TEST_F(Builder, MakesWhatAFileSays) {
   write("square.tga", tga(1, 1, {{255, 0, 0, 255}}));
