@@ -1,4 +1,4 @@
-// Metals: what every model keeps to, and numbers that are known.
+// Metals: the checks of every model, and known values.
 #include "transport/bsdf/conductor/conductor.h"
 
 #include <complex>
@@ -62,8 +62,7 @@ TEST(Conductor, ReflectanceIsThatAtNormalIncidence) {
   expectClose(furnace(materialOf(m), {0, 0, 1}), {0.9f, 0.5f, 0.1f}, 1e-3f);
 }
 
-// theory.md: what a white metal loses without multiple scattering, and that nothing is missing with
-// it.
+// Without multiple scattering a white metal loses what theory.md states; with it, nothing.
 TEST(Conductor, MultipleScatteringReturnsWhatFacetsLose) {
   const Vec3 wo = normalize({0.5f, 0, 1});
   EXPECT_NEAR(1.0f - furnace(materialOf(white(0.5f, false)), wo).x, 0.31f, 0.015f);
@@ -87,7 +86,7 @@ TEST(Conductor, AlphaPartsRoughFromSpecular) {
   EXPECT_TRUE(hasSpecularLobes(smooth));
 }
 
-// A scratch along x spreads light across it.
+// Scratches along x spread light along y.
 TEST(Conductor, AnisotropyFollowsTheTangent) {
   const Scene scene = sceneOf(materialOf(metal(0.05f, 0.6f)));
   SurfacePoint p = seenFrom({0, 0, 1});
