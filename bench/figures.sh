@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Figures of docs/results.md: each scene through the four stages at the thesis's counts, compared with light
-# placement and random placement, with error measured against the path tracer on a small film.
+# The figures of docs/results.md: each scene through the four stages at the thesis' counts, beside light
+# placement and random placement, judged against the path tracer on a small film.
 #   bench/figures.sh OUT [scene ...]     scenes: u-shape veach-door sponza veach-ajar
-# REFERENCE_SPP and SPP set the samples per pixel of the two reference halves and of the VPL renders; UNIFORM=
-# omits the uniform density. Sponza and Veach-ajar need SPONZA_DIR and VEACH_AJAR_DIR in the environment.
+# REFERENCE_SPP and SPP set the samples of the two reference halves and of the VPL renders; UNIFORM= leaves
+# out the uniform density.
+# Sponza and Veach-ajar need SPONZA_DIR and VEACH_AJAR_DIR in the environment.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 bin=build/release/bin
@@ -11,7 +12,7 @@ out=$1
 shift
 mkdir -p "$out"
 
-# Makes a copy of a scene.toml with another film, next to the original so that relative paths stay valid.
+# A copy of a scene.toml with another film, beside the original so that file names stay valid.
 film() { # scene.toml width height
   local copy="${1%.toml}.film-$2x$3.toml" # ignored by git
   sed -E "s/^width = .*/width = $2/; s/^height = .*/height = $3/" "$1" > "$copy"

@@ -23,7 +23,8 @@ namespace {
 
 constexpr float kHalfMax = 65504.0f;
 constexpr int kMaxSide = 1 << 16;
-// Max ratio of pixel bytes to file size; a file that claims more is damaged. ZIP reaches 1032.
+// A file that claims more pixel bytes than this is damaged, whatever its compression: ZIP reaches
+// 1032.
 constexpr double kMaxExpansion = 4096.0;
 constexpr double kMaxPixelBytes = 0x1p34;
 
@@ -147,8 +148,8 @@ void readPixels(Imf::InputPart& in, Image& image) {
 
 Image readChecked(const fs::path& file) {
   refuseDishonestAttributes(file);
-  Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // bounds the line table that OpenEXR allocates
-  // Imf::InputFile would allocate lines and tiles of any size when it opens the file, and accept
+  Imf::Header::setMaxImageSize(kMaxSide, kMaxSide);  // or OpenEXR allocates its line table first
+  // Not Imf::InputFile: that allocates lines and tiles of any size as it opens the file, and takes
   // deep images.
   Imf::MultiPartInputFile parts(file.c_str(), kNoThreads, /*reconstructChunkOffsetTable=*/false);
   const Imf::Header& header = parts.header(0);

@@ -137,7 +137,7 @@ void OutputFolder::remember(const fs::path& path) {
 
 void OutputFolder::forget() {
   partialPaths = nullptr;
-  while (removing && !paths_.empty()) ::pause();  // a signal handler reads them, and ends all
+  while (removing && !paths_.empty()) ::pause();  // a handler reads them, and is about to end all
   paths_.clear();
 }
 

@@ -16,7 +16,7 @@ namespace bnvpl {
 namespace {
 
 constexpr int kMaxSide = 1 << 16;
-constexpr size_t kMaxBytes = std::numeric_limits<int>::max();  // stb counts bytes in an int
+constexpr size_t kMaxBytes = std::numeric_limits<int>::max();  // in which stb counts them
 
 void appendBytes(void* to, void* bytes, int count) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes),

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes a picture from a fresh clone: installs missing packages, builds the tools, and renders the
-# U-shaped scene through the four stages. Arguments are settings of the Makefile: scripts/demo.sh SPP=8
+# From a fresh clone to a picture: installs what is missing, builds the tools, and renders the
+# U-shaped scene through the four stages. Settings may be added: scripts/demo.sh SPP=8
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Fuzzes every reader of foreign files: runs each fuzz target on its corpus, then for SECONDS on mutated
-# inputs (default 20; 0: the corpora alone), two targets at a time.
-#   scripts/fuzz.sh              # as in CI
+# Feeds hostile input to every reader of foreign files: runs each fuzz target over its corpus, then
+# SECONDS on inputs of its own making (default 20; 0: the corpora alone), two targets at a time.
+#   scripts/fuzz.sh              # what CI runs
 #   scripts/fuzz.sh 1200 obj     # one target for 20 minutes
-# Fails on a finding. New inputs stay in build/fuzz/learned for the next run; the corpora in fuzz/corpus
-# are only read.
+# Fails on a finding. What is learned stays in build/fuzz/learned and is used by the next run; the
+# corpora that are checked in, fuzz/corpus, are only read.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -27,8 +27,8 @@ inputs=$(mktemp -d "$memory/bnvpl-fuzz.XXXXXX")
 trap 'rm -rf "$inputs"' EXIT
 export TMPDIR=$inputs UBSAN_OPTIONS=print_stacktrace=1
 
-# Small inputs find the most per time. The memory limits suit them: a file of 4 KiB that makes a reader
-# allocate half a GiB at once is a finding.
+# Small inputs find the most in the time, and the memory limits hold for them: a file of 4 KiB that
+# makes a reader allocate half a GiB at once is a finding.
 options=(-max_len=4096 -timeout=60 -malloc_limit_mb=512 -rss_limit_mb=2048 -print_final_stats=1
          -verbosity=1)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that the build and the tests need, and those named as arguments. Does
-# nothing if all are installed.
+# Installs the Debian 12 packages that the build and the tests need, and those named as arguments;
+# does nothing when all are there.
 set -euo pipefail
 
 packages=(

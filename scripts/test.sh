@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs missing packages, builds everything, runs every test, and fuzzes the readers briefly. Fast steps
-# come first, and a table at the end lists the steps with their time and result.
-# Options are passed to ctest, which then is the only step after the build: scripts/test.sh -R pipeline
+# Installs what is missing, builds everything, runs every test, and fuzzes the readers for a moment:
+# what fails soonest comes first, and a table at the end says what was done and how long it took.
+# Options go to ctest, which then is the only step after the build: scripts/test.sh -R pipeline
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Runs the tests under ThreadSanitizer. Options are passed to ctest: scripts/tsan.sh -R estimate
-# Debian's oneTBB is not instrumented: the sanitizer does not see that a task begins after it was spawned,
-# and would report races everywhere. The script therefore builds the same version with instrumentation, from
-# Debian's archive into build/tsan-tbb. Other libraries are used as they are.
+# The tests under ThreadSanitizer. Options go to ctest: scripts/tsan.sh -R estimate
+# Debian's oneTBB is not compiled for it: the sanitizer does not see that a task begins after it was
+# spawned, and takes that for races everywhere. So the same version is built with it, into
+# build/tsan-tbb, from Debian's archive. The other libraries stay as they are.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -23,5 +23,5 @@ fi
 cmake --preset tsan
 cmake --build --preset tsan
 export LD_LIBRARY_PATH=$tbb/lib_relwithdebinfo
-export TSAN_OPTIONS=halt_on_error=1  # the first report ends the process and fails its test
+export TSAN_OPTIONS=halt_on_error=1  # the first report ends the process, and so fails its test
 exec ctest --preset tsan "$@"

@@ -1,16 +1,16 @@
 #!/bin/sh
-# Checks with Khronos's gltf-validator that the project's glTF files are valid: those that tests write and
-# load, Blender's export, and the room of scenes/. Needs Node.js and npm.
+# Every glTF file of ours must be valid by Khronos' gltf-validator: what tests write and load, Blender's
+# export, our room. Needs Node.js and npm.
 #
-#   scripts/validate_gltf.sh [BUILD]     BUILD: folder with bin/gltf_test, default build/release
+#   scripts/validate_gltf.sh [BUILD]     BUILD: folder with bin/gltf_test; build/release unless given
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-build/release}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/files"
-# These tests load invalid files on purpose: missing or foreign images, missing coordinates, normals of any
-# length, clearcoat maps without texture coordinates. gltf-validator does not decompress meshes.
+# These load what is not valid, on purpose: missing or foreign images, coordinates that are not there,
+# normals of any length, clearcoat maps without texture coordinates. gltf-validator does not decompress.
 lenient="ExtensionsSetTheirParameters ImagesComeFromFilesAndDataUris OneSetOfTextureCoordinatesCounts ReadsNormalsAndTurns DecodesMeshopt"
 BNVPL_KEEP_GLTF="$work/files" "$build/bin/gltf_test" > "$work/log" || { cat "$work/log" >&2; exit 1; }
 for test in $lenient; do rm -r "$work/files/$test"*; done

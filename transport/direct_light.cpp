@@ -9,14 +9,14 @@ namespace bnvpl {
 
 namespace {
 
-// Mean number of shadow rays that a vertex sends to a light.
+// Shadow rays that a vertex sends to a light, in the mean.
 float raysTo(const LightSet& lights, size_t light, LightChoice choice) {
   if (choice == LightChoice::One) return lights.pickProbability(light);
   if (lights.size() <= kMaxLightsEach) return 1.0f;
   return static_cast<float>(kMaxLightsEach) * lights.pickProbability(light);
 }
 
-// MIS weight of a light hit by a BSDF ray. place() returns the point of the light's unit square.
+// Share of a hit found by the BSDF, against light sampling. `place`: -> where on the light it is.
 template <typename Place>
 float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arrival& arrival,
                 const Place& place) {
@@ -29,12 +29,12 @@ float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arri
   return powerHeuristic(arrival.bsdfPdf, lightPdf * rays);
 }
 
-// Returns the function wi -> density of the BSDF times the number of rays.
+// -> density of that many rays by the BSDF.
 auto raysByBsdf(const Bsdf& bsdf, LobeGroup group, float rays) {
   return [&bsdf, group, rays](Vec3 wi) { return rays * bsdf.pdf(group, wi); };
 }
 
-// Functors wi -> BSDF value times cosine, for the functions below.
+// What a vertex reflects of radiance from wi, with the cosine: for the functions below.
 struct ByBsdf {
   using Light = Vec3;
   const Bsdf& bsdf;
@@ -62,8 +62,8 @@ bool unoccluded(const LightSet& lights, const Reflects& reflects, const LightPla
   return !isBlack(reflected);
 }
 
-// The MIS-weighted estimate of one shadow ray to a point of a light that gets `count` such rays on
-// average. The competing rays have density rayPdf(wi); there are none if `shared` is false.
+// One shadow ray towards a point of a light; its share where that gets `count` in the mean, and
+// rays are sent besides with density rayPdf(wi), or none where `shared` is false.
 template <typename Reflects, typename RayPdf>
 typename Reflects::Light sampleLight(const RayScene& rays, const LightSet& lights,
                                      const Reflects& reflects, const LightPlace& place, float count,
@@ -78,7 +78,7 @@ typename Reflects::Light sampleLight(const RayScene& rays, const LightSet& light
                       photons.ofRays(place.light, s.wi) / count);
 }
 
-// One shadow ray of the learned distribution, sampled from a point of the unit square.
+// One of the rays by what was learned, by a point of the unit square.
 template <typename Reflects, typename RayPdf>
 typename Reflects::Light sampleStratum(const RayScene& rays, const LightSet& lights,
                                        const Reflects& reflects, const LearnedLight& learned,
@@ -109,7 +109,7 @@ typename Reflects::Light sampleOne(const RayScene& rays, const LightSet& lights,
                      probability, shared, rayPdf, photons);
 }
 
-// All shadow rays of the learned distribution, sampled from points of a sequence.
+// All rays by what was learned, points of a sequence.
 template <typename Reflects, typename RayPdf>
 typename Reflects::Light sampleStrata(const RayScene& rays, const LightSet& lights,
                                       const Reflects& reflects, const LearnedLight& learned,
@@ -123,7 +123,7 @@ typename Reflects::Light sampleStrata(const RayScene& rays, const LightSet& ligh
   return sum;
 }
 
-// The same, or one ray by power where nothing was learned, for MIS with rays of density rayPdf(wi).
+// The same, or one ray where nothing was learned, beside a ray with that density.
 template <typename Reflects>
 typename Reflects::Light besideRay(const RayScene& rays, const LightSet& lights,
                                    const Reflects& reflects, const LearnedLight& learned,
@@ -202,7 +202,7 @@ bool unoccludedLight(const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
 }
 
 bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& s) {
-  const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the surface may transmit
+  const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
   const Vec3 from = rays.offsetOrigin(at.position, side);
   return s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target);
 }

@@ -1,5 +1,4 @@
-// Direct light at a surface point: next-event estimation, and the MIS weights of rays that hit a
-// light.
+// Light that reaches a surface point straight from the lights, by shadow rays.
 #pragma once
 
 #include <cstdint>
@@ -36,41 +35,40 @@ struct SharedWithPhotons {
   float ofRays(size_t light, Vec3 towards) const;
 };
 
-// The estimate of direct light by light sampling: multi-sample MIS by the power heuristic (Veach
-// 1997, section 9.2) against the `bsdfRays` rays that the caller sends by the BSDF, on average.
-// With 0 there are none, and the weight is 1.
+// Light sampling's part of the light at a vertex: multi-sample MIS by the power heuristic (Veach
+// 1997, section 9.2) against `bsdfRays` rays, in the mean, that the caller sends from there by the
+// BSDF; 0: light sampling is alone.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  LightChoice choice, float bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared = {});
-// Light sampling by a learned distribution over strata of all lights, with `rays` shadow rays.
+// Light sampling by what was learned about the place: shadow rays to strata of all lights.
 struct LearnedLight {
   const LearnedStrata* strata = nullptr;
   unsigned rays = 0;
 };
-// One ray by the distribution; strata is null where nothing was learned.
+// One ray by it; none where there is nothing to choose.
 inline LearnedLight learnedBy(const LearnedStrata& strata) {
   return strata.all ? LearnedLight{&strata, 1} : LearnedLight{};
 }
-// The same by a learned distribution. Its rays are points of the sequence owenSobol(i, key), from
-// i = `firstPoint` on.
+// The same by it; its rays are the points of a sequence (owenSobol) from `firstPoint` on.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedLight& learned, float bsdfRays, uint32_t firstPoint, uint64_t key);
-// The same for callers whose rays are not sampled by the BSDF alone: `rayPdf` is the density of
-// their mixture, 1/sr, times the number of rays.
+// The same beside rays whose directions the caller does not draw by the BSDF alone: `rayPdf` is the
+// density of all that they may be drawn by, 1/sr, times their number.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedLight& learned, const std::function<float(Vec3 wi)>& rayPdf,
                  uint32_t firstPoint, uint64_t key);
-// Samples one light from the learned distribution; falls back to sampling by power where nothing
-// was learned.
+// One ray: by what was learned, or where that is nothing to a light picked in proportion to power.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedStrata& strata, float bsdfRays, Rng& rng,
                  const SharedWithPhotons& shared = {});
-// Samples lights from the learned distribution, or one by power where nothing was learned, for MIS
-// with one ray of the caller. `rayPdf` is the density of the mixture that samples this ray, 1/sr.
+// By what was learned, or one ray to a light picked in proportion to power, beside a ray whose
+// direction the caller does not draw by the BSDF alone: `rayPdf` is the density of all that it may
+// draw by, 1/sr.
 Vec3 directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                  const LearnedLight& learned, const std::function<float(Vec3 wi)>& rayPdf,
                  Rng& rng);
-// Light reflected by the whole BSDF, and by its diffuse part alone.
+// Light that leaves by all that an eye sees of a surface, and by a part of it that is known apart.
 struct LightWithPart {
   Vec3 all, part;
   LightWithPart operator*(float k) const { return {all * k, part * k}; }
@@ -83,11 +81,11 @@ struct LightWithPart {
 inline bool isBlack(const LightWithPart& light) {
   return isBlack(light.all) && isBlack(light.part);
 }
-// The same, also for a diffuse part of the value `matt`, 1/sr.
+// The same, with the light that leaves by `matt`, 1/sr, which is Lambert's.
 LightWithPart directLight(const RayScene& rays, const LightSet& lights, const Bsdf& bsdf,
                           LobeGroup group, Vec3 matt, const LearnedLight& learned,
                           const std::function<float(Vec3 wi)>& rayPdf, Rng& rng);
-// The cosine factor of a Lambert lobe: 0 where wi is below the horizon of either normal.
+// What Lambert's law reflects of light from wi, over its value.
 inline float diffuseCosine(const SurfacePoint& at, Vec3 wi) {
   return dot(at.ng, wi) > 0.0f ? std::max(0.0f, dot(at.ns, wi)) : 0.0f;
 }
@@ -105,11 +103,11 @@ struct Arrival {
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival);
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival);
 
-// The unoccluded contribution of a point of a light, sampled with density 1 over the light's unit
-// square. `out` is the light sample. Returns false if the contribution is 0.
+// What a point of the lights would bring to the vertex if it were drawn with density 1 over the
+// unit square of its light and nothing hid it; `out`: how it is seen. False: nothing.
 bool unoccludedLight(const LightSet& lights, const Bsdf& bsdf, LobeGroup group,
                      const LightPlace& place, DirectSample& out, Vec3& reflected);
-// Whether a surface occludes the light sample.
+// Whether anything lies between.
 bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& sample);
 
 }  // namespace bnvpl

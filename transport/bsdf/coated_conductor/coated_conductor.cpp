@@ -7,7 +7,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kLargestIor = 3.0f;  // max index of the albedo tables
+constexpr float kLargestIor = 3.0f;  // of the tables
 
 // Cosine inside the coat of a direction with the given cosine outside (Snell's law).
 float within(float cosine, float ior) {

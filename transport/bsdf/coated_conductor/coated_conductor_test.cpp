@@ -21,7 +21,7 @@ TEST(CoatedConductor, KeepsToWhatEveryModelDoes) {
             "lacquer " + std::to_string(coat) + " over " + std::to_string(metal), 0.05f);
 }
 
-// All light returns from a perfect mirror below a smooth coat, after any number of reflections.
+// A mirror that reflects all, below a smooth coat: light goes back and forth and all of it returns.
 TEST(CoatedConductor, PerfectMirrorLosesNothing) {
   CoatedConductorModel m = lacquer(0, 0);
   m.fresnel.byReflectance = true;

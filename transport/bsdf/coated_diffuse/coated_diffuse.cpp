@@ -6,7 +6,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kLargestIor = 3.0f;  // max index of the albedo tables
+constexpr float kLargestIor = 3.0f;  // of the tables
 
 }  // namespace
 

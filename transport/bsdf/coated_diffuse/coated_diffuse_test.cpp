@@ -1,4 +1,4 @@
-// Plastic: the checks of every model, and the energy between base and coat.
+// Plastic: what every model keeps to, and the energy between base and coat.
 #include "transport/bsdf/coated_diffuse/coated_diffuse.h"
 
 #include "tests/support/bsdf_checks.h"
@@ -17,7 +17,7 @@ TEST(CoatedDiffuse, KeepsToWhatEveryModelDoes) {
   check(materialOf(plastic(Vec3(0.5f), 0.2f, 2.2f)), "glaze");
 }
 
-// A white base returns all the light that the coat transmits: no coat loses energy.
+// A white base returns all that the coat lets in: nothing is lost, whatever the coat.
 TEST(CoatedDiffuse, WhiteBaseLosesNothing) {
   for (const float ior : {1.2f, 1.5f, 2.5f}) {
     for (const float alpha : {0.0f, 0.1f, 0.4f, 1.0f}) {
@@ -50,7 +50,7 @@ TEST(CoatedDiffuse, WithoutACoatIsLambert) {
   EXPECT_NEAR(Bsdf(scene, p).eval(LobeGroup::Rough, {0, 0, 1}).x, 0.5f / kPi, 1e-3f);
 }
 
-// The coat's lobe is specular below kRoughAlpha; the base never is.
+// The coat's gloss is specular while it is smooth, the base never is.
 TEST(CoatedDiffuse, GroupsFollowTheCoatsAlpha) {
   for (const float alpha : {0.1f, 0.4f}) {
     const Scene scene = sceneOf(materialOf(plastic(Vec3(0.5f), alpha)));

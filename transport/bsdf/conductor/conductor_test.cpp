@@ -1,4 +1,4 @@
-// Metals: the checks of every model, and known values.
+// Metals: what every model keeps to, and numbers that are known.
 #include "transport/bsdf/conductor/conductor.h"
 
 #include <complex>
@@ -62,7 +62,8 @@ TEST(Conductor, ReflectanceIsThatAtNormalIncidence) {
   expectClose(furnace(materialOf(m), {0, 0, 1}), {0.9f, 0.5f, 0.1f}, 1e-3f);
 }
 
-// Without multiple scattering a white metal loses what theory.md states; with it, nothing.
+// theory.md: what a white metal loses without multiple scattering, and that nothing is missing with
+// it.
 TEST(Conductor, MultipleScatteringReturnsWhatFacetsLose) {
   const Vec3 wo = normalize({0.5f, 0, 1});
   EXPECT_NEAR(1.0f - furnace(materialOf(white(0.5f, false)), wo).x, 0.31f, 0.015f);
@@ -86,7 +87,7 @@ TEST(Conductor, AlphaPartsRoughFromSpecular) {
   EXPECT_TRUE(hasSpecularLobes(smooth));
 }
 
-// Scratches along x spread light along y.
+// A scratch along x spreads light across it.
 TEST(Conductor, AnisotropyFollowsTheTangent) {
   const Scene scene = sceneOf(materialOf(metal(0.05f, 0.6f)));
   SurfacePoint p = seenFrom({0, 0, 1});

@@ -1,4 +1,4 @@
-// Glass: the checks of every model, and the Fresnel equations.
+// Glass: what every model keeps to, and the Fresnel equations.
 #include "transport/bsdf/dielectric/dielectric.h"
 
 #include "tests/support/bsdf_checks.h"
@@ -55,7 +55,7 @@ TEST(Dielectric, SmoothSplitsByFresnelAndSnell) {
   EXPECT_LT(s.wi.z, 0.0f);
   EXPECT_EQ(s.side, Vec3(0, 0, -1));
   EXPECT_NEAR(fresnelDielectric(1.0f, 1.5f), 0.04f, 1e-6f);
-  const float brewster = std::cos(std::atan(1.5f));  // reflected light is fully polarised
+  const float brewster = std::cos(std::atan(1.5f));  // all reflected light is of one polarisation
   const float sine = std::sqrt(1 - brewster * brewster), t = std::asin(sine / 1.5f),
               i = std::asin(sine);
   EXPECT_NEAR(fresnelDielectric(brewster, 1.5f),
@@ -68,7 +68,7 @@ TEST(Dielectric, ReflectsTotallyInside) {
   EXPECT_EQ(flux.crossed, 0.0f);
 }
 
-// Rough glass converges to smooth glass.
+// Rough glass becomes smooth glass.
 TEST(Dielectric, RoughnessHasTheSmoothLimit) {
   for (const bool inside : {false, true}) {
     const Vec3 wo = normalize({0.4f, 0.1f, 1});
@@ -79,7 +79,7 @@ TEST(Dielectric, RoughnessHasTheSmoothLimit) {
   }
 }
 
-// The energy lost between facets is the one that theory.md states.
+// theory.md: what is lost between facets.
 TEST(Dielectric, LossIsAsStated) {
   const Vec3 wo = normalize({0.5f, 0, 1});
   EXPECT_NEAR(1.0f - furnace(materialOf(glass(0.3f)), wo).x, 0.01f, 0.01f);

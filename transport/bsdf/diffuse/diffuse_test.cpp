@@ -23,7 +23,7 @@ TEST(Diffuse, IsLambertsLaw) {
   EXPECT_EQ(bsdf.eval(LobeGroup::Rough, {0, 0, -1}), Vec3());
 }
 
-// Where the mesh has no texture coordinates, the constant alone counts.
+// Where the mesh has no texture coordinates the constant counts alone.
 TEST(Diffuse, TexturesScaleTheConstant) {
   Scene scene = sceneOf(materialOf(DiffuseModel{{Vec3(0.8f), 0}}));
   scene.expressions.push_back(constantExpression({0.5f, 0.25f, 1}));
@@ -34,7 +34,7 @@ TEST(Diffuse, TexturesScaleTheConstant) {
   expectClose(Bsdf(scene, p).roughAlbedo(), Vec3(0.8f), 1e-6f);
 }
 
-// A view from below the shading normal's horizon sees the same value: there are no black seams.
+// From behind the shading normal's horizon Lambert is lit as from anywhere: no black seams.
 TEST(Diffuse, HasNoSeamsWhereTheShadingNormalTurnsAway) {
   const Scene scene = sceneOf(materialOf(DiffuseModel{Vec3(0.5f)}));
   const Vec3 ns = normalize({0.8f, 0, 0.6f});

@@ -23,8 +23,8 @@ double overHemisphere(const std::function<double(Vec3)>& fn) {
   return sum * double{kPi} * double{kPi} / (double(kRows) * kColumns);
 }
 
-// The projected area of the facets is that of the surface, seen along the normal (D) and obliquely
-// (G1 D): Heitz 2014, equations 4 and 16.
+// The facets' projected area is that of the surface, seen from above (D) and from aside (G1 D):
+// Heitz 2014, equations 4 and 16.
 TEST(Ggx, FacetsCoverTheSurface) {
   for (const Ggx& g : kShapes) {
     EXPECT_NEAR(overHemisphere([&](Vec3 h) { return double{g.density(h) * h.z}; }), 1.0, 2e-3);
@@ -50,7 +50,7 @@ TEST(Ggx, SamplesFollowTheVisibleFacets) {
   }
 }
 
-// The tables agree with a numerical integral over outgoing directions.
+// Of facets that reflect all, by brute force: sum over directions that leave.
 TEST(Ggx, TablesHoldTheAlbedo) {
   for (const float alpha : {0.15f, 0.4f, 0.9f}) {
     const Ggx g{alpha, alpha};
@@ -78,7 +78,7 @@ TEST(Ggx, SmoothTablesAreTheFresnelEquations) {
     EXPECT_FLOAT_EQ(dielectricAlbedo(c, 0.0f, 1.5f), fresnelDielectric(c, 1.5f));
     EXPECT_NEAR(ggxLoss(c, 0.0f), 0.0f, 2e-3f);
   }
-  // Diffuse reflectance of glass of index 1.5 from outside: 0.0918 (Walsh 1926).
+  // 1 - T of diffuse light into glass of index 1.5: 0.0918 (Walsh 1926).
   EXPECT_NEAR(dielectricMeanAlbedo(0.0f, 1.5f), 0.0918f, 1e-3f);
 }
 

@@ -1,4 +1,4 @@
-// Compares glTF's material with the formulas of its appendix B.
+// glTF's material against the formulas of its appendix B.
 #include "transport/bsdf/metallic_roughness/metallic_roughness.h"
 
 #include "tests/support/bsdf_checks.h"
@@ -39,8 +39,7 @@ TEST(MetallicRoughness, ExtensionsKeepToIt) {
   check(materialOf(specular), "specular", 0.02f);
 }
 
-// The diffuse part lets paths be reused for other views, so it must not depend on wo. The remainder
-// should be little more than gloss.
+// Others share light by it: no eye may change it, and what is left should be little but gloss.
 TEST(MetallicRoughness, DiffusePartIsTheSameFromEverywhereAndNearTheBase) {
   const Scene scene = sceneOf(materialOf(gltf(0.4f, 0.8f)));
   const Vec3 wi = normalize({-0.3f, 0.2f, 1});
@@ -61,7 +60,7 @@ TEST(MetallicRoughness, DiffusePartIsTheSameFromEverywhereAndNearTheBase) {
   EXPECT_TRUE(isBlack(Bsdf(metal, p).diffusePart().value));
 }
 
-// Transcribed from appendix B.3.5.
+// Appendix B.3.5, in its own words.
 Vec3 appendixB(Vec3 base, float metallic, float roughness, Vec3 l, Vec3 v) {
   const Vec3 h = normalize(l + v), black;
   const float alpha = roughness * roughness, a2 = alpha * alpha;
@@ -84,7 +83,7 @@ TEST(MetallicRoughness, IsAppendixB) {
       const Bsdf bsdf(scene, p);
       const Vec3 value =
           (bsdf.eval(LobeGroup::Rough, wi) + bsdf.eval(LobeGroup::Specular, wi)) / wi.z;
-      // In between the appendix leaves a choice: to mix the two materials or their parameters.
+      // Half way, the appendix has no one formula: it mixes the two materials, or their parameters.
       const Vec3 expected = metallic == 0.5f ? 0.5f * (appendixB(base, 0, roughness, wi, wo) +
                                                        appendixB(base, 1, roughness, wi, wo))
                                              : appendixB(base, metallic, roughness, wi, wo);
@@ -94,7 +93,7 @@ TEST(MetallicRoughness, IsAppendixB) {
   }
 }
 
-// The albedo of the base, which VPLs of this material reflect (theory.md, eq. 4).
+// theory.md, eq. 4: what a VPL of this material sends on.
 TEST(MetallicRoughness, BaseSendsOnItsAlbedo) {
   for (const float ior : {1.2f, 1.5f, 2.5f})
     for (const float specular : {0.0f, 0.3f, 1.0f})
@@ -115,7 +114,8 @@ TEST(MetallicRoughness, BaseSendsOnItsAlbedo) {
         }
 }
 
-// At grazing angles the appendix reflects more than arrives; the model does not (theory.md, eq. 3).
+// theory.md, eq. 3: at grazing angles the appendix gives more than arrives; here all is kept, and
+// no more.
 TEST(MetallicRoughness, WhiteStaysBelowWhatArrives) {
   for (const float roughness : {0.1f, 0.5f, 1.0f}) {
     for (const Vec3 wo : {views()[0], views()[1], views()[2], normalize({1, 0, 0.05f})}) {
@@ -157,7 +157,8 @@ TEST(MetallicRoughness, ThinWallLetsStraightThrough) {
   EXPECT_FALSE(Bsdf(scene, p).hasRough());
 }
 
-// A clearcoat reflects about its own normal, not the base's.
+// A clearcoat keeps its own normal: its mirror image is not the base's, and light stays accounted
+// for.
 TEST(MetallicRoughness, CoatReflectsAboutItsOwnNormal) {
   MetallicRoughnessModel m = gltf(0, 1, Vec3(0.5f));
   m.clearcoat = 1.0f;
@@ -177,7 +178,7 @@ TEST(MetallicRoughness, CoatReflectsAboutItsOwnNormal) {
 }
 
 TEST(MetallicRoughness, CoatWithItsOwnNormalKeepsToWhatEveryModelDoes) {
-  for (const float roughness : {0.3f, 0.7f}) {  // the second coat is rough
+  for (const float roughness : {0.3f, 0.7f}) {  // the second is of the rough group
     MetallicRoughnessModel m = gltf(0.3f, 0.7f, Vec3(1));
     m.clearcoat = 1.0f;
     m.clearcoatRoughness = roughness;
@@ -208,7 +209,7 @@ TEST(MetallicRoughness, CoatWithItsOwnNormalKeepsToWhatEveryModelDoes) {
   }
 }
 
-// An eighth of a turn rotates the tangent about the outward normal, seen from either side.
+// An eighth of a turn, seen from both sides, is the tangent turned about the outward normal.
 TEST(MetallicRoughness, ScratchesTurn) {
   MetallicRoughnessModel straight = gltf(1, 0.6f), turned = straight;
   straight.anisotropy = turned.anisotropy = 0.8f;

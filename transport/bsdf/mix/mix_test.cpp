@@ -6,7 +6,7 @@
 namespace bnvpl::test {
 namespace {
 
-// Appends a material. Test points have material 0, which is the mix; its parts follow.
+// The mix is material 0, as that is what points are made of; its parts follow.
 void addMaterial(Scene& scene, const char* name, const MaterialModel& model) {
   Material m;
   m.name = name;
