@@ -1,5 +1,5 @@
-// vpl-eliminate's core: end to end and by part.
-// Arguments are candidates and, end to end, VPLs kept.
+// Benchmarks of vpl-eliminate, end to end and by parts. The arguments are the numbers of candidates
+// and of VPLs kept.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -24,8 +24,8 @@ struct Cloud {
   std::vector<Vec3> position, normal;
 };
 
-// On five faces of a room of 8 x 3 x 4, in random order. `uneven` gathers them about one corner,
-// with a density ratio of roughly 100:1, as camera paths do.
+// Random points on five faces of a room of 8 x 3 x 4. `uneven` concentrates them in one corner,
+// with a density ratio of about 100:1, as camera paths do.
 Cloud makeRoom(size_t count, bool uneven) {
   const Vec3 size(8.0f, 3.0f, 4.0f);
   Cloud cloud;
@@ -33,7 +33,7 @@ Cloud makeRoom(size_t count, bool uneven) {
     Rng rng(streamKey(1, Stream::Plot), i);
     const float power = uneven ? 2.5f : 1.0f;
     const float u = std::pow(rng.next(), power), v = std::pow(rng.next(), power);
-    const float face = rng.next() * 112.0f;  // the areas of the walls before this one
+    const float face = rng.next() * 112.0f;  // position in the sum of the faces' areas
     const size_t axis = face < 24.0f ? 0 : face < 88.0f ? 1 : 2;
     const bool far = axis == 1 && face >= 56.0f;
     Vec3 p, n;
@@ -54,7 +54,7 @@ const Cloud& room(int64_t count, bool uneven) {
   return it->second;
 }
 
-// The same, in the order in which the stage searches.
+// The same in Morton order, in which the stage searches.
 const Cloud& sortedRoom(int64_t count, bool uneven) {
   static std::map<std::pair<int64_t, bool>, Cloud> made;
   const auto [it, isNew] = made.try_emplace({count, uneven});
@@ -143,7 +143,7 @@ void buildTree(benchmark::State& state) {
   for (auto _ : state) const KdTree tree(cloud.position);
 }
 
-// Neighbours of every candidate by FLANN, as the density estimate asks.
+// Nearest neighbours of every candidate by FLANN, as for the density estimate.
 void nearest(benchmark::State& state) {
   const Cloud& cloud = sortedRoom(state.range(0), true);
   const KdTree tree(cloud.position);
@@ -158,7 +158,7 @@ void nearest(benchmark::State& state) {
       ->MeasureProcessCPUTime()   \
       ->UseRealTime()             \
       ->Unit(benchmark::kMillisecond)
-// Growth: 5 candidates a VPL, as the yardstick.
+// A larger case for scaling, with 5 candidates per VPL.
 BENCHMARK_CAPTURE(endToEnd, uniform_many, "uniform", false)
     ->Args({5000000, 1000000})
     ->MeasureProcessCPUTime()

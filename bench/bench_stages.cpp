@@ -1,5 +1,5 @@
-// Place, estimate and render on one scene in one process: candidates/s, photons/s and hits/s,
-// samples/s. Sponza where SPONZA_DIR is set, else the U-shape.
+// Benchmarks of place, estimate and render in one process: candidates/s, photons/s and hits/s,
+// samples/s. The scene is Sponza if SPONZA_DIR is set, else the U-shape.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -33,9 +33,9 @@ const VplTable& lit() {
 }
 
 void placeCandidates(benchmark::State& state) {
-  world();  // loaded before the clock runs
+  world();  // loads the scene outside the timed loop
   double rays = 0;
-  // The last wave's surplus weighs little.
+  // The candidates in excess of the last wave are negligible.
   for (auto _ : state) rays += double(placeVpls(world(), {{"count", "1M"}}).rays);
   state.counters["candidates/s"] =
       benchmark::Counter(1e6, benchmark::Counter::kIsIterationInvariantRate);
@@ -43,7 +43,7 @@ void placeCandidates(benchmark::State& state) {
 }
 
 void tracePhotons(benchmark::State& state) {
-  const VplTable& vpls = eliminated();  // made before the clock runs
+  const VplTable& vpls = eliminated();  // computed outside the timed loop
   double photons = 0, hits = 0, rays = 0;
   for (auto _ : state) {
     const EnergyAccount account = lightVpls(world(), vpls, {{"photons", "2M"}}).energy;
@@ -56,7 +56,7 @@ void tracePhotons(benchmark::State& state) {
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
 }
 
-// The first 400,000 rays of photons, from hit to hit in the order in which a photon takes them.
+// The first 400,000 rays of photons, from hit to hit along each path.
 std::vector<Ray> photonRays() {
   std::vector<Ray> rays;
   for (uint64_t photon = 0; rays.size() < 400000; ++photon) {
@@ -74,7 +74,7 @@ std::vector<Ray> photonRays() {
   return rays;
 }
 
-// The first 400,000 of camera paths, two each: to the first hit and on from there.
+// The first 400,000 rays of camera paths, two for each path: to the first hit, and one bounce.
 std::vector<Ray> cameraRays() {
   std::vector<Ray> rays;
   const Scene& scene = world().scene;
@@ -93,8 +93,8 @@ std::vector<Ray> cameraRays() {
   return rays;
 }
 
-// The rays alone, with what closestHit() tells of where they end: the limit for tracePhotons
-// (argument 0) and placeCandidates (1).
+// Only closestHit() for the rays: the upper limit of tracePhotons (argument 0) and of
+// placeCandidates (argument 1).
 void bareRays(benchmark::State& state) {
   const std::vector<Ray> segments = state.range(0) == 0 ? photonRays() : cameraRays();
   double rays = 0;
@@ -115,7 +115,7 @@ void renderSamples(benchmark::State& state, const GatherMethod& method) {
   const std::string gather(method.name);
   World small(std::getenv("SPONZA_DIR") ? "sponza/scene.toml" : "u-shape/scene.toml");
   small.scene.film = {64, 48};
-  const VplTable& vpls = lit();  // made before the clock runs
+  const VplTable& vpls = lit();  // computed outside the timed loop
   double samples = 0, rays = 0;
   for (auto _ : state) {
     const FilmStats stats = renderVpls(small, vpls, {{"gather", gather}, {"spp", "1"}}).stats;
@@ -133,7 +133,7 @@ BENCHMARK(bareRays)
     ->DenseRange(0, 1)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
-// renderSamples/NAME for every gather.
+// Registers renderSamples/NAME for every gather.
 const bool registered = [] {
   for (const GatherMethod* m : gatherMethods()) {
     benchmark::RegisterBenchmark(("renderSamples/" + std::string(m->name)).c_str(),

@@ -1,4 +1,4 @@
-// Discrete distributions by running sums.
+// Discrete distributions as running sums.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// The first entry whose running sum is above u; the last where none is.
+// The first entry in [begin, end) whose running sum is above u; `end` if there is none.
 template <typename T>
 size_t findInCdf(std::span<const T> cdf, size_t begin, size_t end, float u) {
   const auto from = cdf.begin();
@@ -18,7 +18,7 @@ size_t findInCdf(std::span<const T> cdf, size_t begin, size_t end, float u) {
                              from);
 }
 
-// The share of u inside entry i, in [0, 1), to be used again.
+// Rescales u from the interval of entry i to [0, 1), for reuse.
 template <typename T>
 void shareInCdf(std::span<const T> cdf, size_t i, float& u) {
   const T low = i > 0 ? cdf[i - 1] : T{0}, width = cdf[i] - low;
@@ -26,7 +26,7 @@ void shareInCdf(std::span<const T> cdf, size_t i, float& u) {
                    : 0.0f;
 }
 
-// Index by a running sum that ends at 1.
+// Samples an index from running sums that end at 1, and rescales u for reuse.
 template <typename T>
 size_t sampleCdf(std::span<const T> cdf, float& u) {
   const size_t i = findInCdf(cdf, 0, cdf.size() - 1, u);
@@ -34,8 +34,8 @@ size_t sampleCdf(std::span<const T> cdf, float& u) {
   return i;
 }
 
-// The same found sooner, by where the running sum passes so many even steps: a long one lies in
-// many lines of memory, of which a search would wait for one after another.
+// A guide stores the index of each of kGuideSteps evenly spaced values of u. It narrows the binary
+// search, which would miss the cache at each step of long running sums.
 inline constexpr size_t kGuideSteps = 128;
 
 template <typename T>
@@ -46,7 +46,7 @@ void appendGuide(std::span<const T> cdf, std::vector<uint32_t>& guide) {
   }
 }
 
-// `guide`: kGuideSteps entries.
+// The same with the guide of appendGuide(), kGuideSteps entries.
 template <typename T>
 size_t sampleCdf(std::span<const T> cdf, std::span<const uint32_t> guide, float& u) {
   const size_t step =
@@ -57,7 +57,7 @@ size_t sampleCdf(std::span<const T> cdf, std::span<const uint32_t> guide, float&
   return i;
 }
 
-// Running sums that end at 1; all 0 but the last where no weight is above 0.
+// Running sums that end at 1. If no weight is above 0, all but the last are 0.
 template <typename T>
 std::vector<T> makeCdf(const std::vector<double>& weights) {
   std::vector<T> cdf(weights.size());

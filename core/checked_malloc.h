@@ -1,5 +1,5 @@
-// malloc for C-like libraries that do not look at what it returns: throws std::bad_alloc instead of
-// returning null. What the library held until then is lost; the tool is about to end anyway.
+// malloc for C libraries that do not check its result: throws std::bad_alloc instead of returning
+// null. Memory that the library holds is leaked, because the tool ends anyway.
 #pragma once
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Exceptions are for input and I/O; our own bugs assert. A tool turns each into one line and an
-// exit code (tools/common/exit_codes.h).
+// Exceptions report errors of input and I/O; bugs are asserted. A tool turns an exception into one
+// line and an exit code (tools/common/exit_codes.h).
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace bnvpl {
 
 namespace fs = std::filesystem;
 
-// Each carries one line: file, position, problem; cure.
+// The message of each is one line: file, position, problem; remedy.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   InputError(const fs::path& file, const std::string& problem)
       : std::runtime_error(file.string() + ": " + problem) {}
 };
-class FileError : public InputError {  // a damaged binary file, at a byte
+class FileError : public InputError {  // a damaged binary file, with the byte offset
  public:
   FileError(const fs::path& file, uint64_t byte, const std::string& problem)
       : InputError(file.string() + ": byte " + std::to_string(byte) + ": " + problem) {}

@@ -1,4 +1,4 @@
-// Asking about files without exceptions.
+// Queries about files that do not throw.
 #pragma once
 
 #include <cctype>
@@ -9,14 +9,13 @@
 namespace bnvpl {
 
 // False for folders, for pipes and devices, which may never end, and for names that the system
-// refuses, on which std::filesystem::is_regular_file(file) throws. Ask before opening: opening a
-// pipe waits for its other end.
+// rejects. Call it before opening a file: opening a pipe blocks until its other end is open.
 inline bool isRegularFile(const std::filesystem::path& file) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(file, ignored);
 }
 
-// ".ply", also of a.PLY; empty where there is none.
+// The extension in lower case, such as ".ply"; empty if there is none.
 inline std::string lowerExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

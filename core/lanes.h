@@ -1,4 +1,4 @@
-// Arithmetic on a float or on four at once, so that a formula that both need is written once.
+// Arithmetic on one float or four, so that scalar and vector code share their formulas.
 #pragma once
 
 #include <emmintrin.h>
@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// The first of two where it is greater, else the second, so that NaN in the first gives the second.
+// The first if it is greater, else the second. If the first is NaN, the second is returned.
 inline float larger(float a, float b) { return a > b ? a : b; }
 inline __m128 larger(__m128 a, __m128 b) { return _mm_max_ps(a, b); }
 
@@ -31,12 +31,12 @@ inline __m128 selectAtLeast(__m128 a, __m128 b, __m128 yes, __m128 no) {
   return _mm_or_ps(_mm_and_ps(mask, yes), _mm_andnot_ps(mask, no));
 }
 
-// Of an angle by its cosine, 0 to pi.
+// Sine of an angle from 0 to pi, given its cosine.
 template <typename F>
 F sineOf(F cosine) {
   return squareRoot(larger(everyLane<F>(0.0f), everyLane<F>(1.0f) - cosine * cosine));
 }
-// Cosine of an angle that is smaller by another, but not below 0.
+// Cosine of the difference of two angles, or 1 if the second is larger.
 template <typename F>
 F cosineOfLess(F cosine, F cosLess, F sinLess) {
   const F turned = cosine * cosLess + sineOf(cosine) * sinLess;

@@ -15,14 +15,14 @@ namespace {
 
 constexpr uint64_t kUnlimited = std::numeric_limits<uint64_t>::max();
 
-std::optional<uint64_t> numberIn(const fs::path& file) {  // none: "max", or no such file
+std::optional<uint64_t> numberIn(const fs::path& file) {  // empty for "max", or without the file
   std::ifstream in(file);
   uint64_t value = 0;
   if (in >> value) return value;
   return {};
 }
 
-// "MemAvailable:   21510308 kB"
+// Reads a line such as "MemAvailable:   21510308 kB".
 uint64_t machineLeaves() {
   std::ifstream in("/proc/meminfo");
   uint64_t kib = 0;
@@ -39,7 +39,7 @@ uint64_t groupLeaves(const fs::path& limit, const fs::path& used) {
 }
 
 // A line of /proc/self/cgroup is "0::/path" (version 2) or "4:memory:/path" (version 1). In a
-// container the path may not be visible; the root then is what the container shows as its own.
+// container the path may be invisible; its own group then appears as the root.
 uint64_t groupsLeave() {
   const fs::path root = "/sys/fs/cgroup";
   std::vector<std::string> v2{""}, v1{""};
@@ -65,7 +65,7 @@ uint64_t groupsLeave() {
 uint64_t addressSpaceLeaves() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
-  const uint64_t pages = numberIn("/proc/self/statm").value_or(0);  // of the whole address space
+  const uint64_t pages = numberIn("/proc/self/statm").value_or(0);  // size of the address space
   const uint64_t used = pages * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
   return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }

@@ -1,4 +1,4 @@
-// Work that cannot fit into memory is refused before it begins.
+// Refuses work that cannot fit into memory before it begins.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 
 namespace bnvpl {
 
-// Bytes that this process can still take: the least of what the machine has available, what its
-// control group leaves (v2, or v1), and `ulimit -v`.
+// Bytes that this process can still allocate: the minimum of the machine's available memory, the
+// rest of its control group's limit (v1 or v2), and the rest of `ulimit -v`.
 uint64_t availableMemory();
 
-// Throws MemoryError "WHAT needs about 60 GiB of memory, 21 GiB are available; CURE" when it does.
-// The estimate may be rough, but must not be above what is taken in truth: nobody should be refused
-// what would have worked.
+// Throws MemoryError "WHAT needs about 60 GiB of memory, 21 GiB are available; CURE" if `bytes`
+// exceed availableMemory(). The estimate may be rough but must not exceed the actual use, so that
+// no work is refused that would have fitted.
 void requireMemory(double bytes, const std::string& what, const std::string& cure);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// Numbers in messages.
+// Formats numbers in messages.
 #pragma once
 
 #include <charconv>
@@ -6,8 +6,8 @@
 
 namespace bnvpl {
 
-// The shortest text that reads back as the same float or double, such as 0.001 or 1e+30: a number
-// just outside a limit never looks like the limit.
+// The shortest text that reads back as the same float or double, such as 0.001 or 1e+30. A number
+// just outside a limit is never printed as the limit.
 template <typename Real>
 std::string shortestText(Real number) {
   char text[32];

@@ -1,4 +1,4 @@
-// Deterministic parallel loops over oneTBB: body(i) writes slot i only, sums are taken in a fixed
+// Deterministic parallel loops with oneTBB: body(i) writes slot i only, and sums have a fixed
 // order.
 #pragma once
 
@@ -12,8 +12,7 @@
 
 namespace bnvpl {
 
-// Calls body(begin, end) for disjoint ranges that cover [0, count), at least `grain` long but the
-// last.
+// Calls body(begin, end) for disjoint ranges of about `grain` indices that cover [0, count).
 template <typename Body>
 void parallelRanges(size_t count, size_t grain, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
@@ -27,7 +26,7 @@ void parallelFor(size_t count, size_t grain, const Body& body) {
   });
 }
 
-// The values that `order` names, one after the other.
+// Gathers values[order[i]] for all i.
 template <typename T>
 std::vector<T> inOrder(std::span<const T> values, std::span<const uint32_t> order) {
   std::vector<T> out(order.size());

@@ -1,4 +1,4 @@
-// Asks for memory that will be read soon: misses of many independent queries then overlap.
+// Prefetches memory that will be read soon, so that cache misses of independent queries overlap.
 #pragma once
 
 namespace bnvpl {

@@ -2,10 +2,10 @@
 
 namespace bnvpl {
 
-// Whose bits a run computes.
+// Which processors must compute the same bits.
 enum class Processor {
-  This,  // those of the processor at hand, at its full speed
-  Any    // those that every x86-64 processor computes alike
+  This,  // this one only, at its full speed
+  Any    // all x86-64 processors
 };
 
 }  // namespace bnvpl

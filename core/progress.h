@@ -1,4 +1,4 @@
-// How a stage tells its caller how far it is, without knowing about terminals.
+// Progress that a stage reports to its caller, independent of terminals.
 #pragma once
 
 #include <concepts>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// Called with the units of work done since the last call, from any thread. May be empty.
+// Called from any thread with the units of work done since the last call. It may be empty.
 class ProgressFn {
  public:
   using Count = std::function<void(uint64_t)>;
@@ -25,8 +25,8 @@ class ProgressFn {
   explicit operator bool() const { return static_cast<bool>(count_); }
   void operator()(uint64_t done) const { count_(done); }
 
-  // Work that is counted apart from the main one, such as its preparations. It ends with this
-  // object; one at a time.
+  // Work that is counted separately, such as preparations. It ends with the lifetime of this
+  // object. Only one may exist at a time.
   class [[nodiscard]] Phase {
    public:
     explicit Phase(const End* end) : end_(end) {}
@@ -39,8 +39,8 @@ class ProgressFn {
    private:
     const End* end_;
   };
-  // Until the Phase is gone, calls count towards `total` units of `what` ("radii"). The ProgressFn
-  // must outlive it.
+  // During the lifetime of the Phase, calls count towards `total` units of `what` ("radii"). The
+  // ProgressFn must outlive it.
   Phase before(std::string_view what, uint64_t total) const {
     if (begin_) begin_(what, total);
     return Phase(&end_);

@@ -1,6 +1,5 @@
-// Counter-based random numbers: the value depends on (key, index, dimension), never on who asks,
-// when, or on which thread. Philox-like quality is not needed; SplitMix64's finaliser passes
-// BigCrush.
+// Counter-based random numbers: a value depends on (key, index, dimension) only, not on threads or
+// the order of calls. The mixing function is SplitMix64's finaliser, which passes BigCrush.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +12,7 @@ constexpr uint64_t mix64(uint64_t x) {  // SplitMix64 finaliser (Steele et al. 2
   return x ^ (x >> 31);
 }
 
-// A key for numbers of one purpose: streams never share numbers, even under one seed.
+// A key for one purpose. Streams of the same seed have different numbers.
 constexpr uint64_t streamKey(uint64_t seed, uint32_t stream) {
   return mix64(mix64(seed + 0x9e3779b97f4a7c15u) + stream);
 }
@@ -23,12 +22,12 @@ constexpr uint64_t random64(uint64_t key, uint64_t index, uint32_t dimension) {
 }
 // Uniform in [0, 1): the top 24 bits, so that 1 is never reached.
 constexpr float toUnitFloat(uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
-// Nothing of a smaller probability can be drawn by such a number: 0, which is drawn this often,
-// would take it every time, and what one over its probability multiplies would leave all bounds.
+// Min probability of an event that is sampled by such a number. The number 0 alone has this
+// probability, so that less likely events would be sampled too often, with weights out of bounds.
 inline constexpr float kMinProbability = 0x1p-24f;
 
-// Point `index` of the R2 sequence (Roberts 2018), shifted by `shift` in [0,1)^2: every prefix is
-// well spread over the unit square. Double precision keeps it so beyond 2^24 points.
+// Point `index` of the R2 sequence (Roberts 2018), shifted by a vector in [0,1)^2. Every prefix is
+// well distributed over the unit square; 64-bit fixed point keeps it so beyond 2^24 points.
 struct Point2 {
   float x, y;
 };
@@ -40,9 +39,9 @@ constexpr Point2 r2Sequence(uint64_t index, double shiftX, double shiftY) {
   return {toUnitFloat(x), toUnitFloat(y)};
 }
 
-// Owen's scrambling of one coordinate in [0, 1) as 32-bit fixed point, by hashing: each bit is
-// flipped or not as the bits above it and the key decide (Laine & Karras 2011; constants of
-// Vegdahl 2021, "Building a better LK hash").
+// Hash-based Owen scrambling of one coordinate in [0, 1), in 32-bit fixed point: the key and the
+// bits above it decide whether a bit is flipped (Laine & Karras 2011; constants of Vegdahl 2021,
+// "Building a better LK hash").
 constexpr uint32_t reverseBits(uint32_t x) {
   x = x >> 16 | x << 16;
   x = (x & 0xff00ff00u) >> 8 | (x & 0x00ff00ffu) << 8;
@@ -50,7 +49,7 @@ constexpr uint32_t reverseBits(uint32_t x) {
   x = (x & 0xccccccccu) >> 2 | (x & 0x33333333u) << 2;
   return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
 }
-// Of one whose first bit is the lowest.
+// The same for reversed bits: the most significant bit is the lowest.
 constexpr uint32_t owenScrambleReversed(uint32_t x, uint32_t key) {
   x ^= x * 0x3d20adeau;
   x += key;
@@ -63,9 +62,9 @@ constexpr uint32_t owenScramble(uint32_t x, uint32_t key) {
   return reverseBits(owenScrambleReversed(reverseBits(x), key));
 }
 
-// The second coordinate of Sobol's sequence for an index, its first bit the lowest: bit j is the
-// sum, modulo 2, of those bits i of the index for which C(i, j) is odd, that is (Lucas 1878), which
-// have all bits of j.
+// The second coordinate of the Sobol sequence, with reversed bits. Bit j is the sum modulo 2 of
+// those bits i of the index for which C(i, j) is odd, that is, for which i has all bits of j (Lucas
+// 1878).
 constexpr uint32_t sobolSecondReversed(uint32_t index) {
   index ^= index >> 1 & 0x55555555u;
   index ^= index >> 2 & 0x33333333u;
@@ -74,12 +73,11 @@ constexpr uint32_t sobolSecondReversed(uint32_t index) {
   return index ^ index >> 16;
 }
 
-// Point `index` of the first two dimensions of Sobol's sequence, scrambled by `key`: every 2^k
-// points from a multiple of 2^k are spread over all boxes of area 2^-k, so that a mean over them
-// has less noise than one over independent points (Owen 1997). Their order is scrambled too, so
-// that sequences of two keys may go together, one for the pixel and one for the light: in one order
-// both would always lie in corresponding halves, and no number of points would meet all pairs
-// (Burley 2020).
+// Point `index` of the first two dimensions of the Sobol sequence, Owen-scrambled by `key`. Any 2^k
+// points from a multiple of 2^k hit each elementary box of area 2^-k once, so that their mean has
+// less variance than that of independent points (Owen 1997). The order of the points is scrambled,
+// too (Burley 2020): without it, two sequences, such as one for the pixel and one for the light,
+// would be correlated, and some pairs of strata would never occur.
 constexpr Point2 owenSobol(uint32_t index, uint64_t key) {
   const uint64_t bits = mix64(key);
   index = owenScramble(index, static_cast<uint32_t>(mix64(bits)));
@@ -89,13 +87,13 @@ constexpr Point2 owenSobol(uint32_t index, uint64_t key) {
   return {toUnitFloat(uint64_t{x} << 32), toUnitFloat(uint64_t{y} << 32)};
 }
 
-// The numbers of one path, photon or pixel sample, in order of use: single ones, and points of the
-// unit square.
+// The random numbers of one path, photon or pixel sample in order of use: single ones, and points
+// of the unit square.
 class Rng {
  public:
   constexpr Rng(uint64_t key, uint64_t index) : state_(mix64(key + index * 0x9e3779b97f4a7c15u)) {}
-  // Those of one of many paths that begin alike, such as a pixel's: the first of them are spread
-  // evenly over all with that key, for each is a point of a sequence of its own.
+  // Random numbers of one path among many that share their first vertex, such as those of a pixel.
+  // The first kSpread dimensions are stratified over all paths with this key.
   static constexpr Rng spread(uint64_t key, uint32_t index) {
     Rng rng(key, index);
     rng.key_ = key, rng.index_ = index, rng.spread_ = kSpread;
@@ -109,7 +107,7 @@ class Rng {
   }
 
  private:
-  static constexpr uint32_t kSpread = 8;  // far down a path all numbers matter together
+  static constexpr uint32_t kSpread = 8;  // later dimensions gain little from stratification
 
   constexpr float nextAlone() {
     ++dimension_;
@@ -123,7 +121,7 @@ class Rng {
   uint64_t dimension_ = 0;
   uint64_t key_ = 0;
   uint32_t index_ = 0;
-  uint32_t spread_ = 0;  // points of sequences still to come
+  uint32_t spread_ = 0;  // number of stratified points left
 };
 
 }  // namespace bnvpl

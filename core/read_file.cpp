@@ -10,7 +10,7 @@
 namespace bnvpl {
 
 namespace {
-constexpr size_t kReadAtOnce = size_t{1} << 16;  // beyond what a file says to hold
+constexpr size_t kReadAtOnce = size_t{1} << 16;  // chunk beyond the size that the system reports
 }
 
 ReadGuard::ReadGuard(fs::path file) : file_(std::move(file)), before_(look()) {}
@@ -42,11 +42,11 @@ std::string readText(const fs::path& file) {
     throw InputError(file, std::string("cannot open: ") + std::strerror(errno) +
                                "; check its name and permissions");
   }
-  // As long as it says to be, and what follows all the same: some files of the system say 0.
+  // The reported size is only a hint: files of the system may report 0.
   std::error_code unknown;
   uintmax_t size = fs::file_size(file, unknown);
   if (unknown) size = 0;
-  std::string text(size + 1, '\0');  // one more, to meet the end at once
+  std::string text(size + 1, '\0');  // one more byte, so that one read detects the end
   size_t got = 0;
   do {
     if (got == text.size()) text.resize(got + kReadAtOnce);

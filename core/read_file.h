@@ -1,5 +1,5 @@
-// Reading the files of a scene. None has a checksum of its own: half of one, because the disk
-// failed or because somebody is just writing it, could pass for a smaller scene.
+// Reads the files of a scene. They have no checksums: a file that is cut short, by a disk error or
+// because it is just being written, could pass for a smaller scene.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// Notices that a file is changed while it is read.
+// Detects changes of a file while it is read.
 class ReadGuard {
  public:
   explicit ReadGuard(fs::path file);
@@ -27,11 +27,11 @@ class ReadGuard {
   Look before_;
 };
 
-// The whole file. Throws InputError when it cannot be read to its end, or changes meanwhile.
+// Returns the whole file. Throws InputError if it cannot be read to its end, or changes meanwhile.
 std::string readText(const fs::path& file);
 
-// Throws InputError when the text, which a parser takes for bytes, begins as UTF-16 does: with its
-// byte order mark, or with one half of a character 0.
+// Throws InputError if the text looks like UTF-16: it begins with a byte order mark, or one of its
+// first two bytes is 0.
 void requireNoUtf16(const fs::path& file, std::string_view text);
 
 }  // namespace bnvpl

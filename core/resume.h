@@ -1,4 +1,4 @@
-// Long work in independent units that can be stopped between them and continued, with the same
+// Long work in independent units that can be interrupted between units and resumed with the same
 // result.
 #pragma once
 
@@ -19,20 +19,20 @@
 
 namespace bnvpl {
 
-// What a stage is told by its caller. The default: from the start to the end.
+// A caller's instructions to a stage. By default it does all units from the start.
 struct Resume {
-  std::string state;                             // of earlier work, as save() got it, or empty
-  std::function<bool()> pause;                   // from any thread: whether to begin no other unit
-  std::function<void(const std::string&)> save;  // between units; may throw to end the work
+  std::string state;                             // argument of an earlier save(), or empty
+  std::function<bool()> pause;                   // called from any thread; true: begin no unit
+  std::function<void(const std::string&)> save;  // called between units; may throw to end the work
 
-  Shard shard = {};                     // the units to do
-  const ShardSink* sink = nullptr;      // where what they brought goes, in place of a result
-  const ShardSource* source = nullptr;  // what all units brought, elsewhere
+  Shard shard = {};                     // units to do
+  const ShardSink* sink = nullptr;      // receives the units' results; the stage returns none
+  const ShardSource* source = nullptr;  // results of all units, computed elsewhere
   CostProbe* probe = nullptr;           // set by --estimate
-  double times = 1.0;                   // a unit of the probe stands for so many
+  double times = 1.0;                   // number of units that one unit of the probe represents
 };
 
-// Of so many units, those to do: 0, or kElsewhere for those of other shards.
+// Marks each unit 0 if it is to be done here, and kElsewhere if it belongs to another shard.
 inline constexpr uint8_t kElsewhere = 2;
 inline std::vector<uint8_t> unitsToDo(size_t count, const Shard& shard) {
   std::vector<uint8_t> done(count);
@@ -40,9 +40,9 @@ inline std::vector<uint8_t> unitsToDo(size_t count, const Shard& shard) {
   return done;
 }
 
-// Calls unit(i) for each i with done[i] == 0 and sets it. Whenever resume.pause() says so, the
-// units that were begun end, and resume.save(state()) is called unless nothing is left. The result
-// must not depend on which units ran together.
+// Calls unit(i) for each i with done[i] == 0, and sets done[i] to 1. When resume.pause() returns
+// true, the running units end, and resume.save(state()) is called unless no unit is left. The
+// result must not depend on which units ran together.
 template <typename Unit, typename State>
 void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& unit,
                   const State& state) {
@@ -55,7 +55,7 @@ void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& 
         unit(i);
       }
       done[i] = 1;
-      // Asked after the unit, so that every round gets on, however short the time between pauses.
+      // Checked after the unit, so that every round makes progress however frequent pauses are.
       if (resume.pause && resume.pause()) paused.store(true, std::memory_order_relaxed);
     });
     if (std::find(done.begin(), done.end(), 0) == done.end()) return;
@@ -63,7 +63,7 @@ void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& 
   }
 }
 
-// State as bytes: arrays of plain values one behind the other, read back in the order and with the
+// State as bytes: concatenated arrays of plain values, which are read in the order and with the
 // lengths in which they were written.
 template <typename Array>
 void appendArray(std::string& bytes, const Array& array) {
@@ -80,7 +80,8 @@ void takeArray(std::string_view& bytes, Array&& array) {
   bytes.remove_prefix(view.size());
 }
 
-// What a shard brought of one unit, which is nothing but `array`.
+// Reads the record of one unit, which consists of `array` alone. Throws InputError if it is missing
+// or has another size.
 template <typename Array>
 void takeRecord(const ShardSource& source, std::string_view work, uint64_t unit, Array&& array) {
   const auto bytes = source.record(work, unit);

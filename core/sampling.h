@@ -1,4 +1,4 @@
-// Warps from unit-square numbers to directions and positions, each beside its density.
+// Warps from the unit square to directions and positions, each next to its density.
 #pragma once
 
 #include <numbers>
@@ -10,8 +10,8 @@ namespace bnvpl {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
 
-// Sine and cosine by their series, to a unit in the last place for |x| <= pi / 4: without a call,
-// and the same on every machine.
+// Sine and cosine by their Taylor series, accurate to one ulp for |x| <= pi / 4, and the same on
+// every machine.
 constexpr float sineOfEighth(float x) {
   const float s = x * x;
   return x * (1.0f + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s / 362880))));
@@ -21,13 +21,13 @@ constexpr float cosineOfEighth(float x) {
   return 1.0f + s * (-1.0f / 2 + s * (1.0f / 24 + s * (-1.0f / 720 + s / 40320)));
 }
 
-// Uniform on the unit disk, Shirley & Chiu 1997: keeps strata together.
+// Uniform on the unit disk, by the concentric map of Shirley & Chiu 1997, which preserves strata.
 inline Vec3 sampleDisk(float u, float v) {
   const float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
   const bool wide = std::fabs(a) > std::fabs(b);
   const float r = wide ? a : b, other = wide ? b : a;
   if (r == 0.0f) return {};
-  const float phi = kPi / 4.0f * (other / r);  // from the nearest axis
+  const float phi = kPi / 4.0f * (other / r);  // angle from the nearest axis
   const float along = r * cosineOfEighth(phi), across = r * sineOfEighth(phi);
   return wide ? Vec3{along, across, 0.0f} : Vec3{across, along, 0.0f};
 }
@@ -46,13 +46,13 @@ inline Vec3 sampleSphere(float u, float v) {
   return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
 }
 
-// The point by which sampleSphere draws a direction.
+// The inverse of sampleSphere().
 inline Point2 sphereDrawnBy(Vec3 d) {
   const float turns = std::atan2(d.y, d.x) / (2.0f * kPi);
   return {0.5f * (1.0f - d.z), turns < 0.0f ? turns + 1.0f : turns};
 }
 
-// Uniform in the cone about +z with the given cosine of its half angle; density in 1/sr below.
+// Uniform in the cone about +z with the given cosine of its half angle; density pdfCone(), 1/sr.
 inline Vec3 sampleCone(float u, float v, float cosHalfAngle) {
   const float z = 1.0f - u * (1.0f - cosHalfAngle);
   const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
@@ -80,14 +80,14 @@ inline Barycentric sampleTriangle(float u, float v) {
   return {root * (1.0f - v), root * v};
 }
 
-// The point by which sampleTriangle draws one.
+// The inverse of sampleTriangle().
 inline Point2 triangleDrawnBy(Barycentric b) {
   const float root = std::min(1.0f, b.u + b.v);
   return {root * root, root > 0.0f ? std::min(1.0f, b.v / root) : 0.0f};
 }
 
-// Power heuristic with exponent 2 (Veach 1997, eq. 9.13) for the technique with density `a`. In
-// double: the squares of the densities of small or distant lights leave the range of floats.
+// Power heuristic with exponent 2 (Veach 1997, eq. 9.13) for the technique with density `a`.
+// Doubles hold the squares of the densities of small or distant lights, which overflow floats.
 inline float powerHeuristic(float a, float b) {
   if (std::isinf(a)) return 1.0f;
   const double a2 = double{a} * double{a}, b2 = double{b} * double{b};

@@ -1,5 +1,5 @@
-// Vec3: a point, direction, normal or linear-sRGB colour. Three packed floats, so that columns of
-// them are written to files as they are.
+// Vec3 is a point, direction, normal or linear-sRGB colour: three packed floats, so that columns of
+// it are written to files as they are.
 #pragma once
 
 #include <algorithm>
@@ -73,7 +73,7 @@ struct Basis {
   Vec3 toWorld(Vec3 v) const { return v.x * s + v.y * t + v.z * n; }
 };
 
-// Axis-aligned box. Empty until it is extended.
+// Axis-aligned box, which is empty until it is extended.
 struct Bounds {
   Vec3 lower{INFINITY, INFINITY, INFINITY};
   Vec3 upper{-INFINITY, -INFINITY, -INFINITY};

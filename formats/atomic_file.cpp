@@ -20,8 +20,8 @@ namespace {
 
 constexpr const char* kPartial = ".partial-";
 
-// Paths for removePartialFiles(), in fixed places: a signal handler can neither lock nor allocate.
-// A run has at most five files open; one that found no place would be removed by the next run.
+// Paths for removePartialFiles(), in fixed slots because a signal handler can neither lock nor
+// allocate. A run has at most five files open; the next run would remove a file without a slot.
 std::array<std::atomic<const char*>, 16> partialFiles;
 std::atomic<bool> outputReplaced{false}, removing{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
@@ -37,10 +37,10 @@ void forget(const char* path) {
     const char* same = path;
     if (place.compare_exchange_strong(same, nullptr)) return;
   }
-  while (removing) ::pause();  // another thread reads `path`, and is about to end the process
+  while (removing) ::pause();  // another thread reads `path` and ends the process
 }
 
-// Whether `name` is `prefix`, digits, a dash, digits.
+// Whether `name` is `prefix` followed by digits, a dash and digits.
 bool isPartialName(const std::string& name, const std::string& prefix) {
   if (!name.starts_with(prefix)) return false;
   const std::string rest = name.substr(prefix.size());
@@ -49,7 +49,7 @@ bool isPartialName(const std::string& name, const std::string& prefix) {
          rest.back() != '-';
 }
 
-// Removes the partial files of `target` whose writers were killed: nobody has them locked any more.
+// Removes the partial files of `target` whose writers were killed, which are not locked.
 void removeAbandoned(const fs::path& target) {
   const std::string prefix = target.filename().string() + kPartial;
   std::error_code ignored;
@@ -63,7 +63,7 @@ void removeAbandoned(const fs::path& target) {
   }
 }
 
-// Some file systems cannot be told to write at once; that is no failure of the write.
+// Some file systems do not support fsync, which is no failure of the write.
 bool syncDescriptor(int fd) {
   while (::fsync(fd) != 0) {
     if (errno == EINTR) continue;
@@ -74,7 +74,7 @@ bool syncDescriptor(int fd) {
 
 void syncFolder(const fs::path& target) {
   const int fd = ::open(folderOf(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;  // write permission alone suffices for the rename
+  if (fd < 0) return;  // the rename does not need read permission
   const bool done = syncDescriptor(fd);
   const int error = errno;
   ::close(fd);
@@ -95,11 +95,11 @@ AtomicFile::AtomicFile(fs::path target)
 AtomicFile::~AtomicFile() {
   if (!replaced_) ::unlink(partial_.c_str());
   forget(partial_.c_str());
-  ::close(descriptor_);  // and with it goes the lock
+  ::close(descriptor_);  // also releases the lock
 }
 
 void AtomicFile::open() {
-  static std::atomic<unsigned> number{0};  // a name is never used twice
+  static std::atomic<unsigned> number{0};  // makes names unique within the process
   struct stat info {};
   while (true) {
     partial_ = place_.string() + kPartial + std::to_string(::getpid()) + "-" +
@@ -109,21 +109,21 @@ void AtomicFile::open() {
     if (descriptor_ < 0) {
       const int error = errno;
       forget(partial_.c_str());
-      if (error == EEXIST) continue;  // of another machine or container
+      if (error == EEXIST) continue;  // a process of another machine or container has the name
       throw OutputError(target_, std::string("cannot write: ") + std::strerror(error) +
                                      "; choose a folder that exists and is writable");
     }
     while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
     }
-    // Another run may have taken it for abandoned before it was locked.
+    // Another run may have removed it as abandoned in the moment without a lock.
     if (::fstat(descriptor_, &info) == 0 && info.st_nlink > 0) return keepMode();
     ::close(descriptor_);
     forget(partial_.c_str());
   }
 }
 
-// Before the first byte: what is private stays so. A file system without modes refuses, and
-// rightly.
+// Copies the mode of the old file before the first byte is written, so that private content stays
+// private. File systems without modes refuse, which is ignored.
 void AtomicFile::keepMode() const {
   struct stat old {};
   if (::stat(place_.c_str(), &old) == 0) {
@@ -146,7 +146,7 @@ void AtomicFile::sync() {
 }
 
 void AtomicFile::replace() {
-  outputReplaced = true;  // before it is: a signal in between must not deny it
+  outputReplaced = true;  // set before the rename, for a signal in between
   if (::rename(partial_.c_str(), place_.c_str()) != 0) {
     throw OutputError(target_, std::string("cannot replace: ") + std::strerror(errno));
   }

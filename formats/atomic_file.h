@@ -1,4 +1,4 @@
-// Output that is whole or absent: written beside the target, put on the disk, then renamed over it.
+// Output that is whole or absent: it is written beside the target, synced to disk, then renamed.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,17 @@
 
 namespace bnvpl {
 
-// Reserves TARGET.partial-PID-N, beside the end of all links where TARGET is one: the links stay.
-// The new file has the mode of the one that it replaces; where there is none, the umask decides.
-// Other hard links keep the old content. The caller calls write() as often as it likes and then
-// commit(); without that, the destructor removes the partial file and the old target stays as it
-// was.
+// Creates TARGET.partial-PID-N; if TARGET is a symbolic link, beside the file that it leads to, and
+// the link stays. The new file has the mode of the old one, or by the umask if there is none. Other
+// hard links keep the old content. The caller calls write() any number of times, then commit();
+// without it, the destructor removes the partial file and the old target is unchanged.
 //
-// A process that is killed leaves its partial file behind. Each one is locked (flock) while its
-// writer lives, so the next run that writes the same target knows it as abandoned and removes it.
-// Where a file system knows no locks, it stays for the user to remove.
+// A partial file is locked (flock) while its writer lives. If the writer is killed, the next run
+// with the same target recognises the file as abandoned and removes it, unless the file system does
+// not support locks.
 //
-// All members throw OutputError; the constructor when the target cannot be replaced (see
-// output_target.h), so that a probe before the work is an AtomicFile that is never committed.
+// All members throw OutputError; the constructor throws if the target cannot be replaced (see
+// output_target.h). An AtomicFile that is never committed can thus test the target before the work.
 class AtomicFile {
  public:
   explicit AtomicFile(fs::path target);
@@ -38,33 +37,32 @@ class AtomicFile {
   friend class OutputSet;
   void open();
   void keepMode() const;
-  void sync();     // what was written is on the disk when it returns
-  void replace();  // the rename; only the folder is still to be synchronised
+  void sync();     // flushes the content to disk
+  void replace();  // renames the file; the folder remains to be synced
   [[noreturn]] void fail(int error) const;
 
-  fs::path target_, place_, partial_;  // as named; without links; what is written
+  fs::path target_, place_, partial_;  // target as given; with links resolved; file being written
   int descriptor_ = -1;
   bool replaced_ = false;
 };
 
-// Files that one run makes and that belong together, such as an image, its preview and its depfile.
-// None is replaced before all are whole on the disk.
+// Output files of one run that belong together, such as an image, its preview and its depfile. None
+// is replaced before all are on disk.
 class OutputSet {
  public:
-  // The product goes first: it is replaced last, so that a new one has its companions.
+  // The main output is added first. It is replaced last, so that a new one has its companions.
   AtomicFile& add(const fs::path& target) { return files_.emplace_back(target); }
   void commit();
 
  private:
-  std::deque<AtomicFile> files_;  // does not move its elements
+  std::deque<AtomicFile> files_;  // a deque does not move its elements
 };
 
-// Whether `file` has the name of a partial file of `target`: it would be taken for abandoned.
+// Whether `file` has the name of a partial file of `target`, and so would be removed as abandoned.
 bool isPartialOf(const fs::path& file, const fs::path& target);
 
-// For a process that is about to end in the middle of something: both may be called from a signal
-// handler.
+// For a process that is about to end; both may be called from a signal handler.
 void removePartialFiles() noexcept;
-bool anyOutputReplaced() noexcept;  // by this process, or just being so
+bool anyOutputReplaced() noexcept;  // whether this process has replaced an output, or is about to
 
 }  // namespace bnvpl

@@ -1,8 +1,8 @@
-// What a stopped stage has done so far. The bytes, little-endian:
+// The state of an interrupted stage. The bytes on disk, little-endian:
 //
 //     0  CheckpointHeader, 64 bytes
-//    64  run: UTF-8 JSON, which run the state belongs to
-//     .  state: the stage's own
+//    64  run: UTF-8 JSON that identifies the run of the state
+//     .  state: bytes of the stage
 #pragma once
 
 #include <array>
@@ -29,13 +29,13 @@ struct CheckpointFile {
   std::string run, state;
 };
 
-// Whether `file` begins as a checkpoint does; none when it cannot be read. Does not throw.
+// Whether `file` begins like a checkpoint; empty if it cannot be read. Does not throw.
 std::optional<bool> beginsAsCheckpoint(const fs::path& file);
 
-// Throws InputError when the file cannot be read or is damaged, cut short or of another version.
+// Throws InputError if the file cannot be read or is damaged, cut short or of another version.
 CheckpointFile readCheckpoint(const fs::path& file);
 
-// Replaces `file` atomically. Throws OutputError; the old file then stays.
+// Replaces `file` atomically. Throws OutputError, and then keeps the old file.
 void writeCheckpoint(const fs::path& file, const CheckpointFile& checkpoint);
 
 }  // namespace bnvpl

@@ -10,10 +10,10 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kOpeningBytes = 8;         // magic number, version and flags
-constexpr unsigned char kMultiPart = 0x10;  // in the second byte of the flags
-constexpr size_t kMaxName = 255;            // the longest that OpenEXR reads
+constexpr unsigned char kMultiPart = 0x10;  // flag in the second byte of the version field
+constexpr size_t kMaxName = 255;            // max length of a name in OpenEXR
 
-// Types whose size OpenEXR knows.
+// Attribute types of fixed size in OpenEXR.
 const std::map<std::string_view, uint32_t> kFixedSizes{{"box2i", 16},
                                                        {"box2f", 16},
                                                        {"chromaticities", 32},
@@ -39,7 +39,7 @@ const std::map<std::string_view, uint32_t> kFixedSizes{{"box2i", 16},
                                                        {"v3f", 12},
                                                        {"v3d", 24}};
 
-// Reads from the front of the file; nothing where the file ends.
+// Reads sequentially from the start of the file; returns nothing at its end.
 class Walk {
  public:
   explicit Walk(std::string_view bytes) : left_(bytes) {}
@@ -69,8 +69,8 @@ class Walk {
   std::string_view left_;
 };
 
-// Bytes of a list of channels: names, each with 16 bytes, up to an empty one. Nothing when it has
-// no end.
+// Size of a channel list: names, each followed by 16 bytes, up to an empty name. Empty if the list
+// has no end.
 std::optional<size_t> channelListBytes(std::string_view bytes) {
   Walk walk(bytes);
   while (const auto name = walk.name()) {
@@ -83,7 +83,7 @@ std::optional<size_t> channelListBytes(std::string_view bytes) {
 bool isHonest(std::string_view type, uint32_t claimed, std::string_view left) {
   if (claimed > left.size()) return false;
   if (type == "chlist") return claimed == channelListBytes(left);
-  if (type == "floatvector") return claimed % 4 == 0;  // OpenEXR leaves the rest unread
+  if (type == "floatvector") return claimed % 4 == 0;  // OpenEXR would leave a remainder unread
   const auto fixed = kFixedSizes.find(type);
   return fixed == kFixedSizes.end() || claimed == fixed->second;
 }
@@ -96,7 +96,7 @@ void refuseDishonestAttributes(const fs::path& file) {
   Walk walk(bytes);
   if (!walk.skip(kOpeningBytes)) return;
   const bool multiPart = (static_cast<unsigned char>(bytes[5]) & kMultiPart) != 0;
-  bool ended = true;  // a part: its attributes end with an empty name, the parts with two
+  bool ended = true;  // an empty name ends the attributes of a part, a second one the header
   while (const auto name = walk.name()) {
     if (name->empty()) {
       if (ended || !multiPart) return;
@@ -107,8 +107,8 @@ void refuseDishonestAttributes(const fs::path& file) {
     const auto type = walk.name();
     const auto claimed = type ? walk.number() : std::nullopt;
     if (!claimed) return;
-    // OpenEXR 3.1 takes eight bytes for a size that it counts as four, and so reads on into the
-    // next attribute.
+    // OpenEXR 3.1 reads eight bytes for a size that it counts as four, and so runs into the next
+    // attribute.
     if (*type == "idmanifest") {
       throw InputError(file, "attribute '" + std::string(*name) +
                                  "' is an ID manifest, which OpenEXR 3.1 cannot read; save the "

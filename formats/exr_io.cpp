@@ -28,7 +28,7 @@ constexpr int kMaxExrSide = 1 << 16;
 constexpr double kMaxExpansion = 4096.0;
 constexpr double kMaxPixelBytes = 0x1p34;
 
-// No worker threads: neither a global pool nor an order that depends on one.
+// OpenEXR uses no worker threads, and so no global pool.
 constexpr int kNoThreads = 0;
 
 void refuseMalformed(const fs::path& file, const Image& image) {
@@ -72,7 +72,7 @@ Imf::Header makeHeader(const Image& image, ExrPixelType type) {
   return header;
 }
 
-// Finite values beyond the half range would turn into infinities, which no later mean survives.
+// Clamps values beyond the half range, which would become infinite. Returns their number.
 uint64_t toHalf(const std::vector<float>& from, std::vector<half>& to) {
   uint64_t clamped = 0;
   to.reserve(from.size());
@@ -85,12 +85,12 @@ uint64_t toHalf(const std::vector<float>& from, std::vector<half>& to) {
 
 template <typename T>
 Imf::Slice sliceOf(Imf::PixelType type, const std::vector<T>& data, int width) {
-  // OpenEXR reads through this pointer only.
+  // OpenEXR only reads through this pointer.
   char* base = reinterpret_cast<char*>(const_cast<T*>(data.data()));
   return {type, base, sizeof(T), sizeof(T) * static_cast<size_t>(width)};
 }
 
-// Refuses what no honest file of this size can hold, before anything of that size is allocated.
+// Refuses sizes that no valid file of this length can hold, before they are allocated.
 void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
   const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
   const auto side = [](int low, int high) { return static_cast<double>(high) - low + 1.0; };
@@ -105,7 +105,7 @@ void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
   }
   size_t channels = 0;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) ++channels;
-  // OpenEXR keeps a tile, and a row of them.
+  // OpenEXR allocates a tile, and a row of tiles.
   double tiles = 0.0;
   if (header.hasTileDescription()) {
     const double tileWidth = header.tileDescription().xSize;
@@ -118,7 +118,7 @@ void refuseAbsurd(const fs::path& file, const Imf::Header& header) {
   }
 }
 
-// Reads scanline by scanline and keeps the part of each that lies in the display window.
+// Reads scanline by scanline, and keeps the part of each in the display window.
 void readPixels(Imf::InputPart& in, Image& image) {
   const Imath::Box2i &display = in.header().displayWindow(), &data = in.header().dataWindow();
   std::vector<std::vector<float>> line(
@@ -127,7 +127,7 @@ void readPixels(Imf::InputPart& in, Image& image) {
   for (size_t c = 0; c < line.size(); ++c) {
     char* base = reinterpret_cast<char*>(line[c].data()) -
                  static_cast<std::ptrdiff_t>(data.min.x) * static_cast<int>(sizeof(float));
-    // Every scanline lands in the same place: the step from line to line is 0.
+    // The stride between scanlines is 0, so that all use the same buffer.
     frame.insert(image.channels[c].name, Imf::Slice(Imf::FLOAT, base, sizeof(float), 0));
   }
   in.setFrameBuffer(frame);
@@ -166,7 +166,7 @@ Image readChecked(const fs::path& file) {
   }
   for (auto it = header.begin(); it != header.end(); ++it) {
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
-    // "type" says how the file is stored, not what the image is.
+    // The attribute "type" describes the storage, not the image.
     if (text && std::string(it.name()) != "type") image.attributes[it.name()] = text->value();
   }
   Imf::InputPart in(parts, 0);
@@ -180,7 +180,7 @@ uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
   refuseMalformed(file.target(), image);
   refuseNonFinite(file.target(), image);
   uint64_t clamped = 0;
-  // Through memory, because OpenEXR's own file stream keeps silent when its last write fails.
+  // OpenEXR writes to memory, because its file stream does not report a failure of the last write.
   Imf::StdOSStream bytes;
   try {
     const Imf::Header header = makeHeader(image, type);
@@ -225,7 +225,7 @@ std::optional<NonFinite> findNonFinite(const Image& image) {
 }
 
 uint64_t hashImage(const Image& image, ExrPixelType type) {
-  std::map<std::string, uint64_t> channels;  // sorted, as OpenEXR keeps them
+  std::map<std::string, uint64_t> channels;  // sorted by name, as in OpenEXR
   for (const ImageChannel& channel : image.channels) {
     std::vector<float> rounded;
     const bool asHalf = typeOf(channel, type) == Imf::HALF;

@@ -1,4 +1,4 @@
-// An image as named float channels, the way OpenEXR sees one: "R", "direct.R", "N.X", "Z", ...
+// An image of named float channels, as in OpenEXR: "R", "direct.R", "N.X", "Z", ...
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct Image {
     channels.push_back({std::move(name), std::vector<float>(pixelCount(), 0.0f)});
     return channels.back().data;
   }
-  // The values of the channel `name`, or null when there is none.
+  // The values of the channel `name`, or null if there is none.
   const std::vector<float>* find(const std::string& name) const {
     for (const ImageChannel& channel : channels) {
       if (channel.name == name) return &channel.data;

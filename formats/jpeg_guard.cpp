@@ -7,9 +7,9 @@ namespace {
 
 constexpr unsigned kHuffmanTables = 0xc4, kScan = 0xda, kStart = 0xd8;  // markers, after an 0xff
 constexpr unsigned kMaxSymbols = 256;
-constexpr size_t kMaxScans = 100;  // encoders make 10 or so
+constexpr size_t kMaxScans = 100;  // encoders make about 10
 
-// Zero behind the end, as stb reads it.
+// The byte at an offset; 0 beyond the end, as stb reads it.
 unsigned byteAt(std::string_view bytes, size_t at) {
   return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0;
 }
@@ -17,7 +17,7 @@ size_t lengthAt(std::string_view bytes, size_t at) {
   return byteAt(bytes, at) << 8 | byteAt(bytes, at + 1);
 }
 
-// The tables of the segment whose length stands at `at`.
+// Whether the Huffman tables of the segment fit, whose length field is at `at`.
 bool tablesFit(std::string_view bytes, size_t at) {
   const size_t end = at + lengthAt(bytes, at);
   for (at += 2; at < end && at < bytes.size();) {
@@ -49,8 +49,8 @@ bool isHarmlessJpeg(std::string_view bytes) {
     }
     if (marker == kHuffmanTables && !tablesFit(bytes, at)) return false;
     if (marker == kScan && ++scans > kMaxScans) return false;
-    // Segments are passed over up to the first scan. From there on stb decides by the coded data
-    // where the next one begins, so that every marker counts, wherever it stands.
+    // Segments are skipped by their length up to the first scan. From there on stb finds the next
+    // one in the coded data, so that every marker counts.
     if (scans == 0) at += lengthAt(bytes, at);
   }
   return true;

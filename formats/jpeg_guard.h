@@ -1,13 +1,13 @@
-// What stb_image 2.27 takes on trust in a JPEG, looked at before it decodes one.
+// Checks what stb_image 2.27 does not check in a JPEG.
 #pragma once
 
 #include <string_view>
 
 namespace bnvpl {
 
-// False when decoding would write behind a Huffman table, which has room for 256 symbols (stb adds
-// up 16 bytes for their number and does not look at the sum), or has so many scans that it would
-// take for ever: each goes over all blocks, and a few bytes make one. True for what is no JPEG.
+// False if decoding would write beyond a Huffman table, which has room for 256 symbols (stb does
+// not check the sum of the 16 counts), or if there are too many scans: each decodes all blocks but
+// takes only a few bytes. True for files that are no JPEG.
 bool isHarmlessJpeg(std::string_view bytes);
 
 }  // namespace bnvpl

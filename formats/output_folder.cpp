@@ -26,7 +26,7 @@ constexpr const char* kListHead =
     "# Made by bnvpl, which replaces this folder only while it holds these files, unchanged.\n";
 constexpr const char* kCure = "; name a folder that does not exist yet";
 
-// Empty where the file cannot be read.
+// Hexadecimal XXH3-64; empty if the file cannot be read.
 std::string checksumOf(const fs::path& file) {
   const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
                                                                               XXH3_freeState);
@@ -43,7 +43,7 @@ std::string checksumOf(const fs::path& file) {
   return text;
 }
 
-// False: the folder has no list of ours.
+// Returns false if the folder has no list that bnvpl wrote.
 bool readList(const fs::path& folder, std::map<std::string, std::string>& files) {
   std::ifstream in(folder / kListName);
   std::string line;
@@ -57,7 +57,7 @@ bool readList(const fs::path& folder, std::map<std::string, std::string>& files)
   return true;
 }
 
-// Of the whole folder, a file that is not as the list has it; empty: there is none.
+// Describes a file of the folder that is not on the list, or has changed; empty if there is none.
 std::string strangerIn(const fs::path& folder) {
   std::map<std::string, std::string> listed;
   const bool ours = readList(folder, listed);
@@ -80,8 +80,8 @@ fs::path withoutSlash(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-// The head of the list of the youngest partial folder, of which a tool has one: a signal handler
-// can neither lock nor allocate.
+// The newest path of the partial folder, of which a tool has only one. The list is lock-free,
+// because a signal handler can neither lock nor allocate.
 std::atomic<const OutputFolder::Path*> partialPaths{nullptr};
 std::atomic<bool> foldersBeingRemoved{false};
 static_assert(std::atomic<const OutputFolder::Path*>::is_always_lock_free);
@@ -178,7 +178,7 @@ void OutputFolder::commit() {
                   exchange ? RENAME_EXCHANGE : 0) != 0) {
     throw OutputError(target_, std::string("cannot be replaced: ") + std::strerror(errno) + kCure);
   }
-  if (!exchange) partial_.clear();  // else it is the old folder now
+  if (!exchange) partial_.clear();  // after an exchange it names the old folder
 }
 
 void removePartialFolder() noexcept {

@@ -1,4 +1,4 @@
-// A folder of outputs that is whole or absent: filled beside its place, then renamed to it.
+// A folder of outputs that is whole or absent: it is filled beside the target, then renamed to it.
 #pragma once
 
 #include <deque>
@@ -9,18 +9,18 @@
 
 namespace bnvpl {
 
-// Reserves TARGET.partial-PID-N beside the target. commit() adds a list of the files with their
-// checksums and renames the folder; without it, the destructor removes what was written. The target
-// may be absent, empty, or hold exactly the files of such a list, unchanged: then it is exchanged
-// for the new folder in one step. Anything else is somebody's, and refused.
+// Creates TARGET.partial-PID-N beside the target. commit() adds a list of the files with their
+// checksums and renames the folder; without it, the destructor removes the folder. The target may
+// be absent, empty, or hold exactly the unchanged files of such a list: it is then exchanged for
+// the new folder atomically. Any other target is refused.
 //
-// A process that is killed leaves its partial folder behind, locked (flock) while it lived; the
-// next run with the same target removes it.
+// A partial folder is locked (flock) while its process lives. If the process is killed, the next
+// run with the same target removes the folder.
 //
 // All members throw OutputError.
 class OutputFolder {
  public:
-  struct Path {  // of a list for a signal handler, the youngest first
+  struct Path {  // an entry of the list that a signal handler reads, newest first
     std::string name;
     const Path* older;
   };
@@ -30,9 +30,9 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   const fs::path& target() const { return target_; }
-  // Where the files are written until commit().
+  // The folder in which files are written until commit().
   const fs::path& partial() const { return partial_; }
-  // The place of a file, `name` being relative; its folder is there.
+  // Registers a file with a relative name, and creates its folder. Returns the path to write to.
   fs::path add(const fs::path& name);
   void commit();
 
@@ -43,13 +43,13 @@ class OutputFolder {
   void makeFolder(const fs::path& folder);
   void writeList();
 
-  fs::path target_, place_, partial_;  // as named; without links; what is filled
-  std::deque<Path> paths_;             // does not move its elements
-  std::vector<std::string> files_;     // their names
+  fs::path target_, place_, partial_;  // target as given; with links resolved; folder being filled
+  std::deque<Path> paths_;             // a deque does not move its elements
+  std::vector<std::string> files_;     // relative names of the files
   int lock_ = -1;
 };
 
-// For a process that is about to end in the middle of something; may be called from a signal
+// Removes the partial folder of a process that is about to end. May be called from a signal
 // handler.
 void removePartialFolder() noexcept;
 

@@ -12,14 +12,14 @@
 namespace bnvpl {
 namespace {
 
-constexpr size_t kMaxLinks = 40;  // as the kernel
+constexpr size_t kMaxLinks = 40;  // the kernel's limit
 
 bool isLink(const fs::path& path) {
   std::error_code ignored;
   return fs::is_symlink(path, ignored);
 }
 
-// `file`, what it links to, what that links to, and so on.
+// `file` and the targets of its chain of links.
 std::vector<fs::path> linkChain(const fs::path& file) {
   std::vector<fs::path> chain{file};
   while (isLink(chain.back()) && chain.size() <= kMaxLinks) {
@@ -31,8 +31,8 @@ std::vector<fs::path> linkChain(const fs::path& file) {
   return chain;
 }
 
-// /dev/stdout and /dev/fd/1 are links into /proc. What they lead to may be a regular file, but one
-// that somebody holds open: a rename would put another file at its name.
+// Whether the path is in /proc, where /dev/stdout and /dev/fd/1 lead. They may end at a regular
+// file, but one that a process holds open: after a rename it would write to the old file.
 bool isStream(const fs::path& path) {
   struct statfs info {};
   return ::statfs(folderOf(path).c_str(), &info) == 0 && info.f_type == PROC_SUPER_MAGIC;
@@ -65,7 +65,7 @@ fs::path replaceableTarget(const fs::path& output) {
     // Renaming over /dev/null or a pipe would replace the device itself.
     if (!fs::is_regular_file(target, ignored))
       throw fail("is a device or pipe, which cannot be replaced; name a file");
-    // It would also replace a read-only file, which somebody made so in order to keep it.
+    // A rename would also replace a read-only file, which its owner wants to keep.
     if (!mayWrite(target, W_OK)) {
       throw fail(std::string("cannot replace: ") + std::strerror(errno) +
                  "; make it writable or name another file");

@@ -11,11 +11,11 @@
 namespace bnvpl {
 namespace {
 
-// The largest piece of memory that stb may ask for at once: a PNG may claim a chunk of 1 GiB, or
-// unpack to more than its image takes.
+// Max size of one allocation by stb. A PNG may claim a chunk of 1 GiB, or inflate to more than its
+// image.
 thread_local size_t mostStbBytes = 0;
 
-// Zeroed, because a JPEG can use tables that it never defines.
+// Returns zeroed memory, because a JPEG can use tables that it never defines.
 void* stbAllocate(size_t bytes) { return bytes > mostStbBytes ? nullptr : std::calloc(1, bytes); }
 void* stbReallocate(void* memory, size_t bytes) {
   return bytes > mostStbBytes ? nullptr : std::realloc(memory, bytes);
@@ -47,10 +47,10 @@ void* stbReallocate(void* memory, size_t bytes) {
 namespace bnvpl {
 namespace {
 
-// Deflate makes a byte of 1032 at most, and a byte of a PNG is 8 pixels at most.
+// Deflate expands a byte to at most 1032, and a byte of a PNG has at most 8 pixels.
 constexpr size_t kMaxPixelsPerByte = size_t{1032} * 8;
 constexpr size_t kMaxPixels = size_t{1} << 28;
-constexpr size_t kMaxBytes = size_t{1} << 30;  // stb counts them in an int
+constexpr size_t kMaxBytes = size_t{1} << 30;  // stb counts bytes in an int
 
 struct FreePixels {
   void operator()(void* pixels) const { stbi_image_free(pixels); }
@@ -74,7 +74,7 @@ Pixels decodePixels(const fs::path& file, const std::string& bytes, int channels
   if (width < 1 || height < 1 || count > kMaxPixels || count / kMaxPixelsPerByte > bytes.size()) {
     throw fail("it claims more pixels than a file of its size can hold");
   }
-  // 16-bit RGBA is 8 bytes a pixel, JPEGs keep whole blocks of it, and buffers grow by doubling.
+  // 16-bit RGBA has 8 bytes per pixel, JPEGs are padded to blocks, and buffers grow by doubling.
   mostStbBytes += 4 * bytes.size() + 32 * count + 256 * static_cast<size_t>(width + height);
   int w = 0, h = 0;
   const std::unique_ptr<stbi_uc, FreePixels> pixels(

@@ -1,5 +1,5 @@
-// 8-bit images of other programs: PNG, JPEG, TGA, BMP, told apart by content. The one use of
-// stb_image, which trusts its input: this is where its limits are made up for.
+// 8-bit images of other programs: PNG, JPEG, TGA and BMP, recognised by content. Only this file
+// uses stb_image, which trusts its input, and guards it.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@ namespace bnvpl {
 
 struct Pixels {
   uint32_t width = 0, height = 0;
-  uint32_t channels = 0;        // grey; grey, alpha; R, G, B; R, G, B, alpha
+  uint32_t channels = 0;        // 1: grey; 2: grey, alpha; 3: R, G, B; 4: R, G, B, alpha
   std::vector<uint8_t> values;  // row by row from the top
 };
 
-// `bytes` is the content of `file`, whose name is for the message. With `channels` 0 the image
-// keeps its own. Throws InputError; what no honest file of this size can hold is never allocated.
+// Decodes `bytes`, the content of `file`, whose name is for messages. With `channels` 0 the image
+// keeps its own number. Throws InputError; never allocates more than a valid file of this size
+// needs.
 Pixels decodePixels(const fs::path& file, const std::string& bytes, int channels);
 
-// The content of a regular file. Throws InputError when there is none.
+// Returns the content of a regular file. Throws InputError if there is none.
 std::string readBytes(const fs::path& file);
 
 }  // namespace bnvpl

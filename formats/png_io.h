@@ -8,9 +8,9 @@
 
 namespace bnvpl {
 
-// Replaces `file` atomically with an 8-bit sRGB image: rgb8 holds width * height * 3 bytes, row by
-// row from the top; with 4 channels, alpha too. An AtomicFile is left for the caller to commit.
-// Throws OutputError.
+// Replaces `file` atomically with an 8-bit sRGB image. rgb8 holds width * height * channels bytes,
+// row by row from the top; 4 channels include alpha. The caller commits an AtomicFile. Throws
+// OutputError.
 void writePng(const fs::path& file, int width, int height, std::span<const uint8_t> rgb8);
 void writePng(AtomicFile& file, int width, int height, std::span<const uint8_t> rgb8,
               int channels = 3);

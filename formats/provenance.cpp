@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The text under `key` of an object, when it is one word that can stand in a message; else empty.
+// The string under `key` of an object, if it is a plain word that is safe in a message; else empty.
 std::string wordAt(const Json& object, const char* key) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_string()) return "";
@@ -23,7 +23,7 @@ std::string wordAt(const Json& object, const char* key) {
 }  // namespace
 
 bool isProvenance(const std::string& text) {
-  // The parser takes a zero byte for the end of the text; here it would hide what follows.
+  // The parser treats a zero byte as the end of the text, and would ignore what follows.
   if (text.find('\0') != std::string::npos) return false;
   bool deep = false;
   const auto keep = [&](int depth, Json::parse_event_t, const Json&) {

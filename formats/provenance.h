@@ -1,19 +1,19 @@
-// The history that files carry, as text: README.md, "Provenance".
+// The provenance of files: README.md, "Provenance".
 #pragma once
 
 #include <string>
 
 namespace bnvpl {
 
-// Values inside values; ours are five deep. Programs that print JSON call themselves once a level,
-// and a file of nothing but brackets would overflow their stack.
+// Max nesting depth of JSON values; bnvpl writes at most five levels. Programs that print JSON
+// recurse for each level, and a file of brackets alone would overflow their stack.
 inline constexpr int kMaxProvenanceDepth = 64;
 
-// Whether `text` is a JSON array of objects, in UTF-8, at most kMaxProvenanceDepth deep.
+// Whether `text` is a JSON array of objects in UTF-8, at most kMaxProvenanceDepth deep.
 bool isProvenance(const std::string& text);
 
-// The tool of the newest record and its method, for messages: "vpl-place --method light". Empty
-// when `text` is no provenance or the record does not tell, in plain words.
+// The tool and method of the newest record, for messages: "vpl-place --method light". Empty if
+// `text` is no provenance, or the record does not name a tool.
 std::string makerOf(const std::string& text);
 
 }  // namespace bnvpl

@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kValuesPerBlock = 4096;
 
-// The fewest bytes that hold each of the values with its sign.
+// The min number of bytes that hold each of the values with its sign.
 uint32_t widthOf(std::span<const int64_t> values) {
   uint64_t used = 0;
   bool negative = false;

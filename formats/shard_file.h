@@ -1,13 +1,13 @@
-// What a shard of a stage's work brought. The bytes, little-endian:
+// .shard: the results of a shard of a stage's work. The bytes on disk, little-endian:
 //
 //     0  ShardHeader, 16 bytes
-//    16  blocks, one behind the other
-//     .  directory: a ShardBlock for each
-//     .  info: UTF-8 JSON, whose work it is and which part of it; README.md, "Shards"
+//    16  blocks, one after the other
+//     .  directory: one ShardBlock for each block
+//     .  info: UTF-8 JSON that identifies the work and the part; README.md, "Shards"
 //   end  ShardTrailer, 48 bytes
 //
-// A block is the record of a unit, or some of the sums of all units, without the bytes that are
-// zero in all of them. Files are written and merged from their start to their end, block by block.
+// A block is the record of one unit, or a range of the sums over all units, packed to their width.
+// Files are written and merged sequentially, block by block.
 #pragma once
 
 #include <array>
@@ -33,11 +33,11 @@ struct ShardHeader {
 static_assert(sizeof(ShardHeader) == 16);
 
 struct ShardBlock {
-  std::array<char, 16> work{};  // zero-padded: what the stage did
-  uint32_t kind = 0;            // 1 record, 2 sums
-  uint32_t width = 0;           // bytes of a value: 1 in records, 0 to 8 in sums, sign-extended
-  uint64_t index = 0;           // the unit; the first of the sums
-  uint64_t count = 0;           // values
+  std::array<char, 16> work{};  // name of the kind of work, zero-padded
+  uint32_t kind = 0;            // 1: record, 2: sums
+  uint32_t width = 0;           // bytes per value: 1 in records, 0 to 8 in sums, sign-extended
+  uint64_t index = 0;           // the unit, or the index of the first sum
+  uint64_t count = 0;           // number of values
   uint64_t checksum = 0;        // XXH3-64 of the block's bytes
 
   std::string_view name() const;
@@ -71,17 +71,17 @@ class ShardWriter {
   uint64_t written_;
 };
 
-// A file that is open, its directory and info verified, and its blocks as they are read.
+// An open file. The constructor verifies directory and info; blocks are verified as they are read.
 class ShardReader {
  public:
-  // Throws InputError for what is no shard, damaged, cut short or of another version.
+  // Throws InputError if the file is no shard, damaged, cut short or of another version.
   explicit ShardReader(const fs::path& file);
 
   const std::string& info() const { return info_; }
   std::span<const ShardBlock> blocks() const { return blocks_; }
   uint64_t offsetOf(size_t block) const { return offsets_[block]; }
   std::string read(size_t block);
-  void addSums(size_t block, std::span<int64_t> all);  // of all values, those of the block
+  void addSums(size_t block, std::span<int64_t> all);  // adds the block's sums to those in `all`
 
  private:
   fs::path file_;
@@ -91,7 +91,7 @@ class ShardReader {
   std::string info_;
 };
 
-// The bytes of a block at that offset of an open file. Throws InputError when they are damaged.
+// Reads the bytes of a block at `offset` of an open file. Throws InputError if they are damaged.
 std::string readShardBlock(const fs::path& file, std::ifstream& in, const ShardBlock& block,
                            uint64_t offset);
 

@@ -1,5 +1,5 @@
-// Linear light to 8-bit sRGB at a stated exposure: no curve but sRGB's own, so that previews
-// compare.
+// Converts linear light to 8-bit sRGB at a given exposure, without a tone curve, so that previews
+// are comparable.
 #pragma once
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 namespace bnvpl {
 namespace {
 
-constexpr float kUnitLengthTolerance = 1e-3f;  // float32 normals of far smaller error still pass
-constexpr float kFractionTolerance = 1e-4f;    // rounding of 8-bit textures and of products
+constexpr float kUnitLengthTolerance = 1e-3f;  // far above the rounding of float32 normals
+constexpr float kFractionTolerance = 1e-4f;    // covers rounding of 8-bit textures and products
 constexpr const char* kNotFinite = "not a finite number";
 
 template <typename T>
@@ -17,7 +17,7 @@ double valueAt(std::span<const std::byte> bytes, size_t index) {
   return static_cast<double>(value);
 }
 
-// The rows of `from`, perRow elements each.
+// Copies the given rows of `from`, perRow elements each.
 template <typename T>
 std::vector<T> pickRows(const std::vector<T>& from, size_t perRow, std::span<const uint32_t> rows) {
   std::vector<T> picked;

@@ -1,6 +1,6 @@
-// The columns of .vpl files, written once: layout, reading, writing, checking, vpl-inspect and the
-// table in README.md follow from kVplColumns. A new column is a member of VplTable and an entry
-// here, behind the others of its stage; it makes a new kVplVersion.
+// The columns of .vpl files. Layout, reading, writing, validation, vpl-inspect and the table in
+// README.md derive from kVplColumns. A new column needs a member of VplTable, an entry here behind
+// the others of its stage, and a new kVplVersion.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,9 @@ enum class VplType : uint32_t { F32 = 1, U32 = 2, U64 = 3 };
 constexpr size_t sizeOf(VplType type) { return type == VplType::U64 ? 8 : 4; }
 std::string_view nameOf(VplType type);  // "f32"
 
-// Which values a column may hold. `problem` gives what is wrong with the value of a row, or null; a
-// single number comes as three equal ones. Null: any value is right.
+// Which values a column may hold. problem() describes what is wrong with the value of a row, or
+// returns null; a scalar is passed as three equal components. If `problem` is null, any value is
+// valid.
 struct VplCheck {
   std::string_view valid;
   const char* (*problem)(Vec3 value, const VplTable& table, size_t row);
@@ -46,27 +47,27 @@ using VplMember =
     std::variant<std::vector<Vec3> VplTable::*, std::vector<float> VplTable::*,
                  std::vector<uint32_t> VplTable::*, std::vector<uint64_t> VplTable::*>;
 
-// Type and components follow from the member.
+// A standard column. Its type and components follow from the member.
 struct VplColumn {
   std::string_view name;
   VplMember member;
-  std::string_view parts;  // "xyz" or "rgb" of a Vec3
-  std::string_view unit;   // "1": a pure number, "-": a name
+  std::string_view parts;  // names of a Vec3's components, "xyz" or "rgb"
+  std::string_view unit;   // "1": dimensionless, "-": an identifier
   VplStage since;
   VplCheck check;
   std::string_view meaning;
-  bool ofEmitPoints = false;  // VplTable::emitPoints elements a row instead of one
+  bool ofEmitPoints = false;  // whether a row has VplTable::emitPoints elements instead of one
 
   constexpr VplType type() const {
     return member.index() < 2 ? VplType::F32 : member.index() == 2 ? VplType::U32 : VplType::U64;
   }
-  constexpr uint32_t components() const { return member.index() == 0 ? 3 : 1; }  // of an element
-  constexpr uint32_t elements(const VplTable& table) const {                     // of a row
+  constexpr uint32_t components() const { return member.index() == 0 ? 3 : 1; }  // per element
+  constexpr uint32_t elements(const VplTable& table) const {                     // per row
     return ofEmitPoints ? table.emitPoints : 1;
   }
 };
 
-// Points from which a VPL may shine, at most.
+// Max number of points from which a VPL emits.
 inline constexpr uint32_t kMaxEmitPoints = 64;
 
 inline constexpr std::array<VplColumn, 11> kVplColumns{{
@@ -100,14 +101,14 @@ static_assert(std::is_sorted(kVplColumns.begin(), kVplColumns.end(),
                              }),
               "the columns of a stage are the first ones");
 
-// The columns that each file of the stage has, in file order.
+// The columns that every file of the stage has, in file order.
 constexpr std::span<const VplColumn> standardColumns(VplStage stage) {
   const auto last = std::find_if(kVplColumns.begin(), kVplColumns.end(),
                                  [&](const VplColumn& column) { return column.since > stage; });
   return {kVplColumns.begin(), last};
 }
 
-// One column of a table, standard or a strategy's. Valid while the table is not changed.
+// One column of a table, standard or extra. Valid as long as the table does not change.
 struct VplColumnView {
   std::string_view name, unit, meaning, parts;
   VplType type;
@@ -118,15 +119,15 @@ struct VplColumnView {
   std::span<const std::byte> row(size_t row) const {
     return bytes.subspan(row * rowBytes(), rowBytes());
   }
-  // Exact but for u64 beyond 2^53.
+  // Exact, except for u64 beyond 2^53.
   double value(size_t row, size_t component) const;
 };
 
-// All columns of the table in file order: the standard ones of its stage, then the strategies'.
+// All columns of the table in file order: the standard ones of its stage, then the extra ones.
 std::vector<VplColumnView> columnsOf(const VplTable& table);
 
-// Calls visit(values, perRow) with each column of the table, in the same order: a vector of perRow
-// elements for each row. Table is VplTable or const VplTable.
+// Calls visit(values, perRow) for each column in the same order; the vector has perRow elements for
+// each row. Table is VplTable or const VplTable.
 template <typename Table, typename Visit>
 void forEachColumn(Table& table, const Visit& visit) {
   for (const VplColumn& column : standardColumns(table.stage)) {

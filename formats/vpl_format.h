@@ -1,5 +1,5 @@
-// .vpl: the bytes on disk, little-endian. Any change but a strategy's own column bumps kVplVersion.
-// README.md is the prose, vpl_columns.h the columns.
+// .vpl: the bytes on disk, little-endian. Any change except an extra column bumps kVplVersion.
+// README.md explains the format; vpl_columns.h has the columns.
 //
 //     0  VplHeader, 128 bytes
 //   128  directory: columnCount entries of 64 bytes
@@ -8,7 +8,7 @@
 //   end  kVplEndMark: without it the file was cut short
 //
 // A file has the columns of its stage and of all stages before it, in the order of kVplColumns, and
-// behind them those that strategies added.
+// then the extra columns that methods of stages have added.
 #pragma once
 
 #include <array>
@@ -24,9 +24,10 @@ namespace bnvpl {
 
 inline constexpr uint32_t kVplVersion = 4;
 inline constexpr uint64_t kVplAlign = 64;
-inline constexpr size_t kMaxExtraColumns = 256;        // of all strategies together
-inline constexpr uint32_t kMaxExtraComponents = 1024;  // of one column
-// The high bit, both line endings and the DOS end-of-file: any text-mode copy breaks one of them.
+inline constexpr size_t kMaxExtraColumns = 256;        // max number in a file
+inline constexpr uint32_t kMaxExtraComponents = 1024;  // max number per extra column
+// A byte with the high bit set, both line endings and the DOS end-of-file: any copy in text mode
+// breaks one of them.
 inline constexpr std::array<char, 8> kVplMagic{'\x89', 'V', 'P', 'L', '\r', '\n', '\x1a', '\n'};
 inline constexpr std::array<char, 8> kVplEndMark{'V', 'P', 'L', '-', 'E', 'N', 'D', '\n'};
 
@@ -34,16 +35,16 @@ struct VplHeader {
   std::array<char, 8> magic = kVplMagic;
   uint32_t version = kVplVersion;
   VplStage stage = VplStage::Candidates;
-  uint64_t count = 0;            // rows in every column
-  uint64_t sceneHash = 0;        // content hash; a mismatch means "made from another scene"
+  uint64_t count = 0;            // number of rows of every column
+  uint64_t sceneHash = 0;        // content hash; a mismatch means that the scene is another one
   uint64_t provenanceBytes = 0;  // without the padding
-  uint64_t fileBytes = 0;        // the whole file, end mark included
+  uint64_t fileBytes = 0;        // size of the whole file, including the end mark
   uint64_t checksum = 0;         // XXH3-64 of the whole file with this field taken as zero
   uint32_t columnCount = 0;
   uint32_t rowKind = 0;             // 0: points; readers refuse anything else
-  double rMax = 0.0;                // scene units; 0 until it is known
-  double areaEstimate = 0.0;        // scene units squared; 0 until it is known
-  double reach = 0.0;               // how far each VPL received photons, in units of its radius
+  double rMax = 0.0;                // scene units; 0 until known
+  double areaEstimate = 0.0;        // scene units squared; 0 until known
+  double reach = 0.0;               // distance within which VPLs received photons, in radii
   std::array<char, 40> reserved{};  // zero; readers refuse anything else
 };
 static_assert(sizeof(VplHeader) == 128 && std::is_trivially_copyable_v<VplHeader>);

@@ -1,4 +1,4 @@
-// Reading and writing .vpl files. The layout is vpl_format.h.
+// Reads and writes .vpl files. The format is in vpl_format.h.
 #pragma once
 
 #include <span>
@@ -11,26 +11,27 @@
 
 namespace bnvpl {
 
-// Reads and verifies a whole file; sets table.checksum. A file with no rows is valid.
-// Throws InputError when it cannot be read, FileError (at a byte) when it is damaged.
+// Reads and verifies a whole file, and sets table.checksum. A file without rows is valid. Throws
+// InputError if it cannot be read, and FileError with the byte offset if it is damaged.
 VplTable readVpl(const fs::path& file);
 
-// The same, and throws InputError when the file is not of the stage `expected`, before reading the
-// columns. The message names the tool that made this file, as far as its provenance tells, and
-// those that make the one that is needed.
+// The same, but throws InputError before reading the columns if the file is not of the stage
+// `expected`. The message names the tool that made this file, if its provenance does, and the tools
+// that make the required one.
 VplTable readVpl(const fs::path& file, VplStage expected);
 
-// Header and directory, verified against the real file size; the content is not looked at.
+// Reads header and directory, and verifies them against the real file size, without the content.
 VplHeader readVplHeader(const fs::path& file);
 
-// Replaces `file` atomically; an AtomicFile is left for the caller to commit. An empty provenance
-// is written as "[]". Throws std::logic_error when the table holds a value that readVpl would
-// refuse (naming its column and row): the stage should have found it where it arose. Throws
-// OutputError when a write fails. The old file then stays as it was.
+// Replaces `file` atomically; the caller commits an AtomicFile. An empty provenance is written as
+// "[]". Throws std::logic_error, naming column and row, if the table has a value that readVpl()
+// would refuse: the stage should have rejected it where it arose. Throws OutputError if a write
+// fails. The old file is unchanged then.
 void writeVpl(const fs::path& file, const VplTable& table);
 void writeVpl(AtomicFile& file, const VplTable& table);
 
-// "candidates", "eliminated" or "lit"; and, for messages, the tools that make such a file.
+// The name of a stage, "candidates", "eliminated" or "lit"; and, for messages, the tools that make
+// it.
 std::string_view stageName(VplStage stage);
 std::string_view stageTools(VplStage stage);
 

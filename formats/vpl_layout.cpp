@@ -24,7 +24,7 @@ Vec3 asVec3(T value) {
   return Vec3(static_cast<float>(value));
 }
 
-// The first row whose value the check refuses.
+// The first value that the column's check rejects.
 template <typename T>
 std::optional<BadValue> findIn(const VplTable& table, const std::vector<T>& values, size_t column,
                                const VplColumn& of) {
@@ -52,7 +52,7 @@ bool isWord(std::string_view text) {
   });
 }
 
-// "rich.lobes": two words with one dot between them.
+// Whether the name is two words separated by a dot, such as "rich.lobes".
 bool isExtraName(std::string_view name) {
   const size_t dot = name.find('.');
   return name.size() < sizeof(VplColumnEntry::name) && dot != std::string_view::npos &&

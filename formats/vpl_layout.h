@@ -1,5 +1,5 @@
-// What reader and writer share: where everything stands, and what may be in a file. Internal to
-// vpl_opening.cpp, vpl_read.cpp and vpl_write.cpp.
+// The layout of .vpl files and the validity of their content, for reader and writer; hashing and
+// views of bytes, for all formats.
 #pragma once
 
 #include <cstddef>
@@ -22,30 +22,29 @@ struct VplLayout {
   uint64_t fileBytes = 0;
 };
 
-// Where a file with these columns has its parts; their values are not looked at. count * rowBytes()
-// and provenanceBytes must each be at most 2^62, which the size of any real file is: then no sum
-// overflows.
+// The layout of a file with these columns, regardless of their values. count * rowBytes() and
+// provenanceBytes must each be at most 2^62, so that no sum overflows.
 VplLayout makeLayout(const std::vector<VplColumnView>& columns, uint64_t count,
                      uint64_t provenanceBytes);
-// The same of a file of the stage without columns of strategies.
+// The same for a file of the stage without extra columns.
 VplLayout makeLayout(VplStage stage, uint64_t count, uint64_t provenanceBytes);
 
 constexpr uint64_t alignUp(uint64_t offset) {
   return (offset + kVplAlign - 1) / kVplAlign * kVplAlign;
 }
 
-// Why a strategy's column must not stand behind `earlier` in a file: which field of its directory
-// entry is wrong, and how. Its values are not looked at.
+// The first invalid field in the directory entry of an extra column that follows the extra columns
+// `earlier`. Its values are not checked.
 struct BadField {
-  size_t offset;  // in VplColumnEntry
+  size_t offset;  // offset in VplColumnEntry
   std::string problem;
 };
 std::optional<BadField> findBadField(const VplExtraColumn& column,
                                      std::span<const VplExtraColumn> earlier);
 
-// The first value, in file order, that has no business in a .vpl file.
+// The first invalid value in file order.
 struct BadValue {
-  size_t column;  // in columnsOf(table)
+  size_t column;  // index into columnsOf(table)
   size_t row;
   std::string problem;
 };
@@ -58,10 +57,10 @@ Bytes bytesOf(const T& value) {
   return std::as_bytes(std::span(&value, 1));
 }
 
-// XXH3-64 of the pieces put together.
+// XXH3-64 of the concatenated pieces.
 uint64_t hashPieces(const std::vector<Bytes>& pieces);
 
-// r_max and area: finite and not negative.
+// Whether a length or area is finite and not negative.
 bool isMeasure(double value);
 
 }  // namespace bnvpl

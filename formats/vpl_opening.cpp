@@ -111,7 +111,7 @@ VplExtraColumn extraOf(const InputFile& in, const VplColumnEntry& entry, size_t 
   return extra;
 }
 
-// Adds the strategies' columns that the directory lists to the table.
+// Adds the extra columns of the directory to the table.
 void addExtras(const InputFile& in, const std::vector<VplColumnEntry>& directory, VplTable& table) {
   for (size_t i = standardColumns(table.stage).size(); i < directory.size(); ++i) {
     VplExtraColumn extra = extraOf(in, directory[i], i);
@@ -122,12 +122,12 @@ void addExtras(const InputFile& in, const std::vector<VplColumnEntry>& directory
   }
 }
 
-// How many points each VPL shines from, as the directory has it.
+// Number of emission points per VPL, according to the directory.
 uint32_t emitPointsOf(const std::vector<VplColumnEntry>& directory, VplStage stage) {
   const auto columns = standardColumns(stage);
   for (size_t i = 0; i < columns.size(); ++i) {
     const uint32_t elements = directory[i].components / columns[i].components();
-    // Whatever else stands there is refused with the entry.
+    // checkDirectory() refuses an entry with any other number.
     if (columns[i].ofEmitPoints && elements >= 1 && elements <= kMaxEmitPoints) return elements;
   }
   return 1;
@@ -135,7 +135,7 @@ uint32_t emitPointsOf(const std::vector<VplColumnEntry>& directory, VplStage sta
 
 VplLayout checkShape(const InputFile& in, const VplHeader& header, const VplTable& shape) {
   const std::vector<VplColumnView> columns = columnsOf(shape);
-  // Divided, not multiplied, so that no claimed count can overflow.
+  // A division cannot overflow for any claimed count.
   if (header.count > in.size() / rowBytes(columns)) {
     in.fail(offsetof(VplHeader, count),
             std::to_string(header.count) + " rows do not fit into the file");
@@ -152,7 +152,7 @@ VplLayout checkShape(const InputFile& in, const VplHeader& header, const VplTabl
   return layout;
 }
 
-// Each entry must be the one that the writer makes: no column overlaps another, and none is
+// Each entry must equal the one that the writer makes, so that no column overlaps another or is
 // missing.
 void checkDirectory(const InputFile& in, const std::vector<VplColumnEntry>& directory,
                     const VplLayout& layout, VplStage stage) {
@@ -177,7 +177,7 @@ void checkDirectory(const InputFile& in, const std::vector<VplColumnEntry>& dire
 }  // namespace
 
 InputFile::InputFile(const fs::path& path) : path_(path) {
-  // Not blocking: a named pipe without a writer is refused below instead of waited for.
+  // Non-blocking, so that a named pipe without a writer is refused below.
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) {
     throw InputError(path, std::string("cannot open: ") + std::strerror(errno) +

@@ -1,5 +1,5 @@
-// The start of a .vpl file: what can be known, and is verified, without reading the values.
-// Internal to vpl_read.cpp.
+// The opening of a .vpl file, which is verified without reading the values. Internal to
+// vpl_read.cpp.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// A regular file, read from its start to its end.
+// A regular file that is read sequentially.
 class InputFile {
  public:
   explicit InputFile(const fs::path& path);  // throws InputError
@@ -20,9 +20,9 @@ class InputFile {
   const fs::path& path() const { return path_; }
   uint64_t size() const { return size_; }
 
-  // The next `bytes` bytes of the file. Throws FileError.
+  // Reads the next `bytes` bytes. Throws FileError.
   void read(void* to, uint64_t bytes);
-  // FileError with the cure for a damaged file.
+  // Throws FileError with the remedy for a damaged file.
   [[noreturn]] void fail(uint64_t byte, const std::string& problem) const;
 
  private:
@@ -34,12 +34,12 @@ class InputFile {
 
 struct Opening {
   VplHeader header;
-  VplTable shape;  // stage and strategies' columns, without a value
+  VplTable shape;  // stage and extra columns, without values
   VplLayout layout;
 };
 
-// Header and directory, verified against the constants and the real size of the file; the
-// provenance comes next. Allocates no more than the directory's size. Throws FileError.
+// Reads header and directory, and verifies them against the format and the real size of the file.
+// The provenance comes next. Allocates no more than the directory. Throws FileError.
 Opening readOpening(InputFile& in);
 
 }  // namespace bnvpl

@@ -15,7 +15,7 @@ void checkPadding(const InputFile& in, Bytes content, uint64_t from, uint64_t to
   }
 }
 
-// End mark, checksum and padding of the whole file.
+// Checks end mark, checksum and padding of the whole file.
 void checkContent(const InputFile& in, Bytes file, const VplHeader& header,
                   const VplLayout& layout) {
   if (std::memcmp(file.data() + layout.endMarkOffset, kVplEndMark.data(), kVplEndMark.size()) !=
@@ -37,7 +37,7 @@ void checkContent(const InputFile& in, Bytes file, const VplHeader& header,
   }
 }
 
-// The table of an opening, with the values that stand in `file`.
+// The table of an opening, with the values of `file`.
 VplTable makeTable(const InputFile& in, Bytes file, Opening opening) {
   const VplHeader& header = opening.header;
   const VplLayout& layout = opening.layout;
@@ -74,7 +74,7 @@ VplTable makeTable(const InputFile& in, Bytes file, Opening opening) {
   std::string provenance(header.provenanceBytes, '\0');
   in.read(provenance.data(), provenance.size());
   const std::string maker = makerOf(provenance);
-  // Who made lit VPLs without vpl-estimate did not forget a stage.
+  // Lit VPLs can also come from vpl-place: then no stage was forgotten.
   const bool done = header.stage == VplStage::Lit && expected == VplStage::Eliminated;
   throw InputError(
       in.path(), "is of stage " + std::string(stageName(header.stage)) +

@@ -7,13 +7,13 @@
 namespace bnvpl {
 namespace {
 
-// The whole file as consecutive pieces, padding included, so that it is never copied in memory.
+// The file as consecutive pieces with their padding, which avoids a copy in memory.
 std::vector<Bytes> filePieces(const VplHeader& header, const VplLayout& layout,
                               const std::string& provenance, const VplTable& table) {
   static constexpr std::array<std::byte, kVplAlign> kZeros{};
   std::vector<Bytes> pieces{bytesOf(header), std::as_bytes(std::span(layout.directory))};
   const auto addPadded = [&](Bytes bytes) {
-    if (bytes.empty()) return;  // no rows: fwrite and the hash take no null pointer
+    if (bytes.empty()) return;  // without rows the pointer is null
     pieces.push_back(bytes);
     pieces.push_back(Bytes(kZeros).first(alignUp(bytes.size()) - bytes.size()));
   };
@@ -23,7 +23,8 @@ std::vector<Bytes> filePieces(const VplHeader& header, const VplLayout& layout,
   return pieces;
 }
 
-// Which column is not as long as the table says, or is none that its stage or a strategy can have.
+// Describes a column of wrong length, or one that neither its stage nor a method can have; else
+// empty.
 std::string columnProblem(const VplTable& table) {
   if (table.emitPoints < 1 || table.emitPoints > kMaxEmitPoints) return "too many emission points";
   if (table.extras.size() > kMaxExtraColumns) return "too many columns of strategies";

@@ -1,4 +1,4 @@
-// EXR: as images of `vpl-inspect compare`, and as environments.
+// EXR files, as images of `vpl-inspect compare` and as environments.
 #include "formats/exr_io.h"
 #include "fuzz/sane_scene.h"
 #include "images/comparison.h"

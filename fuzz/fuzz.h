@@ -1,7 +1,7 @@
-// What the fuzz targets share. A target passes its input to a reader the way a tool does. Refusing
-// it with the documented exception is right; everything else that stops the process is a finding:
-// another exception, a sanitizer's report, a broken promise of the reader (require), a leak, too
-// much memory or time.
+// Shared by the fuzz targets. A target passes its input to a reader as a tool does. The reader may
+// refuse it with the documented exception. Anything else that stops the process is a finding:
+// another exception, a sanitizer's report, a violated postcondition of the reader (require), a
+// leak, or too much memory or time.
 #pragma once
 
 #include <unistd.h>
@@ -18,14 +18,14 @@
 
 namespace bnvpl {
 
-// Ends the run with a finding unless what a reader promises of accepted input holds.
+// Ends the run with a finding if a postcondition of a reader does not hold for accepted input.
 inline void require(bool holds, const char* promise) {
   if (holds) return;
   std::fprintf(stderr, "PROMISE BROKEN: %s\n", promise);
   std::abort();
 }
 
-// False when the input was refused as documented: by a Refusal.
+// Returns false if the reader refused the input with the documented exception, Refusal.
 template <typename Refusal = InputError, typename Read>
 bool accepted(const Read& read) {
   try {
@@ -36,7 +36,8 @@ bool accepted(const Read& read) {
   return true;
 }
 
-// The readers take file names. scripts/fuzz.sh points TMPDIR into memory and removes what is left.
+// A folder for the files that readers open. scripts/fuzz.sh sets TMPDIR to a folder in memory, and
+// removes it.
 class InputFolder {
  public:
   InputFolder() : folder_(fs::temp_directory_path() / ("fuzz-" + std::to_string(::getpid()))) {

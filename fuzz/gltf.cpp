@@ -1,5 +1,5 @@
-// .gltf and .glb: what readGltf accepts is a scene with sane numbers. Beside it lie a.bin, the
-// corners of a triangle, and t.tga.
+// .gltf and .glb: an accepted file makes a valid scene. Its folder also has a.bin, the corners of a
+// triangle, and t.tga.
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
 #include "scene/load_scene.h"
@@ -21,7 +21,7 @@ InputFolder makeFolder() {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace bnvpl;
   static const InputFolder folder = makeFolder();
-  // Told apart by content.
+  // The content decides between .gltf and .glb.
   const fs::path file = folder.write("scene.gltf", {reinterpret_cast<const char*>(data), size});
   Scene scene;
   if (accepted([&] { scene = loadScene(file); })) requireSane(scene);

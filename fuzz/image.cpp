@@ -1,5 +1,4 @@
-// Textures, environments and masks, in whatever of PNG, JPEG, TGA, BMP, HDR, PFM and EXR the bytes
-// are.
+// Textures, environments and masks in any of PNG, JPEG, TGA, BMP, HDR, PFM and EXR.
 #include "fuzz/sane_scene.h"
 #include "images/mask.h"
 
@@ -16,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (!accepted([&] { texture = loadTexture(file, true, true); })) return 0;
   requireSane(texture);
 
-  Layer layer;  // a mask must be of its size
+  Layer layer;  // has the size that the mask must have
   layer.width = static_cast<int>(texture.width);
   layer.height = static_cast<int>(texture.height);
   Mask mask;

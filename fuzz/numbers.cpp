@@ -1,6 +1,5 @@
-// Numbers of the command line: counts, sizes, exposures, and what CLI11 reads into options.
-//
-// Each line of the input is an argument.
+// Numbers of the command line: counts, sizes, exposures, and options read by CLI11. Each line of
+// the input is an argument.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
@@ -38,7 +37,7 @@ void parseAlone(const std::string& text) {
   }
 }
 
-// Options of every kind that the stages have.
+// Options of all kinds that the stages have.
 constexpr std::array kStageOptions{letterFor("-n", countOption("count", "1", 0x1p53, "", "help")),
                                    seedOption(), switchOption("recentre", "on", "help"),
                                    textOption("layers", "", "", "help")};
@@ -60,9 +59,9 @@ void parseTogether(const std::vector<std::string>& arguments) {
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   try {
     cli.parse(static_cast<int>(argv.size()), argv.data());
-  } catch (const CLI::ParseError&) {  // --help is one too
+  } catch (const CLI::ParseError&) {  // also thrown by --help
     return;
-  } catch (const UsageError&) {  // a number of threads that is none
+  } catch (const UsageError&) {  // an invalid number of threads
     return;
   }
   Values values;

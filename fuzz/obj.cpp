@@ -1,8 +1,8 @@
-// OBJ and MTL: what loadObj accepts are triangles, materials and textures that can be used.
+// OBJ and MTL: an accepted file makes valid triangles, materials and textures.
 //
-// The input is an OBJ; from a line "# MTL" on it is m.mtl and "my m.mtl", which the OBJ can name.
-// t.tga lies beside them. It is loaded as a scene names it: plain, and mirrored with m.mtl in place
-// of its libraries. Reading it in small pieces must bring the same.
+// The input is an OBJ; from a line "# MTL" on it is m.mtl and "my m.mtl", to which the OBJ can
+// refer. Their folder also has t.tga. The OBJ is loaded as it is, and mirrored with m.mtl in place
+// of its libraries. Reading it in small pieces must give the same result.
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
 #include "scene/read/obj/load_obj.h"
@@ -29,7 +29,7 @@ void load(const fs::path& obj, const fs::path& materials, const Affine& transfor
   if (accepted(read)) requireSaneMeshes(scene);
 }
 
-// As large files are read.
+// Reads the file in pieces, as large files are read, and as a whole.
 void requireSameInPieces(const fs::path& obj, const fs::path& materials) {
   ObjReading whole, pieces;
   const auto ignore = [](const fs::path&, const tinyobj::material_t&, const MtlKeys&) {};

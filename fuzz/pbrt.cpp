@@ -1,7 +1,7 @@
-// .pbrt and PLY: what loadScene accepts is a scene with sane numbers.
+// .pbrt and PLY: an accepted file makes a valid scene.
 //
-// The input is scene.pbrt; from a line "# PLY" on it is m.ply, which the scene can name. Beside
-// them lie t.tga, sky.pfm, a.spd and more.pbrt, which includes scene.pbrt.
+// The input is scene.pbrt; from a line "# PLY" on it is m.ply, to which the scene can refer. The
+// folder also has t.tga, sky.pfm, a.spd and more.pbrt, which includes scene.pbrt.
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"
 #include "scene/load_scene.h"
@@ -26,7 +26,7 @@ size_t count(std::string_view text, std::string_view word) {
   return n;
 }
 
-// Well-formed scenes may be large on purpose: many spheres in many instances.
+// Valid scenes can be large, with many spheres in many instances; these are skipped.
 bool isSmall(std::string_view text) {
   return count(text, "Shape") <= 40 && count(text, "ObjectInstance") <= 4;
 }

@@ -1,8 +1,6 @@
-// PLY: what readPly accepts are numbers and faces of one size, and the scene that names the file is
-// sane, whatever the numbers are. Its shape is a lamp with a bump map, so that areas, normals and
-// tangents are computed.
-//
-// The input is m.ply.
+// PLY: the columns of an accepted file have equal length, and the scene that refers to it is valid
+// for all numbers. Its shape is an area light with a bump map, so that areas, normals and tangents
+// are computed. The input is m.ply.
 #include "scene/read/pbrt/ply.h"
 
 #include "fuzz/sane_scene.h"

@@ -1,4 +1,4 @@
-// What loading a scene promises: every index and number can be used as it is.
+// The postconditions of loading a scene: all indices and numbers are valid.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ inline void requireSane(const Texture& t) {
   require(t.width > 0 && t.height > 0 &&
               (t.rgba.empty() ? t.floats.size() : t.rgba.size()) == size_t{4} * t.width * t.height,
           "a texture has all its texels");
-  for (const float u : {-1e30f, -0.3f, 0.0f, 0.5f, 1.0f, 3e38f}) {  // out of bounds: a report
+  for (const float u : {-1e30f, -0.3f, 0.0f, 0.5f, 1.0f, 3e38f}) {  // sanitizers check the bounds
     t.lookup(u, 1.0f - u);
     t.lookupAlpha(1.0f - u, u);
   }
@@ -68,7 +68,7 @@ inline void requireSane(const Scene& s, const Triangle& t) {
   }
 }
 
-// Of meshes, materials and textures.
+// Checks meshes, materials and textures.
 inline void requireSaneMeshes(const Scene& s) {
   for (const Texture& t : s.textures) requireSane(t);
   for (const Material& m : s.materials) requireSane(m, s.textures.size());

@@ -1,5 +1,5 @@
-// scene.toml: what loadScene accepts is a scene with sane numbers. Beside it lie square.obj,
-// square.mtl and t.tga.
+// scene.toml: an accepted file makes a valid scene. Its folder also has square.obj, square.mtl and
+// t.tga.
 #include <fstream>
 
 #include "fuzz/sane_scene.h"

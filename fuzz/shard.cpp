@@ -1,8 +1,8 @@
-// .shard files, alone as vpl-merge reads them: what is accepted has the blocks that it claims, and
-// the same content when merged into a shard again.
+// .shard files, read one at a time as by vpl-merge: an accepted file has the blocks of its
+// directory, and the same content after it is merged into a shard again.
 //
-// The input is read as it is, and a second time with its checksums made to fit and with "@" for
-// this build, which no mutation would find.
+// The input is read as it is, and a second time with matching checksums and the id of this build in
+// place of "@", which mutations would not find.
 #include <cstring>
 
 #include "formats/vpl_layout.h"
@@ -26,7 +26,7 @@ std::string withBuild(std::string_view info) {
   return text;
 }
 
-// Checksums of all blocks that lie inside, then of the directory.
+// Sets the checksums of all blocks inside the file, then that of the directory.
 std::string repaired(std::string_view input) {
   if (input.size() < sizeof(ShardHeader) + sizeof(ShardTrailer)) return {};
   ShardTrailer trailer;
@@ -68,7 +68,7 @@ struct Content {
   bool operator==(const Content&) const = default;
 };
 
-// Of the work of the first block.
+// The records, and the sums of the first block's work.
 Content contentOf(ShardSet& shards, const std::vector<ShardBlock>& blocks) {
   Content content;
   size_t sums = 0;

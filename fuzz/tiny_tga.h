@@ -1,4 +1,4 @@
-// A texture of 2 x 2 texels for inputs that name one.
+// A texture of 2 x 2 texels, for inputs that refer to one.
 #pragma once
 
 #include <string_view>

@@ -1,7 +1,8 @@
-// .vpl files: what readVpl accepts is whole, has sane values, and writes back as the same bytes.
+// .vpl files: an accepted file is complete, has valid values, and is written back as the same
+// bytes.
 //
-// The input is read as it is, and a second time with header, directory and checksum made to fit:
-// no mutation would pass the checksum.
+// The input is read as it is, and a second time with matching header, directory and checksum, which
+// mutations would not find.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -21,7 +22,7 @@ void put(std::string& bytes, uint64_t at, const T& value) {
   std::memcpy(bytes.data() + at, &value, sizeof(value));
 }
 
-// Bytes of the input that become the strategies' columns of the repaired file.
+// Extra columns of the repaired file, chosen by bytes of the input.
 std::vector<VplExtraColumn> extrasOf(std::string_view input) {
   std::vector<VplExtraColumn> extras(static_cast<unsigned char>(input[60]) % 4);
   for (size_t i = 0; i < extras.size(); ++i) {

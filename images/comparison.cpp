@@ -9,7 +9,7 @@
 namespace bnvpl {
 namespace {
 
-// Of one quantity; squares of a second half may be negative.
+// Measures of one quantity. Squared errors may be negative with two halves of the reference.
 struct Measures {
   double meanA = 0, meanB = 0, squared = 0, relative = 0, smape = 0;
 };

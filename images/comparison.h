@@ -1,4 +1,4 @@
-// All metrics of an image against a reference at once. Each has a header of its own.
+// All metrics of an image against a reference. Each metric has its own header.
 #pragma once
 
 #include <array>
@@ -14,19 +14,20 @@
 
 namespace bnvpl {
 
-// Over all pixels and all channels together, unless said otherwise. Sums are taken in double
-// precision in a fixed order. With a mask, means over pixels are weighted by it.
+// Metrics over all pixels and channels, unless stated otherwise. Sums are in double precision and a
+// fixed order. With a mask, means over pixels are weighted.
 struct Comparison {
-  // Of one channel, or of the luminance. The overall MSE, relMSE and SMAPE are the channels' means.
+  // Metrics of one channel, or of the luminance. The overall MSE, relMSE and SMAPE are the means of
+  // the channels.
   struct Channel {
-    std::string name;  // of the reference
+    std::string name;  // channel name in the reference
     double meanA = 0, meanB = 0;
     double rmse = 0, relMse = 0, smape = 0;
   };
-  // Whether the estimate of an error, less the noise that two halves of the reference tell of, is
-  // negative: less than that noise can show. The error then counts as 0.
+  // Whether the estimated squared error is negative, which the independent noise of the two halves
+  // of a reference can cause. The error then counts as 0.
   bool rmseBelowNoise = false, relMseBelowNoise = false;
-  // The means of both maps, and how they were made.
+  // The means of both maps, and their parameters.
   struct Flip {
     double ldr = 0, hdr = 0;
     double ppd = 0, exposureEv = 0, startEv = 0, stopEv = 0;
@@ -35,27 +36,27 @@ struct Comparison {
   double meanA = 0, meanB = 0;
   double rmse = 0;
   double mse = 0;
-  double epsilon = 0;  // absolute: the given one times meanB^2
+  double epsilon = 0;  // absolute: the relative epsilon times meanB^2
   double relMse = 0;
   double smape = 0;
   std::array<size_t, 2> worstPixel{};  // x, y
   std::vector<Channel> channels;
-  std::optional<Channel> luminance;  // of R G B
-  std::optional<Flip> flip;          // of R G B, where addFlip() was called
-  std::optional<double> maskPixels;  // the sum of the mask's weights
+  std::optional<Channel> luminance;  // for R, G, B only
+  std::optional<Flip> flip;          // for R, G, B only, set by addFlip()
+  std::optional<double> maskPixels;  // sum of the mask's weights
 
-  // Infinite for a black reference, unless the other is black too.
+  // Infinite for a black reference, unless the image is black, too.
   double rmseOverMean() const { return bnvpl::rmseOverMean(rmse, meanB); }
   double meanRatio() const { return bnvpl::meanRatio(meanA, meanB); }
 };
 
-// `b` is the reference; `second`, where given, its second half. `epsilon` is relMSE's. MSE and
-// relMSE that are negative by the noise of two halves count as 0. Refuses what makePair() does.
+// Compares `a` with the reference `b`, whose second half is `second`, if given. `epsilon` is that
+// of relMSE. Negative estimates of MSE and relMSE count as 0. Throws like makePair().
 Comparison compareLayers(const fs::path& fileA, const Layer& a, const fs::path& fileB,
                          const Layer& b, double epsilon = kRelMseEpsilon,
                          const Layer* second = nullptr, const Mask& mask = {});
 
-// Averages the maps by the mask.
+// Sets c.flip to the means of the maps, weighted by the mask.
 void addFlip(const FlipMaps& maps, const Mask& mask, Comparison& c);
 
 }  // namespace bnvpl

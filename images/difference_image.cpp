@@ -28,7 +28,8 @@ Legend differenceLegend(double range) {
 }  // namespace
 
 Rgb8 differenceColour(double value) {
-  // Dark ends, a strong middle and white: distances look even and survive a grey print.
+  // The colours go from white over a saturated one to a dark end, so that steps look equal, also in
+  // a grey print.
   constexpr std::array<std::array<double, 3>, 3> kBlue{
       {{255, 255, 255}, {90, 150, 235}, {15, 30, 120}}};
   constexpr std::array<std::array<double, 3>, 3> kRed{

@@ -7,9 +7,9 @@
 
 namespace bnvpl {
 
-// (a - b) / (b + 0.1 mean(b)) of the channels' means, at most +-1 after division by `range`: blue
-// where `a` is darker than the reference `b`, white where equal, red where brighter. A legend bar
-// with numbers stands below. Layers as compareLayers accepts them.
+// Shows (a - b) / (b + 0.1 mean(b)) of the channels' means, divided by `range` and clamped to +-1:
+// blue where `a` is darker than the reference `b`, white where equal, red where brighter. A legend
+// is below. The layers must be as for compareLayers().
 Picture differencePicture(const Layer& a, const Layer& b, double range, const Mask& mask = {});
 
 // The picture's colour for a value in [-1, 1]; values beyond are clamped.

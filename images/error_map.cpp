@@ -32,7 +32,7 @@ std::vector<float> channelMeans(const Layer& a, const Layer& reference, const Te
   return values;
 }
 
-// Where `value` stands on the scale, 0..1 or beyond.
+// Position of `value` on the scale, 0..1 or beyond.
 double place(const ErrorMap& map, double value) {
   if (!map.logarithmic) return value / map.largest;
   return value > 0.0 ? 1.0 + std::log10(value / map.largest) / kDecades : 0.0;
@@ -67,7 +67,7 @@ Rgb8 fromOklab(const std::array<double, 3>& c) {
 }  // namespace
 
 Rgb8 errorColour(double value) {
-  // Lightness rises in even steps; hue and chroma stay within what sRGB can show.
+  // Lightness rises in even steps; hue and chroma stay within the sRGB gamut.
   constexpr std::array<std::array<double, 3>, 6> kStops{{{0.10, 0.007, -0.019},
                                                          {0.27, 0.051, -0.109},
                                                          {0.44, 0.138, -0.116},
@@ -84,7 +84,7 @@ Rgb8 errorColour(double value) {
 }
 
 ErrorMap relMseMap(const Layer& a, const Layer& reference, double epsilon) {
-  // Noise spans decades: on a straight scale, one bright firefly would leave all else black.
+  // Noise spans decades: on a linear scale, one bright firefly would make all other pixels black.
   return {channelMeans(a, reference,
                        [&](double x, double r) { return (x - r) * (x - r) / (r * r + epsilon); }),
           "RELMSE", true, 1.0};

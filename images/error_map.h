@@ -1,4 +1,4 @@
-// How large an error each pixel has: false-colour pictures of one measure.
+// False-colour pictures of the error of each pixel by one measure.
 #pragma once
 
 #include "images/hdr_flip.h"
@@ -12,23 +12,23 @@ enum class MapKind { Difference, RelMse, Smape, Flip, HdrFlip };
 // A value for each pixel, with the colour scale that suits the measure.
 struct ErrorMap {
   std::vector<float> values;
-  std::string title;         // in the letters of small_font.h
-  bool logarithmic = false;  // four decades up to `largest`; else from 0
-  double largest = 1.0;      // at the end of the scale
+  std::string title;         // only characters of small_font.h
+  bool logarithmic = false;  // whether the scale is four decades up to `largest`, not linear from 0
+  double largest = 1.0;      // value at the end of the scale
 };
 
-// The pixels' parts of relMSE and SMAPE, as means of the channels. The weighted mean of the map is
-// the measure, unless a second half of the reference takes part in that.
+// The pixels' terms of relMSE and SMAPE, averaged over the channels. The weighted mean of the map
+// is the measure, unless a second half of the reference is used there.
 ErrorMap relMseMap(const Layer& a, const Layer& reference, double epsilon);
 ErrorMap smapeMap(const Layer& a, const Layer& reference);
 ErrorMap flipMap(const FlipMaps& maps);
 ErrorMap hdrFlipMap(const FlipMaps& maps);
 
-// With a legend below, in the measure's unit. Pixels of weight 0 are grey.
+// The map in false colours with a legend below, in the measure's unit. Pixels of weight 0 are grey.
 Picture errorPicture(const ErrorMap& map, int width, int height, const Mask& mask = {});
 
-// From black for 0 over violet, red and orange to pale yellow for 1; lighter means more, also in a
-// grey print. Values beyond are clamped.
+// Colour from black for 0 over violet, red and orange to pale yellow for 1; values beyond are
+// clamped. Lightness rises with the value, also in a grey print.
 Rgb8 errorColour(double value);
 
 }  // namespace bnvpl

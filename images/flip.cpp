@@ -15,14 +15,14 @@ using flip::Filters;
 using flip::Kernel;
 using flip::Plane;
 
-// [A20]: the exponents of colour and feature differences. Colour
-// differences up to kKneeShare of the largest possible one take the lower kKnee of 0..1.
+// Exponents of colour and feature differences in [A20]. Colour differences up to kKneeShare of the
+// maximum are mapped to 0..kKnee.
 constexpr float kColourExponent = 0.7f, kFeatureExponent = 0.5f;
 constexpr float kKneeShare = 0.4f, kKnee = 0.95f;
 
 constexpr size_t kPixelsEach = 4096;
 
-// What the eye makes of one picture.
+// One picture after the filters that model the eye.
 struct Appearance {
   std::vector<Vec3> huntLab;         // after the contrast sensitivity filters
   std::vector<float> edges, points;  // strength of features
@@ -37,7 +37,7 @@ Plane filtered(const Plane& in, const flip::SensitivityFilter& filter) {
   return out;
 }
 
-// Length of the gradient that `derivative` across `smooth` sees.
+// Length of the gradient by `derivative` along an axis and `smooth` across it.
 std::vector<float> featureStrength(const Plane& grey, const Plane& greySmooth,
                                    const Kernel& derivative, const Kernel& smooth) {
   Plane horizontal(grey.width, grey.height), vertical(grey.width, grey.height);
@@ -78,7 +78,7 @@ Appearance appearance(const RgbImage& image, const Filters& filters) {
   return a;
 }
 
-// The largest colour difference that there is, between green and blue, to kColourExponent.
+// The max colour difference, between green and blue, to the power of kColourExponent.
 float largestColourPower() {
   return std::pow(flip::hyab(flip::huntLabFromRgb({0, 1, 0}), flip::huntLabFromRgb({0, 0, 1})),
                   kColourExponent);
@@ -87,11 +87,11 @@ float largestColourPower() {
 float colourError(Vec3 a, Vec3 b, float largest) {
   const float power = std::pow(flip::hyab(a, b), kColourExponent), knee = kKneeShare * largest;
   if (power < knee) return kKnee / knee * power;
-  // Rounding may pass the largest by a hair, and 1 is promised.
+  // Rounding may slightly exceed the maximum; the result is at most 1.
   return std::min(1.0f, kKnee + (power - knee) / (largest - knee) * (1.0f - kKnee));
 }
 
-// `weaken` scales the difference of two gradients, at most sqrt(2), to 0..1.
+// kWeaken scales differences of gradient lengths, at most sqrt(2), to 0..1.
 float featureError(float edges, float points) {
   constexpr float kWeaken = 1.0f / std::numbers::sqrt2_v<float>;
   return std::min(1.0f, std::pow(kWeaken * std::max(edges, points), kFeatureExponent));
@@ -104,7 +104,7 @@ std::vector<float> differences(const Appearance& a, const Appearance& b) {
     const float colour = colourError(a.huntLab[i], b.huntLab[i], largest);
     const float feature =
         featureError(std::fabs(a.edges[i] - b.edges[i]), std::fabs(a.points[i] - b.points[i]));
-    // A feature in one picture only raises the error towards 1, but no error remains none.
+    // A feature in only one picture raises the error towards 1; no colour difference stays 0.
     map[i] = colour > 0.0f ? std::pow(colour, 1.0f - feature) : 0.0f;
   });
   return map;

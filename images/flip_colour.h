@@ -12,14 +12,14 @@ namespace bnvpl::flip {
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-// CIE XYZ from linear sRGB: Image Engineering technote 958, as in the authors' implementation. It
-// differs from IEC 61966-2-1 in the fifth digit.
+// CIE XYZ from linear sRGB, from Image Engineering technote 958 as in the authors' implementation.
+// The matrix differs from IEC 61966-2-1 in the fifth digit.
 inline constexpr Matrix3 kXyzFromRgb{
     {{0.4123865632529917, 0.3575914909206253, 0.1804504912035637},
      {0.2126368216773238, 0.7151829818412507, 0.0721801964814255},
      {0.0193306201524840, 0.1191971636402082, 0.9503725870054354}}};
 
-// Every use of XYZ in FLIP is relative to the white point, which is the XYZ of R = G = B = 1.
+// FLIP uses XYZ relative to the white point, which is the XYZ of R = G = B = 1.
 constexpr Matrix3 relativeToWhite(Matrix3 m) {
   for (auto& row : m) {
     const double white = row[0] + row[1] + row[2];
@@ -56,7 +56,7 @@ inline Vec3 multiply(const Matrix3& m, Vec3 v) {
   return {row(0), row(1), row(2)};
 }
 
-// YCxCz, the linear opponent space that the filters work in: [A20]
+// YCxCz, the linear opponent space of the filters in [A20].
 inline Vec3 yCxCzFromRgb(Vec3 rgb) {
   const Vec3 w = multiply(kWhiteXyzFromRgb, rgb);
   return {116.0f * w.y - 16.0f, 500.0f * (w.x - w.y), 200.0f * (w.y - w.z)};
@@ -66,8 +66,8 @@ inline Vec3 rgbFromYCxCz(Vec3 c) {
   return multiply(kRgbFromWhiteXyz, {y + c.y / 500.0f, y, y - c.z / 200.0f});
 }
 
-// L*, a*, b* (CIE 1976), with a* and b* scaled by L* / 100: colours matter less in the dark (the
-// Hunt effect, [A20]).
+// L*, a*, b* (CIE 1976), with a* and b* scaled by L* / 100, because colours are less visible in the
+// dark (the Hunt effect, [A20]).
 inline Vec3 huntLabFromRgb(Vec3 rgb) {
   constexpr float kDelta = 6.0f / 29.0f;
   const auto f = [](float t) {
@@ -80,7 +80,7 @@ inline Vec3 huntLabFromRgb(Vec3 rgb) {
   return {l, hunt * 500.0f * (fx - fy), hunt * 200.0f * (fy - fz)};
 }
 
-// The HyAB distance (Abasi et al. 2020): the steps in lightness and in chromaticity add up.
+// The HyAB distance (Abasi et al. 2020): the sum of the distances in lightness and in chromaticity.
 inline float hyab(Vec3 a, Vec3 b) {
   const Vec3 d = a - b;
   return std::fabs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);

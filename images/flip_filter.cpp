@@ -11,20 +11,20 @@ namespace {
 
 constexpr size_t kRowsEach = 8;
 
-// The contrast sensitivities as sums of Gaussians in space, [A20]:
-// a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees. The second blue-yellow one is for its long tail.
+// The contrast sensitivities of [A20] as sums of Gaussians a sqrt(pi / b) exp(-pi^2 x^2 / b), with
+// x in degrees. The long tail of the blue-yellow one needs a second Gaussian.
 struct SpatialGaussian {
   double a, b;
 };
 const std::vector<SpatialGaussian> kAchromatic{{1.0, 0.0047}}, kRedGreen{{1.0, 0.0053}},
     kBlueYellow{{34.1, 0.04}, {13.5, 0.025}};
-// All three end where the widest has fallen to three of its standard deviations.
+// All three are cut off at three standard deviations of the widest Gaussian.
 constexpr double kWidestB = 0.04, kDeviations = 3.0;
 
-// Width of the feature detector, in degrees: [A20]
+// Width of the feature detector of [A20], in degrees.
 constexpr double kFeatureDegrees = 0.082;
 
-// Leaves out the ends that are below what a float can add to the middle.
+// Omits the ends whose weights are below float precision relative to the largest.
 Kernel trimmed(const std::vector<double>& weights) {
   const int full = static_cast<int>(weights.size() / 2);
   double largest = 0.0;
@@ -48,8 +48,8 @@ std::vector<double> sampled(int radius, const Function& f) {
   return values;
 }
 
-// Positive weights to a sum of 1, negative ones to a sum of -1. In two dimensions that is the same
-// as in one, because the other factor is a Gaussian of sum 1.
+// Scales positive weights to a sum of 1, and negative ones to a sum of -1. The other factor of the
+// separable filter is a Gaussian of sum 1, so that this also normalises it in two dimensions.
 std::vector<double> normalised(std::vector<double> weights) {
   double positive = 0.0, negative = 0.0;
   for (const double w : weights) (w > 0.0 ? positive : negative) += std::fabs(w);

@@ -1,4 +1,4 @@
-// FLIP's filters: what the eye resolves, and what catches it. All are separable.
+// The separable filters of FLIP: contrast sensitivity, and detection of edges and points.
 #pragma once
 
 #include <cstddef>
@@ -6,24 +6,24 @@
 
 namespace bnvpl::flip {
 
-// weights[radius + i] belongs to the neighbour at offset i.
+// A one-dimensional kernel; weights[radius + i] is the weight of the neighbour at offset i.
 struct Kernel {
   int radius = 0;
   std::vector<float> weights;
 };
 
-// A contrast sensitivity filter: one Gaussian, or two of them added with the shares `mix`.
+// A contrast sensitivity filter: one Gaussian, or the sum of two with weights `mix`.
 struct SensitivityFilter {
   std::vector<Kernel> gaussians;  // each sums to 1
   std::vector<float> mix;         // sums to 1
 };
 struct Filters {
   SensitivityFilter achromatic, redGreen, blueYellow;
-  // Sums to 1; its derivatives have positive weights of sum 1 and negative ones of sum -1.
+  // `smooth` sums to 1; in its derivatives, positive weights sum to 1 and negative ones to -1.
   Kernel smooth, edge, point;
 };
 
-// For a screen that shows `ppd` pixels in a degree of the viewer's field.
+// Filters for a screen with `ppd` pixels per degree of visual angle.
 Filters makeFilters(double ppd);
 
 // One value for each pixel, row by row; beyond the borders the last pixel repeats.

@@ -9,11 +9,11 @@
 namespace bnvpl {
 namespace {
 
-// [A21]: (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5) from Narkowicz 2016, "ACES Filmic Tone
-// Mapping Curve". The curve's own exposure of 0.6 is part of the constants.
+// The tone curve of [A21], (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5), from Narkowicz 2016, "ACES
+// Filmic Tone Mapping Curve". The constants include the curve's exposure of 0.6.
 constexpr double kK0 = 0.6 * 0.6 * 2.51, kK1 = 0.6 * 0.03, kK3 = 0.6 * 0.6 * 2.43, kK4 = 0.6 * 0.59,
                  kK5 = 0.14;
-constexpr double kBright = 0.85;  // [A21]: t_max and t_min
+constexpr double kBright = 0.85;  // t of [A21], for both ends of the range
 
 constexpr size_t kHdrPixelsEach = 4096;
 
@@ -35,7 +35,7 @@ double luminanceAt(const RgbImage& image, size_t i) {
          kLuminance[2] * double{image.rgb[2][i]};
 }
 
-// The light that the ACES curve takes to kBright: the positive root of a quadratic.
+// The light that the ACES curve maps to kBright: the positive root of a quadratic.
 double brightLight() {
   const double a = kK0 - kK3 * kBright, b = kK1 - kK4 * kBright, c = -kK5 * kBright;
   return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);

@@ -79,7 +79,7 @@ Image meanOf(const Layer& a, const Layer& b) {
   for (size_t c = 0; c < a.data.size(); ++c) {
     std::vector<float>& values = mean.add(a.channels[c]);
     for (size_t i = 0; i < values.size(); ++i) {
-      // In double: the sum of two large floats may exceed them all.
+      // In doubles, because the sum of two large floats may overflow.
       values[i] = static_cast<float>(0.5 * (double{(*a.data[c])[i]} + double{(*b.data[c])[i]}));
     }
   }

@@ -1,4 +1,4 @@
-// One to three channels of an image, as the metrics take them.
+// A layer: one to three channels of an image.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// By reference: the image must outlive it.
+// Refers to the channels of an image, which must outlive it.
 struct Layer {
   std::string name;  // "" for R, G, B
   int width = 0, height = 0;
@@ -17,12 +17,12 @@ struct Layer {
   std::vector<const std::vector<float>*> data;
 
   size_t pixelCount() const { return data.empty() ? 0 : data[0]->size(); }
-  // Whether it holds light in R, G, B, so that luminance and FLIP mean something.
+  // Whether it has R, G, B, for which luminance and FLIP are defined.
   bool isColour() const { return data.size() == 3 && channels[0].back() == 'R'; }
 };
 
-// "" gives R G B; "indirect" gives indirect.R indirect.G indirect.B; "N" gives N.X N.Y N.Z; "Z"
-// gives Z. Throws InputError, naming the layers that there are.
+// Returns R G B for ""; indirect.R indirect.G indirect.B for "indirect"; N.X N.Y N.Z for "N"; Z for
+// "Z". Throws InputError, naming the existing layers, if there is none of that name.
 Layer findLayer(const fs::path& file, const Image& image, const std::string& name);
 
 // Throws InputError at the first value that is infinite or not a number.

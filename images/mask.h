@@ -1,4 +1,4 @@
-// Which pixels of an image count, and how much.
+// Weights of the pixels of an image.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// The weight of each pixel, 0..1, row by row from the top; empty: every pixel counts as 1.
+// The weight of each pixel, 0..1, row by row from the top; if empty, all weights are 1.
 struct Mask {
   std::vector<double> weights;
 
@@ -15,12 +15,12 @@ struct Mask {
   double sum(size_t pixels) const;
 };
 
-// Reads a PNG of greys: white counts, black does not, a grey counts for its share of 255. Throws
-// InputError when it is no PNG, not of the size of `layer` (of `image`), has a colour or a
-// transparent pixel, or is black all over.
+// Reads a grey PNG: the weight of a pixel is its value / 255. Throws InputError if the file is no
+// PNG, differs in size from `layer` (of `image`), has a coloured or transparent pixel, or is all
+// black.
 Mask readMask(const fs::path& file, const fs::path& image, const Layer& layer);
 
-// Of one value for each pixel.
+// The weighted mean of `values`, one for each pixel.
 double weightedMean(const std::vector<float>& values, const Mask& mask);
 
 }  // namespace bnvpl

@@ -7,11 +7,11 @@
 namespace bnvpl {
 namespace {
 
-constexpr int kMargin = 14;  // left and right of the bar: half a number
+constexpr int kMargin = 14;  // left and right of the bar, for half a number
 constexpr int kBarTop = 4, kBarHeight = 8, kTextTop = 15, kTitleTop = 26;
 constexpr Rgb8 kInk{0, 0, 0};
 
-// Centred on x, but whole.
+// Draws text centred on x, but shifted to lie inside the picture.
 void drawCentred(Picture& picture, const std::string& text, int x, int top) {
   const int width = textWidth(text);
   const int start = std::clamp(x - width / 2, 1, std::max(1, picture.width - 1 - width));

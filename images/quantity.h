@@ -1,4 +1,5 @@
-// What a metric is taken of: a channel, or a weighted sum of channels such as the luminance.
+// The quantity that a metric measures: a channel, or a weighted sum of channels such as the
+// luminance.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ inline constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
 class Quantity {
  public:
   explicit Quantity(std::vector<double> shares) : shares_(std::move(shares)) {}
-  // Of pixel i. Channels of share 0 are not read.
+  // The value at pixel i. Channels of share 0 are not read.
   double at(const Layer& layer, size_t i) const {
     double sum = 0.0;
     for (size_t k = 0; k < shares_.size(); ++k) {
@@ -34,7 +35,7 @@ inline Quantity channelOf(const Layer& layer, size_t k) {
   return Quantity(std::move(shares));
 }
 
-// Of layers of R, G, B.
+// The luminance of layers with R, G, B.
 inline Quantity luminanceQuantity() { return Quantity({kLuminance.begin(), kLuminance.end()}); }
 
 }  // namespace bnvpl

@@ -1,10 +1,9 @@
 // RMSE, the root of the mean squared error.
 //   MSE = sum(w (a - b)(a - c)) / sum(w)      RMSE = sqrt(max(0, MSE))
-// b and c are the halves of the reference; c is b where there is one alone. The noise of two halves
-// is independent and cancels in the product's mean, so MSE estimates the squared distance to a
-// reference without noise, and may come out negative.
-// Range: RMSE 0 to infinity, in the unit of the image; RMSE / mean has none and is infinite for a
-// black reference. Both refuse nothing. Bright pixels decide.
+// b and c are the halves of the reference; c is b if there is only one. The noise of the two halves
+// is independent and cancels in the mean of the product, so that MSE estimates the squared distance
+// to a reference without noise, and can be negative. Range: RMSE 0 to infinity, in the unit of the
+// image; RMSE / mean is dimensionless, and infinite for a black reference. Bright pixels dominate.
 #pragma once
 
 #include "images/image_pair.h"
@@ -14,7 +13,7 @@ namespace bnvpl {
 
 double meanSquaredError(const ImagePair& pair, const Quantity& quantity);
 
-// 0 for an exact image, of a black reference too.
+// RMSE / mean; 0 for an exact image, also with a black reference.
 inline double rmseOverMean(double rmse, double meanB) { return rmse > 0.0 ? rmse / meanB : 0.0; }
 
 }  // namespace bnvpl

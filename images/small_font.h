@@ -1,5 +1,5 @@
-// Numbers and names of measures in an image: 5 x 7 pixel glyphs for digits, signs, point, per cent
-// and the capital letters that legends need.
+// Text in pictures: 5 x 7 pixel glyphs for digits, signs, point, per cent and the capital letters
+// of legends.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace bnvpl {
 
 inline constexpr int kGlyphWidth = 5, kGlyphHeight = 7, kGlyphAdvance = 6;
 
-// Rows from the top; bit 4 is the leftmost pixel. Blank for characters that are not here.
+// Rows of a glyph from the top; bit 4 is the leftmost pixel. Unknown characters are blank.
 constexpr std::array<uint8_t, kGlyphHeight> glyphRows(char c) {
   switch (c) {
     case '0':
@@ -45,7 +45,7 @@ constexpr std::array<uint8_t, kGlyphHeight> glyphRows(char c) {
       return {14, 17, 17, 31, 17, 17, 17};
     case 'D':
       return {30, 17, 17, 17, 17, 17, 30};
-    case 'e':  // of 1e-05
+    case 'e':  // as in 1e-05
     case 'E':
       return {31, 16, 16, 30, 16, 16, 31};
     case 'F':

@@ -1,7 +1,6 @@
 // The pixel with the largest weighted squared error, summed over the channels.
 //   argmax w sum_k (a_k - b_k)(a_k - c_k)
-// The first of equals, row by row from the top; pixels of weight 0 are left out. It refuses
-// nothing.
+// Ties go to the first pixel, row by row from the top; pixels of weight 0 are ignored.
 #pragma once
 
 #include <array>

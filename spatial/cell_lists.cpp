@@ -14,7 +14,7 @@ namespace {
 
 using Grid = openvdb::tools::PointIndexGrid;
 using Leaf = Grid::TreeType::LeafNodeType;
-// Unregistered, so that one can be made for each task without touching shared state.
+// An unregistered accessor, so that each task can make one without touching shared state.
 using Accessor = openvdb::tree::ValueAccessor<const Grid::TreeType, /*IsSafe=*/false>;
 using openvdb::Coord;
 using openvdb::Vec3d;
@@ -23,7 +23,8 @@ using Range = CellLists::Range;
 constexpr int kMaxLevels = 32;
 constexpr size_t kCellsAtOnce = 256;
 
-// The interface that OpenVDB partitions through. In cells: its transforms refuse voxels below 1e-5.
+// The point list that OpenVDB partitions. Positions are in cells, because OpenVDB's transforms
+// reject voxels below 1e-5.
 struct PointList {
   using PosType = Vec3d;
   std::span<const Vec3> points;
@@ -36,7 +37,7 @@ struct PointList {
   }
 };
 
-// The points with radii of one power of two.
+// The points whose radii have the same power of two.
 struct Level {
   std::vector<uint32_t> members;
   float largestRadius = 0.0f;
@@ -48,8 +49,8 @@ struct Level {
     return Coord::floor(Vec3d(p.x, p.y, p.z) * cellsPerUnit + Vec3d(0.5));
   }
 
-  // Calls fn(range) for the points of all cells that a box meets. A leaf orders its points by cell,
-  // z fastest, so cells along z are one range for each leaf.
+  // Calls fn(range) for the points of all cells that a box overlaps. A leaf orders its points by
+  // cell, z fastest, so cells along z are one range in each leaf.
   template <typename Fn>
   void forRangesMeeting(const Accessor& accessor, Vec3 low, Vec3 high, const Fn& fn) const {
     const Coord lower = cell(low), upper = cell(high);
@@ -77,7 +78,7 @@ struct Cell {
   Range points;
   uint32_t level;
   float largestRadius;
-  Bounds bounds;  // of its points
+  Bounds bounds;  // bounding box of its points
 };
 
 class Builder {
@@ -125,7 +126,7 @@ void Builder::splitIntoLevels() {
   }
   std::erase_if(levels_, [](const Level& level) { return level.members.empty(); });
   for (Level& level : levels_) {
-    // Cell numbers are 32-bit and start at the world's origin.
+    // The min cell size keeps cell numbers, which start at the world's origin, within 32 bits.
     const double size = std::max({2.0f * level.largestRadius, furthest * 1e-6f, 1e-30f});
     level.cellsPerUnit = 1.0 / size;
     level.grid = openvdb::tools::createPointIndexGrid<Grid>(
@@ -134,7 +135,8 @@ void Builder::splitIntoLevels() {
   }
 }
 
-// Cells that hold points, level by level, leaf by leaf; and the points in that order.
+// Numbers the cells that hold points, level by level and leaf by leaf, and orders the points
+// likewise.
 void Builder::numberCells() {
   lists_.order.resize(points_.size());
   lists_.cellOf.resize(points_.size());
@@ -162,7 +164,7 @@ void Builder::numberCells() {
   parallelFor(jobs.size(), 4, [&](size_t j) {
     const Job& job = jobs[j];
     numberCellsOf(*job.level, *job.leaf, job.firstPoint, job.firstCell);
-    // From here on the leaf's indices are places in the order; the first is enough.
+    // From here on the leaf stores the place of its first point in the order.
     job.leaf->indices().assign(1, static_cast<openvdb::PointIndex32::IntType>(job.firstPoint));
   });
 }
@@ -190,14 +192,15 @@ void Builder::numberCellsOf(const Level& level, const Leaf& leaf, uint32_t first
   }
 }
 
-// A cell looks at its own level and the coarser ones, where few cells are in reach; the coarser
-// cell is told. So each pair of cells is found once, but within a level from both sides.
+// A cell searches its own level and the coarser ones, where few cells are in reach, and adds its
+// range to the coarser cells. Pairs of cells in different levels are thus found once, pairs in one
+// level from both sides.
 void Builder::findRanges(uint32_t cell, const std::vector<Accessor>& accessors,
                          std::vector<Entry>& found) const {
   const Cell& self = cells_[cell];
   for (uint32_t l = self.level; l < levels_.size(); ++l) {
     const float reach = self.largestRadius + levels_[l].largestRadius;
-    // Wider by what the rounding of differences and of the cell borders may amount to.
+    // The margin covers rounding of differences and cell borders.
     const Vec3 furthest = max(max(self.bounds.upper, -self.bounds.lower), Vec3{});
     const Vec3 margin(reach * (1.0f + 1e-5f) + maxComponent(furthest) * 1e-6f);
     levels_[l].forRangesMeeting(
@@ -235,7 +238,7 @@ void Builder::collectRanges() {
     }
     found[chunk] = {};
   });
-  // Sorted, which also takes out the threads' part in the order, and joined where they touch.
+  // Sorting makes the order independent of threads; adjacent ranges are then merged.
   parallelFor(cells_.size(), 256, [&](size_t c) {
     const auto first = all.begin() + begin[c], last = all.begin() + begin[c + 1];
     std::sort(first, last);
@@ -263,7 +266,7 @@ void Builder::collectRanges() {
 }  // namespace
 
 void CellLists::compact(std::span<const uint8_t> keep) {
-  std::vector<uint32_t> place(keep.size() + 1);  // in the new order, of each point or the next kept
+  std::vector<uint32_t> place(keep.size() + 1);  // new place of each point, or of the next kept one
   uint32_t kept = 0;
   for (size_t k = 0; k < keep.size(); ++k) {
     place[k] = kept;

@@ -1,6 +1,6 @@
-// Who may be near whom, for points that each have a radius of their own: points in the order of
-// the cells that they lie in, and for each cell the ranges of that order that can hold a partner.
-// The only OpenVDB include is in cell_lists.cpp.
+// Candidate pairs of near points, where each point has its own radius: the points in the order of
+// their cells, and for each cell the ranges of this order that may hold partners. Only
+// cell_lists.cpp includes OpenVDB.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,25 @@ struct CellLists {
     friend bool operator==(const Range&, const Range&) = default;
   };
 
-  std::vector<uint32_t> order;       // the given index of the k-th point by cell; may be emptied
-  std::vector<uint32_t> cellOf;      // the cell of the k-th point
-  std::vector<uint32_t> firstRange;  // of each cell; cells + 1 entries
-  std::vector<Range> ranges;         // over k, of all cells, disjoint and ascending in each
+  std::vector<uint32_t> order;       // original index of the k-th point by cell; may be emptied
+  std::vector<uint32_t> cellOf;      // cell of the k-th point
+  std::vector<uint32_t> firstRange;  // first range of each cell; cells + 1 entries
+  std::vector<Range> ranges;         // ranges of k; disjoint and ascending within each cell
 
-  // Every point at less than the sum of both radii from the k-th is in one of these, itself too.
+  // Ranges that hold every point, the k-th included, whose distance from the k-th is less than the
+  // sum of both radii.
   std::span<const Range> near(uint32_t k) const {
     const uint32_t cell = cellOf[k];
     return {ranges.data() + firstRange[cell], firstRange[cell + 1] - firstRange[cell]};
   }
 
-  // Leaves out the points whose `keep` is 0; the order of the rest stays.
+  // Removes the points whose `keep` is 0, and keeps the order of the others.
   void compact(std::span<const uint8_t> keep);
 };
 
-// Radii are positive and finite, world units. Points with radii of one power of two share a grid
-// whose cells are two radii wide (OpenVDB's point index grid), so that a cell holds about as many
-// points where they are dense as where they are rare, if the radii follow the density. Points in an
-// order that keeps neighbours together (mortonOrder) make it faster.
+// Radii are positive and finite, world units. Points whose radii have the same power of two share a
+// grid (OpenVDB's point index grid) with cells of two radii, so that all cells hold about equally
+// many points if the radii follow the density. Points in Morton order (mortonOrder) make it faster.
 CellLists makeCellLists(std::span<const Vec3> points, std::span<const float> radii);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// Six directions, along and against each axis, by which normals are told apart.
+// Classifies normals by the nearest of the six axis directions.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ inline uint32_t facingOf(Vec3 n) {
   const uint32_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
   return 2 * axis + (n[axis] < 0.0f ? 1 : 0);
 }
-// Its unit vector.
+// The unit vector of a facing.
 inline Vec3 axisOf(uint32_t facing) {
   Vec3 axis;
   axis[facing / 2] = facing % 2 == 0 ? 1.0f : -1.0f;

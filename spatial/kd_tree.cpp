@@ -4,7 +4,7 @@
 
 #include "core/checked_malloc.h"
 
-// FLANN's pool returns null when memory is short, and the tree writes there.
+// FLANN does not check the memory of its pool for null.
 using bnvpl::mallocOrThrow;
 #define malloc mallocOrThrow
 #include <flann/util/allocator.h>
@@ -21,14 +21,14 @@ namespace {
 
 using Index = flann::KDTreeSingleIndex<flann::L2<float>>;
 
-// FLANN keeps what is strictly nearer than this, and prunes by distances that it updates in floats:
-// a little wider, no point at the border is missed. addPoint has the last word.
+// FLANN keeps points that are strictly nearer than this, and prunes by incrementally updated float
+// distances. The slightly larger bound misses no point at the border; addPoint() decides.
 float pruneBeyond(float distanceSquared) {
   return distanceSquared * (1.0f + 1e-5f) + std::numeric_limits<float>::min();
 }
 
-// Keeps the `capacity` smallest by (distance, index) as a max-heap, so that ties do not depend on
-// the order in which the tree is walked.
+// A max-heap of the `capacity` smallest by (distance, index), so that ties do not depend on the
+// order of traversal.
 class NearestSet final : public flann::ResultSet<float> {
  public:
   NearestSet(std::vector<Neighbour>& found, size_t capacity) : found_(found), capacity_(capacity) {
@@ -62,7 +62,7 @@ flann::SearchParams exactSearch() {
 }  // namespace
 
 struct KdTree::Impl {
-  // FLANN asks for mutable floats but only reads them. It dislikes an empty set, hence `size`.
+  // FLANN takes mutable floats but only reads them. It does not support empty sets.
   explicit Impl(std::span<const Vec3> points) : size(points.size()) {
     if (size == 0) return;
     auto* const floats = const_cast<float*>(&points.front().x);

@@ -1,5 +1,5 @@
-// Exact nearest neighbours over points of any density: FLANN's single kd-tree. The only FLANN
-// include is in kd_tree.cpp.
+// Exact nearest neighbours of points of any density, by FLANN's single kd-tree. Only kd_tree.cpp
+// includes FLANN.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ class KdTree {
   KdTree(const KdTree&) = delete;
   KdTree& operator=(const KdTree&) = delete;
 
-  // Replaces `found` by the `count` points nearest to `centre` (all of them where there are fewer),
-  // ordered by (distance, index); equal distances at the end go to the lower indices.
+  // Replaces `found` by the `count` points nearest to `centre`, or by all if there are fewer,
+  // ordered by (distance, index).
   void nearest(Vec3 centre, size_t count, std::vector<Neighbour>& found) const;
 
  private:

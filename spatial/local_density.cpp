@@ -10,13 +10,13 @@
 namespace bnvpl {
 namespace {
 
-// The distance at which `count` of the nearest were on a compatible surface.
+// The distance within which `count` neighbours lie on a compatible surface.
 struct Reach {
   float distanceSquared = 0.0f;
   unsigned count = 0;
 };
 
-// `nearest` is in order of distance and may hold `self`, which does not count.
+// `nearest` is sorted by distance and may contain `self`, which is skipped.
 Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
                    const std::vector<Neighbour>& nearest, unsigned k) {
   const size_t kth = std::min<size_t>(k, nearest.size() - 1);
@@ -35,8 +35,8 @@ Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal,
 
 Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
                 unsigned k, const KdTree& tree, std::vector<Neighbour>& nearest) {
-  // On plain surfaces nearly all neighbours qualify, so a short query usually answers what the long
-  // one would: both are prefixes of the same order.
+  // On flat surfaces nearly all neighbours qualify, so that a short query usually suffices. Its
+  // result is a prefix of that of the long query.
   tree.nearest(position[self], k + k / 4 + 2, nearest);
   Reach reach = reachOnSheet(position, normal, self, nearest, k);
   if (reach.count == k) return reach;

@@ -22,7 +22,7 @@ std::vector<uint32_t> mortonOrder(std::span<const Vec3> points) {
   for (const Vec3 p : points) bounds.extend(p);
   const float extent = maxComponent(bounds.extent());
   const float cellsPerUnit = extent > 0.0f ? 1023.0f / extent : 0.0f;
-  std::vector<uint64_t> keys(points.size());  // Morton code, then index: all different
+  std::vector<uint64_t> keys(points.size());  // Morton code and index, so that all keys differ
   parallelFor(points.size(), 4096, [&](size_t i) {
     const Vec3 cell = (points[i] - bounds.lower) * cellsPerUnit;
     const uint32_t code = spreadBits(static_cast<uint32_t>(cell.x)) << 2 |

@@ -1,4 +1,4 @@
-// An order in which points that are near in space are near in memory.
+// Orders points so that those near in space are near in memory.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Disks on surfaces and those near to each on the same surface: what they know is averaged, as one
-// alone knows little.
+// Finds, for each of many disks on surfaces, the nearby disks on the same surface, over which
+// learned quantities are averaged.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace bnvpl {
 
 class NearSurfaces {
  public:
-  // Points, their unit normals and their radii (> 0, finite), world units. Borrows them. `reach`,
-  // in radii: within which others count; 2.5 has about five, 5 about twenty.
+  // Takes points, their unit normals and their radii (> 0, finite), world units, and borrows them.
+  // Disks reach `reach` radii: 2.5 finds about five disks, 5 about twenty.
   NearSurfaces(std::span<const Vec3> points, std::span<const Vec3> normals,
                std::span<const float> radii, float reach)
       : points_(points),
@@ -21,7 +21,7 @@ class NearSurfaces {
         reach_(reach),
         grid_(points, normals, scaled(radii, reach)) {}
 
-  // Calls fn(k) for disk i itself and those near to it, in a fixed order.
+  // Calls fn(k) for disk i itself and the disks near it, in a fixed order.
   template <typename Fn>
   void forEach(size_t i, const Fn& fn) const {
     ReachGrid::forEachReaching(grid_.lookUp(points_[i]), [&](const ReachGrid::Disk& d) {

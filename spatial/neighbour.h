@@ -1,4 +1,4 @@
-// What neighbour queries answer.
+// The result of neighbour queries.
 #pragma once
 
 #include <cstdint>

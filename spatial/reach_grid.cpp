@@ -13,14 +13,13 @@ ReachGrid::ReachGrid(std::span<const Vec3> points, std::span<const Vec3> normals
                      std::span<const float> radii) {
   if (points.empty()) return;
   origin_ = points[0];
-  // Levels by powers of two of the radius. A cell is one radius wide at the top of a level and two
-  // at its bottom: wider ones make longer lists to sweep, narrower ones more entries (measured best
-  // of four).
+  // Each level has the radii of one power of two. A cell is one to two radii wide: wider cells have
+  // longer lists, narrower cells make more entries.
   std::map<int, std::vector<uint32_t>> byExponent;
   for (size_t i = 0; i < points.size(); ++i) {
     byExponent[std::ilogb(radii[i])].push_back(static_cast<uint32_t>(i));
   }
-  constexpr int kFinestOfAll = -100;  // the cells of a denormal radius cannot be counted
+  constexpr int kFinestOfAll = -100;  // cell numbers of denormal radii would overflow
   const int finest = std::max({byExponent.begin()->first, kFinestOfAll,
                                byExponent.rbegin()->first - (Lookup::kMaxLevels - 1)});
   for (auto below = byExponent.begin(); below->first < finest; below = byExponent.begin()) {
@@ -50,7 +49,7 @@ void ReachGrid::buildLevel(Level& level, const std::vector<uint32_t>& members,
       }
     }
   }
-  tbb::parallel_sort(listed.begin(), listed.end());  // the order is total, so there is one result
+  tbb::parallel_sort(listed.begin(), listed.end());  // deterministic, because the order is total
   listed.erase(std::unique(listed.begin(), listed.end()), listed.end());
   size_t cells = 0;
   for (size_t k = 0; k < listed.size(); ++k) {

@@ -1,6 +1,7 @@
-// Which of many disks reach a point: the inverse of a radius query, where every stored point has a
-// radius of its own. Hash grids of cells twice as large from level to level; a disk is listed in
-// the cells of its level that its box touches (at most 27), so that a query reads one cell a level.
+// Finds which of many disks reach a point: an inverse radius query, where every stored point has
+// its own radius. There is a hash grid for each level, and cells double in size from level to
+// level. A disk is listed in the cells of its level that its box overlaps (at most 27), so that a
+// query reads one cell of each level.
 #pragma once
 
 #include <algorithm>
@@ -19,14 +20,14 @@ class ReachGrid {
   struct Level;
 
  public:
-  struct Disk {  // copied, so that a cell is read in one sweep: two to a cache line
+  struct Disk {  // a copy, so that a cell's list is contiguous; two fit a cache line
     Vec3 centre;
     float radiusSquared;
     Vec3 normal;
     uint32_t index;
   };
 
-  // Points, their normals and their radii (> 0, finite), world units.
+  // Takes points, their normals and their radii (> 0, finite), world units.
   ReachGrid(std::span<const Vec3> points, std::span<const Vec3> normals,
             std::span<const float> radii);
 
@@ -34,7 +35,7 @@ class ReachGrid {
   class Lookup {
     friend class ReachGrid;
     static constexpr int kMaxLevels = 24;
-    static constexpr size_t kSweep = 32;  // disks that are tested before any is handed out
+    static constexpr size_t kSweep = 32;  // number of disks tested before the callback runs
     struct List {
       const Level* level;
       uint64_t key;
@@ -51,8 +52,7 @@ class ReachGrid {
     find(lookup);
     return lookup;
   }
-  // The same of many points, which wait for memory together. pointOf(i) is null where there is
-  // none.
+  // The same for many points, whose cache misses overlap. pointOf(i) may be null, to skip it.
   template <typename PointOf>
   void lookUpAll(size_t count, const PointOf& pointOf, std::span<Lookup> lookups) const {
     for (size_t i = 0; i < count; ++i) {
@@ -72,7 +72,7 @@ class ReachGrid {
         const Disk* end = begin + std::min<ptrdiff_t>(Lookup::kSweep, list.end - begin);
         std::array<const Disk*, Lookup::kSweep + 1> reaching;
         size_t count = 0;
-        for (; begin != end; ++begin) {  // no branch: it could not be foreseen
+        for (; begin != end; ++begin) {  // without a branch, which would be mispredicted
           reaching[count] = begin;
           count += lengthSquared(begin->centre - lookup.at_) < begin->radiusSquared;
         }
@@ -90,7 +90,7 @@ class ReachGrid {
       const uint64_t key = keyOf(finest, level.shift);
       prefetch(&level.slots[key & level.mask]);
       lookup.lists_[lookup.size_] = {&level, key, nullptr, nullptr};
-      lookup.size_ += level.mayHold(key);  // no branch: it could not be foreseen
+      lookup.size_ += level.mayHold(key);  // without a branch, which would be mispredicted
     }
   }
   void find(Lookup& lookup) const {
@@ -113,12 +113,12 @@ class ReachGrid {
     uint32_t begin = 0, end = 0;
   };
   struct Level {
-    int shift = 0;  // of the finest level's cell numbers
+    int shift = 0;  // right shift of the finest level's cell numbers
     uint64_t mask = 0;
     std::vector<Slot> slots;  // open addressing, at most half full
     std::vector<Disk> disks;  // by cell
-    // One bit for eight hash values each: most points that nothing reaches, which in a large scene
-    // are most points, are told by these, which fit a cache.
+    // A small hash filter that fits the cache. It rejects most points that no disk reaches, which
+    // are the majority in a large scene.
     std::vector<uint64_t> filter;
     uint64_t filterMask = 0;
 
@@ -126,7 +126,7 @@ class ReachGrid {
       const uint64_t bit = key >> 32 & filterMask;
       return (filter[bit / 64] >> (bit % 64) & 1) != 0;
     }
-    // That of the key, or an empty one.
+    // The slot of the key, or an empty one.
     const Slot& slotOf(uint64_t key) const {
       uint64_t slot = key & mask;
       while (slots[slot].begin != slots[slot].end && slots[slot].key != key)
@@ -135,7 +135,7 @@ class ReachGrid {
     }
   };
 
-  static int64_t floorOf(float v) {  // std::floor is a call on the baseline machine
+  static int64_t floorOf(float v) {  // std::floor is a function call without SSE4.1
     const float bounded = std::clamp(v, -1e15f, 1e15f);
     const auto whole = static_cast<int64_t>(bounded);
     return whole - (bounded < static_cast<float>(whole) ? 1 : 0);
@@ -144,7 +144,8 @@ class ReachGrid {
     const Vec3 cells = (at - origin_) * cellsPerUnit_;
     return {floorOf(cells.x), floorOf(cells.y), floorOf(cells.z)};
   }
-  // 21 bits an axis: cells a million apart share a list, which the test of distance sorts out.
+  // Each axis has 21 bits. Cells two million apart share a list; the distance test tells them
+  // apart.
   static uint64_t keyOf(Cell c, int shift) {
     constexpr uint64_t kAxisMask = (uint64_t{1} << 21) - 1;
     const auto bits = [&](int64_t v) { return static_cast<uint64_t>(v >> shift) & kAxisMask; };
@@ -153,8 +154,8 @@ class ReachGrid {
   void buildLevel(Level& level, const std::vector<uint32_t>& members, std::span<const Vec3> points,
                   std::span<const Vec3> normals, std::span<const float> radii) const;
 
-  Vec3 origin_;  // cells count from here, so that scenes far from the world's origin keep precision
-  float cellsPerUnit_ = 1.0f;  // of the finest level: a power of two, so that all cells nest
+  Vec3 origin_;                // origin of cells; keeps precision far from the world's origin
+  float cellsPerUnit_ = 1.0f;  // at the finest level; a power of two, so that all cells nest
   std::vector<Level> levels_;
 };
 

@@ -15,11 +15,11 @@ namespace bnvpl {
 
 namespace {
 
-// A disk speaks this far, in units of its radius, where none is nearer: twice as far as its
-// neighbours are.
+// Max distance, in radii, at which a disk represents a point: about twice the distance of
+// neighbours.
 constexpr float kReach = 3.0f;
 
-int levelOf(float radius) {  // cells of one to two radii
+int levelOf(float radius) {  // binary exponent of the cell width, one to two radii
   return std::clamp(std::ilogb(2.0f * radius), -100, 100);
 }
 
@@ -28,7 +28,7 @@ uint64_t hashOf(int64_t x, int64_t y, int64_t z, int level, uint32_t facing) {
   const auto bits = [&](int64_t v) { return static_cast<uint64_t>(v) & kAxisMask; };
   return mix64(bits(x) | bits(y) << 18 | bits(z) << 36 | uint64_t{facing} << 54 |
                static_cast<uint64_t>(level + 128) << 57) |
-         1;  // 0 is an empty slot's
+         1;  // 0 marks an empty slot
 }
 
 int64_t cellAlong(float cells) {
@@ -41,7 +41,7 @@ int64_t cellAlong(float cells) {
 
 struct RegionGrid::Entry {
   uint64_t key;
-  float score;  // the least wins
+  float score;  // the lowest wins
   uint32_t index;
   friend bool operator<(const Entry& a, const Entry& b) {
     return std::tie(a.key, a.score, a.index) < std::tie(b.key, b.score, b.index);
@@ -64,8 +64,7 @@ RegionGrid::RegionGrid(std::span<const Vec3> points, std::span<const Vec3> norma
   fill(entries);
 }
 
-// All cells within reach through which the disk's plane goes, for each direction that is near to
-// its normal.
+// Lists the cells within reach that the disk's plane crosses, for each facing near its normal.
 void RegionGrid::list(uint32_t index, Vec3 point, Vec3 normal, float radius,
                       std::vector<Entry>& out) const {
   const int level = levelOf(radius);
@@ -79,7 +78,7 @@ void RegionGrid::list(uint32_t index, Vec3 point, Vec3 normal, float radius,
       for (int64_t x = low(centre.x); x <= high(centre.x); ++x) {
         const Vec3 middle = Vec3{float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f} * cell;
         const Vec3 apart = middle - centre;
-        // Half the width of a cell along the normal, and a little for what is not flat.
+        // Half the extent of a cell along the normal, and a tolerance for curved surfaces.
         const float thick =
             0.5f * cell * (std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z)) +
             kPlaneFactor * radius;
@@ -96,7 +95,7 @@ void RegionGrid::list(uint32_t index, Vec3 point, Vec3 normal, float radius,
 }
 
 void RegionGrid::fill(std::vector<Entry>& entries) {
-  tbb::parallel_sort(entries.begin(), entries.end());  // the order is total: there is one result
+  tbb::parallel_sort(entries.begin(), entries.end());  // deterministic, because the order is total
   const auto end = std::unique(entries.begin(), entries.end(),
                                [](const Entry& a, const Entry& b) { return a.key == b.key; });
   const auto count = static_cast<size_t>(end - entries.begin());

@@ -1,11 +1,11 @@
-// Whether a surface with an alpha mask is there: for rays, and for lamps.
+// The alpha test of surfaces with a mask, for rays and emitters.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace bnvpl {
 
-// At texture coordinates, which must be finite.
+// Whether the surface exists at texture coordinates, which must be finite.
 inline bool isThere(const Scene& scene, const Material& m, float u, float v) {
   float opacity = m.opacity;
   if (m.opacityMap != kNone) opacity *= scene.textures[m.opacityMap].lookupAlpha(u, v);
@@ -13,7 +13,7 @@ inline bool isThere(const Scene& scene, const Material& m, float u, float v) {
   return !(opacity < m.opacityCutoff);
 }
 
-// At barycentric coordinates of a triangle.
+// Whether it exists at barycentric coordinates of a triangle.
 inline bool isThere(const Scene& scene, uint32_t triangle, float b1, float b2) {
   const Triangle& t = scene.triangles[triangle];
   const Material& m = scene.materials[t.material];

@@ -6,7 +6,7 @@ namespace bnvpl {
 
 namespace {
 
-// Made where it stays: a LobeSum is large.
+// Constructs the model in place, because a LobeSum is large.
 std::variant<PhongBsdf, LobeSum> makeModel(const Scene& scene, const SurfacePoint& point) {
   using Made = std::variant<PhongBsdf, LobeSum>;
   const MaterialModel& model = scene.materials[point.material].model;
@@ -17,7 +17,7 @@ std::variant<PhongBsdf, LobeSum> makeModel(const Scene& scene, const SurfacePoin
 
 }  // namespace
 
-// Textures may make any model but Lambert's specular somewhere.
+// With textures, any model except Lambert's may be specular somewhere.
 bool mayBeSpecular(const Material& m) {
   if (const auto* phong = std::get_if<PhongModel>(&m.model)) return hasSpecularLobes(*phong);
   return !std::holds_alternative<DiffuseModel>(m.model);

@@ -1,16 +1,14 @@
-// Reflection and transmission at a surface point, split into two groups of lobes with one meaning
-// for every stage:
-//   rough     reflection by Lambert and by lobes with alpha >= 0.3 (Phong lobes with an exponent up
-//   to
-//             kNearSpecularExponent). VPLs stand for the light that leaves through these; photons deposit
-//             here; VPLs light these.
-//   specular  sharper lobes, mirrors, and all light that crosses a surface. Paths pass through: a
-//   VPL
-//             cannot carry such light.
+// Reflection and transmission at a surface point, split into two groups of lobes that mean the same
+// in every stage:
+//   rough     Lambertian reflection and lobes with alpha >= 0.3 (Phong exponents up to
+//             kNearSpecularExponent). VPLs represent the light that leaves through them, photons
+//             deposit their flux there, and VPLs light them.
+//   specular  Narrower lobes, mirrors, and all light that crosses a surface. Paths continue through
+//             them, because a VPL cannot represent such light.
 // A path takes one group at a vertex, at random.
 //
-// What a material does is said by its model, in bsdf/<model>/: PhongBsdf for MTL, else lobes that
-// LobeSum adds up.
+// Models of materials are in bsdf/<model>/: PhongBsdf for MTL; the others are sums of lobes
+// (LobeSum).
 #pragma once
 
 #include <optional>
@@ -31,45 +29,46 @@ class Bsdf {
 
  public:
   Bsdf(const Scene& scene, const SurfacePoint& point);
-  // A matt surface of that albedo.
+  // A Lambertian surface of the given albedo.
   Bsdf(const SurfacePoint& point, Vec3 albedo) : point_(point), model_(PhongBsdf(albedo)) {}
 
-  // Fraction of the incident flux that leaves through the rough lobes, 0..1 (of MTL, at normal
-  // incidence).
+  // Fraction of the flux from wo that leaves through the rough lobes, 0..1. For MTL, the fraction
+  // at normal incidence.
   Vec3 roughAlbedo() const {
     return ask([](const auto& b) { return b.roughAlbedo(); });
   }
   bool hasRough() const { return !isBlack(roughAlbedo()); }
-  // The part of the rough group's value that no direction changes, 1/sr, and whether it is all.
+  // The constant part of the rough group's value, 1/sr, and whether it is the whole value.
   Vec3 diffuseValue() const {
     return ask([](const auto& b) { return b.diffuseValue(); });
   }
   bool diffuseOnly() const {
     return ask([](const auto& b) { return b.diffuseOnly(); });
   }
-  // Nothing where gloss of the rough group looks different from everywhere.
+  // How the rough group's value depends on wo, where it is a product of a factor of wi and one of
+  // wo; else empty.
   std::optional<RoughLeaving> roughLeaving() const {
     return ask([&](const auto& b) { return b.roughLeaving(point_); });
   }
-  // What of it looks the same all the same; black where that is nothing.
+  // The part of the rough group's value that is such a product; black where there is none.
   DiffusePart diffusePart() const {
     return ask([&](const auto& b) { return b.diffusePart(point_); });
   }
-  // Probability with which a path should take the specular group; 0 or 1 where there is but one.
+  // Probability with which a path should take the specular group; 0 or 1 if there is only one.
   float specularProbability() const {
     return ask([](const auto& b) { return b.specularProbability(); });
   }
-  // Mirrors and smooth glass alone: light sampling cannot reach it.
+  // Whether the specular group has delta lobes only, which light sampling cannot reach.
   bool specularIsDelta() const {
     return ask([](const auto& b) { return b.specularIsDelta(); });
   }
-  // Survival probability for Russian roulette: the largest channel of everything that leaves.
+  // Survival probability for Russian roulette: the largest channel of the albedo of both groups.
   float reflectance() const {
     return ask([](const auto& b) { return b.reflectance(); });
   }
 
-  // BSDF value times |cos(ns, wi)|, in 1/sr, of one group for radiance transport; 0 for delta
-  // lobes. Directions below the surface have a value where the group lets light through.
+  // BSDF value of one group times |cos(ns, wi)|, 1/sr, for radiance transport; 0 for delta lobes.
+  // Directions below the surface have a value where the group transmits.
   Vec3 eval(LobeGroup group, Vec3 wi) const {
     return ask([&](const auto& b) { return b.eval(point_, group, wi); });
   }
@@ -84,19 +83,19 @@ class Bsdf {
       return phong->roughUpperBound(point_, maxCosNs, maxCosine);
     return std::get_if<LobeSum>(&model_)->roughUpperBound(maxCosNs, maxCosine);
   }
-  Vec3 glossyAxis() const {  // unit: the mirror image of wo, around which lobes lie
+  Vec3 glossyAxis() const {  // unit; the mirror image of wo, the axis of glossy lobes
     if (std::holds_alternative<PhongBsdf>(model_)) return PhongBsdf::glossyAxis(point_);
     return std::get_if<LobeSum>(&model_)->glossyAxis();
   }
-  // Draws a direction. False: absorbed.
+  // Samples a direction. Returns false if the path is absorbed.
   bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
-  // The same by `pick`, for the lobe, and a point of the unit square; not for MTL's glass.
+  // The same with random numbers as arguments: `pick` selects the lobe, `at` the direction. Always
+  // false for MTL's glass.
   bool sample(LobeGroup group, Transport transport, float pick, Point2 at, BsdfSample& out) const {
     return ask([&](const auto& b) { return b.sample(point_, group, transport, pick, at, out); });
   }
 
-  // A photon's flux is measured against the geometric normal, shading against the shading normal:
-  // factor |ns.wo| / |ng.wo| of the flux that arrives from wo (Veach 1997, eq. 5.19).
+  // shadingFactor() for the point's own shading normal.
   float photonShadingFactor() const { return PhongBsdf::photonShadingFactor(point_); }
 
   const SurfacePoint& point() const { return point_; }
@@ -106,9 +105,9 @@ class Bsdf {
   std::variant<PhongBsdf, LobeSum> model_;
 };
 
-// Whether any material has lobes of the specular group: where none has, work for them is left out.
+// Whether any material may have specular lobes.
 bool hasSpecularLobes(const Scene& scene);
-// May have them somewhere.
+// Whether the material may have specular lobes at some point.
 bool mayBeSpecular(const Material& material);
 
 }  // namespace bnvpl

@@ -16,8 +16,8 @@ inline Vec3 cameraDirection(const Camera& camera, const Film& film, float x, flo
   return normalize(camera.forward + camera.right * right + camera.up * up);
 }
 
-// Film position of a point in the same coordinates and its distance along the viewing axis, which
-// is not positive behind the camera.
+// Film position of a point in the same coordinates, and its depth along the viewing axis, which is
+// not positive behind the camera.
 struct FilmPoint {
   float x, y, depth;
 };

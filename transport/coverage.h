@@ -1,5 +1,5 @@
-// Which VPL speaks for a point of the scene. One definition for vpl-estimate, which hands a
-// photon's energy to such a VPL, and vpl-render, which must know what no VPL stands for.
+// Which VPLs cover a point of the scene. vpl-estimate deposits photons at such a VPL; vpl-render
+// compensates for light from points that none covers.
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,17 @@ namespace bnvpl {
 
 class Coverage {
  public:
-  // Why a point has no VPL. Outside: none reaches it. Gap: some do, but on no compatible surface.
-  // Hidden: some are on a compatible surface, but none is in sight.
+  // Why no VPL covers a point. Outside: none reaches it. Gap: some do, but on no compatible
+  // surface. Hidden: some are on a compatible surface, but none is visible.
   enum class Miss { Outside, Gap, Hidden };
   struct Found {
     std::optional<uint32_t> vpl;
     Miss miss = Miss::Outside;  // where vpl is empty
-    uint32_t rays = 0;          // guard rays traced
+    uint32_t rays = 0;          // number of guard rays
   };
 
-  // `reach`: how far each VPL reaches, world units. Borrows the columns and the scene.
+  // `reach` is the max distance at which each VPL covers points, world units. Borrows the columns
+  // and the scene.
   Coverage(std::span<const Vec3> position, std::span<const Vec3> normal, std::vector<float> reach,
            const RayScene& rays)
       : position_(position),
@@ -35,9 +36,9 @@ class Coverage {
         rays_(rays),
         grid_(position, normal, reach_) {}
 
-  // One of the VPLs that reach the point, lie on a compatible surface and are in sight, each with
-  // the same probability: they are tried in random order, which takes about one ray. `lookup`: of
-  // the point.
+  // Picks one of the VPLs that cover the point, all with equal probability: VPLs within reach on a
+  // compatible surface are tried in random order until one is visible, which takes about one ray.
+  // `lookup` is lookUp(at).
   Found pick(Vec3 at, Vec3 normal, const ReachGrid::Lookup& lookup, Rng& rng) const {
     std::array<uint32_t, kMaxEligible> eligible;
     size_t left = 0, reaching = 0;
@@ -62,8 +63,8 @@ class Coverage {
     return found;
   }
 
-  // Probability with which pick() names VPL i for the point: one over the number of those it may
-  // name, 0 when i is none of them.
+  // Probability with which pick() returns VPL i for the point: one over the number of VPLs that
+  // cover it, or 0 if i is none of them.
   float shareOf(uint32_t i, Vec3 at, Vec3 normal) const {
     const auto speaks = [&](uint32_t k) {
       return compatibleSurfaces(at, normal, position_[k], normal_[k], kPlaneFactor * reach_[k]) &&
@@ -77,10 +78,10 @@ class Coverage {
     return 1.0f / static_cast<float>(speakers);
   }
 
-  // The surface that VPL i speaks for, over and under the point `square` of a unit square that is
-  // laid on its disk: fn(point, area), world units squared, for each layer. Over the square the
-  // mean of the sums of area * f is the integral of f over the points of the scene, each with the
-  // probability that pick() names i there.
+  // Samples the surface that VPL i covers: maps `square`, a point of the unit square, to the VPL's
+  // disk, and calls fn(point, area) for each surface along the normal there, with area in world
+  // units squared. The mean over the square of the sum of area * f(point) is the integral of f over
+  // the scene's surfaces, weighted by the probability that pick() returns i.
   template <typename Fn>
   void forEachLayer(uint32_t i, Point2 square, const Fn& fn) const {
     const float reach = reach_[i], height = kPlaneFactor * reach;
@@ -99,9 +100,9 @@ class Coverage {
     }
   }
 
-  // Every VPL within reach, whatever lies between: the thesis' rule, and what pick() looks up.
+  // All VPLs that reach the point, whether visible or not.
   ReachGrid::Lookup lookUp(Vec3 at) const { return grid_.lookUp(at); }
-  // Of many hits, which wait for memory together; those that hit nothing are passed over.
+  // The same for many hits, whose cache misses overlap. Rays that left the scene are skipped.
   void lookUp(std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) const {
     grid_.lookUpAll(
         hits.size(),
@@ -109,13 +110,13 @@ class Coverage {
   }
 
  private:
-  // More VPLs than this around one point: the first ones found. At the default reach there are
-  // about four.
+  // Max number of VPLs that pick() considers: the first ones found. The default reach finds about
+  // four.
   static constexpr size_t kMaxEligible = 256;
-  // Ends of the guard's segment are lifted by this share of the VPL's reach, so that the facets of
-  // a curved surface do not hide it from itself (measured: docs/theory.md, "Guards").
+  // Both ends of a guard ray are lifted by this share of the VPL's reach, so that the facets of a
+  // curved surface do not occlude it (docs/theory.md, "Guards").
   static constexpr float kLift = 0.1f;
-  static constexpr int kMaxLayers = 16;  // surfaces through the height of a VPL's disk
+  static constexpr int kMaxLayers = 16;  // max number of surfaces within the height of a VPL's disk
 
   bool inSight(Vec3 at, Vec3 normal, uint32_t i) const {
     const float lift = kLift * reach_[i];

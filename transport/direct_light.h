@@ -14,25 +14,25 @@ namespace bnvpl {
 
 // Which lights a vertex sends shadow rays to.
 enum class LightChoice {
-  One,  // picked in proportion to power
-  Each  // all, one ray each; of more than kMaxLightsEach, as many picks in proportion to power
+  One,  // one light, picked in proportion to power
+  Each  // one ray to each; with more than kMaxLightsEach lights, that many picks by power
 };
 inline constexpr size_t kMaxLightsEach = 32;
 
-// A light as its photons know it: of a sky that is an image, a region of like radiance, as the sun
-// in it. Regions are told by the density of photons, in steps of four times.
+// Identifies the emitter of photons: a light, or, in an environment image, a region of similar
+// radiance such as the sun. Regions are classes of photon density, in steps of a factor of 4.
 uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards);
 
-// Light behind specular vertices that photons bring as well: MIS by the power heuristic, of rays
-// per area of the surface that they leave from and photons per area of emitter. That is the ratio
-// of both ways where the specular surfaces between are flat; elsewhere, weights that sum up to one.
+// MIS weights, by the power heuristic, of light through specular vertices that photons estimate,
+// too. Densities are rays per area of the receiver and photons per area of the emitter. Their ratio
+// is exact if the specular surfaces between are flat; otherwise the weights still sum to one.
 struct SharedWithPhotons {
   const LightSet* lights = nullptr;  // null: there are no photons
-  float rays = 0.0f;                 // 1/unit^2, by the BSDF
-  float photons = 0.0f;              // in all
-  // Lamps (lampOf) that photons are sent from, ascending; null: all. Others are left to rays.
+  float rays = 0.0f;                 // BSDF rays per area, 1/unit^2
+  float photons = 0.0f;              // number of photons from all lights
+  // Lamps (lampOf) that emit photons, ascending; null: all do. Rays alone estimate the others.
   const std::vector<uint64_t>* lamps = nullptr;
-  // Share of what rays find. `towards`: the light, if it is at infinity.
+  // Weight of rays. `towards` is the direction towards a light at infinity.
   float ofRays(size_t light, Vec3 towards) const;
 };
 
@@ -134,17 +134,16 @@ typename Reflects::Light directLight(const RayScene& rays, const LightSet& light
                                      const Reflects& reflected, const LightSampling& sampling,
                                      const RayPdf& rayPdf, const LightNumbers& numbers);
 
-// How the ray that found a light was chosen, for the other half of MIS.
+// How a ray that may hit a light was sampled, for its MIS weight.
 struct Arrival {
-  float bsdfPdf = 0.0f;  // 1/sr, times the rays sent like this one; 0: camera ray, mirror or glass,
-                         // which light sampling cannot reach
-  Vec3 from;             // where the ray started
-  LightChoice choice = LightChoice::One;  // there, unless learned.strata is given
+  float bsdfPdf = 0.0f;  // density times the number of such rays, 1/sr; 0: camera ray, delta lobe
+  Vec3 from;             // origin of the ray
+  LightChoice choice = LightChoice::One;  // choice at `from`, unless learned.strata is given
   LearnedLight learned = {};
-  SharedWithPhotons shared = {};  // light behind specular vertices
+  SharedWithPhotons shared = {};  // weights of light through specular vertices
 };
-// Emission met by a ray, with its MIS weight: of the surface that it hit, and of what lies at
-// infinity where it hit nothing.
+// Emission that a ray hits, with its MIS weight: that of the surface, or, for a ray that leaves the
+// scene, that of the lights at infinity.
 Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival);
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival);
 

@@ -23,7 +23,7 @@ EmissionGrid::EmissionGrid(uint32_t side, std::span<const double> weights) {
   rows_ = makeCdf<float>(rows);
 }
 
-// Cells that point as the triangle does have even numbers, those upside down odd ones.
+// Cells oriented like the triangle have even numbers, inverted ones have odd numbers.
 std::array<std::array<double, 2>, 3> EmissionGrid::corners(uint32_t side, uint32_t row,
                                                            uint32_t cell) {
   const double k = cell / 2, i = row - cell / 2, s = side;

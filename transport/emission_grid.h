@@ -1,6 +1,6 @@
-// How the light of a textured lamp is spread over one of its triangles: a grid of side x side
-// congruent triangles, each drawn as often as it shines and uniform within. Row r, counted from the
-// first corner, has 2 r + 1 of them.
+// Importance sampling of the points of one triangle of a textured lamp: a grid of side x side
+// congruent triangles, with probabilities in proportion to their weights and uniform density within
+// each. Row r, counted from the first corner, has 2 r + 1 of them.
 #pragma once
 
 #include <array>
@@ -13,17 +13,17 @@ namespace bnvpl {
 
 class EmissionGrid {
  public:
-  EmissionGrid() = default;  // even
-  // Of each cell, row by row. Even where all are 0.
+  EmissionGrid() = default;  // uniform
+  // Takes the weights of the cells, row by row. The density is uniform if all are 0.
   EmissionGrid(uint32_t side, std::span<const double> weights);
 
   struct Drawn {
     Barycentric at;
-    float density;  // over that of a point drawn evenly
+    float density;  // relative to uniform sampling
   };
   Drawn sample(float u, float v) const;
   float density(Barycentric at) const;
-  // The point of the unit square by which sample() draws this one.
+  // The inverse of sample(): the point of the unit square that it maps to this one.
   Point2 drawnBy(Barycentric at) const;
 
   // Barycentric coordinates (of the second and third corner) of a cell's corners.
@@ -41,7 +41,7 @@ class EmissionGrid {
   float densityOf(uint32_t row, uint32_t cell) const;
 
   uint32_t side_ = 1;
-  std::vector<float> rows_, cells_;  // running sums: over the rows, and of each over its cells
+  std::vector<float> rows_, cells_;  // running sums over the rows, and over the cells of each row
 };
 
 }  // namespace bnvpl

@@ -9,11 +9,11 @@ namespace bnvpl {
 
 namespace {
 
-// A mask jumps between texels' centres: its pieces are cut smaller, by halving their sides.
+// A mask is discontinuous between the centres of texels, so the sides of its pieces are halved.
 constexpr int kHalvingsOfMask = 2;
-// Of a constant lamp, in the weights where the pieces of several textures may miss something.
+// Share of the constant emission that is added to weights where the quadrature is not exact.
 constexpr double kFloor = 0.02;
-// Beyond, floats tell texels apart no more.
+// Max texel coordinate that is clipped; beyond, floats cannot tell texels apart.
 constexpr double kFarthest = 0x1p31;
 
 Texture boxFiltered(const Texture& from, uint32_t width, uint32_t height) {
@@ -139,7 +139,7 @@ void LampTexture::addLines(uint32_t expression, std::vector<Lines>& out) const {
   for (const uint32_t operand : {e.first, e.second, e.amount}) addLines(operand, out);
 }
 
-// Those of the finest texture; others are left to the quadrature.
+// Takes the lines of the finest texture; for others the quadrature is approximate.
 void LampTexture::chooseLines() {
   std::vector<Lines> all;
   addLines(material_.emissionTexture, all);
@@ -247,8 +247,8 @@ LampTexture::Mean LampTexture::over(uint32_t triangle,
   return sum;
 }
 
-// By three points inside (Strang & Fix 1973), which is exact up to the second degree, and on no
-// line.
+// Quadrature with three interior points (Strang & Fix 1973), which is exact up to degree 2 and has
+// no point on a line.
 void LampTexture::add(uint32_t triangle, const std::array<Corner, 3>& piece, int halvings,
                       Mean& sum) const {
   const auto& [p, q, r] = piece;

@@ -1,8 +1,8 @@
-// Integrals of what a lamp with an emission texture or an alpha mask sends out, over parts of its
-// triangles. The parts are cut along the lines between which a lookup is bilinear, and a quadrature
-// that is exact for bilinear functions sums up the pieces: no texel is missed, however small it is.
-// Where a lamp shows more texels than kMaxCells, the integrand is the texture box-filtered to that
-// many: its mean stays the same, and what was not black stays so.
+// Integrals of the emission of a lamp with an emission texture or an alpha mask over parts of its
+// triangles. The parts are clipped along the lines between which a lookup is bilinear, and
+// integrated by a quadrature that is exact for bilinear functions, so that no texel is missed.
+// Where a lamp shows more texels than kMaxCells, the texture is first box-filtered to that many,
+// which keeps its mean and leaves no emissive texel black.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ class LampTexture {
  public:
   static constexpr double kMaxCells = 0x1p19;
 
-  // Of a material of the scene, and the triangles that show it. Borrows the scene.
+  // Takes an emissive material of the scene, and the triangles that have it. Borrows the scene.
   LampTexture(const Scene& scene, uint32_t material, std::span<const uint32_t> triangles);
 
   // The side of a grid (emission_grid.h) whose cells are about a texel.
@@ -26,17 +26,17 @@ class LampTexture {
 
   struct Mean {
     std::array<double, 3> emission{};  // W/(m2 sr); 0 where the mask cuts the lamp away
-    double weight = 0.0;               // for drawing points: not 0 unless all of it is black
+    double weight = 0.0;               // for importance sampling; 0 only if the whole part is black
   };
-  // Over a part of a triangle, by barycentric coordinates of its corners.
+  // The mean over a part of a triangle, given the barycentric coordinates of its corners.
   Mean over(uint32_t triangle, const std::array<std::array<double, 2>, 3>& part) const;
 
  private:
-  // Lines across texture coordinates: x = a u + b v + c, y = d u + e v + f at whole numbers, of
-  // which those from -1 to columns or rows count where the texture does not repeat.
+  // Lines where x = a u + b v + c or y = d u + e v + f is an integer. Where the texture does not
+  // repeat, only the lines from -1 to the number of columns or rows count.
   struct Lines {
     double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
-    std::array<double, 2> last{};  // columns, rows
+    std::array<double, 2> last{};  // number of columns and rows
     std::array<bool, 2> repeats{}, none{};
     double perUv() const;
   };
@@ -61,9 +61,9 @@ class LampTexture {
 
   const Scene& scene_;
   const Material& material_;
-  std::vector<Texture> coarse_;  // in place of the scene's; empty: those are used
+  std::vector<Texture> coarse_;  // replace the scene's textures, unless empty
   Lines lines_;
-  bool exact_ = true;  // one texture says all that shines
+  bool exact_ = true;  // whether one texture, that of lines_, determines the emission
 };
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// Light that leaves a rough vertex, followed back to the lights path by path.
+// Light that leaves a rough vertex, estimated by path tracing.
 #pragma once
 
 #include "transport/specular_path.h"
@@ -7,16 +7,15 @@
 namespace bnvpl {
 
 struct PathLength {
-  unsigned maxBounces;       // rough scatterings after the vertex
-  bool firstBounce = false;  // only what came to the vertex straight from a light
+  unsigned maxBounces;       // max number of rough scatterings after the vertex
+  bool firstBounce = false;  // whether to estimate direct light at the vertex only
 };
 
-// Adds throughput * radiance towards where the vertex is seen from, by light sampling and
-// scattering with multiple importance sampling (Veach 1997, section 10): to `first` what comes to
-// the vertex with nothing between it and a light, to `later` the rest. `at` is the vertex's own
-// reflection, Bsdf(scene, vertex) or what stands for it. `where`: where light sampling looks for
-// lights; null: everywhere, by power. Returns how many rough vertices the path
-// had, this one included; each took about two rays.
+// Adds throughput * radiance towards wo of the vertex, by light sampling and scattering with
+// multiple importance sampling (Veach 1997, section 10). `first` gets the direct light of the
+// vertex, `later` the rest. `at` is the vertex's BSDF, or one that represents it. `where` has the
+// distributions by which lights are sampled; null: by power. Returns the number of rough vertices
+// of the path, this one included; each takes about two rays.
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
                          Vec3 throughput, PathLength length, const SurfaceLights* where, Rng& rng,
                          Vec3& first, Vec3& later);

@@ -1,5 +1,4 @@
-// Shadow rays that find out which strata of the lights a place sees, and how much each brings
-// there.
+// Shadow rays that estimate how much each stratum of the lights contributes at a place.
 #pragma once
 
 #include <span>
@@ -10,13 +9,13 @@
 
 namespace bnvpl {
 
-// By so many probes of each stratum, each from one of the vertices: the strata that brought light
-// and the mean square of what each would bring if all rays went there.
+// Sends `probes` shadow rays to each stratum, each from a random one of the vertices. Returns the
+// strata with a contribution, and the mean square of the estimate that samples only this stratum.
 StrataValues probeStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
                          std::span<const Bsdf> vertices, size_t probes, Rng& rng);
 
-// Adds what several places found, for distributionOf(). The variance of a sum of estimates is least
-// where each is drawn in proportion to the root of its mean square.
+// Pools the mean squares of several places. The variance of a sum of estimates is minimal if each
+// is sampled in proportion to the root of its mean square.
 class PooledProbes {
  public:
   explicit PooledProbes(size_t strata) : sum_(strata) {}

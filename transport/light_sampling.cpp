@@ -1,4 +1,4 @@
-// Of LightSet: directions towards its lights, and photons from them.
+// The part of LightSet that samples directions towards lights and emits photons.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -60,15 +60,15 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectS
   return true;
 }
 
-// Of the directions in a texel, in 1/sr. By row, then by column: over all texels at once, the
-// shares of a fine image would be below the steps of a float.
+// Density of directions in a texel, 1/sr. Rows and columns have running sums of their own, because
+// the shares of single texels of a fine image would be below a float's precision.
 float LightSet::texelPdf(const Light& light, size_t x, uint32_t y) const {
   const EnvironmentImage& image = scene_.environments[light.spec.image];
   return static_cast<float>(cdfShare<double>(light.rowCdf, y)) *
          cdfShare(light.cdfOfRow(y, image.width), x) / texelSolidAngle(image, y);
 }
 
-// A direction towards a light at infinity.
+// Samples a direction towards a light at infinity.
 Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radiance,
                                float& pdf) const {
   const LightSpec& s = light.spec;
@@ -91,9 +91,9 @@ Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radia
   const auto y = static_cast<uint32_t>(sampleCdf<double>(light.rowCdf, light.rowGuide, v));
   const size_t x = sampleCdf(light.cdfOfRow(y, image.width), light.guideOfRow(y), u);
   const Vec3& texel = image.radiance[size_t{y} * image.width + x];
-  prefetch(&texel);  // comes while the direction is worked out
-  // Uniform in solid angle inside the texel: linear in longitude and in the cosine of the polar
-  // angle.
+  prefetch(&texel);  // overlaps with the computation of the direction
+  // Inside the texel directions are uniform in solid angle: linear in longitude and in the cosine
+  // of the polar angle.
   const float top = std::cos(kPi * float(y) / float(image.height));
   const float row = std::acos(std::clamp(top - v * bandHeight(y, image.height), -1.0f, 1.0f)) / kPi;
   const Vec3 direction = directionOf(s, (float(x) + u) / float(image.width), row);
@@ -169,7 +169,7 @@ Point2 LightSet::drawnBy(size_t index, const SurfacePoint& hit) const {
 Point2 LightSet::drawnBy(size_t index, Vec3 direction) const {
   const Light& light = lights_[index];
   const LightSpec& s = light.spec;
-  if (s.type == LightType::Directional) return {0.5f, 0.5f};  // of a narrow cone: not divisible
+  if (s.type == LightType::Directional) return {0.5f, 0.5f};  // the light is one stratum
   if (s.image == kNone) return sphereDrawnBy(direction);
   const EnvironmentImage& image = scene_.environments[s.image];
   float u, v;
@@ -198,11 +198,11 @@ LightSet::Extent LightSet::extent(size_t index) const {
           light.spec.position, 1};
 }
 
-// Photons from infinity start on the faces of the scene's box that look towards the light,
-// uniformly in projected area: no photon is spent on empty space beside a long scene.
+// Photons from infinity start on the faces of the scene's box that face the light, uniformly in
+// projected area, so that none is wasted on empty space beside an elongated scene.
 namespace {
 
-// Areas of a box's faces, as light in direction d sees them.
+// Projected areas of a box's faces along direction d.
 Vec3 facesAcross(Vec3 extent, Vec3 d) {
   return {std::fabs(d.x) * extent.y * extent.z, std::fabs(d.y) * extent.x * extent.z,
           std::fabs(d.z) * extent.x * extent.y};
@@ -224,8 +224,7 @@ PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
   p[axis] = d[axis] > 0.0f ? scene_.bounds.lower[axis] : scene_.bounds.upper[axis];
   PhotonStart start;
   start.direction = d;
-  // Back along the ray by a little of the scene's size, so that a surface in the face itself is
-  // met.
+  // The origin is moved back along the ray, so that a surface in the face itself is hit.
   start.origin = p - d * (0x1p-10f * scene_.bounds.diagonal());
   start.flux = radiance * (pdf > 0.0f ? total / pdf : total);
   return start;

@@ -1,4 +1,4 @@
-// Directions and extents of the lights of scene.toml.
+// Directions and extents of the lights that scene.toml defines.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// Area of the scene's box seen along a unit direction: what a distant light's photons must cover.
+// Projected area of the scene's box along a unit direction, which a distant light's photons cover.
 inline float silhouetteArea(const Bounds& box, Vec3 direction) {
   const Vec3 e = box.extent();
   return std::fabs(direction.x) * e.y * e.z + std::fabs(direction.y) * e.x * e.z +
@@ -25,8 +25,8 @@ inline float spotFalloff(const LightSpec& s, float cosAngle) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. The
-// image is turned as rotate_deg turns a mesh: by the right-hand rule.
+// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. As for
+// a mesh, rotate_deg turns the image by the right-hand rule.
 inline Vec3 directionOf(const LightSpec& s, float u, float v) {
   const float phi = 2.0f * kPi * (u - 0.5f) - s.rotateRad, theta = kPi * v;
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
@@ -37,8 +37,8 @@ inline void texelOf(const LightSpec& s, Vec3 d, float& u, float& v) {
   v = std::min(std::acos(std::clamp(d.y, -1.0f, 1.0f)) / kPi, 0x1.fffffep-1f);
 }
 
-// Difference of the cosines of the polar angles that bound a row of texels: as a product, for near
-// the poles of a fine image both round to 1.
+// Difference of the cosines of the polar angles that bound a row of texels. It is computed as a
+// product, because near the poles of a fine image both cosines round to 1.
 inline float bandHeight(uint32_t row, uint32_t rows) {
   const double half = 0.5 * double{kPi} / static_cast<double>(rows);
   return static_cast<float>(2.0 * std::sin((2.0 * row + 1.0) * half) * std::sin(half));
@@ -48,8 +48,8 @@ inline float texelSolidAngle(const EnvironmentImage& image, uint32_t row) {
   return 2.0f * kPi / float(image.width) * bandHeight(row, image.height);
 }
 
-// A cone by 1 - cos of its half angle, which keeps its digits where the cosine rounds to 1: at the
-// sun's 0.27 degrees the cosine of a float has 8 bits left, below 0.014 none.
+// 1 - cos of a cone's half angle. It keeps its precision where the cosine rounds to 1: in a float,
+// the cosine has 8 bits left at the sun's 0.27 degrees, and none below 0.014.
 inline float versine(float angleRad) {
   const float s = std::sin(0.5f * angleRad);
   return 2.0f * s * s;

@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kMin = 0.1;  // least weight, over an even share
+constexpr double kMin = 0.1;  // min probability of a stratum, relative to a uniform share
 
 }  // namespace
 
@@ -25,7 +25,7 @@ LightStrata::LightStrata(const LightSet& lights, size_t most) : cells_(lights.si
   }
 }
 
-// Each light has a stratum; those that are left go to lights whose parts can be hidden, by power.
+// Each light has a stratum; divisible lights get the remaining ones in proportion to power.
 void LightStrata::cutUp(const LightSet& lights, size_t most) {
   std::vector<LightSet::Extent> extents;
   double divisible = 0.0;
@@ -42,8 +42,8 @@ void LightStrata::cutUp(const LightSet& lights, size_t most) {
   }
 }
 
-// Many facets are strata of their own; else columns and rows alike, twice the columns for the
-// sphere.
+// Divides a light into `parts` strata: a column for each of many facets; else as many columns as
+// rows, or twice as many for lights at infinity.
 void LightStrata::add(uint32_t light, const LightSet::Extent& extent, size_t parts) {
   Cells& c = cells_[light];
   const double aspect = extent.local ? 1.0 : 2.0;
@@ -60,8 +60,8 @@ void LightStrata::add(uint32_t light, const LightSet::Extent& extent, size_t par
     strata_.push_back({at, at + 1, cell, c.share / static_cast<float>(count)});
 }
 
-// Neighbours along a Morton curve, until they have their part of the power; lights at infinity each
-// for itself.
+// Groups neighbours along a Morton curve until they have an equal part of the power. Lights at
+// infinity have a stratum each.
 void LightStrata::putTogether(const LightSet& lights, size_t most) {
   std::vector<uint32_t> local, own = order_;
   std::vector<Vec3> centres;
@@ -162,7 +162,7 @@ uint32_t LearnedStrata::pick(float& u) const {
     u = below((u - first) / second);
     return everywhere.strata[sampleCdf(everywhere.cdf, u)];
   }
-  // Rounded, the difference may fall short of 0.
+  // Rounding may make the difference negative.
   const float rest = std::max(0.0f, u - first - second);
   const float x = rest / (1.0f - first - second) * static_cast<float>(all->size());
   const auto i = std::min(static_cast<uint32_t>(all->size() - 1), static_cast<uint32_t>(x));

@@ -14,8 +14,8 @@ namespace bnvpl {
 
 namespace {
 
-// Of what a light sends out, over the square of the scene's diagonal: squares of the light at its
-// surfaces, and sums of them, stay in the range of floats. W per square unit.
+// Max power of a light over the square of the scene's diagonal, W per square unit. Below it,
+// squares of the irradiance at its surfaces, and sums of them, stay in the range of floats.
 constexpr float kStrongest = 1e17f;
 
 }  // namespace
@@ -38,7 +38,7 @@ void LightSet::requireSquares() const {
   const float across = scene_.bounds.diagonal();
   for (size_t i = 0; i < lights_.size(); ++i) {
     const Light& l = lights_[i];
-    // A spot lights only what is in its cone.
+    // A spot counts as a point light of its intensity, because its power is only that in the cone.
     const bool local =
         !l.area && (l.spec.type == LightType::Point || l.spec.type == LightType::Spot);
     const float sent = local ? maxComponent(l.spec.emission) * (4.0f * kPi) : maxComponent(l.power);
@@ -62,7 +62,7 @@ LightSet LightSet::withoutHittable() const {
   for (const uint32_t i : hittableAtInfinity_) weights[i] = 0.0;
   out.setPickProbabilities(weights);
   for (size_t i = 0; i < weights.size(); ++i)
-    if (!(weights[i] > 0.0)) out.lights_[i].pickProbability = 0.0f;  // where none is left
+    if (!(weights[i] > 0.0)) out.lights_[i].pickProbability = 0.0f;  // makeCdf() of zeros ends at 1
   return out;
 }
 
@@ -98,8 +98,8 @@ void LightSet::addAreaLights() {
   }
 }
 
-// Mean emission of a light with a texture or a mask, whose points are to be drawn where it shines;
-// the areas of its triangles become the weights of drawing one.
+// Mean emission of a light with a texture or a mask. Makes the grids that importance-sample its
+// points, and turns the areas of its triangles into weights for sampling a triangle.
 Vec3 LightSet::spreadTexture(Light& light, std::vector<double>& areas) const {
   const LampTexture texture(scene_, light.material, light.triangles);
   light.grids.resize(areas.size());
@@ -138,7 +138,8 @@ void LightSet::addSpecLights() {
         l.power = s.emission * (4.0f * kPi);
         break;
       case LightType::Spot: {
-        // Integral of the falloff over the cone, by the midpoint rule: it only shares out photons.
+        // Midpoint rule for the falloff over the cone. Its error affects only the sample
+        // allocation.
         double integral = 0.0;
         constexpr int kSteps = 256;
         for (int i = 0; i < kSteps; ++i) {
@@ -155,14 +156,14 @@ void LightSet::addSpecLights() {
       case LightType::Environment: {
         if (s.image == kNone) {
           const Vec3 e =
-              scene_.bounds.extent();  // mean silhouette of a box: a quarter of its surface
+              scene_.bounds.extent();  // a box's mean projected area is a quarter of its surface
           l.power =
               s.emission * (s.scale * 4.0f * kPi * 0.5f * (e.x * e.y + e.y * e.z + e.z * e.x));
           break;
         }
         const EnvironmentImage& image = scene_.environments[s.image];
         std::vector<double> rows(image.height), row(image.width);
-        std::array<double, 3> power{};  // a float loses count of millions of texels
+        std::array<double, 3> power{};  // a float sum over millions of texels loses precision
         l.cdf.reserve(image.radiance.size());
         for (uint32_t y = 0; y < image.height; ++y) {
           const float solidAngle = texelSolidAngle(image, y);
@@ -233,7 +234,8 @@ float LightSet::pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) con
   return even * densityOver(l, at.triangle, l.grids[at.triangle].density(at.at));
 }
 
-// `ofGrid`: density within the triangle over an even one.
+// Density of a point relative to uniform sampling of the light's area. `ofGrid` is the same within
+// the triangle.
 float LightSet::densityOver(const Light& light, size_t i, float ofGrid) const {
   const uint32_t t = light.triangles[i];
   const float area = 0.5f * length(cross(scene_.corner(t, 1) - scene_.corner(t, 0),

@@ -1,5 +1,5 @@
-// All lights of a scene behind one set of questions: emissive triangles (one light for each
-// emissive material), and the lights of scene.toml. Power in W, linear sRGB.
+// One interface to all lights of a scene: emissive triangles, which are one light for each emissive
+// material, and the lights of scene.toml. Power is in W, linear sRGB.
 #pragma once
 
 #include <algorithm>
@@ -14,25 +14,24 @@
 
 namespace bnvpl {
 
-// A light seen from a point: a direction and what arrives from it, ready for a shadow ray.
+// A light sample: a direction from a point, and the radiance that arrives if nothing occludes it.
 struct DirectSample {
   Vec3 wi;                // unit, towards the light
-  Vec3 radianceOverPdf;   // radiance / density; for point-like lights the irradiance on a facing
-                          // surface
-  float pdf = 0.0f;       // of wi in 1/sr, given the light; 0 for lights that no ray can hit
-  bool infinite = false;  // the shadow ray never ends
-  Vec3 target;            // else it ends here, offset off the emitter
+  Vec3 radianceOverPdf;   // radiance / pdf; with pdf 0, the irradiance on a facing surface
+  float pdf = 0.0f;       // density of wi given the light, 1/sr; 0 for lights that no ray can hit
+  bool infinite = false;  // whether the light is at infinity
+  Vec3 target;            // else the end of the shadow ray, offset off the emitter
 };
 
 struct PhotonStart {
-  Vec3 origin;     // offset
+  Vec3 origin;     // offset off the emitter
   Vec3 direction;  // unit
-  Vec3 flux;       // W, as if this were the only photon of its light
+  Vec3 flux;       // W, if this were the only photon of its light
 };
 
 class LightSet {
  public:
-  // Throws InputError where floats do not hold the power of a light.
+  // Throws InputError if the power of a light overflows floats.
   explicit LightSet(const RayScene& rays);
 
   size_t size() const { return lights_.size(); }
@@ -40,37 +39,38 @@ class LightSet {
   Vec3 totalPower() const;
   std::string name(size_t light) const;  // for messages
 
-  // The same lights, but pick() gives only those that no ray can hit: the others are left to the
-  // rays of the BSDF.
+  // The same lights, but pick() returns only those that no ray can hit. BSDF rays find the others.
   LightSet withoutHittable() const;
 
-  // A light picked in proportion to power, for estimators that can afford one.
+  // Picks a light in proportion to power.
   size_t pick(float u, float& probability) const;
   float pickProbability(size_t light) const { return lights_[light].pickProbability; }
-  // Whether a ray can meet it by chance: not if it is a point or comes from a single direction.
+  // Whether a ray can hit the light by chance, which holds unless it is a point or a single
+  // direction.
   bool hittable(size_t light) const {
     return lights_[light].area || std::ranges::count(hittableAtInfinity_, light) > 0;
   }
 
-  // False: nothing can arrive at `at` (behind the emitter, outside the cone, black).
+  // Returns false if no light can arrive at `at` from the sample: it is behind the emitter, outside
+  // the cone, or black.
   bool sampleDirect(size_t light, Vec3 at, float u, float v, DirectSample& out) const;
 
-  // Radiance that leaves an emissive surface towards wo; `light` is the emitter's or kNone.
+  // Radiance that an emissive surface emits towards wo. `light` is set to its index, or kNone.
   Vec3 emitted(const SurfacePoint& hit, size_t& light) const;
-  // Density in 1/sr with which sampleDirect() would have chosen this hit from `from`.
+  // Density, 1/sr, with which sampleDirect() samples this hit from `from`.
   float pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const;
 
-  // The point of the unit square by which sampleDirect() draws what was hit: of an emissive
-  // surface, or, by the direction towards it, of a light at infinity.
+  // The inverse of sampleDirect(): the point of the unit square that it maps to a hit on an
+  // emissive surface, or to the direction towards a light at infinity.
   Point2 drawnBy(size_t light, const SurfacePoint& hit) const;
   Point2 drawnBy(size_t light, Vec3 direction) const;
 
-  // How that square may be cut up.
+  // How the unit square of a light may be divided into strata.
   struct Extent {
-    bool divisible = false;  // its parts can be hidden one by one
-    bool local = false;      // it has a place,
-    Vec3 centre;             // this one
-    size_t facets = 1;       // lie side by side along u, by their power
+    bool divisible = false;  // whether parts of the light can be occluded separately
+    bool local = false;      // whether the light has a position
+    Vec3 centre;             // its position, if local
+    size_t facets = 1;       // triangles, side by side along u in proportion to power
   };
   Extent extent(size_t light) const;
 
@@ -85,32 +85,32 @@ class LightSet {
   }
 
   PhotonStart emit(size_t light, Rng& rng) const;
-  // Of one such photon: its density per area of the emitter; of a light at infinity, pi times that
-  // per area across the direction towards it and per solid angle (as cosine emission has 1/pi).
-  // 1/unit^2; 0: no ray can hit this light. `towards` counts at infinity alone.
+  // Density of one photon of emit(), 1/unit^2: per area of the emitter; for a light at infinity, pi
+  // times the density per projected area and solid angle, to match the 1/pi of cosine emission. 0
+  // if no ray can hit the light. `towards` is the direction towards a light at infinity.
   float photonDensity(size_t light, Vec3 towards) const;
 
-  // Whether any light has power. Scene::hasLight() asks the files alone: a sun along a flat scene,
-  // or a lamp too weak for floats, shines there and has no power here.
+  // Whether any light has power. A sun parallel to a flat scene, or an emitter too weak for floats,
+  // has none, although Scene::hasLight() holds for it.
   bool hasPower() const { return mean(totalPower()) > 0.0f; }
-  // Throws InputError, naming the scene, when none has.
+  // Throws InputError, naming the scene, if none has.
   void requirePower() const;
-  // Throws InputError where floats do not hold the squares of a light's light, by which VPLs are
-  // gathered.
+  // Throws InputError if squares of a light's irradiance overflow floats; gathering VPLs needs
+  // them.
   void requireSquares() const;
 
  private:
   struct Light {
-    LightSpec spec;     // of scene.toml
-    bool area = false;  // else a light of emissive triangles:
+    LightSpec spec;     // a light of scene.toml, unless `area`
+    bool area = false;  // whether it is an area light of the following triangles
     uint32_t material = kNone;
     std::vector<uint32_t> triangles;
-    // Over area, over the light of textured triangles, or over the texels of each row of an
-    // environment image.
+    // Running sums over the triangles by area, or by emission where textured; or over the texels of
+    // each row of an environment image.
     std::vector<float> cdf;
-    std::vector<EmissionGrid> grids;        // of textured triangles
-    std::vector<double> rowCdf;             // over those rows
-    std::vector<uint32_t> guide, rowGuide;  // of each row of `cdf`, and of rowCdf
+    std::vector<EmissionGrid> grids;        // one for each textured triangle
+    std::vector<double> rowCdf;             // running sums over the rows of the image
+    std::vector<uint32_t> guide, rowGuide;  // guides of each row of `cdf`, and of rowCdf
     std::span<const uint32_t> guideOfRow(size_t row) const {
       return std::span(guide).subspan(row * kGuideSteps, kGuideSteps);
     }
@@ -132,18 +132,18 @@ class LightSet {
   PhotonStart emitFromInfinity(const Light& light, Rng& rng) const;
   struct EmitterPoint {
     Vec3 position, normal, emission;
-    float density;  // over that of points drawn evenly from all of the light's area
+    float density;  // relative to uniform sampling of the light's area
   };
   EmitterPoint samplePointOn(const Light& light, float u, float v) const;
   Vec3 emissionOn(const Material& m, uint32_t triangle, const Barycentric& at) const;
   Vec3 spreadTexture(Light& light, std::vector<double>& areas) const;
   float densityOver(const Light& light, size_t i, float ofGrid) const;
   struct Hit {
-    size_t triangle;  // of the light's
+    size_t triangle;  // index into Light::triangles
     Barycentric at;
   };
   Hit hitOf(const Light& light, const SurfacePoint& hit) const;
-  // What all of an area light sends out if it shines like this everywhere.
+  // Flux of an area light with uniform emission.
   static Vec3 fluxOf(const Light& light, Vec3 emission) {
     return emission * (kPi * light.areaTotal * (light.twoSided ? 2.0f : 1.0f));
   }

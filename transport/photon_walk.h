@@ -1,4 +1,4 @@
-// The walk of one photon, shared by every stage that follows light from its source.
+// The random walk of one photon, for every stage that traces light from its source.
 #pragma once
 
 #include "core/random.h"
@@ -10,16 +10,16 @@ namespace bnvpl {
 // Where a photon's flux went, W.
 struct PhotonFate {
   Vec3 escaped;
-  Vec3 absorbed;  // by surfaces, and at the end of the longest path
+  Vec3 absorbed;  // by surfaces, by Russian roulette and by the path's end
   uint32_t hits = 0, rays = 0;
-  bool finite = true;  // false: its flux became NaN or infinite and what was left was dropped
+  bool finite = true;  // false: the flux became NaN or infinite, and the photon was dropped
 };
 
-// A photon on its way through the scene.
+// The state of a photon between two hits.
 class PhotonWalk {
  public:
   PhotonWalk() = default;
-  // The numbers of `rng` go on from those that made `start`.
+  // `rng` continues the numbers from which `start` was sampled.
   PhotonWalk(const PhotonStart& start, unsigned maxBounces, const Rng& rng)
       : rng_(rng),
         next_{start.origin, start.direction},
@@ -30,14 +30,14 @@ class PhotonWalk {
   }
 
   bool goesOn() const { return goesOn_; }
-  const Ray& next() const { return next_; }  // to be traced, where goesOn()
+  const Ray& next() const { return next_; }  // the ray to trace, if goesOn()
   const PhotonFate& fate() const { return fate_; }
-  // Whether its first scattering was by a perfect mirror or glass. Of lights that no ray can hit,
-  // no path from the other end finds such light.
+  // Whether its first scattering was by a delta lobe. If no ray can hit the light, no path from the
+  // camera finds this contribution.
   bool beganAtPerfectMirror() const { return beganAtPerfectMirror_; }
   Rng& rng() { return rng_; }
-  // One of several that go on from here instead of this one, with a share of its flux each. Their
-  // fates hold the way before once more.
+  // One of several photons that replace this one, each with a share of its flux. The fate of each
+  // includes the path so far.
   PhotonWalk branch(float share, const Rng& rng) const {
     PhotonWalk b = *this;
     b.rng_ = rng;
@@ -45,11 +45,11 @@ class PhotonWalk {
     return b;
   }
 
-  // Takes what next() has hit; hit.triangle is kNone where it has left the scene. Where the hit has
-  // rough lobes, visit(bsdf, flux, firstBounce) gets the flux that arrives (before albedo), shading
-  // normals accounted for, and whether nothing was between the light and the hit; at most
-  // maxBounces times, counting the rough scatterings so far plus this one. Russian roulette by
-  // reflectance keeps the flux about level.
+  // Scatters the photon at the hit of next(); hit.triangle is kNone where it left the scene. Where
+  // the hit has rough lobes, calls visit(bsdf, flux, firstBounce) with the arriving flux (before
+  // the albedo, with the shading factor) and whether it came straight from the light. The walk ends
+  // at the maxBounces-th rough scattering. Russian roulette by reflectance keeps the flux nearly
+  // constant.
   template <typename Visit>
   void advance(const RayScene& rays, const SurfacePoint& hit, const Visit& visit) {
     ++fate_.rays;
@@ -59,8 +59,8 @@ class PhotonWalk {
       return;
     }
     const Bsdf bsdf(rays.scene(), hit);
-    // What does not travel on counts as absorbed, roulette included: escaped + absorbed = emitted
-    // exactly.
+    // Flux that does not continue counts as absorbed, Russian roulette included, so that escaped +
+    // absorbed equals the emitted flux.
     fate_.absorbed += flux_;
     if (bsdf.hasRough()) {
       const Vec3 arriving = flux_ * bsdf.photonShadingFactor();

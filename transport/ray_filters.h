@@ -1,12 +1,11 @@
-// What Embree calls for each triangle that a ray may hit. For rays.cpp alone.
+// Filter functions that Embree calls for each triangle that a ray may hit. Used by rays.cpp only.
 //
-// Embree divides by estimating a reciprocal, as precisely as the processor cares to, and takes
-// other code, which contracts products and sums, where there are other instructions. Of its code
-// for SSE2 all else is plain IEEE arithmetic: building, the boxes of robust scenes, the tests of
-// edges, and the normals of hits. Processor::Any takes that code, for rays that reach further than
-// asked by more than an estimate is wrong, and lets these filters divide, compare and decide. Among
-// hits at one distance the lowest instance and triangle is the nearest, in whatever order they
-// come.
+// Embree divides by a reciprocal estimate whose precision depends on the processor, and with newer
+// instruction sets runs code that contracts products and sums. In its SSE2 code everything else is
+// plain IEEE arithmetic: building, the boxes of robust scenes, edge tests, and normals of hits.
+// Processor::Any selects that code, lengthens rays by more than the error of the estimate, and lets
+// these filters divide and decide. Among hits at equal distance, the lowest instance and triangle
+// wins, in whatever order Embree reports them.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -19,21 +18,21 @@
 
 namespace bnvpl {
 
-// The triangles of a geometry, as filters find them.
+// User data of a geometry: its triangles are those of the scene from `begin` on.
 struct FilteredTriangles {
   const Scene* scene;
   uint32_t begin;
 };
 
-// What a query is about to find; Embree hands its first member on to the filters.
+// The state of a query. Embree passes its first member to the filters.
 struct ExactQuery {
   RTCIntersectContext context;
-  float reach;  // of the ray
+  float reach;  // length of the ray, shortened by each hit that is kept
   uint32_t instance = kNone, triangle = kNone;
   float u = 0, v = 0;
 };
 
-// An Embree reciprocal is wrong by less than 2^-21 of itself.
+// Lengthens a ray by more than the relative error of Embree's reciprocal, which is below 2^-21.
 inline float beyond(float distance) { return distance * (1.0f + 0x1p-18f); }
 
 inline void rejectCutAway(const RTCFilterFunctionNArguments* args) {
@@ -52,8 +51,8 @@ struct ExactHit {
   float distance, u, v;
 };
 
-// Of the i-th ray, where Embree has found that it passes between the edges. Distances are those of
-// Embree but for the division: terms are added in its order.
+// The hit of the i-th ray, which Embree has found to pass between the edges. The distance is
+// computed in Embree's order of terms, but with a true division.
 inline ExactHit exactHit(const RTCFilterFunctionNArguments* args, unsigned i) {
   const unsigned n = args->N;
   const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
@@ -74,7 +73,7 @@ inline ExactHit exactHit(const RTCFilterFunctionNArguments* args, unsigned i) {
               b2 = product(cross(p0 - p1, p0 + p1), direction),
               b0 = product(cross(p1 - p2, p1 + p2), direction);
   const float all = b1 + b2 + b0, distance = product(p0, normal) / product(normal, direction);
-  // What beyond() relies on.
+  // beyond() relies on this bound.
   [[maybe_unused]] const float estimated = RTCRayN_tfar(args->ray, n, i);
   assert(!(std::fabs(estimated - distance) > 0x1p-20f * std::fabs(distance)));
   return {RTCHitN_instID(args->hit, n, i, 0), triangle, distance,
@@ -82,7 +81,7 @@ inline ExactHit exactHit(const RTCFilterFunctionNArguments* args, unsigned i) {
           all == 0.0f ? 0.0f : std::min(b2 / all, 1.0f)};
 }
 
-// Of rtcIntersect1: the nearest hit is kept in the ExactQuery.
+// Filter of rtcIntersect1: keeps the nearest hit in the ExactQuery.
 template <bool kMasked>
 void keepExact(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<ExactQuery*>(args->context);
@@ -90,7 +89,7 @@ void keepExact(const RTCFilterFunctionNArguments* args) {
   const auto place = [](const auto& of, float distance) {
     return std::tuple(distance, of.instance, of.triangle);
   };
-  // Unordered distances, which are no hits, compare as false.
+  // NaN distances, which are no hits, compare as false.
   const bool nearer = hit.distance >= 0.0f && hit.distance <= query.reach &&
                       place(hit, hit.distance) < place(query, query.reach);
   const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
@@ -104,7 +103,7 @@ void keepExact(const RTCFilterFunctionNArguments* args) {
   RTCRayN_tfar(args->ray, args->N, 0) = beyond(hit.distance);
 }
 
-// Of rtcOccluded1 and rtcOccluded8: whether the hit is within reach.
+// Filter of rtcOccluded1 and rtcOccluded8: rejects hits beyond the ray's length.
 template <bool kMasked>
 void hideExact(const RTCFilterFunctionNArguments* args) {
   const auto& query = *reinterpret_cast<const ExactQuery*>(args->context);

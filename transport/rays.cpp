@@ -40,9 +40,10 @@ struct RayScene::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;  // the world: opaque, masked, and instances from kFirstInstance on
   std::vector<RTCScene> prototypes;
-  std::vector<std::unique_ptr<FilteredTriangles>> filtered;  // where filters find them
+  std::vector<std::unique_ptr<FilteredTriangles>> filtered;  // user data of the filters
   bool exact = false;                                        // Processor::Any
-  // What the device reported first. From any thread, and perhaps for want of memory: no allocation.
+  // The first error of the device. Any thread may report it, also when out of memory: no
+  // allocation.
   std::atomic<RTCError> error{RTC_ERROR_NONE};
   std::array<char, 256> errorText{};
 
@@ -64,7 +65,7 @@ struct RayScene::Impl {
     throw std::runtime_error(std::string("Embree: ") + errorText.data());
   }
 
-  static constexpr unsigned kOpaque = 0, kMasked = 1, kFirstInstance = 2;  // geometries
+  static constexpr unsigned kOpaque = 0, kMasked = 1, kFirstInstance = 2;  // geometry ids
 
   RTCScene makeScene() {
     const RTCScene made = rtcNewScene(device);
@@ -96,8 +97,8 @@ struct RayScene::Impl {
   }
   void commit(RTCScene made) {
 #if defined(__SANITIZE_THREAD__)
-    // By this thread alone: Embree is not compiled for the sanitizer, which does not see it wait
-    // for other threads.
+    // Uses this thread alone: Embree is not compiled with the sanitizer, which would miss its
+    // synchronisation of threads.
     tbb::task_arena(1).execute([&] { rtcCommitScene(made); });
 #else
     rtcCommitScene(made);
@@ -193,7 +194,7 @@ bool RayScene::Impl::closestExactHit(const Ray& ray, SurfacePoint& hit) const {
   return hit.triangle != kNone;
 }
 
-// The rest of a hit, from its triangle, its distance and the barycentric coordinates in u and v.
+// Completes a hit from its triangle, its distance, and the barycentric coordinates in u and v.
 void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
   const Triangle& t = scene_.triangles[hit.triangle];
   Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
@@ -201,7 +202,7 @@ void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
   const Instance* instance = hit.instance == kNone ? nullptr : &scene_.instances[hit.instance];
   if (instance) p0 = instance->point(p0), p1 = instance->point(p1), p2 = instance->point(p2);
   const float b1 = hit.u, b2 = hit.v, b0 = 1.0f - b1 - b2;
-  // From the corners, not along the ray: exact to a few ulps of the triangle, however long the ray.
+  // Interpolating the corners is exact to a few ulps of the triangle, however long the ray is.
   hit.position = b0 * p0 + b1 * p1 + b2 * p2;
   hit.material = t.material;
   hit.wo = -direction;

@@ -1,4 +1,4 @@
-// Ray queries against a Scene. Behind it only rays.cpp, with its ray_filters.h, knows Embree.
+// Ray queries against a Scene. Only rays.cpp and ray_filters.h include Embree.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace bnvpl {
 
-// Where a ray met the scene, described from the side that the ray came from.
+// Where a ray hit the scene, described from the side that the ray came from.
 struct SurfacePoint {
   Vec3 position;
   Vec3 wo;             // unit, back along the ray
   Vec3 ng;             // geometric normal, unit, dot(ng, wo) >= 0
   Vec3 ns;             // shading normal, unit, in the hemisphere of ng
-  Vec3 coat;           // as ns, of a clearcoat; 0: it is ns
-  Vec3 tangent;        // where u grows, not unit; 0 where it is not known or no model asks
+  Vec3 coat;           // shading normal of the clearcoat; 0: it is ns
+  Vec3 tangent;        // direction of growing u, any length; 0 where unknown or not needed
   float u = 0, v = 0;  // texture coordinates; NaN where the mesh has none
   float distance = 0;  // along the ray
   uint32_t triangle = kNone;
-  uint32_t instance = kNone;  // of Scene::instances; kNone: of the world itself
+  uint32_t instance = kNone;  // index into Scene::instances; kNone: the triangle is not instanced
   uint32_t material = kNone;
   bool front = true;  // wo lies on the side of the triangle's winding
 };
@@ -30,7 +30,7 @@ struct Ray {
   Vec3 origin, direction;  // direction unit
 };
 
-// A straight way between two points.
+// The straight segment between two points.
 struct Segment {
   Vec3 from, to;
 };
@@ -45,23 +45,23 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // Nearest surface along the ray from `origin` (offset off its own surface by the caller) in the
-  // unit direction. False: the ray leaves the scene; hit.triangle is kNone then.
+  // Finds the nearest surface from `origin`, which the caller has offset off its surface, in the
+  // unit direction. Returns false and sets hit.triangle to kNone if the ray leaves the scene.
   bool closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const;
-  // The same for rays that have nothing to do with each other, up to kBatch of them: they wait for
-  // memory together, for corners, normals and texels alike.
+  // The same for up to kBatch incoherent rays. Prefetches overlap their cache misses for corners,
+  // normals and texels.
   static constexpr size_t kBatch = 16;
   void closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const;
 
   // Whether anything lies strictly between two points, both offset by the caller.
   bool occluded(Vec3 from, Vec3 to) const;
-  // The same of many, and several times faster where those that lie next to each other in the list
-  // do so in space, from end to end: eight are traced together.
+  // The same for many segments, traced eight at a time: several times faster if neighbours in the
+  // list have both ends near each other.
   void occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const;
   bool occludedToInfinity(Vec3 from, Vec3 direction) const;
 
-  // A point moved off its surface towards `side` (unit, a normal of the side to leave by), far
-  // enough that rounding cannot put it behind: scales with the scene and with the distance from the
+  // A point moved off its surface along `side` (unit, the normal on the side that the ray leaves
+  // to). The offset exceeds rounding errors: it scales with the scene and the distance from the
   // origin.
   Vec3 offsetOrigin(Vec3 p, Vec3 side) const {
     const float reach = std::max(std::fabs(p.x), std::max(std::fabs(p.y), std::fabs(p.z)));

@@ -6,7 +6,7 @@ namespace bnvpl {
 
 namespace {
 
-// How the position moves with u and v over a triangle. False: the coordinates do not span it.
+// Derivatives of the position by u and v over a triangle. False: the coordinates do not span it.
 bool derivatives(const Scene& scene, const Triangle& t, Vec3& dpdu, Vec3& dpdv) {
   const Vec3 p0 = scene.positions[t.position[0]];
   const Vec3 e1 = scene.positions[t.position[1]] - p0, e2 = scene.positions[t.position[2]] - p0;
@@ -18,7 +18,7 @@ bool derivatives(const Scene& scene, const Triangle& t, Vec3& dpdu, Vec3& dpdv) 
   return isFinite(dpdu) && isFinite(dpdv) && !isBlack(dpdu) && !isBlack(dpdv);
 }
 
-// In the frame of tangent, its partner on the side of growing v, and normal.
+// The normal of a tangent-space normal map. The bitangent points to growing v.
 Vec3 mappedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 n,
                   Vec3 dpdu, Vec3 dpdv) {
   const Vec3 along = dpdu - n * dot(n, dpdu);
@@ -30,7 +30,7 @@ Vec3 mappedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& 
   return normalize(m);
 }
 
-// The normal of the displaced surface (Blinn 1978), by differences over a texel on both sides.
+// The normal of the displaced surface (Blinn 1978), by central differences over a texel.
 Vec3 bumpedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 n,
                   Vec3 dpdu, Vec3 dpdv) {
   const TextureEvaluator texture(scene.expressions, scene.textures);
@@ -45,7 +45,7 @@ Vec3 bumpedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& 
   return normalize(dot(flat, n) < 0.0f ? -m : m);
 }
 
-// The shading normal of the hit with that relief.
+// The shading normal of the hit, perturbed by a relief.
 Vec3 relieved(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 ns, Vec3 dpdu,
               Vec3 dpdv) {
   if (relief.flat()) return ns;

@@ -7,7 +7,7 @@ namespace bnvpl {
 
 namespace {
 
-// Lambert and nothing else, without a texture: paths end there, and need no Bsdf to know.
+// Whether the material is Lambertian without a texture. Paths end there without making a Bsdf.
 bool isPlain(const Material& material) {
   const auto* m = std::get_if<PhongModel>(&material.model);
   return m && m->diffuseMap == kNone && !m->glass && isBlack(m->glossy) && isBlack(m->mirror);
@@ -27,7 +27,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
                                 Rng& rng, const LightsBehind& behind, float roughImportance) {
   SpecularPath end;
-  LearnedStrata strata;  // of the last specular vertex
+  LearnedStrata strata;  // those of the last specular vertex
   end.hit = first;
   end.throughput = Vec3{1.0f};
   Arrival arrival = start;
@@ -43,7 +43,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
 
     const Material& material = rays.scene().materials[end.hit.material];
     if (isPlain(material)) {
-      rng.next();  // as chooseLobes does
+      rng.next();  // chooseLobes() would consume it
       end.rough = !isBlack(material.phong().diffuse);
       return end;
     }

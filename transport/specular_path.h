@@ -1,5 +1,5 @@
-// From a ray to the first rough vertex, through mirrors, glass and sharp lobes: the one definition
-// of "specular path" for every integrator.
+// Follows a ray through mirrors, glass and near-specular lobes to the first rough vertex. All
+// integrators share this definition of a specular path.
 #pragma once
 
 #include "transport/direct_light.h"
@@ -8,29 +8,30 @@ namespace bnvpl {
 
 class SurfaceLights;
 
-// Where sharp lobes look for lights; null: to one in proportion to its power.
+// Distributions by which near-specular vertices sample lights; without one, they sample by power.
 struct LightsBehind {
-  const LearnedStrata* first = nullptr;   // from the first specular vertex
-  const SurfaceLights* others = nullptr;  // from all where `first` is not given
+  const LearnedStrata* first = nullptr;   // for the first specular vertex
+  const SurfaceLights* others = nullptr;  // for the others, and for the first without `first`
 };
 
 struct SpecularPath {
-  bool rough = false;  // `hit` is a vertex where the rough lobes were taken
+  bool rough = false;  // whether the path took the rough lobes at `hit`
   SurfacePoint hit;
-  Vec3 throughput;      // from the start to the hit, one over the probability of `rough` included
-  unsigned links = 0;   // specular vertices passed
-  bool spread = false;  // one of them at least by a sharp lobe: the direction was one of many
-  Vec3 metFirst;        // emission met by the first segment
-  Vec3 metLater;        // emission met behind specular vertices, and light sampled at sharp ones
-  float firstDistance = INFINITY;  // of the first hit, along the ray
+  Vec3 throughput;      // from the start to the hit, over the probability of choosing `rough`
+  unsigned links = 0;   // number of specular vertices
+  bool spread = false;  // whether one of them has a near-specular rather than a delta lobe
+  Vec3 metFirst;        // emission hit by the first segment
+  Vec3 metLater;        // emission hit later, and light sampled at near-specular vertices
+  float firstDistance = INFINITY;  // distance of the first hit along the ray
 };
 
-// `arrival`: at the first hit; its `shared` is for all that is met behind specular vertices.
+// `arrival` describes the first segment; its `shared` holds for the segments behind specular
+// vertices.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
                                 const LightsBehind& behind = {});
-// The same where it is known what the ray hits; first.triangle is kNone where that is nothing.
-// `roughImportance`: there, as of chooseLobes.
+// The same with a given first hit; first.triangle is kNone if the ray leaves the scene.
+// `roughImportance` is passed to chooseLobes() at the first hit.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
                                 Rng& rng, const LightsBehind& behind = {}, float roughImportance = 1.0f);

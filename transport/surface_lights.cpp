@@ -11,17 +11,16 @@ namespace bnvpl {
 
 namespace {
 
-// Points that learn together, at least; more where there would be too many groups for a
-// preparation.
+// Min number of points that share a distribution; more points share one if there would be more than
+// kMaxGroups groups.
 constexpr size_t kPointsOfGroup = 8, kMaxGroups = 512;
-// A light has fewer strata than for tiles of the film: there are more of these rays, but each place
-// has few.
+// Max number of strata. Tiles of the film have more, because each place here has few rays.
 constexpr size_t kStrata = 256;
-constexpr size_t kProbes = 16;  // of a stratum
+constexpr size_t kProbes = 16;  // probes of each stratum
 
-// Neighbours that look the same way.
+// Neighbouring points whose normals have the same dominant axis and sign.
 struct Group {
-  size_t begin, end;  // of the order
+  size_t begin, end;  // range in the order
   uint32_t facing;
 };
 

@@ -1,5 +1,5 @@
-// Which parts of the lights each part of the surface sees, far from the camera: learned by shadow
-// rays from the VPLs that stand for it.
+// Distributions over the strata of the lights for each part of the surface, learned by shadow rays
+// from the VPLs that represent it. Used for vertices that the camera does not see directly.
 #pragma once
 
 #include <vector>
@@ -13,21 +13,21 @@ namespace bnvpl {
 // Thread-safe and immutable once made.
 class SurfaceLights {
  public:
-  // Points on surfaces, their unit normals, and how far each speaks for its surroundings (> 0,
-  // world units). Borrows the lights until it is made; `key`: of its random numbers.
+  // Takes points on surfaces, their unit normals, and the radius (> 0, world units) around each for
+  // which it is representative. `key` seeds the random numbers.
   SurfaceLights(const RayScene& rays, const LightSet& lights, std::span<const Vec3> points,
                 std::span<const Vec3> normals, std::span<const float> radii, uint64_t key,
                 const ProgressFn& progress);
 
-  // Around a point; what all points see where none of them speaks for it. Empty, without `all`,
-  // where there is nothing to choose: fewer than two strata, or no points.
+  // The distribution at a position; the mean of all where no point is near. Empty, with `all` null,
+  // if there are fewer than two strata or no points.
   LearnedStrata at(Vec3 position, Vec3 normal) const;
 
  private:
   LightStrata strata_;
   RegionGrid regions_;
-  std::vector<uint32_t> groupOf_;     // of each point
-  std::vector<StrataValues> groups_;  // running sums
+  std::vector<uint32_t> groupOf_;     // group of each point
+  std::vector<StrataValues> groups_;  // distribution of each group, as running sums
   StrataValues everywhere_;
 };
 

@@ -10,11 +10,11 @@ namespace bnvpl {
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind) {
   VplLights vpls;
   vpls.kind = kind;
-  // Nothing nearer than rays can tell apart: 1/d^2 stays finite without a clamp too.
+  // Min distance, below which rays cannot tell points apart. It keeps 1/d^2 finite without a clamp.
   const float nearest = rays.scene().offsetSize() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
-    // Each point sends an equal part; equal points are one light.
+    // Each emission point emits an equal part of the flux; coinciding points become one light.
     const auto at = std::span(lit.emitPosition).subspan(i * lit.emitPoints, lit.emitPoints);
     for (size_t k = 0; k < at.size(); ++k) {
       if (std::find(at.begin(), at.end(), at[k]) != at.begin() + std::ptrdiff_t(k)) continue;

@@ -1,4 +1,4 @@
-// VPLs as lights: what one of them sends to a surface point.
+// VPLs as light sources: the contribution of one of them to a surface point.
 #pragma once
 
 #include <vector>
@@ -9,29 +9,29 @@
 
 namespace bnvpl {
 
-// Columns of the VPLs that carry flux; the others would only be visited in vain.
+// Columns of the VPLs that carry flux.
 struct VplLights {
   LightKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
-  std::vector<Vec3> intensity;  // flux / pi: along the normal, W/sr
-  std::vector<uint32_t> row;    // of the table that it was made from
-  std::vector<float> clamp2;  // (clamp * radius)^2, size of the kind, world units squared; never 0
+  std::vector<Vec3> intensity;  // intensity along the normal, flux / pi, W/sr
+  std::vector<uint32_t> row;    // row of the VplTable
+  std::vector<float> clamp2;    // squared size of the kind, (clamp * radius)^2; never 0
 
   size_t size() const { return position.size(); }
 };
 
-// `clamp` in units of each VPL's own radius (r_max).
+// `clamp` is in units of each VPL's radius (r_max).
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp,
                         LightKind kind = {});
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct Coupling {
   Vec3 transfer;         // BSDF * cosines * falloff, 1/m2
-  float clamped = 0.0f;  // what a point light without a bound would bring more, over transfer
+  float clamped = 0.0f;  // contribution that the bound removes, relative to transfer
 };
 
-// False: exactly 0 whatever is between (behind either side).
+// Returns false if the contribution is 0 regardless of visibility, as behind either surface.
 inline bool couple(const VplLights& vpls, size_t i, const Bsdf& bsdf, Coupling& out) {
   const Vec3 d = vpls.position[i] - bsdf.point().position;
   const float d2 = lengthSquared(d);
@@ -47,12 +47,12 @@ inline bool couple(const VplLights& vpls, size_t i, const Bsdf& bsdf, Coupling& 
   return true;
 }
 
-// The same but for what the receiver reflects, in a form without branches, so that the compiler can
-// do several receivers at once.
+// The same without the receiver's BSDF, and without branches, so that the compiler can vectorise it
+// over receivers.
 struct BareCoupling {
-  float transfer;  // cosines * falloff, 1/m2; means nothing unless lit
-  float clamped;   // as Coupling's
-  int lit;         // 0: exactly 0 whatever is between
+  float transfer;  // cosines * falloff, 1/m2; undefined unless lit
+  float clamped;   // the same as in Coupling
+  int lit;         // 0: the contribution is 0 regardless of visibility
 };
 template <typename Kind>
 BareCoupling coupleBare(Vec3 position, Vec3 normal, float clamp2, Vec3 receiver, Vec3 ns, Vec3 ng) {

@@ -1,18 +1,17 @@
-// The kinds of virtual light: how the light of one, or of a cluster of them, spreads. This is all
-// that tells them apart, and the only place that knows it; values, upper bounds and expectations of
-// every gather, the tree and the compensation ask it.
+// Kinds of virtual light: the emission and falloff of a VPL, and of a cluster of VPLs. Gathers,
+// light tree and compensation take their values, upper bounds and expectations from here.
 //
 // A kind is a struct of static functions, and an entry of the list LightKinds:
-//   name       on the command line
-//   spread     what stands where d^2 of a point light would, so that light falls off with 1/spread;
-//              must not fall with d2, and not lie below it
-//   removed    share of a point light's 1/d^2 that it leaves out at a distance, which compensation
-//              brings back: 1 - d^2 / spread
-//   emitted    light in a direction, over that along the axis, times the distance
+//   name       value of the command-line option
+//   spread     replaces d^2, so that light falls off with 1/spread; it must be at least d2 and not
+//              decrease with d2
+//   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
+//              compensation adds back: 1 - d^2 / spread
+//   emitted    emission in a direction relative to that along the axis, times the distance
 //   mostEmitted, expectedEmitted
-//              the same for a cluster whose axes fill a cone, times nothing: an upper bound for
-//              directions whose cosine with the cone's axis is at most so large, and a middling
-//              value that is 0 only where nothing can be sent
+//              the same for a cluster whose axes fill a cone, without the distance: an upper bound
+//              for directions whose cosine with the cone's axis is at most the given one, and a
+//              typical value that is 0 only where nothing can be emitted
 // F is a float, or four of them (core/lanes.h).
 #pragma once
 
@@ -28,24 +27,25 @@
 
 namespace bnvpl {
 
-// Shines like a matt surface.
+// Emits like a diffuse surface.
 struct LambertEmission {
   static float emitted(Vec3 axis, Vec3 toLight) { return -dot(axis, toLight); }
-  // `cosine` of the direction with the axis of a cone of axes with that half angle.
+  // `cosine` is that of the direction with the axis of the cone, which has the given half angle.
   template <typename F>
   static F mostEmitted(F cosine, F cosHalfAngle, F sinHalfAngle) {
     const F zero = everyLane<F>(0.0f);
     const F nearest = cosineOfLess(cosine, cosHalfAngle, sinHalfAngle);
     return selectAtLeast(zero, cosHalfAngle, everyLane<F>(1.0f), larger(nearest, zero));
   }
-  // `halfAngle`: sine of half the angle that the cluster fills.
+  // `halfAngle` is about half the angle that the cluster subtends; `sinHalfAngle` is that of the
+  // cone.
   static float expectedEmitted(float cosine, float halfAngle, float sinHalfAngle) {
     return halfAngle + sinHalfAngle + cosine;
   }
 };
 
-// A point whose 1/d^2 is bounded inside the distance `size` (Keller 1997; the bound: Kollig &
-// Keller 2006).
+// A point light (Keller 1997) whose 1/d^2 is bounded within the distance `size` (Kollig & Keller
+// 2006).
 struct PointLight : LambertEmission {
   static constexpr std::string_view name = "point";
   template <typename F>
@@ -57,8 +57,8 @@ struct PointLight : LambertEmission {
   }
 };
 
-// A disk of radius `size`, by the form factor of a disk that faces the point, A cos cos / (pi d^2 +
-// A): it is exact on the axis (Wallace, Elmquist & Haines 1989, "A Ray Tracing Algorithm for
+// A disk of radius `size`, by the form factor A cos cos / (pi d^2 + A) of a disk that faces the
+// point, which is exact on the axis (Wallace, Elmquist & Haines 1989, "A Ray Tracing Algorithm for
 // Progressive Radiosity").
 struct DiskLight : LambertEmission {
   static constexpr std::string_view name = "disk";
@@ -91,9 +91,9 @@ using LightKinds = KindList<PointLight, DiskLight>;
 inline constexpr std::string_view kLightKinds{LightKinds::choices.data(),
                                               LightKinds::choices.size()};
 
-enum class LightKind : uint8_t {};  // a place in LightKinds
+enum class LightKind : uint8_t {};  // an index into LightKinds
 
-// Throws std::logic_error where no kind has that name.
+// Throws std::logic_error if no kind has that name.
 inline LightKind lightKindNamed(std::string_view name) {
   for (size_t i = 0; i < LightKinds::names.size(); ++i) {
     if (LightKinds::names[i] == name) return LightKind(i);
@@ -116,7 +116,7 @@ auto withKind(LightKind kind, const Fn& fn) {
   return withKindOf(LightKinds{}, static_cast<size_t>(kind), fn);
 }
 
-// 1/d^2 as the kind has it, 1/m2.
+// The kind's falloff, which replaces 1/d^2, in 1/m2.
 inline float falloff(LightKind kind, float distanceSquared, float size2) {
   return 1.0f / withKind(kind, [&](auto k) { return k.spread(distanceSquared, size2); });
 }

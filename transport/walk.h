@@ -1,19 +1,19 @@
-// One step of a random walk: shared by place, photons, specular paths, path tracing and plots.
+// One step of a random walk, for candidates, photons, specular paths, path tracing and plots.
 #pragma once
 
 #include "transport/bsdf.h"
 
 namespace bnvpl {
 
-inline constexpr unsigned kMaxSpecular = 64;  // specular scatterings between two rough ones
+inline constexpr unsigned kMaxSpecular = 64;  // max specular scatterings between two rough ones
 
-// The group of lobes that a path takes at a vertex, and the probability of taking it.
+// The group of lobes that a path takes at a vertex, and its probability.
 struct LobeChoice {
   LobeGroup group;
   float probability;
   bool specular() const { return group == LobeGroup::Specular; }
 };
-// `roughImportance`: of the rough lobes' light, the part that is asked for, 0..1.
+// `roughImportance` scales the probability of the rough group before normalisation, 0..1.
 inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance = 1.0f) {
   float specular = bsdf.specularProbability();
   if (roughImportance < 1.0f && specular > 0.0f) specular /= specular + (1.0f - specular) * roughImportance;
@@ -21,13 +21,13 @@ inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance 
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }
 
-// The ray that goes on from a vertex in a sampled direction.
+// The ray from a vertex in a sampled direction.
 inline Ray rayOn(const RayScene& rays, const SurfacePoint& vertex, const BsdfSample& sample) {
   return {rays.offsetOrigin(vertex.position, sample.side), sample.wi};
 }
 
-// Scatters by a group of lobes: `sample` has weight and density of the direction, `next` the ray
-// that goes on. False: absorbed.
+// Samples a direction from a group of lobes, and sets `next` to the ray in this direction. Returns
+// false if the path is absorbed.
 inline bool scatter(const RayScene& rays, const Bsdf& bsdf, LobeGroup group, Transport transport,
                     Rng& rng, BsdfSample& sample, Ray& next) {
   if (!bsdf.sample(group, transport, rng, sample)) return false;

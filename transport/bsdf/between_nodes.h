@@ -1,4 +1,4 @@
-// Tables whose nodes are denser near 0: value = t^2 with t evenly spaced in [0, 1].
+// Interpolation in tables whose nodes are denser near 0: value = t^2, t evenly spaced in [0, 1].
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@ inline float nodeSquared(size_t i, size_t count) {
   return t * t;
 }
 
-// Linear interpolation between two nodes: the lower one, and the share of the upper.
+// Linear interpolation between two nodes: index of the lower one, and weight of the upper.
 struct BetweenNodes {
   size_t node;
   float share;
 };
-// Of a value in [0, 1], clamped.
+// The nodes around a value, which is clamped to [0, 1].
 inline BetweenNodes betweenSquared(float value, size_t count) {
   value = std::clamp(value, 0.0f, 1.0f);
   const auto t = static_cast<size_t>(std::sqrt(value) * static_cast<float>(count - 1));

@@ -1,12 +1,12 @@
-// Reflectance of smooth interfaces, unpolarised.
+// Fresnel reflectance of smooth interfaces for unpolarised light.
 #pragma once
 
 #include "core/vec3.h"
 
 namespace bnvpl {
 
-// Dielectric; cosI >= 0, eta = n_transmitted / n_incident. Sets the cosine of the refracted
-// direction; 1 under total internal reflection.
+// Dielectric interface with cosI >= 0 and eta = n_transmitted / n_incident. Sets cosT, the cosine
+// of the refracted direction; total internal reflection returns 1 and leaves cosT as it is.
 inline float fresnelDielectric(float cosI, float eta, float& cosT) {
   const float sin2T = (1.0f - cosI * cosI) / (eta * eta);
   if (sin2T >= 1.0f) return 1.0f;
@@ -20,7 +20,7 @@ inline float fresnelDielectric(float cosI, float eta) {
   return fresnelDielectric(cosI, eta, cosT);
 }
 
-// Metal of complex index eta + i k (Born & Wolf; as in Lagarde 2013, "Memo on Fresnel equations").
+// Metal of complex index eta + i k (Lagarde 2013, "Memo on Fresnel equations", after Born & Wolf).
 inline float fresnelConductor(float cosI, float eta, float k) {
   const float cos2 = cosI * cosI, sin2 = 1.0f - cos2, eta2 = eta * eta, k2 = k * k;
   const float t0 = eta2 - k2 - sin2, a2b2 = std::sqrt(t0 * t0 + 4.0f * eta2 * k2);

@@ -1,18 +1,17 @@
-// What a lobe is: a summand of a BSDF, in local coordinates where z is the normal on wo's side.
+// A lobe is one term of a BSDF, in local coordinates whose z axis is the normal on wo's side.
 //
-// A lobe L is a small plain struct with
-//   Vec3 value(wo, wi, transport)   BSDF, 1/sr, without cosine; 0 where smooth
+// A lobe is a small plain struct with
+//   Vec3 value(wo, wi, transport)   BSDF without the cosine, 1/sr; 0 where smooth
 //   float pdf(wo, wi)               density of sample(), 1/sr; 0 where smooth
-//   bool sample(wo, pick, at, out)  draws a direction; false: lost. A smooth lobe sets out.weight,
-//   the others
-//                                   leave value and density to be asked for
+//   bool sample(wo, pick, at, out)  samples out.wi; false if absorbed. Smooth lobes also set
+//                                   out.weight; for others, callers evaluate value and pdf
 //   Vec3 albedo(wo)                 fraction of the light from wo that leaves, 0..1
 //   Vec3 bound(wo, maxCosine, cosMirror)
 //                                   upper bound of value * wi.z over wi above the surface whose
 //                                   cosine with z is at most maxCosine and with wo's mirror image
-//                                   at most cosMirror; asked of rough lobes alone
-//   bool smooth()                   a mirror or glass: one direction, which no other sampling can
-//   hit LobeGroup group()
+//                                   at most cosMirror; called for rough lobes only
+//   bool smooth()                   whether it is a delta lobe: a mirror, or smooth glass
+//   LobeGroup group()               the group it belongs to
 // wo.z is positive; wi.z is negative below the surface.
 #pragma once
 
@@ -22,12 +21,13 @@ namespace bnvpl {
 
 struct LobeSample {
   Vec3 wi;
-  Vec3 weight;  // of smooth lobes: value * cosine / density
+  Vec3 weight;  // value * cosine / density; set by smooth lobes only
 };
 
 inline Vec3 mirrored(Vec3 w) { return {-w.x, -w.y, w.z}; }
 
-// The parameters of a material at a point.
+// Evaluates the parameters of a material at a point: raw, clamped to 0..1 (share), or as an index
+// of refraction. Textures count as 1 where the mesh has no texture coordinates.
 class MaterialInputs {
  public:
   MaterialInputs(const Scene& scene, const SurfacePoint& point)

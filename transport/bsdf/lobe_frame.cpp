@@ -4,16 +4,15 @@ namespace bnvpl {
 
 namespace {
 
-// The mirror image of wo lies at least so far above the geometric surface, as a cosine.
+// Min cosine between the geometric normal and the mirror image of wo.
 constexpr float kAboveSurface = 0.01f;
 
-constexpr float kMinCosine = 1e-5f;  // least cosine of wo, by which lobes divide
+constexpr float kMinCosine = 1e-5f;  // min cosine of wo, by which lobes divide
 
 float leastAbove(Vec3 ng, Vec3 wo) { return std::min(kAboveSurface, 0.9f * dot(ng, wo)); }
 
-// The shading normal for lobes that look for wo's mirror image: where that lies below the surface,
-// or wo below the shading normal's horizon, the one whose mirror image is just above. It moves
-// continuously.
+// The shading normal of glossy lobes. Where keepsNormal() is false, it is replaced by the normal
+// whose mirror image of wo lies just above the surface. The result is continuous in wo.
 Vec3 bentNormal(const SurfacePoint& p, Vec3 ns) {
   if (keepsNormal(p.ng, ns, p.wo)) return ns;
   const Vec3 mirror = reflect(p.wo, ns);

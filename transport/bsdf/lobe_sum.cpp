@@ -14,18 +14,19 @@ namespace {
 
 bool isLambert(const Lobe& lobe) { return std::holds_alternative<LambertLobe>(lobe); }
 
-// Share of the photons that leave by the surface's own cosine, where relief hides some directions
-// from lobes that eyes see there, for they bend towards each eye.
+// Fraction of a lobe's photons that are drawn about the geometric normal where the shading normal
+// differs. Lobes are evaluated in a frame bent for each camera direction, so the frame of wo alone
+// would leave some of these directions without samples.
 constexpr float kAboutSurface = 0.25f;
 
-// The point as it is seen from wi, on the same side.
+// The point seen from wi, on the same side.
 SurfacePoint seenFrom(const SurfacePoint& point, Vec3 wi) {
   SurfacePoint p = point;
   p.wo = wi;
   return p;
 }
 
-// The mean over directions of a diffuse base, cosine-weighted.
+// Cosine-weighted mean over wi of the smaller transmittance of the coat, `most` at wo.
 float meanThrough(const CoatAbove& above, float most) {
   constexpr int kSteps = 8;
   float sum = 0.0f;
@@ -135,7 +136,8 @@ std::optional<RoughLeaving> LobeSum::roughLeaving(const SurfacePoint& point) con
   return RoughLeaving{point.ng, point.ns, coated->ior, coated->alpha};
 }
 
-// Lobes over a matt base look much the same from everywhere: as from half way down.
+// A diffuse base below a coat or layer looks much the same from all directions. Its albedo at
+// cosine 0.5 represents all of them.
 DiffusePart LobeSum::diffusePart(const SurfacePoint& point) const {
   constexpr float kHalfWay = 0.5f;
   const Vec3 wo{std::sqrt(1.0f - kHalfWay * kHalfWay), 0.0f, kHalfWay};
@@ -202,8 +204,9 @@ Vec3 LobeSum::seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) co
          (kept * photonCosine(point, frame.z, wi));
 }
 
-// Lobes have their own side at the end that light does not come from, but for Lambert's, which
-// leave by the geometric one. An eye bends them (LobeFrame), and of photons' two ends it is at wi.
+// Value and density of a group's lobes. Lobes other than Lambert's need wi on one side of both
+// their frame's normal and the surface. Frames are bent for the camera's direction (LobeFrame): wo
+// for radiance; for photons it is wi, see seenValue().
 LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
                                      Transport transport, Vec3 wi) const {
   Evaluated sum;
@@ -252,7 +255,7 @@ bool LobeSum::sample(const SurfacePoint& point, LobeGroup group, Transport trans
   float rest = pick;
   for (const Summand& s : lobes()) {
     if (s.group != group) continue;
-    if (chosen) rest -= chosen->share;  // not this one: the next
+    if (chosen) rest -= chosen->share;
     chosen = &s;
     if (rest < s.share) break;
   }

@@ -1,5 +1,5 @@
-// A BSDF as a weighted sum of lobes: what every model but MTL's is made of, mixes included. Models
-// add lobes; all that is asked of the sum is here, without a case by model.
+// A BSDF as a weighted sum of lobes, for every model except MTL's. Models, mixes included, add
+// their lobes; evaluation and sampling are the same for all of them.
 #pragma once
 
 #include <optional>
@@ -20,11 +20,11 @@ namespace bnvpl {
 using Lobe = std::variant<LambertLobe, GgxReflection, MultipleScattering, DielectricLobe,
                           ThinSheetLobe, CoatedBase, CoatedMetal, LayeredBase>;
 
-// A clearcoat of glTF over a lobe: it takes what the coat reflects of the direction that loses
-// more. So the sum of coat and base is reciprocal, and reflects no more than arrives.
+// A glTF clearcoat over a lobe. It scales the lobe by the smaller of its transmittances at wo and
+// wi, so that the sum of coat and base is reciprocal and conserves energy.
 struct CoatAbove {
   float weight = 0.0f, alpha = 0.0f;
-  uint32_t frame = 0;  // whose cosines count
+  uint32_t frame = 0;  // the coat's own frame, to which cosines refer
   float through(float cosine) const;
 };
 
@@ -34,10 +34,10 @@ class LobeSum {
 
   LobeSum(const Scene& scene, const MaterialModel& model, const SurfacePoint& point);
 
-  // For models. Black lobes, and lobes beyond kMaxLobes, are left out.
+  // Called by models. Ignores black lobes, and lobes beyond kMaxLobes.
   void add(Vec3 weight, const Lobe& lobe, CoatAbove above = {}, uint32_t frame = 0);
-  // The number of a frame with another shading normal, or turned about it (LobeFrame). 0, the
-  // point's own, once there are kMaxFrames.
+  // Index of the frame with this shading normal and rotation (LobeFrame), which is created if
+  // needed. Returns 0, the point's own frame, if there are kMaxFrames already.
   uint32_t frame(const SurfacePoint& point, Vec3 shadingNormal, float turns = 0.0f);
   bool full() const { return count_ == kMaxLobes; }
 
@@ -64,7 +64,7 @@ class LobeSum {
     if (diffuseOnly_) return bound;
     Vec3 glossy;
     for (uint32_t f = 0; f < frameCount_; ++f) {
-      // The cosine to another normal than the point's is not known: at most 1.
+      // maxCosNs refers to the point's own normal; the cosine with another one is at most 1.
       const bool known = frames_[f].z == frames_[0].ns;
       glossy += glossyBound(f, known ? maxCosNs : 1.0f, maxCosine(frames_[f].mirrorAxis()));
     }
@@ -78,30 +78,32 @@ class LobeSum {
     Lobe lobe;
     Vec3 weight, albedo;
     CoatAbove above;
-    float coatOut = 1.0f;  // what the coat leaves of the light from wo
-    float share = 0.0f;    // of its group's samples
+    float coatOut = 1.0f;  // transmittance of the coat at wo
+    float share = 0.0f;    // fraction of its group's samples
     uint32_t frame = 0;
     LobeGroup group = LobeGroup::Rough;
   };
   struct Evaluated {
-    Vec3 value;  // times the cosine of the transport
+    Vec3 value;  // BSDF times the cosine for the transport
     float pdf = 0.0f;
   };
   void finish();
   Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
   Evaluated evaluate(const SurfacePoint& point, LobeGroup group, Transport transport,
                      Vec3 wi) const;
-  // What a coat above the lobe leaves of the light between wo and wi.
+  // Transmittance of the coat above the lobe for wo and wi; 1 without a coat.
   float coat(const Summand& s, Vec3 wi) const;
-  // Whether light comes from the shading normal's side of the surface: radiance from wi, photons
-  // from wo. What VPLs bring must do so for the point's own normal, too, by which they are culled.
+  // Whether the light's direction, wi for radiance and wo for photons, lies on one side of both the
+  // surface and the lobe's shading normal. Rough lobes require it of the point's own normal, too,
+  // by which VPLs are culled.
   bool lit(const SurfacePoint& point, const Summand& s, Transport transport, Vec3 wi) const;
-  // What a lobe sends of photons from wo to an eye at wi, on the same side, in the frames that the
-  // eye bends; with the cosine.
+  // Value times cosine of a lobe for photons from wo that a camera at wi sees, both on the same
+  // side. Frames are bent for wi, as where the camera path arrives from there.
   Vec3 seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const;
-  // Share of the lobe's photons that are drawn about the geometric normal.
+  // Fraction of the lobe's photons whose direction is cosine-distributed about the geometric
+  // normal.
   float aboutSurface(const SurfacePoint& point, const Summand& s) const;
-  // Of photons, in place of the cosine at wi, which sides with the normal of a lobe.
+  // Replaces |cos(normal, wi)| for photons: shadingFactor() of the normal times |ng.wi|.
   float photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) const;
   std::span<const Summand> lobes() const { return {lobes_, count_}; }
 
@@ -110,7 +112,7 @@ class LobeSum {
   float specularProbability_ = 0.0f, reflectance_ = 0.0f;
   Vec3 roughAlbedo_, diffuseValue_;
   uint32_t count_ = 0;
-  union {  // not made before it is needed
+  union {  // elements are constructed when they are added
     LobeFrame frames_[kMaxFrames];
   };
   union {
@@ -118,7 +120,7 @@ class LobeSum {
   };
 };
 
-// Adds the lobes of a model. Of the PhongModel: none.
+// Adds the lobes of a model; a PhongModel has none.
 void addModel(const MaterialModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out);
 
 }  // namespace bnvpl

@@ -1,5 +1,5 @@
-// Where the rough group's value is a product, of what goes in by wi and what comes out by wo: how
-// it depends on wo. So light that was found out for one eye is known for others.
+// Dependence of the rough group's value on wo, where it is a product of a factor of wi and one of
+// wo. Light estimated for one viewing direction can then be reused for others.
 #pragma once
 
 #include "transport/bsdf/coated_diffuse/coated_diffuse.h"
@@ -9,11 +9,11 @@ namespace bnvpl {
 
 struct RoughLeaving {
   Vec3 ng, ns;
-  float ior = 0.0f, alpha = 0.0f;  // of a coat over a matt base; ior 0: matt without one
-  bool unbent = false;             // not known where wo bends the normal
+  float ior = 0.0f, alpha = 0.0f;  // coat over a diffuse base; ior 0: no coat
+  bool unbent = false;             // whether the factor is unknown where wo bends the normal
 
-  // A factor of the radiance towards wo, unit; 0: not known, as the coat leaves next to nothing or
-  // its normal bends.
+  // The factor of wo, unit. 0 where it is unknown: the coat transmits next to nothing, or wo bends
+  // the normal.
   float towards(Vec3 wo) const {
     constexpr float kMin = 1e-3f;
     if (ior == 0.0f) return !unbent || keepsNormal(ng, ns, wo) ? 1.0f : 0.0f;
@@ -23,10 +23,10 @@ struct RoughLeaving {
   }
 };
 
-// A part of the rough group's value that is such a product, where the whole is not.
+// The part of the rough group's value that is such a product, where the whole is not.
 struct DiffusePart {
   RoughLeaving leaving;
-  Vec3 value;  // 1/sr, for light from the shading normal's side: times the cosine with it
+  Vec3 value;  // 1/sr, without the cosine with ns, for light from ns's side
 };
 
 }  // namespace bnvpl

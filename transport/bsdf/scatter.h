@@ -1,4 +1,4 @@
-// What the models of materials and their users share.
+// Types that the models of materials share with the code that evaluates them.
 #pragma once
 
 #include "core/random.h"
@@ -7,28 +7,28 @@
 
 namespace bnvpl {
 
-// Roughness at and above which light is what VPLs stand for. A Phong lobe of exponent n has alpha =
-// sqrt(2 / (n + 2)).
+// Reflection by lobes of at least this roughness is rough: VPLs represent it. A Phong lobe of
+// exponent n has alpha = sqrt(2 / (n + 2)).
 inline constexpr float kRoughAlpha = 0.3f;
 
 enum class LobeGroup { Rough, Specular };
 
-// What travels along a path changes two things: which normal the cosine belongs to, and whether
-// refraction scales it (Veach 1997, chapter 5).
+// The quantity that a path carries. It decides which normal the cosine refers to, and whether
+// refraction scales the quantity (Veach 1997, chapter 5).
 enum class Transport { Radiance, Photons };
 
 struct BsdfSample {
   Vec3 wi;      // unit, away from the surface
-  Vec3 weight;  // value * cosine / density
-  float pdf;    // of wi in 1/sr, given the group; 0 for a perfect mirror or glass
-  Vec3 side;    // normal of the side that the path leaves by
+  Vec3 weight;  // value * cosine / pdf
+  float pdf;    // density of wi given the group, 1/sr; 0 for delta lobes
+  Vec3 side;    // unit, the geometric normal on wi's side
 };
 
-// So grazing that one photon would outweigh all others: no surface has such shading normals.
+// Bound of shadingFactor(). A photon at such grazing incidence would outweigh all others.
 inline constexpr float kMaxShadingFactor = 1e5f;
 
-// A photon's flux is measured against the geometric normal, shading against the shading normal:
-// factor |ns.wo| / |ng.wo| of the flux that arrives from wo (Veach 1997, eq. 5.19).
+// Factor |ns.wo| / |ng.wo| of a photon's flux from wo (Veach 1997, eq. 5.19): flux refers to the
+// geometric normal, the BSDF to the shading normal. 0 where wo lies behind either normal.
 inline float shadingFactor(const SurfacePoint& point, Vec3 normal) {
   const float geometric = dot(point.ng, point.wo);
   if (!(geometric > 0.0f)) return 0.0f;

@@ -8,15 +8,15 @@ namespace bnvpl {
 namespace {
 
 
-// A cosine outside, refracted into the coat.
+// Cosine inside the coat of a direction with the given cosine outside (Snell's law).
 float within(float cosine, float ior) {
   return std::sqrt(std::max(0.0f, 1.0f - (1.0f - cosine * cosine) / (ior * ior)));
 }
 
 }  // namespace
 
-// Fresnel reflectance at the refracted angle, times what the coat lets in and out and sends back to
-// the metal.
+// Fresnel reflectance of the metal at the refracted angle, times the coat's transmittances at wo
+// and wi, summed over all reflections between coat and metal.
 Vec3 CoatedMetal::through(Vec3 wo, Vec3 wi, float cosFacet) const {
   const float o = coat(wo.z), i = coat(wi.z), back = std::min(o, i);
   Vec3 f = metal.fresnel.at(within(std::min(1.0f, cosFacet), ior));
@@ -38,7 +38,8 @@ bool CoatedMetal::sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const 
   return true;
 }
 
-// As if all light left by the mirror image's angle; of rough metal, less what facets lose.
+// Albedo of mirror reflection, which approximates that of rough metal; the latter is reduced by the
+// energy that facets lose.
 Vec3 CoatedMetal::albedo(Vec3 wo) const {
   const float stays = smooth() ? 1.0f : 1.0f - ggxLoss(wo.z, metal.ggx.meanAlpha());
   return through(wo, wo, wo.z) * stays;

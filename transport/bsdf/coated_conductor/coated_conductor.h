@@ -5,10 +5,10 @@
 
 namespace bnvpl {
 
-// The metal as seen through the coat: theory.md beside this file.
+// The metal seen through the coat: theory.md, eq. 1.
 struct CoatedMetal {
   GgxReflection metal;
-  float ior = 1.5f, alpha = 0.0f;  // of the coat
+  float ior = 1.5f, alpha = 0.0f;  // the coat's
 
   bool smooth() const { return metal.smooth(); }
   LobeGroup group() const { return metal.group(); }

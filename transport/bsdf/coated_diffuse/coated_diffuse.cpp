@@ -15,8 +15,8 @@ void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec
   const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.ior));
   const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();
   const Vec3 base = inputs.share(model.reflectance);
-  const float in = 1.0f - dielectricMeanAlbedo(alpha, ior);  // of diffuse light from outside
-  const float trapped = 1.0f - in / (ior * ior);             // of diffuse light from below
+  const float in = 1.0f - dielectricMeanAlbedo(alpha, ior);  // transmitted share of diffuse light
+  const float trapped = 1.0f - in / (ior * ior);  // Fi: reflected share of diffuse light from below
   Vec3 scale;
   for (size_t c = 0; c < 3; ++c)
     scale[c] = base[c] / (kPi * ior * ior * (1.0f - base[c] * trapped));

@@ -5,10 +5,10 @@
 
 namespace bnvpl {
 
-// What the coat lets in, the base scatters, and the coat lets out, after any number of reflections
-// below it.
+// Light that enters through the coat and leaves through it again, after the base has scattered it
+// any number of times.
 struct CoatedBase {
-  Vec3 scale;  // that both transmittances multiply, 1/sr: theory.md, eq. 2
+  Vec3 scale;  // factor of the transmittances at wo and wi, 1/sr: theory.md, eq. 2
   float ior = 1.5f, alpha = 0.0f;
 
   bool smooth() const { return false; }

@@ -6,7 +6,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kMaxReflectance = 0.9999f;  // 1 would ask for an infinite k
+constexpr float kMaxReflectance = 0.9999f;  // 1 would need an infinite k
 float kOfReflectance(float r) {
   r = std::clamp(r, 0.0f, kMaxReflectance);
   return 2.0f * std::sqrt(r) / std::sqrt(1.0f - r);
@@ -35,7 +35,7 @@ MultipleScattering multipleScattering(const FacetFresnel& metal, const Ggx& ggx)
   const float alpha = ggx.meanAlpha(), lost = ggxMeanLoss(alpha);
   if (!(lost > 1e-6f)) return {Vec3(), alpha, ggx.rough()};
   const Vec3 f = schlickOf(metal.first, metal.second).mean();
-  Vec3 again;  // of the light that meets a second facet, what leaves
+  Vec3 again;  // Fms of theory.md, eq. 3
   for (size_t c = 0; c < 3; ++c) again[c] = f[c] * f[c] * (1.0f - lost) / (1.0f - f[c] * lost);
   return {max(again, Vec3()) * (1.0f / (kPi * lost)), alpha, ggx.rough()};
 }

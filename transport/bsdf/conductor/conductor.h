@@ -1,13 +1,13 @@
-// Metals: GGX with complex Fresnel reflectance, and what scatters between its facets.
+// Metals: GGX with complex Fresnel reflectance, and multiple scattering between facets.
 #pragma once
 
 #include "transport/bsdf/ggx/reflection.h"
 
 namespace bnvpl {
 
-// Light that facets scatter more than once, near enough diffuse (Kulla & Conty 2017).
+// Light that facets scatter more than once, as a nearly diffuse lobe (Kulla & Conty 2017).
 struct MultipleScattering {
-  Vec3 scale;  // that the losses of both directions multiply: theory.md, eq. 3
+  Vec3 scale;  // factor of the losses at wo and wi, 1/sr: theory.md, eq. 2
   float alpha = 0.0f;
   bool isRough = false;
 
@@ -28,7 +28,7 @@ struct MultipleScattering {
 };
 MultipleScattering multipleScattering(const FacetFresnel& metal, const Ggx& ggx);
 
-// Index of the metal against a medium of index `outside`.
+// Reflectance of the metal against a medium of index `outside`.
 FacetFresnel metalFresnel(const ConductorFresnel& fresnel, float outside,
                           const MaterialInputs& inputs);
 

@@ -8,14 +8,15 @@ namespace bnvpl {
 
 namespace {
 
-// Where both sides bend light alike, no facet can be told from where light comes out.
+// Below this difference of the indices the facet cannot be recovered from wo and wi, and the
+// interface counts as smooth.
 constexpr float kNoBend = 1e-3f;
 
 Vec3 refracted(Vec3 wo, Vec3 h, float eta, float cosT) {
   return normalize(h * (dot(wo, h) / eta - cosT) - wo * (1.0f / eta));
 }
 
-// The facet that takes wo to wi, on z's side.
+// Normal, on z's side, of the facet that reflects or refracts wo to wi.
 Vec3 facetBetween(Vec3 wo, Vec3 wi, float eta) {
   const Vec3 h = normalize(wi.z > 0.0f ? wo + wi : wo + wi * eta);
   return h.z < 0.0f ? -h : h;
@@ -47,7 +48,7 @@ float DielectricLobe::pdf(Vec3 wo, Vec3 wi) const {
   return (1.0f - reflected) * facets * eta * eta * -i / (bend * bend);
 }
 
-// A smooth lobe's weight is of radiance where it crosses: LobeSum undoes it for photons.
+// The weight of a smooth lobe leaves out squeezed(), which LobeSum applies.
 bool DielectricLobe::sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const {
   const Vec3 h = smooth() ? Vec3{0, 0, 1} : ggx.sampleVisible(wo, at);
   const float cosine = std::min(1.0f, dot(wo, h));

@@ -1,4 +1,4 @@
-// Glass: the interface of two dielectrics, smooth or rough, and thin sheets.
+// Glass: smooth or rough interfaces of two dielectrics, and thin sheets.
 #pragma once
 
 #include "transport/bsdf/ggx/ggx.h"
@@ -6,11 +6,11 @@
 
 namespace bnvpl {
 
-// Reflection and refraction at GGX facets (Walter et al. 2007). All of it passes paths through,
-// whatever its roughness: VPLs stand for one side of a surface.
+// Reflection and refraction at GGX facets (Walter et al. 2007). The lobe is specular at any
+// roughness, because a VPL represents one side of a surface only.
 struct DielectricLobe {
   Ggx ggx;
-  float eta = 1.5f;  // index beyond the surface over that on wo's side
+  float eta = 1.5f;  // index beyond the surface over the index on wo's side
   Vec3 reflection{1, 1, 1}, transmission{1, 1, 1};
 
   bool smooth() const { return ggx.smooth(); }
@@ -20,14 +20,14 @@ struct DielectricLobe {
   bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
   Vec3 albedo(Vec3) const { return max(reflection, transmission); }
   Vec3 bound(Vec3, float, float) const { return {}; }
-  // Factor of radiance that crosses the surface, which refraction squeezes; flux it leaves (Veach
-  // 1997, section 5.2).
+  // Factor by which refraction scales radiance across the surface; 1 for flux (Veach 1997,
+  // section 5.2).
   float squeezed(Transport transport) const {
     return transport == Transport::Radiance ? 1.0f / (eta * eta) : 1.0f;
   }
 };
 
-// A sheet thin enough for light to go straight on; all reflections within are summed.
+// A sheet so thin that light passes straight through; all internal reflections are summed.
 struct ThinSheetLobe {
   float ior = 1.5f;
   Vec3 reflection{1, 1, 1}, transmission{1, 1, 1};

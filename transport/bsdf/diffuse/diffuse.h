@@ -5,7 +5,7 @@
 
 namespace bnvpl {
 
-// Its cosines belong to the shading normal as it is (LobeSum): no direction of wo changes it.
+// Cosines refer to the unbent shading normal (LobeSum), so that the value does not depend on wo.
 struct LambertLobe {
   Vec3 colour;
   bool transmitted = false;

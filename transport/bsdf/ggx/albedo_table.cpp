@@ -18,8 +18,8 @@ BetweenNodes ofCosine(float c) { return betweenSquared(c, kCosines); }
 BetweenNodes ofAlpha(float a) { return betweenSquared(a, kAlphas); }
 BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kMaxAlbedoIor - 1.0f), kIors); }
 
-// Calls fn(cosine at the facet, weight): weights sum to the albedo of facets that reflect all. The
-// facets on either side of the plane of incidence mirror each other.
+// Calls fn(cosine at the facet, weight). Weights sum to the albedo of facets that reflect all
+// light. Normals on one side of the plane of incidence suffice, by symmetry.
 template <typename Fn>
 void overVisibleFacets(float cosine, float alpha, const Fn& fn) {
   constexpr uint32_t kPoints = 512;
@@ -47,7 +47,7 @@ float hemisphereMean(const Fn& fn) {
   return static_cast<float>(sum);
 }
 
-// The parts of the albedo that f0, f90 and -a multiply.
+// The coefficients of f0, f90 and -a in the albedo.
 struct Parts {
   float f0 = 0.0f, f90 = 0.0f, a = 0.0f;
 };
@@ -130,7 +130,7 @@ struct DielectricTable {
   }
 };
 
-// fn(ior's node, alpha's node), interpolated.
+// Bilinear interpolation of fn(node of ior, node of alpha).
 template <typename Fn>
 float overIorAndAlpha(float ior, float alpha, const Fn& fn) {
   const BetweenNodes k = ofIor(ior), a = ofAlpha(alpha);

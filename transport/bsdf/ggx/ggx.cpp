@@ -15,7 +15,7 @@ float Ggx::reflectedBound(Vec3 wo, float maxCosine, float cosMirror) const {
   const float a = std::min(alongX, alongY), a2 = a * a;
   const float o = std::sqrt(co * co + a2 * (1.0f - co * co));
   const float i = co * std::sqrt(1.0f + a2 * (1.0f - ci * ci) / (ci * ci));
-  // A part in 10^4 covers the rounding of sharp lobes.
+  // The factor covers rounding in narrow lobes.
   return 1.0001f * densityBound(cosHalf) * 0.5f / (o + i);
 }
 

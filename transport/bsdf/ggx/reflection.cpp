@@ -47,7 +47,8 @@ Vec3 FacetFresnel::albedo(float cosine, float alpha) const {
   return {};
 }
 
-// Tables are of isotropic facets; what brushed ones reflect depends on the azimuth too.
+// The tables hold isotropic facets. The albedo of anisotropic ones depends on the azimuth, too, and
+// is a sum over stratified visible normals.
 Vec3 GgxReflection::albedo(Vec3 wo) const {
   if (smooth()) return fresnel.at(wo.z);
   if (ggx.alongX == ggx.alongY) return fresnel.albedo(wo.z, ggx.alongX);

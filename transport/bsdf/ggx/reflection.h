@@ -1,4 +1,4 @@
-// Light that microfacets reflect once. Also what is common to all models with GGX lobes.
+// Single scattering by microfacets, and the functions that all models with GGX lobes share.
 #pragma once
 
 #include "transport/bsdf/ggx/albedo_table.h"
@@ -9,17 +9,17 @@ namespace bnvpl {
 
 Ggx ggxOf(const Roughness& roughness, const MaterialInputs& inputs);
 
-// Reflectance of a facet, by the cosine to it. Monotone, or with its maximum at an end of every
-// interval.
+// Fresnel reflectance of a facet as a function of the cosine. On any interval of cosines its
+// maximum lies at an end.
 struct FacetFresnel {
   enum class Kind : uint32_t { Schlick, Conductor, Dielectric };
   Kind kind = Kind::Schlick;
-  Vec3 first;   // f0; eta; the index of refraction, three times
-  Vec3 second;  // f90; k; unused
+  Vec3 first;   // by kind: f0; eta; the index of refraction in all channels
+  Vec3 second;  // by kind: f90; k; unused
   Vec3 at(float cosine) const;
-  // The largest that any half vector of wo with a direction above the surface sees.
+  // Upper bound over the half vectors of wo and all directions above the surface.
   Vec3 most(Vec3 wo) const;
-  Vec3 albedo(float cosine, float alpha) const;  // of GGX reflection with it
+  Vec3 albedo(float cosine, float alpha) const;  // albedo of isotropic GGX reflection
 };
 
 struct GgxReflection {

@@ -10,7 +10,7 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kCosines = 18, kF0s = 6, kF90s = 4, kAlphas = 16;
-constexpr int kPolar = 12, kAzimuths = 12;  // of the quadrature; half the circle, by symmetry
+constexpr int kPolar = 12, kAzimuths = 12;  // quadrature over half the hemisphere, by symmetry
 
 using OverCosine = std::array<float, kCosines>;
 
@@ -23,7 +23,7 @@ struct Table {
           albedo[f][g][a] =
               row({Vec3(1), nodeSquared(f, kF0s), nodeSquared(g, kF90s), nodeSquared(a, kAlphas)});
   }
-  // Strata of equal weight, each by its middle: cosine-weighted directions have uniform cos^2.
+  // Midpoints of strata of equal weight: cosine-weighted directions have uniform cos^2.
   static OverCosine row(const LayeredBase& base) {
     std::array<float, kPolar> cosines, keptBy;
     for (size_t i = 0; i < kPolar; ++i) {

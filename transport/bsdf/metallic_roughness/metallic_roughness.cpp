@@ -8,7 +8,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr float kCoatF0 = 0.04f;  // of a clearcoat, whose index is 1.5
+constexpr float kCoatF0 = 0.04f;  // reflectance of a clearcoat of index 1.5 at normal incidence
 
 Vec3 below(Vec3 w) { return {w.x, w.y, -w.z}; }
 float mixed(float a, float b, float share) { return a + (b - a) * share; }
@@ -72,7 +72,7 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
   const float normal = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   const Vec3 f0 =
       min(Vec3(1), max(Vec3(), inputs.raw(model.specularColour)) * (normal * normal)) * specular;
-  uint32_t brushed = 0;  // frame of the facets
+  uint32_t brushed = 0;  // index of the facets' frame
   Ggx ggx = ggxOf(Roughness(model.roughness, Roughness::Alpha::Square), inputs);
   if (const float anisotropy = inputs.share(model.anisotropy); anisotropy > 0.0f && !ggx.smooth()) {
     const float aspect = std::sqrt(1.0f - 0.9f * anisotropy);
@@ -88,7 +88,7 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
   const uint32_t coatFrame =
       clearcoat > 0.0f && !isBlack(coatNormal) ? out.frame(inputs.point(), coatNormal) : 0;
   const CoatAbove above{clearcoat, coat.smooth() ? 0.0f : coat.meanAlpha(), coatFrame};
-  // Facets of metal and non-metal are the same: so are their lobes, but for the reflectance.
+  // Metal and non-metal have the same facets, so one lobe with mixed reflectances represents both.
   out.add(weight,
           GgxReflection{ggx,
                         {FacetFresnel::Kind::Schlick, mixed(f0, base, metallic),

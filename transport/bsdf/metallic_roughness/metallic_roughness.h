@@ -5,13 +5,13 @@
 
 namespace bnvpl {
 
-// What lies below the specular layer of a non-metal: Lambert, or, of a thin wall, rough light that
-// goes on. glTF's fresnel_mix leaves it 1 - F(wo.h); less where that would gain energy: theory.md,
-// eq. 3.
+// The base below the specular layer of a non-metal: Lambertian, or, for the transmission of a thin
+// wall, a GGX lobe mirrored to the other side. It is scaled by 1 - F(wo.h), glTF's fresnel_mix, and
+// by less where that would gain energy (theory.md, eq. 3).
 struct LayeredBase {
   Vec3 colour;
-  float f0 = 0.04f, f90 = 1.0f;  // the largest channels of the layer's
-  float alpha = 0.0f;            // the layer's
+  float f0 = 0.04f, f90 = 1.0f;  // largest channels of the layer's reflectances
+  float alpha = 0.0f;            // the layer's roughness
   bool transmitted = false;
 
   bool smooth() const { return transmitted && alpha < kSmoothAlpha; }
@@ -24,12 +24,12 @@ struct LayeredBase {
     return colour * (kept(wo.z) * std::max(0.0f, maxCosine) / kPi);
   }
 
-  float layer(float cosine) const;  // the layer's reflectance, at a facet
-  float kept(float cosine) const;   // theory.md, eq. 3
+  float layer(float cosine) const;  // Fresnel reflectance of the layer's facets
+  float kept(float cosine) const;   // k(w) of theory.md, eq. 3
 
  private:
   Ggx ggx() const { return {alpha, alpha}; }
-  float unlayered(float cosine) const;  // albedo below fresnel_mix, of white
+  float unlayered(float cosine) const;  // albedo of a white base under fresnel_mix
 };
 
 class LobeSum;

@@ -1,4 +1,4 @@
-// Two materials side by side: the weighted sum of their lobes.
+// A mix of two materials: the weighted sum of their lobes.
 #pragma once
 
 #include "transport/bsdf/lobe.h"

@@ -46,7 +46,7 @@ float PhongBsdf::reflectance() const {
   return largest < kMinProbability ? 0.0f : largest;
 }
 
-// Modified Phong (Lafortune & Willems 1994): reciprocal, and never reflects more than Ks.
+// Modified Phong lobe (Lafortune & Willems 1994): it is reciprocal and reflects at most Ks.
 Vec3 PhongBsdf::glossyBound(float cosAlpha) const {
   if (cosAlpha <= 0.0f) return {};
   return glossy_ *
@@ -68,7 +68,8 @@ float PhongBsdf::pdf(const SurfacePoint& point, LobeGroup group, Vec3 wi) const 
   return groupPdf(group, dot(point.ns, wi), dot(glossyAxis(point), wi));
 }
 
-// By the cosines to the diffuse lobe's axis and the glossy one's.
+// Density of the group's samples, from the cosines with the axes of the diffuse and the glossy
+// lobe.
 float PhongBsdf::groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) const {
   if (group == LobeGroup::Specular) return pdfPowerCosine(cosGlossy, exponent_);
   const float diffusePdf = pdfCosineHemisphere(cosDiffuse);
@@ -79,8 +80,8 @@ float PhongBsdf::groupPdf(LobeGroup group, float cosDiffuse, float cosGlossy) co
 bool PhongBsdf::sampleGlass(const SurfacePoint& point, Transport transport, Rng& rng,
                             BsdfSample& out) const {
   const float eta = point.front ? ior_ : 1.0f / ior_;
-  // The side test of refraction needs one normal for cosine and side: the shading normal where it
-  // faces the ray, else the geometric one.
+  // Refraction takes cosine and side from one normal: the shading normal where it faces the ray,
+  // else the geometric one.
   const Vec3 n = dot(point.ns, point.wo) > 0.0f ? point.ns : point.ng;
   const float cosI = std::min(1.0f, dot(n, point.wo));
   float cosT = 0.0f;
@@ -93,7 +94,7 @@ bool PhongBsdf::sampleGlass(const SurfacePoint& point, Transport transport, Rng&
     return dot(out.wi, point.ng) > 0.0f;
   }
   out.wi = normalize(n * (cosI / eta - cosT) - point.wo * (1.0f / eta));
-  // Radiance is squeezed by refraction, flux is not (Veach 1997, section 5.2).
+  // Refraction scales radiance by 1/eta^2, and leaves flux unchanged (Veach 1997, section 5.2).
   out.weight =
       transport == Transport::Radiance ? transmission_ * (1.0f / (eta * eta)) : transmission_;
   out.side = -point.ng;
@@ -106,8 +107,8 @@ bool PhongBsdf::sample(const SurfacePoint& point, LobeGroup group, Transport tra
   const float pick = rng.next();
   return sample(point, group, transport, pick, rng.nextPoint(), out);
 }
-// Where there is no other lobe, all but the albedo cancels. A photon leaves by the geometric
-// cosine, so that its weight stays the albedo.
+// Without another lobe, everything except the albedo cancels. Photons are drawn by the geometric
+// cosine, so that their weight is the albedo times the shading factor.
 bool PhongBsdf::sampleDiffuse(const SurfacePoint& point, bool photons, float shading, Point2 at,
                               BsdfSample& out) const {
   const Vec3 axis = photons ? point.ng : point.ns;
@@ -140,7 +141,7 @@ bool PhongBsdf::sample(const SurfacePoint& point, LobeGroup group, Transport tra
   if (glossyLobe) {
     out.wi = Basis(lobeAxis).toWorld(samplePowerCosine(at.x, at.y, exponent_));
   } else {
-    // A photon leaves by the geometric cosine, so that its weight stays the albedo.
+    // Photons are drawn by the geometric cosine, as in sampleDiffuse().
     out.wi = Basis(photons ? ng : ns).toWorld(sampleCosineHemisphere(at.x, at.y));
   }
   const float cosGeometric = dot(ng, out.wi), cosShading = dot(ns, out.wi);

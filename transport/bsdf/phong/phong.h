@@ -1,4 +1,4 @@
-// MTL's model: Lambert plus a Phong lobe or a mirror; or smooth glass. theory.md beside this file.
+// MTL's model: Lambert plus a Phong lobe or a mirror, or smooth glass. Equations: theory.md.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 
 namespace bnvpl {
 
-// Phong exponents above this are "specular": alpha = sqrt(2 / (n + 2)) below 0.3.
+// Phong lobes with a larger exponent n are specular: alpha = sqrt(2 / (n + 2)) is below 0.3.
 inline constexpr float kNearSpecularExponent = 20.0f;
 
 class PhongBsdf {
  public:
   PhongBsdf(const Scene& scene, const PhongModel& model, const SurfacePoint& point);
-  explicit PhongBsdf(Vec3 albedo) : diffuse_(albedo) {}  // Lambert alone
+  explicit PhongBsdf(Vec3 albedo) : diffuse_(albedo) {}  // Lambert only
 
   Vec3 roughAlbedo() const { return diffuse_ + roughGlossy(); }
   Vec3 diffuseValue() const { return diffuse_ * (1.0f / kPi); }
@@ -60,7 +60,7 @@ class PhongBsdf {
   float exponent_ = 0.0f, ior_ = 1.5f;
   bool nearSpecular_ = false, glass_ = false;
   float specularProbability_ = 0.0f;
-  float diffuseShare_ = 1.0f;  // of the rough samples that go to the diffuse lobe
+  float diffuseShare_ = 1.0f;  // fraction of the rough samples that the diffuse lobe gets
 };
 
 inline bool isNearSpecular(const PhongModel& m) { return m.exponent > kNearSpecularExponent; }
