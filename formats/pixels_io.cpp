@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "formats/jpeg_guard.h"
+#include "formats/png_palette.h"
 
 namespace bnvpl {
 namespace {
@@ -58,12 +59,13 @@ struct FreePixels {
 
 }  // namespace
 
-Pixels decodePixels(const fs::path& file, const std::string& bytes, int channels) {
+Pixels decodePixels(const fs::path& file, const std::string& content, int channels) {
   const auto fail = [&](const char* why) {
     return InputError(file, std::string("cannot read the image: ") + (why ? why : "damaged") +
                                 "; supply a PNG, JPEG, TGA or BMP file");
   };
-  if (bytes.size() > kMaxBytes) throw fail("larger than 1 GiB");
+  if (content.size() > kMaxBytes) throw fail("larger than 1 GiB");
+  const std::string bytes = withWholePalette(content);
   if (!isHarmlessJpeg(bytes)) throw fail("damaged");
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());

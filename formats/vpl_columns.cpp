@@ -87,7 +87,7 @@ std::vector<VplColumnView> columnsOf(const VplTable& table) {
   for (const VplExtraColumn& extra : table.extras) {
     const auto bytes = std::visit(
         [](const auto& values) { return std::as_bytes(std::span(values)); }, extra.values);
-    views.push_back({extra.name, extra.unit, "a strategy's own", "",
+    views.push_back({extra.name, extra.unit, "a method's own", "",
                      static_cast<VplType>(1 + extra.values.index()), extra.components, bytes});
   }
   return views;

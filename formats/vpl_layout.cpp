@@ -98,7 +98,7 @@ std::optional<BadField> findBadField(const VplExtraColumn& column,
                                      std::span<const VplExtraColumn> earlier) {
   if (!isExtraName(column.name)) {
     return BadField{offsetof(VplColumnEntry, name),
-                    "a strategy's column needs a name such as rich.lobes: small letters, digits, _ "
+                    "a method's column needs a name such as rich.lobes: small letters, digits, _ "
                     "and -, one dot, at most 23 bytes"};
   }
   if (std::any_of(earlier.begin(), earlier.end(),

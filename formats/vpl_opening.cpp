@@ -43,7 +43,7 @@ void checkColumnCount(const InputFile& in, const VplHeader& header) {
     in.fail(offsetof(VplHeader, columnCount),
             std::to_string(header.columnCount) + " columns, a file of stage " +
                 std::string(stageName(header.stage)) + " has " + std::to_string(standard) +
-                ", and at most " + std::to_string(kMaxExtraColumns) + " of strategies");
+                ", and at most " + std::to_string(kMaxExtraColumns) + " of methods");
   }
   if (sizeof(VplHeader) + header.columnCount * sizeof(VplColumnEntry) > in.size()) {
     in.fail(offsetof(VplHeader, columnCount),

@@ -27,7 +27,7 @@ std::vector<Bytes> filePieces(const VplHeader& header, const VplLayout& layout,
 // empty.
 std::string columnProblem(const VplTable& table) {
   if (table.emitPoints < 1 || table.emitPoints > kMaxEmitPoints) return "too many emission points";
-  if (table.extras.size() > kMaxExtraColumns) return "too many columns of strategies";
+  if (table.extras.size() > kMaxExtraColumns) return "too many columns of methods";
   for (size_t i = 0; i < table.extras.size(); ++i) {
     const auto bad = findBadField(table.extras[i], std::span(table.extras).first(i));
     if (bad) return bad->problem;

@@ -80,7 +80,7 @@ void requireSane(const VplTable& t) {
       require(std::isfinite(column.value(0, i)), "values are finite");
   }
   require(columns.size() == standardColumns(t.stage).size() + t.extras.size(),
-          "the columns of the stage and those of strategies");
+          "the columns of the stage and those of methods");
   for (const Vec3 n : t.normal) require(std::fabs(length(n) - 1.0f) < 0.01f, "normals are unit");
   for (const float r : t.radius) require(r > 0.0f, "radii are above 0");
   for (const float e : t.relativeError) require(e >= 0.0f, "errors are >= 0");

@@ -17,9 +17,9 @@ namespace bnvpl {
 
 class Coverage {
  public:
-  // Why no VPL covers a point. Outside: none reaches it. Gap: some do, but on no compatible
+  // Why no VPL covers a point. Outside: none reaches it. Incompatible: some do, on no compatible
   // surface. Hidden: some are on a compatible surface, but none is visible.
-  enum class Miss { Outside, Gap, Hidden };
+  enum class Miss { Outside, Incompatible, Hidden };
   struct Found {
     std::optional<uint32_t> vpl;
     Miss miss = Miss::Outside;  // where vpl is empty
@@ -50,7 +50,7 @@ class Coverage {
       }
     });
     Found found;
-    found.miss = reaching == 0 ? Miss::Outside : left == 0 ? Miss::Gap : Miss::Hidden;
+    found.miss = reaching == 0 ? Miss::Outside : left == 0 ? Miss::Incompatible : Miss::Hidden;
     for (; left > 0; --left) {
       const auto k = std::min(left - 1, static_cast<size_t>(rng.next() * static_cast<float>(left)));
       ++found.rays;
@@ -66,16 +66,16 @@ class Coverage {
   // Probability with which pick() returns VPL i for the point: one over the number of VPLs that
   // cover it, or 0 if i is none of them.
   float shareOf(uint32_t i, Vec3 at, Vec3 normal) const {
-    const auto speaks = [&](uint32_t k) {
+    const auto covers = [&](uint32_t k) {
       return compatibleSurfaces(at, normal, position_[k], normal_[k], kPlaneFactor * reach_[k]) &&
              inSight(at, normal, k);
     };
-    if (!speaks(i)) return 0.0f;
-    uint32_t speakers = 1;
+    if (!covers(i)) return 0.0f;
+    uint32_t covering = 1;
     ReachGrid::forEachReaching(grid_.lookUp(at), [&](const ReachGrid::Disk& d) {
-      speakers += d.index != i && speaks(d.index) ? 1 : 0;
+      covering += d.index != i && covers(d.index) ? 1 : 0;
     });
-    return 1.0f / static_cast<float>(speakers);
+    return 1.0f / static_cast<float>(covering);
   }
 
   // Samples the surface that VPL i covers: maps `square`, a point of the unit square, to the VPL's

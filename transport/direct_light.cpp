@@ -50,7 +50,7 @@ bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& 
   return s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target);
 }
 
-Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {
+Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};

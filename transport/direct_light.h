@@ -127,7 +127,7 @@ struct BsdfRays {
 // over its shadow rays of
 //   f(wi) cos(wi) L_e(wi) / (n p(wi)) * w(wi),
 // with n p the density of the shadow rays towards wi and w the weight of the power heuristic
-// against `rayPdf`, the density of the rays that find the same light by hitting it. emissionMet()
+// against `rayPdf`, the density of the rays that find the same light by hitting it. emissionHit()
 // is the other half.
 template <typename Reflects, typename RayPdf>
 typename Reflects::Light directLight(const RayScene& rays, const LightSet& lights,
@@ -144,7 +144,7 @@ struct Arrival {
 };
 // Emission that a ray hits, with its MIS weight: that of the surface, or, for a ray that leaves the
 // scene, that of the lights at infinity.
-Vec3 emissionMet(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival);
+Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival);
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival);
 
 // The contribution of a point of the lights to a vertex, drawn with density 1 over the unit square

@@ -30,9 +30,9 @@ unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsd
                           learnedBy(strata)};
     vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng,
                                 {nullptr, where});
-    sum += throughput * vertex.metFirst;
+    sum += throughput * vertex.emissionFirst;
     if (length.firstBounce) return bounce + 1;
-    later += throughput * vertex.metLater;
+    later += throughput * vertex.emissionLater;
     if (bounce == length.maxBounces || !vertex.rough) return bounce + 1;
     throughput *= vertex.throughput;
   }

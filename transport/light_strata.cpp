@@ -121,7 +121,7 @@ uint32_t LightStrata::stratumOf(const LightPlace& place) const {
   return c.first + cellOf(place.at.y, c.rows) * c.columns + cellOf(place.at.x, c.columns);
 }
 
-float SeenStrata::probability(uint32_t stratum) const {
+float StrataDistribution::probability(uint32_t stratum) const {
   const auto it = std::lower_bound(strata.begin(), strata.end(), stratum);
   return it != strata.end() && *it == stratum
              ? cdfShare(cdf, static_cast<size_t>(it - strata.begin()))

@@ -60,7 +60,7 @@ class LightStrata {
 
 // Strata that contribute, in ascending order, and running sums of their probabilities, which end at
 // 1.
-struct SeenStrata {
+struct StrataDistribution {
   std::span<const uint32_t> strata = {};
   std::span<const float> cdf = {};
   float probability(uint32_t stratum) const;
@@ -70,7 +70,7 @@ struct SeenStrata {
 struct StrataValues {
   std::vector<uint32_t> strata;
   std::vector<float> values;
-  SeenStrata seen() const { return {strata, values}; }  // the values must be running sums
+  StrataDistribution seen() const { return {strata, values}; }  // the values must be running sums
 };
 
 // The distribution in proportion to `values`, one value for each stratum, as running sums. It
@@ -87,7 +87,7 @@ struct LearnedStrata {
   static constexpr float kEven = 0.1f, kEverywhere = 0.2f;
 
   const LightStrata* all = nullptr;
-  SeenStrata here = {}, everywhere = {};
+  StrataDistribution here = {}, everywhere = {};
 
   // Samples a stratum by u in [0, 1), and rescales u for reuse.
   uint32_t pick(float& u) const;

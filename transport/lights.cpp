@@ -55,7 +55,7 @@ void LightSet::setPickProbabilities(const std::vector<double>& weights) {
     lights_[i].pickProbability = cdfShare<float>(pickCdf_, i);
 }
 
-LightSet LightSet::withoutHittable() const {
+LightSet LightSet::onlyUnhittable() const {
   LightSet out(*this);
   std::vector<double> weights;
   for (const Light& l : lights_) weights.push_back(l.area ? 0.0 : double{mean(l.power)});

@@ -40,7 +40,7 @@ class LightSet {
   std::string name(size_t light) const;  // for messages
 
   // The same lights, but pick() returns only those that no ray can hit. BSDF rays find the others.
-  LightSet withoutHittable() const;
+  LightSet onlyUnhittable() const;
 
   // Picks a light in proportion to power.
   size_t pick(float u, float& probability) const;

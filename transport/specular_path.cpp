@@ -17,7 +17,7 @@ bool isPlain(const Material& material) {
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& start, Rng& rng,
-                                const LightsBehind& behind) {
+                                const SpecularLightSampling& behind) {
   SurfacePoint first;
   rays.closestHit(origin, direction, first);
   return followSpecularPath(rays, lights, first, direction, start, rng, behind);
@@ -25,7 +25,8 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Ve
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
-                                Rng& rng, const LightsBehind& behind, float roughImportance) {
+                                Rng& rng, const SpecularLightSampling& behind,
+                                float roughImportance) {
   SpecularPath end;
   LearnedStrata strata;  // those of the last specular vertex
   end.hit = first;
@@ -33,13 +34,13 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
   Arrival arrival = start;
   arrival.shared = {};
   while (true) {
-    Vec3& met = end.links == 0 ? end.metFirst : end.metLater;
+    Vec3& met = end.links == 0 ? end.emissionFirst : end.emissionLater;
     if (end.hit.triangle == kNone) {
       met += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
     }
     if (end.links == 0) end.firstDistance = end.hit.distance;
-    met += end.throughput * emissionMet(lights, end.hit, arrival);
+    met += end.throughput * emissionHit(lights, end.hit, arrival);
 
     const Material& material = rays.scene().materials[end.hit.material];
     if (isPlain(material)) {
@@ -60,10 +61,11 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
       strata = end.links == 1 && behind.first ? *behind.first
                : behind.others                ? behind.others->at(end.hit.position, end.hit.ng)
                                               : LearnedStrata{};
-      end.metLater += end.throughput *
-                      directLight(rays, lights, Reflected{bsdf, LobeGroup::Specular},
-                                  {learnedBy(strata), LightChoice::One, start.shared},
-                                  BsdfRays{bsdf, 1.0f, LobeGroup::Specular}, LightNumbers(rng));
+      end.emissionLater +=
+          end.throughput * directLight(rays, lights, Reflected{bsdf, LobeGroup::Specular},
+                                       {learnedBy(strata), LightChoice::One, start.shared},
+                                       BsdfRays{bsdf, 1.0f, LobeGroup::Specular},
+                                       LightNumbers(rng));
     }
     BsdfSample sample;
     Ray next;

@@ -9,7 +9,7 @@ namespace bnvpl {
 class SurfaceLights;
 
 // Distributions by which near-specular vertices sample lights; without one, they sample by power.
-struct LightsBehind {
+struct SpecularLightSampling {
   const LearnedStrata* first = nullptr;   // for the first specular vertex
   const SurfaceLights* others = nullptr;  // for the others, and for the first without `first`
 };
@@ -20,8 +20,8 @@ struct SpecularPath {
   Vec3 throughput;      // from the start to the hit, over the probability of choosing `rough`
   unsigned links = 0;   // number of specular vertices
   bool spread = false;  // whether one of them has a near-specular rather than a delta lobe
-  Vec3 metFirst;        // emission hit by the first segment
-  Vec3 metLater;        // emission hit later, and light sampled at near-specular vertices
+  Vec3 emissionFirst;   // emission hit by the first segment
+  Vec3 emissionLater;   // emission hit later, and light sampled at near-specular vertices
   float firstDistance = INFINITY;  // distance of the first hit along the ray
 };
 
@@ -29,11 +29,12 @@ struct SpecularPath {
 // vertices.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
-                                const LightsBehind& behind = {});
+                                const SpecularLightSampling& behind = {});
 // The same with a given first hit; first.triangle is kNone if the ray leaves the scene.
 // `roughImportance` is passed to chooseLobes() at the first hit.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
-                                Rng& rng, const LightsBehind& behind = {}, float roughImportance = 1.0f);
+                                Rng& rng, const SpecularLightSampling& behind = {},
+                                float roughImportance = 1.0f);
 
 }  // namespace bnvpl

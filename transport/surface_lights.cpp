@@ -81,7 +81,7 @@ SurfaceLights::SurfaceLights(const RayScene& rays, const LightSet& lights,
 LearnedStrata SurfaceLights::at(Vec3 position, Vec3 normal) const {
   if (groups_.empty()) return {};
   const uint32_t point = regions_.at(position, normal);
-  return {&strata_, point == UINT32_MAX ? SeenStrata{} : groups_[groupOf_[point]].seen(),
+  return {&strata_, point == UINT32_MAX ? StrataDistribution{} : groups_[groupOf_[point]].seen(),
           everywhere_.seen()};
 }
 

@@ -104,8 +104,8 @@ class Readme(unittest.TestCase):
             vpl["flux"].sum(axis=0, dtype=float), [energy[c] for c in "RGB"], rtol=1e-12
         )
 
-    def test_the_numpy_example_reads_columns_of_strategies(self) -> None:
-        vpl = self.columns(ROOT / "tests/formats/golden/strategies.vpl")
+    def test_the_numpy_example_reads_columns_of_methods(self) -> None:
+        vpl = self.columns(ROOT / "tests/formats/golden/methods.vpl")
         self.assertEqual(
             vpl["rich.lobes"].tolist(), [[0, 0.25, 0.5, 0.75], [-1, -0.75, -0.5, -0.25]]
         )

@@ -82,7 +82,7 @@ TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(8, 0u), "byte 8: version 0");
   EXPECT_SAYS(complaintAbout(12, 0u), "byte 12: unknown stage 0");
   EXPECT_SAYS(complaintAbout(12, 4u), "byte 12: unknown stage 4");
-  EXPECT_SAYS(complaintAbout(12, 2u), "byte 448: a strategy's column needs a name");
+  EXPECT_SAYS(complaintAbout(12, 2u), "byte 448: a method's column needs a name");
   EXPECT_SAYS(complaintAbout(32, uint64_t{200}), "byte 16: 2 rows make a file of");
   EXPECT_SAYS(complaintAbout(32, ~uint64_t{0}), "byte 32: provenance does not fit");
   EXPECT_SAYS(complaintAbout(40, uint64_t{1607}), "byte 1607: bytes after the end");

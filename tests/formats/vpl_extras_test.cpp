@@ -116,13 +116,13 @@ TEST_F(VplExtras, EveryFieldOfTheDirectoryIsChecked) {
   const auto bad = [&](size_t extra, size_t field, const auto& value, const std::string& what) {
     EXPECT_SAYS(complaintAbout(entry(extra, field), value), at(extra, field) + what);
   };
-  bad(0, 0, 'R', "a strategy's column needs a name");
-  bad(0, 0, '\0', "a strategy's column needs a name");
+  bad(0, 0, 'R', "a method's column needs a name");
+  bad(0, 0, '\0', "a method's column needs a name");
   bad(2, 0, std::array{'r', 'i', 'c', 'h', '.', 'l', 'o', 'b', 'e', 's'}, "a second column");
   std::array<char, 24> unended{};
   unended.fill('a');
   unended[3] = '.';
-  bad(0, 0, unended, "a strategy's column needs a name");
+  bad(0, 0, unended, "a method's column needs a name");
   EXPECT_SAYS(complaintAbout(entry(0, 15), 'x'), at(0, 0) + "name or unit of column rich.lobes");
   EXPECT_SAYS(complaintAbout(entry(0, 60), 'x'), at(0, 0) + "name or unit of column rich.lobes");
   for (const uint32_t type : {0u, 4u, ~0u})

@@ -124,7 +124,7 @@ TEST_P(VplGolden, ReaderReadsTheCommittedFile) {
 
 // Extra columns of methods follow the columns of the stage.
 TEST_F(TestFolder, AFileWithMethodsColumnsIsPinned) {
-  const fs::path golden = fs::path(BNVPL_GOLDEN_DIR) / "strategies.vpl";
+  const fs::path golden = fs::path(BNVPL_GOLDEN_DIR) / "methods.vpl";
   VplTable table = smallTable(VplStage::Eliminated);
   table.extras = someExtras(2);
   expectSame(readVpl(golden), table);

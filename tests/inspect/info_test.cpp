@@ -78,13 +78,13 @@ TEST_F(Info, ListsTheColumnsOfMethods) {
   EXPECT_EQ(columnOf(info, "rich.lobes.1")["mean"], 3.0);
   EXPECT_EQ(columnOf(info, "rich.lobes.1")["unit"], "W");
   EXPECT_EQ(columnOf(info, "rich.basis[6]")["max"], 7.0);
-  EXPECT_EQ(info["strategy_columns"][1]["components"], 6);
+  EXPECT_EQ(info["method_columns"][1]["components"], 6);
   EXPECT_TRUE(contains(infoText(info),
-                       "\ncolumns of strategies, which all stages keep: rich.lobes (f32 x 2), "
+                       "\ncolumns of methods, which all stages keep: rich.lobes (f32 x 2), "
                        "rich.basis (u32 x 6), ward.order (u64)\n"));
   table.extras.clear();
   writeVpl(at("v.vpl"), table);
-  EXPECT_FALSE(contains(infoText(describeFile(at("v.vpl"))), "strategies"));
+  EXPECT_FALSE(contains(infoText(describeFile(at("v.vpl"))), "methods"));
 }
 
 TEST_F(Info, EmptyFile) {

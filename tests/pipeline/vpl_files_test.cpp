@@ -39,7 +39,7 @@ TEST_F(VplFiles, ColumnsOfMethodsSurviveTheStages) {
   expectLobes("l.vpl");
   const Outcome info = tool("vpl-inspect", "info " + path("l.vpl"));
   EXPECT_TRUE(
-      contains(info.out, "\ncolumns of strategies, which all stages keep: rich.lobes (f32 x 2)\n"))
+      contains(info.out, "\ncolumns of methods, which all stages keep: rich.lobes (f32 x 2)\n"))
       << info.out;
   succeed("vpl-render", scene_ + " " + path("l.vpl") + " -o " + path("i.exr") + " --spp 1");
   EXPECT_EQ(tool("vpl-inspect", "check " + path("v.vpl") + " " + path("l.vpl")).code, kExitOk);

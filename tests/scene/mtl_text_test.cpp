@@ -93,6 +93,32 @@ TEST_F(MtlForms, WhatIsIgnoredBeforeAnErrorIsToldBeforeIt) {
   EXPECT_EQ(countContaining(told, "'Kdd' (line 4)"), 1u) << joined(told);
 }
 
+TEST_F(MtlForms, NumbersBeyondFloatsAreRefusedAndNegativeOnesAreTold) {
+  for (const char* line : {"Ke 1e39 1 1", "Ks 1e39 .3 .3", "Kd .5 1e400 .5", "Ns 1e39", "Ni -1e39"})
+    EXPECT_NE(errorOf(kSquareObj, std::string("newmtl paint\n") + line + "\n")
+                  .find("square.mtl:2: " + std::string(line).substr(0, 2) + ": "),
+              std::string::npos)
+        << line;
+  EXPECT_EQ(diffuse("Kd 1e-50 1 1\n").y, 1.0f);
+  for (const char* line :
+       {"Kd -1 .5 .5", "Ke -2", "Ks -.1 0 0", "Ns -3", "d -1", "Pr -1", "Tf -1"}) {
+    const Scene s = paint("Kd 1 1 1\n" + std::string(line) + "\n");
+    EXPECT_EQ(countContaining(s.warnings, "is negative and counts as 0"), 1u)
+        << line << joined(s.warnings);
+  }
+  EXPECT_EQ(countContaining(paint("Kd -0 0 0\n").warnings, "negative"), 0u);
+}
+
+TEST_F(MtlForms, OptionsOfMapsThatAreNotFiniteAreTold) {
+  for (const char* option : {"-s nan", "-o inf", "-bm nan"}) {
+    const Scene s =
+        paint("Kd 1 1 1\n" + std::string(option == std::string("-bm nan") ? "bump " : "map_Kd ") +
+              option + " t.png\n");
+    EXPECT_EQ(countContaining(s.warnings, std::string(option) + " counts as 0"), 1u)
+        << option << joined(s.warnings);
+  }
+}
+
 TEST_F(MtlForms, KnownKeysThatAreNotReadAreToldWhereTheyWouldChangeThePicture) {
   for (const char* line : {"map_Ps s.png", "refl r.png", "disp d.png", "map_refl r.png"}) {
     const std::string key = std::string(line).substr(0, std::string(line).find(' '));

@@ -142,7 +142,7 @@ EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, ui
   a.reflected = watts(kReflected);
   a.deposited = watts(kDeposited);
   a.outside = watts(kOutside);
-  a.gap = watts(kGap);
+  a.incompatible = watts(kIncompatible);
   a.hidden = watts(kHidden);
   a.photons = photons;
   a.hits = sums.hits;
@@ -231,9 +231,9 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
     return scatter.tally(sums, kDeposited, hit.flux);
   }
   scatter.tally(sums,
-                found.miss == Coverage::Miss::Outside ? kOutside
-                : found.miss == Coverage::Miss::Gap   ? kGap
-                                                      : kHidden,
+                found.miss == Coverage::Miss::Outside        ? kOutside
+                : found.miss == Coverage::Miss::Incompatible ? kIncompatible
+                                                             : kHidden,
                 hit.flux);
 }
 

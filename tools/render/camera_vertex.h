@@ -12,11 +12,11 @@ namespace bnvpl {
 // Follows a camera ray to the first rough vertex. Light that it meets on the way is direct light.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                     Vec3 direction, Rng& rng, RadianceSample& out,
-                                    const LightsBehind& behind = {}) {
+                                    const SpecularLightSampling& behind = {}) {
   const SpecularPath path =
       followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
-  out.emission = path.metFirst;
-  out.direct = path.metFirst + path.metLater;
+  out.emission = path.emissionFirst;
+  out.direct = path.emissionFirst + path.emissionLater;
   if (path.firstDistance < INFINITY) {
     out.depth = path.firstDistance * dot(direction, rays.scene().camera.forward);
   }
@@ -26,7 +26,7 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
 // The same for the camera ray through a pixel, at a point of the pixel's unit square.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
                                     uint32_t y, Point2 at, Rng& rng, RadianceSample& out,
-                                    const LightsBehind& behind = {}) {
+                                    const SpecularLightSampling& behind = {}) {
   const Scene& scene = rays.scene();
   const Vec3 direction = cameraDirection(scene.camera, scene.film,
                                          (static_cast<float>(x) + at.x) / float(scene.film.width),
@@ -47,7 +47,7 @@ inline void describeShadingPoint(const Bsdf& bsdf, RadianceSample& out) {
 template <typename Leaving>
 RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
                          Only only, bool indirect, Rng& rng, const Leaving& leaving,
-                         const LightsBehind& behind = {}) {
+                         const SpecularLightSampling& behind = {}) {
   RadianceSample out;
   const SpecularPath path =
       traceCameraPath(rays, lights, sample.origin, sample.direction, rng, out, behind);

@@ -17,7 +17,7 @@ bool isLambert(const Lobe& lobe) { return std::holds_alternative<LambertLobe>(lo
 // Fraction of a lobe's photons that are drawn about the geometric normal where the shading normal
 // differs. Lobes are evaluated in a frame bent for each camera direction, so the frame of wo alone
 // would leave some of these directions without samples.
-constexpr float kAboutSurface = 0.25f;
+constexpr float kCosineShare = 0.25f;
 
 // The point seen from wi, on the same side.
 SurfacePoint seenFrom(const SurfacePoint& point, Vec3 wi) {
@@ -175,19 +175,19 @@ bool LobeSum::lit(const SurfacePoint& point, const Summand& s, Transport transpo
          (s.frame == 0 || s.group == LobeGroup::Specular || on(point.ns));
 }
 
-float LobeSum::aboutSurface(const SurfacePoint& point, const Summand& s) const {
+float LobeSum::cosineShare(const SurfacePoint& point, const Summand& s) const {
   if (frames_[s.frame].ns == point.ng) return 0.0f;
   return std::visit(
       [](const auto& l) {
         using L = std::decay_t<decltype(l)>;
         if constexpr (std::is_same_v<L, LayeredBase>)
           if (l.transmitted) return 0.0f;
-        return l.smooth() || std::is_same_v<L, LambertLobe> ? 0.0f : kAboutSurface;
+        return l.smooth() || std::is_same_v<L, LambertLobe> ? 0.0f : kCosineShare;
       },
       s.lobe);
 }
 
-Vec3 LobeSum::seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const {
+Vec3 LobeSum::adjointValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const {
   const auto frameOf = [&](const LobeFrame& f) {
     return f.ns == point.ng ? f : LobeFrame(seenFrom(point, wi), f.ns, f.turns);
   };
@@ -206,7 +206,7 @@ Vec3 LobeSum::seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) co
 
 // Value and density of a group's lobes. Lobes other than Lambert's need wi on one side of both
 // their frame's normal and the surface. Frames are bent for the camera's direction (LobeFrame): wo
-// for radiance; for photons it is wi, see seenValue().
+// for radiance; for photons it is wi, see adjointValue().
 LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
                                      Transport transport, Vec3 wi) const {
   Evaluated sum;
@@ -230,8 +230,8 @@ LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
     const bool within = local.z * ng > 0.0f;
     const bool byEye = photons && ng > 0.0f && frame.ns != point.ng;
     if (byEye) {
-      sum.value += s.weight * seenValue(point, s, wi);
-      sum.pdf += s.share * aboutSurface(point, s) * pdfCosineHemisphere(ng);
+      sum.value += s.weight * adjointValue(point, s, wi);
+      sum.pdf += s.share * cosineShare(point, s) * pdfCosineHemisphere(ng);
     }
     if (!within) continue;
     std::visit(
@@ -240,7 +240,7 @@ LobeSum::Evaluated LobeSum::evaluate(const SurfacePoint& point, LobeGroup group,
             const float cosine = photons ? photonCosine(point, frame.z, wi) : std::fabs(local.z);
             sum.value += s.weight * l.value(frame.wo, local, transport) * (cosine * coat(s, wi));
           }
-          const float rest = photons ? 1.0f - aboutSurface(point, s) : 1.0f;
+          const float rest = photons ? 1.0f - cosineShare(point, s) : 1.0f;
           sum.pdf += s.share * rest * l.pdf(frame.wo, local);
         },
         s.lobe);
@@ -263,7 +263,7 @@ bool LobeSum::sample(const SurfacePoint& point, LobeGroup group, Transport trans
   const LobeFrame& frame = frames_[chosen->frame];
   LobeSample drawn;
   float within = std::clamp(rest / chosen->share, 0.0f, 0x1.fffffep-1f);
-  const float surface = photons ? aboutSurface(point, *chosen) : 0.0f;
+  const float surface = photons ? cosineShare(point, *chosen) : 0.0f;
   if (within < surface) {
     drawn.wi = sampleCosineHemisphere(at.x, at.y);
     out.wi = Basis(point.ng).toWorld(drawn.wi);
@@ -284,7 +284,7 @@ bool LobeSum::sample(const SurfacePoint& point, LobeGroup group, Transport trans
     out.pdf = 0.0f;
     out.weight = chosen->weight * drawn.weight * (coat(*chosen, out.wi) / chosen->share);
     if (const auto* glass = std::get_if<DielectricLobe>(&chosen->lobe); glass && crosses)
-      out.weight *= glass->squeezed(transport);
+      out.weight *= glass->radianceScale(transport);
     if (photons)
       out.weight *= photonCosine(point, frame.z, out.wi) / std::max(1e-6f, std::fabs(drawn.wi.z));
     return !isBlack(out.weight);

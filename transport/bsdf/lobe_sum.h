@@ -99,10 +99,10 @@ class LobeSum {
   bool lit(const SurfacePoint& point, const Summand& s, Transport transport, Vec3 wi) const;
   // Value times cosine of a lobe for photons from wo that a camera at wi sees, both on the same
   // side. Frames are bent for wi, as where the camera path arrives from there.
-  Vec3 seenValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const;
+  Vec3 adjointValue(const SurfacePoint& point, const Summand& s, Vec3 wi) const;
   // Fraction of the lobe's photons whose direction is cosine-distributed about the geometric
   // normal.
-  float aboutSurface(const SurfacePoint& point, const Summand& s) const;
+  float cosineShare(const SurfacePoint& point, const Summand& s) const;
   // Replaces |cos(normal, wi)| for photons: shadingFactor() of the normal times |ng.wi|.
   float photonCosine(const SurfacePoint& point, Vec3 normal, Vec3 wi) const;
   std::span<const Summand> lobes() const { return {lobes_, count_}; }

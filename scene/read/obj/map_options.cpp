@@ -53,6 +53,7 @@ size_t takeOptions(const Words& words, size_t at, size_t left, MapOptions& out) 
     bool finite = true;
     for (++at; count < option->most && at + left < words.size(); ++at, ++count) {
       if (option->numbers && !isNumber(words[at], finite)) break;
+      if (!finite) out.zeroed.push_back(std::string(option->name) + " " + std::string(words[at]));
       values.append(" ").append(finite ? words[at] : "0");
     }
     if (count < option->least) {

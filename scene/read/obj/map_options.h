@@ -10,6 +10,7 @@ namespace bnvpl {
 struct MapOptions {
   std::string kept;                  // -s, -o and -bm with all values, a blank behind each
   std::string name;                  // file of the image; may hold blanks
+  std::vector<std::string> zeroed;   // options with a value that is not finite: "-s nan"
   std::vector<std::string> ignored;  // others that would affect the image, with their values
   std::string problem;               // empty if none
 };

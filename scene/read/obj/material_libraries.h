@@ -35,7 +35,7 @@ class MaterialLibraries {
   std::vector<MtlKeys> keysOf;         // keys that each states
   std::map<std::string, int> numbers;  // in `materials`, by name as one word (obj_text.h)
   std::vector<fs::path> read;
-  std::map<fs::path, MtlNotes> notes;  // of each library that was read
+  std::map<fs::path, MtlNotes> notes;  // by library
   std::set<fs::path> missing;
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -53,6 +55,17 @@ std::string_view usualKey(std::string_view key) {
   look(kWords);
   look(kWithoutEffect);
   return usual;
+}
+
+// The value of a word that isNumber() accepts; infinite beyond what doubles hold.
+double valueOf(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0.0;
+  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool small = word.find("e-") != word.npos || word.find("E-") != word.npos;
+  if (parsed.ec == std::errc::result_out_of_range && !small)
+    return std::numeric_limits<double>::infinity();
+  return value;
 }
 
 class Lines {
@@ -107,7 +120,12 @@ class Lines {
       bool finite = true;
       if (!isNumber(word, finite)) fail(key, noNumber(word));
       if (!finite) note(key, ": " + std::string(word) + " counts as 0");
-      out.emplace_back(finite ? word : "0");
+      const double value = finite ? valueOf(word) : 0.0;
+      if (!(std::fabs(value) <= std::numeric_limits<float>::max()))
+        fail(key, std::string(word) + " is out of range: at most 3.4e38");
+      const bool negative = value < 0.0 && key != "anisor" && key != "illum";
+      if (negative) note(key, ": " + std::string(word) + " is negative and counts as 0");
+      out.emplace_back(finite && !negative ? word : "0");
     }
     return out;
   }
@@ -157,6 +175,7 @@ class Lines {
   void addMap(std::string_view key, std::string_view rest) {
     const MapOptions map = mapOptions(rest);
     if (!map.problem.empty()) fail(key, map.problem);
+    for (const std::string& option : map.zeroed) note(key, ": " + option + " counts as 0");
     for (const std::string& option : map.ignored)
       note(key, ": option " + option + " is not supported and is ignored");
     write(key, map.kept + map.name);

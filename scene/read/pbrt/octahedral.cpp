@@ -11,7 +11,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kSamples = 3;  // of a texel in each direction
+constexpr size_t kSamples = 3;  // per texel and direction
 
 struct Rgb {
   double r = 0, g = 0, b = 0;

@@ -3,7 +3,7 @@
 namespace bnvpl::pbrt {
 
 namespace {
-constexpr size_t kMaxAttributeDepth = 1000;  // of AttributeBegin and the like
+constexpr size_t kMaxAttributeDepth = 1000;  // nested AttributeBegin and the like
 }
 
 void States::push(const Place& place, bool transformOnly) {

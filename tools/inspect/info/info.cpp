@@ -67,7 +67,7 @@ Json columnsJson(const VplTable& table) {
   return columns;
 }
 
-Json strategyColumnsJson(const VplTable& table) {
+Json methodColumnsJson(const VplTable& table) {
   Json columns = Json::array();
   const std::vector<VplColumnView> all = columnsOf(table);
   for (const VplColumnView& column : std::span(all).last(table.extras.size())) {
@@ -113,7 +113,7 @@ Json describeTable(const VplTable& table) {
   if (table.areaEstimate > 0.0) json["area_estimate"] = table.areaEstimate;
   json["provenance"] = provenanceJson(table.provenance);
   json["columns"] = columnsJson(table);
-  if (!table.extras.empty()) json["strategy_columns"] = strategyColumnsJson(table);
+  if (!table.extras.empty()) json["method_columns"] = methodColumnsJson(table);
   if (table.stage == VplStage::Lit) json["energy_W"] = energyJson(table);
   json["spacing"] = spacingJson(table);
   return json;

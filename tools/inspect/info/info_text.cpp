@@ -66,8 +66,8 @@ void appendColumns(std::string& text, const Json& d) {
   }
 }
 
-void appendStrategyColumns(std::string& text, const Json& columns) {
-  text += "columns of strategies, which all stages keep:";
+void appendMethodColumns(std::string& text, const Json& columns) {
+  text += "columns of methods, which all stages keep:";
   std::string separator = " ";
   for (const Json& c : columns) {
     text += separator + word(c, "name") + " (" + word(c, "type");
@@ -101,8 +101,8 @@ std::string infoText(const Json& asFound) {
   appendHead(text, description);
   appendProvenance(text, description);
   appendColumns(text, description);
-  if (description.contains("strategy_columns"))
-    appendStrategyColumns(text, description["strategy_columns"]);
+  if (description.contains("method_columns"))
+    appendMethodColumns(text, description["method_columns"]);
   if (description.contains("energy_W")) {
     const Json& e = description["energy_W"];
     append(text, "energy: R %s, G %s, B %s W, mean %s W\n", number(e["R"]).c_str(),

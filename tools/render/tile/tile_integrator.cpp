@@ -70,7 +70,7 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
   const size_t count = tile.samples.size();
   ShadingPoints out{std::vector<SpecularPath>(count), {}, std::vector<const Bsdf*>(count, nullptr)};
   out.bsdfs.reserve(count);
-  const LightsBehind behind{learned.strata, parts_.surfaceLights};
+  const SpecularLightSampling behind{learned.strata, parts_.surfaceLights};
   for (CameraSample& s : tile.samples) s.radiance = {};
   if (parts_.directSamples && only_ == Only::Direct) return out;
   for (size_t i = 0; i < count; ++i) {

@@ -33,7 +33,7 @@ Vec3 DielectricLobe::value(Vec3 wo, Vec3 wi, Transport transport) const {
   if (wi.z > 0.0f) return reflection * (reflected * ggx.reflected(wo, wi, h));
   const float bend = o + eta * i;
   return transmission * ((1.0f - reflected) * ggx.density(h) * ggx.visible(wo, wi) * o * -i * eta *
-                         eta / (wo.z * -wi.z * bend * bend) * squeezed(transport));
+                         eta / (wo.z * -wi.z * bend * bend) * radianceScale(transport));
 }
 
 float DielectricLobe::pdf(Vec3 wo, Vec3 wi) const {
@@ -48,7 +48,7 @@ float DielectricLobe::pdf(Vec3 wo, Vec3 wi) const {
   return (1.0f - reflected) * facets * eta * eta * -i / (bend * bend);
 }
 
-// The weight of a smooth lobe leaves out squeezed(), which LobeSum applies.
+// The weight of a smooth lobe leaves out radianceScale(), which LobeSum applies.
 bool DielectricLobe::sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const {
   const Vec3 h = smooth() ? Vec3{0, 0, 1} : ggx.sampleVisible(wo, at);
   const float cosine = std::min(1.0f, dot(wo, h));

@@ -22,7 +22,7 @@ struct DielectricLobe {
   Vec3 bound(Vec3, float, float) const { return {}; }
   // Factor by which refraction scales radiance across the surface; 1 for flux (Veach 1997,
   // section 5.2).
-  float squeezed(Transport transport) const {
+  float radianceScale(Transport transport) const {
     return transport == Transport::Radiance ? 1.0f / (eta * eta) : 1.0f;
   }
 };

@@ -27,7 +27,7 @@ float ggxLargestLoss(float alpha);
 
 // Largest index of refraction of the tables below; larger ones count as this.
 inline constexpr float kMaxAlbedoIor = 3.0f;
-// Of a dielectric with exact Fresnel reflectance, seen from outside; ior from 1 to 3, beyond: 3.
+// Albedo of a dielectric with exact Fresnel reflectance, seen from outside.
 float dielectricAlbedo(float cosine, float alpha, float ior);
 float dielectricMeanAlbedo(float alpha, float ior);
 

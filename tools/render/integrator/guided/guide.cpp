@@ -93,7 +93,7 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
     const Vec3 towards = frame.toWorld(local);
     const SpecularPath path =
         followSpecularPath(rays, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
-    Vec3 found = path.metFirst + path.metLater;
+    Vec3 found = path.emissionFirst + path.emissionLater;
     if (path.rough) {
       const uint32_t at = regionAt(path.hit);
       if (at != kNone) {

@@ -45,10 +45,10 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
   Rng rng = start.rng;
   SpecularPath vertex = followSpecularPath(rays_, lights_, *start.hit, start.direction,
                                            start.arrival, rng, {nullptr, &surfaceLights_});
-  if (only_ != Only::Indirect) out.direct += start.throughput * vertex.metFirst;
+  if (only_ != Only::Indirect) out.direct += start.throughput * vertex.emissionFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
-  add(start.throughput * vertex.metLater);
+  add(start.throughput * vertex.emissionLater);
   if (maxBounces_ == 0 || !vertex.rough) return;
 
   const Bsdf first(rays_.scene(), vertex.hit);
@@ -113,7 +113,7 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     vertex = followSpecularPath(rays_, lights_, ray.origin, ray.direction,
                                 {next.pdf, bsdf.point().position, LightChoice::One, lights}, rng,
                                 {nullptr, &surfaceLights_});
-    leaving += weight * (vertex.metFirst + vertex.metLater);
+    leaving += weight * (vertex.emissionFirst + vertex.emissionLater);
     if (bounce == maxBounces_ || !vertex.rough) break;
     weight = weight * vertex.throughput;
   }

@@ -19,7 +19,7 @@ struct Parts {
   LightSet lights;
   PathTracer tracer;
   Parts(const IntegratorInputs& in, const Values& options)
-      : lights(options.on("light-sampling") ? in.lights : in.lights.withoutHittable()),
+      : lights(options.on("light-sampling") ? in.lights : in.lights.onlyUnhittable()),
         tracer(in.rays, lights, maxBouncesOf(options), in.only) {}
 };
 

@@ -104,9 +104,10 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& n
   for (bool goesOn = true; goesOn; ++path.segments) {
     const SpecularPath& segment = path.segment;
     const bool first = path.isFirst();
-    if (first && only_ != Only::Indirect) out.direct += path.throughput * segment.metFirst;
+    if (first && only_ != Only::Indirect) out.direct += path.throughput * segment.emissionFirst;
     if (only_ == Only::Direct) break;
-    path.light = path.throughput * (segment.metLater + (first ? Vec3{} : segment.metFirst));
+    path.light =
+        path.throughput * (segment.emissionLater + (first ? Vec3{} : segment.emissionFirst));
     Uncovered uncovered;
     if (path.choseLobes() && segment.rough) {
       uncovered = *path.atFirstHit;

@@ -28,8 +28,8 @@ class PixelRays {
   }
   // Calls fn(path, sample) for each ray. The rays are independent of the sample.
   template <typename Fn>
-  void forEach(const TileSlots& tile, uint32_t pixel, uint32_t slot, const LightsBehind& behind,
-               const Fn& fn) const {
+  void forEach(const TileSlots& tile, uint32_t pixel, uint32_t slot,
+               const SpecularLightSampling& behind, const Fn& fn) const {
     const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
     const unsigned rays = count(tile, pixel);
     const uint64_t key = random64(tile.key, pixel, dimension_);

@@ -74,7 +74,7 @@ Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
   const Ray ray = rayOn(rays_, bsdf.point(), next);
   SurfacePoint hit;
   const Vec3 emission = rays_.closestHit(ray.origin, ray.direction, hit)
-                            ? emissionMet(lights_, hit, arrival)
+                            ? emissionHit(lights_, hit, arrival)
                             : emissionAtInfinity(lights_, next.wi, arrival);
   return throughput * next.weight * emission * (1.0f / rays.bsdf);
 }
@@ -212,7 +212,8 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
     pixels[p].sums.resize(slots);
     for (size_t s = 0; s < slots; ++s) {
       const size_t i = s * tile.pixels + p;
-      pixels[p].sums[s] = {paths[i].metFirst, paths[i].metFirst + paths[i].metLater, {}, {}};
+      pixels[p].sums[s] = {
+          paths[i].emissionFirst, paths[i].emissionFirst + paths[i].emissionLater, {}, {}};
       moments[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(slots));
     }
     add(tile, p, rays, allocated ? (count + 1) / 2 : count, pixels[p], moments[p]);

@@ -17,7 +17,7 @@ class VisibleEmission {
   // over these and the pixel's further rays. The number of further rays depends on the film's
   // points, not on the sample, so that the mean is unbiased.
   void average(RadianceSample& sum, unsigned count, const TileSlots& tile, uint32_t pixel,
-               uint32_t slot, const LightsBehind& behind) const {
+               uint32_t slot, const SpecularLightSampling& behind) const {
     pixels_.forEach(tile, pixel, slot, behind, [&](const SpecularPath&, const RadianceSample& s) {
       sum.direct += s.direct, sum.emission += s.emission;
     });
