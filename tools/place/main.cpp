@@ -1,4 +1,4 @@
-// vpl-place: drop candidate VPLs where camera paths hit after their first diffuse bounce.
+// vpl-place: places candidate VPLs where camera paths hit after their first diffuse bounce.
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -22,11 +22,11 @@ namespace {
 
 constexpr Option kSpareOption =
     realOption("shard-spare", "", 0, 10, "of its part",
-               "VPLs that a shard places besides; vpl-merge tells where it takes any");
+               "spare VPLs that a shard places; vpl-merge says if they are needed");
 
 constexpr Option kViewSharesOption =
     textOption("view-shares", "", "N,...",
-               "of several views: the parts of each in the paths; equal unless given");
+               "relative numbers of paths for several views; equal unless given");
 
 struct Request {
   SceneOptions scene;
@@ -37,10 +37,10 @@ struct Request {
   std::vector<uint64_t> viewShares;
   CostOptions cost;
   Given given;
-  std::string command;  // without --shard and -o
+  std::string command;  // the command line without --shard and -o
 };
 
-// "2,1"
+// Parses a list such as "2,1".
 std::vector<uint64_t> parseShares(const std::string& text) {
   std::vector<uint64_t> shares;
   uint64_t all = 0;
@@ -77,7 +77,7 @@ PlaceViews placeViews(const Request& request, const PlaceMethod& method, Scene& 
   return {std::move(views), std::move(shares)};
 }
 
-// The one view, or all in the order of their turns.
+// Records the only view, or all views with their shares.
 void recordViews(const PlaceViews& of, Json& record) {
   if (of.views.size() == 1) {
     record["view"] = viewRecord(of.views.front().camera, of.views.front().film);
@@ -94,7 +94,8 @@ double memoryFor(const Request& request, uint64_t count) {
   return request.shard ? 0.0 : kBytesPerPlaced * static_cast<double>(count);
 }
 
-// Paths are traced in waves, of which the last is traced to its end.
+// Measures runs with fewer VPLs. The work is the number of waves, as the last wave is always traced
+// whole.
 Cost costOfPlacing(const PlaceInputs& inputs, const Values& options, const ProgressFn& progress) {
   constexpr uint64_t kFirst = 1 << 17;
   double paths = 0.0, besideRows = 0.0;

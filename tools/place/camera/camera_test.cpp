@@ -7,11 +7,11 @@ namespace {
 
 Given count(uint64_t vpls) { return {{"count", typed(vpls)}}; }
 
-// The plane fills the lower half of the view; paths from it reach the sky alone. Were anything
-// placed at the first diffuse vertex, the count would be reached at once.
+// The plane fills the lower half of the view, and paths from it only reach the sky. If candidates
+// were placed at the first diffuse vertex, the count would be reached at once.
 TEST(PlaceCamera, NothingIsPlacedAtTheFirstDiffuseVertex) {
   const World world(
-      "test/two-patches.toml");  // receiver seen alone; the emitter above reflects nothing
+      "test/two-patches.toml");  // only the receiver is visible; the emitter reflects nothing
   try {
     placeVpls(world, count(100));
     FAIL() << "the view cannot yield candidates";
@@ -25,7 +25,7 @@ TEST(PlaceCamera, CandidatesFaceIntoAClosedRoomAndHaveItsAlbedo) {
   const World world = greyCube({});
   const VplTable t = placeVpls(world, count(3000)).table;
   for (size_t i = 0; i < t.size(); ++i) {
-    // 1/2 along the wall's axis, from the wall to the middle.
+    // Each wall is 1/2 away from the centre of the unit cube.
     ASSERT_NEAR(dot(t.normal[i], Vec3(0.5f) - t.position[i]), 0.5f, 1e-5f);
     ASSERT_EQ(t.albedo[i], Vec3(0.5f));
   }
@@ -35,11 +35,11 @@ TEST(PlaceCamera, DeeperPathsAddCandidatesAtLaterVertices) {
   const World world("u-shape/scene.toml");
   const PlaceResult two = placeVpls(world, count(3000));
   const PlaceResult four = placeVpls(world, with(count(3000), {{"depth", "4"}}));
-  EXPECT_LT(four.paths * 2, two.paths);  // up to three a path instead of one
+  EXPECT_LT(four.paths * 2, two.paths);  // a path yields up to three candidates instead of one
 }
 
-// Paths are traced many at a time. In a closed room nearly every second vertex has a third, which
-// comes before the next path's second.
+// Paths are traced in batches. In a closed room nearly every path with a second vertex has a third
+// one, which comes before the second vertex of the next path.
 TEST(PlaceCamera, VerticesOfOnePathStayTogether) {
   const World world("u-shape/scene.toml");
   const VplTable two = placeVpls(world, count(2000)).table;

@@ -13,7 +13,7 @@ double totalOf(const std::vector<Vec3>& column, size_t channel) {
   return sum;
 }
 
-// In a closed room every photon hits, and its first hit reflects half of its flux, exactly.
+// In a closed room every photon hits a wall, and the first hit reflects exactly half of its flux.
 TEST(PlaceLight, CarriesThePowerOfTheFirstHits) {
   const World world = greyCube({{3, 2, 1}});
   const PlaceResult placed = placeVpls(world, with(fromLights(5000), {{"light-depth", "1"}}));
@@ -26,8 +26,9 @@ TEST(PlaceLight, CarriesThePowerOfTheFirstHits) {
   }
 }
 
-// All hits together reflect rho / (1 - rho) = 1 of the power, to within sqrt(1/2 / paths), and the
-// first ones rho = 1/2; of lamps whose powers are far apart, each its own.
+// All hits together reflect rho / (1 - rho) = 1 times the power, with a relative deviation of
+// sqrt(1/2 / paths); first hits reflect rho = 1/2. Both hold for each of two lights of very
+// different power.
 TEST(PlaceLight, CarriesThePowerOfEachLight) {
   const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
   const PlaceResult placed = placeVpls(world, fromLights(200000));
@@ -35,13 +36,14 @@ TEST(PlaceLight, CarriesThePowerOfEachLight) {
   for (const size_t c : {0u, 2u}) {
     const double power = double{world.lights.power(c / 2)[c]},
                  share = double{world.lights.pickProbability(c / 2)};
-    // The number of photons of a lamp is random too.
+    // The number of photons of each light is random, too.
     const double error = 5.0 * std::sqrt(1.5 / (share * paths));
     EXPECT_NEAR(totalOf(placed.table.flux, c) / power, 1.0, error);
     EXPECT_NEAR(totalOf(placed.table.firstBounceFlux, c) / power, 0.5, 0.5 * error);
   }
   EXPECT_EQ(totalOf(placed.table.flux, 1), 0.0);
-  // Every VPL stands for a share of the surface: six squares. Hexagons of radius r have this area.
+  // The VPLs' shares of the surface add up to six unit squares. A hexagon of inradius r has 2
+  // sqrt(3) r^2.
   double area = 0.0;
   for (const float r : placed.table.radius) area += 2.0 * std::sqrt(3.0) * double{r} * double{r};
   EXPECT_NEAR(area, 6.0, 0.3);
