@@ -1,4 +1,4 @@
-// vpl-eliminate: keep the COUNT candidates that are spread best.
+// vpl-eliminate: keeps the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -24,7 +24,7 @@ struct Paths {
   SceneOptions scene;
 };
 
-// The scene, for methods that ask for it.
+// The scene, for methods that need it.
 struct World {
   World(const SceneOptions& options, Processor processor, const fs::path& input, uint64_t hash)
       : scene(loadSceneFor(options, Warnings::Hold)), rays(scene, processor), lights(rays) {
@@ -45,15 +45,16 @@ void report(const EliminateResult& kept, size_t candidates, Summary& summary) {
               "area " + formatSi(kept.area) + ", r_max " + formatSi(kept.rMax) + " (scene units)");
 }
 
-// Evenly spaced candidates, of which the same share is kept: elimination takes time in proportion.
+// Measures runs on evenly spaced subsets of the candidates, of which the same share is kept. The
+// time is proportional to the number of candidates.
 Cost costOfEliminating(const VplTable& candidates, const Values& options, const World* world,
                        const ProgressFn& progress) {
   constexpr uint64_t kFirst = 1 << 14, kFewPoints = 400;
   const RayScene* rays = world ? &world->rays : nullptr;
   const LightSet* lights = world ? &world->lights : nullptr;
   if (candidates.size() < options.whole("count"))
-    eliminate(candidates, options, rays, lights);  // refuses
-  // Each candidate is judged by all of them.
+    eliminate(candidates, options, rays, lights);  // throws
+  // The time is proportional to the number of camera points, too.
   const uint64_t points = options.has("camera-points") ? options.whole("camera-points") : 0,
                  judges = std::min(points, kFewPoints);
   const auto part = [&](uint64_t count) {
@@ -68,7 +69,7 @@ Cost costOfEliminating(const VplTable& candidates, const Values& options, const 
   Cost cost = costOfRows(candidates.size(), kFirst, part,
                          [](uint64_t rows) { return static_cast<double>(rows); });
   if (points > 0) cost.workCpuS *= static_cast<double>(points) / static_cast<double>(judges);
-  cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the probe's copy
+  cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the subset's copy
   return cost;
 }
 
@@ -134,7 +135,7 @@ int main(int argc, char** argv) {
   Paths paths;
   addFile(cli, "candidates", paths.input, "from vpl-place (.vpl)")->required();
   addFile(cli, "-o,--output", paths.output, "VPLs without flux (.vpl)")->required();
-  addSceneFlag(cli, paths.scene, "the scene, for methods that ask for it");
+  addSceneFlag(cli, paths.scene, "the scene, for methods that need it");
   addStageOptions(cli, eliminateSpec(), given);
   addCostOptions(cli, cost);
   addToolOptions(cli, tool);

@@ -27,10 +27,11 @@ const FromLights& cornell() {
   return one;
 }
 
-// Each VPL stands for one over its probability: the expected image is that of all.
+// Each accepted VPL is weighted by one over its probability, so the expected image is that of all
+// VPLs.
 TEST(Rejection, KeepsTheEnergyOnAverage) {
   const auto& c = cornell();
-  // Nothing is clamped, for clamping goes by r_max, which grows as fewer are kept.
+  // Clamping would depend on r_max, which grows as fewer are kept, so it is nearly turned off.
   double sum = 0.0;
   constexpr int kSeeds = 12;
   for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -48,10 +49,11 @@ TEST(Rejection, KeepsAboutTheCount) {
     EXPECT_EQ(kept.radius.size(), kept.size());
     sum += double(kept.size()) / 8;
   }
-  EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // a count of independent choices
+  EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // the variance of a count is at most 400
 }
 
-// What brings nothing to the view is kept a hundredth of the time, at a hundred times its flux.
+// A VPL that contributes nothing is accepted with probability 1/100, and its flux is weighted by
+// 100.
 TEST(Rejection, WeighsByOneOverTheProbability) {
   const VplTable& all = cornell().all;
   const VplTable kept = cornell().keep({});
