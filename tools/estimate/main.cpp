@@ -18,7 +18,7 @@
 namespace bnvpl {
 namespace {
 
-// Measured: 600 a VPL; each thread adds up sums of its own.
+// Measured: 600 per VPL. Each thread has its own sums.
 constexpr double kBytesPerVplAndThread = 112;
 
 struct Request {
@@ -28,7 +28,7 @@ struct Request {
   std::optional<Shard> shard;
   CostOptions cost;
   Given given;
-  std::string command;  // without --shard and -o
+  std::string command;  // the command line without --shard and -o
 };
 
 int runEstimate(const Request& request, const ToolOptions& tool) {

@@ -12,8 +12,8 @@ namespace {
 
 using methods::estimate::both::Receivers;
 
-// The Cornell box, lit by its lamp and by a sky whose photons hardly ever find it: they cover a box
-// that is much larger.
+// The Cornell box, lit by its area light and by a sky. Photons of the sky are spread over much
+// larger bounds, so they hardly ever hit the box.
 World lampAndSky() {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   LightSpec sky;
@@ -32,7 +32,7 @@ VplTable lit(const World& world, const VplTable& vpls, const char* method, const
   return lightVpls(world, vpls, with(options, more)).table;
 }
 
-// Squared distance of fluxes from those of `truth`.
+// Sum of the squared errors of all fluxes.
 double errorOf(const VplTable& vpls, const VplTable& truth) {
   double sum = 0.0;
   for (size_t i = 0; i < vpls.size(); ++i) {
@@ -42,8 +42,8 @@ double errorOf(const VplTable& vpls, const VplTable& truth) {
   return sum;
 }
 
-// The mean of many runs is right for each VPL: what the pilots choose does not depend on what it is
-// chosen for.
+// The mean of many runs is right for each VPL, since the weights do not depend on the estimates
+// they weigh.
 TEST(Both, HasNoBias) {
   const World world = lampAndSky();
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4k"}});
@@ -71,8 +71,8 @@ TEST(Both, HasNoBias) {
   EXPECT_NEAR(z2 / double(vpls.size()), 1.0, 0.35);
 }
 
-// At the same work: better than photons where these go astray, hardly worse where only they find
-// the lamp.
+// With the same work, the error is smaller than that of photons where few of these hit the scene,
+// and hardly larger where only photons find the light.
 TEST(Both, TakesTheBetterOfTheTwo) {
   const auto errorOverThatOfPhotons = [](const World& world, const Given& truth) {
     const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
@@ -88,7 +88,8 @@ TEST(Both, TakesTheBetterOfTheTwo) {
   EXPECT_LT(errorOverThatOfPhotons(World("u-shape/scene.toml"), {{"photons", "1M"}}), 1.3);
 }
 
-// A point light above a mirror: what comes over it no path finds, and photons bring all of it.
+// A point light above a mirror: no path finds the light that the mirror reflects, so photons
+// contribute all of it.
 TEST(Both, KeepsLightThatOnlyPhotonsFind) {
   Scene scene;
   Material mirror = lambert(Vec3(0.0f));
@@ -138,7 +139,7 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
   };
   const VplTable one = made(1, {});
   EXPECT_GT(totalFlux(one), 0.0);
-  // Interrupted again and again, after each unit of work that it got done.
+  // The work is interrupted after each unit.
   struct Stopped {};
   std::string state;
   Resume stops{{},
@@ -181,7 +182,8 @@ TEST(Both, TellsProgressOnceForAllItsWork) {
   }
 }
 
-// As much work as is asked for, and no more: the error stated at the end is the one wanted.
+// The work ends where it reaches --irradiance-error: the error stated at the end is the one asked
+// for.
 TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
@@ -207,8 +209,7 @@ TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   EXPECT_NEAR(totalFlux(few.table) / totalFlux(all.table), 1.0, 0.02);
 }
 
-// What the receivers promise is what repeated runs show: the deviation of irradiances between
-// seeds.
+// The predicted error agrees with the standard deviation of irradiances between seeds.
 TEST(Both, ReceiversStateTheErrorOfIrradiance) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});

@@ -5,8 +5,8 @@
 namespace bnvpl::test {
 namespace {
 
-// As the thesis says, and where the guarded method must not: its test would be empty if nothing
-// could leak there.
+// The method of the thesis leaks in this scene. The test that the guarded method does not leak
+// would be void otherwise.
 TEST(Even, LeaksUnderTheDivider) {
   const World world("test/divider.toml");
   const VplTable vpls = keptVpls(world, {{"count", "500"}}, {{"count", "10k"}});

@@ -5,8 +5,8 @@
 namespace bnvpl::test {
 namespace {
 
-// In a closed box every hit lies in the region: nothing may be lost, and with albedo 0.5 and an
-// area light on every wall the reflected flux is the emitted times 0.5 / (1 - 0.5).
+// In a closed box every hit lies in the region, so no flux may be lost. With albedo 0.5 and an area
+// light on every wall, the reflected flux is the emitted flux times 0.5 / (1 - 0.5).
 TEST(Guarded, ClosedBoxLosesNothing) {
   const World world("furnace/scene.toml");
   for (const char* density : {"uniform", "local"}) {

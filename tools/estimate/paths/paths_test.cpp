@@ -7,8 +7,8 @@
 namespace bnvpl::test {
 namespace {
 
-// Photons and paths estimate one integral by its two ends: fluxes of single VPLs agree within their
-// noise, those of all together within a per cent.
+// Photons and paths estimate the same integral from its two ends. The fluxes of single VPLs agree
+// within their noise, and the total flux within a per cent.
 void expectAgreement(const World& world, const VplTable& vpls, const char* name) {
   const VplTable photons = lightVpls(world, vpls, {{"photons", "2M"}, {"emit-points", "0"}}).table;
   const VplTable paths =
@@ -20,7 +20,8 @@ void expectAgreement(const World& world, const VplTable& vpls, const char* name)
     const double ea = a * double{photons.relativeError[i]}, eb = b * double{paths.relativeError[i]};
     squares += (a - b) * (a - b) / (ea * ea + eb * eb + 1e-30);
   }
-  // 1 if the errors were just as stated; points are stratified, which makes theirs smaller.
+  // 1 if the stated errors are exact. Points are stratified, so paths have smaller errors than
+  // stated.
   EXPECT_LT(std::sqrt(squares / double(vpls.size())), 1.3) << name;
 }
 
@@ -31,8 +32,7 @@ TEST(Paths, AgreeWithPhotonsForEachVpl) {
   }
 }
 
-// Bars of a window, far smaller than the reach of the VPLs on them: several layers lie one over the
-// other in the disk of a VPL.
+// Bars far narrower than the reach of the VPLs on them: the disk of a VPL covers several layers.
 TEST(Paths, AgreeWithPhotonsOnThinLayers) {
   constexpr float kWidth = 0.02f, kStep = 0.1f, kRadius = 0.15f;
   Scene scene;
@@ -65,8 +65,8 @@ TEST(Paths, AgreeWithPhotonsOnThinLayers) {
   expectAgreement(World(std::move(scene)), vpls, "bars");
 }
 
-// What a coat lets in and out depends on the direction: the light of a lamp that grazes the walls
-// is another part of them than that of one straight above.
+// The transmittance of a coat depends on the direction, so the albedo for grazing light differs
+// from that for light along the normal.
 TEST(Paths, AgreeWithPhotonsOnCoats) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   for (Material& m : scene.materials) {
@@ -90,7 +90,7 @@ TEST(Paths, FirstBounceIsThatOfPhotons) {
   EXPECT_NEAR(firstOf({{"method", "paths"}}) / firstOf({{"photons", "1M"}}), 1.0, 0.01);
 }
 
-// As many bounces, as much light.
+// With equal --max-bounces, photons and paths find the same flux.
 TEST(Paths, CountBouncesAsPhotonsDo) {
   const World world("furnace/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "400"}}, {{"count", "8k"}});
