@@ -1,4 +1,4 @@
-// vpl-render: direct light plus all VPLs, or a reference, traced from the camera or the lights.
+// vpl-render: renders direct light plus all VPLs, or a reference by path or light tracing.
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -23,7 +23,7 @@
 namespace bnvpl {
 namespace {
 
-// Measured: 140 and, with the light tree, the near field and what lights its hits, 1,400 to 2,600.
+// Measured: 140, and 1,400 to 2,600 with the near field, its light sampling and the light tree.
 constexpr double kBytesPerVpl = 140, kBytesPerVplWithNearField = 1400;
 
 struct Request {
@@ -34,10 +34,10 @@ struct Request {
   std::optional<Shard> shard;
   CostOptions cost;
   Given given;
-  std::string command;  // without --shard and -o
+  std::string command;  // the command line without --shard and -o
 };
 
-// "--integrator light or path".
+// Text such as "--integrator light or path".
 std::string withoutVpls() {
   std::string names;
   for (const IntegratorMethod* m : integratorMethods()) {
@@ -46,7 +46,7 @@ std::string withoutVpls() {
   return names;
 }
 
-// Before any work: what the paths and the options say together.
+// Checks paths and options for consistency before any work. Throws UsageError.
 void requireConsistent(const Request& paths, const Values& options) {
   const IntegratorMethod& integrator = integratorOf(options);
   layersOf(options);
@@ -70,8 +70,8 @@ void requireConsistent(const Request& paths, const Values& options) {
   }
 }
 
-// The options of so many samples without passes, which have no units: passes take turns over the
-// same film. What they end by is not known before.
+// Options with as many samples but without passes, which cannot be divided into units for a cost
+// probe. Throws UsageError unless --passes gives their number.
 Given withoutPasses(const Given& given, const Values& options) {
   const auto budget = budgetOf(options);
   if (!budget) return given;
@@ -89,7 +89,7 @@ Given withoutPasses(const Given& given, const Values& options) {
   return plain;
 }
 
-// A film that probes can hold, of the same shape and view.
+// Film of the same aspect ratio and view with at most kMaxPixels pixels, for a cost probe.
 Film filmToTry(const Film& film) {
   constexpr double kMaxPixels = 1 << 20;
   const double pixels = double(film.width) * film.height;
@@ -101,12 +101,12 @@ Film filmToTry(const Film& film) {
   return {scaled(film.width), scaled(film.height)};
 }
 
-// By fewer pixels and samples than are asked for, where these are many. `film`: what is asked for;
-// the scene has filmToTry().
+// Measures a render of fewer pixels and samples if many are asked for. `film` is the requested
+// film; the scene has filmToTry().
 Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                      const Film& film, const Request& request, const Values& options,
                      const ProgressFn& progress) {
-  constexpr uint64_t kMaxSpp = 64;  // as many as are taken together: more are more of the same
+  constexpr uint64_t kMaxSpp = 64;  // further samples take as long as these
   const Values plain = resolveRender(withoutPasses(request.given, options));
   const uint64_t spp = plain.whole("spp"), tried = std::min(spp, kMaxSpp);
   const Film& small = rays.scene().film;
@@ -119,19 +119,19 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   const Integrator integrator = makeIntegrator(rays, lights, lit, plain, progress, &probe);
   UnitsToTry units;
   units.apart = request.shard.has_value();
-  // Photons go in rounds of as many samples as 64 tiles have, of each of which some are to be
-  // tried.
+  // Photons are traced in rounds as large as the samples of 64 tiles, and the probe needs several
+  // rounds.
   if (integrator.photons) units.fewest *= 1.0 + 64.0 / double(tried);
   Cost cost = costOfUnits(
       [&](const Resume& resume) {
         renderSamples(rays, integrator, plain, static_cast<uint32_t>(tried), progress, resume);
       },
       probe, units);
-  constexpr double kDevelopS = 5e-7;  // a pixel, its file included (measured)
+  constexpr double kDevelopS = 5e-7;  // per pixel, including its file (measured)
   cost.workCpuS *= pixels / fewPixels * (double(spp) / double(tried));
   if (!request.shard) cost.workCpuS += kDevelopS * pixels;
   cost.probed *= fewPixels / pixels * (double(tried) / double(spp));
-  // What the film takes, and what an image that is developed takes besides (measured).
+  // Memory of the film, and of the developed image (measured).
   cost.memoryBytes += (cost.memoryBytes - memory.before()) * (pixels / fewPixels - 1.0);
   cost.memoryBytes += pixels * (60.0 + (redistributesFireflies(plain) ? 170.0 : 0.0) +
                                 (budgetOf(options) ? 100.0 : 0.0));

@@ -13,12 +13,14 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint32_t kSlotsPerPass = 64;  // over the whole image; work stops between tiles of a pass
+// Samples per pixel in each pass over the film. Work can be interrupted between the tiles of a
+// pass.
+constexpr uint32_t kSlotsPerPass = 64;
 
 constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons";
 
-// What samples and photons have brought, and of a checkpoint how far they are: passes, the tiles of
-// one, then photons.
+// Sums of samples and photons, and the progress that a checkpoint saves: passes, tiles of the
+// current pass, then photons.
 struct State {
   struct Progress {
     uint64_t pass = 0;
@@ -87,13 +89,13 @@ struct State {
     }
   }
 
-  struct TilePixel {  // without padding: it is handed over as it lies
+  struct TilePixel {  // without padding, as its bytes are saved
     PixelSums sums;
     PixelCounts counts;
   };
   Tiles tiles;
   Progress at;
-  std::vector<uint8_t> done;  // tiles of this pass
+  std::vector<uint8_t> done;  // tiles of the current pass
   std::vector<PixelSums> pixels;
   std::vector<PixelCounts> counts;
   SplatSums splats;

@@ -4,21 +4,22 @@
 
 namespace bnvpl {
 
-// Of every integrator that traces paths.
-inline constexpr Option kMaxBouncesOption = neededBy(
-    "only=all|indirect", wholeOption("max-bounces", "32", 0, 1000, "",
-                                     "diffuse bounces after the first surface, as vpl-estimate's"));
-inline unsigned maxBouncesOf(const Values& options) {  // none counts for direct light
+// Option of the integrators that trace paths.
+inline constexpr Option kMaxBouncesOption =
+    neededBy("only=all|indirect",
+             wholeOption("max-bounces", "32", 0, 1000, "",
+                         "diffuse bounces after the first surface, as in vpl-estimate"));
+inline unsigned maxBouncesOf(const Values& options) {  // 0 if only direct light is shown
   return options.has("max-bounces") ? static_cast<unsigned>(options.whole("max-bounces")) : 0;
 }
 
 // The reference: unbiased path tracing with next-event estimation and multiple importance sampling,
-// no clamping. Rough scatterings after the first rough vertex are limited to maxBounces, as a
-// photon's hits.
+// without clamping. Rough scatterings after the first rough vertex are limited to maxBounces, like
+// those of photons.
 class PathTracer {
  public:
-  // `indirect`: whether also the indirect light of the points that the camera sees directly; false
-  // leaves that to the LightTracer.
+  // `indirect`: whether to add indirect light at points that the camera sees directly. If not, the
+  // LightTracer does.
   PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only,
              bool indirect = true)
       : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}

@@ -6,8 +6,8 @@ namespace bnvpl {
 
 namespace {
 
-// Squared distance that counts at least, over the squared radius of a cluster: it lies around the
-// point, most of it further away than its middle (measured).
+// Lower bound of the squared distance to a cluster, over its squared radius: most of a cluster
+// around the point is farther away than its centre (measured).
 constexpr float kClosest = 2.0f;
 
 __m128 all(float v) { return _mm_set1_ps(v); }
@@ -18,11 +18,11 @@ std::array<float, 4> store(__m128 v) {
   return out;
 }
 
-// From a point to four spheres.
+// Directions from a point to four spheres.
 struct Directions {
-  __m128 x, y, z;               // unit, to the centres
-  __m128 cosSphere, sinSphere;  // of half the angle that each takes
-  __m128 radius2, d2;           // of the spheres, to the centres
+  __m128 x, y, z;               // unit directions to the centres
+  __m128 cosSphere, sinSphere;  // cosine and sine of half the angle that each sphere subtends
+  __m128 radius2, d2;           // squared radii, and squared distances to the centres
   // Largest cosine between an axis and any direction into the sphere.
   __m128 most(__m128 ax, __m128 ay, __m128 az) const {
     return selectAtLeast(radius2, d2, all(1.0f),
@@ -66,7 +66,7 @@ void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, si
       f.child[lane] = kLeaf | n.representative;
       continue;
     }
-    std::array<uint32_t, 4> below{};  // two levels down
+    std::array<uint32_t, 4> below{};  // nodes two levels down
     size_t count = 0;
     for (const uint32_t c : {n.left, n.right}) {
       const LightNode& m = tree.nodes[c];
@@ -103,7 +103,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   const Four& f = sampler_.fours_[four];
   const __m128 x = load(f.x) - all(at_.x), y = load(f.y) - all(at_.y), z = load(f.z) - all(at_.z);
   const __m128 d2 = x * x + y * y + z * z, radius2 = load(f.radius2);
-  const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only inside
+  const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only at the centre
   Directions to;
   to.radius2 = radius2, to.d2 = d2;
   to.x = x * inverse, to.y = y * inverse, to.z = z * inverse;
@@ -111,7 +111,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   to.cosSphere = sineOf(to.sinSphere);
 
   const __m128 zero = _mm_setzero_ps();
-  // The way back is the mirror image of the way there.
+  // Emission leaves in the opposite directions, so the axes are negated instead.
   const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
   const __m128 emitter = Kind::mostEmitted(back, load(f.cosHalf), load(f.sinHalf));
   const __m128 cosine = to.most(all(normal_.x), all(normal_.y), all(normal_.z));
@@ -120,7 +120,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
     value =
         all(value_.x) * load(f.red) + all(value_.y) * load(f.green) + all(value_.z) * load(f.blue);
   } else {
-    // Lobes go by their axis as the normal does.
+    // Glossy lobes are bounded by the cosine to their axis.
     const Vec3 axis = bsdf_.glossyAxis();
     const Lanes toAxis = store(to.most(all(axis.x), all(axis.y), all(axis.z)));
     alignas(16) Lanes sums;
@@ -150,7 +150,7 @@ std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const
     probability *= weight[lane] / sum;
     child = sampler_.fours_[child].child[lane];
   }
-  // The last slot or lane is also taken by rounding, even where its own share is 0.
+  // Rounding may select the last slot or lane even if its probability is 0.
   if (!(probability > 0.0f)) return {};
   return Draw{child & ~kLeaf, probability};
 }

@@ -1,4 +1,4 @@
-// What rays give back of the light that VPLs do not bring.
+// Tests of bias compensation by near-field rays.
 #include "tools/render/compensate/near_field/near_field.h"
 
 #include <gtest/gtest.h>
@@ -27,13 +27,13 @@ VplTable withoutThoseThatLookLeft(const VplTable& vpls) {
   return rest;
 }
 
-// A generous clamp takes much of the light; rays give back what it takes. And where VPLs are
-// uncovered altogether, here on every surface that looks to the left, rays carry all.
+// A large clamp radius removes much of the light, and rays add it again. Where there are no VPLs,
+// here on all surfaces that face left, rays carry all of the light.
 TEST(NearField, GivesBackWhatClampAndGapsTake) {
   World world("cornell/scene.toml");
   world.scene.film = {48, 48};
   const double path = indirectByPaths(world, {{"spp", "256"}});
-  // Enough VPLs for the blur of their energy, which falls with their spacing, to be small.
+  // With so many VPLs the blur of their energy, which falls with their spacing, is small.
   const VplTable all = keptVpls(world, {{"count", "2000"}}, {{"count", "40k"}});
   const VplTable rest = withoutThoseThatLookLeft(all);
   ASSERT_LT(rest.size(), all.size());
@@ -47,8 +47,8 @@ TEST(NearField, GivesBackWhatClampAndGapsTake) {
   }
 }
 
-// A room that is lit from below slats close above its floor. VPLs of the floor shine from one
-// place, in a gap or under a slat, for a surface that is lit most where it is least open.
+// A room whose light comes from the undersides of slats close above its floor. A VPL of the floor
+// stands for a surface that is brightest where it is most occluded, under the slats.
 Scene slattedRoom() {
   Scene scene;
   const Material white = lambert(Vec3(0.6f));
@@ -72,8 +72,9 @@ Scene slattedRoom() {
   return scene;
 }
 
-// A VPL shines from points that its light comes from, so that what leaves below the slats does not
-// pass for light in the open: from the places of VPLs the room is a tenth too bright.
+// VPLs emit from points that are drawn in proportion to the light that leaves there, so light from
+// below the slats stays occluded. If they emitted from their positions, the room would be a tenth
+// too bright.
 TEST(NearField, LightFromBelowSlatsStaysThere) {
   const World world{slattedRoom()};
   const double path = indirectByPaths(world, {{"spp", "256"}});
@@ -88,9 +89,8 @@ TEST(NearField, LightFromBelowSlatsStaysThere) {
   }
 }
 
-// The clamp takes 1 - (distance / (clamp r))^2 of the light of a VPL of radius r, but not less than
-// nothing. How far `share` is from that of the VPL nearest to it, of those whose disk holds the
-// hit.
+// The clamp removes max(0, 1 - (distance / (clamp r))^2) of the light of a VPL of radius r. Returns
+// the smallest difference between `share` and this share over the VPLs whose disk contains the hit.
 double distanceToAShareOfAVplThatReaches(const VplTable& lit, const SurfacePoint& hit,
                                          float distanceOverClamp, float share) {
   double nearest = INFINITY;
@@ -110,9 +110,8 @@ Uncovered uncoveredAt(const NearField& nearField, const SurfacePoint& hit, float
   return nearField.uncovered(hit, distance, nearField.coverage().lookUp(hit.position), rng);
 }
 
-// In the furnace every surface sends out rho^2 / (1 - rho) of light that came by way of another. So
-// say the VPLs, from their flux and the area that each is found to speak for, on the average over
-// surfaces.
+// In the furnace the indirect radiance of every surface is rho^2 / (1 - rho). The mean over
+// surfaces of the VPLs' flux over the area that each covers must agree.
 TEST(NearField, VplsKnowTheRadianceAroundThem) {
   const World world("furnace/scene.toml");  // rho = 0.5
   const VplTable lit = litVpls(world);
@@ -123,7 +122,7 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   Rng rng(streamKey(1, Stream::PixelSamples), 0);
   for (int k = 0; k < 4000; ++k) {
     SurfacePoint hit;
-    // Evenly over the six faces of the unit cube.
+    // Points are uniform over the six faces of the unit cube.
     const float side = rng.next() < 0.5f ? -0.5f : 0.5f;
     const float u = rng.next() - 0.5f, v = rng.next() - 0.5f;
     const Vec3 face = k % 3 == 0   ? Vec3{side, u, v}
@@ -142,8 +141,8 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   EXPECT_NEAR(sum / known, 0.5, 0.015);
 }
 
-// A VPL in the middle of a board that is narrower than its disk: the area is that of the board
-// under the disk, and where points of the disk hardly ever meet the board, nothing is claimed.
+// A VPL in the middle of a board that is narrower than its disk: its area is that of the board
+// under the disk. It is unknown if hardly any points of the disk hit the board.
 TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
   const auto radianceOfBoard = [](float width) {
     Scene scene;
@@ -181,7 +180,7 @@ TEST(NearField, RadianceIsOfTheAreaThatIsThereAndSliversAreUnknown) {
   EXPECT_FALSE(radianceOfBoard(0.01f).has_value());
 }
 
-// More rays bring the same light with less noise.
+// More rays give the same mean with less noise.
 TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
@@ -206,7 +205,7 @@ TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   EXPECT_LT(spread[0], 0.7 * spread[1]);
 }
 
-// A sky through a window is found by few shadow rays; the rays that complete the VPLs find it too.
+// Few shadow rays reach the sky through a window. By MIS, near-field rays find it, too.
 TEST(NearField, ItsRaysTakeNoiseOutOfDirectLight) {
   Scene sky = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   sky.film = {32, 32};

@@ -3,7 +3,7 @@
 namespace bnvpl::test {
 namespace {
 
-// Squared difference to all VPLs at the same points, summed over the pixels.
+// Squared difference to the sum over all VPLs at the same points, summed over the pixels.
 double errorOf(const GatherCase& c, const Given& options) {
   const Image all = c.indirect("all"), image = c.indirect("lightslice", options);
   double squared = 0.0;
@@ -14,7 +14,7 @@ double errorOf(const GatherCase& c, const Given& options) {
   return squared;
 }
 
-// VPLs that the representative of no slice sees are lost (theory.md).
+// VPLs that are invisible from the representatives of all slices are lost (theory.md).
 TEST(LightSlice, HasTheEnergyOfAllVpls) { expectEnergyOfAll("lightslice", 0.03, 2); }
 
 TEST(LightSlice, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("lightslice"); }
@@ -29,7 +29,7 @@ TEST(LightSlice, MoreColumnsAreNearerToAllVpls) {
   }
 }
 
-// Ou & Pellacini 2011: clusters of each slice's own are better than as many for all points.
+// Ou & Pellacini 2011: clusters for each slice are better than the same number for all points.
 TEST(LightSlice, SlicesAreBetterThanOneForAll) {
   for (const GatherCase* c : gatherCases()) {
     const double slices = errorOf(*c, {{"columns", "100"}});
@@ -37,7 +37,7 @@ TEST(LightSlice, SlicesAreBetterThanOneForAll) {
   }
 }
 
-// Clusters of one VPL each are exact; those of several have columns of one direction.
+// Clusters of a single VPL are exact, and the columns of larger ones are parallel.
 TEST(LightSlice, WithoutALimitToColumnsItIsNearlyAll) {
   for (const GatherCase* c : gatherCases()) {
     EXPECT_LT(errorOf(*c, {{"columns", "1M"}}), 0.1 * errorOf(*c, {{"columns", "60"}}));

@@ -3,14 +3,14 @@
 namespace bnvpl::test {
 namespace {
 
-// Unbiased: the tolerance is three standard errors of so few samples.
+// The method is unbiased: the tolerance is three standard errors of these few samples.
 TEST(Stochastic, HasTheEnergyOfAllVpls) { expectEnergyOfAll("stochastic", 0.015, 8); }
 
 TEST(Stochastic, WithACutOfOneToo) { expectEnergyOfAll("stochastic", 0.06, 8, {{"cut", "1"}}); }
 
 TEST(Stochastic, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("stochastic"); }
 
-// A cut of every VPL leaves nothing to chance.
+// A cut of all VPLs has no variance.
 TEST(Stochastic, ACutOfAllIsTheSumOverAll) {
   const GatherCase& c = *gatherCases().front();
   const Image all = c.indirect("all", {}, 1), cut = c.indirect("stochastic", {{"cut", "1M"}}, 1);

@@ -1,4 +1,4 @@
-// The gather through tile cuts against the sum over all VPLs.
+// Compares gathering with tile cuts to the sum over all VPLs.
 #include <gtest/gtest.h>
 
 #include "tests/support/gather_checks.h"
@@ -8,7 +8,7 @@ namespace {
 
 const GatherCase& cornell() {
   static const GatherCase c("cornell/scene.toml", {25, 19},
-                            {});  // tiles at the rims: 1 wide, 3 high
+                            {});  // tiles at the borders are 1 wide or 3 high
   return c;
 }
 // Has Phong lobes, a mirror and a door with a slit of light.
@@ -28,7 +28,7 @@ double sumOver(const Image& image, size_t x0, size_t x1, size_t y0, size_t y1) {
   return sum;
 }
 
-// A pixel's error and light, over the channels.
+// Squared error and light of a pixel, summed over the channels.
 double errorAt(const Image& a, const Image& b, size_t i) {
   double e = 0.0;
   for (const char* c : {"R", "G", "B"}) {
@@ -44,7 +44,7 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
   for (const GatherCase* c : {&cornell(), &door()}) {
     const Image all = c->indirect("all");
     const Image cuts = c->indirect("tilecuts", {{"error", "0"}, {"max-cut", "1M"}});
-    size_t different = 0;  // a ray along an edge may be decided otherwise in a packet
+    size_t different = 0;  // visibility along an edge may differ in packets
     for (size_t i = 0; i < all.pixelCount(); ++i) {
       const double light = lightAt(all, i);
       different += std::sqrt(errorAt(cuts, all, i)) > 1e-4 * (light + 1e-3);
@@ -55,12 +55,12 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
   }
 }
 
-// The coarsest cut there is: much noise, no bias, in no part of the image, for any number of
-// samples held in memory together.
+// The coarsest cut has much noise but no bias in any part of the image, also where the samples of a
+// pixel do not fit into one batch.
 TEST(TileCuts, IsUnbiased) {
   for (const GatherCase* c : {&cornell(), &door()}) {
     const Given spp{{"spp", "17"}};
-    std::array<Image, 6> all, cuts;  // of a seed, both see the same points
+    std::array<Image, 6> all, cuts;  // for the same seed, both have the same points
     for (uint64_t seed = 0; seed < cuts.size(); ++seed) {
       all[seed] = c->indirect("all", spp, seed + 1);
       cuts[seed] =
@@ -104,8 +104,8 @@ TEST(TileCuts, ErrorFollowsTheOptionAndStaysBelowIt) {
   }
 }
 
-// A tile that shows a lamp may have a larger error than others, but not as much larger as the lamp
-// is brighter.
+// A tile that shows a light may have a larger error than others, but the ratio must be smaller than
+// that of their brightness.
 TEST(TileCuts, LampsInSightHideHalfOfTheError) {
   const GatherCase c("cornell/scene.toml", {96, 96}, {{"count", "1000"}});
   const auto render = [&](const char* gather) {
@@ -131,9 +131,9 @@ TEST(TileCuts, LampsInSightHideHalfOfTheError) {
   EXPECT_LT(std::sqrt(squares / lamp) / (light / lamp), 0.12);  // 0.24 where it hides all
 }
 
-// Pixels beside a border of tiles (8 pixels) are not much worse than the others, and the step
-// across a border not much larger than between neighbours inside. Over several widths of the film,
-// so that no edge of the scene is always at a border.
+// Pixels beside a border of tiles have an error not much larger than the others, and the step
+// across a border is not much larger than that between neighbours inside. The width of the film
+// varies, so that no edge of the scene is always at a border.
 TEST(TileCuts, BordersDoNotShow) {
   double error[2] = {}, step[2] = {};
   size_t pixels[2] = {}, steps[2] = {};
@@ -141,7 +141,7 @@ TEST(TileCuts, BordersDoNotShow) {
   for (uint32_t width = 37; width < 45; ++width) {
     c.world.scene.film = {width, 32};
     const Image reference = c.indirect("all"), cuts = c.indirect("tilecuts", {{"error", "0.05"}});
-    // Relative, and bounded, so that the pixel of an edge does not decide.
+    // The relative error is clamped, so that pixels at edges do not dominate.
     const auto relative = [&](size_t i) {
       const double light = lightAt(reference, i);
       return light > 0.0 ? std::clamp(lightAt(cuts, i) / light - 1.0, -0.1, 0.1) : 0.0;
@@ -164,8 +164,8 @@ TEST(TileCuts, BordersDoNotShow) {
   EXPECT_LT(across / within, 2.2);
 }
 
-// Pixels that share their random VPLs are not neighbours: the error is grain that averages out, and
-// not blocks.
+// Pixels that share their random VPLs are not neighbours, so the error is grain that averages out,
+// without blocks.
 TEST(TileCuts, NoiseIsFineGrain) {
   GatherCase c("cornell/scene.toml", {40, 32}, {{"count", "2000"}});
   const Image reference = c.indirect("all"), cuts = c.indirect("tilecuts", {{"error", "0.05"}});

@@ -3,7 +3,8 @@
 namespace bnvpl::test {
 namespace {
 
-// What is not tested counts with an expected visibility: right on average, up to its own error.
+// Untested VPLs are weighted by their expected visibility, so the mean is right up to the error of
+// that.
 TEST(Ward, HasTheEnergyOfAllVpls) { expectEnergyOfAll("ward", 0.02, 1); }
 
 TEST(Ward, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("ward"); }

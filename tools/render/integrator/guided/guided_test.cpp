@@ -1,5 +1,5 @@
-// The guided path tracer against the path tracer, whose image it must have whatever the VPLs say,
-// and what its guide promises.
+// Compares the guided path tracer with the path tracer, whose expectation it must have for any
+// VPLs, and tests its guide.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -47,8 +47,8 @@ TEST(DirectionGrid, FindsTheCellThatADirectionWasDrawnIn) {
   }
 }
 
-// The density over the sphere is that of the draws: its integral is 1, and half of the sphere gets
-// as many draws as it says.
+// pdf() is the density of sample(): its integral over the sphere is 1, and its integral over a
+// hemisphere is the share of draws in it.
 TEST(Guide, DensitiesAreThoseOfTheDraws) {
   const World world("u-shape/scene.toml");
   const VplTable lit = fewLit(world);
@@ -71,7 +71,7 @@ TEST(Guide, DensitiesAreThoseOfTheDraws) {
       float drawn = 0.0f;
       const Vec3 d = guide.sample(region, {rng.next(), rng.next()}, drawn);
       halfOfDraws += dot(d, side) > 0.0f ? 1.0 / kDraws : 0.0;
-      rounded += std::fabs(guide.pdf(region, d) - drawn) > 1e-3f * drawn;  // into the next cell
+      rounded += std::fabs(guide.pdf(region, d) - drawn) > 1e-3f * drawn;  // in the next cell
     }
     EXPECT_LT(rounded, kDraws / 1000) << region;
     EXPECT_NEAR(integral, 1.0, 0.15) << region;
@@ -97,7 +97,8 @@ TEST(Guided, ClosedRoomsStayDark) {
   EXPECT_EQ(stats.direct + stats.indirect, 0.0);
 }
 
-// The lamp, a sky through the open front, a sun and a point light; a mirror, gloss.
+// Covers the area light, a sky through the open front, a sun and a point light, and mirror and
+// gloss.
 TEST(Guided, HasThePathTracersImage) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {18, 18};
@@ -118,7 +119,7 @@ TEST(Guided, HasThePathTracersImage) {
   wall.phong().diffuse = Vec3{0.3f};
   wall.phong().glossy = Vec3{0.5f};
   wall.phong().exponent = 12.0f;
-  // The bulb's light over a mirror is photons', which path tracing has none of.
+  // Only photons find the bulb's light over a mirror, and the path tracer has none.
   Scene withoutMirror = scene;
   withoutMirror.materials.at(scene.triangles.back().material).phong().mirror = Vec3{};
   scene.lights.pop_back();
@@ -138,8 +139,8 @@ TEST(Guided, HasThePathTracersImage) {
   }
 }
 
-// A closed room with a bulb in a box of glass, which the camera does not see, and a wall that is half
-// a mirror.
+// A closed room with a bulb in a box of glass, which the camera does not see, and a wall that is
+// half a mirror.
 Scene bulbInGlass() {
   SceneBuilder builder("bulb in glass");
   builder.setFilm({10, 10});
@@ -179,7 +180,7 @@ Scene bulbInGlass() {
   return builder.finish();
 }
 
-// What walls reflect again of light that came through glass, photons bring.
+// Photons carry the further bounces of light that came through glass.
 TEST(Guided, HasAllLightOfABulbInGlass) {
   const World world(bulbInGlass());
   const VplTable lit = fewLit(world);
@@ -189,8 +190,8 @@ TEST(Guided, HasAllLightOfABulbInGlass) {
   EXPECT_TRUE(sameExpectation(light, guided(world, lit, {{"spp", "16"}})));
 }
 
-// Light that a path finds is shared: all of it from matt walls, bare or coated, the matt part of it
-// from walls of glTF and of MTL's gloss, and none of it from metal.
+// Reused vertices share all of their light on diffuse walls, bare or coated, the diffuse part of it
+// on walls of glTF and of glossy MTL, and none on metal.
 TEST(Guided, SharedPathsHaveThePathTracersImage) {
   const auto ggx = [](float alpha) { return Roughness(Scalar(alpha), Roughness::Alpha::Same); };
   MetallicRoughnessModel gltf;
@@ -223,7 +224,8 @@ TEST(Guided, SharedPathsHaveThePathTracersImage) {
   }
 }
 
-// Whatever the VPLs say: flux that is not theirs, and a guide that takes nearly all directions.
+// The expectation is right even if the VPLs have wrong flux and nearly all directions are sampled
+// from the guide.
 TEST(Guided, HasThePathTracersImageByWrongVpls) {
   const World world = cornell(18);
   VplTable lit = fewLit(world);
@@ -235,7 +237,7 @@ TEST(Guided, HasThePathTracersImageByWrongVpls) {
   EXPECT_TRUE(sameExpectation(paths(world, options), guided(world, lit, bold)));
 }
 
-// Light comes round a bend, which few paths find.
+// Few unguided paths find the light around the corner.
 TEST(Guided, HasLessNoiseWhereLightComesRoundACorner) {
   World world("u-shape/scene.toml");
   world.scene.film = {32, 24};

@@ -1,4 +1,4 @@
-// The light tracer against what is known without it, and against the path tracer, its adjoint.
+// Compares the light tracer with known results and with the path tracer, its adjoint.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(LightTracer, FurnaceIsTheGeometricSeries) {
     return renderWithout(world, "light", {{"spp", "32"}, {"max-bounces", bounces}}).stats.indirect;
   };
   EXPECT_NEAR(indirect("64"), 0.5, 0.005);   // rho^2 / (1 - rho)
-  EXPECT_NEAR(indirect("1"), 0.25, 0.0025);  // of one bounce alone
+  EXPECT_NEAR(indirect("1"), 0.25, 0.0025);  // rho^2: a single bounce
 }
 
 TEST(LightTracer, AgreesWithThePathTracerBlockByBlock) {
@@ -75,7 +75,7 @@ TEST(LightTracer, DirectLightIsThePathTracers) {
   EXPECT_NE(*paths.find("indirect.G"), *photons.find("indirect.G"));
 }
 
-// Stopped after every round, and gone on with from the bytes that were saved.
+// The render is interrupted after every round and resumed from the saved bytes.
 TEST(LightTracer, GoesOnFromEveryRound) {
   World world("cornell/scene.toml");
   world.scene.film = {40, 40};
@@ -103,8 +103,8 @@ TEST(LightTracer, GoesOnFromEveryRound) {
   EXPECT_GT(stops, 3);  // more than the rounds of samples
 }
 
-// Shading normals far from the geometric ones, where the adjoint of a BSDF is not itself (Veach
-// 1997, section 5.3): a box whose walls all have them tilted.
+// With shading normals a BSDF is not self-adjoint (Veach 1997, section 5.3). Those of all walls are
+// tilted.
 TEST(LightTracer, AgreesOnShadingNormals) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {32, 32};
@@ -117,11 +117,11 @@ TEST(LightTracer, AgreesOnShadingNormals) {
   expectTheSameImage(World(std::move(scene)), 8, 0.06, 0.01);
 }
 
-// Light comes round a bend, which few paths find; its photons branch behind it.
+// Few paths find the light around the corner. Photons split into branches behind it.
 TEST(LightTracer, HasLessNoiseWhereLightComesRoundACorner) {
   World world("u-shape/scene.toml");
   world.scene.film = {32, 24};
-  FilmStats path, light;  // of the last image
+  FilmStats path, light;  // statistics of the last image
   const auto noise = [&](const char* integrator, const char* spp, FilmStats& stats) {
     return noiseOf([&](uint64_t seed) {
       const RenderResult result = renderWithout(
@@ -135,7 +135,7 @@ TEST(LightTracer, HasLessNoiseWhereLightComesRoundACorner) {
   EXPECT_NEAR(light.indirect / path.indirect, 1.0, 0.05);
 }
 
-// What is seen over mirrors, light that comes by way of them, and gloss that photons light.
+// Covers surfaces seen in mirrors, light that mirrors reflect, and glossy surfaces lit by photons.
 TEST(LightTracer, AgreesWithMirrorsAndGloss) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {32, 32};

@@ -52,7 +52,8 @@ TEST(PathTracer, SplitsDirectAndIndirectWithoutRest) {
   EXPECT_NEAR(indirect.indirect, all.indirect, 0.02 * all.indirect);
 }
 
-// The Cornell box in daylight: its lamp, a sky through the open front, a low sun and a point light.
+// The Cornell box in daylight: its area light, a sky through the open front, a low sun and a point
+// light.
 Scene boxInDaylight() {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {32, 32};
@@ -69,8 +70,8 @@ Scene boxInDaylight() {
   return scene;
 }
 
-// The VPL renderer's direct light is the path tracer's, by another estimator: by light sampling
-// alone, and together with the rays that complete the VPLs, which must count no light twice.
+// The VPL renderer estimates the same direct light as the path tracer, by light sampling alone or
+// by MIS with near-field rays.
 TEST(PathTracer, DirectLightAgreesWithTheVplRenderers) {
   for (const bool daylight : {false, true}) {
     World world = daylight ? World(boxInDaylight()) : World("cornell/scene.toml");
