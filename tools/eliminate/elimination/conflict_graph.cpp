@@ -70,8 +70,8 @@ inline bool ConflictGraph::compatible(uint32_t i, uint32_t j) const {
 }
 
 // Finds the nodes of a range that are nearer to i than the sum of both radii. The range has at most
-// kAtOnce nodes; removed ones are never found. Four are tested at a time, since these tests
-// dominate the stage.
+// kAtOnce nodes; removed ones are never found. Four are tested at a time, since these tests take
+// much of the stage's time.
 size_t ConflictGraph::nearIn(uint32_t i, CellLists::Range range, Near* found) const {
   const __m128 x = _mm_set1_ps(x_[i]), y = _mm_set1_ps(y_[i]), z = _mm_set1_ps(z_[i]);
   const __m128 radius = _mm_set1_ps(radius_[i]);

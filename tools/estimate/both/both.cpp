@@ -36,8 +36,8 @@ constexpr double kGuessedRays = 10.0;
 constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
 // Paths are not used at all if their pilot would take more than this share of the work.
 constexpr double kMaxPilotShare = 0.25;
-// Limits of a cost probe (--estimate): photons, VPLs and paths of the pilots, and points per VPL
-// after them.
+// Limits of a cost probe (--estimate): photons and paths of the pilots, VPLs of the split, and
+// points per VPL after it.
 constexpr uint64_t kProbePhotons = 1 << 18, kProbeVpls = 8192;
 constexpr double kProbePaths = 1 << 18, kProbePoints = 8.0;
 constexpr uint64_t kPhotonsOfUnit = 4096, kVplsOfUnit = 16, kMinUnits = 256;

@@ -11,7 +11,7 @@ namespace bnvpl {
 
 struct Splat {
   uint32_t pixel;
-  Vec3 radiance;  // a pixel's value is the sum over all photons, over the samples per pixel
+  Vec3 radiance;  // a pixel's value is the sum over all photons divided by the samples per pixel
 };
 
 struct Splats {

@@ -12,7 +12,7 @@ namespace {
 
 // With sample allocation a quarter of the rays is a pilot, and at most four times as many follow.
 constexpr unsigned kPilotShare = 4, kMaxTimes = 4;
-// The pilot reuses vertices in one slot of so many, to learn the noise of reused light.
+// The pilot reuses vertices in every kSlotsPerPilot-th slot, to estimate the noise of reused light.
 constexpr size_t kSlotsPerPilot = 4;
 
 uint32_t slotOf(const TileSlots& tile, size_t sample) {
