@@ -1,5 +1,4 @@
-// The stage vpl-eliminate without files: which candidates stay, and the radius that each stands
-// for.
+// The stage vpl-eliminate without its files: selects candidates and gives each its radius.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +12,18 @@
 
 namespace bnvpl {
 
-// Which rows stay.
+// Rows that a method keeps.
 struct Kept {
-  std::vector<uint32_t> rows;  // ascending: path order stays
-  std::vector<float> radius;   // of each, world units: it stands for 2 sqrt(3) r^2 of surface
+  std::vector<uint32_t> rows;  // ascending, so they stay in path order
+  std::vector<float> radius;   // one per row, world units: it stands for 2 sqrt(3) r^2 of surface
   double rMax = 0.0;           // sqrt(A / (2 sqrt(3) N)), world units
   double area = 0.0;           // A: given or estimated, world units squared
-  std::vector<float> weight;   // what each row's flux is multiplied with; empty: 1
+  std::vector<float> weight;   // factor of each row's flux; empty: 1
 };
 
 struct EliminateInputs {
   const VplTable& candidates;
-  // Null unless the method needs the scene.
+  // May be null unless the method needs the scene.
   const RayScene* rays = nullptr;
   const LightSet* lights = nullptr;
   const ProgressFn& progress;
@@ -34,23 +33,23 @@ struct EliminateMethod {
   std::string_view name, summary;
   std::span<const Option> options;
   Kept (*make)(const EliminateInputs&, const Values&);
-  VplStage takes = VplStage::Candidates;  // stage of the table that it chooses from; it stays of it
+  VplStage takes = VplStage::Candidates;  // stage of the input table
   bool needsScene = false;
 };
 std::span<const EliminateMethod* const> eliminateMethods();  // one for each folder beside this file
 
-// count, method, and the methods' own.
+// Options of the stage: count, method, and those of each method.
 const StageSpec& eliminateSpec();
 const EliminateMethod& eliminateMethod(const Values& options);
 
 struct EliminateResult {
-  VplTable table;  // of stage Eliminated, or Lit where the method takes lit rows
+  VplTable table;  // its stage is Eliminated, or Lit if the method takes lit rows
   double rMax = 0.0, area = 0.0;
 };
 
-// Keeps rows of `candidates`, which are of the stage that the method takes; unit normals. A pure
-// function: any number of threads gives the same bytes. Throws InputError when count is 0 or above
-// the number of candidates, UsageError when the method needs a scene and there is none.
+// Keeps rows of `candidates`, whose stage is the one that the method takes; normals have unit
+// length. A pure function: the number of threads does not change a byte. Throws InputError if count
+// is above the number of candidates, and UsageError if the method needs a scene and there is none.
 EliminateResult eliminate(const VplTable& candidates, const Values& options,
                           const RayScene* rays = nullptr, const LightSet* lights = nullptr,
                           const ProgressFn& progress = {});

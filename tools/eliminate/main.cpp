@@ -1,4 +1,4 @@
-// vpl-eliminate: keep the COUNT candidates that are spread best.
+// vpl-eliminate: keeps the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kBytesPerCandidate = 120;  // measured: 140 to 150
 
-// The scene, for methods that ask for it.
+// The scene, for methods that need it.
 struct World {
   World(const SceneOptions& options, Processor processor, const fs::path& input, uint64_t hash)
       : scene(loadSceneFor(options, Warnings::Hold)), rays(scene, processor), lights(rays) {

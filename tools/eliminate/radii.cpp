@@ -15,7 +15,8 @@ namespace bnvpl {
 namespace {
 
 constexpr double kTwoSqrt3 = 2.0 * std::numbers::sqrt3;
-// The area enters r_max by its root: the 1 % that this many rows may miss it by is not seen.
+// r_max depends on the square root of the area, so the error of about 1 % that this many rows have
+// does not matter.
 constexpr size_t kMaxAreaRows = 16384;
 constexpr size_t kMaxAreaCandidates = size_t{1} << 18;
 
@@ -38,8 +39,8 @@ double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsi
          static_cast<double>(position.size()) / static_cast<double>(rows.size());
 }
 
-// The area that the candidates cover, world units squared: by some of a random selection, for which
-// neighbours and areas grow alike. FLANN builds its tree in one thread.
+// Area that the candidates cover, world units squared. Many candidates are replaced by a random
+// subset, each of which has a larger share: FLANN builds its tree in one thread.
 double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
                     uint64_t seed, const ProgressFn& progress) {
   if (position.size() > kMaxAreaCandidates) {
@@ -56,8 +57,8 @@ double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal
   return areaOf(position, normal, k, progress);
 }
 
-// Radii beyond floats, and their squares, come from candidates that lie absurdly far apart or from
-// an absurd --area.
+// Throws InputError unless all squared radii are normal floats. They are not if --area is absurd or
+// candidates lie absurdly far apart.
 void requireUsable(const std::vector<float>& radii) {
   for (const float r : radii) {
     if (std::isnormal(r * r)) continue;
@@ -92,7 +93,7 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   const double estimate = sumOf(result.radius);
   result.area = given > 0.0 ? given : estimate;
   result.rMax = packedDiskRadius(result.area, count);
-  // Density in 1/m2 of what is kept: N ((1 - w) / (M share) + w / A), which integrates to N.
+  // VPLs per unit of area are N ((1 - w) / (M share) + w / A), which integrates to N.
   const double shareScale = result.area / estimate, w = options.real("uniform-share");
   parallelFor(position.size(), 4096, [&](size_t i) {
     const double share = static_cast<double>(result.radius[i]) * shareScale;

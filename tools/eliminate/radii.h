@@ -1,4 +1,4 @@
-// The radius that each candidate would stand for if it was kept.
+// Radius that each candidate would have if it were kept.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace bnvpl {
 
-// Of every method that gives its rows such radii.
+// Options of the methods that assign these radii.
 inline constexpr std::array kRadiusOptions{
     choiceOption("density", "local", "uniform|local",
                  "uniform: one radius; local: the radius follows the candidates' density"),
@@ -20,7 +20,7 @@ inline constexpr std::array kRadiusOptions{
     // room.
     neededBy({Condition{"density", "local"}},
              realOption("uniform-share", "0.2", 0, 1, "share of the VPLs",
-                        "how many are spent evenly; the rest follows the candidates")),
+                        "share that is spread evenly; the rest follows the candidates' density")),
     realOption("area", "0", 0, 1e19, "scene units squared",
                "indirectly visible area; 0: estimated from the candidates"),
     neededBy({Condition{"density", "local"}, Condition{"area", "0"}},
@@ -37,13 +37,13 @@ struct CandidateRadii {
 // Largest radius of `count` equal disks packed on `area`: sqrt(A / (2 sqrt(3) N)).
 double packedDiskRadius(double area, double count);
 
-// Radii for keeping `count` of the candidates, by kRadiusOptions. Uniform: r_max for every
-// candidate. Local: from a density that mixes the candidates' own, known by the surface share of
-// each, with an even one. The area is the sum of the shares, which for uniform density is taken
-// from an evenly spaced 16,384 of them, and of 2^18 candidates drawn at random where there are
-// more. With --area the shares are scaled to add up to it. Candidates should be in an order that
-// keeps neighbours together (mortonOrder). Throws InputError for radii beyond what floats can
-// square. `progress` is told of them as of preparations.
+// Radii for keeping `count` of the candidates, as kRadiusOptions ask for. Uniform density: r_max
+// for every candidate. Local density: radii follow a mixture of a constant density and the
+// candidates' own, which is known from the surface share of each. The area is the sum of all
+// shares; for uniform density it is estimated from 16,384 shares and at most about 2^18 candidates.
+// With --area, shares are scaled to add up to it. Candidates should be in an order that keeps
+// neighbours together (mortonOrder). Throws InputError for radii whose squares floats cannot hold.
+// The work is reported to `progress` as preparation.
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
                               double count, const Values& options, const ProgressFn& progress = {});
 

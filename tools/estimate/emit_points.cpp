@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-// A hit's own number: hits are told apart by where they are, seen from the VPL, in units of its
+// Hash that identifies a hit. `p` is its position relative to the VPL, in units of the VPL's
 // radius.
 uint64_t nameOf(Vec3 p) {
   const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
@@ -25,7 +25,7 @@ void EmitPoints::offer(size_t vpl, double weight, const SurfacePoint& hit) {
   for (size_t k = 0; k < perVpl_; ++k) {
     EmitPoint& winner = winners_[vpl * perVpl_ + k];
     const double u = (static_cast<double>(random64(key, k, 0) >> 12) + 0.5) * 0x1p-52;  // in (0, 1)
-    // -ln(u) is at least 1 - u, which mostly settles it.
+    // Rejects most hits without a logarithm, as -ln(u) >= 1 - u.
     if (1.0 - u > winner.key * weight) continue;
     const double drawn = -std::log(u) / weight;
     if (drawn < winner.key) winner = {drawn, hit.position, hit.ng};

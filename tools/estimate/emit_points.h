@@ -1,7 +1,7 @@
-// From where each VPL shines: points of the surface that it stands for, drawn in proportion to the
-// light that leaves there. A VPL that shines from one of them brings, on the average over the
-// draws, what its surface brings, to every receiver and past every occluder; from any other place,
-// such as the centre, it would not.
+// Emission points of each VPL: points of the surface that it stands for, drawn in proportion to the
+// light that leaves there. Emission from such a point has the same expectation as emission from the
+// whole surface, for every receiver and past every occluder. Emission from any fixed point, such as
+// the centre, has not.
 #pragma once
 
 #include <cstdint>
@@ -17,23 +17,23 @@ namespace bnvpl {
 
 inline constexpr Option kEmitPointsOption = wholeOption(
     "emit-points", "4", 0, kMaxEmitPoints, "",
-    "points of its surface from which each VPL shines, drawn as its light is spread; 0: it shines "
-    "from where it stands");
+    "emission points of each VPL, drawn in proportion to the light that leaves its surface; 0: it "
+    "emits from its position");
 
-// The winner of a race (Efraimidis & Spirakis 2006): each hit draws -ln(u) / weight, and the
-// smallest wins, with a probability in proportion to its weight. Winners of parts race on, in any
-// order, so threads, checkpoints and shards give the same.
-struct EmitPoint {  // without padding: it is saved as it lies
+// Weighted reservoir of one hit (Efraimidis & Spirakis 2006): each hit draws the key -ln(u) /
+// weight, and the smallest key wins, so a hit wins with a probability proportional to its weight.
+// Reservoirs can be merged in any order, so threads, checkpoints and shards give the same result.
+struct EmitPoint {  // without padding, as its bytes are saved
   double key = std::numeric_limits<double>::infinity();
   Vec3 position, normal;
 };
 static_assert(sizeof(EmitPoint) == 32);
 
-// `perVpl` independent races for each VPL.
+// `perVpl` independent reservoirs for each VPL.
 class EmitPoints {
  public:
   EmitPoints() = default;
-  // Borrows the table's columns.
+  // Borrows the columns of the table.
   EmitPoints(const VplTable& vpls, size_t perVpl, uint64_t key)
       : position_(vpls.position),
         radius_(vpls.radius),
@@ -41,13 +41,14 @@ class EmitPoints {
         key_(key),
         winners_(vpls.size() * perVpl) {}
 
-  // A hit whose light, of weight 0 or more, the VPL gets. Threads may do different VPLs.
+  // Offers a hit whose light goes to the VPL; weight >= 0. Threads may call this for different
+  // VPLs.
   void offer(size_t vpl, double weight, const SurfacePoint& hit);
-  // The races of the same VPLs by other hits.
+  // Merges reservoirs of the same VPLs that other hits filled.
   void add(std::span<const EmitPoint> others);
-  // The same, of which VPL i gets the share weight[i].
+  // The same, with the weights of VPL i's hits multiplied by weight[i].
   void add(const EmitPoints& others, std::span<const double> weight);
-  // The columns of the table. A VPL without a winner shines from where it stands.
+  // Sets the emission columns of the table. A VPL without a winner emits from its position.
   void fill(VplTable& lit) const;
 
   std::span<EmitPoint> winners() { return winners_; }

@@ -1,4 +1,5 @@
-// The stage vpl-estimate without files: the flux that leaves each VPL's share of the surface.
+// The stage vpl-estimate without its files: estimates the flux that leaves each VPL's share of the
+// surface.
 #pragma once
 
 #include <string_view>
@@ -16,8 +17,8 @@ namespace bnvpl {
 // emitted = escaped + absorbed, and reflected = deposited + outside + incompatible + hidden.
 struct EnergyAccount {
   double emitted = 0, escaped = 0, absorbed = 0;
-  double reflected = 0;  // flux that leaves the diffuse hits
-  double deposited = 0;  // handed to VPLs
+  double reflected = 0;  // flux that leaves the rough hits
+  double deposited = 0;  // flux deposited in VPLs
   double outside = 0;    // no VPL reaches the hit: it lies outside the region that lights the view
   double incompatible = 0;  // VPLs reach the hit, but none on a compatible surface
   double hidden = 0;        // some are on a compatible surface, but none is in sight
@@ -26,23 +27,23 @@ struct EnergyAccount {
 };
 
 struct EstimateResult {
-  VplTable table;             // of stage Lit
-  EnergyAccount energy = {};  // of photons, but for nonFinite, which counts paths as well
+  VplTable table;             // its stage is Lit
+  EnergyAccount energy = {};  // covers photons only; nonFinite counts paths, too
   uint64_t paths = 0;
-  double workShare = 1.0;  // done of what was asked for: less where that was enough
+  double workShare = 1.0;  // part of the requested work that was done; less than 1 if enough
 };
 
 struct EstimateInputs {
-  const VplTable& vpls;  // of stage Eliminated
+  const VplTable& vpls;  // its stage is Eliminated
   const RayScene& rays;
   const LightSet& lights;
-  const ProgressFn& progress;  // counts what the method's Work does
+  const ProgressFn& progress;  // counts units of the method's Work
   const Resume& resume;
 };
 
-// What there is to do, for progress.
+// Amount of work, for progress.
 struct Work {
-  std::string_view unit;  // "photons"
+  std::string_view unit;  // such as "photons"
   uint64_t count;
 };
 
@@ -54,12 +55,12 @@ struct EstimateMethod {
 };
 std::span<const EstimateMethod* const> estimateMethods();  // one for each folder beside this file
 
-// seed, method, and the methods' own.
+// Options of the stage: seed, method, and those of each method.
 const StageSpec& estimateSpec();
 Work estimateWork(const VplTable& vpls, const Values& options);
 
-// A pure function: any number of threads, and any interruption that `resume` mends, gives the same
-// bits. Throws InputError when no light has power.
+// A pure function: neither threads nor interruptions change a bit. Throws InputError if no light
+// has power.
 EstimateResult estimate(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
                         const Values& options, const ProgressFn& progress = {},
                         const Resume& resume = {});

@@ -10,7 +10,7 @@
 namespace bnvpl {
 namespace {
 
-// Measured: 600 a VPL; each thread adds up sums of its own.
+// Measured: 600 per VPL. Each thread has its own sums.
 constexpr double kBytesPerVplAndThread = 112;
 
 int runEstimate(const StageRequest& request, const fs::path& input, const ToolOptions& tool) {

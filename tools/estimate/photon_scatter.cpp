@@ -20,7 +20,7 @@ constexpr uint64_t rangesOf(uint64_t photons) {
   return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
 }
 
-// Photons on their way together: each step of one waits for memory, which the others bridge.
+// Photons that advance together, one ray each per round, which hides the latency of memory.
 class PhotonBatch {
  public:
   PhotonBatch(const RayScene& rays, const PhotonScatter& scatter, const ScatterRule& rule)
@@ -33,14 +33,14 @@ class PhotonBatch {
         hits_(kSize),
         near_(kSize) {}
 
-  // Follows photons to their ends. start(walk, hittable) makes the next one and says whether rays
-  // can hit its light, or tells that there is none left.
+  // Follows photons to their ends. start(walk, hittable) makes the next photon and sets whether
+  // rays can hit its light; it returns false if none is left.
   template <typename Start>
   void follow(const Start& start, PhotonSums& sums) {
     size_t size = 0;
     while (size < kSize && startAt(size, start)) ++size;
     while (size > 0) {
-      // Those that have ended give their places to new ones.
+      // New photons replace those that have ended.
       for (size_t i = 0; i < size;) {
         PhotonWalk& photon = photons_[i];
         if (photon.goesOn()) {
@@ -52,7 +52,7 @@ class PhotonBatch {
         photon = photons_[--size];
         hittable_[i] = hittable_[size];
       }
-      meet(size);
+      intersect(size);
       for (size_t i = 0; i < size; ++i) {
         photons_[i].advance(rays_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
           const Vec3 leaving = flux * bsdf.roughAlbedo();
@@ -76,8 +76,8 @@ class PhotonBatch {
     hittable_[i] = hittable;
     return true;
   }
-  // What the first `size` photons hit, and the VPLs near it.
-  void meet(size_t size) {
+  // Finds the hits of the first `size` photons, and the VPLs near them.
+  void intersect(size_t size) {
     rays_.closestHits({next_.data(), size}, hits_);
     scatter_.coverage().lookUp(std::span(std::as_const(hits_)).first(size), near_);
   }
@@ -92,8 +92,8 @@ class PhotonBatch {
   const RayScene& rays_;
   const PhotonScatter& scatter_;
   const ScatterRule& rule_;
-  // Of each photon: its walk, whether rays can hit its light, its next ray, what that hit, and the
-  // VPLs there.
+  // One entry per photon: its walk, whether rays can hit its light, its next ray, the hit, and VPLs
+  // near it.
   std::vector<PhotonWalk> photons_;
   std::vector<uint8_t> hittable_;
   std::vector<Ray> next_;
@@ -113,15 +113,16 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scat
       vpls.firstBounceFlux[i][c] = static_cast<float>(scatter.fixed().decode(s.firstBounce[c]));
     }
     vpls.photons[i] = s.photons;
-    // Deposits taken as independent: sqrt(sum of squares) over the sum.
+    // If deposits are independent, the relative deviation is sqrt(sum of squares) over the sum.
     const double rootSquares =
         std::sqrt(static_cast<double>(s.squares) * 0x1p-20) * scatter.photonPower();
     vpls.relativeError[i] = sum > 0.0 ? static_cast<float>(rootSquares / sum) : 0.0f;
   }
 }
 
-// The winners of all shards, each of which handed over its own under the number of its first part.
-EmitPoints pointsOfShards(const ShardSource& source, EmitPoints all) {
+// Merges the emission points of all shards. Each shard has recorded its own under the index of its
+// first part.
+EmitPoints emitPointsOfShards(const ShardSource& source, EmitPoints all) {
   std::vector<EmitPoint> some(all.winners().size());
   for (uint64_t part = 0; part < source.parts; ++part) {
     if (!source.record(kPhotonPointsWork, part)) continue;
@@ -160,7 +161,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
     const size_t vpls = in.vpls.size();
     PhotonSums sums = sumsOf(resume.source->sums(kPhotonWork, integersFor(vpls)), vpls);
     sums.points =
-        pointsOfShards(*resume.source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
+        emitPointsOfShards(*resume.source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
     return sums;
   }
   const auto fresh = [&] {

@@ -1,5 +1,6 @@
-// What the photon methods of vpl-estimate share: photons from all lights, and the exact sums of
-// what they bring. A method is the rule by which a hit is handed to the VPLs around it.
+// Shared by the photon methods of vpl-estimate: photons from all lights, and the exact sums of
+// their deposits. The methods differ only in the rule that divides a hit's flux among the VPLs
+// around it.
 #pragma once
 
 #include <array>
@@ -14,39 +15,42 @@
 
 namespace bnvpl {
 
-// Of every method that traces photons. Sums of more than 2^36 would leave their fixed-point range.
+// Options of the photon methods. Sums over more than 2^36 photons would exceed their fixed-point
+// range.
 inline constexpr std::array kPhotonOptions{
-    countOption("photons", "10M", 0x1p36, "", "photons from all lights together"), kRadiusOption,
+    countOption("photons", "10M", 0x1p36, "", "photons from all lights in total"), kRadiusOption,
     wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"), kEmitPointsOption};
 inline Work photonWork(const VplTable&, const Values& options) {
   return {"photons", options.whole("photons")};
 }
 
-// A photon's diffuse hit.
+// Hit of a photon on a rough surface.
 struct PhotonHit {
   const SurfacePoint& point;
-  const ReachGrid::Lookup& near;  // the VPLs that reach it
-  Vec3 flux;                      // that leaves it, W
-  bool firstBounce;               // straight from a light
-  bool onlyPhotons;               // paths from the hit find no such light
+  const ReachGrid::Lookup& near;  // VPLs that reach the hit
+  Vec3 flux;                      // flux that leaves the hit, W
+  bool firstBounce;               // the photon came straight from a light
+  bool onlyPhotons;               // paths from the hit cannot find this light
 };
 
-// Where hits are handed to VPLs: exact sums, one set for each thread.
+// Adds deposits of hits to exact sums. Thread-safe where each thread has its own sums.
 class PhotonScatter {
  public:
   PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius, double photonPower,
                 uint64_t photons);
 
-  // Of the light that paths find as well, the share that counts, for each VPL; without, all of it.
+  // Sets the weight of each VPL's hits as emission points. Light that only photons find has weight
+  // 1, and so have all hits unless weights are set.
   void setShare(std::span<const double> share) { share_ = share; }
-  // To one VPL, in part or whole; and where the flux of a whole hit went.
+  // deposit() adds all or a part of a hit's flux to one VPL. tally() records what became of a whole
+  // hit.
   void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
   void tally(PhotonSums& sums, Tally t, Vec3 flux) const {
     addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
   }
   const Coverage& coverage() const { return coverage_; }
   const FixedPoint& fixed() const { return fixed_; }
-  double photonPower() const { return photonPower_; }  // W, of a mean photon
+  double photonPower() const { return photonPower_; }  // mean power of a photon, W
   float radius() const { return radius_; }             // reach, in units of each VPL's r_max
 
  private:
@@ -57,30 +61,32 @@ class PhotonScatter {
   std::span<const double> share_;
 };
 
-// Hands a hit over; thread-safe. `rng` goes on with the photon's numbers.
+// Deposits a hit; must be thread-safe. `rng` continues the photon's random numbers.
 using ScatterRule =
     std::function<void(const PhotonScatter&, const PhotonHit&, Rng& rng, PhotonSums& sums)>;
 
-// Evenly among the VPLs on a compatible surface and in sight, in expectation: one of them gets all.
+// Deposits the whole hit in one VPL, drawn uniformly from those on a compatible surface and in
+// sight.
 void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng& rng,
                          PhotonSums& sums);
 
-// Photons of one key.
+// Parameters of tracePhotons().
 struct PhotonRun {
-  uint64_t key;
-  size_t emitPoints;  // of each VPL
+  uint64_t key;       // random numbers
+  size_t emitPoints;  // per VPL
   unsigned maxBounces;
   const PhotonShares& shares;
   const PhotonScatter& scatter;
 };
-// What they bring. `in.resume` and `in.progress`, in photons, are those of this run alone.
+// Traces all photons and returns their sums. `in.resume` and `in.progress` are for this run alone;
+// progress counts photons.
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule);
-// The state with which a run of so many photons, resumed, is at its end.
+// Resume state of a run that has traced all of its photons.
 std::string finishedState(const PhotonSums& sums, uint64_t photons);
 
 EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons);
 
-// The whole estimate by that rule and kPhotonOptions: fills the columns since Lit.
+// The whole estimate by one rule and kPhotonOptions. Fills the columns of stage Lit.
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
                                  const ScatterRule& rule);
 

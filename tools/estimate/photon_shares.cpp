@@ -17,7 +17,7 @@ PhotonShares::PhotonShares(const LightSet& lights, uint64_t photons) {
         total > 0.0 ? double{mean(lights.power(l))} / total * static_cast<double>(photons) : 0.0;
     if (share <= 0.0) continue;
     count[l] = std::max<uint64_t>(1, static_cast<uint64_t>(share));
-    remainder[l] = share < 1.0 ? 0.0 : share - std::floor(share);  // the one photon is more
+    remainder[l] = share < 1.0 ? 0.0 : share - std::floor(share);  // below 1: rounded up already
     given += count[l];
   }
   std::vector<size_t> order(lights.size());

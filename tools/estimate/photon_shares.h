@@ -1,4 +1,4 @@
-// How many photons each light sends, and what each of them weighs.
+// Numbers of photons that lights emit, and their weights.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,14 @@ namespace bnvpl {
 // Photons [begin(l), begin(l + 1)) belong to light l.
 class PhotonShares {
  public:
-  // In proportion to power by the largest remainder; a light with power whose share is less than
-  // one photon gets one, so the total may exceed `photons` by one for each such light.
+  // Numbers are proportional to power, rounded by the largest-remainder method. A light with power
+  // whose share is less than one photon gets one, so the total may exceed `photons` by one for each
+  // such light.
   PhotonShares(const LightSet& lights, uint64_t photons);
 
   uint64_t total() const { return first_.back(); }
   size_t lightOf(uint64_t photon) const;
-  // Of the flux of a light: one over the photons that it really sends.
+  // Factor of the light's flux: one over the number of its photons.
   float weight(size_t light) const {
     return 1.0f / static_cast<float>(first_[light + 1] - first_[light]);
   }

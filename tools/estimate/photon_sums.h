@@ -1,4 +1,4 @@
-// What vpl-estimate adds up: the flux of every VPL and the energy account, exactly.
+// Exact sums of vpl-estimate: the flux of every VPL and the energy account.
 #pragma once
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 
 namespace bnvpl {
 
-// Exact sums: integers in units of a fixed fraction of one photon's power. Addition of integers
-// commutes, so neither threads nor the order of photons matter, and ranges computed apart can be
-// added up.
+// Encodes flux as integers in units of a fixed fraction of a photon's power. Integer addition is
+// exact, so sums depend on neither threads nor the order of photons, and sums of ranges can be
+// added.
 class FixedPoint {
  public:
-  // 2^-26 of the mean photon, coarser from 2^29 photons on: the sum of all fits in 56 bits, which
-  // leaves room for 128 reflections at full power.
+  // The unit is 2^-26 of the mean photon, and coarser from 2^29 photons on, so that the sum of all
+  // photons fits in 56 bits. This leaves room for 128 reflections at full power.
   FixedPoint(double photonPower, uint64_t photons)
       : unit_(std::ldexp(1.0, std::ilogb(photonPower) -
                                   std::min(26, 55 - static_cast<int>(std::bit_width(photons))))),
@@ -36,7 +36,7 @@ class FixedPoint {
   double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
 
  private:
-  double unit_, perUnit_;  // powers of two: exact
+  double unit_, perUnit_;  // powers of two, so scaling is exact
 };
 
 inline void addChecked(int64_t& sum, int64_t term) {
@@ -45,17 +45,17 @@ inline void addChecked(int64_t& sum, int64_t term) {
   }
 }
 
-// What one VPL has received.
-struct VplSum {  // without padding: it is saved as it lies
+// Deposits in one VPL.
+struct VplSum {  // without padding, as its bytes are saved
   std::array<int64_t, 3> flux{}, firstBounce{};
   std::array<int64_t, 3> onlyPhotons{};  // part of flux that paths from the VPL cannot find
-  int64_t squares = 0;                   // of the mean flux over the photon's, in units of 2^-20
+  int64_t squares = 0;                   // sum of (mean deposit / mean photon power)^2, unit 2^-20
   uint64_t photons = 0;
 
   void add(const VplSum& o);
 };
 
-// Where flux went: EnergyAccount (estimate.h) tells what each is.
+// Entries of EnergyAccount (estimate.h), which describes them.
 enum Tally {
   kEmitted,
   kEscaped,
@@ -68,7 +68,7 @@ enum Tally {
   kTallies
 };
 
-// In the unit of one FixedPoint, except for the counts.
+// Fluxes are in the unit of one FixedPoint.
 struct PhotonSums {
   std::vector<VplSum> vpl;
   EmitPoints points;
@@ -78,13 +78,13 @@ struct PhotonSums {
   void add(const PhotonSums& o);
 };
 
-// What is done, for a checkpoint: the ranges of photons and their sums. decode() throws where the
-// bytes are not those of as many.
+// State of a checkpoint: which ranges of photons are done, and their sums. decode() throws
+// InputError if the bytes do not fit the sizes of `done` and `sums`.
 std::string encode(const std::vector<uint8_t>& done, const PhotonSums& sums);
 void decode(std::string_view bytes, std::vector<uint8_t>& done, PhotonSums& sums);
 
-// The same sums, without the points, as integers that add up, each of its kind behind the other;
-// and back.
+// Conversion of the sums, without emission points, to integers that can be added across shards, and
+// back. Integers of the same kind are contiguous.
 std::vector<int64_t> integersOf(const PhotonSums& sums);
 size_t integersFor(size_t vpls);
 PhotonSums sumsOf(std::span<const int64_t> integers, size_t vpls);

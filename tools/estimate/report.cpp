@@ -20,16 +20,17 @@ float medianError(const VplTable& vpls) {
   return *middle;
 }
 
-// Some VPLs in dark corners are to be expected; more than this share says that light is sought
-// elsewhere.
+// Some VPLs in dark corners are expected to get no light. More than this share causes a warning.
 constexpr double kManyDark = 1.0 / 3.0;
 
-// With fewer hits for each VPL than this, many get none wherever the light goes: e^-2 is 14 %.
+// With fewer hits per VPL than this, many VPLs get none even if hits are spread evenly: e^-2 is 14
+// %.
 constexpr double kFewHits = 2.0;
-// Elimination packs disks of the VPLs' radii: those larger by this factor cover the surface.
+// Elimination packs disks of the VPLs' radii. Disks that are larger by this factor cover the
+// surface.
 constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
 
-// Why VPLs are dark, and the cure.
+// Text that says why VPLs are dark, and what to do.
 std::string causeOfDark(const EstimateResult& result) {
   if (result.paths > 0 && result.energy.photons > 0)
     return std::string("neither photons nor paths brought light there; ") +

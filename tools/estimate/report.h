@@ -6,9 +6,9 @@
 
 namespace bnvpl {
 
-inline constexpr double kBytesPerEstimated = 400;  // of a VPL
+inline constexpr double kBytesPerEstimated = 400;  // per VPL
 
-// Of a shard, which knows its own part only: samples that were not finite.
+// A shard knows only its own part, so it reports just the samples that were not finite.
 void reportShard(const EstimateResult& result, Summary& summary);
 void reportEstimate(const EstimateResult& result, Summary& summary);
 

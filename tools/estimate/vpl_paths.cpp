@@ -29,7 +29,7 @@ double PathSums::variance() const {
   return std::max(0.0, squares - meanFlux() * meanFlux() / n) * n / (n - 1.0);
 }
 
-PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const {
+PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints) const {
   PathSums r;
   r.points = points;
   Rng shift(settings_.key, vpl);
@@ -40,7 +40,7 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const
     ++r.rays;
     coverage_.forEachLayer(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
       const double light = add(hit, area, rng, r);
-      ends.offer(vpl, light, hit);
+      emitPoints.offer(vpl, light, hit);
       atPoint += light;
     });
     r.squares += atPoint * atPoint;
@@ -48,26 +48,29 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const
   return r;
 }
 
-// Exitance times the area that the point stands for. Returns its mean over the channels.
+// Adds an estimate of the exitance at `hit` times the area that it represents. Returns the mean
+// over the channels.
 double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const {
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
   const auto addPath = [&](const Bsdf& bsdf) {
-    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_, settings_.where, rng,
-                                  first, later);
+    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_,
+                                  settings_.surfaceLights, rng, first, later);
   };
-  // The albedo of layered surfaces depends on where light comes from, and so does what they send
-  // where: to a side at random. That of MTL does not, for photons either.
+  // Exitance is the integral of the cosine times radiance over outgoing directions. MTL materials
+  // reflect it by roughAlbedo(), whatever the directions, as they do for photons. The albedo of
+  // layered materials depends on the incident direction, so wo is sampled with a cosine-weighted
+  // density.
   const Scene& scene = in_.rays.scene();
   if (std::holds_alternative<PhongModel>(scene.materials[hit.material].model)) {
-    const Bsdf matt(hit, Bsdf(scene, hit).roughAlbedo());
-    for (uint64_t j = 0; j < settings_.paths; ++j) addPath(matt);
+    const Bsdf diffuse(hit, Bsdf(scene, hit).roughAlbedo());
+    for (uint64_t j = 0; j < settings_.paths; ++j) addPath(diffuse);
   } else {
-    SurfacePoint seen = hit;
+    SurfacePoint viewed = hit;
     for (uint64_t j = 0; j < settings_.paths; ++j) {
       const Point2 at = rng.nextPoint();
-      seen.wo = Basis(hit.ng).toWorld(sampleCosineHemisphere(at.x, at.y));
-      addPath(Bsdf(scene, seen));
+      viewed.wo = Basis(hit.ng).toWorld(sampleCosineHemisphere(at.x, at.y));
+      addPath(Bsdf(scene, viewed));
     }
   }
   r.paths += settings_.paths;
@@ -83,7 +86,7 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
   return double{mean(all)};
 }
 
-std::unique_ptr<const SurfaceLights> lightsOfPaths(const EstimateInputs& in, uint64_t seed) {
+std::unique_ptr<const SurfaceLights> makeSurfaceLights(const EstimateInputs& in, uint64_t seed) {
   if (in.resume.source) return nullptr;
   return std::make_unique<const SurfaceLights>(in.rays, in.lights, in.vpls.position, in.vpls.normal,
                                                in.vpls.radius, streamKey(seed, Stream::PathLights),
@@ -92,13 +95,13 @@ std::unique_ptr<const SurfaceLights> lightsOfPaths(const EstimateInputs& in, uin
 
 PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
                      std::span<const uint64_t> points) {
-  PathResult result{std::vector<PathSums>(points.size()), gatherer.noEmitPoints()};
+  PathResult result{std::vector<PathSums>(points.size()), gatherer.emptyEmitPoints()};
   std::vector<PathSums>& sums = result.sums;
   const size_t perVpl = sums.empty() ? 0 : result.points.winners().size() / sums.size();
   const Resume& resume = in.resume;
   std::vector<uint8_t> done = unitsToDo(unitsOf(sums.size()), resume.shard);
   const auto endOf = [&](size_t unit) { return std::min(sums.size(), (unit + 1) * kVplsPerUnit); };
-  const auto tell = [&](size_t unit) {
+  const auto reportUnit = [&](size_t unit) {
     uint64_t all = 0;
     for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i) all += points[i];
     in.progress(gatherer.pathsOf(all));
@@ -126,14 +129,14 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
     requireAllTaken(bytes);
   }
   for (size_t unit = 0; in.progress && unit < done.size(); ++unit) {
-    if (done[unit] == 1) tell(unit);
+    if (done[unit] == 1) reportUnit(unit);
   }
   forUnitsLeft(
       done, resume,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
           sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i], result.points);
-        if (in.progress) tell(unit);
+        if (in.progress) reportUnit(unit);
       },
       [&] { return encode(done, result); });
   for (size_t unit = 0; resume.sink && unit < done.size(); ++unit) {

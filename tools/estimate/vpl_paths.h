@@ -1,5 +1,5 @@
-// What the methods of vpl-estimate share that gather a VPL's light where it stands: paths from
-// points of its surface back to the lights.
+// Shared by the methods of vpl-estimate that trace paths from the surface of a VPL back to the
+// lights.
 #pragma once
 
 #include <array>
@@ -17,26 +17,26 @@
 namespace bnvpl {
 
 inline constexpr Option kPathsOption =
-    countOption("paths", "4", 1u << 20, "", "paths from each of these points");
+    countOption("paths", "4", 1u << 20, "", "paths from each point");
 
-// What a VPL sends, W, as its points have it.
-struct PathSums {  // without padding: it is saved as it lies
+// Estimate of a VPL's flux from points of its surface, W.
+struct PathSums {  // without padding, as its bytes are saved
   std::array<double, 3> flux{}, firstBounce{};
-  double squares = 0.0;  // of the mean flux of a point
+  double squares = 0.0;  // sum over points of their squared contribution to meanFlux()
   uint64_t points = 0, paths = 0, rays = 0, nonFinite = 0;
 
   double meanFlux() const { return (flux[0] + flux[1] + flux[2]) / 3.0; }
-  double variance() const;  // of the mean flux, points taken as independent; 0 for a single one
+  double variance() const;  // variance of meanFlux() if points were independent; 0 for a single one
 };
 
 class VplPaths {
  public:
   struct Settings {
-    uint64_t key, paths;                   // from each point
-    unsigned maxBounces;                   // at least 1: that at the VPL
-    float radius;                          // how far a VPL reaches, r_max
-    size_t emitPoints;                     // of each VPL
-    const SurfaceLights* where = nullptr;  // where light sampling looks for lights
+    uint64_t key, paths;                           // paths from each point
+    unsigned maxBounces;                           // at least 1, the bounce at the VPL
+    float radius;                                  // reach in units of each VPL's r_max
+    size_t emitPoints;                             // per VPL
+    const SurfaceLights* surfaceLights = nullptr;  // learned distribution for light sampling
   };
   VplPaths(const EstimateInputs& in, const Settings& settings)
       : in_(in),
@@ -44,9 +44,11 @@ class VplPaths {
         coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.rays),
         length_{settings.maxBounces - 1} {}
 
-  // Of one VPL, by so many points of its disk, which run for `ends`, too.
-  PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& ends) const;
-  EmitPoints noEmitPoints() const { return {in_.vpls, settings_.emitPoints, mix64(settings_.key)}; }
+  // Estimates the flux of one VPL from points of its disk, and offers them as emission points.
+  PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints) const;
+  EmitPoints emptyEmitPoints() const {
+    return {in_.vpls, settings_.emitPoints, mix64(settings_.key)};
+  }
   uint64_t pathsOf(uint64_t points) const { return points * settings_.paths; }
 
  private:
@@ -58,20 +60,20 @@ class VplPaths {
   PathLength length_;
 };
 
-// Where paths from the surfaces that VPLs stand for look for lights; null for a merge, which traces
-// none.
-std::unique_ptr<const SurfaceLights> lightsOfPaths(const EstimateInputs& in, uint64_t seed);
+// Learns the distribution of light sampling for paths from the VPLs' surfaces. Null for a merge,
+// which traces no paths.
+std::unique_ptr<const SurfaceLights> makeSurfaceLights(const EstimateInputs& in, uint64_t seed);
 
 struct PathResult {
-  std::vector<PathSums> sums;  // of each VPL
+  std::vector<PathSums> sums;  // one per VPL
   EmitPoints points;
 };
 
-// Of all VPLs, by `points` of each. `in.resume` and `in.progress`, in paths, are those of this work
-// alone.
+// Estimates the flux of every VPL i from points[i] points. `in.resume` and `in.progress` are for
+// this work alone; progress counts paths.
 PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
                      std::span<const uint64_t> points);
-// The state with which that work, resumed, is at its end.
+// Resume state of gatherAll() when all of its work is done.
 std::string finishedState(const PathResult& result);
 
 }  // namespace bnvpl

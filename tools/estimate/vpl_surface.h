@@ -1,5 +1,4 @@
-// What the methods of vpl-estimate share about the surface that a VPL stands for: how far it
-// reaches.
+// Shared by the methods of vpl-estimate: the reach of VPLs, and the table that they fill.
 #pragma once
 
 #include <vector>
@@ -11,11 +10,11 @@
 namespace bnvpl {
 
 inline constexpr Option kRadiusOption =
-    realOption("radius", "1.7", 0.01, 100, "r_max", "how far a VPL reaches for light");
-// Of each VPL, world units.
+    realOption("radius", "1.7", 0.01, 100, "r_max", "distance within which a VPL collects light");
+// Reach of each VPL, world units.
 std::vector<float> reachOf(const VplTable& vpls, float radius);
 
-// Empty columns since Lit; every VPL shines from where it is.
+// Adds the columns of stage Lit, without flux. Every VPL emits from its position.
 void beginLit(VplTable& vpls, float radius);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// vpl-place: drop candidate VPLs where camera paths hit after their first diffuse bounce.
+// vpl-place: places candidate VPLs where camera paths hit after their first diffuse bounce.
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include <CLI/CLI.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr Option kSpareOption =
     realOption("shard-spare", "", 0, 10, "of its part",
-               "VPLs that a shard places besides; vpl-merge tells where it takes any");
+               "spare VPLs that a shard places; vpl-merge says if they are needed");
 
 struct Request : StageRequest {
   double shardSpare = 0.0;

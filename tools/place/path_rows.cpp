@@ -47,8 +47,7 @@ void PathRows::sortByPath(size_t first) {
   sort(path);
 }
 
-// Traces paths in waves of fixed chunks until the rows suffice, and joins the chunks in path order.
-// A wave is joined while the next one is traced, for there is but one thread's work in it.
+// Each wave is joined while the next one is traced, since joining is sequential.
 PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths) {
   const uint64_t count = whole.count;

@@ -1,4 +1,4 @@
-// What the methods of vpl-place share: paths in fixed chunks, and their rows in path order.
+// Shared by the methods of vpl-place: fixed chunks of paths, and their rows in path order.
 #pragma once
 
 #include <string>
@@ -10,39 +10,40 @@
 
 namespace bnvpl {
 
-// What one fixed range of paths yields; chunks are joined in order, so threads do not matter.
+// Rows and counts of a fixed range of paths. Chunks are joined in order, whatever the number of
+// threads.
 struct PathRows {
-  VplTable rows;  // position, normal, albedo; flux and firstBounceFlux as well, or none
-  std::vector<uint64_t> path;  // of each row, to know where the count was reached
+  VplTable rows;  // position, normal, albedo, and either both flux and firstBounceFlux or neither
+  std::vector<uint64_t> path;  // index of each row's path
   uint64_t rays = 0, escaped = 0, absorbed = 0, complete = 0, nonFinite = 0;
 
-  // Appends a vertex. False: not added, as a value is NaN or infinite.
+  // Appends a vertex. Returns false, and appends nothing, if a value is NaN or infinite.
   bool add(const Bsdf& bsdf, uint64_t fromPath);
-  // Puts the rows from `first` on in path order, those of one path as they came; without flux only.
+  // Sorts the rows from `first` on by path; the sort is stable. Flux columns must be empty.
   void sortByPath(size_t first);
-  void restart();  // for another range, in the same memory
+  void restart();  // clears rows and counts but keeps the memory
 };
 
 inline constexpr uint64_t kPathsPerChunk = 1024;
 
-// What chunks are joined to.
+// Description of the table that chunks are joined to.
 struct JoinedRows {
   uint64_t count;
   LastPath last;
   const ViewTurns& turns;
 };
 
-// Traces chunk after chunk until there are `count` rows, and joins them. Throws InputError when the
-// effort has no end.
+// Traces and joins chunks until there are `count` rows. Throws InputError where effortFor(count)
+// paths do not yield them.
 PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths);
-// The same in shards, whose units are chunks: place.h.
+// The same in shards, whose units are chunks; see placeShard() and joinPlaced() in place.h.
 PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
                        const ProgressFn& progress, const TracePaths& tracePaths);
 PlaceResult joinShards(const JoinedRows& whole, const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly);
 
-// A chunk as bytes. decode() throws InputError for what are not those of a chunk.
+// Serialises a chunk. decodeRows() throws InputError if the bytes are not those of a chunk.
 std::string encode(const PathRows& chunk, uint64_t begin);
 PathRows decodeRows(std::string_view bytes, uint64_t begin);
 

@@ -1,4 +1,4 @@
-// The paths of vpl-place in shards, whose units are chunks.
+// Shards of vpl-place. Their units of work are chunks of paths.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,11 +10,12 @@ namespace bnvpl {
 
 namespace {
 
-// Of its number of rows, that a shard has more than its part.
+// Standard deviations of its number of rows by which a shard exceeds its part.
 constexpr double kDeviations = 6.0;
 constexpr std::string_view kWork = "paths";
 
-// The sum over paths of their rows, squared: no less than the variance of the rows' number.
+// Sum over paths of their squared numbers of rows: an upper bound of the variance of the number of
+// rows.
 double squaresOf(const PathRows& chunk) {
   double sum = 0.0;
   for (size_t i = 0, end = 0; i < chunk.path.size(); i = end) {
@@ -24,7 +25,7 @@ double squaresOf(const PathRows& chunk) {
   return sum;
 }
 
-// The chunks of a shard, in their order.
+// State of a shard: takes its chunks in order and tells how many are left.
 class ShardTrace {
  public:
   ShardTrace(uint64_t count, double spare, const Resume& resume)
@@ -44,11 +45,12 @@ class ShardTrace {
   const Shard& shard() const { return resume_.shard; }
   uint64_t unit(uint64_t ahead = 0) const { return shard().unit(chunks_ + ahead); }
   uint64_t rowsOfPart() const { return static_cast<uint64_t>(std::ceil(part_)); }
-  // Of the whole, as far as this shard is.
+  // Paths that all shards together have traced when each has as many chunks as this one.
   uint64_t paths() const { return chunks_ / shard().parts() * shard().of * kPathsPerChunk; }
   const PlaceResult& soFar() const { return result_; }
 
-  double rowsLeft() const {  // rows beyond the count of the whole never matter
+  // Rows still to be found. No shard needs more than the count of the whole.
+  double rowsLeft() const {
     return std::min(wanted_ + kDeviations * std::sqrt(squares_), most_) -
            static_cast<double>(result_.rows);
   }

@@ -9,12 +9,12 @@ namespace bnvpl {
 
 namespace {
 
-// Beyond this vpl-eliminate cannot search.
+// vpl-eliminate cannot search more candidates.
 constexpr double kMaxCount = 0x1p31 - 1;
 
 constexpr std::array kOptions{
     letterFor("-n", countOption("count", "120k", kMaxCount, "",
-                                "VPLs to place; at most, where a method keeps its paths whole")),
+                                "VPLs to place; --method light may place slightly fewer")),
     seedOption()};
 
 }  // namespace
@@ -33,7 +33,7 @@ const PlaceMethod& placeMethod(const Values& options) {
 
 namespace {
 
-// What can be interrupted is traced as the only shard of all, whose rows are kept.
+// A run that can be interrupted is traced as a single shard, whose rows are kept in memory.
 PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
                           Resume resume) {
   std::vector<std::string> records;

@@ -1,4 +1,4 @@
-// The stage vpl-place without files: where VPLs might stand.
+// The stage vpl-place without its files: makes candidates, the places where VPLs may stand.
 #pragma once
 
 #include <functional>
@@ -15,17 +15,17 @@
 namespace bnvpl {
 
 struct PlaceResult {
-  VplTable table;      // of stage Candidates or Lit, as the method says
-  uint64_t rows = 0;   // of the table, or handed to a shard's sink
+  VplTable table;      // its stage is Candidates or Lit, depending on the method
+  uint64_t rows = 0;   // in the table, or given to a shard's sink
   uint64_t paths = 0;  // traced until the count was reached
   uint64_t rays = 0;
   uint64_t nonFinite = 0;  // vertices or photons left out because a value was NaN or infinite
-  // How the traced paths ended: in the void, on a surface that reflects nothing, or at full depth.
+  // Numbers of paths that left the scene, were absorbed, or reached full depth.
   uint64_t escaped = 0, absorbed = 0, complete = 0;
-  std::vector<uint64_t> rowsOfView;  // of the table; empty where there is one view
+  std::vector<uint64_t> rowsOfView;  // rows found from each view; empty if there is only one view
 };
 
-// Whose surroundings VPLs are placed for; all of one scene.
+// Views of one scene that VPLs are placed for.
 struct PlaceViews {
   explicit PlaceViews(const Scene& scene) : views{{"", scene.camera, scene.film}} {}
   PlaceViews(std::vector<View> of, std::vector<uint64_t> shares)
@@ -40,44 +40,46 @@ struct PlaceInputs {
   const PlaceViews& views;
 };
 
-// Traces the paths [begin, begin + kPathsPerChunk) into a chunk without rows: path_rows.h. Called
-// from many threads.
+// Traces the paths [begin, begin + kPathsPerChunk) into an empty chunk (path_rows.h). Must be
+// thread-safe.
 struct PathRows;
 using TracePaths = std::function<void(uint64_t begin, PathRows& chunk)>;
 
-// Cut: the last path may end in the middle, and there are `count` rows exactly. Whole: the path
-// that would exceed the count is left out, for its other rows would weigh as much as all of it.
+// Cut: there are exactly `count` rows, and the last path may have lost some. Whole: a path that
+// would exceed the count is left out, since rows with flux are unbiased only if every path keeps
+// all of its rows.
 enum class LastPath { Cut, Whole };
 
-// Rows are in path order: the first N of 2N are those of N.
+// Rows are in path order, so the first N of 2N rows are those of a run for N.
 struct PlaceMethod {
   std::string_view name, summary;
   std::span<const Option> options;
   TracePaths (*make)(const PlaceInputs&, const Values&);
-  void (*finish)(PlaceResult&);  // the stage, and the columns that follow from all rows together
+  void (*finish)(PlaceResult&);  // sets the stage and the columns that depend on all rows together
   LastPath last = LastPath::Cut;
-  bool needsLight = false;  // a scene in which nothing shines is refused
-  bool forView = true;      // the rows depend on camera and film
+  bool needsLight = false;  // whether a scene without lights is refused
+  bool forView = true;      // whether the rows depend on camera and film
 };
 std::span<const PlaceMethod* const> placeMethods();  // one for each folder beside this file
 
-// count, seed, method, and the methods' own.
+// Options of the stage: count, seed, method, and those of each method.
 const StageSpec& placeSpec();
 const PlaceMethod& placeMethod(const Values& options);
 
-// A pure function of the scene, its views and the options: any number of threads, and any
-// interruption that `resume` mends, gives the same bytes. Throws InputError when the scene yields
-// too few within a bounded effort. `progress` counts VPLs.
+// A pure function of the scene, its views and the options: neither threads nor interruptions change
+// a byte. Throws InputError where the scene yields too few VPLs in effortFor(count) paths.
+// `progress` counts VPLs.
 PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress = {},
                   const Resume& resume = {});
 
-// The paths of resume's shard, whose rows go to the sink; the result has none. Nobody knows before
-// how many paths give the count: a shard ends with its part of the rows and six standard deviations
-// more, for those that find fewer, and with `spare` of its part besides.
+// Traces the paths of resume's shard and gives their rows to its sink; the result has only counts.
+// How many paths yield the count is not known beforehand. So a shard goes on until it has its part
+// of the rows, multiplied by 1 + `spare`, and six standard deviations more, to make up for shards
+// that find fewer.
 PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
                        const Resume& resume, const ProgressFn& progress = {});
-// What place() gives, from the rows of all shards. `endedEarly` is called with the first unit that
-// is missing where they do not suffice, and throws.
+// Joins the rows of all shards to the result of place(). If there are too few, `endedEarly` is
+// called with the first unit that is missing; it must throw.
 PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ViewTurns& turns,
                        const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly);

@@ -5,7 +5,7 @@
 namespace bnvpl {
 namespace {
 
-// "3 views, of each 1800 (view 2) to 2200 (view 1)"
+// Text such as "3 views, of each 1800 (view 2) to 2200 (view 1)".
 std::string textOf(const std::vector<uint64_t>& rowsOfView) {
   const auto [least, most] = std::ranges::minmax_element(rowsOfView);
   const auto named = [&](auto at) {

@@ -1,4 +1,4 @@
-// What vpl-place prints, and what it takes.
+// The summary that vpl-place prints, and the memory that it needs.
 #pragma once
 
 #include "tools/common/run_tool.h"
@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-inline constexpr double kBytesPerPlaced = 40;  // measured: 42
+inline constexpr double kBytesPerPlaced = 40;  // per VPL; measured: 42
 
 void reportPlaced(const PlaceResult& placed, Summary& summary);
 

@@ -8,10 +8,11 @@ namespace bnvpl {
 
 namespace {
 
-// A view that yields less than one candidate in this many paths is refused, not searched for ever.
+// A view is refused if it yields less than one candidate in kPathsPerCandidate paths; the first
+// kFreePaths paths do not count.
 constexpr uint64_t kPathsPerCandidate = 200;
 constexpr uint64_t kFreePaths = 1000000;
-// The first `count` rows.
+// Appends the first `count` rows of `from`, or all if it has fewer.
 void append(const VplTable& from, size_t count, VplTable& to) {
   const auto target = columns(to);
   const auto source = columns(from);
@@ -22,7 +23,7 @@ void append(const VplTable& from, size_t count, VplTable& to) {
   }
 }
 
-// Takes the last path's rows away again where `take` rows of the chunk hold only some of them.
+// Removes the rows of the last path if the first `take` rows of the chunk hold only some of them.
 void dropCutPath(const PathRows& chunk, size_t take, PlaceResult& result) {
   if (take == 0 || take == chunk.path.size() || chunk.path[take] != chunk.path[take - 1]) return;
   size_t rows = 0;
@@ -38,7 +39,6 @@ void dropCutPath(const PathRows& chunk, size_t take, PlaceResult& result) {
 
 uint64_t effortFor(uint64_t count) { return kFreePaths + kPathsPerCandidate * count; }
 
-// `r` with its paths and how they ended.
 [[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r, uint64_t found,
                              uint64_t count) {
   const auto percent = [&](uint64_t n) {

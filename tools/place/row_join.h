@@ -1,4 +1,4 @@
-// Chunks of paths, traced in waves and joined in path order. Internal to path_rows.cpp and
+// Traces chunks of paths in waves and joins them in path order. Internal to path_rows.cpp and
 // path_shards.cpp.
 #pragma once
 
@@ -12,13 +12,13 @@
 namespace bnvpl {
 
 inline constexpr uint64_t kChunksPerWave = 64;
-// Paths after which a view that yields too few candidates is refused, not searched for ever.
+// Number of paths after which a view is refused if it has not yielded `count` candidates.
 uint64_t effortFor(uint64_t count);
-// `r` with its paths and how they ended.
+// Throws InputError with the number of paths in `r` and how they ended.
 [[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r, uint64_t found,
                              uint64_t count);
 
-// The columns that placement fills.
+// Columns that placement fills.
 inline auto columns(auto& table) {
   return std::array{&table.position, &table.normal, &table.albedo, &table.flux,
                     &table.firstBounceFlux};
@@ -26,7 +26,7 @@ inline auto columns(auto& table) {
 
 using Wave = std::vector<PathRows>;
 
-// Traces the chunks that chunkOf(k) numbers, for k in [0, size).
+// Traces the chunks of index chunkOf(k), for k in [0, size).
 template <typename ChunkOf>
 void traceWave(Wave& wave, size_t size, const ChunkOf& chunkOf, const TracePaths& tracePaths) {
   wave.resize(size);
@@ -36,10 +36,10 @@ void traceWave(Wave& wave, size_t size, const ChunkOf& chunkOf, const TracePaths
   });
 }
 
-// Adds all but the rows.
+// Adds the counts of a chunk, but not its rows.
 void addCounts(const PathRows& chunk, PlaceResult& result);
 
-// Chunks in path order, until there are `count` rows.
+// Joins chunks in path order until there are `count` rows.
 class RowJoin {
  public:
   explicit RowJoin(const JoinedRows& whole);
@@ -47,7 +47,7 @@ class RowJoin {
   uint64_t rows() const { return result_.table.size(); }
   const PlaceResult& soFar() const { return result_; }
   void join(const PathRows& chunk);
-  // `scene` goes before the message where there is no row.
+  // Throws InputError if there are no rows, with a message that begins with `scene`.
   PlaceResult finish(const std::string& scene);
 
  private:
@@ -55,7 +55,7 @@ class RowJoin {
 
   JoinedRows whole_;
   PlaceResult result_;
-  bool full_ = false;  // though the last path was dropped
+  bool full_ = false;  // `count` rows were found, though those of the last path may be dropped
 };
 
 }  // namespace bnvpl

@@ -5,8 +5,8 @@
 
 namespace bnvpl {
 
-// A view of share s takes its turns at the middles of s even parts of the round; of two at the same
-// time the first view goes first. Times are compared as fractions, without rounding.
+// A view of share s takes its turns at the middles of s equal parts of the round. Of two turns at
+// the same time, that of the lower view comes first. Times are compared exactly, as fractions.
 ViewTurns::ViewTurns(std::vector<uint64_t> shares) : shares_(std::move(shares)) {
   for (size_t v = 0; v < shares_.size(); ++v) {
     for (uint64_t k = 0; k < shares_[v]; ++k) round_.push_back({static_cast<uint32_t>(v), k});

@@ -1,4 +1,4 @@
-// Whose turn a path is, where VPLs are placed for several views.
+// Assignment of paths to views where VPLs are placed for several views.
 #pragma once
 
 #include <cstddef>
@@ -7,18 +7,18 @@
 
 namespace bnvpl {
 
-inline constexpr uint64_t kMaxViewTurns = 1 << 16;  // over all shares together
+inline constexpr uint64_t kMaxViewTurns = 1 << 16;  // limit of the sum of all shares
 
-// Paths take turns among the views by their shares, whole numbers: of any paths in a row, each view
-// has as nearly its share as whole numbers allow. With one view every path is its own.
+// Paths take turns among the views in proportion to their shares, which are whole numbers. The
+// turns of a view are spread evenly, so it has about its share of any consecutive paths.
 class ViewTurns {
  public:
-  // One share for each view, positive, at most kMaxViewTurns together.
+  // One positive share for each view; the sum is at most kMaxViewTurns.
   explicit ViewTurns(std::vector<uint64_t> shares = {1});
 
   struct Turn {
     uint32_t view;
-    uint64_t path;  // of that view's own, counted from 0
+    uint64_t path;  // index among the paths of that view
   };
   Turn of(uint64_t path) const {
     const uint64_t round = path / round_.size();

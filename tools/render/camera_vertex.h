@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-// Follows a camera ray to the first rough vertex. Light that it meets on the way is direct light.
+// Follows a camera ray to the first rough vertex. Emission that it hits on the way is direct light.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                     Vec3 direction, Rng& rng, RadianceSample& out,
                                     const SpecularLightSampling& behind = {}) {

@@ -1,4 +1,4 @@
-// vpl-render: direct light plus all VPLs, or a reference, traced from the camera or the lights.
+// vpl-render: renders direct light plus all VPLs, or a reference by path or light tracing.
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
 #include <CLI/CLI.hpp>
 

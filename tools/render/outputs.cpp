@@ -12,7 +12,8 @@ namespace bnvpl {
 
 namespace {
 
-// Exposure in EV: as given, or so that the logarithmic mean of the luminance becomes middle grey.
+// Exposure in EV: the given one, or the one that maps the logarithmic mean luminance to middle
+// grey.
 float exposureOf(const Image& image, const std::string& text) {
   if (const auto given = parseExposure(text)) return static_cast<float>(*given);
   const std::vector<float>&r = *image.find("R"), &g = *image.find("G"), &b = *image.find("B");
@@ -34,7 +35,7 @@ void writePreview(AtomicFile& file, const Image& image, float ev) {
            toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
 }
 
-// A picture that shows nothing is mostly a mistake.
+// A black image is usually a mistake.
 void warnOfBlack(const Image& image) {
   for (const char* channel : {"R", "G", "B"}) {
     if (std::ranges::any_of(*image.find(channel), [](float v) { return v != 0.0f; })) return;
@@ -49,10 +50,10 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 }  // namespace
 
 double bytesPerPixelOf(const Values& options) {
-  double bytes = 250;  // measured: 245 to 300, by layers
+  double bytes = 250;  // measured: 245 to 300, depending on layers
   if (options.has("fireflies") && options.text("fireflies") == "redistribute") bytes += 40;
-  if (budgetOf(options)) bytes += 120;              // what passes keep besides
-  if (integratorOf(options).photons) bytes += 168;  // exact sums of what photons bring
+  if (budgetOf(options)) bytes += 120;              // sums over passes
+  if (integratorOf(options).photons) bytes += 168;  // exact sums of photons
   return bytes;
 }
 
@@ -90,7 +91,7 @@ PreviewFn previewTo(const ImagePaths& paths, const Values& options) {
 Json resumableOptions(const Values& options) {
   Json record = recordOf(renderSpec(), options);
   if (budgetOf(options)) {
-    // Records are compared in the order of their keys.
+    // Records are compared including the order of their keys, so `passes` always comes last.
     for (const char* countedBy : {"spp", "passes"}) record.erase(countedBy);
     record["passes"] = "any number";
   }
@@ -157,7 +158,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
   char line[256];
   for (const auto& [name, value] :
        {std::pair{"direct", stats.direct}, {"indirect", stats.indirect}}) {
-    if (only != "all" && only != name) continue;  // what is not shown is not complete
+    if (only != "all" && only != name) continue;  // light that is not shown is incomplete
     std::snprintf(line, sizeof line, "%s %s %.5g", means.empty() ? "mean" : ",", name, value);
     means += line;
     summary.add(std::string("mean_") + name, value);

@@ -1,4 +1,4 @@
-// What vpl-render writes and prints.
+// Files and summary of vpl-render.
 #pragma once
 
 #include "formats/exr_io.h"
@@ -8,26 +8,26 @@
 namespace bnvpl {
 
 struct ImagePaths {
-  fs::path exr, png;  // png empty: none
+  fs::path exr, png;  // png is empty if no preview is wanted
 };
 
-// What an image takes in memory.
+// Memory of an image, bytes per pixel.
 double bytesPerPixelOf(const Values& options);
 
-// The image, and its preview at --exposure; with what the summary says of them.
+// Adds the image and its preview at --exposure to the files, and both to the summary.
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
                Summary& summary);
-// Renews the preview of an image under way; nothing without --png.
+// Function that overwrites the preview while the image is rendered; empty without --png.
 PreviewFn previewTo(const ImagePaths& paths, const Values& options);
 ExrPixelType pixelTypeOf(const Values& options);
 
-// Of a run that can be stopped and continued: by passes, whose number may be another then.
+// Options that must not change when a run is resumed. The number of passes may.
 Json resumableOptions(const Values& options);
-// The options that make this image again: with passes, as many of them as there were.
+// Options that reproduce the image, with the number of passes that were rendered.
 Values optionsMade(const RenderResult& result, const Given& given);
-// Attributes: samples and passes, the history, and the hash of all.
+// Sets the attributes of the image: samples, passes, provenance, and the hash of all.
 void finishImage(RenderResult& result, const Values& made, const std::string& provenance);
-// Of shards, which are of one run only where they are to show the same layers.
+// Adds the layers to the record of a shard: shards of one run must have the same.
 Json withLayers(Json run, const Values& options);
 void reportRender(const RenderResult& result, const Values& options, Summary& summary);
 

@@ -20,29 +20,30 @@ constexpr double kMaxSpp = 0x1p32 - 1;
 std::span<const Option> stageOptions() {
   static const std::array options{
       countOption("spp", "16", kMaxSpp, "",
-                  "samples a pixel; with --time, --target-error or --passes the most, and without "
-                  "being given no limit"),
+                  "samples per pixel; with --time, --target-error or --passes an upper limit, if "
+                  "given"),
       unrecorded(optional(durationOption(
           "time",
-          "render by passes over the film, until no other would end within this time; at "
+          "render passes over the film, as many as are expected to end within this time; at "
           "least two"))),
       unrecorded(optional(
           realOption("target-error", "", 0.0001, 10, "",
-                     "render by passes, until the image's estimated error is at most this"))),
+                     "render passes until the estimated error of the image is at most this"))),
       optional(wholeOption("passes", "", kMinPasses, 0x1p40, "",
-                           "render by so many passes; with --time or --target-error at most so "
+                           "render this many passes; with --time or --target-error at most this "
                            "many")),
       neededBy({Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
                switchOption("adaptive", "on",
-                            "after the first passes, more samples where the error is larger")),
-      choiceOption("only", "all", "all|direct|indirect", "which light the image shows"),
+                            "after the first passes, take more samples where the error is larger")),
+      choiceOption("only", "all", "all|direct|indirect", "light that the image shows"),
       seedOption(),
       unrecorded(textOption("layers", "", "NAME,...", layersHelp())),
       unrecorded(textOption("size", "", "WIDTHxHEIGHT",
-                            "another film than the scene's, with the same vertical field of view")),
+                            "size of the film instead of the scene's; keeps the vertical field of "
+                            "view")),
       choiceOption("pixels", "float", "half|float", "EXR channel type"),
-      unrecorded(
-          textOption("exposure", "auto", "EV|auto", "of the PNG, in stops; auto: middle grey"))};
+      unrecorded(textOption("exposure", "auto", "EV|auto",
+                            "exposure of the PNG, in stops; auto: the mean becomes middle grey"))};
   return options;
 }
 
@@ -56,12 +57,12 @@ FilmOptions filmOptionsOf(const Values& options) {
           layersOf(options), redistributesFireflies(options)};
 }
 
-// Whether the integrator sends photons for this image.
+// Whether the integrator traces photons for this image.
 bool sendsPhotons(const Values& options) {
   return integratorOf(options).photons && onlyOf(options) != Only::Direct;
 }
 
-// The integrators in whose images VPLs shine.
+// Condition that holds for the integrators that gather VPLs.
 std::string gathering() {
   std::string names;
   for (const IntegratorMethod* m : integratorMethods()) {

@@ -1,4 +1,4 @@
-// Samples of the film: what an integrator gets and what it finds.
+// Samples of the film: inputs and results of an integrator.
 #pragma once
 
 #include <array>

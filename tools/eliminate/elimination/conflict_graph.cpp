@@ -12,7 +12,7 @@
 namespace bnvpl {
 namespace {
 
-// A node's sum has at most size() terms of at most 2^bits: 63 bits hold it.
+// The weight of a node has at most size() terms of at most 2^bits each, so it fits in 63 bits.
 float fixedPointScale(size_t size) {
   const int bits = std::min(40, 63 - static_cast<int>(std::bit_width(size)));
   return std::ldexp(1.0f, bits);
@@ -69,9 +69,9 @@ inline bool ConflictGraph::compatible(uint32_t i, uint32_t j) const {
                             kPlaneFactor * (radius_[i] + radius_[j]));
 }
 
-// Those of a range, of at most kAtOnce, that are nearer than both radii together; never a removed
-// one. Four at a time: a scan meets about three nodes for each that is near, and half of the
-// stage's time was spent on telling them apart.
+// Finds the nodes of a range that are nearer to i than the sum of both radii. The range has at most
+// kAtOnce nodes; removed ones are never found. Four are tested at a time, since these tests take
+// much of the stage's time.
 size_t ConflictGraph::nearIn(uint32_t i, CellLists::Range range, Near* found) const {
   const __m128 x = _mm_set1_ps(x_[i]), y = _mm_set1_ps(y_[i]), z = _mm_set1_ps(z_[i]);
   const __m128 radius = _mm_set1_ps(radius_[i]);
@@ -95,7 +95,7 @@ size_t ConflictGraph::nearIn(uint32_t i, CellLists::Range range, Near* found) co
   return count;
 }
 
-// Calls visit(j, distanceSquared).
+// Calls visit(j, distanceSquared) for each neighbour j of i.
 template <typename Visit>
 void ConflictGraph::visitNeighbours(uint32_t i, const Visit& visit) const {
   Near near[kAtOnce];
@@ -116,7 +116,7 @@ uint32_t ConflictGraph::heavierNeighbour(uint32_t i) const {
   const uint64_t* const weight = weight_.data();
   for (const CellLists::Range range : cells_.near(i)) {
     for (uint32_t j = range.begin; j < range.end; ++j) {
-      if (weight[j] < own || !outweighs(j, i)) continue;  // so are the removed, and i itself
+      if (weight[j] < own || !outweighs(j, i)) continue;  // also skips removed nodes, and i itself
       const float x = x_[j] - x_[i], y = y_[j] - y_[i], z = z_[j] - z_[i];
       const float reach = radius_[i] + radius_[j];
       if (x * x + y * y + z * z < reach * reach && compatible(i, j)) return j;

@@ -1,4 +1,4 @@
-// Which candidates are too near to each other, and how much each pair weighs.
+// Graph of the candidates that are too near to each other, with weights of its pairs.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace bnvpl {
 
 // Weight of a pair at `distance` whose radii add up to `reach`: (1 - distance / reach)^alpha, and 0
-// from reach on (Yuksel 2015, section 3). Weight limiting: pairs nearer than limit * reach weigh as
-// at that distance; 0 turns it off.
+// from reach on (Yuksel 2015, section 3). Weight limiting gives pairs nearer than limit * reach the
+// weight of that distance; a limit of 0 turns it off.
 struct PairWeight {
   float alpha = 8.0f;
   float limit = 0.0f;
@@ -29,21 +29,20 @@ struct PairWeight {
   }
 };
 
-// The candidates as nodes. Two are neighbours when they are on a compatible surface (plane
-// tolerance kPlaneFactor * (r_i + r_j)) at less than r_i + r_j. A node's weight is the sum of the
-// weights of its pairs in fixed point, which is exact in any order: what was added can be
-// subtracted again without a remainder, by any thread.
+// Nodes are candidates. Two are neighbours if they are less than r_i + r_j apart and on compatible
+// surfaces (plane tolerance kPlaneFactor * (r_i + r_j)). A node's weight is the sum of the weights
+// of its pairs. The sum is kept in fixed point: it is exact in any order, so any thread can
+// subtract a weight again without a remainder.
 //
-// Pairs are not stored: at 40 candidates a VPL they would take half a kilobyte a candidate. They
-// are found anew by a scan of neighbouring cells, which costs little more than reading a list
-// would.
+// Pairs are not stored: with 40 candidates per VPL they would take half a kilobyte per candidate. A
+// scan of neighbouring cells finds them, which takes little longer than reading a list.
 class ConflictGraph {
  public:
   static constexpr uint32_t kNone = UINT32_MAX;
 
-  // One entry a candidate: position, unit normal, radius > 0, and a number that tells equal weights
-  // apart. The vectors are given up so that nothing is in memory twice. `progress` is told of the
-  // weights as of preparations.
+  // Each vector has one entry per candidate: position, unit normal, radius > 0, and row, which
+  // breaks ties of weights. The vectors are passed by value to be consumed, so that nothing is in
+  // memory twice. The sums of weights are reported to `progress` as preparation.
   ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> normal, std::vector<float> radius,
                 std::vector<uint32_t> row, const PairWeight& rule, const ProgressFn& progress = {});
 
@@ -52,19 +51,20 @@ class ConflictGraph {
   uint64_t weight(uint32_t i) const { return weight_[i]; }
   bool removed(uint32_t i) const { return !(radius_[i] == radius_[i]); }
 
-  // Heaviest first; of equal weights, the higher row first.
+  // Order of removal: the heavier node goes first; of equal weights, the higher row.
   bool outweighs(uint32_t a, uint32_t b) const {
     return weight_[a] != weight_[b] ? weight_[a] > weight_[b] : row_[a] > row_[b];
   }
-  // Any neighbour that outweighs i, or kNone. i has pairs: its weight is not 0.
+  // Any neighbour that outweighs i, or kNone. The weight of i must not be 0.
   uint32_t heavierNeighbour(uint32_t i) const;
 
-  // Takes the weights of i's pairs from its neighbours. Threads may do this for several nodes at
-  // once, if no two are neighbours; then each is marked as removed, while nothing else goes on.
+  // release() subtracts the weights of i's pairs from its neighbours. Threads may release several
+  // nodes at once if no two of them are neighbours. markRemoved() then completes the removal of
+  // each node, while no other thread uses the graph.
   void release(uint32_t i);
   void markRemoved(uint32_t i);
 
-  // Drops the removed nodes: the others get new numbers.
+  // Drops the removed nodes. The others get new indices.
   void compact();
 
  private:
@@ -85,7 +85,7 @@ class ConflictGraph {
   bool compatible(uint32_t i, uint32_t j) const;
 
   CellLists cells_;
-  // In the cells' order, kLanes longer than size(); the radius of the removed is NaN.
+  // Nodes in the order of the cells, padded by kLanes. The radius of a removed node is NaN.
   std::vector<float> x_, y_, z_, radius_;
   std::vector<Vec3> normal_;
   std::vector<uint32_t> row_;

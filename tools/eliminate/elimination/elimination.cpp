@@ -17,13 +17,12 @@ constexpr auto kOptions = joined(
     kRadiusOptions,
     std::array{
         realOption("alpha", "8", 0.1, 64, "", "exponent of the pair weights"),
-        // With limiting, every pair nearer than a good share of r_max weighs the same: an
-        // area estimated 1.4 times too large then keeps near-duplicates, while without it an
-        // over-estimate is harmless.
+        // With limiting, all pairs nearer than a large part of r_max have the same weight. An area
+        // overestimated by 1.4 then keeps near-duplicates; without limiting it is harmless.
         choiceOption("weight-limiting", "auto", "auto|on|off",
-                     "treat all near pairs alike; auto: with --area and --density uniform")});
+                     "give all near pairs one weight; auto: with --area and --density uniform")});
 
-// Yuksel 2015, section 4.2: where to stop telling near pairs apart.
+// Parameters beta and gamma of weight limiting (Yuksel 2015, section 4.2).
 constexpr double kLimitBeta = 0.65, kLimitGamma = 1.5;
 
 PairWeight pairWeightRule(size_t candidates, double count, const Values& options) {
@@ -35,20 +34,20 @@ PairWeight pairWeightRule(size_t candidates, double count, const Values& options
   return {options.real32("alpha"), static_cast<float>(limit)};
 }
 
-// Candidates in the order in which they are searched, which keeps neighbours together.
+// Candidates in Morton order.
 struct Sorted {
-  std::vector<uint32_t> row;  // of the table
+  std::vector<uint32_t> row;  // in the table
   std::vector<Vec3> position, normal;
-  std::vector<float> radius;  // when all are kept that are asked for in the end
+  std::vector<float> radius;  // for the number that the last step keeps
 };
 
-// Every pair that is nearer than two radii competes, so that the work grows as candidates^2 / kept.
-// Where that is more than kMaxWork, and there are more than kMaxPerVpl candidates for each VPL,
-// kStepFactor for each VPL are kept first, with the radii of as many: the time then no longer grows
-// as fewer are kept (theory.md, "Cost").
+// All pairs nearer than two radii compete, so the work grows as candidates^2 / kept. Where this
+// exceeds kMaxWork and there are more than kMaxPerVpl candidates per VPL, a first step keeps
+// kStepFactor per VPL, with the radii for that number. This bounds the time where few are kept
+// (theory.md, "Cost").
 constexpr double kMaxPerVpl = 60, kStepFactor = 30, kMaxWork = 0x1p22;
 
-// The last step keeps `count`; each begins with what the one before has left.
+// Number of candidates that each step keeps. The last step keeps `count`.
 std::vector<size_t> stepsFor(size_t candidates, size_t count) {
   std::vector<size_t> steps{count};
   const auto many = [&](size_t kept) {
@@ -60,10 +59,10 @@ std::vector<size_t> stepsFor(size_t candidates, size_t count) {
   return steps;
 }
 
-// Places in `of` of the rows that the step keeps, ascending.
+// Runs one step, which keeps `keep` candidates. Returns their indices in `of`, ascending.
 std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const Values& options,
                              const ProgressFn& progress) {
-  // Radii grow as fewer are kept.
+  // Radii are proportional to 1 / sqrt(keep).
   const auto scale = static_cast<float>(std::sqrt(double(count) / double(keep)));
   std::vector<float> radius = of.radius;
   if (keep != count) {
@@ -80,8 +79,8 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
   return places;
 }
 
-// Each step is the sequential greedy algorithm that removes the candidate of greatest weight until
-// no more than it keeps are left; of equal weights the higher row goes first.
+// Each step gives the result of the sequential greedy algorithm: remove the heaviest candidate
+// until no more than it keeps are left; of equal weights, the higher row goes first.
 Kept make(const EliminateInputs& in, const Values& options) {
   const size_t count = options.whole("count");
   Sorted left;

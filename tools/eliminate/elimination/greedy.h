@@ -1,4 +1,4 @@
-// Greedy elimination in parallel, with the result of the sequential one.
+// Parallel greedy elimination with the result of the sequential algorithm.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,16 @@
 
 namespace bnvpl {
 
-// The rows of the `keep` nodes that are left after "remove the heaviest node and take its pair
-// weights from its neighbours" has run until no more than that many are left; of equal weights the
-// higher row goes first. In no particular order. Uses up the graph.
+// Repeats "remove the heaviest node and subtract its pair weights from its neighbours" until `keep`
+// nodes are left; of equal weights, the higher row goes first. Returns the rows of these nodes, in
+// no particular order. Consumes the graph. `progress` counts the nodes removed.
 //
-// Why it can be done in parallel: weights only fall. A node that outweighs all its neighbours goes
-// before any of them, whatever happens elsewhere, and with the weight that it has now. So all such
-// local maxima can go at once. A falling threshold holds back the light nodes: all removals above
-// it are made before any below, so that only those of the last threshold can be too many, and of
-// them the ones that the sequential algorithm would have made last are taken back: those of the
-// smallest (weight, row), as its sequence of weights never rises.
-// `progress` counts the nodes removed.
+// The removals run in parallel because weights only fall. A node that outweighs all of its
+// neighbours goes before any of them, with its current weight, whatever happens elsewhere. So all
+// such local maxima are removed at once. A falling threshold orders the rounds: all removals above
+// it are made before any below, so only the last threshold can remove too many. The removals that
+// the sequential algorithm would have made last are then undone. Its sequence of weights never
+// rises, so they are those of smallest (weight, row).
 std::vector<uint32_t> eliminateHeaviest(ConflictGraph& graph, size_t keep,
                                         const ProgressFn& progress = {});
 

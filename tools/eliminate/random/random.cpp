@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto kOptions = joined(kRadiusOptions, std::array{seedOption()});
 
-// Depends on the seed and the rows' numbers only.
+// The choice depends only on the seed and the row numbers.
 std::vector<uint32_t> randomRows(size_t candidates, size_t count, uint64_t seed) {
   const uint64_t key = streamKey(seed, Stream::Eliminate);
   std::vector<std::pair<uint64_t, uint32_t>> keys(candidates);

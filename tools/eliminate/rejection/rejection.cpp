@@ -1,5 +1,5 @@
-// Rejection (Georgiev & Slusallek 2010): VPLs from the lights are accepted with a probability in
-// proportion to what they bring to the image, and weighted by one over it.
+// Rejection (Georgiev & Slusallek 2010): VPLs from the lights are accepted with a probability
+// proportional to their contribution to the image, and weighted by one over it.
 #include <algorithm>
 #include <array>
 
@@ -19,15 +19,17 @@ namespace {
 
 constexpr std::array kOptions{
     seedOption(),
-    countOption("camera-points", "400", 0x1p24, "", "points of the image that VPLs are judged by"),
-    // Keeps every VPL possible: what the points do not see may still be seen, so that the image is
-    // right on average.
+    countOption("camera-points", "400", 0x1p24, "",
+                "points of the image at which the contribution of VPLs is measured"),
+    // Gives every VPL a positive probability, without which the image would be biased: a VPL that
+    // lights none of the points may light other pixels.
     realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL"),
-    // A VPL beside a point would take all.
+    // Without it, a VPL next to a point would outweigh all others.
     realOption("clamp", "1", 0, 1000, "r_max",
-               "the light by which VPLs are judged grows no further inside this distance")};
+               "distance within which the measured contribution is clamped")};
 
-// Spread over the film; those that see nothing are left out.
+// First rough vertices of `count` camera paths, spread over the film. Paths without one are left
+// out.
 std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, uint64_t count) {
   const Scene& scene = in.rays->scene();
   std::vector<SurfacePoint> points;
@@ -47,7 +49,7 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
   return points;
 }
 
-// What row i brings to all points together, summed over the channels.
+// Contribution of light i of `vpls` to all points together, summed over the channels.
 double contribution(const VplLights& vpls, size_t i, const RayScene& rays,
                     const std::vector<SurfacePoint>& points) {
   double sum = 0.0;
@@ -62,9 +64,9 @@ double contribution(const VplLights& vpls, size_t i, const RayScene& rays,
   return sum;
 }
 
-// p_i = min(Phi_i / Phi_v + epsilon, 1), with the average Phi_v for which `count` are to be
-// expected. The paper finds it round by round; all contributions are known here, so that it can be
-// solved for: the sum falls with Phi_v.
+// Probabilities p_i = min(Phi_i / Phi_v + epsilon, 1), where the average Phi_v makes the expected
+// number of accepted VPLs `count`. The paper refines Phi_v in rounds; here all contributions Phi_i
+// are known, and bisection finds it, since the expectation falls with Phi_v.
 std::vector<double> probabilities(const std::vector<double>& brings, double count, double epsilon) {
   const auto expected = [&](double average) {
     double sum = 0.0;
@@ -124,7 +126,7 @@ Kept make(const EliminateInputs& in, const Values& options) {
 extern const EliminateMethod method;
 const EliminateMethod method{
     "rejection",
-    "VPLs of vpl-place --method light, accepted by what they bring to the image; about -n of them",
+    "VPLs of vpl-place --method light, accepted by their contribution to the image; about -n",
     kOptions,
     make,
     VplStage::Lit,

@@ -48,7 +48,7 @@ TEST(Rejection, KeepsAboutTheCount) {
     EXPECT_EQ(kept.radius.size(), kept.size());
     sum += double(kept.size()) / 8;
   }
-  EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // a count of independent choices
+  EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // the variance of a count is at most 400
 }
 
 // A VPL without contribution to the view is kept with probability 1/100 and 100 times its flux.

@@ -1,6 +1,7 @@
-// The flux of each VPL from both ends: photons from the lights and paths from the VPL estimate one
-// integral. Small pilots of both tell how noisy each is there; they share out the work and weigh
-// the two, and play no other part, so that no choice depends on the values it is made for.
+// Estimates the flux of each VPL from both ends: by photons from the lights and by paths from the
+// VPL. Small pilots measure the variance of both, and from it follow the sample allocation and the
+// weights of the two estimates. The fluxes of the pilots are not used otherwise, so weights and
+// estimates are independent.
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -17,35 +18,36 @@ namespace {
 
 constexpr std::array kOptions{
     countOption("photons", "10M", 0x1p36, "",
-                "work, as that of so many photons; paths take their part of it"),
+                "total work, as a number of photons; paths take a part of it"),
     realOption(
         "irradiance-error", "0.005", 0, 1, "",
-        "relative error of the light that VPLs bring to a surface, in the mean, that is good "
-        "enough: by the pilots, less work is done; 0: all of it"),
+        "less work is done if pilots predict this mean relative error of the irradiance from VPLs; "
+        "0: all work is done"),
     kPathsOption,
     kRadiusOption,
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, that at the VPL included"),
+                "diffuse bounces between a light and the view, including the one at the VPL"),
     kEmitPointsOption};
 
-// Each pilot gets about this share of the work.
+// Share of the work that each pilot gets, about.
 constexpr double kPilot = 1.0 / 32.0;
-// A point of a VPL may cost its pilot so many rays for each path, as a guess; the pilot measures.
+// Assumed number of rays per path, for the size of the pilot; the pilot measures the true one.
 constexpr double kGuessedRays = 10.0;
 constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
-// Pilots of paths that would take more than this share of the work are not worth it.
-constexpr double kDearPilot = 0.25;
-// What is enough to know the cost: photons and paths of the pilots, points of each VPL afterwards.
+// Paths are not used at all if their pilot would take more than this share of the work.
+constexpr double kMaxPilotShare = 0.25;
+// Limits of a cost probe (--estimate): photons and paths of the pilots, VPLs of the split, and
+// points per VPL after it.
 constexpr uint64_t kProbePhotons = 1 << 18, kProbeVpls = 8192;
 constexpr double kProbePaths = 1 << 18, kProbePoints = 8.0;
 constexpr uint64_t kPhotonsOfUnit = 4096, kVplsOfUnit = 16, kMinUnits = 256;
-// The phases that shards divide; those before are pilots.
+// Phases that shards divide. The phases before them are the pilots.
 constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
-// Of the split, in shards.
+// Names of the split's records in the files of shards.
 constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
                            kPoints = "split.points", kShare = "split.share";
 
-// Photons of a stream, and what they bring.
+// Photons of a phase, and the sums of their deposits.
 struct PhotonWork {
   PhotonShares shares;
   PhotonScatter scatter;
@@ -76,9 +78,9 @@ class Estimator {
     const Split split = in_.resume.probe    ? splitOfProbe()
                         : in_.resume.source ? splitOfShards()
                                             : pilot();
-    if (in_.resume.sink && in_.resume.shard.has(0)) give(split);
-    // A probe sends as many ranges of photons as there are units of paths, so that a part of all
-    // has some of both.
+    if (in_.resume.sink && in_.resume.shard.has(0)) giveSplit(split);
+    // A cost probe traces about as many units of photons as of paths, so that any part of it has
+    // both.
     const uint64_t sent =
         unitsToTry(in_.resume.probe, split.photons,
                    kPhotonsOfUnit * std::max(kMinUnits, in_.vpls.size() / kVplsOfUnit));
@@ -90,25 +92,26 @@ class Estimator {
   }
 
  private:
-  // Work of a kind and its state. Progress is in photons' worth.
+  // Runs work(progress), which does `units` units that count as `photons` photons in the overall
+  // progress.
   template <typename Work>
-  auto told(uint64_t worth, uint64_t units, const Work& work) {
-    worth = std::min(worth, work_ - told_);
-    told_ += worth;
+  auto withProgress(uint64_t photons, uint64_t units, const Work& work) {
+    photons = std::min(photons, work_ - reported_);
+    reported_ += photons;
     std::atomic<uint64_t> done{0};
-    const auto worthOf = [&](uint64_t n) {
-      return static_cast<uint64_t>(static_cast<double>(worth) * static_cast<double>(n) /
+    const auto photonsOf = [&](uint64_t n) {
+      return static_cast<uint64_t>(static_cast<double>(photons) * static_cast<double>(n) /
                                    static_cast<double>(units));
     };
     ProgressFn progress;
     if (in_.progress && units > 0) {
       progress = [&](uint64_t n) {
         const uint64_t before = done.fetch_add(n);
-        in_.progress(worthOf(before + n) - worthOf(before));
+        in_.progress(photonsOf(before + n) - photonsOf(before));
       };
     }
     auto result = work(progress);
-    if (in_.progress && units == 0) in_.progress(worth);
+    if (in_.progress && units == 0) in_.progress(photons);
     return result;
   }
 
@@ -123,11 +126,11 @@ class Estimator {
     work.scatter.setShare(share);
     const PhotonRun run{streamKey(options_.whole("seed"), stream), emitPointsOf(phase),
                         maxBounces(), work.shares, work.scatter};
-    const auto worth = static_cast<uint64_t>(scale_ * static_cast<double>(count));
+    const auto equivalent = static_cast<uint64_t>(progressScale_ * static_cast<double>(count));
     work.sums = phases_.run(
         phase, times,
         [&](const Resume& resume) {
-          return told(worth, work.shares.total(), [&](const ProgressFn& progress) {
+          return withProgress(equivalent, work.shares.total(), [&](const ProgressFn& progress) {
             return tracePhotons({in_.vpls, in_.rays, in_.lights, progress, resume}, run,
                                 scatterToOneInSight);
           });
@@ -136,25 +139,25 @@ class Estimator {
     return work;
   }
 
-  PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points, uint64_t worth,
-                    double times = 1.0) {
-    if (!where_) where_ = lightsOfPaths(in_, options_.whole("seed"));
+  PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points,
+                    uint64_t equivalent, double times = 1.0) {
+    if (!surfaceLights_) surfaceLights_ = makeSurfaceLights(in_, options_.whole("seed"));
     const VplPaths gatherer(
         in_, {streamKey(options_.whole("seed"), stream), options_.whole("paths"), maxBounces(),
-              options_.real32("radius"), emitPointsOf(phase), where_.get()});
+              options_.real32("radius"), emitPointsOf(phase), surfaceLights_.get()});
     return phases_.run(
         phase, times,
         [&](const Resume& resume) {
           uint64_t all = 0;
           for (const uint64_t n : points) all += gatherer.pathsOf(n);
-          return told(worth, all, [&](const ProgressFn& progress) {
+          return withProgress(equivalent, all, [&](const ProgressFn& progress) {
             return gatherAll({in_.vpls, in_.rays, in_.lights, progress, resume}, gatherer, points);
           });
         },
         [](const PathResult& result) { return finishedState(result); });
   }
 
-  // A probe takes fewer points of each VPL, in proportion; what rounding leaves goes to the next.
+  // A cost probe takes fewer points, in proportion; the rounding remainder goes to the next VPL.
   PathResult gatherPaths(const Split& split) {
     std::vector<uint64_t> points = split.points;
     double all = 0.0, few = 0.0, left = 0.0;
@@ -167,12 +170,13 @@ class Estimator {
       left -= static_cast<double>(n);
       few += static_cast<double>(n);
     }
-    return gather(kPathPhase, Stream::VplPaths, points, work_ - told_, few > 0.0 ? all / few : 1.0);
+    return gather(kPathPhase, Stream::VplPaths, points, work_ - reported_,
+                  few > 0.0 ? all / few : 1.0);
   }
 
   unsigned maxBounces() const { return static_cast<unsigned>(options_.whole("max-bounces")); }
 
-  // Once for all of its parts.
+  // The parts of a cost probe share one split.
   const Split& splitOfProbe() {
     std::any& kept = in_.resume.probe->kept;
     if (!kept.has_value()) kept = pilot();
@@ -185,7 +189,7 @@ class Estimator {
     const uint64_t sent = unitsToTry(probe, few, kProbePhotons);
     const PhotonWork photons = trace(0, Stream::PilotPhotons, sent, {},
                                      static_cast<double>(few) / static_cast<double>(sent));
-    if (sent < few) told_ = few;
+    if (sent < few) reported_ = few;
     Pilots pilots;
     pilots.photons = static_cast<double>(photons.shares.total());
     pilots.photonPower = photons.scatter.photonPower();
@@ -195,10 +199,10 @@ class Estimator {
 
     const auto vpls = static_cast<double>(in_.vpls.size());
     const double guess = vpls * kGuessedRays * static_cast<double>(options_.whole("paths"));
-    if (guess * kMinPoints > kDearPilot * whole) return photonsAlone(work_ - told_);
+    if (guess * kMinPoints > kMaxPilotShare * whole) return photonsAlone(work_ - reported_);
     const uint64_t points =
         std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess), kMinPoints, kMaxPoints);
-    // A probe asks some VPLs, whose neighbours in the file are taken to be alike.
+    // A cost probe measures every `step`-th VPL, which represents those that follow it in the file.
     const double pathsOf = vpls * static_cast<double>(points * options_.whole("paths"));
     const auto step = static_cast<size_t>(probe ? std::ceil(pathsOf / kProbePaths) : 1.0);
     std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
@@ -220,14 +224,15 @@ class Estimator {
     }
     const Budget budget{std::max(whole - spent, 0.5 * whole), options_.real("irradiance-error")};
     const Split split =
-        probe ? splitOfSome(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
-    scale_ = static_cast<double>(work_ - told_) * pilots.photonCost / split.cost;
+        probe ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
+    progressScale_ = static_cast<double>(work_ - reported_) * pilots.photonCost / split.cost;
     return split;
   }
 
-  // The split for one of `step` VPLs, which stands for those after it. Photons serve all of them,
-  // and the light of fewer VPLs has a larger error.
-  Split splitOfSome(Pilots pilots, Budget budget) const {
+  // Split for a cost probe, from every `step`-th VPL, which represents those that follow it. A
+  // photon serves all VPLs, so its cost is divided by `step`; the irradiance from fewer VPLs has a
+  // larger error.
+  Split splitOfSubset(Pilots pilots, Budget budget) const {
     const size_t count = in_.vpls.size(), step = (count + kProbeVpls - 1) / kProbeVpls;
     const auto times = static_cast<double>(step);
     std::vector<uint32_t> rows;
@@ -259,8 +264,9 @@ class Estimator {
             std::vector<double>(in_.vpls.size(), 1.0)};
   }
 
-  // Every shard finds the same by the whole pilots; the first hands it over.
-  void give(const Split& split) const {
+  // Every shard computes the same split, since each runs the whole pilots. The first one records
+  // it.
+  void giveSplit(const Split& split) const {
     const ShardSink& sink = *in_.resume.sink;
     giveRecord(sink, kCount, 0, std::array{split.photons});
     giveRecord(sink, kCostShare, 0, std::array{split.costShare});
@@ -281,6 +287,7 @@ class Estimator {
     return split;
   }
 
+  // Flux of each VPL: share * photons + (1 - share) * paths, plus the light that only photons find.
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
     EstimateResult result{in_.vpls,
@@ -320,9 +327,9 @@ class Estimator {
   const EstimateInputs& in_;
   const Values& options_;
   Phases<4, kPhotonPhase> phases_;
-  std::unique_ptr<const SurfaceLights> where_;
-  uint64_t work_, told_ = 0;  // photons' worth: all, and what progress knows of
-  double scale_ = 1.0;        // of what is left, where less is done than was asked for
+  std::unique_ptr<const SurfaceLights> surfaceLights_;
+  uint64_t work_, reported_ = 0;  // in photons: all work, and that of the phases begun
+  double progressScale_ = 1.0;    // photons of progress per photon traced, if less work is enough
 };
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {
@@ -334,7 +341,7 @@ Work work(const VplTable&, const Values& options) { return {"photons", options.w
 }  // namespace
 
 extern const EstimateMethod method;
-const EstimateMethod method{"both", "photons and paths, each VPL by the better of the two",
+const EstimateMethod method{"both", "photons and paths, weighted by their variance at each VPL",
                             kOptions, make, work};
 
 }  // namespace bnvpl::methods::estimate::both

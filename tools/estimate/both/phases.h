@@ -1,4 +1,4 @@
-// Works of one method behind one another, which are interrupted and resumed as one.
+// Consecutive phases of a method that are interrupted and resumed together.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace bnvpl::methods::estimate::both {
 
-// Shards divide the phases from kFirstShared on; those before are whole in each.
+// Shards divide the work of the phases from kFirstShared on. Each shard runs those before it whole.
 template <size_t kCount, size_t kFirstShared>
 class Phases {
  public:
@@ -24,8 +24,8 @@ class Phases {
     requireAllTaken(bytes);
   }
 
-  // The k-th: body(resume) gives its result. finished(result) is the state with which it, resumed,
-  // is at its end. `times`: as of Resume.
+  // Runs phase k. body(resume) returns its result, and finished(result) the resume state of the
+  // finished phase. `times` is that of Resume.
   template <typename Body, typename Finished>
   auto run(size_t k, double times, const Body& body, const Finished& finished) {
     Resume part{states_[k], whole_.pause, [&](const std::string& state) {

@@ -16,8 +16,10 @@ size_t countFor(size_t vpls) {
   return std::min(vpls, std::clamp(kRays / std::max<size_t>(1, vpls), kMin, kMax));
 }
 
-// By the form factor of a disk of the VPL's part of the surface, which a flux is spread over.
-float weightOf(const VplTable& vpls, size_t at, size_t from) {
+// Irradiance at VPL `at` per watt of VPL `from`. The flux is spread over a disk with the area of
+// the VPL's share of the surface, whose form factor is approximated by area cos cos / (pi d^2 +
+// area).
+float irradiancePerWatt(const VplTable& vpls, size_t at, size_t from) {
   const Vec3 d = vpls.position[from] - vpls.position[at];
   const float d2 = lengthSquared(d);
   const float received = dot(d, vpls.normal[at]), sent = -dot(d, vpls.normal[from]);
@@ -35,7 +37,7 @@ Receivers::Receivers(const VplTable& vpls, const RayScene& rays)
     const size_t at = r * vpls_ / count;
     const Vec3 from = rays.offsetOrigin(vpls.position[at], vpls.normal[at]);
     for (size_t i = 0; i < vpls_; ++i) {
-      const float weight = weightOf(vpls, at, i);
+      const float weight = irradiancePerWatt(vpls, at, i);
       if (!(weight > 0.0f)) continue;
       const Vec3 to = rays.offsetOrigin(vpls.position[i], vpls.normal[i]);
       if (!rays.occluded(from, to)) weights_[r * vpls_ + i] = weight;

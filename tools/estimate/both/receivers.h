@@ -1,5 +1,5 @@
-// What errors of the VPLs' fluxes do to the light on surfaces: many VPLs light a point, so that
-// errors average out where most of the light comes from far, and show where it comes from few.
+// Effect of errors in the VPLs' fluxes on the irradiance of surfaces. Errors average out where many
+// VPLs light a point, and show where few do.
 #pragma once
 
 #include <span>
@@ -10,20 +10,19 @@
 
 namespace bnvpl::methods::estimate::both {
 
-// Points where light arrives: some of the VPLs, which lie where the image needs light.
+// Receivers of light: a subset of the VPLs' positions, as they lie where the image needs light.
 class Receivers {
  public:
-  // One shadow ray from each to every VPL, about a million together.
+  // Traces a shadow ray from each receiver to each VPL that faces it, about a million in total.
   Receivers(const VplTable& vpls, const RayScene& rays);
 
-  // Standard deviation of the irradiance over the irradiance, in the mean over the points that get
-  // any; a point whose light is not known at all counts as 1. For each VPL: flux in W, and its
-  // variance.
+  // Standard deviation of the irradiance over the irradiance, clamped to 1 and averaged over the
+  // receivers whose irradiance has variance. `flux` (W) and its `variance` have one entry per VPL.
   double relativeError(std::span<const double> flux, std::span<const double> variance) const;
 
  private:
   size_t vpls_;
-  std::vector<float> weights_;  // irradiance of each point by a watt of each VPL, point by point
+  std::vector<float> weights_;  // irradiance per watt of each VPL, receiver by receiver
 };
 
 }  // namespace bnvpl::methods::estimate::both

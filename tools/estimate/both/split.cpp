@@ -13,53 +13,57 @@ namespace bnvpl::methods::estimate::both {
 
 namespace {
 
-// VPLs that are judged together: the nearest that look the same way. Of the wide pool only the
-// ratio of the two variances counts, for rare bright samples take many to show.
+// Variances are pooled over the nearest VPLs whose normals differ by at most 60 degrees. The wide
+// pool supplies only the ratio of the two variances: rare bright samples show only where many VPLs
+// are pooled.
 constexpr size_t kPool = 16, kWidePool = 96, kNearest = 160;
-// How many of their standard errors pilots may differ without one of them having missed something.
-constexpr double kSurprise = 2.0;
-// Photons always get at least one of so many parts: no path finds what only they bring.
+// Standard deviations by which the pilots may differ before one of them is taken to have missed
+// light.
+constexpr double kMaxDeviations = 2.0;
+// Photons always get at least one of this many parts of the work, since some light is found only by
+// photons.
 constexpr int kParts = 16;
-// The flux that errors of a VPL are judged by is at least this share of the mean VPL's: when work
-// is shared out, and when it is enough.
+// Share of the mean flux that is added to a VPL's flux where its error is weighted by one over the
+// flux.
 constexpr double kMinFlux = 0.1, kMinFluxOfError = 0.01;
-// Work that might be enough: all, and so many times less in steps of a fourth of an octave.
+// Budgets that smallestAllocation() tries, in steps of a quarter of an octave.
 constexpr int kSteps = 24;
 constexpr double kStep = 0.8408964152537145;  // 2^(-1/4)
 
-// Of the VPLs around one, for one way to find their flux.
-struct Pool {
+// Sums over the VPLs of a pool, for one of the two pilots.
+struct Pooled {
   double flux = 0.0, variance = 0.0;
 };
 
-// One sample that the pilot might just have missed: of the energy of those that it had, here or,
-// where there were none, anywhere.
-double missedSquared(const Pool& here, double sampleAnywhere) {
+// Square of a typical sample, variance / flux, that the pilot may have missed. It is taken from
+// this pool or, if that has no flux, from all VPLs.
+double missedSquared(const Pooled& here, double sampleAnywhere) {
   const double sample = here.flux > 0.0 ? here.variance / here.flux : sampleAnywhere;
   return sample * sample;
 }
 
-double sampleOf(const std::vector<Found>& found) {
+double meanSample(const std::vector<PilotEstimate>& found) {
   double flux = 0.0, variance = 0.0;
-  for (const Found& f : found) flux += f.flux, variance += f.variance;
+  for (const PilotEstimate& f : found) flux += f.flux, variance += f.variance;
   return flux > 0.0 ? variance / flux : 0.0;
 }
 
-// Of one VPL: the variance of a single photon and of a single point, the flux expected there, and
-// the cost of a point.
-struct Judged {
-  double photon = 0.0, point = 0.0, flux = 0.0, cost = 0.0;
+// Statistics of a VPL, pooled over those around it: the variance of a single photon and of a single
+// point, the flux, and the cost of a point.
+struct VplStatistics {
+  double photonVariance = 0.0, pointVariance = 0.0, flux = 0.0, pointCost = 0.0;
 };
 
-// Of a pool: variances of the mean VPL's flux by each of the pilots, and that flux.
-struct Compared {
+// Averages over the VPLs of a pool: variance of the flux in each pilot, and flux weighted by
+// inverse variance.
+struct Comparison {
   double byPhotons = 0.0, byPoints = 0.0, flux = 0.0;
   double ratio() const { return byPhotons > 0.0 ? byPoints / byPhotons : 0.0; }
 };
 
-Compared compare(std::span<const uint32_t> pool, const Pilots& pilots, double photonSample,
-                 double pointSample) {
-  Pool photons, points;
+Comparison compare(std::span<const uint32_t> pool, const Pilots& pilots, double photonSample,
+                   double pointSample) {
+  Pooled photons, points;
   for (const uint32_t k : pool) {
     photons.flux += pilots.byPhotons[k].flux;
     photons.variance += pilots.byPhotons[k].variance;
@@ -68,10 +72,10 @@ Compared compare(std::span<const uint32_t> pool, const Pilots& pilots, double ph
   }
   photons.variance += missedSquared(photons, photonSample);
   points.variance += missedSquared(points, pointSample);
-  // Light that one of them found and the other did not comes to the other in samples as rare and
-  // bright as that: about one in all that the pilot drew here.
+  // Light that one pilot found and the other missed comes to the other in samples as rare and
+  // bright as one in all that it drew here.
   const double difference = photons.flux - points.flux;
-  const double noise = kSurprise * std::sqrt(photons.variance + points.variance);
+  const double noise = kMaxDeviations * std::sqrt(photons.variance + points.variance);
   const double missedByPoints = std::max(0.0, difference - noise);
   const double missedByPhotons = std::max(0.0, -difference - noise);
   points.variance += missedByPoints * missedByPoints;
@@ -84,24 +88,25 @@ Compared compare(std::span<const uint32_t> pool, const Pilots& pilots, double ph
               : 0.0};
 }
 
-Judged judge(std::span<const uint32_t> wide, const Pilots& pilots, double photonSample,
-             double pointSample) {
+VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots, double photonSample,
+                         double pointSample) {
   const auto near = wide.first(std::min(kPool, wide.size()));
-  const Compared here = compare(near, pilots, photonSample, pointSample);
-  const Compared around = compare(wide, pilots, photonSample, pointSample);
-  Judged j;
-  j.flux = here.flux;
-  j.photon = here.byPhotons * pilots.photons;
-  j.point = here.byPhotons * std::max(here.ratio(), around.ratio()) * pilots.points;
-  for (const uint32_t k : near) j.cost += pilots.pointCost[k] / static_cast<double>(near.size());
-  return j;
+  const Comparison here = compare(near, pilots, photonSample, pointSample);
+  const Comparison around = compare(wide, pilots, photonSample, pointSample);
+  VplStatistics v;
+  v.flux = here.flux;
+  v.photonVariance = here.byPhotons * pilots.photons;
+  v.pointVariance = here.byPhotons * std::max(here.ratio(), around.ratio()) * pilots.points;
+  for (const uint32_t k : near)
+    v.pointCost += pilots.pointCost[k] / static_cast<double>(near.size());
+  return v;
 }
 
-std::vector<Judged> judgeAll(const VplTable& vpls, const Pilots& pilots) {
+std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pilots) {
   const KdTree tree(vpls.position);
-  const double photonSample = std::max(sampleOf(pilots.byPhotons), 1e-6 * pilots.photonPower);
-  const double pointSample = sampleOf(pilots.byPaths);
-  std::vector<Judged> judged(vpls.size());
+  const double photonSample = std::max(meanSample(pilots.byPhotons), 1e-6 * pilots.photonPower);
+  const double pointSample = meanSample(pilots.byPaths);
+  std::vector<VplStatistics> statistics(vpls.size());
   parallelRanges(vpls.size(), 256, [&](size_t begin, size_t end) {
     std::vector<Neighbour> near;
     std::vector<uint32_t> pool;
@@ -112,102 +117,105 @@ std::vector<Judged> judgeAll(const VplTable& vpls, const Pilots& pilots) {
         if (pool.size() < kWidePool && dot(vpls.normal[n.index], vpls.normal[i]) >= kMinNormalDot)
           pool.push_back(n.index);
       }
-      judged[i] = judge(pool, pilots, photonSample, pointSample);
+      statistics[i] = poolPilots(pool, pilots, photonSample, pointSample);
     }
   });
-  return judged;
+  return statistics;
 }
 
-// Points for each VPL beside so many photons, for a price of error per cost.
-class Points {
+// Neyman's allocation of points to VPLs for a given number of photons. The Lagrange multiplier
+// lambda is the error that a unit of cost saves.
+class PointAllocation {
  public:
-  explicit Points(std::vector<Judged> judged)
-      : judged_(std::move(judged)), weight_(judged_.size()) {
+  explicit PointAllocation(std::vector<VplStatistics> statistics)
+      : vpls_(std::move(statistics)), weight_(vpls_.size()) {
     double mean = 0.0;
-    for (const Judged& j : judged_) mean += j.flux / static_cast<double>(judged_.size());
+    for (const VplStatistics& v : vpls_) mean += v.flux / static_cast<double>(vpls_.size());
     for (size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = 1.0 / std::max(judged_[i].flux + kMinFlux * mean, 1e-300);
+      weight_[i] = 1.0 / std::max(vpls_[i].flux + kMinFlux * mean, 1e-300);
   }
 
-  // Least weight / (photons / v_photon + n / v_point) + price cost n: Neyman's allocation, beside
-  // what photons know already.
-  double at(size_t i, double photons, double price) const {
-    const Judged& j = judged_[i];
-    if (!(j.point > 0.0)) return 0.0;
-    return std::max(
-        0.0, std::sqrt(weight_[i] * j.point / (price * j.cost)) - photons * j.point / j.photon);
+  // Number n of points of VPL i that minimises
+  // weight / (photons / photonVariance + n / pointVariance) + lambda pointCost n.
+  double at(size_t i, double photons, double lambda) const {
+    const VplStatistics& v = vpls_[i];
+    if (!(v.pointVariance > 0.0)) return 0.0;
+    return std::max(0.0, std::sqrt(weight_[i] * v.pointVariance / (lambda * v.pointCost)) -
+                             photons * v.pointVariance / v.photonVariance);
   }
-  double costAt(double photons, double price) const {
+  double costAt(double photons, double lambda) const {
     double sum = 0.0;
-    for (size_t i = 0; i < judged_.size(); ++i) sum += judged_[i].cost * at(i, photons, price);
+    for (size_t i = 0; i < vpls_.size(); ++i) sum += vpls_[i].pointCost * at(i, photons, lambda);
     return sum;
   }
-  // The price at which points cost so much.
-  double priceFor(double photons, double cost) const {
-    double low = -700.0, high = 700.0;  // its logarithm
+  // Lagrange multiplier for which all points together have this cost.
+  double lambdaFor(double photons, double cost) const {
+    double low = -700.0, high = 700.0;  // bounds of log(lambda)
     for (int step = 0; step < 60; ++step) {
       const double middle = (low + high) / 2.0;
       (costAt(photons, std::exp(middle)) > cost ? low : high) = middle;
     }
     return std::exp(high);
   }
-  double errorAt(double photons, double price) const {
+  double errorAt(double photons, double lambda) const {
     double sum = 0.0;
-    for (size_t i = 0; i < judged_.size(); ++i) sum += weight_[i] * variance(i, photons, price);
+    for (size_t i = 0; i < vpls_.size(); ++i) sum += weight_[i] * variance(i, photons, lambda);
     return sum;
   }
-  double relativeErrorAt(double photons, double price, const Receivers& receivers) const {
+  double relativeErrorAt(double photons, double lambda, const Receivers& receivers) const {
     std::vector<double> flux, variances;
-    for (size_t i = 0; i < judged_.size(); ++i) {
-      flux.push_back(judged_[i].flux);
-      variances.push_back(variance(i, photons, price));
+    for (size_t i = 0; i < vpls_.size(); ++i) {
+      flux.push_back(vpls_[i].flux);
+      variances.push_back(variance(i, photons, lambda));
     }
     return receivers.relativeError(flux, variances);
   }
+  // Weight of photons in the flux of VPL i, by inverse variance.
   double share(size_t i, double photons, double points) const {
-    const Judged& j = judged_[i];
+    const VplStatistics& v = vpls_[i];
     if (!(points > 0.0)) return 1.0;
-    return photons * j.point / (photons * j.point + points * j.photon);
+    return photons * v.pointVariance / (photons * v.pointVariance + points * v.photonVariance);
   }
 
  private:
-  double variance(size_t i, double photons, double price) const {
-    const Judged& j = judged_[i];
-    const double known = photons / j.photon;
-    return 1.0 / (j.point > 0.0 ? known + at(i, photons, price) / j.point : known);
+  double variance(size_t i, double photons, double lambda) const {
+    const VplStatistics& v = vpls_[i];
+    const double known = photons / v.photonVariance;
+    return 1.0 / (v.pointVariance > 0.0 ? known + at(i, photons, lambda) / v.pointVariance : known);
   }
 
-  std::vector<Judged> judged_;
+  std::vector<VplStatistics> vpls_;
   std::vector<double> weight_;
 };
 
-// The number of photons, and the price of points beside them.
-struct Shares {
-  double photons = 0.0, price = INFINITY, error = INFINITY;
+// Number of photons, the multiplier that allots points, and the weighted sum of variances that
+// results.
+struct Allocation {
+  double photons = 0.0, lambda = INFINITY, error = INFINITY;
 };
 
-Shares bestShares(const Points& points, double photonCost, double cost) {
-  Shares best;
+Allocation bestAllocation(const PointAllocation& points, double photonCost, double cost) {
+  Allocation best;
   for (int part = 1; part <= kParts; ++part) {
     const double ofPhotons = cost * part / kParts, photons = ofPhotons / photonCost;
-    const double price = part == kParts ? INFINITY : points.priceFor(photons, cost - ofPhotons);
-    const double error = points.errorAt(photons, price);
-    if (error < best.error) best = {photons, price, error};
+    const double lambda = part == kParts ? INFINITY : points.lambdaFor(photons, cost - ofPhotons);
+    const double error = points.errorAt(photons, lambda);
+    if (error < best.error) best = {photons, lambda, error};
   }
   return best;
 }
 
-// From all of the work down, as long as the rest is enough.
-Shares sharesWithin(const Points& points, const VplTable& vpls, const RayScene& rays,
-                    double photonCost, const Budget& budget) {
-  Shares best = bestShares(points, photonCost, budget.cost);
+// Lowers the cost step by step, as long as the predicted error stays below that of the budget.
+Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpls,
+                              const RayScene& rays, double photonCost, const Budget& budget) {
+  Allocation best = bestAllocation(points, photonCost, budget.cost);
   if (!(budget.error > 0.0)) return best;
   const Receivers receivers(vpls, rays);
   double cost = budget.cost;
   for (int step = 0; step < kSteps; ++step) {
     cost *= kStep;
-    const Shares less = bestShares(points, photonCost, cost);
-    if (!(points.relativeErrorAt(less.photons, less.price, receivers) <= budget.error)) break;
+    const Allocation less = bestAllocation(points, photonCost, cost);
+    if (!(points.relativeErrorAt(less.photons, less.lambda, receivers) <= budget.error)) break;
     best = less;
   }
   return best;
@@ -217,17 +225,17 @@ Shares sharesWithin(const Points& points, const VplTable& vpls, const RayScene& 
 
 Split splitWork(const VplTable& vpls, const RayScene& rays, const Pilots& pilots,
                 const Budget& budget) {
-  const Points points(judgeAll(vpls, pilots));
-  const Shares best = sharesWithin(points, vpls, rays, pilots.photonCost, budget);
+  const PointAllocation points(poolAllPilots(vpls, pilots));
+  const Allocation best = smallestAllocation(points, vpls, rays, pilots.photonCost, budget);
   Split split;
   split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(best.photons)));
   split.points.resize(vpls.size());
   split.share.resize(vpls.size());
   const auto photons = static_cast<double>(split.photons);
-  split.cost = photons * pilots.photonCost + points.costAt(photons, best.price);
+  split.cost = photons * pilots.photonCost + points.costAt(photons, best.lambda);
   split.costShare = std::min(1.0, split.cost / budget.cost);
   for (size_t i = 0; i < vpls.size(); ++i) {
-    split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.price)));
+    split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.lambda)));
     split.share[i] = points.share(i, photons, static_cast<double>(split.points[i]));
   }
   return split;

@@ -1,5 +1,5 @@
-// How the work is divided between photons and paths, and how much the fluxes of each count: by
-// pilots, whose own fluxes are then forgotten.
+// Divides the work between photons and paths, and sets their weights. Both depend only on pilots,
+// whose fluxes are used for nothing else, so they add no bias.
 #pragma once
 
 #include <cstdint>
@@ -10,35 +10,35 @@
 
 namespace bnvpl::methods::estimate::both {
 
-// What a pilot found of a VPL: mean flux over the channels in W, and the variance of that.
-struct Found {
+// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance.
+struct PilotEstimate {
   double flux = 0.0, variance = 0.0;
 };
 
 struct Pilots {
-  std::vector<Found> byPhotons, byPaths;  // of each VPL
-  double photons = 0.0;                   // sent
-  double points = 0.0;                    // of each VPL
-  double photonPower = 0.0;               // W
-  double photonCost = 0.0;                // of a photon, any unit
-  std::vector<double> pointCost;          // of a point of each VPL
+  std::vector<PilotEstimate> byPhotons, byPaths;  // one per VPL
+  double photons = 0.0;                           // photons traced
+  double points = 0.0;                            // points per VPL
+  double photonPower = 0.0;                       // mean power of a photon, W
+  double photonCost = 0.0;                        // cost of a photon, in the unit of pointCost
+  std::vector<double> pointCost;                  // cost of a point, one per VPL
 };
 
 struct Split {
   uint64_t photons = 0;
-  std::vector<uint64_t> points;  // of each VPL
-  std::vector<double> share;     // of each VPL: how much of its flux photons decide, 0 to 1
-  double cost = 0.0;             // of both
-  double costShare = 1.0;        // of the budget
+  std::vector<uint64_t> points;  // one per VPL
+  std::vector<double> share;     // one per VPL: weight of photons in its flux, 0 to 1
+  double cost = 0.0;             // cost of photons and points
+  double costShare = 1.0;        // cost over that of the budget
 };
 
 struct Budget {
-  double cost = 0.0;   // at most
-  double error = 0.0;  // enough, as Receivers state it; 0: spend it all
+  double cost = 0.0;   // maximal cost
+  double error = 0.0;  // sufficient Receivers::relativeError(); 0: spend the whole cost
 };
 
-// Spends the budget so that the sum of the VPLs' squared errors, each over the flux around it, is
-// least.
+// Divides the budget such that the sum over VPLs of variance over local flux is minimal. Spends
+// less if that reaches budget.error.
 Split splitWork(const VplTable& vpls, const RayScene& rays, const Pilots& pilots,
                 const Budget& budget);
 

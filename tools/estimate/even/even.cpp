@@ -1,5 +1,5 @@
-// The thesis to the letter (section 3.4): a photon's flux is divided evenly among all VPLs within
-// the radius, whatever lies between.
+// The method of the thesis (section 3.4): a photon's flux is divided evenly among all VPLs whose
+// reach holds the hit, even through walls.
 #include "tools/estimate/photon_scatter.h"
 
 namespace bnvpl::methods::estimate::even {
@@ -24,7 +24,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 
 extern const EstimateMethod method;
 const EstimateMethod method{
-    "even", "photons, evenly to all VPLs within reach: the thesis; leaks through thin walls",
+    "even", "photons, divided evenly among all VPLs in reach (thesis); leaks through thin walls",
     kPhotonOptions, make, photonWork};
 
 }  // namespace bnvpl::methods::estimate::even

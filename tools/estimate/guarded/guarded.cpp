@@ -1,4 +1,4 @@
-// Photons go to VPLs that the hit could stand for: on a compatible surface and in sight.
+// Deposits photons only in VPLs on a compatible surface and in sight of the hit.
 #include "tools/estimate/photon_scatter.h"
 
 namespace bnvpl::methods::estimate::guarded {

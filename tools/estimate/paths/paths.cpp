@@ -1,7 +1,7 @@
-// The light of each VPL gathered where it stands: paths from points of its surface back to the
-// lights. The same integral as that of photons, by the other end of the path: it costs little where
-// lights are easily found from the surfaces that the view needs, however much of the scene lies
-// elsewhere.
+// Estimates the flux of each VPL by paths from points of its surface back to the lights. This is
+// the integral that photons estimate, from the other end of the path. Its cost does not grow with
+// the parts of the scene that do not light the view, but light sampling must find the lights from
+// the VPLs.
 #include <array>
 #include <cmath>
 
@@ -13,23 +13,23 @@ namespace bnvpl::methods::estimate::paths {
 namespace {
 
 constexpr std::array kOptions{
-    countOption("points", "64", 1u << 20, "", "points of the surface that each VPL stands for"),
+    countOption("points", "64", 1u << 20, "", "points on the surface that each VPL stands for"),
     kPathsOption, kRadiusOption,
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, that at the VPL included"),
+                "diffuse bounces between a light and the view, including the one at the VPL"),
     kEmitPointsOption};
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
-  const auto where = lightsOfPaths(in, options.whole("seed"));
-  // To know the cost, fewer are enough.
+  const auto surfaceLights = makeSurfaceLights(in, options.whole("seed"));
+  // A cost probe (--estimate) takes fewer points and paths.
   CostProbe* const probe = in.resume.probe;
   const uint64_t each = options.whole("points"), fewPoints = unitsToTry(probe, each, 8),
                  paths = options.whole("paths"), fewPaths = unitsToTry(probe, paths, 8);
   const VplPaths gatherer(
       in, {streamKey(options.whole("seed"), Stream::VplPaths), fewPaths,
            static_cast<unsigned>(options.whole("max-bounces")), options.real32("radius"),
-           options.whole("emit-points"), where.get()});
+           options.whole("emit-points"), surfaceLights.get()});
   const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
   Resume resume = in.resume;
   resume.times = static_cast<double>(each) * static_cast<double>(paths) /

@@ -16,7 +16,7 @@ constexpr std::array kOptions{
                 "diffuse vertices of a path; the first is never a candidate, the second lights the "
                 "view directly")};
 
-// A path from the camera, on its way.
+// State of a camera path that is being traced.
 class CameraPath {
  public:
   CameraPath() = default;
@@ -29,7 +29,8 @@ class CameraPath {
     next_ = {view.camera.position, cameraDirection(view.camera, view.film, film.x, film.y)};
   }
   const Ray& next() const { return next_; }
-  // Takes what next() has hit. False: the path has ended.
+  // Processes the hit of next(): adds a candidate at a rough vertex after the first, and samples
+  // the next ray. Returns false if the path has ended.
   bool advance(const RayScene& rays, const SurfacePoint& hit, unsigned depth, PathRows& chunk) {
     ++chunk.rays;
     if (hit.triangle == kNone) {
@@ -61,7 +62,7 @@ class CameraPath {
   unsigned rough_ = 0, specular_ = 0;
 };
 
-// The paths of a chunk, a batch of them together, round by round.
+// Traces the paths of a chunk in batches. All paths of a batch advance by one ray in each round.
 void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned depth, uint64_t begin,
                       uint64_t key, PathRows& chunk) {
   std::array<CameraPath, RayScene::kBatch> paths;
@@ -85,9 +86,9 @@ void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned de
   }
 }
 
-// Camera paths over the whole film of each view, stratified so that every prefix covers it evenly.
-// Specular vertices are passed through; each diffuse vertex after the first becomes a candidate
-// that faces the side it was seen from, up to `depth`.
+// Traces camera paths over the whole film of each view, stratified so that every prefix covers it
+// evenly. Paths pass through specular vertices. Each rough vertex from the second to the `depth`-th
+// becomes a candidate that faces the side it was seen from.
 TracePaths make(const PlaceInputs& in, const Values& options) {
   const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceCamera);
   const auto depth = static_cast<unsigned>(options.whole("depth"));

@@ -41,11 +41,13 @@ TracePaths make(const PlaceInputs& in, const Values& options) {
   };
 }
 
-// Of stage Lit, with the flux that leaves each hit: it needs no further stage.
+// Completes the table to stage Lit: each VPL has the flux that leaves its hit, so no further stage
+// is needed.
 void finish(PlaceResult& result) {
   VplTable& t = result.table;
   t.stage = VplStage::Lit;
-  // Each VPL carries the flux of its photon; the estimate divides by the photons that were started.
+  // A photon carries the power of its light over the light's probability, so sums are divided by
+  // the number of photons.
   for (Vec3& f : t.flux) f *= 1.0f / static_cast<float>(result.paths);
   t.emitPosition = t.position;
   t.emitNormal = t.normal;

@@ -1,5 +1,5 @@
-// Bias compensation (Kollig & Keller 2006): sampled rays carry the light that VPLs leave out. The
-// methods of --compensate say, for a point that a ray found, how much that is.
+// Bias compensation (Kollig & Keller 2006): sampled rays carry the light that VPLs leave out. For a
+// point that a ray hit, the methods of --compensate compute how much that is.
 #pragma once
 
 #include <cmath>
@@ -16,11 +16,11 @@
 
 namespace bnvpl {
 
-// The uncovered share of a point's light, as a function of the receiver's distance, for points
-// whose light is found by further rays.
+// The uncovered share of a point's light as a function of the receiver's distance, for points whose
+// light further rays estimate.
 struct UncoveredShare {
   float within = 0.0f;           // distance from which it is 0, world units; may be INFINITY
-  float clampRadius = INFINITY;  // the covering VPL's; INFINITY: no VPL covers the point
+  float clampRadius = INFINITY;  // that of the covering VPL; INFINITY if no VPL covers the point
   LightKind kind = {};
 
   float at(float distance) const {
@@ -29,29 +29,30 @@ struct UncoveredShare {
   }
 };
 
-// What VPLs leave out of the light from a point to the receiver whose ray found it.
+// The light from a point to the receiver whose ray hit it that VPLs leave out.
 struct Uncovered {
   float share = 0.0f;  // part of the point's light, 0..1
-  // Radiance that leaves the point of light that arrived there from other surfaces, W/(m2 sr), as
-  // the VPL knows it. Empty: further rays find it. First-bounce light is always found by shadow
-  // rays, as a VPL does not know the edges of shadows.
+  // Radiance that leaves the point without first-bounce light, W/(m2 sr), from the VPL's flux. If
+  // empty, further rays estimate it. Shadow rays always estimate first-bounce light, as a VPL does
+  // not know the edges of shadows.
   std::optional<Vec3> scattered;
   UncoveredShare byDistance = {};  // for other receivers that reuse the point
 };
 
-// Thread-safe. Both functions empty: nothing is compensated, and no rays are sent for it.
+// Thread-safe. If both functions are empty, nothing is compensated, and no rays are traced for it.
 struct Compensation {
   // Looks up the VPLs at the hits of a batch of rays, so that memory accesses overlap. Skips
   // points that hit nothing.
   std::function<void(std::span<const SurfacePoint>, std::span<ReachGrid::Lookup>)> lookUp;
-  // For a point that a ray found at `distance`, world units. `near`: its look-up, or null.
+  // Uncovered light of a point that a ray hit at `distance`, world units. `near`: its look-up, or
+  // null.
   std::function<Uncovered(const SurfacePoint& point, float distance, const ReachGrid::Lookup* near,
                           Rng& rng)>
       uncovered;
   explicit operator bool() const { return uncovered != nullptr; }
 };
 
-// Borrowed until the image is done.
+// Inputs of a method, borrowed until the image is done.
 struct CompensateInputs {
   const VplTable& lit;
   const RayScene& rays;

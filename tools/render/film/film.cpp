@@ -13,7 +13,9 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint32_t kSlotsPerPass = 64;  // over the whole image; work stops between tiles of a pass
+// Samples per pixel in each pass over the film. Work can be interrupted between the tiles of a
+// pass.
+constexpr uint32_t kSlotsPerPass = 64;
 
 constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons";
 
@@ -87,13 +89,13 @@ struct FilmState {
     }
   }
 
-  struct TilePixel {  // without padding: it is handed over as it lies
+  struct TilePixel {  // without padding, as its bytes are saved
     PixelSums sums;
     PixelCounts counts;
   };
   Tiles tiles;
   Progress at;
-  std::vector<uint8_t> done;  // tiles of this pass
+  std::vector<uint8_t> done;  // tiles of the current pass
   std::vector<PixelSums> pixels;
   std::vector<PixelCounts> counts;
   SplatSums splats;

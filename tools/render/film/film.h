@@ -13,35 +13,35 @@
 namespace bnvpl {
 
 struct FilmOptions {
-  uint32_t spp = 8;  // samples a pixel
+  uint32_t spp = 8;  // samples per pixel
   uint64_t seed = 1;
   Only only = Only::Everything;
   std::vector<const Layer*> layers;    // channels beside R, G, B
-  bool redistributeFireflies = false;  // fireflies.h
+  bool redistributeFireflies = false;  // see fireflies.h
 };
 
 struct FilmStats {
-  double direct = 0, indirect = 0, clamped = 0,
-         compensated = 0;          // image means of the channels' mean, W/(m2 sr)
-  double cut = 0, shadowRays = 0;  // a sample, on average
+  // Means over pixels and channels, W/(m2 sr).
+  double direct = 0, indirect = 0, clamped = 0, compensated = 0;
+  double cut = 0, shadowRays = 0;  // means per sample
   uint64_t samples = 0;
   uint64_t nonFinite = 0;  // samples counted as zero because a value was NaN or infinite
 };
 
-// Channel `c` of what the image shows, as the sums have it.
+// Sum of channel `c` of the light that the image shows.
 inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
   return (only != Only::Indirect ? p.sum[PixelSums::kDirect + c] : 0.0) +
          (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
 }
 
-// Box filter, samples stratified in each pixel. A tile depends on the seed and its place only.
-// Progress counts samples and photons; `resume` mends interruptions, and its state holds every
-// pixel's sums. The image of a shard is blank: what it brought goes to the sink, the sums of each
-// of its tiles, and of all that its photons bring.
+// Renders with a box filter and samples that are stratified in each pixel. A tile depends only on
+// the seed and its position. Progress counts samples and photons. The state of `resume` holds the
+// sums of every pixel. A shard returns a blank image; the sums of its tiles and of its photons go
+// to the sink.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
 
-// The image from the sums of all shards. `photons`: whether the integrator sends any.
+// Develops the image from the sums of all shards. `photons`: whether the integrator traces photons.
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
                const ShardSource& source);
 

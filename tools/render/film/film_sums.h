@@ -1,4 +1,4 @@
-// Sums of pixels -> an image with layers, and its figures.
+// Sums of pixels -> an image with layers, and its statistics.
 #pragma once
 
 #include <span>
@@ -9,24 +9,24 @@
 
 namespace bnvpl {
 
-// How far the sums of all pixels are.
+// Sums of all pixels.
 struct FilmSums {
   std::span<const PixelSums> sums;
   std::span<const PixelCounts> counts;
-  double perSample;  // of `sums`: one over what they are sums of, samples or passes
-  std::span<const PixelPasses> passes = {};        // without passes empty
-  std::span<const BothLights> redistributed = {};  // by redistributeFireflies(), or empty
+  double perSample;  // factor of `sums`: one over the number of samples or passes in them
+  std::span<const PixelPasses> passes = {};        // empty if there are no passes
+  std::span<const BothLights> redistributed = {};  // from redistributeFireflies(), or empty
 
   BothLights redistributedOf(size_t pixel) const {
     return redistributed.empty() ? BothLights{} : redistributed[pixel];
   }
 };
 
-// R, G, B, as `only` shows them.
+// Adds R, G, B of the light that `only` shows.
 void addRadiance(const FilmSums& film, Only only, Image& image);
 void addLayer(const Layer& layer, const FilmSums& film, Image& image);
 
-// Of all but `samples` and photons that were not finite.
+// Statistics of a film of `samples` samples. Photons that were not finite are left out.
 FilmStats statsOf(const FilmSums& film, uint64_t samples);
 
 }  // namespace bnvpl

@@ -11,14 +11,14 @@ namespace bnvpl {
 
 namespace {
 
-// What a sample of indirect light may add, over what is around. A sample of direct light may add
-// twice as much: it is made of few rays, so that samples differ more where there are no fireflies.
+// Bound b_i of a sample of indirect light, relative to max(o_i, a_i). The bound of direct light is
+// twice as large: its samples take few rays, so they vary more even without fireflies.
 constexpr double kMinShare = 0.125, kTimesItsShare = 2.0;
 constexpr std::array<double, 2> kTimes{2.0, 1.0};
-constexpr float kVisible = 0.02f;  // contrast
-// The level at which the surface around shows how much of its light is in fireflies.
+constexpr float kVisible = 0.02f;  // contrast up to which added light is invisible
+// Level at which surfaceLight() compares the light of fireflies with that of the surface.
 constexpr size_t kLocal = 3;
-// Light around, over that of a firefly, below which nothing can hide it.
+// A firefly is not moved where the filtered light is below this share of its own.
 constexpr float kDark = 1e-6f;
 
 bool isShown(size_t kind, Only only) {
@@ -40,12 +40,12 @@ FilmValues shownLight(const FilmSums& film, Only only) {
   return shown;
 }
 
-// What S_level makes of 1: the share of a kernel that edges leave.
+// S_0 applied to 1: the share of the kernel that edges leave.
 FilmValues smoothedOnes(const SurfaceFilter& filter) {
   return filter.smooth(FilmValues(filter.pixels(), 1.0f), 0);
 }
 
-// The mean over the surface around each pixel.
+// Mean over the surface around each pixel.
 FilmValues meanAround(const SurfaceFilter& filter, const FilmValues& ones,
                       const FilmValues& values) {
   FilmValues out = filter.smooth(values, 0);
@@ -53,7 +53,8 @@ FilmValues meanAround(const SurfaceFilter& filter, const FilmValues& ones,
   return out;
 }
 
-// What the brightest samples and photons of a pixel add to it, kind by kind.
+// Calls fn(kind, contribution to the pixel) for the brightest samples and photons of pixel i. Kind
+// 0 is direct, kind 1 indirect light.
 template <typename Fn>
 void forBrightest(const FilmSums& film, size_t i, Only only, const Fn& fn) {
   const auto perSample = static_cast<float>(film.perSample);
@@ -65,14 +66,14 @@ void forBrightest(const FilmSums& film, size_t i, Only only, const Fn& fn) {
   for (size_t k = 0; k < PixelSums::kBrightest; ++k) fn(1, film.sums[i].photon(k) * perSample);
 }
 
-// The excess of each pixel, of direct and of indirect light.
+// Excess e_i of each pixel's direct and indirect light.
 std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValues& shown,
                                  const FilmValues& smoothed, const FilmValues& ones) {
   std::vector<BothLights> excess(shown.size());
   parallelFor(shown.size(), 256, [&](size_t i) {
     float others = shown[i];
     forBrightest(film, i, only, [&](size_t, Vec3 light) { others -= mean(light); });
-    // The mean of what is around is without these samples.
+    // Mean of the surroundings without these samples.
     const float around = (smoothed[i] - SurfaceFilter::kCentre * (shown[i] - others)) / ones[i];
     const double share = std::max(kMinShare, kTimesItsShare / samplesOf(film, i)) *
                          double{std::max({0.0f, others, around})};
@@ -80,7 +81,7 @@ std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValu
       const double bound = kTimes[kind] * share, own{mean(light)};
       if (own > bound) excess[i][kind] += light * static_cast<float>(1.0 - bound / own);
     });
-    // A dot that nothing surrounds stays.
+    // A bright pixel in dark surroundings keeps its light.
     if (!(around > 1e-5f * shown[i]) || !isFinite(excess[i][0]) || !isFinite(excess[i][1]))
       excess[i] = {};
   });
@@ -93,9 +94,9 @@ FilmValues meansOf(std::span<const BothLights> lights, size_t kind) {
   return out;
 }
 
-// The light of each pixel's fireflies that its lump has to hide. Pixels of a tile may owe theirs to
-// one find of a near-field ray: where that is most, each counts with the geometric mean of its own
-// light and that of all.
+// Excess of each pixel for the test of visibility. One near-field ray may cause the fireflies of
+// many pixels of a tile, so indirect light counts with the geometric mean of the pixel's excess and
+// the tile's.
 FilmValues lumpsOf(std::span<const BothLights> excess, size_t width) {
   const FilmValues direct = meansOf(excess, 0), indirect = meansOf(excess, 1);
   const size_t across = (width + kTileSide - 1) / kTileSide;
@@ -109,8 +110,8 @@ FilmValues lumpsOf(std::span<const BothLights> excess, size_t width) {
   return lumps;
 }
 
-// The light of the surface: that of the samples without excess, and in proportion to it what
-// fireflies bring to the surroundings; in a dark corner they may be most of its light.
+// Light L of the surface: that of the samples without excess, scaled to include the excess of the
+// surroundings, which may be most of the light in a dark corner.
 FilmValues surfaceLight(const SurfaceFilter& filter, const FilmValues& ones,
                         const FilmValues& shown, const FilmValues& excess) {
   FilmValues rest(shown.size());
@@ -125,15 +126,15 @@ FilmValues surfaceLight(const SurfaceFilter& filter, const FilmValues& ones,
   return light;
 }
 
-// Where the excess of a pixel goes: the level, one over the light within its kernel, and the
-// contrast of its lump.
+// Destination of a pixel's excess: level l, 1 / M_l, and the contrast of the added light.
 struct Target {
   uint8_t level = 0;
-  float perLight = 0.0f;  // 0: it stays
+  float perLight = 0.0f;  // 0: the excess is not moved
   float contrast = INFINITY;
 };
 
-// The narrowest level whose contrast does not show, or else the one with the least.
+// Chooses the narrowest level with a contrast of at most kVisible, or else the one with the
+// smallest.
 std::vector<Target> chooseTargets(const SurfaceFilter& filter, const FilmValues& light,
                                   const FilmValues& excess, const FilmValues& lumps) {
   std::vector<Target> targets(light.size());
@@ -154,8 +155,8 @@ std::vector<Target> chooseTargets(const SurfaceFilter& filter, const FilmValues&
   return targets;
 }
 
-// On small or bumpy surfaces the edges leave too little room: what shows there goes over them. Each
-// firefly keeps one of its two targets.
+// Targets for excess that stays visible within edges, as on small or bumpy surfaces: `filter`
+// ignores edges. Of its two targets, each firefly keeps the one with the smaller contrast.
 std::vector<Target> chooseOverEdges(const SurfaceFilter& filter, const FilmValues& light,
                                     FilmValues excess, const FilmValues& lumps,
                                     std::span<Target> within) {
@@ -171,7 +172,8 @@ std::vector<Target> chooseOverEdges(const SurfaceFilter& filter, const FilmValue
 void move(const SurfaceFilter& filter, std::span<const Target> targets, const FilmValues& light,
           std::span<const BothLights> excess, size_t kind, size_t channel,
           std::span<BothLights> change) {
-  // From the widest level to the narrowest, each step taking along what begins there.
+  // Applies the adjoint of S_l ... S_0, from the widest level to the narrowest. Each level adds the
+  // excess that it is the target of.
   FilmValues moved(light.size(), 0.0f);
   for (size_t level = filter.levels(); level-- > 0;) {
     for (size_t i = 0; i < moved.size(); ++i)

@@ -1,4 +1,4 @@
-// What the film asks of an integrator.
+// Interface between the film and an integrator.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,16 @@
 
 namespace bnvpl {
 
-// Thread-safe and immutable once made.
+// Immutable and thread-safe.
 struct Integrator {
-  // Finds the radiance of all samples of a tile.
+  // Estimates the radiance of all samples of a tile.
   std::function<void(const TileSamples& tile)> samples;
-  // Photons that add indirect light to the samples, one for each sample of the film; may be empty.
+  // Traces photons that add indirect light, one per sample of the film. May be empty.
   Splatter photons = {};
   bool wholePixels = false;  // every call needs all samples of its pixels
-  size_t vpls = 0;           // VPLs with flux
-  // Lamps whose caustics photons could carry, and those with too few photons for it.
+  size_t vpls = 0;           // number of VPLs with flux
+  // Lamps whose caustics can be rendered by photons, and those of them with too few photons in
+  // view.
   size_t lamps = 0, sparseLamps = 0;
 };
 

@@ -20,7 +20,7 @@ double lightOf(const LayerPixel& p, size_t channel) {
   return meanOf<kSlot>(p, channel) + double{p.redistributed[kKind][channel]};
 }
 
-// Over the samples that hit something; the void is infinitely far.
+// Mean depth of the samples that hit a surface, or infinity if none did.
 double depthOf(const LayerPixel& p, size_t) {
   const double hits = p.sums.sum[PixelSums::kHits];
   return hits > 0.0 ? p.sums.sum[PixelSums::kDepth] / hits : double{INFINITY};
@@ -38,21 +38,20 @@ double errorOf(const LayerPixel& p, size_t channel) {
 double samplesOf(const LayerPixel& p, size_t) { return static_cast<double>(p.passes.samples); }
 
 constexpr std::array kLayers{
-    Layer{"direct", "RGB", "light straight from the lights, W/(m2 sr)",
-          lightOf<PixelSums::kDirect, 0>},
+    Layer{"direct", "RGB", "direct light, W/(m2 sr)", lightOf<PixelSums::kDirect, 0>},
     Layer{"indirect", "RGB", "all other light, W/(m2 sr)", lightOf<PixelSums::kIndirect, 1>},
-    Layer{"clamped", "RGB", "indirect light that the clamp took from VPLs, W/(m2 sr)",
+    Layer{"clamped", "RGB", "indirect light of VPLs that clamping removed, W/(m2 sr)",
           meanOf<PixelSums::kClamped>, true},
     Layer{"albedo", "RGB", "reflectance of the first rough vertex", meanOf<PixelSums::kAlbedo>},
     Layer{"N", "XYZ", "shading normal of the first rough vertex", meanOf<PixelSums::kNormal>},
     Layer{"Z", "", "depth along the viewing axis, scene units", depthOf},
-    Layer{"cutsize", "", "clusters or VPLs gathered, a sample", countOf<&PixelCounts::cut>, true},
-    Layer{"shadowrays", "", "rays towards VPLs, a sample", countOf<&PixelCounts::shadowRays>, true},
-    Layer{
-        "error", "RGB",
-        "standard error of R, G, B as passes differ, before fireflies are redistributed, W/(m2 sr)",
-        errorOf, false, true},
-    Layer{"samples", "", "samples that passes took", samplesOf, false, true},
+    Layer{"cutsize", "", "clusters or VPLs gathered per sample", countOf<&PixelCounts::cut>, true},
+    Layer{"shadowrays", "", "shadow rays to VPLs per sample", countOf<&PixelCounts::shadowRays>,
+          true},
+    Layer{"error", "RGB",
+          "standard error of R, G, B between passes, before fireflies are redistributed, W/(m2 sr)",
+          errorOf, false, true},
+    Layer{"samples", "", "samples of all passes", samplesOf, false, true},
 };
 
 }  // namespace

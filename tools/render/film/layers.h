@@ -1,4 +1,5 @@
-// What an image can hold beside R, G, B. A layer is one entry of kLayers (layers.cpp).
+// Layers: the channels that an image can have beside R, G, B. Each is an entry of kLayers
+// (layers.cpp).
 #pragma once
 
 #include <array>
@@ -13,11 +14,11 @@
 
 namespace bnvpl {
 
-// Of direct light, and of indirect light.
+// Direct light and indirect light.
 using BothLights = std::array<Vec3, 2>;
 
-// Sums over a pixel's samples, of the values of RadianceSample, each slot being the first of its
-// channels; and of the brightest samples what each adds to them.
+// Sums over a pixel's samples of the values of RadianceSample, and the brightest of these samples.
+// A Slot is the index of a value's first channel.
 struct PixelSums {
   enum Slot {
     kDirect = 0,
@@ -28,13 +29,13 @@ struct PixelSums {
     kDepth = 15,
     kHits = 16,
     kCompensated = 17,
-    kPhotons = 20  // the two brightest photons, which are the same for all samples
+    kPhotons = 20  // the two brightest photons of the pixel, equal in all of its samples
   };
   static constexpr size_t kBrightest = 2;
 
   std::array<double, 26> sum{};
-  // Of direct light but what the camera ray itself meets, and of indirect light but what
-  // photons bring; by the mean of the channels, the brightest first.
+  // Brightest samples of direct light without emission, and of indirect light without photons, in
+  // descending order of the channels' mean.
   std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
   Vec3 photon(size_t k) const {
@@ -51,38 +52,39 @@ struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
 };
 
-// What passes over the film know of a pixel beside the sums of their means.
+// Statistics of a pixel over the passes (passes.h).
 struct PixelPasses {
-  uint64_t samples = 0;            // of all passes
-  std::array<double, 3> variance;  // of the shown R, G, B, the mean of all passes
+  uint64_t samples = 0;            // in all passes
+  std::array<double, 3> variance;  // variance of the shown R, G, B, which are means of all passes
 };
 
-// A pixel as a layer sees it.
+// Values of a pixel from which layers are computed.
 struct LayerPixel {
   const PixelSums& sums;
   const PixelCounts& counts;
-  double perSample;  // of the sums: one over the samples of a pixel, or the passes
-  double perCount;   // of the counts: one over the samples
+  double perSample;  // factor of the sums: one over the number of samples, or of passes
+  double perCount;   // factor of the counts: one over the number of samples
   const PixelPasses& passes;
-  BothLights redistributed;  // what redistributeFireflies() adds
+  BothLights redistributed;  // change by redistributeFireflies()
 };
 
 struct Layer {
-  std::string_view name;      // of the option --layers, and before the dot of its channels
+  std::string_view name;      // as in --layers, and before the dot in names of channels
   std::string_view channels;  // "RGB": NAME.R, NAME.G, NAME.B; empty: one channel, NAME
-  std::string_view help;      // with its unit
+  std::string_view help;      // description with unit
   double (*value)(const LayerPixel&, size_t channel);
-  bool ofVpls = false;    // means something only where VPLs are gathered
-  bool ofPasses = false;  // only where the image is made by passes
+  bool ofVpls = false;    // exists only where VPLs are gathered
+  bool ofPasses = false;  // exists only where the image is rendered by passes
 };
 
 std::string channelName(const Layer& layer, size_t channel);
-// For --help: a line for each, with its name and help; with a line break before each.
+// Text for --help: one line per layer, each preceded by a line break.
 std::string layerList();
 
-// Of a comma-separated list of names, or "all" that the image can have; `vpls`: those of VPLs, too;
-// `passes`: those of passes; `shown`: "direct" or "indirect" where the image shows that light
-// alone. Throws UsageError for a name that is unknown or that the image cannot have.
+// Parses a comma-separated list of names, or "all" for all layers that the image can have. `vpls`
+// and `passes`: whether it gathers VPLs and is rendered by passes. `shown`: "direct" or "indirect"
+// if the image shows only that light. Throws UsageError for a layer that is unknown or that the
+// image cannot have.
 std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true,
                                       bool passes = false, std::string_view shown = "all");
 

@@ -10,7 +10,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr double kEpsilon = 1e-4;  // of relMSE, times the squared mean of the image
+constexpr double kEpsilon = 1e-4;  // epsilon of relMSE, relative to the squared mean of the image
 
 // Calls fn(index) for a cell of a grid and its neighbours.
 template <typename Fn>
@@ -21,7 +21,8 @@ void forNeighbours(size_t index, size_t width, size_t count, const Fn& fn) {
   }
 }
 
-// Of one sample, smoothed as few passes know it badly.
+// Standard deviation of one sample of each tile. It is smoothed, since few passes estimate it
+// poorly.
 std::vector<double> tileDeviations(const Tiles& tiles, std::span<const double> variances,
                                    std::span<const double> inverse, uint64_t passes) {
   std::vector<double> own(tiles.count()), smooth(tiles.count());
@@ -56,7 +57,7 @@ std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t 
       (3.0 * double(count));
   const double epsilon = kEpsilon * mean * mean;
   std::vector<double> relative(count, 0.0);
-  if (!(epsilon > 0.0)) return relative;  // black
+  if (!(epsilon > 0.0)) return relative;  // the image is black
   parallelFor(count, 256, [&](size_t i) {
     std::array<double, 3> sum{};
     size_t near = 0;
@@ -93,7 +94,7 @@ std::vector<uint32_t> allocateSamples(const Tiles& tiles, std::span<const double
   const auto wanted = [&](size_t t, double factor) {
     return std::clamp(factor * deviations[t], least, most);
   };
-  // The samples grow with the factor: from the least everywhere to the most.
+  // Bisection: the number of samples grows with the factor, from `least` in all tiles to `most`.
   double low = least / largest, high = most / smallest;
   for (int step = 0; step < 60; ++step) {
     const double factor = std::sqrt(low) * std::sqrt(high);

@@ -1,4 +1,4 @@
-// How far the mean of passes is from the truth, and where further samples help most.
+// Error of the mean of passes, and the sample allocation that reduces it most.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,19 @@
 
 namespace bnvpl {
 
-// Of each pixel the squared error over the squared brightness, mean of the channels: as the relMSE
-// of vpl-inspect compare, but over the brightness of 3 x 3 pixels. A pixel's own is too dark just
-// where its noise has missed the light, and where one sample is far too bright it hides that. At
-// edges of shadows it is less than relMSE.
+// Squared error over squared brightness of each pixel, averaged over the channels. This is the
+// relMSE of vpl-inspect compare, but with the mean brightness of 3 x 3 pixels: a pixel's own is too
+// low where its samples missed the light, and too high where one of them is a firefly. At edges of
+// shadows the result is less than relMSE.
 std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t width);
 
-// Root of their mean.
+// Square root of the mean of relativeVariances().
 double relativeError(std::span<const double> variances);
 
-// Samples for each tile in the next pass: in proportion to the deviation of one sample of it (which
-// brings the largest fall of the image's error: Neyman 1934), between a quarter and four times
-// `spp`, `spp` on average over the film. `variances` are those of pixels, `inverse` the sum over
-// passes of 1 / samples in each tile.
+// Samples per pixel of each tile in the next pass, proportional to the standard deviation of one of
+// its samples, which minimises the error of the image (Neyman 1934). They lie between a quarter of
+// and four times `spp`, and are `spp` on average over the film. `variances` has one entry per
+// pixel; `inverse` is the sum over passes of 1 / samples for each tile.
 std::vector<uint32_t> allocateSamples(const Tiles& tiles, std::span<const double> variances,
                                       std::span<const double> inverse, uint64_t passes,
                                       uint32_t spp, uint64_t key);

@@ -13,7 +13,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint64_t kUniformPasses = 4;  // before errors are believed
+constexpr uint64_t kUniformPasses = 4;  // passes before the error estimate is used
 constexpr double kPreviewEveryS = 5.0;
 
 using Rgb = std::array<double, 3>;
@@ -21,7 +21,7 @@ using Rgb = std::array<double, 3>;
 // What is known so far; all of it goes into a checkpoint, which is always in the middle of a pass.
 struct PassesState {
   struct Progress {
-    uint64_t pass = 0;  // under way
+    uint64_t pass = 0;  // index of the current pass
     double spentS = 0.0;
     SplatProgress splats;
   };
@@ -36,14 +36,14 @@ struct PassesState {
         squares(pixels) {}
 
   Progress at;
-  std::vector<uint8_t> done;        // tiles of this pass
-  std::vector<uint32_t> slots;      // samples a pixel of each tile in this pass
-  std::vector<uint64_t> samples;    // of each tile's pixels, in all passes
-  std::vector<double> inverse;      // sum over passes of 1 / slots
-  std::vector<PixelSums> sums;      // of the passes' means
-  std::vector<PixelCounts> counts;  // of samples
-  std::vector<Rgb> values;          // what this pass shows
-  std::vector<Rgb> squares;         // sums over the passes before of what they showed, squared
+  std::vector<uint8_t> done;        // tiles of the current pass
+  std::vector<uint32_t> slots;      // samples per pixel of each tile in the current pass
+  std::vector<uint64_t> samples;    // samples per pixel of each tile in the finished passes
+  std::vector<double> inverse;      // sum over finished passes of 1 / slots
+  std::vector<PixelSums> sums;      // sums of the passes' means
+  std::vector<PixelCounts> counts;  // sums over samples
+  std::vector<Rgb> values;          // shown R, G, B of the current pass
+  std::vector<Rgb> squares;         // sums over finished passes of squared `values`
 
   template <typename Fn>
   void forArrays(const Fn& fn) {
@@ -122,7 +122,7 @@ class Passes {
     if (!options_.redistributeFireflies) return {};
     return redistributeFireflies(sumsSoFar(), options_.only, scene_.film.width);
   }
-  // Of the passes that are done, and of the tiles of the one under way.
+  // Samples of the finished passes, and of the finished tiles of the current one.
   uint64_t samplesSoFar() const {
     uint64_t sum = 0;
     for (size_t t = 0; t < tiles_.count(); ++t) {
@@ -227,7 +227,7 @@ class Passes {
     error_ = relativeError(variances_);
   }
 
-  static constexpr uint64_t kMaxSlots = uint64_t{1} << 20;  // samples of a pixel in a pass
+  static constexpr uint64_t kMaxSlots = uint64_t{1} << 20;  // limit of samples per pixel in a pass
   enum Draw : uint32_t { kDrawPass, kDrawSlots, kDrawTurn };
 
   const Scene& scene_;

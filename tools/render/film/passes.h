@@ -1,24 +1,22 @@
-// An image by passes over the film, until a time is spent or an error is reached.
+// Renders an image by passes over the film, until a time is spent or an error is reached.
 //
-// A pass is an image of its own, by kPassSpp samples a pixel, with random numbers of its own; the
-// image is the plain mean of all K passes m_k. How samples of one pass differ tells nothing about
-// the error, as those of a tile share a cut and are stratified. Passes are independent, so how they
-// differ tells the error of their mean m, for each pixel:
+// Each pass renders an image m_k with kPassSpp samples per pixel and its own random numbers. The
+// result is the plain mean m of all K passes. The variance between samples of one pass does not
+// give the error, as samples of a tile share a cut and are stratified. Passes are independent, so
+// the variance between passes does, for each pixel:
 //
 //   error^2 = sum over passes (m_k - m)^2 / (K (K - 1))
 //
-// It is the error of the samples, before fireflies are redistributed (fireflies.h), and knows
-// nothing of what all passes share: VPLs, their flux, and choices that a gather makes once for the
-// film.
+// This is the error before fireflies are redistributed (fireflies.h). It does not include the error
+// of what all passes share: VPLs, their flux, and choices that a gather makes once for the film.
 //
-// Adaptive passes give each tile its own number of samples, kPassSpp on average, by the error of
-// the passes before. That is free of bias: whatever was chosen, a pass is right on average, and
-// its weight is 1 / K whatever it finds and however many samples a tile got. (Weights by the number
-// of samples would be biased: a pixel that met no bright sample by chance would get no others, and
-// stay too dark.) For the same reason the error above is right: m_k - expectation are a
-// martingale's steps, uncorrelated though of different variances, and that is all it needs.
-// What is left: an error to be reached ends the work when the estimate says so. It is one number
-// for the whole image, on which a single pixel has next to no influence.
+// Adaptive passes give each tile its own number of samples, kPassSpp on average, from the error of
+// the passes before. This adds no bias: every pass is unbiased whatever was chosen, and its weight
+// is 1 / K whatever it finds and however many samples a tile has. (Weights by the number of samples
+// would be biased: a pixel that met no bright sample by chance would get no others, and stay too
+// dark.) The error above stays valid: the m_k - E[m_k] are steps of a martingale, so they are
+// uncorrelated, though of different variances. Only --target-error lets the estimate end the work.
+// It is one number for the whole image, on which a single pixel has next to no influence.
 #pragma once
 
 #include <cmath>
@@ -28,15 +26,14 @@
 
 namespace bnvpl {
 
-inline constexpr uint32_t kPassSpp = 4;    // samples a pixel of a pass, on average
-inline constexpr uint64_t kMinPasses = 2;  // for an error to be known
+inline constexpr uint32_t kPassSpp = 4;    // samples per pixel in a pass, on average
+inline constexpr uint64_t kMinPasses = 2;  // passes that an error estimate needs
 
 struct Budget {
-  double timeS = INFINITY;  // of the passes, by the clock; no pass begins that is expected to end
-                            // later
-  double error = 0.0;       // ends when relativeError() is at most this; 0: never
-  uint64_t passes = UINT64_MAX;  // at most; at least kMinPasses
-  bool adaptive = true;          // not with photons, which go where they will
+  double timeS = INFINITY;       // wall-clock time; a pass begins only if it is expected to fit
+  double error = 0.0;            // relativeError() that ends the work; 0: none does
+  uint64_t passes = UINT64_MAX;  // maximal number of passes, at least kMinPasses
+  bool adaptive = true;          // ignored with photons, which cannot be aimed at tiles
 };
 
 struct PassesDone {
@@ -46,11 +43,11 @@ struct PassesDone {
   std::string_view endedBy;  // "time", "error" or "passes"
 };
 
-// Gets R, G, B of the image so far, every few seconds.
+// Called every few seconds with R, G, B of the image so far.
 using PreviewFn = std::function<void(const Image&)>;
 
-// As renderFilm(), whose count of samples it ignores. Of the number of passes alone depends what
-// the image is, bytes included.
+// Like renderFilm(), but ignores options.spp. The image depends only on the number of passes, down
+// to its bytes.
 Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                    const Budget& budget, FilmStats& stats, PassesDone& passes,
                    const ProgressFn& progress = {}, const Resume& resume = {},

@@ -9,7 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-// Beyond this a limb hands its carry on.
+// Value of a limb from which carries are propagated.
 constexpr int64_t kFull = int64_t{1} << 62;
 
 }  // namespace
@@ -26,7 +26,7 @@ void SplatSums::addTo(size_t value, float term) {
   if (term == 0.0f) return;
   int exponent = 0;
   const auto digits = static_cast<int64_t>(std::ldexp(std::frexp(term, &exponent), 24));
-  // term = digits * 2^(exponent - 24); denormal floats have zeros at the end.
+  // term = digits * 2^(exponent - 24); the last digits of denormal floats are zero.
   const int above = exponent - 24 - kLowest;
   const int place = std::max(0, above);
   const auto shifted = static_cast<__int128>(above < 0 ? digits >> -above : digits)

@@ -11,14 +11,14 @@ namespace bnvpl {
 namespace {
 
 constexpr std::array<float, 5> kTaps{1 / 16.0f, 4 / 16.0f, 6 / 16.0f, 4 / 16.0f, 1 / 16.0f};
-constexpr ptrdiff_t kReach = 2;  // taps to each side
+constexpr ptrdiff_t kReach = 2;  // taps on each side
 
 // Differences at which a weight is 0.
 constexpr float kMaxTurn = 0.5f;      // squared distance of two unit normals: 41 degrees
-constexpr float kMaxAlbedo = 0.5f;    // of the larger albedo
-constexpr float kDarkAlbedo = 0.05f;  // of which differences do not show
-constexpr float kMaxDepth = 0.05f;    // of the inverse depth, off the plane through the other pixel
-constexpr float kMaxSlope = 0.25f;    // besides, of the change that the plane's slope explains
+constexpr float kMaxAlbedo = 0.5f;    // share of the larger albedo plus kDarkAlbedo
+constexpr float kDarkAlbedo = 0.05f;  // albedo whose differences are invisible
+constexpr float kMaxDepth = 0.05f;    // share of the inverse depth, off the other pixel's plane
+constexpr float kMaxSlope = 0.25f;    // added share of the change that the plane's slope explains
 
 // 1 for no difference, 0 from the maximum on.
 float falloff(float difference, float maximum) {
@@ -27,7 +27,7 @@ float falloff(float difference, float maximum) {
   return rest * rest;
 }
 
-// The smaller of two slopes, so that an edge on one side does not count.
+// The slope of smaller magnitude, which ignores an edge on one side.
 float lesser(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
 
 }  // namespace
@@ -51,7 +51,7 @@ SurfaceFilter::SurfaceFilter(std::span<const PixelSums> sums, size_t width, Edge
   findSlopes();
 }
 
-// The inverse depth of a plane is linear over the film.
+// The inverse depth of a plane is a linear function on the film.
 void SurfaceFilter::findSlopes() {
   parallelFor(surfaces_.size(), 1024, [&](size_t i) {
     Surface& s = surfaces_[i];
@@ -125,7 +125,7 @@ size_t SurfaceFilter::levels() const {
   return levels;
 }
 
-// The composite of one axis is the fourth power of a box of m = 2^(level + 1) pixels.
+// Along one axis the kernel is the fourth convolution power of a box of m = 2^(level + 1) pixels.
 double SurfaceFilter::peak(size_t level) {
   const double m = std::exp2(double(level) + 1.0),
                alongOne = (2.0 * m * m + 1.0) / (3.0 * m * m * m);

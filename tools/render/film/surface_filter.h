@@ -9,7 +9,7 @@
 // with 0 <= w <= 1: 1 where two pixels see one surface, 0 across an edge of normal, depth or
 // albedo. w is symmetric. The composite S_l ... S_0 on a plane is a cubic B-spline whose support is
 // 2^(l+3) pixels wide; a step jumps over thin objects in front of the surface. Weights are not
-// normalised: what a step loses at edges is the caller's to make good.
+// normalised: the caller must make up for the weight that a step loses at edges.
 #pragma once
 
 #include <span>
@@ -24,31 +24,30 @@ using FilmValues = std::vector<float>;
 
 class SurfaceFilter {
  public:
-  // The surface that each pixel sees, by the means of its samples.
-  // Whether the filter stops at edges of surfaces. It always stops at the void.
+  // Whether the filter stops at edges of surfaces. It always stops at the background.
   enum class Edges { Stop, Ignore };
+  // The surface of each pixel is the mean of its samples.
   SurfaceFilter(std::span<const PixelSums> sums, size_t width, Edges edges);
 
   size_t pixels() const { return surfaces_.size(); }
-  // Levels until the filter is as wide as the film.
+  // Number of levels until the filter is as wide as the film.
   size_t levels() const;
 
   // S_level of `values`, and its adjoint: the same steps in reverse order.
   FilmValues smooth(const FilmValues& values, size_t level) const;
   FilmValues scatter(const FilmValues& values, size_t level) const;
 
-  // The central value of the composite S_level ... S_0 on a plane: the largest share of one pixel's
-  // value that another gets.
+  // Peak of the kernel of S_level ... S_0 on a plane.
   static double peak(size_t level);
 
-  // S_0 gives a pixel so much of its own value.
+  // Weight of a pixel's own value in S_0.
   static constexpr float kCentre = 36 / 256.0f;
 
  private:
   struct Surface {
     Vec3 normal, albedo;
-    float inverseDepth = 0.0f;  // 0: the pixel sees no surface, and shares no light
-    float slope[2] = {};        // change of inverseDepth from pixel to pixel along x and y
+    float inverseDepth = 0.0f;  // 0: the pixel shows no surface and takes no part in the filter
+    float slope[2] = {};        // change of inverseDepth per pixel along x and y
   };
   enum Axis : size_t { kX, kY };
   void findSlopes();

@@ -21,7 +21,7 @@ struct Tile {
   uint32_t y(uint32_t p) const { return y0 + p / (x1 - x0); }
 };
 
-// The film in tiles of 8 x 8 pixels, whose samples meet the same surfaces.
+// Division of the film into tiles of 8 x 8 pixels, whose samples mostly hit the same surfaces.
 class Tiles {
  public:
   explicit Tiles(const Film& film);
@@ -38,27 +38,27 @@ class Tiles {
   size_t across_, down_;
 };
 
-// Which samples of each pixel of a tile.
+// Range of samples of each pixel of a tile.
 struct SlotRange {
-  uint32_t first = 0, end = 0;  // of them
-  uint32_t all = 0;             // of those that are stratified with each other
-  uint64_t stride = 0;          // numbers of random streams of a pixel; at least `all`
-  uint32_t turn = 0;            // as of TileSlots
+  uint32_t first = 0, end = 0;
+  uint32_t all = 0;     // number of samples that are stratified together
+  uint64_t stride = 0;  // random streams reserved for each pixel; at least `all`
+  uint32_t turn = 0;    // see TileSlots
 };
 
-// Calls take(pixel of the tile, its RadianceSample) for each sample, in their order. Depends on the
-// key, the tile's place and the slots only.
+// Calls take(pixel of the tile, its RadianceSample) for each sample, slot by slot. The result
+// depends only on the key, the tile's position and the slots.
 template <typename Take>
 void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
                 const SlotRange& slots, const Take& take);
 
-// A sample to the sums of its pixel; one that is not finite counts as zero.
+// Adds a sample to the sums of its pixel. A sample that is not finite counts as zero.
 void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& counts);
-// What a photon brings, times `share`, likewise.
+// Adds the contribution of a photon, times `share`, in the same way.
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
               std::span<PixelCounts> counts);
 
-// One sample of a pixel, stratified with those of the pixel's other slots.
+// Camera ray of a sample, stratified with those of the pixel's other slots.
 CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
                         uint32_t slot);
 
@@ -71,7 +71,7 @@ void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, 
   for (uint32_t slot = slots.first, slotEnd; slot < slots.end; slot = slotEnd) {
     slotEnd =
         slot + std::min(slots.end - slot,
-                        integrator.wholePixels ? UINT32_MAX : kSlotsAtOnce);  // no sum beyond 2^32
+                        integrator.wholePixels ? UINT32_MAX : kSlotsAtOnce);  // avoids overflow
     samples.clear();
     for (uint32_t s = slot; s < slotEnd; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {

@@ -19,17 +19,17 @@ namespace bnvpl {
 
 // Indirect light of one receiver.
 struct Gathered {
-  Vec3 radiance;     // that leaves towards the viewer, W/(m2 sr)
-  Vec3 clamped;      // what the bound on 1/d^2 removed
+  Vec3 radiance;     // leaves the receiver towards the viewer, W/(m2 sr)
+  Vec3 clamped;      // radiance that the bound on 1/d^2 removed
   uint32_t cut = 0;  // clusters or VPLs evaluated
   uint32_t shadowRays = 0;
 };
 
-// The receivers of a tile's samples; null: nothing to light.
+// The receivers of a tile's samples; null where a sample has none.
 struct TileReceivers : TileSlots {
   std::span<const Bsdf* const> bsdf;
   // Variance, relative to the tile's squared light, that a further shadow ray of a sample must
-  // remove to be worth its time (SampleAllocation); 0: unknown.
+  // remove to be efficient (SampleAllocation); 0 if unknown.
   double marginalCost = 0.0;
   float otherLight = 0.0f;  // mean light of the tile besides the VPLs', channels added, W/(m2 sr)
   // Light of the film's median tile, in the same unit.
@@ -41,7 +41,7 @@ using GatherTile = std::function<void(const TileReceivers&, std::span<Gathered>)
 // Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs.
 using GatherPoint = std::function<Gathered(const Bsdf&, unsigned draws, Rng&)>;
 
-// Thread-safe and immutable once made.
+// Immutable and thread-safe.
 struct Gather {
   GatherTile tile;
   GatherPoint point = {};    // empty: PointGather (gather/point_gather.h)
@@ -49,27 +49,27 @@ struct Gather {
 };
 
 // The shading point of each pixel, row by row; its triangle is kNone where there is none.
-// `emission`: light that the camera ray meets before, mean of the channels, W/(m2 sr).
+// `emission`: emission that the camera path hits before, mean of the channels, W/(m2 sr).
 struct FilmPoints {
   uint32_t width = 0, height = 0;
   std::vector<SurfacePoint> points;
   std::vector<float> emission;
 };
 
-// Borrowed until the image is done.
+// Inputs of a method, borrowed until the image is done.
 struct GatherInputs {
   const RayScene& rays;
   const VplLights& vpls;
-  const LightTree& tree;  // of the VPLs; empty without any
+  const LightTree& tree;  // empty if there are no VPLs
   uint64_t seed;
-  std::function<FilmPoints()> film;  // traced when it is asked for
-  const ProgressFn& progress;        // of preparations
+  std::function<FilmPoints()> film;  // traces the film's points when it is called
+  const ProgressFn& progress;        // reports preparations
 };
 
 using GatherMethod = Method<Gather (*)(const GatherInputs&, const Values&)>;
 std::span<const GatherMethod* const> gatherMethods();
 
-// A Gather that lights each receiver on its own: fn(bsdf) -> Gathered.
+// Makes a Gather that handles each receiver separately: fn(bsdf) -> Gathered.
 template <typename Fn>
 Gather gatherEach(Fn fn) {
   return {[fn = std::move(fn)](const TileReceivers& tile, std::span<Gathered> out) {

@@ -1,4 +1,4 @@
-// All VPLs on average at a single point.
+// Unbiased estimate of the light of all VPLs at a single point.
 #pragma once
 
 #include "tools/render/gather/gather.h"
@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-// By draws of a VplSampler. Thread-safe.
+// Samples VPLs with a VplSampler. Thread-safe.
 class PointGather {
  public:
   PointGather(const RayScene& rays, const VplLights& vpls, const LightTree& tree)

@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// A cut adds and takes back thousands of terms.
+// Has double precision because refining a cut adds and subtracts thousands of terms.
 struct RgbSum {
   double r = 0, g = 0, b = 0;
   void add(Vec3 v, double sign = 1.0) {
@@ -16,7 +16,7 @@ struct RgbSum {
     b += sign * double{v.z};
   }
   double sum() const { return r + g + b; }
-  Vec3 toVec3() const {  // no channel below 0
+  Vec3 toVec3() const {  // clamps channels at 0
     return {static_cast<float>(std::max(0.0, r)), static_cast<float>(std::max(0.0, g)),
             static_cast<float>(std::max(0.0, b))};
   }

@@ -1,4 +1,4 @@
-// What single VPLs bring to one point.
+// Contributions of single VPLs at one point.
 #pragma once
 
 #include "tools/render/gather/gather.h"
@@ -19,8 +19,8 @@ class ShadowTest {
     add(i, 1.0f, out);
     return out;
   }
-  // Adds what VPL i brings, times `weight`, where nothing is in between. No ray where it could
-  // bring nothing.
+  // Adds the contribution of VPL i, times `weight`, if it is visible. Traces no ray if the
+  // contribution is 0 anyway.
   void add(size_t i, float weight, Gathered& out) const {
     Coupling c;
     if (!couple(vpls_, i, bsdf_, c)) return;

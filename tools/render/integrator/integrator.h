@@ -1,5 +1,5 @@
-// The methods of --integrator, which find the radiance along camera rays. Each is a folder beside
-// this file.
+// The methods of --integrator, which estimate the radiance along camera rays. Each is a folder
+// beside this file.
 #pragma once
 
 #include <span>
@@ -14,15 +14,15 @@
 
 namespace bnvpl {
 
-// Borrowed until the image is done.
+// Inputs of a method, borrowed until the image is done.
 struct IntegratorInputs {
   const RayScene& rays;
   const LightSet& lights;
   const VplTable& lit;  // stage Lit; empty unless the method needs VPLs
   uint64_t seed;
   Only only;
-  const ProgressFn& progress;  // of preparations
-  CostProbe* probe = nullptr;  // where nothing but the cost is asked for
+  const ProgressFn& progress;  // reports preparations
+  CostProbe* probe = nullptr;  // set for a cost estimate
 
   uint64_t pixels() const {
     const Film& film = rays.scene().film;
@@ -30,14 +30,15 @@ struct IntegratorInputs {
   }
 };
 
-// For integrators that find light by camera samples.
+// Option of the integrators that use camera samples.
 constexpr Option firefliesOption(std::string_view fallback) {
-  return choiceOption("fireflies", fallback, "redistribute|keep",
-                      "samples and photons far brighter than all around them: their excess goes "
-                      "to the surface around, with its energy, or stays");
+  return choiceOption(
+      "fireflies", fallback, "redistribute|keep",
+      "excess of samples and photons that are far brighter than their surroundings: "
+      "redistributed over the surface around, or kept");
 }
 
-// False for methods without the option.
+// Whether fireflies are redistributed; false for methods without the option.
 inline bool redistributesFireflies(const Values& options) {
   return options.has("fireflies") && options.text("fireflies") == "redistribute";
 }
@@ -47,8 +48,8 @@ struct IntegratorMethod {
   std::span<const Option> options;
   Integrator (*make)(const IntegratorInputs&, const Values&);
   bool needsVpls = false;
-  bool photons = false;  // sends photons for indirect light
-  bool gathers = false;  // gathers VPLs: --gather and --compensate count
+  bool photons = false;  // traces photons for indirect light
+  bool gathers = false;  // gathers VPLs, so that --gather and --compensate apply
 };
 std::span<const IntegratorMethod* const> integratorMethods();
 

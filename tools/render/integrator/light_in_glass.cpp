@@ -14,7 +14,7 @@ bool letsThrough(const MaterialModel& model) {
   return std::holds_alternative<DielectricModel>(model);
 }
 
-// The surface that lets light through, by name; null: there is none. Mixes do by their parts.
+// Material of a surface that lets light through, or null. A mix does if one of its parts does.
 const Material* glassOf(const Scene& scene) {
   const auto transparent = [&](uint32_t m) {
     const Material& material = scene.materials[m];

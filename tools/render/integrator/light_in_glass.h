@@ -1,5 +1,5 @@
-// Light of points, spots and parallel beams that lies behind glass: shadow rays end at the glass,
-// and no other ray can meet such a light. Photons bring it to what the camera sees directly.
+// Point, spot and directional lights behind glass: shadow rays end at the glass, and no other ray
+// can hit such a light. Photons carry its light to surfaces that the camera sees directly.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace bnvpl {
 
-// A warning where an integrator misses such light in a scene that has such lights and surfaces that
-// let light through; empty where it does not.
+// Returns a warning if an integrator misses light in a scene with such lights and with surfaces
+// that let light through, else an empty string.
 std::string lightMissedInGlass(const Scene& scene, const LightSet& lights,
                                std::string_view integrator);
 

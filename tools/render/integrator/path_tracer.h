@@ -14,12 +14,12 @@ inline unsigned maxBouncesOf(const Values& options) {  // none counts for direct
 }
 
 // The reference: unbiased path tracing with next-event estimation and multiple importance sampling,
-// no clamping. Rough scatterings after the first rough vertex are limited to maxBounces, as a
-// photon's hits.
+// without clamping. Rough scatterings after the first rough vertex are limited to maxBounces, like
+// those of photons.
 class PathTracer {
  public:
-  // `indirect`: whether also the indirect light of the points that the camera sees directly; false
-  // leaves that to the LightTracer.
+  // `indirect`: whether to add indirect light at points that the camera sees directly. If not, the
+  // LightTracer does.
   PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only,
              bool indirect = true)
       : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}

@@ -27,7 +27,7 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
       !in.lights.hasPower()) {
     return {};
   }
-  constexpr uint64_t kProbePhotons = 1 << 18;  // to know the cost
+  constexpr uint64_t kProbePhotons = 1 << 18;  // limit for a cost estimate
   const uint64_t sent = unitsToTry(in.probe, photons, kProbePhotons);
   const CostProbe::Part part(in.probe, static_cast<double>(photons) / static_cast<double>(sent));
   return std::make_unique<const Caustics>(in.rays, in.lights, sent, static_cast<float>(raysOfPixel),

@@ -12,8 +12,8 @@ inline constexpr Needs kIndirectIsShown{Condition{"only", "all|indirect"}},
 
 inline constexpr Option kDirectSamplesOption =
     neededBy(kDirectIsShown, wholeOption("direct-samples", "0", 0, 4096, "",
-                                         "camera samples of direct light for each sample; 0: by "
-                                         "noise and cost; 1: the sample itself"));
+                                         "camera samples of direct light for each sample; 0: "
+                                         "chosen by variance and cost; 1: the sample itself"));
 constexpr Option reuseOption(std::string_view fallback, std::string_view help) {
   return neededBy(kIndirectIsShown, wholeOption("reuse", fallback, 1, 32, "", help));
 }
@@ -28,15 +28,15 @@ constexpr Option allocateOption(std::string_view help) {
                   switchOption("allocate", "on", help));
 }
 
-// The parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing where the
-// image shows indirect light alone.
+// Adds the parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing if
+// the image shows only indirect light.
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& film, unsigned lightRays, TileParts& out);
-// Null where the scene has nothing that makes caustics. `bounces`: see Caustics.
+// Returns null if the scene cannot have caustics. `bounces`: see Caustics.
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
                                              uint64_t raysOfPixel, unsigned bounces);
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film);
-// --allocate: runs the pilot.
+// Runs the pilot of --allocate.
 SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator);
 

@@ -10,7 +10,8 @@ namespace {
 // section 4.1).
 float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
   const Vec3 center = box.center() - at, half = 0.5f * box.extent();
-  // The box's own box in the frame, three axes at once: larger, so that the bound holds.
+  // Bounds of the box in the frame, for three axes at once. They contain the box, so the bound
+  // holds.
   const auto along = [](Vec3 v, __m128 x, __m128 y, __m128 z) {
     return _mm_add_ps(_mm_add_ps(_mm_mul_ps(_mm_set1_ps(v.x), x), _mm_mul_ps(_mm_set1_ps(v.y), y)),
                       _mm_mul_ps(_mm_set1_ps(v.z), z));
@@ -29,9 +30,10 @@ float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
          std::sqrt(nearest[0] * nearest[0] + nearest[1] * nearest[1] + highest[2] * highest[2]);
 }
 
-// The most that its VPLs send from anywhere in the box to `at`, over their intensity.
+// Upper bound of the emission of the cluster's VPLs from anywhere in the box towards `at`, relative
+// to their intensity.
 float mostEmitted(const LightNode& n, Vec3 at) {
-  // From the box towards `at` is the mirror image of from `at` towards the mirrored box.
+  // The directions from the box to `at` are those from `at` to the box mirrored at `at`.
   const Bounds mirrored{2.0f * at - n.bounds.upper, 2.0f * at - n.bounds.lower};
   const float cosine = maxCosine(mirrored, at, n.frame);
   return withKind(n.kind,

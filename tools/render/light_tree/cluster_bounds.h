@@ -1,4 +1,4 @@
-// What a cluster of the light tree can send to a point.
+// Upper bounds of the light that a cluster of the light tree sends to a point.
 #pragma once
 
 #include "tools/render/light_tree/light_tree.h"
@@ -6,14 +6,14 @@
 
 namespace bnvpl {
 
-// A receiver with what is worked out once for all clusters.
+// A receiver, with values that all clusters share.
 struct ClusterReceiver {
   explicit ClusterReceiver(const Bsdf& b) : bsdf(b), normal(b.point().ns) {}
   const Bsdf& bsdf;
   AxisFrame normal;
 };
 
-// Upper bound of what a cluster can send, but for 1/d^2 and visibility: BSDF, cosines and
+// Upper bound of a cluster's contribution without 1/d^2 and visibility: BSDF, cosines and
 // intensity, summed over the channels, W/sr.
 float sentBound(const LightNode& n, const ClusterReceiver& receiver);
 
@@ -22,8 +22,8 @@ inline float farthestSquared(const Bounds& box, Vec3 at) {
   return lengthSquared(max(at - box.lower, box.upper - at));
 }
 
-// Upper bound on the error of taking one VPL for the whole cluster, summed over the channels;
-// visibility counts as full (Walter et al. 2005, section 4.1). 0 for a leaf.
+// Upper bound on the error if one VPL represents the cluster, summed over the channels; visibility
+// is taken as 1 (Walter et al. 2005, section 4.1). 0 for a leaf.
 float errorBound(const LightNode& n, const ClusterReceiver& receiver);
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// What to expect of a cluster of the light tree where one random VPL of it counts for all.
+// Expected light of a cluster of the light tree, and its deviation if one random VPL represents it.
 #pragma once
 
 #include <cmath>
@@ -9,29 +9,29 @@
 
 namespace bnvpl {
 
-// The most that a receiver can reflect, over the cosine, 1/sr.
+// Upper bound of the receiver's BSDF, 1/sr.
 inline Vec3 maxReflected(const Bsdf& bsdf) {
   return bsdf.roughUpperBound(1.0f, [](Vec3) { return 1.0f; });
 }
 
-// Deviation of a cluster's light from VPL to VPL, as a share of it: by the cluster's size over its
-// distance, for falloff, cosines and partial visibility together, and by the spread of its normals
+// Relative deviation of a cluster's light between its VPLs, per unit of its size over distance,
+// which covers falloff, cosines and partial visibility, and per unit of the spread of its normals
 // (measured: docs/theory.md, "Tile cuts").
 inline constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
-// A single draw may be this many times the deviation that is allowed to a sample.
+// Largest value of a single draw, over the deviation that a sample may have.
 inline constexpr float kMaxDraw = 2.0f;
 
-// W/(m2 sr), summed over channels.
+// Light of one draw, W/(m2 sr), summed over channels.
 struct ExpectedLight {
   float deviation = 0.0f;
-  float most = 0.0f;  // the nearest VPL counts for all
-  // Whether one draw deviates by more than a sample may, or can be more than a few times that.
+  float most = 0.0f;  // if the whole cluster were at the nearest point of its box
+  // Whether the deviation is larger than allowed, or the maximum larger than kMaxDraw times that.
   int exceeds(float allowed) const { return (deviation > allowed) | (most > kMaxDraw * allowed); }
 };
 
-// Of a cluster that is no leaf, at a point. It goes by the middle of the cluster's box, which is
-// cheaper than a bound; cosines are taken at the side of the box that sees most, so that it is 0
-// only where nothing can arrive.
+// Expected light of an inner node at a point. Distances are taken to the centre of the cluster's
+// box, which is cheaper than a bound. Cosines are the largest over the box, so the result is 0 only
+// if no light can arrive.
 template <typename Kind>
 class Expectation {
  public:
@@ -47,12 +47,12 @@ class Expectation {
         sinHalfAngle_(n.sinHalfAngle),
         normalSpread_(kNormalSpread * (1.0f - n.cosHalfAngle)) {}
 
-  // Without branches, so that the compiler can do several points at once.
+  // Without branches, so that the compiler can vectorise it over points.
   ExpectedLight at(Vec3 point, Vec3 normal, Vec3 reflected) const {
     const Vec3 d = middle_ - point;
     const float distance2 = larger(lengthSquared(d), closest2_);
     const float perDistance = 1.0f / std::sqrt(distance2);
-    const float angle = size_ * perDistance;  // that the box fills, at most 2
+    const float angle = size_ * perDistance;  // subtended by the box, at most 2
     const float receiver = dot(normal, d) * perDistance + 0.5f * angle;
     const float emitter =
         Kind::expectedEmitted(-(dot(axis_, d) * perDistance), 0.5f * angle, sinHalfAngle_);
@@ -71,8 +71,8 @@ class Expectation {
   float size_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
 };
 
-// Whether at no receiver within the bounds, which reflects at most `brightest` (1/sr), the cluster
-// exceeds what is allowed: without cosines, which rules out nearly all.
+// Whether the cluster's light is at most `allowed` at all receivers within the bounds, whose BSDFs
+// are at most `brightest` (1/sr). The test ignores cosines.
 inline bool surelyFar(const LightNode& n, float allowed, const Bounds& receivers, float brightest) {
   const float light = (n.intensity.x + n.intensity.y + n.intensity.z) * brightest;
   const Vec3 gap =

@@ -11,7 +11,7 @@ namespace bnvpl {
 
 namespace {
 
-// A half turn of the normal weighs as much as this share of the scene's extent.
+// Length of a unit normal in the space that is split, over the diagonal of the VPLs' bounds.
 constexpr float kNormalScale = 0.125f;
 
 class Builder {
@@ -51,7 +51,8 @@ class Builder {
     return axis < 3 ? vpls_.position[i][axis] : normalScale_ * vpls_.normal[i][axis - 3];
   }
 
-  // The middle of the longest of six sides; halves by count where that leaves one side empty.
+  // Splits at the middle of the longest of six sides, or into halves by count if one part would be
+  // empty.
   size_t split(size_t begin, size_t end) {
     std::array<float, 6> low, high;
     low.fill(INFINITY);
@@ -107,7 +108,7 @@ class Builder {
     return n;
   }
 
-  // Smallest cone about two cones.
+  // Smallest cone that contains both cones.
   static void mergeCones(const LightNode& a, const LightNode& b, LightNode& n) {
     const float ta = std::acos(a.cosHalfAngle), tb = std::acos(b.cosHalfAngle);
     const float between = std::acos(std::clamp(dot(a.axis, b.axis), -1.0f, 1.0f));
@@ -129,7 +130,7 @@ class Builder {
     }
     const float turn = angle - wideAngle;
     n.axis = normalize(wide.axis * std::cos(turn) + normalize(sideways) * std::sin(turn));
-    // A little wider than exact, against rounding: the bound must stay a bound.
+    // Slightly wider than exact, so that it stays a bound despite rounding.
     n.cosHalfAngle = std::cos(std::min(kStraight, angle + 1e-3f));
   }
 
@@ -140,7 +141,8 @@ class Builder {
   float normalScale_ = 1.0f;
 };
 
-// Opens the clusters with the largest intensity times size until there are enough.
+// Repeatedly splits the cluster with the largest intensity times size, until there are
+// kMaxStartCut.
 std::vector<uint32_t> startCutOf(const LightTree& tree) {
   const auto weight = [&](uint32_t i) {
     const LightNode& n = tree.nodes[i];
@@ -167,7 +169,7 @@ VplDraw LightTree::draw(const LightNode& n, float u) const {
   const auto first = upTo.begin() + n.begin + 1, last = upTo.begin() + n.end;
   const auto at = std::upper_bound(first, last, upTo[n.begin] + double{u} * whole);
   const auto k = std::min(n.end - 1, static_cast<uint32_t>(at - upTo.begin()) - 1);
-  // A VPL that is lost in the rounding of the sum before it has no share in it.
+  // Rounding of the running sum may leave a VPL no share; its weight is then 0.
   const double own = upTo[k + 1] - upTo[k];
   return {order[k], own > 0.0 ? static_cast<float>(whole / own) : 0.0f};
 }

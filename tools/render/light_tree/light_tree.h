@@ -10,13 +10,13 @@ namespace bnvpl {
 
 inline constexpr size_t kMaxStartCut = 32;
 
-// One VPL of a cluster, and what its intensity counts for to stand for the whole.
+// One VPL of a cluster, and the factor of its intensity with which it represents the cluster.
 struct VplDraw {
   uint32_t index;
   float weight;
 };
 
-// A basis about an axis, by coordinate: x holds the x of both tangents and of the axis.
+// A basis about an axis, stored by coordinate: x holds the x of both tangents and of the axis.
 struct AxisFrame {
   alignas(16) float x[4] = {}, y[4] = {}, z[4] = {};
   AxisFrame() = default;
@@ -30,17 +30,17 @@ struct AxisFrame {
 
 struct LightNode {
   Bounds bounds;
-  Vec3 axis;                                       // of the cone of normals
-  AxisFrame frame;                                 // about it
+  Vec3 axis;                                       // axis of the cone of normals
+  AxisFrame frame;                                 // basis about the axis
   float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
   Vec3 intensity;                                  // sum over the cluster, W/sr
   LightKind kind = {};
-  float clamp2 = 0.0f;  // smallest of the cluster, so that the bound holds for all
+  float clamp2 = 0.0f;  // smallest in the cluster, so that bounds hold for all of its VPLs
   uint32_t representative = 0;
-  uint32_t left = 0, right = 0;  // both 0: a leaf
-  uint32_t begin = 0, end = 0;   // its VPLs, in LightTree::order
+  uint32_t left = 0, right = 0;  // both are 0 in a leaf
+  uint32_t begin = 0, end = 0;   // range of its VPLs in LightTree::order
   bool leaf() const { return left == 0; }
-  // Of its VPLs at most, 1/m2.
+  // Upper bound of its VPLs' falloff, 1/m2.
   float falloff(float distanceSquared) const {
     return bnvpl::falloff(kind, distanceSquared, clamp2);
   }
@@ -48,19 +48,19 @@ struct LightNode {
 
 struct LightTree {
   std::vector<LightNode> nodes;  // nodes[0] is the root; empty without VPLs
-  // Where every cut starts. Not at the root: one occluded representative would make the total 0,
-  // one very near would end refinement at once (METHOD 4).
+  // Clusters from which every cut is refined. The root is no good start: an occluded representative
+  // would make the total 0, and a very near one would end refinement at once.
   std::vector<uint32_t> startCut;
   std::vector<uint32_t> order;  // VPLs from left to right
-  std::vector<double> upTo;     // running sum of their mean intensities; one more than VPLs
+  std::vector<double> upTo;     // running sums of their mean intensities; has one entry more
 
-  // In proportion to intensity, by u in [0, 1).
+  // Draws a VPL of the cluster in proportion to intensity; u in [0, 1).
   VplDraw draw(const LightNode& n, float u) const;
 };
 
-// Splits from the top along the longest side of position and (scaled) normal, O(N log N);
-// representatives in proportion to intensity, a parent sharing one child's. Deterministic for a
-// seed.
+// Builds the tree top-down, splitting along the longest side of position and scaled normal, in O(N
+// log N). A parent takes the representative of one child, drawn in proportion to intensity.
+// Deterministic for a seed.
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed);
 
 }  // namespace bnvpl

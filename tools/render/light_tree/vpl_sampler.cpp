@@ -6,8 +6,8 @@ namespace bnvpl {
 
 namespace {
 
-// Squared distance that counts at least, over the squared radius of a cluster: it lies around the
-// point, most of it further away than its middle (measured).
+// Lower bound of the squared distance to a cluster, over its squared radius: most of a cluster
+// around the point is farther away than its centre (measured).
 constexpr float kClosest = 2.0f;
 
 __m128 all(float v) { return _mm_set1_ps(v); }
@@ -66,7 +66,7 @@ void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, si
       f.child[lane] = kLeaf | n.representative;
       continue;
     }
-    std::array<uint32_t, 4> below{};  // two levels down
+    std::array<uint32_t, 4> below{};  // nodes two levels down
     size_t count = 0;
     for (const uint32_t c : {n.left, n.right}) {
       const LightNode& m = tree.nodes[c];
@@ -111,7 +111,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   to.cosSphere = sineOf(to.sinSphere);
 
   const __m128 zero = _mm_setzero_ps();
-  // The way back is the mirror image of the way there.
+  // Emission leaves in the opposite directions, so the axes are negated instead.
   const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
   const __m128 emitter = Kind::mostEmitted(back, load(f.cosHalf), load(f.sinHalf));
   const __m128 cosine = to.most(all(normal_.x), all(normal_.y), all(normal_.z));
@@ -120,7 +120,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
     value =
         all(value_.x) * load(f.red) + all(value_.y) * load(f.green) + all(value_.z) * load(f.blue);
   } else {
-    // Lobes go by their axis as the normal does.
+    // Glossy lobes are bounded by the cosine to their axis.
     const Vec3 axis = bsdf_.glossyAxis();
     const Lanes toAxis = store(to.most(all(axis.x), all(axis.y), all(axis.z)));
     alignas(16) Lanes sums;
@@ -150,7 +150,7 @@ std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const
     probability *= weight[lane] / sum;
     child = sampler_.fours_[child].child[lane];
   }
-  // The last slot or lane is also taken by rounding, even where its own share is 0.
+  // Rounding may select the last slot or lane even if its probability is 0.
   if (!(probability > 0.0f)) return {};
   return Draw{child & ~kLeaf, probability};
 }

@@ -1,5 +1,5 @@
-// Single VPLs at random, about in proportion to what they will send to a point: down a tree whose
-// nodes hold four clusters of the light tree side by side (after Estevez & Kulla 2018).
+// Samples single VPLs about in proportion to their contribution at a point, by descending a tree
+// whose nodes hold four clusters of the light tree side by side (after Estevez & Kulla 2018).
 #pragma once
 
 #include <array>
@@ -25,18 +25,18 @@ class VplSampler {
     float probability;  // > 0
   };
 
-  // What to expect at one point. Borrows both.
+  // Sampling distribution at one point. Borrows both arguments.
   class Point {
    public:
     Point(const VplSampler& sampler, const Bsdf& bsdf);
     bool dark() const { return !(whole_ > 0.0f); }  // no VPL can light it
-    // By u in [0, 1), which says where to start: over the draws of a point it should be stratified.
-    // Empty: this time none, as a cluster that may light the point holds no VPL that does. Not for
-    // dark points.
+    // Draws a VPL. u in [0, 1) selects a cluster of the start cut and should be stratified over the
+    // draws of a point. Returns nothing if the descent reaches clusters that cannot light the
+    // point. Must not be called if dark().
     std::optional<Draw> draw(float u, Rng& rng) const;
 
    private:
-    // What each of four clusters will likely send, W/(m2 sr) up to visibility; 0 only where nothing
+    // Estimated light of each of four clusters without visibility, W/(m2 sr); 0 only if no light
     // can arrive.
     Lanes likely(uint32_t four) const;
     template <typename Kind>
@@ -54,19 +54,19 @@ class VplSampler {
  private:
   struct alignas(16) Four {
     Lanes x{}, y{}, z{};              // centres of the spheres about the boxes
-    Lanes radius2{};                  // of the spheres
-    Lanes ax{}, ay{}, az{};           // of the cones of normals
-    Lanes cosHalf{}, sinHalf{};       // of their half angles
-    Lanes red{}, green{}, blue{};     // intensities, W/sr; 0: an empty lane
-    Lanes clamp2{1, 1, 1, 1};         // as of LightNode
-    std::array<uint32_t, 4> child{};  // another four, or kLeaf and a VPL
+    Lanes radius2{};                  // squared radii of the spheres
+    Lanes ax{}, ay{}, az{};           // axes of the cones of normals
+    Lanes cosHalf{}, sinHalf{};       // cosines and sines of their half angles
+    Lanes red{}, green{}, blue{};     // intensities, W/sr; 0 in an empty lane
+    Lanes clamp2{1, 1, 1, 1};         // see LightNode
+    std::array<uint32_t, 4> child{};  // index of another Four, or kLeaf and a VPL
   };
   static constexpr uint32_t kLeaf = 1u << 31;
 
   uint32_t add(const LightTree& tree, std::span<const uint32_t> nodes);
   void fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t four);
 
-  std::vector<Four> fours_;  // the start cut's first
+  std::vector<Four> fours_;  // begins with those of the start cut
   size_t startFours_ = 0;
   LightKind kind_ = {};
 };

@@ -1,4 +1,4 @@
-// Photons that are followed from the lights, for the whole film.
+// Traces photons from the lights for the whole film.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 
 namespace bnvpl {
 
-// How far a splatter is.
+// Progress of a splatter.
 struct SplatProgress {
-  uint64_t photons = 0;  // all up to here are done, or other shards'
+  uint64_t photons = 0;  // all photons before this one are done or belong to other shards
   uint64_t traced = 0, nonFinite = 0;
 };
 
-// Calls add(splat) for all that the photons from done.photons up to `count` bring, in their order
-// however many threads there are, and moves `done` on. Work stops between rounds of photons only;
-// they are the units that shards divide.
+// Traces the photons [done.photons, count) and calls add(splat) for all of their splats, in the
+// order of photons for any number of threads. Updates `done`. Shards divide rounds of photons, and
+// work can be interrupted only between rounds.
 template <typename Add, typename State>
 void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, const Add& add,
                const ProgressFn& progress, const Resume& resume, const State& state) {

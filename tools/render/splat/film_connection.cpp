@@ -23,10 +23,9 @@ std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfaceP
   const FilmPoint at = projectToFilm(scene.camera, film, vertex.position);
   if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return {};
   const Vec3 way = vertex.position - scene.camera.position;
-  if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon came to the other side
-  // The camera's own ray, so that light scatters as it does where a path from there arrives. What
-  // it meets is the vertex where it is the same triangle, or, at an edge, within the rounding of a
-  // offset origin.
+  if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon arrived on the other side
+  // Traces a camera ray, so that the vertex scatters as for a camera path. Its hit is the vertex if
+  // the triangle is the same or, at an edge, if it lies within the rounding of an offset origin.
   SurfacePoint seen;
   if (!rays.closestHit(scene.camera.position, way / length(way), seen)) return {};
   const Vec3 tolerance = rays.offsetOrigin(vertex.position, vertex.ng) - vertex.position;

@@ -1,4 +1,4 @@
-// Where the light of a point falls on the film.
+// Connection of a vertex with the film: the pixel that shows it, and the vertex's contribution.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,15 @@ namespace bnvpl {
 
 struct FilmConnection {
   uint32_t pixel;
-  float perArea;  // 1/unit^2: of the pixel's radiance, of one over an area; so many samples of a
-                  // pixel, over one, come to lie on an area there
-  Vec3 value;     // of the rough lobes, 1/sr
+  float perArea;  // density of a camera ray of the pixel at the vertex, per unit of area
+  Vec3 value;     // BSDF of the rough lobes, 1/sr
 };
 
-// Of a vertex where a photon arrived from direction vertex.wo; none where the camera does not see
-// it directly, or would see nothing of that light. Light of flux F that arrives there adds
-// F * value * perArea to the radiance of the pixel.
+// Connects a vertex where a photon arrived from direction vertex.wo. Returns nothing if the camera
+// does not see it directly or the BSDF is 0. A photon of flux F adds F * value * perArea to the
+// radiance of the pixel.
 std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex);
-// The same of a vertex that the camera sees, from how it sees it: perArea.
+// perArea of a vertex that the camera sees; `seen.wo` points to the camera.
 float samplesPerArea(const Scene& scene, const SurfacePoint& seen);
 
 }  // namespace bnvpl

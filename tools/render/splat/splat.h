@@ -1,5 +1,4 @@
-// Light that finds its pixels by itself: photons that are followed from the lights and connected
-// with the camera.
+// Splats: contributions of photons, which are traced from the lights and connected with the camera.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +11,15 @@ namespace bnvpl {
 
 struct Splat {
   uint32_t pixel;
-  Vec3 radiance;  // over the film's pixels: the sum over all photons by the samples of a pixel is
-                  // the pixel's value
+  Vec3 radiance;  // a pixel's value is the sum over all photons divided by the samples per pixel
 };
 
 struct Splats {
   std::vector<Splat> list;
-  uint64_t nonFinite = 0;  // photons or their branches, dropped as their flux was NaN or infinite
+  uint64_t nonFinite = 0;  // photons or branches that were dropped as their flux was not finite
 };
 
-// Covariance the photons [begin, end) and appends what they bring.
+// Traces the photons [begin, end) and appends their splats.
 using Splatter = std::function<void(uint64_t begin, uint64_t end, Splats& out)>;
 
 }  // namespace bnvpl

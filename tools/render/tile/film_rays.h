@@ -18,7 +18,8 @@ class FilmRays {
         surfaceLights_(surfaceLights),
         key_(streamKey(seed, Stream::FilmPoints)) {}
 
-  // The shading point; its triangle is kNone if there is none. `emission`: mean of the channels.
+  // The shading point; its triangle is kNone if there is none. `emission` receives the emission on
+  // the camera path, mean of the channels.
   SurfacePoint point(size_t pixel, float* emission = nullptr) const {
     const uint32_t width = rays_.scene().film.width;
     Rng rng(key_, pixel);

@@ -12,7 +12,7 @@ namespace {
 
 // With sample allocation a quarter of the rays is a pilot, and at most four times as many follow.
 constexpr unsigned kPilotShare = 4, kMaxTimes = 4;
-// The pilot reuses vertices in one slot of so many, to learn the noise of reused light.
+// The pilot reuses vertices in every kSlotsPerPilot-th slot, to estimate the noise of reused light.
 constexpr size_t kSlotsPerPilot = 4;
 
 uint32_t slotOf(const TileSlots& tile, size_t sample) {
@@ -21,7 +21,7 @@ uint32_t slotOf(const TileSlots& tile, size_t sample) {
 
 }  // namespace
 
-// Where the camera paths of a tile's samples end.
+// Ends of the camera paths of a tile's samples.
 struct TileIntegrator::ShadingPoints {
   std::vector<SpecularPath> paths;
   std::vector<Bsdf> bsdfs;        // one for each shading point
@@ -87,8 +87,8 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
   return out;
 }
 
-// The light of the lights at a shading point, by shadow rays that share with the rays for indirect
-// light by MIS.
+// Direct light at a shading point by shadow rays, with MIS weights against the rays for indirect
+// light.
 Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t slot,
                               uint64_t key, Rng& rng) const {
   const Reflected reflected{bsdf};
@@ -144,12 +144,13 @@ class TileIntegrator::RayTracing {
     for (const Bsdf& bsdf : points.bsdfs) directions_.push_back(parts_.rays->directionsFrom(bsdf));
   }
 
-  // `rays` from each shading point.
+  // Traces `rays` rays from each shading point.
   void send(unsigned rays) {
     for (size_t i = 0; i < found_.size(); ++i)
       sendFrom(i, rays, random64(tile_.key, i % tile_.pixels, kDimRay));
   }
-  // After `pilot` rays from each shading point: as many more as sample allocation asks for.
+  // Traces as many rays as sample allocation asks for, of which `pilot` from each shading point are
+  // done.
   void sendMore(unsigned pilot, const SampleAllocation& allocation, Vec3 direct) {
     reuse(kSlotsPerPilot);
     const std::array<unsigned, 2> all = allocate(pilot, allocation, direct);
@@ -160,8 +161,9 @@ class TileIntegrator::RayTracing {
                         kDimMoreRays0 + parity));
     }
   }
-  // Path reuse in one of so many slots. A group lies in one slot and has one parity, as the other
-  // parity decides on the number of its rays; its pixels lie together where there are enough.
+  // Reuses vertices in every `everySlot`-th slot. A group lies in one slot and has one parity, as
+  // the other parity decides on the number of its rays; its pixels lie together where there are
+  // enough.
   void reuse(size_t everySlot) {
     if (parts_.reuse < 2) return;
     std::vector<size_t> members;
@@ -217,9 +219,9 @@ class TileIntegrator::RayTracing {
     }
   }
 
-  // Rays for the samples of either parity. Their variance is that of the other parity's pilot: of
-  // what its rays found, with reused light, as far as that was asked for, in place of their own
-  // vertices' light.
+  // Numbers of rays for the samples of each parity, from the variance of the other parity's pilot.
+  // Where the pilot reused vertices, their light takes the place of the light of the rays' own
+  // vertices.
   std::array<unsigned, 2> allocate(unsigned pilot, const SampleAllocation& allocation,
                                    Vec3 direct) const {
     const size_t count = found_.size(), slots = count / tile_.pixels;
@@ -264,7 +266,7 @@ class TileIntegrator::RayTracing {
   size_t reuseRays_ = 0;
 };
 
-// Returns its cost.
+// Returns the cost of the rays.
 double TileIntegrator::addRays(const TileSamples& tile, const ShadingPoints& points,
                                const LearnedLight& learned, const SampleAllocation& allocation,
                                Vec3 direct) const {

@@ -1,6 +1,6 @@
 // Renders the samples of a tile together, for the methods vpl and guided of --integrator: direct
-// light by shadow rays to lights that the tile has learned to see, VPLs gathered for all samples at
-// once, and rays for indirect light whose vertices the samples reuse.
+// light by shadow rays to lights sampled from what the tile has learned, VPLs gathered for all
+// samples at once, and rays for indirect light whose vertices the samples reuse.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ struct TileParts {
   unsigned raysEach = 0;  // from each shading point
   unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse
   std::unique_ptr<const TileLights> lights;  // null: one shadow ray to each light
-  unsigned lightRays = 0;                    // shadow rays to what the tile has learned to see
+  unsigned lightRays = 0;                    // shadow rays sampled from what the tile has learned
   std::unique_ptr<const VisibleEmission> visibleEmission;
   std::unique_ptr<const Caustics> caustics;
   ControlVariateFn control;
@@ -37,13 +37,13 @@ struct TileParts {
   std::optional<DirectSamples> directSamples;
 };
 
-// Thread-safe and immutable once made.
+// Immutable and thread-safe.
 class TileIntegrator {
  public:
   TileIntegrator(const RayScene& rays, const LightSet& lights, TileParts parts, Only only)
       : rays_(rays), lights_(lights), parts_(std::move(parts)), only_(only) {}
-  // Fills in the radiance of the tile's samples. Without a marginal cost every part has the number
-  // of samples that its options say. Returns the mean cost of a sample, in the units of cost::.
+  // Fills in the radiance of the tile's samples. Without a marginal cost, parts have the numbers of
+  // samples that options ask for. Returns the mean cost of a sample, in the units of cost::.
   double render(const TileSamples& tile, const SampleAllocation& allocation) const;
 
  private:

@@ -9,10 +9,10 @@ namespace bnvpl {
 
 namespace {
 
-// Distance, in r_max, within which a photon's VPL covers a point; it has no reach of its own.
+// Reach, in r_max, of VPLs from vpl-place --method light, which have no reach of their own.
 constexpr float kReachWithoutPhotons = 2.0f;
 // A VPL's area is measured with kAreaPoints points of its disk, or up to kMaxAreaPoints until
-// kMinFound of them lie on its surface. Surfaces that even these miss are slivers of unknown area.
+// kMinFound of them lie on its surface. If fewer do, the surface is a sliver of unknown area.
 constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
 // A ray shorter than this many r_max ends in a crevice or a corner, where the light differs from
 // the mean over the VPL's surface: further rays find the point's own light instead (measured:
@@ -55,7 +55,7 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, Lig
 }
 
 std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
-  if (!covers_) return {};  // a photon's flux belongs to no area
+  if (!covers_) return {};  // the flux of a single photon belongs to no area
   // Two threads may measure the same area; both find the same value.
   float area = area_[vpl].load(std::memory_order_relaxed);
   if (area == kUnknown) {

@@ -1,6 +1,6 @@
-// The light that VPLs leave out between two surface points: the part of 1/d^2 that the clamp
-// removes, and all light from points that no VPL covers. Sampled rays add exactly that (Kollig &
-// Keller 2006).
+// The light between two surface points that VPLs leave out: the part of 1/d^2 that the clamp
+// removes, and all light from points that no VPL covers. Sampled rays add exactly this light
+// (Kollig & Keller 2006).
 #pragma once
 
 #include <atomic>
@@ -32,11 +32,11 @@ class NearField {
   const RayScene& rays_;
   Coverage coverage_;
   LightKind kind_;
-  std::vector<float> clampRadius_;  // of each VPL, world units
-  // Area of the surface that each VPL covers, world units squared. It is measured on first use,
-  // because an image of few pixels meets few of many VPLs.
+  std::vector<float> clampRadius_;  // one per VPL, world units
+  // Area of the surface that each VPL covers, world units squared. It is measured on first use, as
+  // an image of few pixels needs only few of many VPLs.
   mutable std::vector<std::atomic<float>> area_;
-  bool covers_;  // whether VPLs cover areas: photons' VPLs, which lie on surfaces by chance, do not
+  bool covers_;  // whether VPLs cover areas; those of vpl-place --method light do not
 };
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// What the clamp and the gaps take away stays away.
+// No bias compensation: the light that the clamp removes and that of uncovered areas is missing.
 #include "tools/render/compensate/compensate.h"
 
 namespace bnvpl::methods::compensate::none {
@@ -11,6 +11,6 @@ Compensation make(const CompensateInputs&, const Values&) { return {}; }
 
 extern const CompensateMethod method;
 const CompensateMethod method{
-    "none", "what the clamp and gaps between VPLs take stays away", {}, make};
+    "none", "no compensation: clamped light and that of uncovered areas is missing", {}, make};
 
 }  // namespace bnvpl::methods::compensate::none

@@ -1,4 +1,5 @@
-// Every VPL at every point: the truth for a VPL set, and what every other gather is judged by.
+// Sums all VPLs at every point: the reference for a set of VPLs, to which the other methods are
+// compared.
 #include "tools/render/gather/gather.h"
 #include "tools/render/gather/rgb_sum.h"
 
@@ -33,6 +34,6 @@ Gather make(const GatherInputs& in, const Values&) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"all", "every VPL: the truth for a VPL set", {}, make};
+const GatherMethod method{"all", "all VPLs: the reference for a set of VPLs", {}, make};
 
 }  // namespace bnvpl::methods::gather::all

@@ -1,4 +1,5 @@
-// A cut of the light tree for each point, one representative for each cluster (Walter et al. 2005).
+// Lightcuts (Walter et al. 2005): a cut of the light tree for each point, with one representative
+// per cluster.
 #include <algorithm>
 #include <array>
 
@@ -12,13 +13,13 @@ namespace bnvpl::methods::gather::lightcuts {
 namespace {
 
 constexpr std::array kOptions{realOption("error", "0.02", 0, 1, "share of the total",
-                                         "largest error of a cluster that is not opened"),
+                                         "bound on the error of a cluster that is not refined"),
                               kMaxCutOption};
 
 struct Cluster {
-  float bound;  // on the error, summed over the channels
+  float bound;  // bound on the error, summed over the channels
   uint32_t node;
-  Vec3 transfer;  // of the representative, times its visibility
+  Vec3 transfer;  // transfer of the representative times its visibility
   float clamped;
 };
 bool lessBound(const Cluster& a, const Cluster& b) {
@@ -31,7 +32,7 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
   if (tree.nodes.empty()) return out;
   const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   const ClusterReceiver receiver(bsdf);
-  thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
+  thread_local std::vector<Cluster> heap;  // reused between calls to avoid allocations
   heap.clear();
   RgbSum total, clamped;
 
@@ -69,7 +70,7 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
     const LightNode& n = tree.nodes[worst.node];
     for (const uint32_t child : {n.left, n.right}) {
       if (tree.nodes[child].representative == n.representative) {
-        // The representative is the parent's: nothing to trace again.
+        // The child has the representative of its parent, so its visibility is known.
         insert({errorBound(tree.nodes[child], receiver), child, worst.transfer, worst.clamped});
       } else {
         insert(evaluate(child));

@@ -1,6 +1,6 @@
-// LightSlice (Ou & Pellacini 2011): the points that the camera sees are divided into slices; a row
-// of the many-light matrix is taken for each; the VPLs are clustered once by all rows, and then,
-// for each slice, further by the rows of the slices around it.
+// LightSlice (Ou & Pellacini 2011): the visible points are divided into slices, and a row of the
+// many-light matrix is evaluated for each. The VPLs are clustered once by all rows; then each slice
+// refines the clusters by the rows of the slices around it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,19 +20,20 @@ namespace bnvpl::methods::gather::lightslice {
 namespace {
 
 constexpr std::array kOptions{
-    countOption("slices", "300", 0x1p20, "", "groups of neighbouring points, at least"),
+    countOption("slices", "300", 0x1p20, "", "minimal number of groups of neighbouring points"),
     countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice"),
     countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters")};
-constexpr double kCommonShare = 0.3;  // of the clusters of a slice: found once, for all slices
-constexpr size_t kDraws = 16;         // of each cluster's VPL; the samples of a pixel take turns
+constexpr double kCommonShare = 0.3;  // clusters found for all slices, over those of a slice
+constexpr size_t kDraws = 16;         // draws from each cluster; samples of a pixel take turns
 
 using Vector = std::valarray<double>;
-using Columns = std::vector<Vector>;  // of the matrix, one a VPL: what some rows say of it
+using Columns = std::vector<Vector>;  // columns of the matrix, one per VPL, in some of its rows
 using Cluster = std::vector<uint32_t>;
 
 double norm(const Vector& v) { return std::sqrt((v * v).sum()); }
 
-// Position and scaled normal of a point; of a slice, the middle, and a point that represents it.
+// A point with its position and scaled normal; or a slice with its centre and a point that
+// represents it.
 struct Placed {
   Vector at;
   SurfacePoint point;
@@ -43,8 +44,8 @@ Vector placeOf(const SurfacePoint& p, float scale) {
   return {double{x.x}, double{x.y}, double{x.z}, double{n.x}, double{n.y}, double{n.z}};
 }
 
-// Brings those below the middle of their range to the front, and returns how many: half of all
-// where that would be all or none.
+// Moves elements below the middle of the range of values to the front. Returns their number, or
+// half the size if that would be all or none.
 template <typename T, typename Value>
 size_t divideAtMiddle(std::span<T> all, const Value& value) {
   const auto [low, high] = std::ranges::minmax(all | std::views::transform(value));
@@ -53,7 +54,7 @@ size_t divideAtMiddle(std::span<T> all, const Value& value) {
   return above == 0 || above == all.size() ? all.size() / 2 : all.size() - above;
 }
 
-// Along the longest of six sides, until at most `most` points are left.
+// Splits points along the longest of six sides until a slice has at most `most` points.
 void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>& slices) {
   Vector middle(6), side(6);
   for (size_t a = 0; a < 6; ++a) {
@@ -72,7 +73,7 @@ void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>&
   slice(points.subspan(below), most, rng, slices);
 }
 
-// Columns taken together.
+// Sums over the columns of a cluster.
 struct Bundle {
   Vector sum;
   double norms = 0.0;
@@ -80,7 +81,7 @@ struct Bundle {
     sum = sum.size() == 0 ? Vector(weight * c) : Vector(sum + weight * c);
     norms += weight * norm(c);
   }
-  // 0 where all have one direction.
+  // Clustering cost; 0 if all columns are parallel.
   double cost() const { return norms * norms - (sum * sum).sum(); }
   double apart(const Vector& c) const { return std::max(0.0, norms * norm(c) - (sum * c).sum()); }
 };
@@ -91,7 +92,7 @@ Bundle bundleOf(const Cluster& cluster, const Columns& columns) {
   return bundle;
 }
 
-// One of the cluster in proportion to its share, with one over its probability.
+// Draws a VPL of the cluster in proportion to its share. The weight is one over its probability.
 VplDraw draw(const Cluster& cluster, std::span<const double> shares, Rng& rng) {
   std::vector<double> own;
   for (const uint32_t i : cluster) own.push_back(shares[i]);
@@ -101,8 +102,8 @@ VplDraw draw(const Cluster& cluster, std::span<const double> shares, Rng& rng) {
   return {cluster[k], static_cast<float>(1.0 / cdfShare<double>(cdf, k))};
 }
 
-// By sampling (Hasan et al. 2007): centres at random, in proportion to what a column adds to the
-// cost of all as one cluster; each VPL goes to the nearest.
+// Clustering by sampling (Hasan et al. 2007): centres are drawn in proportion to what a column adds
+// to the cost of a single cluster of all; each VPL joins the nearest centre.
 std::map<uint32_t, Cluster> sampled(const Cluster& vpls, const Columns& columns, double count,
                                     Rng& rng) {
   const Bundle all = bundleOf(vpls, columns);
@@ -123,7 +124,8 @@ std::map<uint32_t, Cluster> sampled(const Cluster& vpls, const Columns& columns,
   return clusters;
 }
 
-// Along the line between the two longest columns; returns one part and leaves the other.
+// Splits a cluster along the line between its two longest columns. Returns one part and leaves the
+// other.
 Cluster splitOff(Cluster& cluster, const Columns& columns) {
   std::ranges::partial_sort(cluster, cluster.begin() + 2, std::greater{},
                             [&](uint32_t i) { return norm(columns[i]); });
@@ -135,7 +137,8 @@ Cluster splitOff(Cluster& cluster, const Columns& columns) {
   return part;
 }
 
-// By splitting the cluster of greatest cost until there are `count`, or none costs anything.
+// Refines clusters by splitting the one of largest cost, until there are `count` or all costs are
+// 0.
 std::multimap<double, Cluster> refined(const std::map<uint32_t, Cluster>& clusters, size_t count,
                                        const Columns& columns) {
   std::multimap<double, Cluster> byCost;
@@ -151,7 +154,7 @@ std::multimap<double, Cluster> refined(const std::map<uint32_t, Cluster>& cluste
   return byCost;
 }
 
-// The rows of the `count` slices nearest to one.
+// Columns restricted to the rows of the `count` slices nearest to `slice`.
 Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t count,
                   const Columns& columns) {
   std::vector<size_t> order(slices.size());
@@ -163,9 +166,9 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
   return local;
 }
 
-// The VPLs of each slice, one of each cluster.
+// The VPLs of each slice, one per cluster.
 struct Plan {
-  float scale = 1.0f;  // of normals
+  float scale = 1.0f;  // scale of normals
   std::vector<Placed> slices;
   std::vector<std::array<std::vector<VplDraw>, kDraws>> draws;
 };
@@ -235,7 +238,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 extern const GatherMethod method;
 const GatherMethod method{
-    "lightslice", "VPLs clustered for each slice of what the camera sees, by rows of their matrix",
+    "lightslice", "VPLs clustered for each slice of the visible points, by rows of their matrix",
     kOptions, make};
 
 }  // namespace bnvpl::methods::gather::lightslice

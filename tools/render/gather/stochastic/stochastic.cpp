@@ -1,5 +1,6 @@
-// Stochastic Lightcuts (Yuksel 2019): a small cut for each point, chosen by bounds, and one random
-// VPL of each of its clusters by a descent of the tree in proportion to what either child may send.
+// Stochastic Lightcuts (Yuksel 2019): a small cut for each point, chosen by bounds. One VPL of each
+// cluster is sampled by descending the tree with probabilities proportional to bounds of the
+// children's contributions.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -12,7 +13,7 @@ namespace bnvpl::methods::gather::stochastic {
 namespace {
 
 constexpr std::array kOptions{
-    countOption("cut", "10", 0x1p20, "", "clusters of a point's cut, one shadow ray each")};
+    countOption("cut", "10", 0x1p20, "", "clusters of a point's cut, with a shadow ray each")};
 
 struct Cluster {
   float bound;
@@ -22,10 +23,10 @@ bool lessBound(const Cluster& a, const Cluster& b) {
   return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
 }
 
-// Bounds alone decide: a cut that knew of the VPLs drawn would be biased by them.
+// Only bounds decide: a cut that depended on the VPLs drawn would be biased.
 std::vector<Cluster>& chooseCut(const LightTree& tree, const ClusterReceiver& receiver,
                                 size_t size) {
-  thread_local std::vector<Cluster> heap;  // kept between calls: no allocation per point
+  thread_local std::vector<Cluster> heap;  // reused between calls to avoid allocations
   heap.assign(1, {errorBound(tree.nodes[0], receiver), 0});
   while (heap.size() < size && heap.front().bound > 0.0f) {
     std::ranges::pop_heap(heap, lessBound);
@@ -39,8 +40,8 @@ std::vector<Cluster>& chooseCut(const LightTree& tree, const ClusterReceiver& re
   return heap;
 }
 
-// Probability of the left child: the mean of two, by the nearest and by the farthest that a VPL of
-// either child can be. Empty: neither can send anything.
+// Probability of the left child: the mean of the one from minimal and the one from maximal
+// distances of the children's VPLs. Empty if neither child can contribute.
 std::optional<float> leftShare(const LightNode& left, const LightNode& right,
                                const ClusterReceiver& receiver) {
   const Vec3 at = receiver.bsdf.point().position;
@@ -53,7 +54,7 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
   const float far = share(farthestSquared(left.bounds, at), farthestSquared(right.bounds, at));
   const float nearLeft = left.bounds.distanceSquared(at),
               nearRight = right.bounds.distanceSquared(at);
-  // Inside either box distances tell nothing (Yuksel 2019, section 4).
+  // Inside either box, minimal distances are not used (Yuksel 2019, section 4).
   const float near = nearLeft > 0.0f && nearRight > 0.0f ? share(nearLeft, nearRight) : l / (l + r);
   return 0.5f * (near + far);
 }
@@ -72,7 +73,7 @@ std::optional<Draw> descend(const LightTree& tree, uint32_t node, const ClusterR
     if (!left) return {};
     const bool goLeft = u < *left;
     const float share = goLeft ? *left : 1.0f - *left;
-    u = std::min((goLeft ? u : u - *left) / share, 0x1.fffffep-1f);  // the same number, used again
+    u = std::min((goLeft ? u : u - *left) / share, 0x1.fffffep-1f);  // reuses the random number
     probability *= share;
     node = goLeft ? n.left : n.right;
   }
@@ -111,7 +112,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"stochastic", "a small cut for each sample, a random VPL of each cluster",
+const GatherMethod method{"stochastic", "a small cut for each sample, a random VPL per cluster",
                           kOptions, make};
 
 }  // namespace bnvpl::methods::gather::stochastic

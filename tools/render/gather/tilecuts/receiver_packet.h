@@ -1,4 +1,4 @@
-// Sixteen receivers that take the same VPLs, and the light that has arrived at them.
+// Packet of sixteen receivers that share their VPLs, with the light that arrives at them.
 #pragma once
 
 #include <algorithm>
@@ -16,21 +16,21 @@ struct ReceiverPacket {
   using Lanes = std::array<float, kSize>;
 
   alignas(64) Lanes x{}, y{}, z{}, sx{}, sy{}, sz{}, gx{}, gy{}, gz{};  // point; ns; ng
-  alignas(64) Lanes mostRed{}, mostGreen{}, mostBlue{};  // reflected, 1/sr; 0: no lane
+  alignas(64) Lanes mostRed{}, mostGreen{}, mostBlue{};  // maxReflected(), 1/sr; 0: empty lane
   alignas(64) Lanes red{}, green{}, blue{};              // irradiance, W/m2
   alignas(64) Lanes clampedRed{}, clampedGreen{}, clampedBlue{};
-  std::array<Vec3, kSize> offset{};                   // off the surface
-  std::array<Vec3, kSize> glossy{}, glossyClamped{};  // radiance, of receivers with a lobe
+  std::array<Vec3, kSize> offset{};                   // offset ray origins
+  std::array<Vec3, kSize> glossy{}, glossyClamped{};  // radiance of glossy lobes
   std::array<const Bsdf*, kSize> bsdf{};
-  std::array<uint32_t, kSize> receiver{};  // of the tile
+  std::array<uint32_t, kSize> receiver{};  // index among the tile's receivers
   std::array<uint32_t, kSize> place{};     // neighbours in the image have neighbouring places
   std::array<uint32_t, kSize> shadowRays{};
   uint32_t count = 0;
-  uint32_t lobes = 0;  // mask of lanes
+  uint32_t lobes = 0;  // mask of the lanes with glossy lobes
   uint32_t clusters = 0;
-  Bounds bounds;           // of the points
-  float brightest = 0.0f;  // value of any receiver in any channel, 1/sr
-  float stratum = 0.0f;    // of its draws, in [0, 1)
+  Bounds bounds;           // bounds of the points
+  float brightest = 0.0f;  // maximum of maxReflected() over receivers and channels, 1/sr
+  float stratum = 0.0f;    // stratum of its draws, in [0, 1)
   uint64_t rouletteKey = 0;
   uint32_t rouletteDraw = 0;
 

@@ -8,11 +8,11 @@ namespace bnvpl {
 
 namespace {
 
-// Rays that wait: enough to find neighbours among them, few enough to stay in the cache.
+// Number of rays that wait: enough for coherence, few enough to stay in the cache.
 constexpr size_t kWaiting = 256;
 
-// A VPL and all receivers of a packet. Returns the mask of those that it may light. The loops over
-// lanes are written for the compiler to vectorise.
+// Transfer from a VPL to all receivers of a packet. Returns the mask of those that it may light.
+// The compiler can vectorise the loops over lanes.
 template <typename Kind>
 uint32_t couplePacket(const VplLights& vpls, uint32_t i, const ReceiverPacket& p,
                       ReceiverPacket::Lanes& transfer, ReceiverPacket::Lanes& clamped) {
@@ -79,7 +79,7 @@ void ShadowQueue::flush() {
   waiting_.clear();
 }
 
-// By place, and for the same place in the order of the VPLs.
+// Sorts rays by place, and those of the same place by the order of the VPLs.
 void ShadowQueue::traceAll() {
   uint32_t begin = 0;
   for (uint32_t& n : rayCount_) {
@@ -120,7 +120,8 @@ void ShadowQueue::deliver(const Delivery& d) {
     p.clampedGreen[l] += c * d.light.y;
     p.clampedBlue[l] += c * d.light.z;
   }
-  // A lobe depends on the direction: what it adds to the diffuse value, one by one.
+  // Adds the difference between a glossy BSDF, which depends on the direction, and the diffuse
+  // value.
   for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     const Bsdf& b = *p.bsdf[l];

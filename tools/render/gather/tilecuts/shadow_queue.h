@@ -1,6 +1,6 @@
-// Light on its way to packets of receivers, until it is known which of them see it. Rays wait for
-// each other and are traced in the order of their receivers' pixels: what shares its VPL has to be
-// spread over the image, what is traced together should be as near to each other as can be.
+// Queue of contributions to packets of receivers that wait for their shadow rays. Rays are traced
+// in the order of their receivers' pixels, so that rays that are traced together are coherent,
+// although the receivers that share a VPL are spread over the image.
 #pragma once
 
 #include <cstdint>
@@ -14,25 +14,25 @@ namespace bnvpl {
 
 class ShadowQueue {
  public:
-  // Borrows all; the packets stay where they are.
+  // Borrows all. The packets must not move.
   ShadowQueue(const RayScene& rays, const VplLights& vpls, std::span<ReceiverPacket> packets);
 
-  // The light of a VPL, drawn from a cluster, to all receivers of one of the packets. What is less
-  // than `negligible` (W/(m2 sr)) for all of them is left to chance. Calls with neighbouring VPLs
-  // should follow each other.
+  // Adds the light of a VPL, drawn from a cluster, to all receivers of one of the packets. A
+  // contribution that is below `negligible` (W/(m2 sr)) for all of them is subject to Russian
+  // roulette. Calls with neighbouring VPLs should follow each other.
   void add(ReceiverPacket& packet, const VplDraw& vpl, uint32_t cluster, float negligible);
-  // Traces what waits and adds it to the packets. Call it at the end.
+  // Traces the waiting rays and adds their light to the packets. Must be called at the end.
   void flush();
 
  private:
   using Lanes = ReceiverPacket::Lanes;
   struct Delivery {
     ReceiverPacket* packet;
-    Vec3 at;         // the VPL
-    Vec3 light;      // its intensity, W/sr, for all that it stands for
-    uint32_t lanes;  // mask of those that may see it
+    Vec3 at;         // position of the VPL
+    Vec3 light;      // weighted intensity of the VPL, W/sr
+    uint32_t lanes;  // mask of the lanes that may see it
     alignas(64) Lanes transfer;
-    alignas(64) Lanes clamped;  // what the bound on 1/d^2 removed, over what it left
+    alignas(64) Lanes clamped;  // light that the bound on 1/d^2 removed, over the rest
   };
   struct Ray {
     uint32_t delivery, lane;
@@ -44,7 +44,7 @@ class ShadowQueue {
   const RayScene& rays_;
   const VplLights& vpls_;
   std::vector<Delivery> waiting_;
-  std::vector<uint32_t> rayCount_;  // of the place, then where its rays begin
+  std::vector<uint32_t> rayCount_;  // rays per place; while tracing, where those of a place begin
   size_t raysWaiting_ = 0;
   std::vector<Ray> order_;
   std::vector<Segment> segments_;

@@ -11,24 +11,25 @@ namespace bnvpl {
 
 namespace {
 
-// Receivers that stand for the tile when its cut is chosen.
+// Number of receivers that represent the tile when its cut is chosen.
 constexpr uint32_t kProbes = 8;
 using Probes = std::array<const Bsdf*, kProbes>;
-// Light that is blocked on its way to a probe counts for this share of it: so a tile whose probes
-// see nothing is not searched VPL by VPL.
+// Occluded light counts by this share at a probe, so that a tile whose probes are dark is not
+// refined down to single VPLs.
 constexpr float kBlockedShare = 0.01f;
-// A probe that is darker than this share of the tile's mean counts as if it were not.
+// Lower bound of the light at a probe, over the mean of all probes.
 constexpr float kDarkest = 0.2f;
-// Share of the model's variance that counts against the marginal cost. The measured variance is a
-// sixteenth (theory.md), but sixteen pixels share the error, which is visible as grain.
+// Factor of the predicted variance when it is compared with the marginal cost. The measured
+// variance is a sixteenth of the prediction (theory.md), but sixteen pixels share the error, which
+// is visible as grain.
 constexpr double kVarianceShare = 0.5;
-// Roulette on small contributions may add this share to the variance that is allowed.
+// Russian roulette on small contributions may add this share to the allowed variance.
 constexpr float kRouletteShare = 0.5f;
 
-// The probes, coordinate by coordinate.
+// The probes as a structure of arrays.
 struct ProbeLanes {
   alignas(32) std::array<float, kProbes> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{}, blue{};
-  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light there; 0 where none is
+  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light at the probe, or 0
 
   ProbeLanes(const Probes& probes, const std::array<float, kProbes>& light) {
     for (size_t k = 0; k < kProbes; ++k) {
@@ -41,7 +42,7 @@ struct ProbeLanes {
     }
   }
 
-  // Summed over the probes, each over its light.
+  // Relative variance of a cluster, summed over the probes.
   float variance(const LightNode& n) const {
     if (n.leaf()) return 0.0f;
     return withKind(n.kind, [&](auto kind) { return varianceOf<decltype(kind)>(n); });
@@ -63,7 +64,7 @@ struct ProbeLanes {
   }
 };
 
-// Null where there is no receiver.
+// Random receivers of the tile; all are null if there are none.
 Probes chooseProbes(const TileReceivers& tile) {
   std::vector<const Bsdf*> lit;
   for (const Bsdf* b : tile.bsdf) {
@@ -76,10 +77,10 @@ Probes chooseProbes(const TileReceivers& tile) {
   return probes;
 }
 
-// Light at each probe, by one VPL of each cluster of the start cut: coarse, but it knows of
-// shadows. As the probes also stand for their neighbours, and as one draw may miss or overstate the
-// light, each is drawn to the geometric mean of all: to that rather than the mean, for the dark
-// ones' sake.
+// Estimates the light at each probe by one VPL of each cluster of the start cut, with shadow rays.
+// Probes represent their neighbours, too, and single draws are noisy. So each value is replaced by
+// its geometric mean with that of all probes, which is less influenced by bright ones than the
+// mean.
 std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
                                    const LightTree& tree, const Probes& probes, uint64_t key) {
   std::array<float, kProbes> light{};
@@ -112,8 +113,8 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
 
 }  // namespace
 
-// Opens the cluster whose variance, summed over the probes, is largest, until the sum of all is as
-// small as the samples of a pixel need it.
+// Refines the cluster with the largest variance, summed over the probes, until the sum over all
+// clusters is as small as the samples of a pixel require.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
                       const TileCutOptions& options, const TileReceivers& tile) {
   const Probes probes = chooseProbes(tile);
@@ -134,7 +135,7 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
   TileCut cut;
   const double most =
       double{options.error} * double{options.error} * double(tile.allSlots) * double{kProbes};
-  // Opening a cluster leaves about half of its variance and costs a ray.
+  // Refining a cluster halves its variance, about, and costs a ray.
   const double least = 2.0 * tile.marginalCost * double{kProbes} / kVarianceShare;
   const auto allowed = static_cast<float>(std::max(most, least) / double{kProbes});
   const float darkest = *std::min_element(light.begin(), light.end());
@@ -162,7 +163,7 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
     insert(tree.nodes[widest.node].right);
   }
   for (const Open& open : heap) cut.nodes.push_back(open.node);
-  std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order: neighbours after each other
+  std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order keeps neighbours together
   return cut;
 }
 

@@ -1,4 +1,4 @@
-// The clusters that light a tile: chosen once for all of its samples, as in LightSlice (Ou &
+// The cut of a tile: clusters that are chosen once for all of its samples, as in LightSlice (Ou &
 // Pellacini 2011).
 #pragma once
 
@@ -11,17 +11,17 @@
 namespace bnvpl {
 
 struct TileCutOptions {
-  float error = 0.05f;     // standard deviation to allow a pixel, as a share of its tile's light
-  uint32_t maxCut = 1000;  // clusters
+  float error = 0.05f;     // allowed standard deviation of a pixel, as a share of its tile's light
+  uint32_t maxCut = 1000;  // maximal number of clusters
 };
 
-// Clusters, and the deviation that is allowed to one sample, W/(m2 sr), summed over channels.
+// Clusters, and the standard deviation that one sample may have, W/(m2 sr), summed over channels.
 struct TileCut {
   std::vector<uint32_t> nodes;
   float allowed = 0.0f;
-  float negligible = 0.0f;  // contributions below are left to chance, W/(m2 sr)
+  float negligible = 0.0f;  // contribution below which Russian roulette applies, W/(m2 sr)
 };
-// Empty where nothing is to be lit. Borrows nothing.
+// Chooses the cut of a tile; it is empty if the tile has no receivers.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
                       const TileCutOptions& options, const TileReceivers& tile);
 

@@ -1,8 +1,7 @@
-// Indirect light at all samples of a tile from one cut of the light tree: the clusters are chosen
-// once for the tile, and each sample takes one random VPL of each. Shared cuts are those of
-// LightSlice (Ou & Pellacini 2011), random representatives those of Stochastic Lightcuts
-// (Yuksel 2019); each packet of samples takes the same VPL. Unbiased: on average the sum over all
-// VPLs.
+// Gathers all samples of a tile with one cut of the light tree: the clusters are chosen once for
+// the tile, and each packet of samples takes one random VPL of each. Cuts are shared as in
+// LightSlice (Ou & Pellacini 2011), and representatives are random as in Stochastic Lightcuts
+// (Yuksel 2019). The estimate is unbiased.
 
 #include <algorithm>
 #include <array>
@@ -18,32 +17,32 @@ namespace bnvpl::methods::gather::tilecuts {
 namespace {
 
 constexpr std::array kOptions{
-    // A prediction; so far it has been two and a half to five times what was measured (theory.md).
+    // The predicted error is two and a half to five times the measured one (theory.md).
     realOption("error", "0.05", 0, 1, "share of the tile's light",
-               "standard deviation to allow a pixel"),
+               "allowed standard deviation of a pixel"),
     kMaxCutOption};
 
 // Pixels along the side of a square that four packets share.
 constexpr uint32_t kSquare = 8;
 
-// Packets in the order of their squares; the pixels of a 2 x 2 are of four different ones.
+// Index of a pixel's packet. The pixels of each 2 x 2 belong to four different packets of a square.
 uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
   const uint32_t square = y / kSquare << 16 | x / kSquare;
   const auto turn = static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDimPacket) % 4);
   return square << 2 | ((y % 2 << 1 | x % 2) ^ turn);
 }
 
-// Pixels of a 2 x 2 after each other.
+// Index of a pixel in an order in which the pixels of each 2 x 2 are consecutive.
 uint32_t placeOfPixel(uint32_t x, uint32_t y, uint32_t width) {
   return (y / 2 * ((width + 1) / 2) + x / 2) << 2 | y % 2 << 1 | x % 2;
 }
 
-// A packet takes a random pixel of each 2 x 2, of 8 x 8 pixels as far as they have receivers. Its
-// pixels share their error: dealt out so, it is fine grain, where packets of 4 x 4 neighbours show
-// as blocks. Over all packets of the tile the draws from a cluster are stratified, and over the
-// slots of one pixel too, which therefore stays in its packet.
+// A packet takes a random pixel of each 2 x 2 in 8 x 8 pixels, as far as they have receivers.
+// Pixels of a packet share their error. Spread in this way the error is fine grain, while packets
+// of 4 x 4 neighbours would be visible as blocks. Draws from a cluster are stratified over all
+// packets of the tile and over the slots of each pixel, whose packet is the same in all slots.
 std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceivers& tile) {
-  std::vector<uint32_t> packetOf;  // pixel
+  std::vector<uint32_t> packetOf;  // one per pixel
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
   }
@@ -93,8 +92,8 @@ bool exceedsAnywhere(const LightNode& n, float allowed, const ReceiverPacket& p)
   }
   return near != 0;
 }
-// Whether a cluster of the tile's cut must be opened for a packet, because it is much nearer to one
-// of its receivers than the probes knew: it alone would deviate by all that is allowed.
+// Whether a cluster of the tile's cut must be refined for a packet, because it is much nearer to
+// one of its receivers than to the probes: its deviation alone would exceed the allowed one.
 bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
   if (n.leaf() || surelyFar(n, allowed, p.bounds, p.brightest)) return false;
   return withKind(n.kind,
@@ -121,7 +120,7 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
     ++packet.clusters;
   };
   std::vector<uint32_t> open;
-  // Cluster by cluster for all samples, so that rays to the same cluster wait together.
+  // Handles all samples cluster by cluster, so that rays to the same cluster are traced together.
   for (const uint32_t ofCut : cut.nodes) {
     const bool far = surelyFar(tree.nodes[ofCut], cut.allowed, bounds, brightest);
     for (ReceiverPacket& packet : packets) {
@@ -158,8 +157,7 @@ Gather make(const GatherInputs& in, const Values& values) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"tilecuts",
-                          "a cut for each tile, a random VPL of each cluster for each sample",
-                          kOptions, make};
+const GatherMethod method{
+    "tilecuts", "a cut for each tile, a random VPL per cluster for each sample", kOptions, make};
 
 }  // namespace bnvpl::methods::gather::tilecuts

@@ -1,4 +1,4 @@
-// The gather through tile cuts against the sum over all VPLs.
+// Compares gathering with tile cuts to the sum over all VPLs.
 #include <gtest/gtest.h>
 
 #include "tests/support/gather_checks.h"

@@ -1,6 +1,6 @@
-// Adaptive shadow testing (Ward 1994): at each point the VPLs are sorted by what they would bring
-// unoccluded and shadow-tested in that order until the rest cannot matter; the rest counts with the
-// visibility that is to be expected of it.
+// Adaptive shadow testing (Ward 1994): at each point the VPLs are sorted by their unoccluded
+// contribution and shadow-tested in that order until the rest is below a tolerance. The rest is
+// weighted by its expected visibility.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::array kOptions{
     realOption("tolerance", "0.1", 0, 1, "share of the light so far",
-               "shadow tests end when all that is untested could bring no more"),
+               "shadow tests end when the untested VPLs contribute no more than this"),
     countOption("visibility-tests", "32", 65536, "rays",
-                "to each VPL from points that the camera sees, for its usual visibility")};
+                "rays to each VPL from visible points, for its mean visibility")};
 
-// How often a VPL is seen from what the camera sees: where it faces the point. Ward keeps these
-// counts while the image is made, which would depend on the order of pixels and threads; here they
-// are taken beforehand, from the same points for all VPLs. One more hit and miss keep a rate away
-// from 0 and 1, as few tests cannot know those.
+// Visibility of each VPL, averaged over visible points that it faces. Ward counts while rendering,
+// which would depend on the order of pixels and threads. Here the counts are taken beforehand, from
+// the same points for all VPLs. One additional hit and one miss keep the rate away from 0 and 1,
+// which few tests cannot establish.
 std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
   std::vector<SurfacePoint> seen;
   for (const SurfacePoint& p : in.film().points) {
@@ -47,7 +47,7 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
 }
 
 struct Potential {
-  float sum;  // over the channels, unoccluded
+  float sum;  // unoccluded contribution, summed over the channels
   uint32_t vpl;
   Vec3 light;
   float clamped;
@@ -57,7 +57,7 @@ bool brighter(const Potential& a, const Potential& b) {
 }
 
 std::vector<Potential>& sortedPotentials(const VplLights& vpls, const Bsdf& bsdf) {
-  thread_local std::vector<Potential> list;  // kept between calls: no allocation per point
+  thread_local std::vector<Potential> list;  // reused between calls to avoid allocations
   list.clear();
   Coupling c;
   for (uint32_t i = 0; i < vpls.size(); ++i) {
@@ -81,8 +81,8 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vec
     total.add(p.light, share);
     clamped.add(p.light * p.clamped, share);
   };
-  // Tests that hit, and how many would have by the VPLs' usual visibility: their ratio tells how
-  // open this point is.
+  // Number of visible VPLs among those tested, and its expectation from their mean visibility. The
+  // ratio is the openness of this point.
   double hits = 0.0, expected = 0.0;
   size_t tested = 0;
   for (; tested < list.size() && untested > tolerance * total.sum(); ++tested) {
@@ -117,7 +117,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 extern const GatherMethod method;
 const GatherMethod method{"ward",
-                          "VPLs sorted by brightness, shadow-tested until the rest cannot matter",
+                          "VPLs sorted by contribution, shadow-tested until the rest is negligible",
                           kOptions, make};
 
 }  // namespace bnvpl::methods::gather::ward

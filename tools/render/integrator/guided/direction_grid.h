@@ -1,5 +1,5 @@
-// The hemisphere as a grid of cells, each with the same share of the cosine: the unit square, laid
-// on the disk under the hemisphere (Shirley & Chiu 1997).
+// Grid of cells of equal projected solid angle over the hemisphere: cells of the unit square,
+// mapped to the disk below the hemisphere (Shirley & Chiu 1997).
 #pragma once
 
 #include <algorithm>
@@ -11,21 +11,21 @@
 namespace bnvpl {
 
 struct DirectionGrid {
-  uint32_t side = 1;  // cells
+  uint32_t side = 1;  // cells along each side of the square
 
   uint32_t cells() const { return side * side; }
 
-  // A unit direction about +z in a cell, by a point of the unit square.
+  // Maps a point of the unit square to a unit direction about +z within a cell.
   Vec3 direction(uint32_t cell, float u, float v) const {
     const auto n = static_cast<float>(side);
     return sampleCosineHemisphere((static_cast<float>(cell % side) + u) / n,
                                   (static_cast<float>(cell / side) + v) / n);
   }
-  // Of directions that are uniform over the cell's share of the square, in 1/sr.
+  // Density of direction() within a cell for uniform u and v, 1/sr.
   float pdfInCell(float cosTheta) const {
     return pdfCosineHemisphere(cosTheta) * static_cast<float>(cells());
   }
-  // The cell of a unit direction with z > 0: sampleDisk() backwards.
+  // Cell of a unit direction with z > 0, by the inverse of sampleDisk().
   uint32_t cellOf(Vec3 d) const {
     const bool wide = std::fabs(d.x) > std::fabs(d.y);
     const float main = wide ? d.x : d.y, other = wide ? d.y : d.x;

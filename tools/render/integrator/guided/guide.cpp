@@ -11,15 +11,17 @@ namespace bnvpl {
 
 namespace {
 
-// Rays along a side of the hemisphere: fewer would say too little.
+// Limits of the strata along each side. Below the minimum the guide is empty, as it would be too
+// noisy.
 constexpr uint32_t kMinSide = 4, kMaxSide = 32;
-// The grid is finer than the rays of one VPL, since those of its neighbours fill it too.
+// Cells per stratum along each side. They are finer than the rays of one VPL, as those of its
+// neighbours fill them, too.
 constexpr uint32_t kFiner = 2;
-// What VPLs learnt is averaged over those this near, in units of the radius.
+// Radius over which the rays of VPLs are averaged, in units of a VPL's radius.
 constexpr float kSmooth = 2.5f;
-// Points of a VPL's region that its rays start from.
+// Points of a VPL's region from which its rays start.
 constexpr uint32_t kOrigins = 8;
-// What a darker VPL tells of the light that it receives is mostly noise.
+// Lower bound of the albedo. Incident light that is inferred from darker VPLs is mostly noise.
 constexpr float kMinAlbedo = 0.01f;
 
 Vec3 toLocal(const Basis& b, Vec3 v) { return {dot(v, b.s), dot(v, b.t), dot(v, b.n)}; }
@@ -54,7 +56,8 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
   fillCdfs(smooth(near, learnt));
 }
 
-// Flux over area, of each VPL and those near it: one alone may have met few photons.
+// Exitance over pi around each VPL. It is averaged over the VPLs near it, as one alone may have few
+// photons.
 void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
   radiance_.resize(lit.size());
   total_.resize(lit.size());
@@ -72,8 +75,8 @@ void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
   });
 }
 
-// The light that arrives from each stratum, by one ray: emission by its share in multiple
-// importance sampling against light sampling, which finds the rest, and what leaves the VPLs.
+// Estimates the incident light of each stratum by one ray: emission times its MIS weight against
+// light sampling, and the radiance that leaves the VPLs.
 void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
                   float radius, std::span<Learnt> learnt) const {
   Rng rng(key, region);
@@ -109,8 +112,8 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
   }
 }
 
-// Means over what neighbouring regions learnt, cell by cell, each with the mean of its stratum as
-// one ray more.
+// Means of each cell over the rays of neighbouring regions. The mean of the cell's stratum counts
+// as one more ray.
 std::vector<float> Guide::smooth(const NearSurfaces& near, std::span<const Learnt> learnt) const {
   const uint32_t cells = grid_.cells(), each = strata_.cells();
   struct Mean {

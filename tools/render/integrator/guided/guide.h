@@ -1,5 +1,5 @@
-// Where light comes from, learnt from the lit VPLs: for the surface around each, a density over the
-// directions that follows the light that arrives there.
+// Distributions for path guiding, learned from the lit VPLs: for the surface around each VPL, a
+// density over directions that follows the incident light.
 #pragma once
 
 #include <vector>
@@ -14,30 +14,31 @@
 
 namespace bnvpl {
 
-// Thread-safe and immutable once made. Owns all that it needs but the scene's rays.
+// Immutable and thread-safe. Owns its data.
 class Guide : public DirectionGuide {
  public:
-  // `raysEach`: traced from each VPL to learn. Too few, or no VPLs: an empty guide.
+  // `raysEach`: rays traced from each VPL. The guide is empty if they are too few or there are no
+  // VPLs.
   Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
         uint64_t raysEach, const ProgressFn& progress);
 
-  // The VPL around which a point lies; kNone: around none.
+  // Index of the VPL around which a point lies, or kNone.
   uint32_t regionAt(const SurfacePoint& at) const { return regions_.at(at.position, at.ng); }
-  // Whether any light was found to arrive in the region.
+  // Whether rays found light that arrives in the region.
   bool knows(uint32_t region) const { return region != kNone && onward_[region] > 0.0f; }
 
-  // Of a region that the guide knows.
+  // For regions that the guide knows.
   Vec3 sample(uint32_t region, Point2 at, float& pdf) const override;
   float pdf(uint32_t region, Vec3 wi) const override;
 
-  // About the radiance that a white surface would reflect in the region, mean of the channels: all
-  // of it, and what rays find that go on from there by the BSDF, the rest being light sampling's.
+  // Approximate radiance that a white surface would reflect in the region, mean of the channels.
+  // total() is all of it, onward() the part that further rays find; light sampling finds the rest.
   float total(uint32_t region) const { return total_[region]; }
   float onward(uint32_t region) const { return onward_[region]; }
 
  private:
   void findRadiance(const VplTable& lit, const NearSurfaces& near);
-  // What a ray found.
+  // Result of one ray.
   struct Learnt {
     float radiance;
     uint32_t cell;
@@ -51,9 +52,9 @@ class Guide : public DirectionGuide {
   }
 
   std::vector<Vec3> position_, normal_;
-  std::vector<Vec3> radiance_;  // that leaves the surface around each VPL
+  std::vector<Vec3> radiance_;  // radiance that leaves the surface around each VPL
   std::vector<float> total_, onward_;
-  DirectionGrid strata_;  // one ray each
+  DirectionGrid strata_;  // one ray per cell
   DirectionGrid grid_;
   std::vector<float> cdf_;  // over the cells of each region's grid
   RegionGrid regions_;

@@ -16,23 +16,23 @@ constexpr std::array kOptions{
     kMaxBouncesOption,
     kDirectSamplesOption,  // before those that need it
     neededBy(kRaysAreSent, realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
-                                      "chosen by the guide, the others by the BSDF")),
+                                      "sampled from the guide; the others from the BSDF")),
     neededBy(kRaysAreSent, wholeOption("guide-rays", "256", 0, 1024, "",
-                                       "rays from each VPL that learn from where light comes; "
+                                       "rays from each VPL from which the guide is learned; "
                                        "fewer in a short render")),
     neededBy(
         kRaysAreSent,
         wholeOption("paths", "8", 1, 4096, "",
-                    "of indirect light from each shaded point, with --allocate on a quarter of "
-                    "them to four times as many")),
+                    "paths for indirect light from each shading point; with --allocate on, from a "
+                    "quarter of them to four times as many")),
     reuseOption("32",
-                "samples of a tile that share the light of what their paths hit first, where "
-                "that is matt; 1: none"),
+                "samples of a tile that reuse the first vertices of each other's paths on diffuse "
+                "surfaces; 1: none"),
     controlOption("none"),
-    allocateOption("by pilots, paths and direct samples where they take most noise from the film"),
+    allocateOption("allot paths and direct samples by pilots, to minimise the noise of the film"),
     firefliesOption("keep")};
 
-// Rays that learn are to cost little beside the paths.
+// Paths per ray that learns, so that learning takes little of the time.
 constexpr uint64_t kPathsPerRay = 2;
 
 uint64_t samplesOf(const IntegratorInputs& in, const Values& options) {
@@ -45,7 +45,7 @@ uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
                                 (kPathsPerRay * std::max<size_t>(1, in.lit.size())));
 }
 
-// What lives as long as the integrator, in an order in which each may borrow from those before.
+// Objects that live as long as the integrator. Each may borrow from those before it.
 struct Parts {
   std::unique_ptr<const SurfaceLights> surfaceLights;
   std::unique_ptr<const TileIntegrator> integrator;
@@ -53,10 +53,10 @@ struct Parts {
 };
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  constexpr unsigned kLightRays = 8;  // by which goes how much tiles learn
-  constexpr uint64_t kCausticPhotons =
-      4;  // of each sample: so their noise goes as that of all else
-  constexpr uint64_t kProbeRays = 1 << 18;  // to know the cost
+  constexpr unsigned kLightRays = 8;  // sets the number of rays that tiles learn from
+  // Per sample, so that the noise of photons falls with --spp as all other noise does.
+  constexpr uint64_t kCausticPhotons = 4;
+  constexpr uint64_t kProbeRays = 1 << 18;  // limit for a cost estimate
   const bool indirect = in.only != Only::Direct;
   const auto vpls = std::max<uint64_t>(1, in.lit.size());
   const auto parts = std::make_shared<Parts>();
@@ -103,7 +103,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 extern const IntegratorMethod method;
 const IntegratorMethod method{"guided",
-                              "path tracing towards where the VPLs say that light comes from",
+                              "path guiding: path tracing in directions learned from the VPLs",
                               kOptions, make, /*needsVpls=*/true};
 
 }  // namespace bnvpl::methods::integrator::guided

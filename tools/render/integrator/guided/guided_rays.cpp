@@ -13,11 +13,11 @@ namespace {
 // it is expected to add a third of the shading point's radiance; ending more paths would save time
 // and add more noise.
 constexpr float kCertain = 3.0f;
-// Least probability of survival, as the guide may be wrong about dark places.
+// Minimal probability of survival, as the guide may be wrong about dark places.
 constexpr float kMinSurvival = 0.4f;
 // Shadow rays to lights from the first vertex, which many samples reuse.
 constexpr unsigned kFirstLightRays = 2;
-// In the units of cost:: (measured: theory.md).
+// Cost of a ray in the units of cost:: (measured: theory.md).
 constexpr double kCostOfRay = 30.0;
 
 }  // namespace

@@ -11,9 +11,10 @@ namespace bnvpl {
 
 class GuidedRays : public IndirectRays {
  public:
-  // `surfaceLights`: where vertices look for lights. `guideShare`: of the directions, sampled from
-  // the guide in regions that it knows; below 1. `misRays`: rays from a shading point, for MIS with
-  // caustic photons. `maxBounces`: of paths, after the shading point.
+  // `surfaceLights`: distribution for light sampling at vertices. `guideShare`: share of directions
+  // that are sampled from the guide in regions that it knows; below 1. `misRays`: number of rays
+  // from a shading point that MIS weights assume. `maxBounces`: limit of bounces after the shading
+  // point.
   GuidedRays(const RayScene& rays, const LightSet& lights, Guide guide,
              const SurfaceLights& surfaceLights, float guideShare, unsigned misRays,
              unsigned maxBounces, Only only)

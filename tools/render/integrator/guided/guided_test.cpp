@@ -71,7 +71,7 @@ TEST(Guide, DensitiesAreThoseOfTheDraws) {
       float drawn = 0.0f;
       const Vec3 d = guide.sample(region, {rng.next(), rng.next()}, drawn);
       halfOfDraws += dot(d, side) > 0.0f ? 1.0 / kDraws : 0.0;
-      rounded += std::fabs(guide.pdf(region, d) - drawn) > 1e-3f * drawn;  // into the next cell
+      rounded += std::fabs(guide.pdf(region, d) - drawn) > 1e-3f * drawn;  // in the next cell
     }
     EXPECT_LT(rounded, kDraws / 1000) << region;
     EXPECT_NEAR(integral, 1.0, 0.15) << region;

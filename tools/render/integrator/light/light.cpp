@@ -1,4 +1,4 @@
-// Light tracing for what the camera sees directly, path tracing for the rest.
+// Light tracing for the indirect light of directly visible surfaces, path tracing for the rest.
 #include <array>
 #include <memory>
 
@@ -32,8 +32,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 extern const IntegratorMethod method;
 const IntegratorMethod method{
     "light",
-    "path tracing with indirect light by photons that are connected with the camera, for where "
-    "paths hardly find the lights; takes no VPLs",
+    "path tracing, with indirect light by light tracing, for scenes where paths hardly find the "
+    "lights; takes no VPLs",
     kOptions,
     make,
     /*needsVpls=*/false,

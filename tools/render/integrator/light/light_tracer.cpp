@@ -7,8 +7,9 @@ namespace bnvpl {
 
 namespace {
 
-// Ways in which a photon goes on from where it first comes into the camera's sight. Where few come
-// there, the way costs more than what follows (measured: docs/theory.md, "Light tracer").
+// Number of branches into which a photon splits at its first vertex that the camera sees. Where few
+// photons get there, the path to it costs more than what follows (measured: docs/theory.md, "Light
+// tracer").
 constexpr uint64_t kBranches = 32;
 
 }  // namespace
@@ -48,7 +49,7 @@ void LightTracer::follow(PhotonWalk photon, uint64_t index, Splats& out) const {
   out.nonFinite += photon.fate().finite ? 0 : 1;
 }
 
-// From `hit`, whose own light has been connected.
+// Follows the branches from `hit`, which has already been connected with the camera.
 void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
                                  Splats& out) const {
   for (uint64_t k = 0; k < kBranches; ++k) {
@@ -61,7 +62,7 @@ void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& h
   }
 }
 
-// Whether nothing lies between a vertex and the camera, be it on the film or not.
+// Whether a vertex and the camera see each other. The vertex need not lie on the film.
 bool LightTracer::inSight(const SurfacePoint& vertex) const {
   return !rays_.occluded(rays_.offsetOrigin(vertex.position, vertex.ng),
                          rays_.scene().camera.position);

@@ -7,11 +7,11 @@
 
 namespace bnvpl {
 
-// Photons from the lights; each rough vertex but those of first-bounce light is connected with the
-// camera. Brings the indirect light of points that the camera sees directly, unbiased and without
-// a radius; what it sees over mirrors, glass and sharp lobes is left to the PathTracer. Has the
-// path tracer's energy, and that of caustics of lights that no ray can hit besides. Rough
-// scatterings after the first are limited to maxBounces, as the path tracer's.
+// Traces photons from the lights and connects each of their rough vertices, except those of
+// first-bounce light, with the camera. This is an unbiased estimate of the indirect light of points
+// that the camera sees directly. The PathTracer adds what is seen over mirrors, glass and
+// near-specular lobes. The expectation is that of the path tracer, plus caustics of lights that no
+// ray can hit. Rough scatterings after the first are limited to maxBounces, as in the path tracer.
 class LightTracer {
  public:
   LightTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, uint64_t seed);

@@ -11,8 +11,7 @@ namespace {
 constexpr std::array kOptions{
     kMaxBouncesOption,
     switchOption("light-sampling", "on",
-                 "shadow rays to lamps and sky; off: rays of the BSDF alone find them, but for "
-                 "lights that no ray can hit"),
+                 "shadow rays to all lights; off: only to lights that no BSDF ray can hit"),
     firefliesOption("keep")};
 
 struct Parts {

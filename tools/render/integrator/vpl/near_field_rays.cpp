@@ -9,17 +9,17 @@ namespace bnvpl {
 
 namespace {
 
-// Vertices that a path may add to its first. Each follows with the probability of the uncovered
-// share alone.
+// Maximal number of segments of a path. The path goes on only with the probability of the uncovered
+// share.
 constexpr unsigned kMaxExtensions = 16;
-// VPLs that light a vertex: few, and fewer later on the path, whose noise counts less (measured:
-// docs/theory.md, "Near field").
+// Number of VPLs sampled at a vertex: few, and fewer at later vertices, whose noise matters less
+// (measured: docs/theory.md, "Near field").
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 // Shadow rays to lights from the first vertex.
 constexpr unsigned kFirstLightRays = 4;
-// Least importance of rough lobes whose light VPLs carry: such rays may go on, which costs more.
+// Minimal importance of rough lobes whose light VPLs carry.
 constexpr float kMinImportance = 0.1f;
-// In the units of cost:: (measured: theory.md).
+// Cost of a ray in the units of cost:: (measured: theory.md).
 constexpr double kCostOfRay = 16.0;
 
 }  // namespace
@@ -90,11 +90,11 @@ struct NearFieldRays::Path {
   }
 };
 
-// Estimates the light that a ray adds to the VPLs' light. Emission that a segment meets is one half
-// of MIS with light sampling. At a rough vertex the path
+// Estimates the light that a ray adds to the VPLs' light. Emission that a segment hits has its MIS
+// weight against light sampling. At a rough vertex the path
 //   - ends where VPLs carry all of its light (uncovered share 0);
 //   - weights the vertex by the uncovered share and ends there, if a VPL knows the radiance that
-//     leaves it; only the first-bounce light is found anew, by shadow rays;
+//     leaves it; only the first-bounce light is sampled anew, by shadow rays;
 //   - otherwise survives with the probability of the uncovered share, is lit like a shading point
 //     by lights and VPLs, and goes on in a direction sampled from the BSDF.
 void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& near, bool reuse,
@@ -132,8 +132,8 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& n
   path.finish();
 }
 
-// Follows the first segment. Where VPLs carry a part of the light that rough lobes would find,
-// the path takes specular lobes the more often.
+// Follows the first segment. Where VPLs carry a part of the light that rough lobes would find, the
+// path takes specular lobes more often.
 void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& near) const {
   const SurfacePoint& hit = *path.start.hit;
   if (hit.triangle != kNone && only_ != Only::Direct &&
@@ -171,8 +171,8 @@ bool NearFieldRays::survives(Path& path, const Uncovered& uncovered, const Bsdf&
   return path.rng.next() < probability;
 }
 
-// The light of the lights by shadow rays, and scattered light as a VPL knows it or from all VPLs.
-// Shadow rays share with the next segment's ray by MIS, if there will be one.
+// Adds first-bounce light by shadow rays, and further light as a VPL knows it or from all VPLs. If
+// the path will be extended, the shadow rays have MIS weights against the next segment's ray.
 void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
   const bool known = uncovered.scattered.has_value(), first = path.isFirst();
   const SurfacePoint& hit = path.segment.hit;
@@ -195,7 +195,7 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
   path.out.shadowRays += vpls.shadowRays;
 }
 
-// False: the path is absorbed, or long enough.
+// Returns false if the path is absorbed or has its maximal length.
 bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   BsdfSample sample;
   Ray next;

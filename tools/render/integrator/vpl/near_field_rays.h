@@ -1,5 +1,5 @@
 // BSDF rays from shading points, for the light that VPLs do not carry: light over mirrors, glass
-// and near-specular lobes, and the light that bias compensation asks for.
+// and near-specular lobes, and bias compensation.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ class NearFieldRays : public IndirectRays {
  public:
   // `point`: gathers VPLs at the vertices of rays. `misRays`: the number of rays from a shading
   // point that MIS with shadow rays and photons assumes; other numbers remain unbiased.
-  // `surfaceLights`: where vertices look for lights; null: light sampling by power.
+  // `surfaceLights`: distribution for light sampling at vertices; null: sampling by power.
   NearFieldRays(const RayScene& rays, const LightSet& lights, GatherPoint point,
                 Compensation compensation, unsigned misRays, const SurfaceLights* surfaceLights,
                 Only only)

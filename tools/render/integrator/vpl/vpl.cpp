@@ -1,5 +1,5 @@
-// The thesis: direct light by shadow rays, indirect light from the VPLs. What these do not carry is
-// completed by sampled rays (NearFieldRays).
+// The renderer of the thesis: direct light by shadow rays, indirect light from the VPLs.
+// NearFieldRays add the light that VPLs do not carry.
 #include <array>
 #include <memory>
 
@@ -14,38 +14,38 @@ namespace {
 
 constexpr std::array kOptions{
     neededBy(kIndirectIsShown, choiceOption("light", "point", kLightKinds,
-                                            "what a VPL is to what it lights: a point with a bound "
-                                            "on 1/d^2, or a disk")),
+                                            "model of a VPL: a point with a bound on 1/d^2, or a "
+                                            "disk")),
     neededBy(kIndirectIsShown, realOption("clamp", "2", 0, 1000, "r_max",
-                                          "radius of a VPL: 1/d^2 of a point grows no further "
-                                          "inside, a disk is so large")),
+                                          "radius of a VPL: 1/d^2 of a point is clamped within "
+                                          "it; a disk has this radius")),
     kDirectSamplesOption,
     neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
              wholeOption("near-field-rays", "8", 1, 4096, "",
-                         "rays by the BSDF from each shaded point, with --allocate on a quarter of "
-                         "them to four times as many: for --compensate, for light over specular "
-                         "surfaces, and with --direct-samples 1 for half of the direct light")),
+                         "BSDF rays from each shading point, for compensation and light over "
+                         "specular surfaces, and with --direct-samples 1 for direct light by MIS; "
+                         "with --allocate on, from a quarter of them to four times as many")),
     reuseOption("8",
-                "samples of a tile that share what their near-field rays find close by and in "
-                "gaps between VPLs on matt surfaces; 1: none"),
+                "samples of a tile that reuse the vertices of each other's near-field rays on "
+                "diffuse surfaces; 1: none"),
     neededBy(kIndirectIsShown,
              wholeOption("caustic-photons", "64", 0, 4096, "",
-                         "photons a pixel, at most 16M in all, that look for light over mirrors, "
-                         "glass and sharp lobes; 0: near-field rays alone do")),
+                         "photons per pixel, at most 16M in total, for light over mirrors, glass "
+                         "and near-specular lobes; 0: only near-field rays find it")),
     controlOption("vpls"),
     neededBy(kDirectIsShown, choiceOption("direct", "learned", "learned|each",
                                           "shadow rays to what each tile of the film has learned "
                                           "to see, or one to each light")),
     neededBy({Condition{"direct", "learned"}},
              wholeOption("light-rays", "8", 1, 4096, "",
-                         "shadow rays from each shaded point where --direct-samples is 1; by them "
-                         "goes in any case how much tiles learn")),
+                         "shadow rays from each shading point with --direct-samples 1; in any "
+                         "case, they set the number of rays that tiles learn from")),
     allocateOption(
-        "by pilots, near-field rays, clusters of tile cuts and direct samples where they "
-        "take most noise from the film"),
+        "allot near-field rays, clusters of tile cuts and direct samples by pilots, to minimise "
+        "the noise of the film"),
     firefliesOption("redistribute")};
 
-// What lives as long as the integrator, in an order in which each may borrow from those before.
+// Objects that live as long as the integrator. Each may borrow from those before it.
 struct Parts {
   VplLights vpls;
   LightTree tree;
@@ -55,7 +55,7 @@ struct Parts {
   SampleAllocation allocation = {};
 };
 
-// With a point function.
+// Makes the gather method. Its point function is always set.
 Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& film,
                   Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
@@ -73,15 +73,15 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
 }
 
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
-  constexpr uint64_t kMaxPhotons = 16000000;  // seconds, for each shard
+  constexpr uint64_t kMaxPhotons = 16000000;  // they take seconds, in each shard
   return in.only == Only::Direct
              ? 0
              : std::min(kMaxPhotons, in.pixels() * options.whole("caustic-photons"));
 }
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  constexpr uint64_t kMaxSpp = 256;  // a budget names no number
-  // Of direct light alone no VPL is asked, whatever it were.
+  constexpr uint64_t kMaxSpp = 256;  // upper limit, as spp of a budget may be unlimited
+  // Direct light needs no VPLs, so their clamp and kind are arbitrary.
   const bool indirect = in.only != Only::Direct;
   const float clamp = indirect ? options.real32("clamp") : 1.0f;
   const LightKind light = indirect ? lightKindNamed(options.text("light")) : LightKind{};
@@ -93,7 +93,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                        .make({in.lit, in.rays, clamp, light}, options);
   }
   TileParts tile;
-  // With --only direct, direct samples send rays of their own by the BSDF.
+  // With --only direct, direct samples trace BSDF rays of their own.
   if (options.has("near-field-rays") && (compensation || hasSpecularLobes(in.rays.scene())))
     tile.raysEach = static_cast<unsigned>(options.whole("near-field-rays"));
   if (indirect && tile.raysEach > 0) {

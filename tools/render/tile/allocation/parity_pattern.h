@@ -1,5 +1,5 @@
-// Which samples of a tile decide on the number of which others, and which reuse each other's
-// vertices.
+// Division of a tile's samples into two parities, each of which decides on the number of samples of
+// the other, and into blocks that reuse each other's vertices.
 #pragma once
 
 #include <bit>

@@ -13,7 +13,7 @@ namespace bnvpl {
 
 namespace {
 
-// The pilot: so many tiles, with so many samples per pixel.
+// Number of tiles of the pilot, and of their samples per pixel.
 constexpr size_t kPilotTiles = 48;
 constexpr uint32_t kPilotSlots = 4;
 // Floor of a tile's light, over the film's median.
@@ -107,8 +107,8 @@ SampleAllocation findAllocation(const Scene& scene, uint64_t seed, uint64_t spp,
   std::ranges::nth_element(lights, lights.begin() + static_cast<ptrdiff_t>(count / 2));
   out.medianLight = lights[count / 2];
   out.floorLight = kFloor * kFloor * out.medianLight;
-  // The mean of the deviations, not of the variances: one tile that no number of samples makes
-  // quiet must not let all others be noisy.
+  // The mean of standard deviations, unlike that of variances, is not dominated by a tile that
+  // stays noisy with any number of samples.
   double deviation = 0.0, cost = 0.0;
   for (const PilotTile& tile : pilot) {
     deviation += std::sqrt(out.relative(tile.variance, tile.light));

@@ -85,8 +85,8 @@ SharedWithPhotons Caustics::sharedBy(float samplesPerArea) const {
           chosen_ ? &dense_ : nullptr};
 }
 
-// Photons always take the specular lobes, as the light of the others is not wanted. Even a coat
-// that reflects little then carries its little by every photon.
+// Photons always take the specular lobes, as light over rough ones is not wanted. So every photon
+// carries the light that even a weakly reflecting coat reflects.
 uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
   Rng rng(key, index);
   float probability = 1.0f;
@@ -96,11 +96,11 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
   const uint64_t lamp =
       lights_.hittable(light) ? lampOf(lights_, light, -start.direction) : kNoLamp;
   if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
-    return lamp;  // nothing is to be learned of it, or its light is left to rays
+    return lamp;  // the pilot does not need it, or its light is left to rays
   Vec3 flux = start.flux * static_cast<float>(1.0 / (double{probability} * double(photons_)));
   Ray next{start.origin, start.direction};
   SurfacePoint hit;
-  bool hidden = false;  // from paths that begin at the camera
+  bool hidden = false;  // whether paths from the camera cannot find this light
   for (unsigned links = 0; links <= kMaxSpecular && isFinite(flux); ++links) {
     rays_.closestHit(next.origin, next.direction, hit);
     if (hit.triangle == kNone) return lamp;

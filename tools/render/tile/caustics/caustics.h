@@ -1,6 +1,6 @@
 // Caustic photons: light that reaches directly visible surfaces over mirrors, glass and
-// near-specular lobes. One in thousands of rays from such a surface meets a small lamp on this way
-// and makes a firefly; every photon of the lamp may find it.
+// near-specular lobes. Of thousands of rays from such a surface one hits a small lamp on this way
+// and makes a firefly, while every photon of the lamp may reach the surface.
 #pragma once
 
 #include <span>
@@ -17,16 +17,16 @@ namespace bnvpl {
 // the first rough one. They share the light of lamps and sky with near-field rays by MIS; lights
 // that no ray can hit are theirs alone.
 //
-// A pilot with an eighth of the photons finds the noise of each lamp's photons (lampOf: a light, or
-// a region of a sky). With the splats r_k of a lamp, (sum r_k)^2 / sum r_k^2 is the number of equal
-// splats that would be as noisy. A lamp with fewer than kMinPilotPhotons of them is left to
-// near-field rays, such as a sun above wide ground, of whose photons hardly one enters the window.
-// The photons of the image are independent of the pilot's, so that it stays unbiased.
+// A pilot with an eighth of the photons measures the noise of each lamp's photons (lampOf: a light,
+// or a region of a sky). With the splats r_k of a lamp, (sum r_k)^2 / sum r_k^2 is the number of
+// equal splats that would be as noisy. A lamp with fewer than kMinPilotPhotons of them is left to
+// near-field rays: for example the sun, if the camera is in a room and hardly a photon enters its
+// window. The photons of the image are independent of the pilot's, so that it stays unbiased.
 //
 // No path from the camera can end at a light that no ray can hit if a perfect mirror or glass lies
 // before it. With `bounces` > 0 photons carry all of that light to directly visible surfaces: they
 // go on from their first rough vertex, and each later one is connected with the camera as well.
-// Thread-safe and immutable once made.
+// Immutable and thread-safe.
 class Caustics {
  public:
   // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
@@ -35,7 +35,7 @@ class Caustics {
            unsigned bounces, uint64_t seed, const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
-  // MIS with rays that leave a directly visible point.
+  // Parameters of MIS with rays that leave a directly visible point.
   SharedWithPhotons shared(const SurfacePoint& point) const;
   // Lamps that sent photons and that rays can hit, and those of them that are left to rays.
   size_t lamps() const { return lamps_; }
@@ -43,7 +43,7 @@ class Caustics {
 
  private:
   static constexpr double kMinPilotPhotons = 4.0;
-  static constexpr uint64_t kPilotShare = 8;  // the pilot has one photon for so many
+  static constexpr uint64_t kPilotShare = 8;  // photons of the image per photon of the pilot
 
   void chooseLamps(uint64_t key, const ProgressFn& progress);
   static void add(const Splat& splat, PhotonLight& to);
@@ -51,7 +51,7 @@ class Caustics {
   // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
   static constexpr uint64_t kNoLamp = UINT64_MAX;
   uint64_t follow(uint64_t key, uint64_t index, Splats& out) const;
-  // Goes on from a rough vertex, by its rough lobes.
+  // Follows the photon from a rough vertex, by its rough lobes.
   void followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 towards, Rng& rng,
                      Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,

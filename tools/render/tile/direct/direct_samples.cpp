@@ -14,10 +14,10 @@ namespace {
 
 // Shadow rays of a direct sample. They are few, because another sample also sees another point.
 constexpr unsigned kLightRays = 3;
-// Least mean number of BSDF rays of a direct sample, as some light may be found by them alone.
+// Minimal mean number of BSDF rays of a direct sample, as some light may be found only by them.
 constexpr double kMinBsdfRays = 0.125;
 constexpr unsigned kMaxSamples = 64;
-// Direct samples of a sample without indirect light and without a marginal cost.
+// Number of direct samples of a sample without indirect light and without a marginal cost.
 constexpr unsigned kSamplesAlone = 4;
 
 }  // namespace
@@ -50,7 +50,7 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   LearnedLight learned = rays.lights;
   LearnedStrata around;
   if (path.spread && surfaceLights_ && learned.strata) {
-    // Near-specular reflection leads to places of which the tile has learned little.
+    // Near-specular reflection leads to points for which the tile's distribution is poor.
     around = surfaceLights_->at(path.hit.position, path.hit.ng);
     if (around.all) learned.strata = &around;
   }
@@ -63,7 +63,7 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   return light;
 }
 
-// Light by at most one BSDF ray, which is sent with the probability rays.bsdf.
+// Light by at most one BSDF ray, which is traced with the probability rays.bsdf.
 Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
                             const LearnedLight& learned, Rng& rng) const {
   BsdfSample next;
@@ -90,9 +90,9 @@ namespace {
 LearnedLight lightsOf(const LearnedStrata* strata) { return {strata, strata ? kLightRays : 0}; }
 
 // The efficient mean number of BSDF rays beside `lightRays` shadow rays. A ray that finds the light
-// B and is sent with the probability q has the variance E[B^2] / q - E[B]^2; V is the variance of
-// the shadow rays together. Variance times cost is least where each number of rays is proportional
-// to the root of what it divides, over its cost.
+// B and is traced with the probability q has the variance E[B^2] / q - E[B]^2; V is the variance of
+// all shadow rays together. Variance times cost is minimal if each number of rays is proportional
+// to sqrt(a / c), where c is the cost of a ray and a / (number of rays) its term of the variance.
 float bsdfRaysFor(double squareByBsdf, double varianceByLight, double lightRays) {
   if (!(varianceByLight > 0.0)) return 1.0f;
   const double rays =
@@ -128,7 +128,7 @@ DirectSamples::Pilot DirectSamples::pilot(const TileSlots& tile,
 
 namespace {
 
-// Indirect light of one sample: means over the tile.
+// Variance and mean of a sample's indirect light, averaged over the tile.
 struct Indirect {
   double variance = 0.0;
   Vec3 light;
@@ -156,8 +156,8 @@ Indirect indirectOf(const TileSamples& tile) {
   return out;
 }
 
-// Direct samples for each sample. Without a marginal cost of the film, that of the tile's indirect
-// light holds.
+// Number of direct samples for each sample. Without a marginal cost of the film, that of the tile's
+// indirect light is used.
 unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, double costOfOne,
                   double cost, const SampleAllocation& allocation) {
   if (!(pilot.variance > 0.0)) return 1;
@@ -228,7 +228,7 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
   return costOfOne * samples / tile.pixels;
 }
 
-// The first half of the samples tells the pixels of the other parity how many they need.
+// The first half of the samples decides how many samples the pixels of the other parity get.
 void DirectSamples::addMore(const TileSamples& tile, const Rays& rays, double cost,
                             const SampleAllocation& allocation,
                             std::span<const PixelMoments> moments, std::span<Pixel> pixels) const {
@@ -240,7 +240,7 @@ void DirectSamples::addMore(const TileSamples& tile, const Rays& rays, double co
   }
 }
 
-// Means over the samples of a pixel. Its camera samples count among the rays that may meet
+// Stores means over the samples of a pixel. Its camera samples count among the rays that may hit
 // emission, unless they have no rays.
 void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const LearnedStrata* strata,
                           const Pixel& from) const {

@@ -32,11 +32,11 @@ class DirectSamples {
     Vec3 light;             // mean over the tile
     float bsdfRays = 1.0f;  // efficient mean number from each shading point, at most 1
   };
-  // `strata`: the lights that the tile has learned to see; may be null.
+  // `strata`: the tile's learned distribution of lights; may be null.
   Pilot pilot(const TileSlots& tile, const LearnedStrata* strata) const;
   // Sets the direct light of the tile's camera samples. `paths`: their camera paths, whose emission
-  // counts, too. `cost`: of a sample without its direct light. Returns the cost of the direct
-  // samples of a sample.
+  // is included. `cost`: cost of a sample without its direct light. Returns the cost of a sample's
+  // direct samples.
   double render(const TileSamples& tile, std::span<const SpecularPath> paths,
                 const LearnedStrata* strata, const Pilot& pilot, double cost,
                 const SampleAllocation& allocation) const;
@@ -44,7 +44,7 @@ class DirectSamples {
  private:
   // The direct light of a sample, or a sum over samples.
   struct Light {
-    Vec3 emission;  // directly visible
+    Vec3 emission;  // directly visible emission
     Vec3 met;       // on the camera path: `emission`, and light at specular vertices
     // Light that the shading point scatters, by shadow rays and by BSDF rays.
     Vec3 byLight, byBsdf;

@@ -1,5 +1,5 @@
-// The parts of the lights that each tile of the film sees, learned by shadow rays from the tile's
-// shading points on first use, so that a shard learns its own tiles alone.
+// Distributions of light sampling for each tile of the film, learned by shadow rays from the tile's
+// shading points on first use, so that a shard learns only its own tiles.
 #pragma once
 
 #include <functional>
@@ -14,14 +14,14 @@ namespace bnvpl {
 
 class TileLights {
  public:
-  // `raysOfTile`: shadow rays that the samples of a tile will send; learning takes half as many,
-  // within bounds. `shadingPoint`: of a pixel of the film. `cost`: where nothing but the cost is
-  // asked for. Borrows rays and lights.
+  // `raysOfTile`: number of shadow rays of a tile's samples; learning takes half as many, within
+  // bounds. `shadingPoint`: returns the shading point of a pixel. `cost` is set for a cost
+  // estimate. Borrows rays and lights.
   TileLights(const RayScene& rays, const LightSet& lights,
              std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
              uint64_t seed, CostProbe* cost = nullptr);
 
-  // Strata of the tile that has the pixel. Thread-safe.
+  // Distribution of the tile that contains the pixel. Thread-safe.
   LearnedStrata at(uint32_t x, uint32_t y) const;
 
  private:

@@ -1,6 +1,6 @@
-// Directly visible emission: lamps and sky that the camera sees, also through mirrors, glass and
-// near-specular lobes. Its edges are sharp and bright. Camera rays are cheap, so that pixels at
-// such edges get more of them.
+// Directly visible emission: area lights and skies that the camera sees, also over mirrors, glass
+// and near-specular lobes. Its edges are sharp and bright. Camera rays are cheap, so pixels at such
+// edges get more of them.
 #pragma once
 
 #include "tools/render/tile/control/pixel_rays.h"

@@ -1,6 +1,6 @@
 // The directions of rays that leave a rough vertex: sampled from its BSDF, or a share of them from
-// a guide, which knows where light comes from. Both are combined by one-sample MIS with the balance
-// heuristic: the density of a direction is that of the mixture (Vorba et al. 2014).
+// a guide, which approximates the incident light. Both are combined by one-sample MIS with the
+// balance heuristic: the density of a direction is that of the mixture (Vorba et al. 2014).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class DirectionGuide {
 class Directions {
  public:
   explicit Directions(const Bsdf& bsdf) : bsdf_(&bsdf) {}
-  // `share`: of the directions, sampled from the guide; below 1.
+  // `share`: probability of sampling the guide; below 1.
   Directions(const Bsdf& bsdf, const DirectionGuide& guide, uint32_t region, float share)
       : bsdf_(&bsdf), guide_(&guide), region_(region), share_(share) {}
 
@@ -30,7 +30,7 @@ class Directions {
     const float bsdfPdf = bsdf_->pdf(LobeGroup::Rough, wi);
     return guide_ ? (1.0f - share_) * bsdfPdf + share_ * guide_->pdf(region_, wi) : bsdfPdf;
   }
-  // False: the ray is absorbed.
+  // Returns false if the ray is absorbed.
   bool sample(Rng& rng, BsdfSample& out) const {
     const float pick = rng.next();
     const Point2 at = rng.nextPoint();

@@ -21,7 +21,7 @@ struct RayContributions {
   // of `indirect` and `compensated`.
   std::vector<ReusedVertex> vertices;
   Vec3 vertexLight;
-  double squares = 0.0;  // squared indirect light of each ray but for `vertexLight`, channels added
+  double squares = 0.0;  // sum of squared indirect light of rays without `vertexLight`
   uint32_t rays = 0, shadowRays = 0;
 
   // Adds the mean of the rays, with `reused` in place of the mean of vertexLight: the light of the
@@ -56,8 +56,8 @@ struct FirstSegment {
 };
 
 // Samples and traces `count` rays in batches, so that their memory accesses overlap. Calls
-// hits(batch) with what a batch hit, then follow(k, segment) for its k-th ray, which adds to `out`.
-// `misRays`: the number of rays from the shading point that MIS weights assume.
+// hits(batch) with the hits of a batch, then follow(k, segment) for its k-th ray, which adds to
+// `out`. `misRays`: the number of rays from the shading point that MIS weights assume.
 template <typename Hits, typename Follow>
 void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, unsigned count,
               uint32_t first, uint64_t key, RayContributions& out, const Hits& hits,
@@ -95,14 +95,15 @@ void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, un
   out.rays += count;
 }
 
-// Thread-safe and immutable once made.
+// Immutable and thread-safe.
 class IndirectRays {
  public:
   virtual ~IndirectRays() = default;
 
   // How ray directions are sampled at a shading point.
   virtual Directions directionsFrom(const Bsdf& bsdf) const { return Directions(bsdf); }
-  // Adds `count` rays, which use the points `first` and on of the sequences of `key`.
+  // Traces `count` rays and adds their light to `out`. They use the points from `first` on of the
+  // sequences of `key`.
   virtual void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                     RayContributions& out) const = 0;
   virtual double costOfRay() const = 0;  // in the units of cost:: (sample_allocation.h)

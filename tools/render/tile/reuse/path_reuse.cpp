@@ -4,7 +4,7 @@ namespace bnvpl {
 
 namespace {
 
-// One sample's view of a vertex.
+// Connection of a sample with a vertex.
 struct Connection {
   float density = 0.0f;  // p_k(y) without V: density of one ray, 1/unit^2
   Vec3 value;            // contribution per radiance that leaves the vertex, 1/unit^2
@@ -49,8 +49,8 @@ struct Connections {
   }
   Connection& at(size_t vertex, size_t sample) { return all[vertex * samples + sample]; }
 
-  // Shadow rays to all vertices but a sample's own, which its ray has reached. Returns their
-  // number.
+  // Traces shadow rays to all vertices except a sample's own, which its ray has reached. Returns
+  // their number.
   size_t testVisibility(const RayScene& rays, std::span<const ReusingSample> group) {
     std::vector<Segment> segments;
     std::vector<Connection*> tested;

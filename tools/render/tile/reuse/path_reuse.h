@@ -1,8 +1,8 @@
-// Path reuse (Bekaert, Sbert & Halton 2002): the vertices that near-field rays of one sample find
-// light the other samples of its group as well, as virtual lights that last no longer than the
-// group. A vertex can be reused where its radiance is known in all directions once it is known in
-// one (RoughLeaving: diffuse, bare or below a near-specular coat). Finding that radiance takes many
-// rays, connecting one more sample to the vertex takes one.
+// Path reuse (Bekaert, Sbert & Halton 2002): the vertices of one sample's near-field rays also
+// light the other samples of its group, as virtual lights that exist only for the group. A vertex
+// can be reused if its radiance in one direction gives that in all directions (RoughLeaving:
+// diffuse, bare or below a near-specular coat). Estimating that radiance takes many rays,
+// connecting one more sample to the vertex only one.
 //
 // The rays of a group are techniques of one multi-sample MIS estimator (Veach 1997, section 9.2.2).
 // Sample k sends n_k rays. A ray reaches the vertex y with the density, per unit area,
@@ -16,10 +16,10 @@
 //   sum over y of  f_j(x_j -> y) s_y(|x_j - y|) |cos_y| / |x_j - y|^2 V(x_j, y) L(y)
 //                  / sum over k of n_k p_k(y).
 //
-// L depends on the direction to x_j by a factor alone where y lies below a coat. A ray that meets a
-// coated vertex may follow the coat instead; L is divided by the probability that it did not,
-// which p_k leaves out. No vertex weighs more than it would with the rays of j alone. The estimator
-// is unbiased if no n_k depends on what the rays of the group found.
+// Below a coat, L depends on the direction to x_j only by a factor. A ray that hits a coated vertex
+// may follow the coat instead; L is divided by the probability that it did not, which p_k leaves
+// out. No vertex has a larger weight than it would have with the rays of j alone. The estimator is
+// unbiased if no n_k depends on what the rays of the group found.
 #pragma once
 
 #include <span>
@@ -35,13 +35,13 @@ namespace bnvpl {
 struct ReusedVertex {
   Vec3 position, normal;  // unit, on the side of the sample that found it
   RoughLeaving leaving;
-  Vec3 radiance;  // that leaves the vertex, divided by the factor of `leaving`, W/(m2 sr)
+  Vec3 radiance;  // radiance that leaves the vertex, over the factor of `leaving`, W/(m2 sr)
   UncoveredShare uncovered;
 };
 
 // A sample of the group.
 struct ReusingSample {
-  const Directions* directions;            // how its rays were drawn
+  const Directions* directions;            // distribution of its rays
   unsigned rays;                           // number of rays that it sent, n_k
   std::span<const ReusedVertex> vertices;  // those that its rays found
   Vec3 radiance = {};  // result: the light of all vertices of the group, W/(m2 sr)
