@@ -143,7 +143,7 @@ EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, ui
   a.reflected = watts(kReflected);
   a.deposited = watts(kDeposited);
   a.outside = watts(kOutside);
-  a.incompatible = watts(kIncompatible);
+  a.uncovered = watts(kUncovered);
   a.hidden = watts(kHidden);
   a.photons = photons;
   a.hits = sums.hits;
@@ -233,7 +233,7 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
   }
   scatter.tally(sums,
                 found.miss == Coverage::Miss::Outside        ? kOutside
-                : found.miss == Coverage::Miss::Incompatible ? kIncompatible
+                : found.miss == Coverage::Miss::Incompatible ? kUncovered
                                                              : kHidden,
                 hit.flux);
 }

@@ -63,7 +63,7 @@ enum Tally {
   kReflected,
   kDeposited,
   kOutside,
-  kIncompatible,
+  kUncovered,
   kHidden,
   kTallies
 };

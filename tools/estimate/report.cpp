@@ -82,7 +82,7 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
       "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, uncovered "
       "%.2f %%, hidden %.2f %%",
       a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
-      percent(a.incompatible, a.reflected), percent(a.hidden, a.reflected));
+      percent(a.uncovered, a.reflected), percent(a.hidden, a.reflected));
   summary.add("hits", a.hits, line);
   summary.add("rays", a.rays);
   summary.add("guard_rays", a.guardRays);
@@ -92,7 +92,7 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
                            {"reflected", a.reflected},
                            {"deposited", a.deposited},
                            {"dropped_outside", a.outside},
-                           {"dropped_incompatible", a.incompatible},
+                           {"dropped_uncovered", a.uncovered},
                            {"dropped_hidden", a.hidden}});
 }
 
