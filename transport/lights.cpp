@@ -129,6 +129,23 @@ Vec3 LightSet::spreadTexture(Light& light, std::vector<double>& areas) const {
   return {float(sum[0]), float(sum[1]), float(sum[2])};
 }
 
+namespace {
+
+// Integral of a spot's falloff times sin over the angles of its cone, by the midpoint rule. Its
+// error affects only the sample allocation.
+double falloffIntegral(const LightSpec& s) {
+  double integral = 0.0;
+  constexpr int kSteps = 256;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = (i + 0.5) / kSteps * double{s.coneRad};
+    integral += double{spotFalloff(s, float(std::cos(angle)))} * std::sin(angle) *
+                double{s.coneRad} / kSteps;
+  }
+  return integral;
+}
+
+}  // namespace
+
 void LightSet::addSpecLights() {
   for (const LightSpec& s : scene_.lights) {
     Light l;
@@ -137,19 +154,9 @@ void LightSet::addSpecLights() {
       case LightType::Point:
         l.power = s.emission * (4.0f * kPi);
         break;
-      case LightType::Spot: {
-        // Midpoint rule for the falloff over the cone. Its error affects only the sample
-        // allocation.
-        double integral = 0.0;
-        constexpr int kSteps = 256;
-        for (int i = 0; i < kSteps; ++i) {
-          const double angle = (i + 0.5) / kSteps * double{s.coneRad};
-          integral += double{spotFalloff(s, float(std::cos(angle)))} * std::sin(angle) *
-                      double{s.coneRad} / kSteps;
-        }
-        l.power = s.emission * (2.0f * kPi * static_cast<float>(integral));
+      case LightType::Spot:
+        l.power = s.emission * (2.0f * kPi * static_cast<float>(falloffIntegral(s)));
         break;
-      }
       case LightType::Directional:
         l.power = s.emission * silhouetteArea(scene_.bounds, s.direction);
         break;

@@ -103,7 +103,7 @@ def functions_of(text: str) -> list[tuple[int, int]]:
     found = []
     start = None
     for number, line in enumerate(text.splitlines(), 1):
-        if start is None and re.match(r"[A-Za-z_].*\)[^;]*\{$", line):
+        if start is None and re.match(r"[A-Za-z_][^=]*\)[^;=]*\{$", line):
             start = number
         elif start is not None and line == "}":
             found.append((start, number - start + 1))
@@ -118,14 +118,16 @@ class Sizes(unittest.TestCase):
                 lines = len((ROOT / path).read_text().splitlines())
                 self.assertLessEqual(lines, MAX_MAIN_LINES, str(path))
 
-    def test_files_are_short(self) -> None:
+    def test_files_of_cpp_are_short(self) -> None:
         for path in sources():
+            if path.suffix == ".py":
+                continue
             lines = len((ROOT / path).read_text().splitlines())
             self.assertLessEqual(lines, MAX_FILE_LINES, str(path))
 
     def test_functions_are_short(self) -> None:
         for path in sources():
-            if path.suffix == ".py":
+            if path.suffix == ".py" or path.name == "small_font.h":  # a table of glyphs
                 continue
             for start, length in functions_of((ROOT / path).read_text()):
                 self.assertLessEqual(length, MAX_FUNCTION_LINES, f"{path}:{start}")

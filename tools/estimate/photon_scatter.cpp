@@ -153,17 +153,23 @@ EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, ui
   return a;
 }
 
+namespace {
+
+PhotonSums sumsOfShards(const EstimateInputs& in, const PhotonRun& run) {
+  const ShardSource& source = *in.resume.source;
+  const size_t vpls = in.vpls.size();
+  PhotonSums sums = sumsOf(source.sums(kPhotonWork, integersFor(vpls)), vpls);
+  sums.points = emitPointsOfShards(source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
+  return sums;
+}
+
+}  // namespace
+
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule) {
   const PhotonShares& shares = run.shares;
   const ProgressFn& progress = in.progress;
   const Resume& resume = in.resume;
-  if (resume.source) {
-    const size_t vpls = in.vpls.size();
-    PhotonSums sums = sumsOf(resume.source->sums(kPhotonWork, integersFor(vpls)), vpls);
-    sums.points =
-        emitPointsOfShards(*resume.source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
-    return sums;
-  }
+  if (resume.source) return sumsOfShards(in, run);
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());

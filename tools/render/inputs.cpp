@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "core/memory.h"
 #include "formats/vpl_io.h"
 #include "tools/common/exposure.h"
+#include "tools/common/film_size.h"
 #include "tools/common/memory.h"
 #include "tools/render/integrator/light_in_glass.h"
+#include "tools/render/outputs.h"
 
 namespace bnvpl {
 
@@ -69,6 +72,17 @@ void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values&
   if (!files.lit.empty()) lights.requireSquares();
   const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
   if (!missed.empty()) printWarnings("vpl-render", {missed});
+}
+
+void requireMemoryForImage(const Film& film, const Values& options) {
+  requireMemory(bytesPerPixelOf(options) * film.width * film.height,
+                "an image of " + sizeText(film) + " pixels", "choose a smaller --size");
+}
+
+std::vector<fs::path> filesRead(const Scene& scene, const RenderFiles& files) {
+  std::vector<fs::path> read = scene.files;
+  if (!files.lit.empty()) read.push_back(files.lit);
+  return read;
 }
 
 }  // namespace bnvpl

@@ -20,6 +20,12 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
 // unless the run only estimates.
 VplTable readLit(const fs::path& lit, const Values& options, bool estimating);
 
+// Throws MemoryError if an image of this size cannot fit.
+void requireMemoryForImage(const Film& film, const Values& options);
+
+// Files that the image depends on.
+std::vector<fs::path> filesRead(const Scene& scene, const RenderFiles& files);
+
 // Throws InputError where the VPLs were not made on this scene.
 void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file);
 

@@ -2,7 +2,6 @@
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
 #include <CLI/CLI.hpp>
 
-#include "core/memory.h"
 #include "tools/common/film_size.h"
 #include "tools/common/stage_run.h"
 #include "tools/render/cost_of_rendering.h"
@@ -25,10 +24,7 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   run.filesReady(scene.files);
   if (!options.text("size").empty()) scene.film = parseSize(options.text("size"));
   if (!files.lit.empty()) requireLitOf(scene, lit, files.lit);
-  if (!run.estimating()) {
-    requireMemory(bytesPerPixelOf(options) * scene.film.width * scene.film.height,
-                  "an image of " + sizeText(scene.film) + " pixels", "choose a smaller --size");
-  }
+  if (!run.estimating()) requireMemoryForImage(scene.film, options);
   const Film film = scene.film;
   if (run.estimating()) scene.film = filmToTry(film);
   const RayScene rays(scene, tool.processor);
@@ -48,8 +44,8 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
     json["view"] = viewRecord(scene);
     return json;
   };
-  const auto result = [&](const StageTask& task, const PreviewFn& preview) {
-    return render(rays, lights, lit, options, task.progress, task.resume, preview);
+  const auto result = [&](const StageTask& t, const PreviewFn& preview) {
+    return render(rays, lights, lit, options, t.progress, t.resume, preview);
   };
   const ImagePaths images{request.output, files.png};
   const auto whole = [&](const StageTask& task) {
@@ -65,10 +61,8 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
     return {withLayers(made, options), request.given, sources, request.command,
             extendProvenance(lit.provenance, made)};
   };
-  std::vector<fs::path> read = scene.files;
-  if (!files.lit.empty()) read.push_back(files.lit);
-  return run.make({record(resumableOptions(options)), "samples", renderWork(scene, options), read,
-                   whole, part});
+  return run.make({record(resumableOptions(options)), "samples", renderWork(scene, options),
+                   filesRead(scene, files), whole, part});
 }
 
 }  // namespace

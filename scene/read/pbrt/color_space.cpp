@@ -29,7 +29,7 @@ Matrix product(const Matrix& a, const Matrix& b) {
   return c;
 }
 
-Matrix inverse(const Matrix& m) {
+Matrix inverseOf(const Matrix& m) {
   Matrix out;
   double determinant = 0.0;
   for (size_t i = 0; i < 3; ++i) {
@@ -75,7 +75,7 @@ Matrix xyzFromRgb(ColorSpace space) {
   const Primaries& p = primariesOf(space);
   const Xyz r = xyzOf(p.red), g = xyzOf(p.green), b = xyzOf(p.blue);
   Matrix m{{{r[0], g[0], b[0]}, {r[1], g[1], b[1]}, {r[2], g[2], b[2]}}};
-  const Xyz weights = times(inverse(m), xyzOf(p.white));
+  const Xyz weights = times(inverseOf(m), xyzOf(p.white));
   for (auto& row : m) {
     for (size_t j = 0; j < 3; ++j) row[j] *= weights[j];
   }
@@ -92,11 +92,11 @@ Matrix adaptation(const Xyz& from, const Xyz& to) {
   for (size_t i = 0; i < 3; ++i) {
     for (double& v : scaled[i]) v *= b[i] / a[i];
   }
-  return product(inverse(kBradford), scaled);
+  return product(inverseOf(kBradford), scaled);
 }
 
 const Matrix& srgbFromXyz() {
-  static const Matrix m = inverse(xyzFromRgb(ColorSpace::Srgb));
+  static const Matrix m = inverseOf(xyzFromRgb(ColorSpace::Srgb));
   return m;
 }
 

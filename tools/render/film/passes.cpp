@@ -237,7 +237,7 @@ class Passes {
   Tiles tiles_;
   uint64_t key_;
   PassesState state_;
-  std::vector<PixelPasses> known_;  // of the passes that are done
+  std::vector<PixelPasses> known_;  // finished passes
   std::vector<double> variances_;   // relative
   double error_ = 0.0, startS_ = 0.0;
   std::string_view endedBy_;

@@ -4,7 +4,7 @@
 
 namespace bnvpl {
 
-// Of every integrator that traces paths.
+// The option of every integrator that traces paths.
 inline constexpr Option kMaxBouncesOption =
     neededBy({Condition{"only", "all|indirect"}},
              wholeOption("max-bounces", "32", 0, 1000, "",

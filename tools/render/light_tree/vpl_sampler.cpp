@@ -21,8 +21,8 @@ std::array<float, 4> store(__m128 v) {
 // From a point to four spheres.
 struct SphereDirections {
   __m128 x, y, z;               // unit, to the centres
-  __m128 cosSphere, sinSphere;  // of half the angle that each takes
-  __m128 radius2, d2;           // of the spheres, to the centres
+  __m128 cosSphere, sinSphere;  // half of the angle that each subtends
+  __m128 radius2, d2;           // squared radii, squared distances of the centres
   // Largest cosine between an axis and any direction into the sphere.
   __m128 most(__m128 ax, __m128 ay, __m128 az) const {
     return selectAtLeast(radius2, d2, all(1.0f),
