@@ -201,10 +201,14 @@ def problems_of(path: Path, name: str) -> Iterator[tuple[int, str]]:
 
 
 def tracked_files() -> list[str]:
+    """Names of the project's files; without git those outside of build folders."""
     listed = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True
-    ).stdout
-    return [name for name in listed.decode().split("\0") if name]
+        ["git", "ls-files", "-z"], cwd=ROOT, check=False, capture_output=True
+    )
+    if listed.returncode == 0:
+        return [name for name in listed.stdout.decode().split("\0") if name]
+    names = (path.relative_to(ROOT) for path in ROOT.rglob("*") if path.is_file())
+    return sorted(str(n) for n in names if n.parts[0] not in ("build", "out", ".git"))
 
 
 def main() -> int:

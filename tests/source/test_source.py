@@ -12,7 +12,9 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
+import check_prose  # noqa: E402
 
 LAYERS = ["core", "formats", "spatial", "scene", "transport", "images", "tools"]
 STAGES = ["place", "eliminate", "estimate", "render"]
@@ -35,14 +37,13 @@ MAX_FUNCTION_LINES = 60
 
 
 def sources(*folders: str) -> list[Path]:
-    listed = subprocess.run(
-        ["git", "ls-files", "*.h", "*.cpp", "*.py"],
-        cwd=ROOT,
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout.split()
-    return [Path(name) for name in listed if not folders or name.startswith(tuple(folders))]
+    names = [Path(name) for name in check_prose.tracked_files()]
+    return [
+        name
+        for name in names
+        if name.suffix in (".h", ".cpp", ".py")
+        and (not folders or str(name).startswith(tuple(folders)))
+    ]
 
 
 def includes_of(path: Path) -> list[str]:
