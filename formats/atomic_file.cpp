@@ -159,6 +159,14 @@ void AtomicFile::commit() {
   syncFolder(place_);
 }
 
+void AtomicFile::withdraw() {
+  if (::unlink(partial_.c_str()) == 0 || errno == ENOENT) return;
+  throw OutputError(target_, std::string("cannot be renamed into place: the folder does not let a "
+                                         "file go (") +
+                                 std::strerror(errno) + "); remove " + partial_.string() +
+                                 " if it is left, and choose another folder");
+}
+
 void AtomicFile::fail(int error) const {
   throw OutputError(target_, std::string("write failed: ") + std::strerror(error) +
                                  "; the old file, if any, is unchanged");

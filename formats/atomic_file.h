@@ -32,6 +32,9 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(const std::string& bytes) { write(std::as_bytes(std::span(bytes))); }
   void commit();
+  // Ends a trial: removes the partial file. Throws OutputError where the folder takes files and
+  // does not let them go, so that a rename would fail, too.
+  void withdraw();
 
  private:
   friend class OutputSet;

@@ -101,6 +101,7 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(withoutSlash(target
     const std::string stranger = strangerIn(place_);
     if (!stranger.empty()) throw OutputError(target_, stranger + kCure);
   }
+  requireRenameTo(place_, target_);
   open();
 }
 
@@ -137,7 +138,8 @@ void OutputFolder::remember(const fs::path& path) {
 
 void OutputFolder::forget() {
   partialPaths = nullptr;
-  while (foldersBeingRemoved && !paths_.empty()) ::pause();  // a handler reads them, and is about to end all
+  while (foldersBeingRemoved && !paths_.empty())
+    ::pause();  // a handler reads them, and is about to end all
   paths_.clear();
 }
 

@@ -1,7 +1,10 @@
 #include "formats/output_target.h"
 
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <linux/magic.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
@@ -42,6 +45,42 @@ bool mayWrite(const fs::path& path, int mode) {
   return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0;
 }
 
+// CAP_FOWNER, which root mostly has: the sticky bit does not bind the process.
+bool actsAsAnyOwner() {
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct sets[_LINUX_CAPABILITY_U32S_3]{};
+  if (::syscall(SYS_capget, &header, sets) != 0) return ::geteuid() == 0;
+  return (sets[0].effective & (1U << CAP_FOWNER)) != 0;
+}
+
+// Attributes of a file or folder, such as STATX_ATTR_APPEND; 0 where the system tells none.
+uint64_t attributesOf(const fs::path& path) {
+  struct statx info {};
+  if (::statx(AT_FDCWD, path.c_str(), 0, STATX_BASIC_STATS, &info) != 0) return 0;
+  return info.stx_attributes & info.stx_attributes_mask;
+}
+
+// Why a rename to `target` would fail although the folder may be written; empty: it would not.
+std::string obstacleTo(const fs::path& target) {
+  const fs::path folder = folderOf(target);
+  if (attributesOf(folder) & STATX_ATTR_APPEND)
+    return "cannot write: its folder only lets files be added (chattr +a), and an output is "
+           "renamed into place; choose another folder";
+  struct stat file {
+  }, around{};
+  if (::stat(target.c_str(), &file) != 0) return "";
+  const uint64_t attributes = attributesOf(target);
+  if (attributes & STATX_ATTR_MOUNT_ROOT)
+    return "cannot replace: it is a mount of its own; mount its folder, or name another file";
+  if (attributes & (STATX_ATTR_APPEND | STATX_ATTR_IMMUTABLE))
+    return "cannot replace: it is protected (chattr +a or +i); name another file";
+  if (::stat(folder.c_str(), &around) != 0 || (around.st_mode & S_ISVTX) == 0) return "";
+  const uid_t user = ::geteuid();
+  if (file.st_uid == user || around.st_uid == user || actsAsAnyOwner()) return "";
+  return "cannot replace: it is another user's, in a folder with the sticky bit; name another "
+         "file or folder";
+}
+
 }  // namespace
 
 fs::path folderOf(const fs::path& file) {
@@ -49,6 +88,11 @@ fs::path folderOf(const fs::path& file) {
 }
 
 fs::path followLinks(const fs::path& file) { return linkChain(file).back(); }
+
+void requireRenameTo(const fs::path& target, const fs::path& output) {
+  const std::string obstacle = obstacleTo(target);
+  if (!obstacle.empty()) throw OutputError(output, obstacle);
+}
 
 fs::path replaceableTarget(const fs::path& output) {
   const auto fail = [&](const std::string& problem) { return OutputError(output, problem); };
@@ -75,6 +119,7 @@ fs::path replaceableTarget(const fs::path& output) {
     throw fail(std::string("cannot write: ") + std::strerror(errno) +
                "; choose a folder that exists and is writable");
   }
+  requireRenameTo(target, output);
   return target;
 }
 

@@ -131,6 +131,78 @@ class Targets(Workbench):
                 (self.folder / name).unlink()
 
 
+class FoldersThatKeepFiles(Workbench):
+    """Folders that may be written, in which no output can be renamed into place: refused before the work begins."""
+
+    def long_refused(self, words, *parts, **settings):
+        """By a render of hours."""
+        line = [BIN / "vpl-render", SCENE, "--integrator", "path", "--spp", "100M", *words]
+        before = sorted(self.folder.iterdir())
+        result = subprocess.run(line, cwd=SOURCE, capture_output=True, text=True, timeout=30, **settings)
+        self.assertEqual(result.returncode, OUTPUT, result)
+        self.assertRegex(result.stderr, r"\Avpl-render: [^\n]+\n\Z")
+        for part in parts:
+            self.assertIn(part, result.stderr)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_sticky_folder_with_a_file_of_another(self):
+        """Root borrows the number of a user, and owns the file."""
+        if os.geteuid() != 0:
+            self.skipTest("only root can make a file of another user")
+        user = {"user": 65534, "group": 65534, "extra_groups": []}
+        self.folder.chmod(0o1777)
+        try:
+            subprocess.run([BIN / "vpl-render", "--version"], capture_output=True, check=True, **user)
+        except (PermissionError, subprocess.CalledProcessError):
+            self.skipTest(f"cannot run {BIN} as another user")
+        for name in ("i.exr", "i.png", "i.json", "i.d"):
+            (self.folder / name).write_bytes(self.old(name))
+            (self.folder / name).chmod(0o666)
+        image, other = ["-o", self.folder / "i.exr"], ["-o", self.folder / "new.exr"]
+        self.long_refused(image, "i.exr: cannot replace: it is another user's", "sticky", "name another", **user)
+        self.long_refused([*other, "--png", self.folder / "i.png"], "i.png: cannot replace", **user)
+        self.long_refused([*other, "--stats", self.folder / "i.json"], "i.json: cannot replace", **user)
+        self.long_refused([*other, "--depfile", self.folder / "i.d"], "i.d: cannot replace", **user)
+        words = [BIN / "vpl-render", SCENE, "--integrator", "path", "--spp", "1", "--quiet"]
+        for target in (other, other):  # its own file there can be replaced
+            self.assertEqual(subprocess.run([*words, *target], cwd=SOURCE, **user).returncode, OK)
+        self.assertEqual(subprocess.run([*words, *image], cwd=SOURCE).returncode, OK)  # root may
+
+    def with_attribute(self, path, letter):
+        require("chattr")
+        if subprocess.run(["chattr", f"+{letter}", path], capture_output=True).returncode != 0:
+            self.skipTest("no rights or no file system for chattr")
+        self.addCleanup(subprocess.run, ["chattr", f"-{letter}", path])
+
+    def test_folder_that_only_lets_files_be_added(self):
+        (self.folder / "i.exr").write_bytes(self.old("i.exr"))
+        self.with_attribute(self.folder, "a")
+        for name in ("i.exr", "new.exr"):
+            self.long_refused(["-o", self.folder / name], f"{name}: cannot write", "chattr +a", "choose another folder")
+
+    def test_protected_files(self):
+        for letter in "ai":
+            file = self.folder / f"{letter}.exr"
+            file.write_bytes(self.old(file.name))
+            self.with_attribute(file, letter)
+            self.long_refused(["-o", file], f"{file.name}: cannot replace")
+
+    def test_a_mount_as_the_target(self):
+        require("unshare")
+        flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
+        file = self.folder / "i.exr"
+        file.write_bytes(self.old("i.exr"))
+        script = 'mount --bind "$0" "$0" && exec "$@"'
+        mounted = ["unshare", *flags, "sh", "-c", script, file]
+        if subprocess.run([*mounted, "true"], capture_output=True).returncode != 0:
+            self.skipTest("no bind mount")
+        words = [BIN / "vpl-render", SCENE, "--integrator", "path", "--spp", "100M", "-o", file]
+        result = subprocess.run([*mounted, *words], cwd=SOURCE, capture_output=True, text=True, timeout=30)
+        self.assertEqual(result.returncode, OUTPUT, result)
+        self.assertIn("i.exr: cannot replace: it is a mount of its own", result.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [file])
+
+
 class FullDisks(Workbench):
     def test_small_tmpfs(self) -> None:
         """Uses a tmpfs that is too small for the product, in a mount namespace."""

@@ -198,7 +198,7 @@ const std::string& runningTool() { return toolName; }
 
 void requireWritable(const std::vector<fs::path>& outputs) {
   for (const fs::path& output : outputs) {
-    if (!output.empty()) AtomicFile probe(output);  // throws; leaves nothing behind
+    if (!output.empty()) AtomicFile(output).withdraw();
   }
 }
 
