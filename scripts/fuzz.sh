@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Feeds hostile input to every reader of foreign files: runs each fuzz target over its corpus, then for
 # SECONDS on inputs that the fuzzer makes (default 20; 0 runs the corpora only), two targets at a time.
-#   scripts/fuzz.sh              # what CI runs
+#   scripts/fuzz.sh              # every target for 20 s
 #   scripts/fuzz.sh 1200 obj     # one target for 20 minutes
 # Any finding fails. New inputs are kept in build/fuzz/learned for the next run. The corpora in
 # fuzz/corpus are only read.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs missing packages, builds everything, runs all tests, and fuzzes the readers for a moment.
+# Installs missing packages, builds everything and runs all tests.
 # The steps that fail soonest come first. A table at the end lists the steps and their times.
 # With options, ctest is the only step after the build, and gets them: scripts/test.sh -R pipeline
 set -euo pipefail
@@ -37,6 +37,5 @@ fi
 step "tests of the parts" ctest --preset release -LE 'pipeline|faults|eval|cluster'
 step "the tools, through files" ctest --preset release -L pipeline
 step "the tools, through faults" ctest --preset release -L faults
-step "hostile files (scripts/fuzz.sh)" scripts/fuzz.sh
 step "the pipeline on Slurm, if it is here" ctest --preset release -L cluster
 step "evaluation at its quick size" ctest --preset release -L eval
