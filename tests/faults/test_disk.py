@@ -11,6 +11,7 @@ import subprocess
 import time
 import unittest
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from workbench import (
@@ -19,6 +20,7 @@ from workbench import (
     FULL,
     OK,
     OUTPUT,
+    SCENE,
     SOURCE,
     Command,
     Workbench,
@@ -132,72 +134,83 @@ class Targets(Workbench):
 
 
 class FoldersThatKeepFiles(Workbench):
-    """Folders that may be written, in which no output can be renamed into place: refused before the work begins."""
+    """Refuses, before the work, folders where a file may be written but not renamed."""
 
-    def long_refused(self, words, *parts, **settings):
-        """By a render of hours."""
-        line = [BIN / "vpl-render", SCENE, "--integrator", "path", "--spp", "100M", *words]
+    def long_refused(self, words: list[Any], *parts: str, **settings: Any) -> None:
+        """Expects that a render of hours ends at once, with these parts of a message."""
+        line: list[Any] = [BIN / "vpl-render", SCENE, "--integrator", "path"]
+        line += ["--spp", "100M", *words]
         before = sorted(self.folder.iterdir())
-        result = subprocess.run(line, cwd=SOURCE, capture_output=True, text=True, timeout=30, **settings)
+        result = subprocess.run(
+            line, cwd=SOURCE, capture_output=True, text=True, timeout=30, **settings
+        )
         self.assertEqual(result.returncode, OUTPUT, result)
         self.assertRegex(result.stderr, r"\Avpl-render: [^\n]+\n\Z")
         for part in parts:
             self.assertIn(part, result.stderr)
         self.assertEqual(sorted(self.folder.iterdir()), before)
 
-    def test_sticky_folder_with_a_file_of_another(self):
+    def test_sticky_folder_with_a_file_of_another(self) -> None:
         """Root borrows the number of a user, and owns the file."""
         if os.geteuid() != 0:
             self.skipTest("only root can make a file of another user")
-        user = {"user": 65534, "group": 65534, "extra_groups": []}
+        user: dict[str, Any] = {"user": 65534, "group": 65534, "extra_groups": []}
         self.folder.chmod(0o1777)
         try:
-            subprocess.run([BIN / "vpl-render", "--version"], capture_output=True, check=True, **user)
+            version: list[Any] = [BIN / "vpl-render", "--version"]
+            subprocess.run(version, capture_output=True, check=True, **user)
         except (PermissionError, subprocess.CalledProcessError):
             self.skipTest(f"cannot run {BIN} as another user")
         for name in ("i.exr", "i.png", "i.json", "i.d"):
             (self.folder / name).write_bytes(self.old(name))
             (self.folder / name).chmod(0o666)
-        image, other = ["-o", self.folder / "i.exr"], ["-o", self.folder / "new.exr"]
-        self.long_refused(image, "i.exr: cannot replace: it is another user's", "sticky", "name another", **user)
-        self.long_refused([*other, "--png", self.folder / "i.png"], "i.png: cannot replace", **user)
-        self.long_refused([*other, "--stats", self.folder / "i.json"], "i.json: cannot replace", **user)
-        self.long_refused([*other, "--depfile", self.folder / "i.d"], "i.d: cannot replace", **user)
-        words = [BIN / "vpl-render", SCENE, "--integrator", "path", "--spp", "1", "--quiet"]
+        image: list[Any] = ["-o", self.folder / "i.exr"]
+        other: list[Any] = ["-o", self.folder / "new.exr"]
+        theirs = "i.exr: cannot replace: it is another user's"
+        self.long_refused(image, theirs, "sticky", "name another", **user)
+        for option, name in (("--png", "i.png"), ("--stats", "i.json"), ("--depfile", "i.d")):
+            asked: list[Any] = [*other, option, self.folder / name]
+            self.long_refused(asked, f"{name}: cannot replace", **user)
+        words: list[Any] = [BIN / "vpl-render", SCENE, "--integrator", "path"]
+        words += ["--spp", "1", "--quiet"]
         for target in (other, other):  # its own file there can be replaced
             self.assertEqual(subprocess.run([*words, *target], cwd=SOURCE, **user).returncode, OK)
         self.assertEqual(subprocess.run([*words, *image], cwd=SOURCE).returncode, OK)  # root may
 
-    def with_attribute(self, path, letter):
+    def with_attribute(self, path: Path, letter: str) -> None:
         require("chattr")
         if subprocess.run(["chattr", f"+{letter}", path], capture_output=True).returncode != 0:
             self.skipTest("no rights or no file system for chattr")
-        self.addCleanup(subprocess.run, ["chattr", f"-{letter}", path])
+        self.addCleanup(lambda: subprocess.run(["chattr", f"-{letter}", path], check=False))
 
-    def test_folder_that_only_lets_files_be_added(self):
+    def test_folder_that_only_lets_files_be_added(self) -> None:
         (self.folder / "i.exr").write_bytes(self.old("i.exr"))
         self.with_attribute(self.folder, "a")
         for name in ("i.exr", "new.exr"):
-            self.long_refused(["-o", self.folder / name], f"{name}: cannot write", "chattr +a", "choose another folder")
+            told = (f"{name}: cannot write", "chattr +a", "choose another folder")
+            self.long_refused(["-o", self.folder / name], *told)
 
-    def test_protected_files(self):
+    def test_protected_files(self) -> None:
         for letter in "ai":
             file = self.folder / f"{letter}.exr"
             file.write_bytes(self.old(file.name))
             self.with_attribute(file, letter)
             self.long_refused(["-o", file], f"{file.name}: cannot replace")
 
-    def test_a_mount_as_the_target(self):
+    def test_a_mount_as_the_target(self) -> None:
         require("unshare")
         flags = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
         file = self.folder / "i.exr"
         file.write_bytes(self.old("i.exr"))
         script = 'mount --bind "$0" "$0" && exec "$@"'
-        mounted = ["unshare", *flags, "sh", "-c", script, file]
+        mounted: list[Any] = ["unshare", *flags, "sh", "-c", script, file]
         if subprocess.run([*mounted, "true"], capture_output=True).returncode != 0:
             self.skipTest("no bind mount")
-        words = [BIN / "vpl-render", SCENE, "--integrator", "path", "--spp", "100M", "-o", file]
-        result = subprocess.run([*mounted, *words], cwd=SOURCE, capture_output=True, text=True, timeout=30)
+        words: list[Any] = [BIN / "vpl-render", SCENE, "--integrator", "path"]
+        words += ["--spp", "100M", "-o", file]
+        result = subprocess.run(
+            [*mounted, *words], cwd=SOURCE, capture_output=True, text=True, timeout=30
+        )
         self.assertEqual(result.returncode, OUTPUT, result)
         self.assertIn("i.exr: cannot replace: it is a mount of its own", result.stderr)
         self.assertEqual(list(self.folder.iterdir()), [file])
