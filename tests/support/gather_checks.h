@@ -32,7 +32,7 @@ struct GatherCase {
 // A box whose blocks hide many VPLs, and a room lit through a door.
 inline const std::vector<const GatherCase*>& gatherCases() {
   const auto caseOf = [](const char* name) {
-    return GatherCase(name, {24, 16}, {{"count", "400"}}, {{"photons", "100k"}},
+    return GatherCase(name, {32, 24}, {{"count", "600"}}, {{"photons", "100k"}},
                       {{"count", "12k"}});
   };
   static const GatherCase box = caseOf("cornell/scene.toml"),
