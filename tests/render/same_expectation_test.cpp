@@ -129,7 +129,7 @@ TEST(SameExpectation, TwoPatchesAreKnownAtEveryPixel) {
   };
   const std::vector<float>& red = expected.channels[0].data;
   EXPECT_GT(std::count_if(red.begin(), red.end(), [](float v) { return v > 0.0f; }), 100);
-  const ZTest few{.seeds = 12};
+  const ZTest few{.seeds = 16};
   EXPECT_TRUE(sameExpectation(inside(paths(world, {{"spp", "64"}})), known, few));
   const Given direct{{"spp", "64"}, {"only", "direct"}};
   EXPECT_TRUE(sameExpectation(inside(vpls(world, {}, direct)), known, few));
@@ -181,7 +181,7 @@ TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
     const World world(std::move(scene));
     const Given indirect{{"only", "indirect"}};
     EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
-                                photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 12}))
+                                photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}))
         << name;
   }
 }
@@ -208,7 +208,7 @@ TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
   const World world(std::move(scene));
   const Given indirect{{"only", "indirect"}};
   EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
-                              photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 12}));
+                              photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}));
 }
 
 // Two estimators of direct light: one light and one ray, and all lights with BSDF rays besides.
@@ -281,7 +281,7 @@ TEST(SameExpectation, SampleAllocationAndPathReuse) {
     for (const char* balance : {"off", "on"}) {
       for (const char* reuse : {"1", "8"}) {
         if (*reuse == '1' && std::string_view(balance) == "off") continue;
-        EXPECT_TRUE(sameExpectation(with4spp("off", "1"), with4spp(balance, reuse), {.seeds = 32}))
+        EXPECT_TRUE(sameExpectation(with4spp("off", "1"), with4spp(balance, reuse), {.seeds = 48}))
             << &scene - scenes.data() << ", balance " << balance << ", reuse " << reuse;
       }
     }

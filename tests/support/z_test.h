@@ -20,7 +20,7 @@ namespace bnvpl::test {
 using Render = std::function<Image(uint64_t seed)>;
 
 struct ZTest {
-  unsigned seeds = 16;
+  unsigned seeds = 24;
   // Probability of failure where both agree; small, since pixels are only nearly normal.
   double significance = 1e-5;
   std::string layer = {};  // such as "indirect."; empty: R, G, B
