@@ -75,7 +75,7 @@ TEST_F(CostRun, StagesTakeWhatTheyPredictInACornellBox) {
 }
 
 TEST_F(CostRun, ShardsTakeTheirPart) {
-  const std::string render = scene_ + " --integrator path --size 96x72 --spp 64 -o ";
+  const std::string render = scene_ + " --integrator path --size 192x144 --spp 256 -o ";
   const Need whole = estimated("vpl-render", render + path("x.exr"));
   const Need tenth = estimated("vpl-render", render + path("x.shard") + " --shard 3/10");
   EXPECT_LT(tenth.cpuS, 0.3 * whole.cpuS);
