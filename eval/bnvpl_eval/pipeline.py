@@ -123,69 +123,81 @@ def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:
     )
 
 
-def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
-    """The lit VPLs, and the runs that made them."""
+def lit_by_light(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
+    """VPLs at vertices of paths from the lights."""
     scene = {"scene": ROOT / view.file}
-    if c.method == "light":
-        run = runner.run(
-            "vpl-place",
-            [
-                "{scene}",
-                "--method",
-                "light",
-                "-n",
-                c.vpls,
-                "--seed",
-                seed,
-                *c.place,
-                "-o",
-                "@lit.vpl",
-                "--quiet",
-            ],
-            scene,
-            ["lit.vpl"],
-        )
-        return run["lit.vpl"], [run]
-    if c.method == "rejection":
-        placed = runner.run(
-            "vpl-place",
-            [
-                "{scene}",
-                "--method",
-                "light",
-                "-n",
-                c.vpls * REJECTION_CANDIDATES,
-                "--seed",
-                seed,
-                *c.place,
-                "-o",
-                "@all.vpl",
-                "--quiet",
-            ],
-            scene,
-            ["all.vpl"],
-        )
-        run = runner.run(
-            "vpl-eliminate",
-            [
-                "{all}",
-                "--scene",
-                "{scene}",
-                "--method",
-                "rejection",
-                "-n",
-                c.vpls,
-                "--seed",
-                seed,
-                *c.eliminate,
-                "-o",
-                "@lit.vpl",
-                "--quiet",
-            ],
-            {**scene, "all": placed["all.vpl"]},
-            ["lit.vpl"],
-        )
-        return run["lit.vpl"], [placed, run]
+    run = runner.run(
+        "vpl-place",
+        [
+            "{scene}",
+            "--method",
+            "light",
+            "-n",
+            c.vpls,
+            "--seed",
+            seed,
+            *c.place,
+            "-o",
+            "@lit.vpl",
+            "--quiet",
+        ],
+        scene,
+        ["lit.vpl"],
+    )
+    return run["lit.vpl"], [run]
+
+
+def lit_by_rejection(
+    runner: Runner, view: View, c: Configuration, seed: int
+) -> tuple[Path, list[Run]]:
+    """VPLs from the lights that Russian roulette keeps by their share of the image."""
+    scene = {"scene": ROOT / view.file}
+    placed = runner.run(
+        "vpl-place",
+        [
+            "{scene}",
+            "--method",
+            "light",
+            "-n",
+            c.vpls * REJECTION_CANDIDATES,
+            "--seed",
+            seed,
+            *c.place,
+            "-o",
+            "@all.vpl",
+            "--quiet",
+        ],
+        scene,
+        ["all.vpl"],
+    )
+    run = runner.run(
+        "vpl-eliminate",
+        [
+            "{all}",
+            "--scene",
+            "{scene}",
+            "--method",
+            "rejection",
+            "-n",
+            c.vpls,
+            "--seed",
+            seed,
+            *c.eliminate,
+            "-o",
+            "@lit.vpl",
+            "--quiet",
+        ],
+        {**scene, "all": placed["all.vpl"]},
+        ["lit.vpl"],
+    )
+    return run["lit.vpl"], [placed, run]
+
+
+def lit_by_estimate(
+    runner: Runner, view: View, c: Configuration, seed: int
+) -> tuple[Path, list[Run]]:
+    """VPLs that are placed, thinned out, and lit by vpl-estimate."""
+    scene = {"scene": ROOT / view.file}
     placed = candidates(runner, view, c, seed)
     kept = runner.run(
         "vpl-eliminate",
@@ -223,6 +235,15 @@ def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, 
         ["lit.vpl", "stats.json"],
     )
     return run["lit.vpl"], [placed, kept, run]
+
+
+def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
+    """The lit VPLs, and the runs that made them."""
+    if c.method == "light":
+        return lit_by_light(runner, view, c, seed)
+    if c.method == "rejection":
+        return lit_by_rejection(runner, view, c, seed)
+    return lit_by_estimate(runner, view, c, seed)
 
 
 def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:

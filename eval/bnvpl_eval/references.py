@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from . import images
 from .guard import guarded, output_guard
-from .runner import Runner, digest, scene_key
+from .runner import Run, Runner, digest, scene_key
 from .settings import EVAL, ROOT, View
 
 CHUNK = 2048  # samples a pixel of one render
@@ -50,27 +50,7 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     }
     cpu_s = stored["cpu_s"] if stored else 0.0
     for seed in seeds:
-        run = runner.run(
-            "vpl-render",
-            [
-                "{scene}",
-                "--size",
-                film,
-                "--integrator",
-                view.reference_integrator,
-                "--spp",
-                chunk,
-                "--seed",
-                seed,
-                "--layers",
-                "direct,indirect",
-                "-o",
-                "@image.exr",
-                "--quiet",
-            ],
-            {"scene": ROOT / view.file},
-            ["image.exr"],
-        )
+        run = _render_chunk(runner, view, film, chunk, seed)
         cpu_s += run.cpu_s
         for layer in sums:
             sums[layer] = sums[layer] + chunk * images.read(run["image.exr"], layer).astype(
@@ -93,6 +73,30 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     }
     guarded(
         output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD
+    )
+
+
+def _render_chunk(runner: Runner, view: View, film: str, spp: int, seed: int) -> Run:
+    return runner.run(
+        "vpl-render",
+        [
+            "{scene}",
+            "--size",
+            film,
+            "--integrator",
+            view.reference_integrator,
+            "--spp",
+            spp,
+            "--seed",
+            seed,
+            "--layers",
+            "direct,indirect",
+            "-o",
+            "@image.exr",
+            "--quiet",
+        ],
+        {"scene": ROOT / view.file},
+        ["image.exr"],
     )
 
 

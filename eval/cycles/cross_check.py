@@ -17,31 +17,22 @@ import argparse
 import json
 import platform
 import re
-import shutil
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 import compare
 import walk
+from both_renderers import ToolError, render_cycles, render_ours, require_program, samples
 from cases import CASES, Case, View, prepare
+from judgement import table, verdict
 from outputs import RESULTS, output_guard
 from scene_source import SceneError
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 WALKS = 64  # number of batches of walk.py
 EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
-
-
-class ToolError(Exception):
-    """A program is missing or failed; the message is one line."""
 
 
 def parse_arguments(arguments: list[str]) -> argparse.Namespace:
@@ -99,152 +90,6 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
         parser.error("--effort, --tolerance and --threads must be positive")
     options.results = options.results or options.out / "results.json"
     return options
-
-
-def require_program(name: str, cure: str) -> str:
-    found = shutil.which(name)
-    if not found:
-        raise ToolError(f"{name}: no such program; {cure}")
-    return found
-
-
-def run(command: list[str], log: Path, wanted: list[Path]) -> float:
-    """Runs a command. Returns its wall time in s.
-
-    Blender may fail with exit code 0, so its outputs are checked.
-    """
-    start = time.monotonic()
-    with open(log, "w") as out:
-        done = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, check=False)
-    missing = [path for path in wanted if not path.is_file()]
-    if done.returncode != 0 or missing:
-        told = [
-            line
-            for line in log.read_text().splitlines()
-            if re.match(r"\S+: ", line) and not line.startswith("Fra:")
-        ]
-        cause = told[-1] if told else f"exit code {done.returncode}"
-        raise ToolError(f"{Path(command[0]).name} failed: {cause}; all it said is in {log}")
-    return time.monotonic() - start
-
-
-def samples(case: Case, options: argparse.Namespace) -> tuple[int, int]:
-    return (
-        max(1, round(case.spp * options.effort)),
-        max(1, round(case.cycles_spp * options.effort)),
-    )
-
-
-def render_ours(
-    case: Case, scene: Path, options: argparse.Namespace
-) -> tuple[dict[View, npt.NDArray[Any]], float]:
-    spp, seconds = samples(case, options)[0], 0.0
-    stacks = {}
-    for view in case.views:
-        images = []
-        for seed in range(1, case.seeds + 1):
-            image = scene.parent / f"ours.{view.name}.{spp}spp.{seed}.exr"
-            command = [
-                options.vpl_render,
-                str(scene),
-                "-o",
-                str(image),
-                "--integrator",
-                "path",
-                "--only",
-                view.quantity,
-                "--spp",
-                str(spp),
-                "--seed",
-                str(seed),
-                "--threads",
-                str(options.threads),
-                "--quiet",
-                "--size",
-                "x".join(map(str, case.size)),
-            ]
-            if view.quantity != "direct":  # direct light has no bounce
-                command += ["--max-bounces", str(view.bounces)]
-            if not (options.reuse and image.is_file()):
-                image.unlink(missing_ok=True)
-                seconds += run(command, scene.parent / "ours.log", [image])
-            images.append(compare.read_exr(image))
-        stacks[view] = np.stack(images)
-    return stacks, seconds
-
-
-def cycles_bounces(views: tuple[View, ...]) -> list[int]:
-    """Limits of bounces to render. Cycles' indirect picture is the whole minus the direct one."""
-    limits = {view.bounces for view in views}
-    return sorted(limits | ({0} if any(v.quantity == "indirect" for v in views) else set()))
-
-
-def missing_images(
-    limits: list[int], seeds: range, path: Callable[[int, int], Path], reuse: bool
-) -> dict[tuple[int, ...], list[int]]:
-    """Limits of bounces to render for each set of seeds. Each entry is one start of Blender."""
-    jobs: dict[tuple[int, ...], list[int]] = {}
-    for bounces in limits:
-        todo = tuple(s for s in seeds if not (reuse and path(bounces, s).is_file()))
-        if todo:
-            jobs.setdefault(todo, []).append(bounces)
-    return jobs
-
-
-def render_cycles(
-    case: Case, scene: Path, options: argparse.Namespace
-) -> tuple[dict[View, npt.NDArray[Any]], float]:
-    spp, seconds = samples(case, options)[1], 0.0
-    limits, seeds = cycles_bounces(case.views), range(1, case.seeds + 1)
-    kind = "cycles-encoded" if options.encoded_textures else "cycles"
-    name = f"{kind}.{{bounces}}.{spp}spp.{{seed}}.exr"
-
-    def path(bounces: int, seed: int) -> Path:
-        return scene.parent / name.format(bounces=bounces, seed=seed)
-
-    for todo, bounces in missing_images(limits, seeds, path, options.reuse).items():
-        wanted = [path(b, s) for b in bounces for s in todo]
-        for image in wanted:
-            image.unlink(missing_ok=True)
-        command = [
-            options.blender,
-            "-b",
-            "--factory-startup",
-            "--python-exit-code",
-            "3",
-            "--python",
-            str(HERE / "render_cycles.py"),
-            "--",
-            str(scene),
-            "--output",
-            str(scene.parent / name),
-            "--spp",
-            str(spp),
-            "--bounces",
-            ",".join(map(str, bounces)),
-            "--seeds",
-            ",".join(map(str, todo)),
-            "--threads",
-            str(options.threads),
-        ]
-        command += ["--encoded-textures"] if options.encoded_textures else []
-        seconds += run(command, scene.parent / "cycles.log", wanted)
-    stacks = {b: np.stack([compare.read_exr(path(b, s)) for s in seeds]) for b in limits}
-    return {
-        v: stacks[v.bounces] - (stacks[0] if v.quantity == "indirect" else 0.0) for v in case.views
-    }, seconds
-
-
-def verdict(figures: dict[str, Any], tolerance: float) -> str:
-    """agrees, differs, or noisy, where the error bar is too wide for either."""
-    ratio, error = figures["mean"]["ratio"], figures["mean"]["error"]
-    error = 0.0 if error is None else np.hypot(error, figures.get("expected_error", 0.0))
-    difference = None if ratio is None else abs(ratio - figures.get("expected", 1.0))
-    if difference is None or difference > tolerance + 3.0 * error:
-        return "differs"
-    if 2.0 * error > tolerance:
-        return "noisy"
-    return "agrees" if difference <= tolerance else "differs"
 
 
 def check(case: Case, options: argparse.Namespace) -> dict[str, Any]:
@@ -319,31 +164,6 @@ def write_results(path: Path, runs: dict[str, Any]) -> None:
     output_guard.write(
         path, json.dumps(runs, indent=1, sort_keys=True) + "\n", RESULTS, "--results"
     )
-
-
-def table(results: dict[str, Any]) -> str:
-    heads = (
-        "case",
-        "view",
-        "ours",
-        "Cycles",
-        "ratio",
-        "standard error",
-        "expected",
-        "blocks: mean z²",
-    )
-    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
-    for case in (case.name for case in CASES if case.name in results):
-        for view, figures in results[case]["views"].items():
-            mean, z2 = figures["mean"], figures["blocks"]["mean_square_z"]
-            ratio, error = (
-                "-" if mean[key] is None else f"{mean[key]:.4f}" for key in ("ratio", "error")
-            )
-            lines.append(
-                f"| {case} | {view} | {mean['ours']:.4g} | {mean['cycles']:.4g} "
-                f"| {ratio} | {error} | {figures.get('expected', 1.0):.4f} | {z2:.2f} |"
-            )
-    return "\n".join(lines)
 
 
 def main(arguments: list[str]) -> int:

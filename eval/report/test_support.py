@@ -90,7 +90,9 @@ def images() -> dict[str, npt.NDArray[Any]]:
     }
 
 
-def report() -> dict[str, Any]:
+def views() -> list[dict[str, Any]]:
+    """Two views, of which the second has no pictures."""
+
     def image(name: str, **layers: Any) -> dict[str, Any]:
         return {
             "id": name,
@@ -120,68 +122,78 @@ def report() -> dict[str, Any]:
     }
     second = {**main, "id": "second", "title": "Second view", "pictures": []}
     del second["exposure"]
+    return [main, second]
+
+
+def tables() -> list[dict[str, Any]]:
+    return [
+        {
+            "id": "sum",
+            "title": "Summary",
+            "columns": [
+                {"key": "set", "label": "Set"},
+                {"key": "rmse", "label": "RMSE", "better": "low", "unit": "W"},
+                {"key": "ratio", "label": "Ratio", "better": "one", "decimals": 3},
+                {"key": "rays", "label": "Rays/s", "better": "high"},
+            ]
+            + [{"key": f"extra{i}", "label": f"A column that takes room {i}"} for i in range(4)],
+            "rows": [
+                {"group": "One", "set": "p", "rmse": 0.2, "ratio": 0.9, "rays": 10},
+                {
+                    "group": "One",
+                    "set": "q",
+                    "rmse": {"value": 0.1, "error": 0.013},
+                    "ratio": 1.25,
+                    "rays": 30,
+                },
+                {"group": "One", "set": "r", "rmse": 0.05, "ratio": 1, "unjudged": True},
+                {"group": "Two", "set": "p", "rmse": None, "ratio": 2, "rays": 5},
+                {"group": "Two", "set": "q", "rmse": 123456.0, "ratio": 1.01, "rays": 5},
+            ],
+        }
+    ]
+
+
+def plots() -> list[dict[str, Any]]:
+    return [
+        {
+            "id": "conv",
+            "title": "Convergence",
+            "caption": "Caption.",
+            "x_label": "VPLs",
+            "y_label": "relMSE",
+            "x_log": True,
+            "y_log": True,
+            "series": [
+                {
+                    "label": f"series {i}",
+                    "x": [750, 3000, 48000],
+                    "y": [0.1 * (i + 1), 0.02, 0.001 * (i + 1)],
+                    "slope": -1.02 + 0.1 * i,
+                    "error": [0.01, 0.03, 0.0001],
+                    "dash": i == 1,
+                }
+                for i in range(8)
+            ],
+        },
+        {
+            "id": "lin",
+            "title": "Linear",
+            "x_label": "radius",
+            "y_label": "RMSE",
+            "series": [{"label": "only", "x": [1, 2, 3], "y": [0.3, 0.1, 0.2]}],
+        },
+    ]
+
+
+def report() -> dict[str, Any]:
     return {
         "title": "A report <of> tests",
         "lead": "First & last.\n\nSecond paragraph.",
         "provenance": {"commit": "0123abc", "options": {"spp": 8}},
-        "tables": [
-            {
-                "id": "sum",
-                "title": "Summary",
-                "columns": [
-                    {"key": "set", "label": "Set"},
-                    {"key": "rmse", "label": "RMSE", "better": "low", "unit": "W"},
-                    {"key": "ratio", "label": "Ratio", "better": "one", "decimals": 3},
-                    {"key": "rays", "label": "Rays/s", "better": "high"},
-                ]
-                + [
-                    {"key": f"extra{i}", "label": f"A column that takes room {i}"} for i in range(4)
-                ],
-                "rows": [
-                    {"group": "One", "set": "p", "rmse": 0.2, "ratio": 0.9, "rays": 10},
-                    {
-                        "group": "One",
-                        "set": "q",
-                        "rmse": {"value": 0.1, "error": 0.013},
-                        "ratio": 1.25,
-                        "rays": 30,
-                    },
-                    {"group": "One", "set": "r", "rmse": 0.05, "ratio": 1, "unjudged": True},
-                    {"group": "Two", "set": "p", "rmse": None, "ratio": 2, "rays": 5},
-                    {"group": "Two", "set": "q", "rmse": 123456.0, "ratio": 1.01, "rays": 5},
-                ],
-            }
-        ],
-        "scenes": [{"id": "room", "title": "Room", "views": [main, second]}],
-        "plots": [
-            {
-                "id": "conv",
-                "title": "Convergence",
-                "caption": "Caption.",
-                "x_label": "VPLs",
-                "y_label": "relMSE",
-                "x_log": True,
-                "y_log": True,
-                "series": [
-                    {
-                        "label": f"series {i}",
-                        "x": [750, 3000, 48000],
-                        "y": [0.1 * (i + 1), 0.02, 0.001 * (i + 1)],
-                        "slope": -1.02 + 0.1 * i,
-                        "error": [0.01, 0.03, 0.0001],
-                        "dash": i == 1,
-                    }
-                    for i in range(8)
-                ],
-            },
-            {
-                "id": "lin",
-                "title": "Linear",
-                "x_label": "radius",
-                "y_label": "RMSE",
-                "series": [{"label": "only", "x": [1, 2, 3], "y": [0.3, 0.1, 0.2]}],
-            },
-        ],
+        "tables": tables(),
+        "scenes": [{"id": "room", "title": "Room", "views": views()}],
+        "plots": plots(),
     }
 
 

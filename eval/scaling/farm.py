@@ -56,12 +56,8 @@ def film(text: str) -> int:
     return int(match[1]) * int(match[2])
 
 
-def arguments(words: list[str]) -> argparse.Namespace:
-    p = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    stages.add_arguments(p)
-    p.set_defaults(bin="bin")  # no tool runs, so any name will do
+def add_farm(p: argparse.ArgumentParser) -> None:
+    """Options of the images and of the nodes that make them."""
     p.add_argument("--frames", type=int, default=1, help="images of the one scene (default 1)")
     p.add_argument(
         "--size",
@@ -88,6 +84,10 @@ def arguments(words: list[str]) -> argparse.Namespace:
         default=dict.fromkeys(KINDS, "4") | {"merge": "1"},
         help="of a task; default 4, and merge=1",
     )
+
+
+def add_times(p: argparse.ArgumentParser) -> None:
+    """Options of what tasks take, by themselves and through failures."""
     p.add_argument(
         "--scale",
         action=stages.PerStage,
@@ -133,18 +133,9 @@ def arguments(words: list[str]) -> argparse.Namespace:
         help="a task waits for whole stages, as with Slurm, or for its files, as with ninja "
         "(default stages)",
     )
-    p.add_argument(
-        "--chance", type=int, default=1, metavar="SEED", help="of scatter and failures (default 1)"
-    )
-    p.add_argument(
-        "--model", type=pathlib.Path, default=cost.MODEL, help="default pipelines/cost_model.json"
-    )
-    p.add_argument(
-        "--svg",
-        type=pathlib.Path,
-        help="picture: wall time over nodes, and what runs when on the largest farm",
-    )
-    options = p.parse_args(words)
+
+
+def refuse_what_is_wrong(p: argparse.ArgumentParser, options: argparse.Namespace) -> None:
     if options.frames < 1:
         p.error(f"--frames {options.frames} is not 1 or more")
     if options.views or options.place_views:
@@ -162,6 +153,29 @@ def arguments(words: list[str]) -> argparse.Namespace:
             f"--cpus: a task of {widest} cores does not fit on a node of {options.cores}; raise "
             "--cores"
         )
+
+
+def arguments(words: list[str]) -> argparse.Namespace:
+    p = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    stages.add_arguments(p)
+    p.set_defaults(bin="bin")  # no tool runs, so any name will do
+    add_farm(p)
+    add_times(p)
+    p.add_argument(
+        "--chance", type=int, default=1, metavar="SEED", help="of scatter and failures (default 1)"
+    )
+    p.add_argument(
+        "--model", type=pathlib.Path, default=cost.MODEL, help="default pipelines/cost_model.json"
+    )
+    p.add_argument(
+        "--svg",
+        type=pathlib.Path,
+        help="picture: wall time over nodes, and what runs when on the largest farm",
+    )
+    options = p.parse_args(words)
+    refuse_what_is_wrong(p, options)
     stages.complete(options)
     if options.svg:
         output_guard.or_exit(output_guard.check, *picture_of(options))

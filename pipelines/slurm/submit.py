@@ -43,14 +43,8 @@ def per_stage(value: str, **others: str) -> dict[str, str]:
     return dict.fromkeys(KINDS, value) | others
 
 
-def arguments() -> argparse.Namespace:
-    p = argparse.ArgumentParser(
-        description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.",
-    )
-    p.add_argument("scene", metavar="SCENE", help="scene.toml")
-    stages.add_arguments(p, shards="16")
+def add_limits(p: argparse.ArgumentParser) -> None:
+    """Options of what each stage's tasks may use."""
     p.add_argument(
         "--cpus",
         action=stages.PerStage,
@@ -79,6 +73,17 @@ def arguments() -> argparse.Namespace:
         help="limit of a task, as sbatch has it; default auto, as --memory; place, estimate and "
         "render are queued again when they reach it, and go on",
     )
+
+
+def arguments() -> argparse.Namespace:
+    p = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.",
+    )
+    p.add_argument("scene", metavar="SCENE", help="scene.toml")
+    stages.add_arguments(p, shards="16")
+    add_limits(p)
     p.add_argument(
         "--at-once",
         type=int,

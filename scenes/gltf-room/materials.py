@@ -72,26 +72,8 @@ def light_material(name: str, colour, radiance, both_sides=False) -> Any:
     return made
 
 
-def make_materials() -> types.SimpleNamespace:
-    mat = types.SimpleNamespace()
-    colour, normal, rough = textures.planks()
-    mat.planks = material(
-        "planks",
-        base=image("planks", colour, "jpg"),
-        normal=image("planks normal", normal, "jpg", False),
-        rough=image("planks rough", rough, "jpg", False),
-    )
-    colour, normal = textures.bricks()
-    mat.bricks = material(
-        "bricks",
-        base=image("bricks", colour, "jpg"),
-        Roughness=0.9,
-        normal=image("bricks normal", normal, "jpg", False),
-    )
-    mat.oak = material("oak", base=image("oak", textures.oak(), "jpg"), Roughness=0.45)
-    weave = image("weave", textures.weave(), "png", False)
-    mat.cloth = material("cloth", (0.16, 0.26, 0.27), normal=weave, Roughness=0.95)
-    mat.rust = material("rust", (0.50, 0.19, 0.08), normal=weave, Roughness=0.95)
+def add_plain(mat: types.SimpleNamespace) -> None:
+    """Adds materials without images."""
     mat.linen = material("linen", (0.72, 0.66, 0.55), Roughness=1.0)
     mat.plaster = material("plaster", (0.80, 0.77, 0.71), Roughness=0.95)
     mat.paint = material("paint", (0.78, 0.77, 0.73), Roughness=0.35)
@@ -107,6 +89,10 @@ def make_materials() -> types.SimpleNamespace:
     mat.soil = material("soil", (0.05, 0.035, 0.025), Roughness=1.0)
     mat.black = material("black", (0.03, 0.03, 0.03), Roughness=0.4)
     mat.paper = material("paper", (0.80, 0.77, 0.68), Roughness=0.9)
+
+
+def add_sets(mat: types.SimpleNamespace) -> None:
+    """Adds the covers of the books and the balls from rough to smooth, from clay to metal."""
     mat.books = [
         material(f"cover {i}", of, Roughness=0.6)
         for i, of in enumerate(
@@ -128,6 +114,30 @@ def make_materials() -> types.SimpleNamespace:
         )
         for i in range(5)
     ]
+
+
+def make_materials() -> types.SimpleNamespace:
+    mat = types.SimpleNamespace()
+    colour, normal, rough = textures.planks()
+    mat.planks = material(
+        "planks",
+        base=image("planks", colour, "jpg"),
+        normal=image("planks normal", normal, "jpg", False),
+        rough=image("planks rough", rough, "jpg", False),
+    )
+    colour, normal = textures.bricks()
+    mat.bricks = material(
+        "bricks",
+        base=image("bricks", colour, "jpg"),
+        Roughness=0.9,
+        normal=image("bricks normal", normal, "jpg", False),
+    )
+    mat.oak = material("oak", base=image("oak", textures.oak(), "jpg"), Roughness=0.45)
+    weave = image("weave", textures.weave(), "png", False)
+    mat.cloth = material("cloth", (0.16, 0.26, 0.27), normal=weave, Roughness=0.95)
+    mat.rust = material("rust", (0.50, 0.19, 0.08), normal=weave, Roughness=0.95)
+    add_plain(mat)
+    add_sets(mat)
     mat.rug = material("rug", base=image("rug", textures.rug(), "jpg"), Roughness=1.0)
     mat.picture = material(
         "picture", base=image("picture", textures.landscape(), "jpg"), Roughness=0.5

@@ -1,0 +1,51 @@
+"""Lists the rooms that rooms.py measures, and says what of their files is missing."""
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import gallery
+
+OURS = tuple(
+    gallery.Scene(name, title, f"scenes/{file}.toml", aspect)
+    for name, title, file, aspect in (
+        ("cornell", "Cornell box", "cornell/scene", (1, 1)),
+        ("u-shape", "U-shape", "u-shape/scene", (4, 3)),
+        ("u-shape-back", "U-shape, from the far wall", "u-shape/back", (4, 3)),
+        ("veach-door", "Veach door", "veach-door/scene", (16, 9)),
+        ("veach-door-table", "Veach door, across the table", "veach-door/table", (16, 9)),
+        ("sponza", "Sponza", "sponza/scene", (16, 9)),
+        ("sponza-gallery", "Sponza, from the gallery", "sponza/gallery", (16, 9)),
+        ("veach-ajar", "Veach, Ajar, diffuse", "veach-ajar/scene", (16, 9)),
+        ("veach-ajar-table", "Veach, Ajar, diffuse, across the table", "veach-ajar/table", (16, 9)),
+    )
+)
+
+
+@dataclass(frozen=True)
+class LivingRoom(gallery.Scene):
+    @property
+    def path(self) -> Path:
+        return Path(os.environ.get("LIVING_ROOM_DIR", "/nowhere")) / self.file
+
+
+SCENES = (
+    *OURS,
+    LivingRoom("living-room-diffuse", "Living room, diffuse", "scene.toml"),
+    *gallery.SCENES,
+)
+
+
+def missing(scene: gallery.Scene) -> str:
+    """What the scene lacks, or nothing."""
+    if not scene.path.is_file():
+        return f"{scene.path} is not there"
+    if scene.path.suffix != ".toml":
+        return ""
+    unset = [
+        name
+        for name in re.findall(r"\$\{(\w+)\}", scene.path.read_text())
+        if name not in os.environ
+    ]
+    return f"{', '.join(unset)} is not set" if unset else ""

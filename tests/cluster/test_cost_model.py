@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Tests the cost model of the stages: its fit, its shards, its scenes and what is stored of it."""
+
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+sys.path[:0] = [str(SOURCE / "pipelines"), str(SOURCE / "eval/scaling")]
+import cost  # noqa: E402
+import fit  # noqa: E402
+import scenes  # noqa: E402
+
+
+class ModelTest(unittest.TestCase):
+    def test_rates_are_found_again(self) -> None:
+        terms = cost.TERMS["render"]["cpu_s"]
+        true = {"start": 0.1, "VPLs": 2e-5, "samples": 3e-6, "samples log2(VPLs)": 1e-6}
+        model = cost.Model({"render": {"cpu_s": true}})
+        some = [
+            cost.Counts(1000, 0, v, 0, px, spp, n)
+            for v in (1e3, 1e4, 1e5)
+            for px in (5e3, 5e4)
+            for spp in (1, 4, 16)
+            for n in (1, 8)
+        ]
+        found = cost.Model(
+            {
+                "render": {
+                    "cpu_s": fit.rates(
+                        terms, [(c, model.predict("render", "cpu_s", c)) for c in some]
+                    )
+                }
+            }
+        )
+        for counts in some + [cost.Counts(1000, 0, 3e4, 0, 1e6, 32, 1)]:
+            self.assertAlmostEqual(
+                found.predict("render", "cpu_s", counts) / model.predict("render", "cpu_s", counts),
+                1,
+                2,
+            )
+
+    def test_no_rate_is_negative(self) -> None:
+        terms = {"one": lambda c: 1, "n": lambda c: c.vpls}
+        runs = [(cost.Counts(vpls=v), 10 / v) for v in (1, 2, 5, 10)]
+        self.assertTrue(all(rate >= 0 for rate in fit.rates(terms, runs).values()))
+
+    def test_shards_share_the_work_and_repeat_the_set_up(self) -> None:
+        model = cost.load()
+        whole = cost.Counts(1e6, 4e6, 1e5, 1e9, 8e6, 16)
+        part = cost.Counts(1e6, 4e6, 1e5, 1e9, 8e6, 16, shards=100)
+        for stage in "place", "estimate":
+            setup = model.setup_s(stage, whole)
+            self.assertAlmostEqual(
+                model.predict(stage, "cpu_s", part) - setup,
+                (model.predict(stage, "cpu_s", whole) - setup) / 100,
+                places=6,
+            )
+
+    def test_scenes_are_cut_and_not_changed(self) -> None:
+        def area(obj: Path) -> float:
+            vertices, _, faces = scenes.faces_of(obj)
+            return sum(
+                scenes.area(vertices, [face[0], face[i], face[i + 1]])
+                for _, face in faces
+                for i in range(1, len(face) - 1)
+            )
+
+        with tempfile.TemporaryDirectory() as folder:
+            file, made = scenes.cut_scene(SOURCE / "scenes/cornell/scene.toml", Path(folder), 5000)
+            cut = file.parent / "cornell.obj"
+            self.assertEqual(len(scenes.faces_of(cut)[2]), made)
+            self.assertAlmostEqual(made / 5000, 1, delta=0.1)
+            self.assertAlmostEqual(area(cut) / area(SOURCE / "scenes/cornell/cornell.obj"), 1, 5)
+
+    def test_the_stored_model_has_all_stages_and_checks(self) -> None:
+        stored = json.loads(cost.MODEL.read_text())
+        self.assertEqual(stored["rates"].keys(), cost.TERMS.keys())
+        for stage, figures in stored["rates"].items():
+            for figure, rates in figures.items():
+                self.assertTrue(rates.keys() <= cost.TERMS[stage][figure].keys())
+        self.assertEqual({check["stage"] for check in stored["checks"]}, cost.TERMS.keys())
+
+
+if __name__ == "__main__":
+    unittest.main()
