@@ -1,5 +1,4 @@
-// 8-bit images of other programs: PNG, JPEG, TGA and BMP, recognised by content. Only this file
-// uses stb_image, which trusts its input, and guards it.
+// 8-bit images of other programs: PNG, JPEG, TGA and BMP, recognised by content.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +13,15 @@ struct Pixels {
   uint32_t width = 0, height = 0;
   uint32_t channels = 0;        // 1: grey; 2: grey, alpha; 3: R, G, B; 4: R, G, B, alpha
   std::vector<uint8_t> values;  // row by row from the top
+  std::string damage;           // why pixels may be wrong; empty for a sound file
 };
 
-// Decodes `bytes`, the content of `file`, whose name is for messages. With `channels` 0 the image
-// keeps its own number. Throws InputError; never allocates more than a valid file of this size
-// needs.
-Pixels decodePixels(const fs::path& file, const std::string& bytes, int channels);
+// Decodes `bytes`, the content of `file`, whose name is for messages, to R, G, B and alpha. Throws
+// InputError; never allocates more than a valid file of this size needs.
+Pixels decodePixels(const fs::path& file, const std::string& bytes);
+
+// Decodes a PNG, which keeps its own number of channels. Throws InputError.
+Pixels decodePng(const fs::path& file, const std::string& bytes);
 
 // Returns the content of a regular file. Throws InputError if there is none.
 std::string readBytes(const fs::path& file);

@@ -11,8 +11,8 @@ Pixels readPng(const fs::path& file) {
     throw InputError(file, "cannot be read; name a PNG of the image's size for --mask");
   }
   try {
-    const std::string bytes = readBytes(file);
-    if (bytes.starts_with("\x89PNG")) return decodePixels(file, bytes, 0);
+    Pixels pixels = decodePng(file, readBytes(file));
+    if (pixels.damage.empty()) return pixels;
   } catch (const InputError&) {
   }
   throw InputError(file, "is no readable PNG; --mask takes a PNG of greys");

@@ -136,7 +136,8 @@ class SceneBuilder {
     size_t position, normal, uv;
   };
   Base addCorners(const fs::path& file, const Mesh& mesh, const Affine& transform);
-  void warnOfNegative(const std::string& image, size_t negative, size_t pixels);
+  void warnOfPixels(const std::string& image, size_t negative, size_t pixels,
+                    const std::string& damage);
   uint32_t greyMaterial();
   void recordMesh(const std::string& name, size_t triangles);
 

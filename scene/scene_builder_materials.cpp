@@ -115,11 +115,14 @@ EnvironmentImage SceneBuilder::readEnvironment(const fs::path& image) {
   size_t negative = 0;
   EnvironmentImage radiance = loadEnvironment(image, negative);
   guard.check();
-  warnOfNegative(image.string(), negative, radiance.radiance.size());
+  warnOfPixels(image.string(), negative, radiance.radiance.size(), radiance.damage);
   return radiance;
 }
 
-void SceneBuilder::warnOfNegative(const std::string& image, size_t negative, size_t pixels) {
+void SceneBuilder::warnOfPixels(const std::string& image, size_t negative, size_t pixels,
+                                const std::string& damage) {
+  if (!damage.empty())
+    warn(image + ": is damaged: " + damage + "; some pixels may be wrong; supply the whole image");
   if (negative == 0) return;
   warn(image + ": " + std::to_string(negative) + " of " + std::to_string(pixels) +
        " pixels have negative values, which count as 0");
@@ -142,7 +145,8 @@ void SceneBuilder::resolveTextures() {
       warn(read.problems.at(next++) + "; " + (grey[i] ? kGrey : kPlainColour));
   }
   scene_.textures = std::move(read.textures);
-  for (const Texture& t : scene_.textures) warnOfNegative(t.name, t.negative, t.floats.size() / 4);
+  for (const Texture& t : scene_.textures)
+    warnOfPixels(t.name, t.negative, t.floats.size() / 4, t.damage);
   static_assert(TexturePool::kUnreadable == kNone);
   const auto resolve = [&](uint32_t& map) {
     if (map != kNone) map = read.indexOf.at(map);

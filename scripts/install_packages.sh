@@ -8,7 +8,8 @@ packages=(
   libembree-dev libtbb-dev                                # ray tracing, threads
   libflann-dev liblz4-dev                                 # kd-tree; FLANN's headers need lz4
   libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB requires Boost
-  libopenexr-dev zlib1g-dev libstb-dev                    # images
+  libopenexr-dev libpng-dev libjpeg62-turbo-dev           # images
+  zlib1g-dev libstb-dev                                   # gzip; TGA, BMP, written PNG
   libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
   libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums

@@ -59,12 +59,13 @@ std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
 }
 
 Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb) {
-  Pixels pixels = decodePixels(file, bytes, 4);
+  Pixels pixels = decodePixels(file, bytes);
   Texture t;
   t.width = pixels.width;
   t.height = pixels.height;
   t.srgb = srgb;
   t.rgba = std::move(pixels.values);
+  t.damage = std::move(pixels.damage);
   return t;
 }
 
@@ -143,7 +144,7 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
   const std::string bytes = readBytes(file);
   if (isFloats(bytes)) return decodeFloats(file, bytes);
   const Texture t = decodeColours(file, bytes, true);
-  EnvironmentImage e{t.width, t.height, {}};
+  EnvironmentImage e{t.width, t.height, {}, t.damage};
   e.radiance.resize(size_t{t.width} * t.height);
   for (size_t i = 0; i < e.radiance.size(); ++i) {
     e.radiance[i] = {srgbToLinear(t.rgba[4 * i]), srgbToLinear(t.rgba[4 * i + 1]),
@@ -176,6 +177,7 @@ Texture textureOfFloats(const fs::path& file, EnvironmentImage image,
   t.height = image.height;
   t.srgb = false;
   t.negative = requireFinite(file, image);
+  t.damage = image.damage;
   t.floats.reserve(4 * image.radiance.size());
   const bool varies = !alpha.empty() && std::ranges::any_of(alpha, [](float a) { return a != 1; });
   for (size_t i = 0; i < image.radiance.size(); ++i) {

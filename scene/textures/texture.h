@@ -24,6 +24,7 @@ struct Texture {
   // Texels of an image of floats, linear and not negative; `rgba` is then empty.
   std::vector<float> floats;
   size_t negative = 0;  // texels of `floats` whose negative values were set to 0
+  std::string damage;   // why texels may be wrong; empty for a sound file
   std::array<float, 2> scale{1, 1}, offset{0, 0};  // transform texture coordinates (MTL -s, -o)
 
   Vec3 lookup(float u, float v) const;              // bilinear, linear sRGB
@@ -43,6 +44,7 @@ struct Texture {
 struct EnvironmentImage {
   uint32_t width = 0, height = 0;
   std::vector<Vec3> radiance;           // row-major from the top
+  std::string damage;                   // why pixels may be wrong; empty for a sound file
   Vec3 lookup(float u, float v) const;  // nearest texel, as in the piecewise-constant density
 };
 

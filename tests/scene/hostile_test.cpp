@@ -1,7 +1,6 @@
 // Malicious files: those that fuzzing found, and those that it looks for. See docs/security.md.
 #include <sys/stat.h>
 
-#include "formats/jpeg_guard.h"
 #include "scene/read/obj/load_obj.h"
 #include "scene/read/obj/obj_lines.h"
 #include "tests/scene/scene_files.h"
@@ -117,35 +116,6 @@ TEST_F(Hostile, ImagesThatClaimTooMuchAreRefused) {
   write("t.tga", claims);
   EXPECT_THROW(loadTexture(at("t.tga"), true, false), InputError);
   EXPECT_THROW(environmentOf(at("t.tga")), InputError);
-}
-
-// The start of a JPEG with one Huffman table of `symbols` symbols, and `scans` scans.
-std::string jpeg(size_t symbols, size_t scans) {
-  std::string bytes("\xff\xd8\xff\xc4", 4);
-  const size_t length = 2 + 17 + symbols;
-  bytes += static_cast<char>(length >> 8);
-  bytes += static_cast<char>(length & 255);
-  std::string counts(17, '\0');
-  for (size_t i = 1, left = symbols; left > 0; ++i) {
-    counts[i] = static_cast<char>(std::min<size_t>(left, 255));
-    left -= std::min<size_t>(left, 255);
-  }
-  return bytes + counts + std::string(symbols, '\0') +
-         repeated(std::string("\xff\xda\0\2\0\0", 6), scans);
-}
-
-TEST_F(Hostile, JpegsThatWriteOutsideOrTakeForEverAreKnown) {
-  EXPECT_TRUE(isHarmlessJpeg(jpeg(256, 100)));
-  EXPECT_FALSE(isHarmlessJpeg(jpeg(257, 1)));
-  EXPECT_FALSE(isHarmlessJpeg(jpeg(16 * 255, 0)));
-  EXPECT_FALSE(isHarmlessJpeg(jpeg(100, 101)));
-  EXPECT_FALSE(isHarmlessJpeg(jpeg(100, 1) + jpeg(257, 0).substr(2)));  // between scans
-  // Text in a comment is skipped; a table behind it is not.
-  const std::string comment("\xff\xd8\xff\xfe\0\x20", 6), table = jpeg(257, 0).substr(2, 30);
-  EXPECT_TRUE(isHarmlessJpeg(comment + table));
-  EXPECT_FALSE(isHarmlessJpeg(comment + table + table));
-  EXPECT_TRUE(isHarmlessJpeg(table));  // not a JPEG
-  EXPECT_TRUE(isHarmlessJpeg(""));
 }
 
 TEST_F(Hostile, ChunksThatClaimTooMuchAreRefused) {
