@@ -20,7 +20,7 @@ struct BmpHeader {
   uint64_t pixels, headerBytes;  // where the pixels begin; size of the header behind byte 14
   int64_t width, height;         // height is negative for rows from the top
   uint32_t bits;
-  bool old() const { return headerBytes == 12; }  // of OS/2 1
+  bool old() const { return headerBytes == 12; }  // OS/2 1
   uint64_t palette() const { return 14 + headerBytes; }
 };
 

@@ -12,6 +12,8 @@ import pathlib
 import re
 from collections.abc import Callable
 
+import output_guard
+
 MODEL = pathlib.Path(__file__).resolve().parent / "cost_model.json"
 DIVIDED = ("place", "estimate", "render")
 
@@ -199,4 +201,14 @@ class Model:
 
 
 def load(file: pathlib.Path = MODEL) -> Model:
-    return Model(json.loads(pathlib.Path(file).read_text())["rates"])
+    """Raises output_guard.Refused if the file is no cost model."""
+    try:
+        rates = json.loads(pathlib.Path(file).read_text())["rates"]
+        known = rates.keys() >= TERMS.keys()
+    except (ValueError, KeyError, TypeError, AttributeError):
+        known = False
+    if not known:
+        raise output_guard.Refused(
+            f"{file}: is no cost model such as pipelines/cost_model.json; name another file"
+        )
+    return Model(rates)

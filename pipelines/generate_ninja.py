@@ -91,7 +91,7 @@ def build(task: stages.Task, out: str, options: argparse.Namespace) -> list[str]
             *command,
         ]
     if task.shard:
-        command = [*shlex.split(options.launcher), *command]
+        command = [*stages.words_of(options.launcher, "--launcher"), *command]
     rule = "shard" if task.shard else "read_scene" if task.depfile else "run"
     rows = [f"build {' | '.join(task.outputs)}: {rule} {' '.join(task.inputs)}"]
     if task.depfile:
@@ -129,10 +129,10 @@ def main() -> None:
         ]
     target = pathlib.Path(options.out) / "build.ninja"
     text = "\n".join(rows) + "\n"
-    target.parent.mkdir(parents=True, exist_ok=True)
+    output_guard.make_folder(target.parent, "--out")
     write_graph(target, text)
     print(f"ninja -f {target}")
 
 
 if __name__ == "__main__":
-    main()
+    output_guard.run(main)

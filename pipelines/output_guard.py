@@ -14,6 +14,7 @@ import json
 import os
 import pathlib
 import re
+import signal
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
@@ -159,3 +160,31 @@ def or_exit(act: Callable[..., T], *arguments: Any, program: str = "") -> T:
     except OSError as problem:
         line = f"{problem.filename}: cannot be written: {problem.strerror}"
     sys.exit(f"{program or pathlib.Path(sys.argv[0]).name}: {line}")
+
+
+def make_folder(folder: str | pathlib.Path, option: str = "") -> None:
+    """Makes a folder and those above it. Raises Refused where a file is in the way, or OSError."""
+    try:
+        pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        raise Refused(
+            f"{folder}: is no folder, or is below a file; name another folder"
+            f"{f' for {option}' if option else ''}"
+        ) from None
+
+
+def run(main: Callable[..., None], *arguments: Any) -> None:
+    """Runs the main function of a program. Refused and OSError become one line and exit code 1."""
+    program = pathlib.Path(sys.argv[0]).name
+    try:
+        main(*arguments)
+    except Refused as problem:
+        sys.exit(f"{program}: {problem}")
+    except BrokenPipeError:  # the reader of the output has left, so Python prints no more
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(128 + signal.SIGPIPE)
+    except OSError as problem:
+        where = f"{problem.filename}: " if problem.filename else ""
+        sys.exit(
+            f"{program}: {where}{problem.strerror or problem}; check the name and the rights to it"
+        )

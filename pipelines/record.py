@@ -32,6 +32,8 @@ import sys
 import time
 from typing import Any
 
+import output_guard
+
 SUFFIX = ".task.json"
 PR_SET_PDEATHSIG = 1
 Folder = str | os.PathLike[str]
@@ -93,7 +95,7 @@ class Attempt:
         }
         self.folder = pathlib.Path(folder)
         self.process: subprocess.Popen[bytes] | None = None
-        self.folder.mkdir(parents=True, exist_ok=True)
+        output_guard.make_folder(self.folder)
         self.claim()
 
     def claim(self) -> None:
@@ -196,6 +198,9 @@ def main() -> None:
     p.add_argument("--checkpoint", default="", metavar="FILE", help="what the command goes on from")
     p.add_argument("command", nargs="+", help="after --")
     options = p.parse_args()
+    for name in ("folder", "task"):
+        if not getattr(options, name):
+            p.error(f"{name} '' is empty; give it a value")
     attempt = Attempt(
         options.folder,
         options.task,
@@ -208,4 +213,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    output_guard.run(main)

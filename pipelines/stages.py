@@ -163,6 +163,9 @@ def complete(options: argparse.Namespace) -> None:
         stage: shlex.split(preset[stage.upper()]) for stage in ("estimate", "render")
     }
     refuse_lit_placement(options)
+    for name in ("out", "bin", "candidates", "vpls", "photons"):
+        if not getattr(options, name):  # mostly an unset variable of a script
+            refuse(f"--{name} '' is empty; give it a value, or leave it out")
     for path in (options.out, options.bin):
         check_path(path)
 
@@ -189,15 +192,23 @@ def refuse(problem: str) -> NoReturn:
     sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {problem}")
 
 
+def words_of(text: str, option: str) -> list[str]:
+    """Splits the text of an option as a shell does."""
+    try:
+        return shlex.split(text)
+    except ValueError as problem:
+        refuse(f"{option} {text!r}: {problem}; check its quotes")
+
+
 def refuse_lit_placement(options: argparse.Namespace) -> None:
     """Refuses methods that need other files or stages.
 
     VPLs that --method light places carry flux already, and --method rejection reads the scene.
     """
-    words = {"light", "--method=light"} & set(shlex.split(options.place_flags)) or {
+    words = {"light", "--method=light"} & set(words_of(options.place_flags, "--place-flags")) or {
         "rejection",
         "--method=rejection",
-    } & set(shlex.split(options.eliminate_flags))
+    } & set(words_of(options.eliminate_flags, "--eliminate-flags"))
     if words:
         refuse(
             "vpl-place --method light and vpl-eliminate --method rejection leave no work to "
@@ -354,7 +365,7 @@ def tasks_of(scene: str, options: argparse.Namespace) -> list[Task]:
         return f"{options.bin}/vpl-{stage}"
 
     def flags(stage: str) -> list[str]:
-        return [*processor, *shlex.split(getattr(options, f"{stage}_flags"))]
+        return [*processor, *words_of(getattr(options, f"{stage}_flags"), f"--{stage}-flags")]
 
     def done(stage: str) -> list[str]:
         return [stage if options.shards.get(stage, 1) == 1 else f"merge-{stage}"]

@@ -37,7 +37,7 @@ check pipelines:pipelines/slurm pipelines/*.py pipelines/slurm/*.py
 check scenes scenes/generate.py scenes/generator
 check scenes/gltf-room scenes/gltf-room/*.py
 check scripts scripts/*.py
-check tests/bytes:pipelines tests/{bytes,formats,images,inspect,shards}/*.py
+check tests/bytes:pipelines tests/{bytes,formats,images,inspect,pipeline,shards}/*.py
 check tests/cluster:pipelines:eval/scaling tests/cluster/*.py
 check tests/faults tests/faults/*.py
 check tests/scene/blender tests/scene/blender/*.py

@@ -347,4 +347,4 @@ def main(words: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    output_guard.run(main, sys.argv[1:])

@@ -8,7 +8,6 @@ import argparse
 import json
 import math
 import re
-import shlex
 import subprocess
 from typing import Any
 
@@ -25,10 +24,10 @@ def look(scene: str, options: argparse.Namespace, *more: str) -> Any:
     command = [f"{options.bin}/vpl-inspect", "scene", scene, "--json", *defines, *more]
     try:
         done = subprocess.run(command, text=True, capture_output=True)
-    except FileNotFoundError:
+    except OSError:
         stages.refuse(
-            f"there is no {command[0]}, which looks at the scene; build the tools, or give "
-            "--memory and --time"
+            f"there is no {command[0]} that runs, which looks at the scene; build the tools, or "
+            "give --memory and --time"
         )
     if done.returncode:
         stages.refuse(done.stderr.strip() + "; or give --memory and --time")
@@ -37,7 +36,7 @@ def look(scene: str, options: argparse.Namespace, *more: str) -> Any:
 
 def pixels_of(seen: dict[str, Any], options: argparse.Namespace) -> int:
     """Pixels of the largest film."""
-    words = shlex.split(options.render_flags)
+    words = stages.words_of(options.render_flags, "--render-flags")
     if "--size" in words[:-1]:
         films = [words[words.index("--size") + 1]]
     elif options.views:

@@ -219,7 +219,7 @@ class Submission:
             "--requeue",
             "--open-mode=append",
             *words,
-            *shlex.split(chosen.sbatch),
+            *stages.words_of(chosen.sbatch, "--sbatch"),
             f"--wrap=exec {shlex.join(command)}",
         ]
         if chosen.dry_run:
@@ -298,7 +298,7 @@ class Submission:
             self.refuse_while_queued()
             for name, _ in jobs:  # refuses unknown needs before anything is written
                 self.limits(name, kind_of(name))
-            self.run.mkdir(parents=True, exist_ok=True)
+            output_guard.make_folder(self.run, "--out")
             self.put_aside({task.name for _, tasks in jobs for task in tasks})
         for name, tasks in jobs:
             self.submit_stage(name, tasks)
@@ -314,4 +314,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    output_guard.run(main)

@@ -19,6 +19,7 @@ from collections.abc import Iterable
 from typing import Any
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import output_guard  # noqa: E402
 import record  # noqa: E402
 
 ASKED_TO_STOP = {128 + number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
@@ -68,9 +69,15 @@ def up_to_date(folder: pathlib.Path, task: dict[str, Any]) -> bool:
 class Job:
     def __init__(self, file: str) -> None:
         self.folder = pathlib.Path(file).parent
-        described = json.loads(pathlib.Path(file).read_text())
-        self.retries, self.threads = described["retries"], described["threads"]
-        self.task = described["tasks"][int(os.environ.get("SLURM_ARRAY_TASK_ID", "1")) - 1]
+        number = os.environ.get("SLURM_ARRAY_TASK_ID", "1")
+        try:
+            described = json.loads(pathlib.Path(file).read_text())
+            self.retries, self.threads = described["retries"], described["threads"]
+            self.task = described["tasks"][int(number) - 1]
+        except (ValueError, KeyError, TypeError, IndexError):
+            raise output_guard.Refused(
+                f"{file}: is no job of submit.py that has a task {number}; submit again"
+            ) from None
         self.attempt: record.Attempt  # set by run()
         self.out_of_time = False
 
@@ -81,7 +88,7 @@ class Job:
     def run(self) -> int:
         task = self.task
         for output in task["outputs"]:
-            pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
+            output_guard.make_folder(pathlib.Path(output).parent)
         self.attempt = record.Attempt(
             self.folder,
             task["name"],
@@ -152,4 +159,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    output_guard.run(main)

@@ -139,7 +139,7 @@ TEST(JpegPixels, SoundOnesAreRead) {
     const Pixels read = decodePixels("p", jpeg(64, progressive));
     EXPECT_EQ(read.damage, "");
     EXPECT_EQ(read.width, 64u);
-    const uint8_t* middle = &read.values[4 * (64 * 28 + 20)];  // of block 2, 3
+    const uint8_t* middle = &read.values[4 * (64 * 28 + 20)];  // block 2, 3
     EXPECT_NEAR(middle[0], 2 * 37 + 3 * 59, 3);
     EXPECT_EQ(middle[3], 255);
   }

@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""Programs of pipelines/ refuse values and files in one line, without traceback or output.
+
+tests/pipeline/test_programs.py build/release/bin
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+SOURCE = Path(__file__).resolve().parents[2]
+BIN = Path("build/release/bin")
+SMALL = ["CANDIDATES=2k", "VPLS=200", "PHOTONS=20k", "SPP=1", "RUN_FLAGS=--quiet"]
+
+
+class Programs(unittest.TestCase):
+    def setUp(self) -> None:
+        holder = tempfile.TemporaryDirectory(prefix="bnvpl-programs-")
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+        # The project's path may hold a space, which neither Make nor the scripts can handle.
+        for name, target in (
+            ("pipelines", SOURCE / "pipelines"),
+            ("scenes", SOURCE / "scenes"),
+            ("bin", BIN),
+        ):
+            (self.folder / name).symlink_to(target)
+        self.scene = "scenes/test/one-bounce.toml"
+        (self.folder / "notes").write_text("somebody's\n")
+
+    def call(self, *command: str | Path, **settings: Any) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [str(word) for word in command],
+            cwd=self.folder,
+            text=True,
+            capture_output=True,
+            timeout=60,
+            env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+            **settings,
+        )
+
+    def refused(self, command: Sequence[str | Path], *parts: str, **settings: Any) -> None:
+        before = self.listing()
+        result = self.call(*command, **settings)
+        self.assertNotEqual(result.returncode, 0, result)
+        self.assertGreater(result.returncode, 0, result)  # no signal
+        lines = [
+            line for line in result.stderr.splitlines() if not line.startswith(("usage: ", " "))
+        ]
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        for part in parts:
+            self.assertIn(part, lines[0])
+        self.assertEqual(self.listing(), before)
+
+    def listing(self) -> list[str]:
+        return sorted(str(path) for path in self.folder.rglob("*"))
+
+    def script(self, name: str, *words: str) -> list[str]:
+        return [sys.executable, f"pipelines/{name}", *words]
+
+    def farm(self, *words: str) -> list[str]:
+        return [sys.executable, str(SOURCE / "eval/scaling/farm.py"), *words]
+
+    def make(self, *words: str) -> list[str]:
+        return [
+            "make",
+            "-f",
+            "pipelines/Makefile",
+            "BIN=bin",
+            f"SCENE={self.scene}",
+            *SMALL,
+            *words,
+        ]
+
+
+class Values(Programs):
+    def test_empty_values(self) -> None:
+        """Empty values come from unset variables; an empty OUT would be the root folder."""
+        for name in ("OUT", "SCENE", "BIN", "CANDIDATES", "VPLS", "PHOTONS"):
+            self.refused(self.make("-n", f"{name}="), f"{name} is empty; give it a value")
+        for program in ("generate_ninja.py", "slurm/submit.py"):
+            for name in ("out", "bin", "candidates", "vpls", "photons"):
+                more = ["--dry-run"] if "submit" in program else []
+                self.refused(
+                    self.script(program, self.scene, f"--{name}", "", *more),
+                    f"--{name} '' is empty",
+                )
+            self.refused(self.script(program, ""), "there is no scene ''")
+        self.refused(
+            self.script("record.py", "", "task", "--stage", "place", "--", "true"),
+            "folder '' is empty",
+        )
+
+    def test_numbers_of_shards(self) -> None:
+        """Make ends by a signal where a list of names is too long."""
+        for count in ("99999999", "1501", "18446744073709551617", "inf", "place=99999999", "1e3"):
+            self.refused(
+                self.make("OUT=out", f"SHARDS={count}"), "is not a whole number from 1 to 1500"
+            )
+        self.refused(
+            self.script("generate_ninja.py", self.scene, "--shards", "99999999"),
+            "is more than 1500",
+        )
+
+    def test_quotes_that_are_not_closed(self) -> None:
+        for option in (
+            "--place-flags",
+            "--eliminate-flags",
+            "--estimate-flags",
+            "--render-flags",
+            "--launcher",
+        ):
+            words = [f"{option}=--x 'y", "--shards", "2"]
+            self.refused(
+                self.script("generate_ninja.py", self.scene, *words), option, "No closing quotation"
+            )
+        self.refused(
+            self.script(
+                "slurm/submit.py",
+                self.scene,
+                "--dry-run",
+                "--memory",
+                "1G",
+                "--time",
+                "9",
+                "--sbatch='x",
+            ),
+            "--sbatch",
+            "No closing quotation",
+        )
+
+    def test_commas(self) -> None:
+        """A comma in a name is no separator of arguments of a function of Make."""
+        (self.folder / "my,room").symlink_to(SOURCE / "scenes/test")
+        for more, out in (
+            (["SCENE=my,room/one-bounce.toml"], "out/my,room-one-bounce"),
+            (["OUT=a,b"], "a,b"),
+            (["OUT=c,d", "SHARDS=2"], "c,d"),
+        ):
+            result = self.call(*self.make(*more))
+            self.assertEqual((result.returncode, result.stderr), (0, ""), result)
+            self.assertTrue((self.folder / out / "image.png").exists(), result)
+            self.assertIn("Nothing to be done", self.call(*self.make(*more)).stdout)
+            self.assertEqual(self.call(*self.make(*more, "clean")).returncode, 0)
+            self.assertFalse((self.folder / out / "image.exr").exists())
+
+
+class Files(Programs):
+    def test_a_file_where_a_folder_is_needed(self) -> None:
+        for out in ("notes", "notes/below"):
+            self.refused(
+                self.script("generate_ninja.py", self.scene, "--out", out),
+                "is no folder, or is below a file",
+                "another folder for --out",
+            )
+            self.refused(
+                self.script("record.py", out, "task", "--stage", "place", "--", "true"),
+                "is no folder",
+            )
+        self.refused(
+            self.script("slurm/submit.py", self.scene, "--dry-run", "--bin", "notes"),
+            "there is no notes/vpl-inspect",
+        )
+
+    def test_files_that_cannot_be_read(self) -> None:
+        (self.folder / "list.json").write_text("[]")
+        for name, part in (
+            ("absent.json", "absent.json: No such file"),
+            ("notes", "is no cost model"),
+            ("list.json", "is no cost model"),
+            ("scenes", "scenes: Is a directory"),
+        ):
+            self.refused(self.farm("--model", name), part)
+        for name, part in (
+            ("absent.json", "absent.json: No such file"),
+            ("notes", "is no job of submit.py"),
+            ("list.json", "is no job of submit.py"),
+            ("scenes", "scenes: Is a directory"),
+        ):
+            self.refused(self.script("slurm/task.py", name), part)
+
+    def test_a_folder_that_nobody_can_make(self) -> None:
+        self.refused(
+            self.script("generate_ninja.py", self.scene, "--out", "/proc/sys/bnvpl"),
+            "/proc/sys/bnvpl: ",
+        )
+
+    def test_a_reader_that_leaves(self) -> None:
+        words = self.farm("--nodes", ",".join(str(n) for n in range(1, 9)))
+        result = self.call("bash", "-c", 'exec "$@" 1> >(exec true)', "x", *words)
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertNotIn("Exception", result.stderr)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        BIN = Path(sys.argv.pop(1)).resolve()
+    unittest.main()
