@@ -10,8 +10,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "formats/output_target.h"
 
@@ -83,6 +85,39 @@ void syncFolder(const fs::path& target) {
                                   std::strerror(error) + "; check the disk and run it again");
   }
 }
+
+// Folders whose outputs this process replaces now, and no other: of runs that write the same files,
+// the last replaces them all. The locks are advisory (flock). Where one cannot be had, as on a file
+// system without locks or while a script holds the folder, waiting ends after two seconds.
+class FolderLocks {
+ public:
+  explicit FolderLocks(const std::vector<fs::path>& folders) {
+    std::map<std::pair<dev_t, ino_t>, int> open;  // in an order that all runs share: no deadlock
+    for (const fs::path& folder : folders) {
+      struct stat info {};
+      const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      const bool known = fd >= 0 && ::fstat(fd, &info) == 0;
+      if (known && open.emplace(std::pair(info.st_dev, info.st_ino), fd).second)
+        descriptors_.push_back(fd);
+      else if (fd >= 0)
+        ::close(fd);
+    }
+    int tries = 400;
+    for (const auto& [identity, fd] : open) {
+      while (::flock(fd, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR) &&
+             --tries > 0)
+        ::usleep(5000);
+    }
+  }
+  ~FolderLocks() {
+    for (const int fd : descriptors_) ::close(fd);
+  }
+  FolderLocks(const FolderLocks&) = delete;
+  FolderLocks& operator=(const FolderLocks&) = delete;
+
+ private:
+  std::vector<int> descriptors_;
+};
 
 }  // namespace
 
@@ -174,6 +209,9 @@ void AtomicFile::fail(int error) const {
 
 void OutputSet::commit() {
   for (AtomicFile& file : files_) file.sync();
+  std::vector<fs::path> all;
+  for (const AtomicFile& file : files_) all.push_back(folderOf(file.place_));
+  const FolderLocks locks(all);
   for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->replace();
   std::set<fs::path> folders;
   for (const AtomicFile& file : files_) {

@@ -50,7 +50,8 @@ class AtomicFile {
 };
 
 // Output files of one run that belong together, such as an image, its preview and its depfile. None
-// is replaced before all are on disk.
+// is replaced before all are on disk. Where several runs write the same files at once, all are of
+// one run in the end.
 class OutputSet {
  public:
   // The main output is added first. It is replaced last, so that a new one has its companions.

@@ -1,7 +1,9 @@
 #include "formats/checkpoint.h"
 
+#include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "core/files.h"
 #include "formats/atomic_file.h"
@@ -30,15 +32,23 @@ std::optional<bool> beginsAsCheckpoint(const fs::path& file) {
 }
 
 CheckpointFile readCheckpoint(const fs::path& file) {
+  if (auto found = findCheckpoint(file)) return std::move(*found);
+  throw InputError(file, "no such checkpoint; check the name");
+}
+
+std::optional<CheckpointFile> findCheckpoint(const fs::path& file) {
   const auto damaged = [&](const std::string& what) {
     return InputError(file, what + "; delete it and start again");
   };
   std::ifstream in(file, std::ios::binary);
   CheckpointHeader header;
+  if (!in && errno == ENOENT) return std::nullopt;
   if (!in) throw InputError(file, "cannot be read as a checkpoint; is it readable?");
-  std::error_code failed;
-  const uint64_t size = fs::file_size(file, failed);
-  if (failed || size < sizeof header) throw InputError(file, kNone);
+  // The size of what is open, for the name may have gone or got another file meanwhile.
+  in.seekg(0, std::ios::end);
+  const auto size = static_cast<uint64_t>(in.tellg());
+  in.seekg(0);
+  if (!in || size < sizeof header) throw InputError(file, kNone);
   in.read(reinterpret_cast<char*>(&header), sizeof header);
   if (header.magic != CheckpointHeader{}.magic) throw InputError(file, kNone);
   if (header.version != CheckpointHeader{}.version)

@@ -34,6 +34,8 @@ std::optional<bool> beginsAsCheckpoint(const fs::path& file);
 
 // Throws InputError if the file cannot be read or is damaged, cut short or of another version.
 CheckpointFile readCheckpoint(const fs::path& file);
+// The same; none where there is no such file, as when another run has just removed it.
+std::optional<CheckpointFile> findCheckpoint(const fs::path& file);
 
 // Replaces `file` atomically. Throws OutputError, and then keeps the old file.
 void writeCheckpoint(const fs::path& file, const CheckpointFile& checkpoint);

@@ -32,7 +32,8 @@ constexpr double kMaxPixelBytes = 0x1p34;
 constexpr int kNoThreads = 0;
 
 void refuseMalformed(const fs::path& file, const Image& image) {
-  if (image.width < 1 || image.height < 1 || image.width > kMaxExrSide || image.height > kMaxExrSide) {
+  if (image.width < 1 || image.height < 1 || image.width > kMaxExrSide ||
+      image.height > kMaxExrSide) {
     throw OutputError(file, "an image of " + std::to_string(image.width) + " x " +
                                 std::to_string(image.height) + " pixels cannot be written");
   }
@@ -72,15 +73,14 @@ Imf::Header makeHeader(const Image& image, ExrPixelType type) {
   return header;
 }
 
-// Clamps values beyond the half range, which would become infinite. Returns their number.
-uint64_t toHalf(const std::vector<float>& from, std::vector<half>& to) {
-  uint64_t clamped = 0;
+// Clamps values beyond the half range, which would become infinite.
+void toHalf(const std::vector<float>& from, std::vector<half>& to, HalfLosses& losses) {
   to.reserve(from.size());
   for (const float value : from) {
-    if (std::fabs(value) > kHalfMax) ++clamped;
     to.emplace_back(std::clamp(value, -kHalfMax, kHalfMax));
+    if (std::fabs(value) > kHalfMax) ++losses.beyond;
+    if (value != 0.0f && to.back() == 0.0f) ++losses.below;
   }
-  return clamped;
 }
 
 template <typename T>
@@ -148,7 +148,8 @@ void readPixels(Imf::InputPart& in, Image& image) {
 
 Image readChecked(const fs::path& file) {
   refuseDishonestAttributes(file);
-  Imf::Header::setMaxImageSize(kMaxExrSide, kMaxExrSide);  // or OpenEXR allocates its line table first
+  Imf::Header::setMaxImageSize(kMaxExrSide,
+                               kMaxExrSide);  // or OpenEXR allocates its line table first
   // Not Imf::InputFile: that allocates lines and tiles of any size as it opens the file, and takes
   // deep images.
   Imf::MultiPartInputFile parts(file.c_str(), kNoThreads, /*reconstructChunkOffsetTable=*/false);
@@ -176,10 +177,10 @@ Image readChecked(const fs::path& file) {
 
 }  // namespace
 
-uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
+HalfLosses writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
   refuseMalformed(file.target(), image);
   refuseNonFinite(file.target(), image);
-  uint64_t clamped = 0;
+  HalfLosses losses;
   // OpenEXR writes to memory, because its file stream does not report a failure of the last write.
   Imf::StdOSStream bytes;
   try {
@@ -189,7 +190,7 @@ uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
     for (size_t c = 0; c < image.channels.size(); ++c) {
       const ImageChannel& channel = image.channels[c];
       const bool asHalf = typeOf(channel, type) == Imf::HALF;
-      if (asHalf) clamped += toHalf(channel.data, halves[c]);
+      if (asHalf) toHalf(channel.data, halves[c], losses);
       frame.insert(channel.name, asHalf ? sliceOf(Imf::HALF, halves[c], image.width)
                                         : sliceOf(Imf::FLOAT, channel.data, image.width));
     }
@@ -202,14 +203,14 @@ uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
     throw OutputError(file.target(), std::string("OpenEXR: ") + problem.what());
   }
   file.write(bytes.str());
-  return clamped;
+  return losses;
 }
 
-uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
+HalfLosses writeExr(const fs::path& file, const Image& image, ExrPixelType type) {
   AtomicFile out(file);
-  const uint64_t clamped = writeExr(out, image, type);
+  const HalfLosses losses = writeExr(out, image, type);
   out.commit();
-  return clamped;
+  return losses;
 }
 
 std::optional<NonFinite> findNonFinite(const Image& image) {
@@ -231,7 +232,8 @@ uint64_t hashImage(const Image& image, ExrPixelType type) {
     const bool asHalf = typeOf(channel, type) == Imf::HALF;
     if (asHalf) {
       std::vector<half> halves;
-      toHalf(channel.data, halves);
+      HalfLosses ignored;
+      toHalf(channel.data, halves, ignored);
       rounded.assign(halves.begin(), halves.end());
     }
     const std::vector<float>& data = asHalf ? rounded : channel.data;

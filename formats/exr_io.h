@@ -23,12 +23,18 @@ struct NonFinite {
 };
 std::optional<NonFinite> findNonFinite(const Image& image);
 
-// Replaces `file` atomically; equal images give equal bytes. Returns the number of values that were
-// clamped to the half range (+-65504), which is 0 for Float. Depth is always float. The caller
-// commits an AtomicFile. Throws OutputError; and std::logic_error, naming channel and pixel, where
-// findNonFinite() finds a value, which the caller should have rejected where it arose.
-uint64_t writeExr(const fs::path& file, const Image& image, ExrPixelType type);
-uint64_t writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
+// Numbers of values that half precision could not hold; 0 for a Float image. Depth is always float.
+struct HalfLosses {
+  uint64_t beyond = 0;  // above 65504 in magnitude, and clamped to it
+  uint64_t below = 0;   // not zero, but below 2^-25 in magnitude, so that they became zero
+  bool operator==(const HalfLosses&) const = default;
+};
+
+// Replaces `file` atomically; equal images give equal bytes. The caller commits an AtomicFile.
+// Throws OutputError; and std::logic_error, naming channel and pixel, where findNonFinite() finds a
+// value, which the caller should have rejected where it arose.
+HalfLosses writeExr(const fs::path& file, const Image& image, ExrPixelType type);
+HalfLosses writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
 
 // Attribute with the hash of the image, 16 hexadecimal digits, which reveals changes.
 inline constexpr const char* kImageHashAttribute = "bnvpl.hash";

@@ -103,14 +103,16 @@ fs::path replaceableTarget(const fs::path& output) {
   }
   const fs::path& target = chain.back();
   if (isLink(target)) throw fail("is a loop of links; name a file");
+  // The system is asked once, for another run may remove or replace the file meanwhile.
   std::error_code ignored;
-  if (fs::is_directory(target, ignored)) throw fail("is a folder; name a file");
-  if (fs::exists(target, ignored)) {
+  const fs::file_type type = fs::status(target, ignored).type();
+  if (type == fs::file_type::directory) throw fail("is a folder; name a file");
+  if (type != fs::file_type::not_found && type != fs::file_type::none) {
     // Renaming over /dev/null or a pipe would replace the device itself.
-    if (!fs::is_regular_file(target, ignored))
+    if (type != fs::file_type::regular)
       throw fail("is a device or pipe, which cannot be replaced; name a file");
     // A rename would also replace a read-only file, which its owner wants to keep.
-    if (!mayWrite(target, W_OK)) {
+    if (!mayWrite(target, W_OK) && errno != ENOENT) {
       throw fail(std::string("cannot replace: ") + std::strerror(errno) +
                  "; make it writable or name another file");
     }

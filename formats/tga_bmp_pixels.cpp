@@ -33,7 +33,7 @@ struct FreePixels {
 
 [[noreturn]] void fail() {
   const char* why = stbi_failure_reason();
-  throw PixelError(why ? why : "damaged");
+  throw PixelError(why && *why ? why : "damaged or cut short");
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "formats/checkpoint.h"
+#include "formats/shard_file.h"
 #include "formats/vpl_io.h"
 
 namespace bnvpl {
@@ -19,6 +21,16 @@ void checkMagic(const InputFile& in, const VplHeader& header, uint64_t available
   const auto& magic = header.magic;
   const size_t length = std::min<uint64_t>(magic.size(), available);
   if (std::equal(magic.begin(), magic.begin() + length, kVplMagic.begin())) return;
+  if (magic == ShardHeader{}.magic) {
+    throw InputError(in.path(),
+                     "is a shard, a part of a stage's work, and no .vpl file; merge all "
+                     "shards with vpl-merge");
+  }
+  if (magic == CheckpointHeader{}.magic) {
+    throw InputError(in.path(),
+                     "is a checkpoint of a stopped run, and no .vpl file; the command of "
+                     "that run goes on from it");
+  }
   const bool looksLikeVpl = available >= 4 && std::memcmp(magic.data() + 1, "VPL", 3) == 0 &&
                             (magic[0] & 0x7f) == (kVplMagic[0] & 0x7f);
   if (looksLikeVpl) {

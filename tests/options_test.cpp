@@ -107,6 +107,15 @@ TEST(Options, DurationsAreSeconds) {
   for (const char* text : {"60", "", "m", "1d", "0s", "-1s", "1 s", "infs", "1s2"}) {
     EXPECT_THROW(seconds(text), UsageError) << text;
   }
+  for (const char* text : {"0.0000001s", "1e10s", "0s"}) {
+    try {
+      seconds(text);
+      ADD_FAILURE() << text;
+    } catch (const UsageError& e) {
+      EXPECT_NE(std::string(e.what()).find("from 0.001s to 1e9s"), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_EQ(seconds("0.001s"), 0.001);
   // The option has no value unless it is given, and neither has an option that needs it.
   EXPECT_FALSE(resolve(timed).has("time"));
   EXPECT_FALSE(resolve(timed).has("k"));

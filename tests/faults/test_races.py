@@ -1,9 +1,11 @@
 """Tests several runs that write the same outputs at once, and numbers of threads."""
 
+import subprocess
 import time
 import unittest
+from typing import Any
 
-from workbench import COMMANDS, OK, USAGE, Command, Workbench, moments, needs_shim
+from workbench import COMMANDS, OK, SOURCE, USAGE, Command, Workbench, moments, needs_shim, require
 
 
 class Races(Workbench):
@@ -31,6 +33,35 @@ class Races(Workbench):
         """Each run finds the locked partial files of the others, and does not touch them."""
         for command in COMMANDS:
             self.race(command, {"delay_us": 10000}, moments(1) // 5 + 1)
+
+    def start_with_seed(self, command: Command, seed: str, faults: dict[str, int] | None) -> Any:
+        return self.start(command, faults, ["--threads", "1", "--seed", seed])
+
+    @needs_shim
+    def test_all_outputs_are_of_one_run(self) -> None:
+        """Runs of different seeds end at about the same time, with time between their renames."""
+        command = next(each for each in COMMANDS if each.name == "path")
+        products, images = ("p.exr", "p.png"), {}
+        for seed in ("1", "2", "3"):
+            self.assertEqual(self.finish(self.start_with_seed(command, seed, None), 0).code, OK)
+            images[tuple((self.folder / name).read_bytes() for name in products)] = seed
+        self.assertEqual(len(images), 3)
+        for _ in range(moments(15)):
+            for racer in [
+                self.start_with_seed(command, seed, {"delay_us": 10000}) for seed in images.values()
+            ]:
+                result = self.finish(racer, 0)
+                self.assertEqual((result.code, result.err), (OK, ""))
+            self.assertIn(tuple((self.folder / name).read_bytes() for name in products), images)
+            self.assertEqual(self.left_over(), [])
+
+    def test_a_folder_that_a_script_has_locked(self) -> None:
+        """A run within `flock out vpl-render ...` waits a little, and goes on."""
+        require("flock")
+        command = next(each for each in COMMANDS if each.name == "path")
+        line = ["flock", self.folder, *command.line(self.folder), "--quiet"]
+        result = subprocess.run(line, cwd=SOURCE, capture_output=True, text=True, timeout=30)
+        self.assertEqual((result.returncode, result.stderr), (OK, ""))
 
 
 class Threads(Workbench):

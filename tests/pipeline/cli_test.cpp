@@ -143,7 +143,8 @@ TEST_F(Options, VplsLargerThanTheSceneAreRefused) {
   const std::string vpls = path("vpls.vpl");
   succeed("vpl-place", scene_ + " -n 300 -o " + path("c.vpl"));
   succeed("vpl-eliminate", path("c.vpl") + " -n 30 --density uniform --area 1e10 -o " + vpls);
-  const std::vector<std::string> told{"vpls.vpl: row 0: radius", "beyond the scene's size"};
+  const std::vector<std::string> told{"vpls.vpl: row 0: radius", "beyond the scene's size",
+                                      "keep more with vpl-eliminate -n", "--area"};
   fail("vpl-estimate", scene_ + " " + vpls + " -o " + path("lit.vpl"), kExitInput, told);
   fail("vpl-inspect", "check " + vpls + " --scene " + scene_, kExitInput, told);
 }
@@ -164,6 +165,36 @@ TEST_F(Options, UnknownChoices) {
            " --exposure bright",
        kExitUsage, {"--exposure", "bright"});
   EXPECT_TRUE(listing().empty());
+}
+
+// An option without its value takes the next option for it.
+TEST_F(Options, OptionsAreNoValues) {
+  const std::string place = scene_ + " -n 9 ", c = path("c.vpl");
+  const auto refused = [&](const std::string& name, const std::string& arguments,
+                           const std::string& option, const std::string& value) {
+    fail(name, arguments, kExitUsage,
+         {option + " has no value", "'" + value + "' behind it is an option", "./" + value});
+  };
+  refused("vpl-place", place + "-o --quiet", "-o", "--quiet");
+  refused("vpl-place", place + "--output -n", "--output", "-n");
+  refused("vpl-place", place + "-o --seed=3", "-o", "--seed=3");
+  refused("vpl-place", place + "-o --help", "-o", "--help");
+  refused("vpl-place", place + "-o " + c + " --stats --quiet", "--stats", "--quiet");
+  refused("vpl-place", scene_ + " -o " + c + " -n --checkpoint --checkpoint-replace", "-n",
+          "--checkpoint");
+  refused("vpl-place", place + "-o " + c + " --checkpoint --checkpoint-replace", "--checkpoint",
+          "--checkpoint-replace");
+  refused("vpl-place", place + "-o " + c + " --define --quiet", "--define", "--quiet");
+  refused("vpl-render", scene_ + " a.vpl -o x.exr --png --spp 4", "--png", "--spp");
+  refused("vpl-inspect", "export a.vpl -o --stats", "-o", "--stats");
+  refused("vpl-inspect", "--stats --quiet info a.vpl", "--stats", "--quiet");
+  EXPECT_TRUE(listing().empty());
+  succeed("vpl-place", place + "--quiet -o " + c + " --stats=" + path("--quiet"));
+  const Outcome meant = shell("sh -c 'cd " + at("").string() +
+                              " && " BNVPL_BIN "/vpl-place " BNVPL_SOURCE
+                              "/scenes/test/one-bounce.toml -n 9 --quiet -o ./--seed'");
+  EXPECT_EQ(meant.code, kExitOk) << meant.err;
+  EXPECT_EQ(listing(), (std::vector<std::string>{"--quiet", "--seed", "c.vpl"}));
 }
 
 // A script's unset variable gives an empty file name, which is refused before any work.

@@ -51,6 +51,30 @@ TEST_F(Effect, TheWarningOfDarkVplsNamesTheCause) {
   EXPECT_EQ(warning("--photons 10k"), "");
 }
 
+// Where all VPLs are dark, the warning speaks of no others.
+TEST_F(Effect, VplsWithoutAnyLightAreToldOf) {
+  write("box.toml",
+        "[film]\nwidth=16\nheight=12\n[camera]\nposition=[0,0,0.9]\nlook_at=[0,0,0]\n"
+        "vertical_fov_deg=60\n[[mesh]]\nfile=\"box.obj\"\n[[light]]\ntype=\"environment\"\n"
+        "radiance=[1,1,1]\n");
+  write("box.obj",
+        "mtllib box.mtl\nusemtl w\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\n"
+        "v 1 -1 1\nv 1 1 1\nv -1 1 1\nf 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\n"
+        "f 2 6 7 3\n");
+  write("box.mtl", "newmtl w\nKd .5 .5 .5\n");
+  const std::string box = path("box.toml") + " ";
+  succeed("vpl-place", box + "-n 500 -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 50 -o " + path("v.vpl"));
+  for (const std::string method : {"guarded", "both", "paths"}) {
+    const Outcome r = tool("vpl-estimate", box + path("v.vpl") + " --quiet --method " + method +
+                                               (method == "paths" ? "" : " --photons 10k") +
+                                               " -o " + path("l.vpl"));
+    EXPECT_EQ(r.code, kExitOk) << r.err;
+    EXPECT_TRUE(contains(r.err, "warning: no VPL ")) << method << ": " << r.err;
+    EXPECT_FALSE(contains(r.err, "the others")) << method << ": " << r.err;
+  }
+}
+
 // With --only direct, options of indirect light are refused.
 TEST_F(Effect, DirectLightAloneNeedsNoVpls) {
   makeStages(scene_);

@@ -177,6 +177,65 @@ TEST_F(Files, AnOutputReplacesNoFileOfAnotherKind) {
           kExitOutput);
 }
 
+// Files of other programs in our formats are somebody's work, as VPLs of another stage are.
+TEST_F(Files, AnOutputReplacesNoFileOfAnotherMaker) {
+  const std::string exports = "export " + lit_ + "-o ", run = "run pipelines/slurm/example --svg ";
+  write("mesh.ply",
+        "ply\nformat ascii 1.0\ncomment my scanned bunny\nelement vertex 0\nend_header\n");
+  write("late.ply", "ply\nformat ascii 1.0\nelement vertex 0\ncomment vpl-inspect, \nend_header\n");
+  write("table.csv", "id,price\n1,2\n");
+  write("drawing.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"><!-- by hand --></svg>\n");
+  write("drawing2.svg", "<?xml version=\"1.0\"?>\n<svg/>\n");
+  write("photo.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0abcd"
+                                 "\0\0\0\4gAMA\0\0\xb1\x8f"
+                                 "abcd",
+                                 57));
+  write("sky.exr", std::string("\x76\x2f\x31\x01\2\0\0\0channels\0chlist\0", 24));
+  for (const char* name : {"mesh.ply", "late.ply", "table.csv"})
+    refused("vpl-inspect", exports + path(name), {name, "of vpl-inspect", "name another file"},
+            kExitOutput);
+  for (const char* name : {"drawing.svg", "drawing2.svg"})
+    refused("vpl-inspect", run + path(name), {name, "SVG picture of vpl-inspect"}, kExitOutput);
+  refused("vpl-inspect", "plot " + lit_ + "--scene " + toml_ + "-o " + path("photo.png"), {"PNG"},
+          kExitOutput);
+  const std::string render = toml_ + lit_ + "--spp 1 -o ";
+  refused("vpl-render", render + path("x.exr") + " --png " + path("photo.png"), {"PNG"},
+          kExitOutput);
+  refused("vpl-render", render + path("sky.exr"), {"OpenEXR image of vpl-render"}, kExitOutput);
+}
+
+TEST_F(Files, VplsOfAnotherStageAreNotReplaced) {
+  const std::string light = toml_ + "--method light -n 9 -o ", name = "name another file";
+  refused("vpl-place", toml_ + "-n 9 -o " + lit_, {"is not VPLs of stage candidates", name},
+          kExitOutput);
+  refused("vpl-place", toml_ + "-n 9 -o " + vpls_, {"is not VPLs of stage candidates"},
+          kExitOutput);
+  refused("vpl-place", light + candidates_, {"is not VPLs of stage lit"}, kExitOutput);
+  refused("vpl-eliminate", candidates_ + "-n 9 -o " + lit_, {"is not VPLs of stage eliminated"},
+          kExitOutput);
+  refused("vpl-estimate", toml_ + vpls_ + "-o " + candidates_, {"is not VPLs of stage lit"},
+          kExitOutput);
+  succeed("vpl-place", light + path("p.vpl") + " --quiet");
+  succeed("vpl-place", light + path("p.vpl") + " --quiet");
+  const std::string reject = "--method rejection -n 3 --quiet --scene " + toml_ + "-o ";
+  succeed("vpl-eliminate", path("p.vpl") + " " + reject + path("r.vpl"));
+  succeed("vpl-eliminate", path("p.vpl") + " " + reject + path("r.vpl"));
+  succeed("vpl-place", toml_ + "-n 9 --shard 1/1 --quiet -o " + path("c.shard"));
+  succeed("vpl-estimate", toml_ + vpls_ + "--photons 1k --shard 1/1 --quiet -o " + path("l.shard"));
+  refused("vpl-place", toml_ + "-n 9 --shard 1/1 -o " + path("l.shard"), {"a shard of vpl-place"},
+          kExitOutput);
+  refused("vpl-merge", path("c.shard") + " -o " + path("l.shard"), {"a shard of vpl-place"},
+          kExitOutput);
+  refused("vpl-merge", path("c.shard") + " -o " + lit_, {"is not VPLs of stage candidates"},
+          kExitOutput);
+  refused("vpl-merge", path("l.shard") + " -o " + candidates_, {"is not VPLs of stage lit"},
+          kExitOutput);
+  for (int time = 0; time < 2; ++time) {
+    succeed("vpl-merge", path("c.shard") + " --quiet -o " + path("few.shard"));
+    succeed("vpl-merge", path("c.shard") + " --quiet -o " + path("m.vpl"));
+  }
+}
+
 TEST_F(Files, AnOlderFileOfTheKindIsReplaced) {
   write("empty", "");
   fs::copy(at("empty"), at("empty.vpl"));
@@ -198,7 +257,8 @@ TEST_F(Files, AnOlderFileOfTheKindIsReplaced) {
 TEST_F(Files, MergeKeepsWhatTheShardsWereMadeFrom) {
   succeed("vpl-estimate",
           toml_ + vpls_ + "--photons 50k --quiet --shard 1/1 -o " + path("x.shard"));
-  refused("vpl-merge", path("x.shard") + " -o " + vpls_, {"-o '", "vpls.vpl", "same file"});
+  refused("vpl-merge", path("x.shard") + " -o " + vpls_, {"vpls.vpl", "is not VPLs of stage lit"},
+          kExitOutput);
 }
 
 TEST_F(Files, ACheckpointIsNoOtherFile) {

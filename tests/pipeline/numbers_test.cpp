@@ -145,5 +145,23 @@ TEST_F(Numbers, LightBeyondHalf) {
   EXPECT_EQ((*image.find("Z"))[0], INFINITY);
 }
 
+// A half stores nothing between 0 and 2^-24: what becomes 0 is counted and reported.
+TEST_F(Numbers, LightBelowHalf) {
+  write("sky.obj", "mtllib s.mtl\nusemtl grey\nv -1 0 -1\nv -1 0 1\nv 1 0 1\nf 1 2 3\n");
+  write("s.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  write("sky.toml",
+        "[film]\nwidth = 4\nheight = 4\n[camera]\nposition = [0, 3, 3]\nlook_at = [0, 3, 0]\n"
+        "vertical_fov_deg = 20\n[[mesh]]\nfile = \"sky.obj\"\n[[light]]\ntype = \"environment\"\n"
+        "radiance = [1e-9, 0, 1]\n");
+  const std::string render = path("sky.toml") + " --integrator path --spp 1 --stats " +
+                             path("s.json") + " -o " + path("i.exr");
+  const Outcome r = tool("vpl-render", render + " --pixels half");
+  EXPECT_EQ(r.code, kExitOk);
+  EXPECT_TRUE(contains(r.err, "warning: 16 values are too small for half precision")) << r.err;
+  EXPECT_EQ(Json::parse(readAll(at("s.json"))).at("below_half"), 16);
+  EXPECT_EQ((*readExr(at("i.exr")).find("R"))[0], 0.0f);
+  EXPECT_EQ(tool("vpl-render", render).err, "");
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -75,6 +75,26 @@ TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
   }
 }
 
+TEST_F(VplFiles, ShardsAndCheckpointsAreNamed) {
+  succeed("vpl-place", scene_ + " -n 300 --shard 1/2 --quiet -o " + path("c.shard"));
+  shell("timeout --foreground -s INT 1 '" BNVPL_BIN "/vpl-render' " + scene_ +
+        " --integrator path --spp 1M --threads 1 --checkpoint " + path("work") + " -o " +
+        path("x.exr"));
+  ASSERT_TRUE(fs::exists(at("work")));
+  fs::copy(at("work"), at("work.vpl"));
+  for (const auto& [file, told] :
+       {std::pair{"c.shard", "is a shard"}, std::pair{"work.vpl", "is a checkpoint"}}) {
+    const std::string cure =
+        std::string(told) == "is a shard" ? "vpl-merge" : "the command of that run goes on from it";
+    fail("vpl-eliminate", path(file) + " -n 9 -o " + path("v.vpl"), kExitInput, {told, cure});
+    fail("vpl-estimate", scene_ + " " + path(file) + " -o " + path("l.vpl"), kExitInput,
+         {told, cure});
+    fail("vpl-render", scene_ + " " + path(file) + " -o " + path("i.exr"), kExitInput,
+         {told, cure});
+  }
+  fail("vpl-inspect", "info " + path("work.vpl"), kExitInput, {"is a checkpoint"});
+}
+
 TEST_F(VplFiles, TheWrongStageIsReportedWithItsMakerAndTheRightTools) {
   succeed("vpl-place", scene_ + " -o " + path("light.vpl") + " -n 20 --method light");
   fail("vpl-estimate", scene_ + " " + path("light.vpl") + " -o " + path("x.vpl"), kExitInput,

@@ -41,16 +41,18 @@ std::string difference(const Json& before, const Json& now, const std::string& p
   return path;
 }
 
-// Returns the state in `file`. Throws InputError if the file belongs to another run.
+// Returns the state in `file`, empty if there is none. Throws InputError if the file belongs to
+// another run.
 std::string stateIn(const fs::path& file, const Json& run) {
-  CheckpointFile found = readCheckpoint(file);
-  const Json theirs = Json::parse(found.run, nullptr, /*allow_exceptions=*/false);
+  std::optional<CheckpointFile> found = findCheckpoint(file);
+  if (!found) return "";  // another run of the command has just ended
+  const Json theirs = Json::parse(found->run, nullptr, /*allow_exceptions=*/false);
   if (theirs != run) {
     throw InputError(file, "is the checkpoint of another run (" + differenceOf(theirs, run) +
                                "); repeat that run's command, name another file, or add "
                                "--checkpoint-replace");
   }
-  return std::move(found.state);
+  return std::move(found->state);
 }
 
 }  // namespace
@@ -77,7 +79,6 @@ Checkpoint::Checkpoint(CheckpointOptions options, Json run)
   if (options_.file.empty()) return;
   requireWritable({options_.file});
   run_["processor_id"] = processorId(processorOf(run_));
-  if (!fs::exists(options_.file)) return;
   try {
     earlier_ = stateIn(options_.file, run_);
   } catch (const InputError& unusable) {

@@ -104,7 +104,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
   double fewerShare = 0.0;
   for (double parts = 4096.0;;) {
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
-    const double beforeS = cpuSecondsSoFar();
+    const double beforeS = cpuSecondsSoFar(), leftOutS = probe.skippedCpuS();
     const Probe some = tryUnits(part, shard, probe, units.apart);
     const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // CPU time of the units
         leftS = kMaxCpuS - (cpuSecondsSoFar() - begunS) - baseS;
@@ -114,7 +114,9 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
       const double workS = std::max(0.0, some.cpuS - fewer.cpuS) / (share - fewerShare);
       const double firstS = std::max(0.0, some.cpuS - workS * share - base.cpuS);
       const bool sure = some.units >= units.fewest && ownS >= 0.2 * enoughS;
-      return {bytesIn("VmHWM"), startS + setupS + firstS, workS, share, sure || shard.whole()};
+      const double done = 1.0 - (probe.skippedCpuS() - leftOutS) / std::max(some.cpuS, 1e-9);
+      return {bytesIn("VmHWM"), startS + setupS + firstS, workS, share * done,
+              sure || shard.whole()};
     }
     const double measuredS = std::max(ownS, 0.03 * std::max(baseS, kMinCpuS));  // above noise
     double more = 1.3 * std::max(units.fewest / std::max(some.units, 0.5), enoughS / measuredS);

@@ -85,8 +85,8 @@ double durationOf(const Option& o, const std::string& text) {
   value *= seconds;
   if (error != std::errc{} || !(value >= o.least && value <= o.most)) {
     refuse(o, "'" + text +
-                  "' is out of range: write a duration of more than 0s, such as 90s, 2m or " +
-                  "1.5h");
+                  "' is out of range: write a duration from 0.001s to 1e9s, such as 90s, 2m "
+                  "or 1.5h");
   }
   return value;
 }

@@ -67,6 +67,11 @@ RunFiles& RunFiles::writes(const ToolOptions& tool) {
       .writes("--depfile", tool.depfile, {OutputKind::Depfile});
 }
 
+RunFiles& RunFiles::shardsOf(const std::string& tool) {
+  shardTool_ = tool;
+  return *this;
+}
+
 void RunFiles::checkExtensions() const {
   for (const Named& out : outputs_) {
     const std::string extension = lowerExtension(out.file);
@@ -84,6 +89,12 @@ void RunFiles::checkExtensions() const {
   }
 }
 
+bool RunFiles::mayReplaceBy(const fs::path& file, OutputKind kind) const {
+  if (!mayReplace(file, kind)) return false;
+  const std::string maker = kind == OutputKind::Shard ? makerOfShard(file) : "";
+  return maker.empty() || maker == (shardTool_.empty() ? runningTool() : shardTool_);
+}
+
 // An output may replace an existing file of its own kind only.
 void RunFiles::checkKinds() const {
   for (const Named& out : outputs_) {
@@ -93,7 +104,9 @@ void RunFiles::checkKinds() const {
     for (const OutputKind k : out.kinds) {
       if (!extension.empty() && !mayBeNamed(extension, k)) continue;
       contents += (contents.empty() ? "" : " or ") + contentOf(k);
-      replaces = replaces || mayReplace(out.file, k);
+      if (k == OutputKind::Shard)
+        contents += " of " + (shardTool_.empty() ? runningTool() : shardTool_);
+      replaces = replaces || mayReplaceBy(out.file, k);
     }
     if (replaces) continue;
     throw OutputError(out.file, "is not " + contents + ", which " + out.option +

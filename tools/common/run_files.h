@@ -1,7 +1,7 @@
 // Collects every file that a run reads or writes, so that none is overwritten by mistake.
 //
 //   RunFiles used;
-//   used.reads("scene", path).writes("-o", output, {OutputKind::Vpl}).writes(tool).check();
+//   used.reads("scene", path).writes("-o", output, {OutputKind::Lit}).writes(tool).check();
 //   const Scene scene = loadScene(path);
 //   used.ready(scene.files);
 //   ... the work
@@ -29,6 +29,8 @@ class RunFiles {
   RunFiles& writes(const std::string& option, const fs::path& file,
                    const std::vector<OutputKind>& kinds = {});
   RunFiles& writes(const ToolOptions& tool);  // --stats and --depfile
+  // The tool whose shards an output of kind Shard may replace; unless called, the running one.
+  RunFiles& shardsOf(const std::string& tool);
 
   // Call this first; it touches no file. Throws UsageError that names both options if an output is
   // also another output or an input, even through links or another spelling, and UsageError for an
@@ -47,12 +49,14 @@ class RunFiles {
     std::vector<OutputKind> kinds;  // for outputs only
   };
   void checkExtensions() const;
+  bool mayReplaceBy(const fs::path& file, OutputKind kind) const;
   void checkKinds() const;
   void checkDepfileNames() const;
   void checkIdentities() const;
   void checkPartialNames() const;
 
   std::vector<Named> inputs_, outputs_;
+  std::string shardTool_;
 };
 
 }  // namespace bnvpl

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -97,10 +98,32 @@ void requireTexts(const CLI::App& cli) {
   for (const CLI::App* command : cli.get_subcommands()) requireTexts(*command);
 }
 
+const CLI::Option* optionNamed(const CLI::App& cli, const std::string& name) {
+  return name.size() > 1 && name.front() == '-' ? cli.get_option_no_throw(name) : nullptr;
+}
+
+// Refuses an option whose value is missing, so that the option behind it was taken for the value.
+// One in the same word, as --png=--quiet, is meant.
+void requireOwnValues(const CLI::App& cli, const std::vector<std::string>& words,
+                      const CLI::App* above = nullptr) {
+  for (size_t i = 1; i < words.size(); ++i) {
+    const CLI::Option* option = optionNamed(cli, words[i - 1]);
+    const std::string &text = words[i], name = text.substr(0, text.find('='));
+    if (!option || std::ranges::find(option->results(), text) == option->results().end()) continue;
+    if (!optionNamed(cli, name) && !(above && optionNamed(*above, name))) continue;
+    throw UsageError(words[i - 1] + " has no value, for '" + text +
+                     "' behind it is an option; give it one (a file of that name is ./" + text +
+                     ")");
+  }
+  for (const CLI::App* command : cli.get_subcommands()) requireOwnValues(*command, words, &cli);
+}
+
 // Returns false if --help or --version was answered.
 bool parse(CLI::App& cli, int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
   try {
     cli.parse(argc, argv);
+    requireOwnValues(cli, words);
     requireTexts(cli);
     return true;
   } catch (const CLI::Success& e) {
@@ -112,6 +135,7 @@ bool parse(CLI::App& cli, int argc, char** argv) {
     print(text.str());
     return false;
   } catch (const CLI::ParseError& e) {
+    requireOwnValues(cli, words);  // what was swallowed may be missing elsewhere
     throw UsageError(describe(e, cli, toolName));
   }
 }

@@ -127,8 +127,10 @@ void requireRadiiWithin(const fs::path& file, std::span<const float> radii, cons
   char text[128];
   std::snprintf(text, sizeof text, "row %td: radius %.6g is beyond the scene's size, %.6g; ",
                 at - radii.begin(), double{*at}, double{size});
-  throw InputError(file, text + std::string("rerun vpl-eliminate, without --area or with the area "
-                                            "in sight"));
+  throw InputError(file,
+                   text + std::string("each VPL stands for too much surface; keep more "
+                                      "with vpl-eliminate -n, and where its --area was given, "
+                                      "give the area in sight or leave it out"));
 }
 
 void requireSameScene(const fs::path& file, uint64_t hashInFile, const Scene& scene,

@@ -2,7 +2,7 @@
 // --shard, --depfile and the summary.
 //
 //   StageRun run("vpl-place", request, tool);
-//   run.used.reads("scene", request.scene.file).writes("-o", request.output, {OutputKind::Vpl});
+//   run.used.reads("scene", request.scene.file).writes("-o", request.output, {OutputKind::Lit});
 //   run.checkFiles();
 //   ... the inputs are read
 //   run.filesReady(scene.files);

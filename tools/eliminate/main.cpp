@@ -37,7 +37,8 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
   const Values options = resolve(eliminateSpec(), request.given);
   requireSceneAsNeeded(eliminateMethod(options), !request.scene.file.empty());
   run.used.reads("candidates", input).reads("--scene", request.scene.file);
-  run.used.writes("-o", request.output, {OutputKind::Vpl});
+  const bool lit = eliminateMethod(options).takes == VplStage::Lit;
+  run.used.writes("-o", request.output, {lit ? OutputKind::Lit : OutputKind::Eliminated});
   run.checkFiles();
   if (!run.estimating())
     requireMemoryFor(input, kBytesPerCandidate, "place fewer with vpl-place -n");

@@ -17,7 +17,7 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   StageRun run("vpl-estimate", request, tool);
   const Values options = resolve(estimateSpec(), request.given);
   run.used.reads("scene", request.scene.file).reads("vpls", input);
-  run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Vpl});
+  run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Lit});
   run.checkFiles();
   if (!run.estimating()) {
     requireMemoryFor(input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),

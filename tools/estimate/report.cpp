@@ -30,8 +30,8 @@ constexpr double kFewHits = 2.0;
 // surface.
 constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
 
-// Text that says why VPLs are dark, and what to do.
-std::string causeOfDark(const EstimateResult& result) {
+// Text that says why VPLs are dark, and what to do. `none` means that all VPLs are dark.
+std::string causeOfDark(const EstimateResult& result, bool none) {
   if (result.paths > 0 && result.energy.photons > 0)
     return std::string("neither photons nor paths brought light there; ") +
            (result.workShare < 1.0 ? "lower --irradiance-error" : "raise --photons") +
@@ -52,6 +52,10 @@ std::string causeOfDark(const EstimateResult& result) {
     return "most photons go where the view does not look; raise --photons, try --method paths, or "
            "keep fewer VPLs with vpl-eliminate -n";
   }
+  if (none) {
+    return "the light does not come to where they are; vpl-inspect scene shows camera and lights, "
+           "and raise --photons if it should";
+  }
   return "the light gathers at the others; raise --photons, or keep fewer VPLs with vpl-eliminate "
          "-n";
 }
@@ -59,12 +63,14 @@ std::string causeOfDark(const EstimateResult& result) {
 void warnOfDark(uint64_t dark, const EstimateResult& result) {
   const auto all = static_cast<double>(result.table.size());
   if (static_cast<double>(dark) <= kManyDark * all) return;
+  const bool none = dark == result.table.size();
   char share[32];
   std::snprintf(share, sizeof share, "%.0f %%", 100.0 * static_cast<double>(dark) / all);
-  printWarnings("vpl-estimate", {std::string(share) +
-                                 (result.paths > 0 ? " of the VPLs light nothing: "
-                                                   : " of the VPLs got no photon: ") +
-                                 causeOfDark(result)});
+  const bool paths = result.paths > 0;
+  const std::string which = none ? paths ? "no VPL lights anything: " : "no VPL got a photon: "
+                                 : share + std::string(paths ? " of the VPLs light nothing: "
+                                                             : " of the VPLs got no photon: ");
+  printWarnings("vpl-estimate", {which + causeOfDark(result, none)});
 }
 
 void reportPhotons(const EnergyAccount& a, Summary& summary) {

@@ -31,7 +31,8 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
   const MergeStage& stage = stageOf(shards);
   RunFiles used;
   for (const fs::path& file : inputs) used.reads("shard", file);
-  used.writes("-o", output.product, {stage.product, OutputKind::Shard});
+  used.writes("-o", output.product, {stage.product(shards.whole()), OutputKind::Shard});
+  used.shardsOf(std::string(stage.tool));
   used.writes("--png", output.png, {OutputKind::Png}).writes(tool).check();
   const bool toShard = lowerExtension(output.product) == kShardExtension;
   if (!output.png.empty() && (toShard || !stage.image))

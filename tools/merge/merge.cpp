@@ -9,9 +9,10 @@ namespace bnvpl {
 
 std::span<const MergeStage> mergeStages() {
   static constexpr std::array kStages{
-      MergeStage{"vpl-place", OutputKind::Vpl, mergePlaced},
-      MergeStage{"vpl-estimate", OutputKind::Vpl, mergeEstimated},
-      MergeStage{"vpl-render", OutputKind::Exr, mergeRendered, true}};
+      MergeStage{"vpl-place", placedKind, mergePlaced},
+      MergeStage{"vpl-estimate", [](const ShardRun&) { return OutputKind::Lit; }, mergeEstimated},
+      MergeStage{"vpl-render", [](const ShardRun&) { return OutputKind::Exr; }, mergeRendered,
+                 true}};
   return kStages;
 }
 

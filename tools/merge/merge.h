@@ -19,8 +19,8 @@ struct MergeOutput {
 };
 
 struct MergeStage {
-  std::string_view tool;  // the tool that made the shards
-  OutputKind product;
+  std::string_view tool;                         // the tool that made the shards
+  OutputKind (*product)(const ShardRun& whole);  // what the whole run makes
   // Adds the product to `files` and its figures to the summary. Returns the files that it read
   // besides the shards.
   std::vector<fs::path> (*merge)(ShardSet& shards, const MergeOutput& output, OutputSet& files,
@@ -41,6 +41,7 @@ void requireSameInput(const fs::path& file, uint64_t hash, const ShardRun& whole
 // Throws InputError for rows that no stage could have written.
 void requireSound(const VplTable& table);
 
+OutputKind placedKind(const ShardRun& whole);  // candidates, or lit, as the method says
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                   Summary& summary);
 std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output, OutputSet& files,

@@ -31,12 +31,20 @@ ViewTurns turnsOf(const Json& record) {
   return ViewTurns(std::move(shares));
 }
 
+Values placeOptionsOf(const ShardRun& whole) {
+  return optionsOf(whole, placeSpec(),
+                   [](const Given& given) { return resolve(placeSpec(), given); });
+}
+
 }  // namespace
+
+OutputKind placedKind(const ShardRun& whole) {
+  return kindOf(placeMethod(placeOptionsOf(whole)).makes);
+}
 
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                   Summary& summary) {
-  const Values options = optionsOf(shards.whole(), placeSpec(),
-                                   [](const Given& given) { return resolve(placeSpec(), given); });
+  const Values options = placeOptionsOf(shards.whole());
   const uint64_t count = options.whole("count");
   requireMemory(kBytesPerPlaced * static_cast<double>(count), std::to_string(count) + " VPLs",
                 "place fewer with -n");

@@ -27,12 +27,12 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   const uint64_t count = options.whole("count");
   const double rowBytes = request.shard ? 0.0 : kBytesPerPlaced * static_cast<double>(count);
   run.used.reads("scene", request.scene.file);
-  run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Vpl});
+  const PlaceMethod& method = placeMethod(options);
+  run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : kindOf(method.makes)});
   run.checkFiles();
   if (!run.estimating())
     requireMemory(rowBytes, std::to_string(count) + " VPLs", "ask for fewer with -n");
   Scene scene = loadSceneFor(request.scene, Warnings::Hold);
-  const PlaceMethod& method = placeMethod(options);
   const PlaceViews views = placeViews(request.scene, request.viewShares, method, scene);
   if (method.needsLight) scene.requireLight();
   printHeldWarnings();

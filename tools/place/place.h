@@ -57,8 +57,9 @@ struct PlaceMethod {
   TracePaths (*make)(const PlaceInputs&, const Values&);
   void (*finish)(PlaceResult&);  // sets the stage and the columns that depend on all rows together
   LastPath last = LastPath::Cut;
-  bool needsLight = false;  // whether a scene without lights is refused
-  bool forView = true;      // whether the rows depend on camera and film
+  bool needsLight = false;                // whether a scene without lights is refused
+  bool forView = true;                    // whether the rows depend on camera and film
+  VplStage makes = VplStage::Candidates;  // the stage that `finish` gives the table
 };
 std::span<const PlaceMethod* const> placeMethods();  // one for each folder beside this file
 

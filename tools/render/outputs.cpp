@@ -64,12 +64,17 @@ ExrPixelType pixelTypeOf(const Values& options) {
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
                Summary& summary) {
   const ExrPixelType pixels = pixelTypeOf(options);
-  const uint64_t overflow = writeExr(files.add(paths.exr), image, pixels);
-  if (pixels == ExrPixelType::Half) summary.add("beyond_half", overflow);
-  if (overflow > 0) {
-    printWarnings("vpl-render",
-                  {std::to_string(overflow) + " values exceed half precision; use --pixels float"});
+  const HalfLosses losses = writeExr(files.add(paths.exr), image, pixels);
+  if (pixels == ExrPixelType::Half) {
+    summary.add("beyond_half", losses.beyond);
+    summary.add("below_half", losses.below);
   }
+  const auto warn = [](uint64_t count, const char* what) {
+    if (count == 0) return;
+    printWarnings("vpl-render", {std::to_string(count) + what + "; use --pixels float"});
+  };
+  warn(losses.beyond, " values exceed half precision");
+  warn(losses.below, " values are too small for half precision and became 0");
   warnOfBlack(image);
   if (paths.png.empty()) return;
   const float ev = exposureOf(image, options.text("exposure"));

@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "formats/tonemap.h"
 #include "formats/vpl_io.h"
+#include "tools/common/output_kind.h"
 #include "tools/inspect/column_names.h"
 #include "tools/inspect/display_colour.h"
 #include "tools/inspect/facets.h"
@@ -58,7 +59,7 @@ const char* plyType(VplType type) {
 
 std::string plyHeader(const VplTable& table, const Vertices& vertices) {
   const std::string rows = std::to_string(table.size());
-  std::string header = "ply\nformat binary_little_endian 1.0\ncomment vpl-inspect, " +
+  std::string header = "ply\nformat binary_little_endian 1.0\n" + std::string(kPlyMark) +
                        std::string(stageName(table.stage)) + " rows, lengths in scene units\n";
   if (vertices.lit) {
     char full[32];

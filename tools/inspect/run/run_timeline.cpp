@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "tools/common/output_kind.h"
 #include "tools/inspect/append_text.h"
 #include "tools/inspect/run/run_report.h"
 
@@ -121,8 +122,9 @@ class Picture {
            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
            "font-family=\"sans-serif\" font-size=\"%.0f\">\n",
            kWidth, y_ + kBottom, kFont);
+    svg += kSvgMark;
     svg +=
-        "<defs><pattern id=\"lost\" width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\" "
+        "width=\"6\" height=\"6\" patternUnits=\"userSpaceOnUse\" "
         "patternTransform=\"rotate(45)\"><rect width=\"3\" height=\"6\" fill=\"#ffffff\" "
         "fill-opacity=\"0.7\"/></pattern></defs>\n"
         "<style>.host{fill:#f2f3f5} .failed{stroke:#d62222;stroke-width:1.5} "

@@ -71,6 +71,7 @@ const PlaceMethod method{
     finish,
     LastPath::Whole,
     /*needsLight=*/true,
-    /*forView=*/false};
+    /*forView=*/false,
+    VplStage::Lit};
 
 }  // namespace bnvpl::methods::place::light
