@@ -1,6 +1,8 @@
 #include "core/read_file.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -33,6 +35,15 @@ void requireNoUtf16(const fs::path& file, std::string_view text) {
   const bool marked = mark == "\xff\xfe" || mark == "\xfe\xff";
   if (marked || (mark[0] == '\0') != (mark[1] == '\0'))
     throw InputError(file, "is UTF-16 text; save it as UTF-8");
+}
+
+std::string whyUnreadable(const fs::path& file, const std::string& what) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  const int error = descriptor < 0 ? errno : 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (error == EACCES || error == EPERM || error == ELOOP)
+    return std::string("cannot be opened: ") + std::strerror(error);
+  return "no such " + what;
 }
 
 std::string readText(const fs::path& file) {

@@ -27,6 +27,10 @@ class ReadGuard {
   Look before_;
 };
 
+// Says why `file` cannot be read: "no such OBJ file" for `what` "OBJ file", or what the system says
+// where a file or folder may not be read.
+std::string whyUnreadable(const fs::path& file, const std::string& what);
+
 // Returns the whole file. Throws InputError if it cannot be read to its end, or changes meanwhile.
 std::string readText(const fs::path& file);
 

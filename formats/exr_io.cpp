@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "core/files.h"
+#include "core/read_file.h"
 #include "formats/exr_header.h"
 #include "formats/vpl_layout.h"
 
@@ -248,7 +249,8 @@ uint64_t hashImage(const Image& image, ExrPixelType type) {
 }
 
 Image readExr(const fs::path& file) {
-  if (!isRegularFile(file)) throw InputError(file, "no such file; check the name");
+  if (!isRegularFile(file))
+    throw InputError(file, whyUnreadable(file, "file") + "; check the name");
   try {
     return readChecked(file);
   } catch (const InputError&) {

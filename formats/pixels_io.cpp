@@ -48,7 +48,8 @@ Pixels decodePng(const fs::path& file, const std::string& bytes) {
 }
 
 std::string readBytes(const fs::path& file) {
-  if (!isRegularFile(file)) throw InputError(file, "no such image; check the name");
+  if (!isRegularFile(file))
+    throw InputError(file, whyUnreadable(file, "image") + "; check the name");
   return readText(file);
 }
 

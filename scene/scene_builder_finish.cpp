@@ -5,6 +5,7 @@
 
 #include "core/number_text.h"
 #include "scene/coplanar_lamps.h"
+#include "scene/lights_in_surfaces.h"
 #include "scene/scene_builder.h"
 #include "scene/scene_hash.h"
 
@@ -178,6 +179,7 @@ Scene SceneBuilder::finish() {
   for (const std::string& warning : liftCoplanarLamps(scene_)) warn(warning);
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex
   requireSize();
+  for (const std::string& warning : lightsInSurfaces(scene_)) warn(warning);
   placeViews();
   if (!scene_.hasLight()) warn(scene_.name() + ": " + kNoLight);
   scene_.contentHash = hashScene(scene_);

@@ -32,7 +32,7 @@ uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& othe
   if (use.bytes) return textures_.add(use);
   addFile(use.file);
   if (!isRegularFile(use.file)) {
-    warn(use.file.string() + ": no such texture; " + otherwise);
+    warn(use.file.string() + ": " + whyUnreadable(use.file, "texture") + "; " + otherwise);
     return kNone;
   }
   return textures_.add(use);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 
 namespace bnvpl {
@@ -43,6 +44,8 @@ EnvironmentImage readPfm(const fs::path& file, std::string_view bytes) {
   image.width = takeNumber<uint32_t>(file, bytes, "width");
   image.height = takeNumber<uint32_t>(file, bytes, "height");
   const float scale = takeNumber<float>(file, bytes, "byte order");
+  if (!(std::fabs(scale) > 0.0f) || !std::isfinite(scale))
+    throw InputError(file, "is no PFM image: the scale in its header tells no byte order");
   const size_t pixels = size_t{image.width} * image.height;
   if (pixels == 0 || pixels > kMaxPfmPixels || bytes.size() < pixels * channels * sizeof(float))
     throw InputError(file, "is no whole PFM image: pixels are missing; make it again");
@@ -56,7 +59,7 @@ EnvironmentImage readPfm(const fs::path& file, std::string_view bytes) {
       std::memcpy(raw.data(), bytes.data() + (i * channels + c % channels) * raw.size(),
                   raw.size());
       if (swap) std::reverse(raw.begin(), raw.end());
-      pixel[c] = std::bit_cast<float>(raw);
+      pixel[c] = std::bit_cast<float>(raw) * std::fabs(scale);
     }
   }
   return image;

@@ -2,12 +2,13 @@
 
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 namespace bnvpl {
 namespace {
 
-constexpr uint32_t kMaxSide = 32767;            // limit of run-length encoded rows
-constexpr uint32_t kMinRunSide = 8;             // narrower rows are always flat
+constexpr uint32_t kMaxSide = 32767;               // limit of run-length encoded rows
+constexpr uint32_t kMinRunSide = 8;                // narrower rows are always flat
 constexpr size_t kMaxHdrPixels = size_t{1} << 28;  // as of other images
 
 using Rgbe = std::array<uint8_t, 4>;
@@ -50,6 +51,31 @@ Vec3 radianceOf(Rgbe p) {
   return scale * Vec3{float(p[0]), float(p[1]), float(p[2])};
 }
 
+// Parses the header. Returns the factor that its EXPOSURE and COLORCORR lines have multiplied the
+// pixels by; each line adds to those before (Radiance's documentation of its file formats).
+Vec3 readHeader(Reader& in) {
+  bool rgbe = false;
+  Vec3 factor{1.0f};
+  for (std::string_view line = in.line(); !line.empty(); line = in.line()) {
+    rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
+    const bool exposure = line.starts_with("EXPOSURE="),
+               perChannel = line.starts_with("COLORCORR=");
+    if (!exposure && !perChannel) continue;
+    std::istringstream numbers{std::string(line.substr(line.find('=') + 1))};
+    Vec3 one;
+    numbers >> one[0];
+    if (perChannel) numbers >> one[1] >> one[2];
+    if (exposure) one = Vec3{one[0]};
+    for (size_t c = 0; c < 3; ++c) {
+      factor[c] *= one[c];
+      if (!numbers || !(factor[c] > 0.0f) || !std::isfinite(1.0f / factor[c]))
+        in.fail("its header says '" + std::string(line.substr(0, 64)) + "'");
+    }
+  }
+  if (!rgbe) in.fail("its format is not 32-bit_rle_rgbe");
+  return factor;
+}
+
 void readRuns(Reader& in, std::vector<Rgbe>& row) {
   in.pixel();  // marks a run-length encoded row
   for (size_t channel = 0; channel < 4; ++channel) {
@@ -81,11 +107,7 @@ bool isRadianceHdr(std::string_view bytes) {
 
 EnvironmentImage readRadianceHdr(const fs::path& file, std::string_view bytes) {
   Reader in(file, bytes);
-  bool rgbe = false;
-  for (std::string_view line = in.line(); !line.empty(); line = in.line()) {
-    rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
-  }
-  if (!rgbe) in.fail("its format is not 32-bit_rle_rgbe");
+  const Vec3 factor = readHeader(in), scale{1.0f / factor.x, 1.0f / factor.y, 1.0f / factor.z};
   EnvironmentImage image;
   std::string_view size = in.line();
   image.height = side(in, size, "-Y ");
@@ -99,7 +121,7 @@ EnvironmentImage readRadianceHdr(const fs::path& file, std::string_view bytes) {
     } else {
       for (Rgbe& pixel : row) pixel = in.pixel();
     }
-    for (const Rgbe pixel : row) image.radiance.push_back(radianceOf(pixel));
+    for (const Rgbe pixel : row) image.radiance.push_back(radianceOf(pixel) * scale);
   }
   return image;
 }

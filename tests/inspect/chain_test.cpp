@@ -111,6 +111,11 @@ TEST_F(DeepCheck, AnImageThatWasEditedIsRefused) {
     EXPECT_TRUE(
         contains(messageOf<InputError>([&] { checkFile(at("b.exr")); }), "rerun vpl-render"));
     edited = readExr(at("a.exr"));
+    edited.attributes.erase(kImageHashAttribute);
+    writeExr(at("b.exr"), edited, ExrPixelType::Float);
+    EXPECT_TRUE(contains(messageOf<InputError>([&] { checkFile(at("b.exr")); }),
+                         "its attribute bnvpl.hash is gone"));
+    edited = readExr(at("a.exr"));
     edited.attributes["bnvpl.provenance"] = "[{}]";
     writeExr(at("b.exr"), edited, ExrPixelType::Float);
     EXPECT_TRUE(

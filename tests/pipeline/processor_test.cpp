@@ -11,20 +11,22 @@ const std::string kAny = " --quiet --processor any";
 TEST_F(ProcessorRun, ShardsForAnyMergeToTheBytesOfOneRun) {
   makeStages(scene_);
   for (const auto& [name, arguments, whole] :
-       {std::tuple{"vpl-place", scene_ + " -n 2k", "whole.vpl"},
+       {std::tuple{"vpl-place", scene_ + " -n 2k", "placed.vpl"},
         std::tuple{"vpl-estimate", scene_ + " " + path("vpls.vpl") + " --photons 20k", "whole.vpl"},
         std::tuple{"vpl-render", scene_ + " " + path("lit.vpl") + " --spp 1", "whole.exr"}}) {
+    const auto shard = [&, tool = name](const std::string& part) {
+      return tool + ("-" + part) + ".shard";
+    };
     for (const char* part : {"1", "2"}) {
-      succeed(name, arguments + kAny + " --shard " + part + "/2 -o " +
-                        path(part + std::string(".shard")));
+      succeed(name, arguments + kAny + " --shard " + part + "/2 -o " + path(shard(part)));
     }
     succeed(name, arguments + kAny + " -o " + path(whole));
-    const std::string merged = "merged" + fs::path(whole).extension().string();
-    succeed("vpl-merge", path("1.shard") + " " + path("2.shard") + " --quiet -o " + path(merged));
+    const std::string merged = std::string("merged-") + whole;
+    succeed("vpl-merge", path(shard("1")) + " " + path(shard("2")) + " --quiet -o " + path(merged));
     EXPECT_EQ(readAll(at(merged)), readAll(at(whole))) << name;
     const Outcome info = tool("vpl-inspect", "info " + path(whole));
     EXPECT_TRUE(contains(info.out, "; for any processor")) << info.out << info.err;
-    EXPECT_TRUE(contains(readAll(at("1.shard")), " --processor any")) << "the command of others";
+    EXPECT_TRUE(contains(readAll(at(shard("1"))), " --processor any")) << "the command of others";
   }
 }
 

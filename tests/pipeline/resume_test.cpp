@@ -34,9 +34,9 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   const std::string render =
       scene_ + " " + path("lit.vpl") + " --size 64x48 --spp 160 --layers all";
   const std::string place = scene_ + " -n 400k";
-  succeed("vpl-place", place + " -o " + path("whole.vpl"));
-  EXPECT_GE(runInPieces("vpl-place", place + " -o " + path("pieces.vpl")), 1);
-  EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
+  succeed("vpl-place", place + " -o " + path("placed.vpl"));
+  EXPECT_GE(runInPieces("vpl-place", place + " -o " + path("placed-pieces.vpl")), 1);
+  EXPECT_EQ(readAll(at("placed-pieces.vpl")), readAll(at("placed.vpl")));
   succeed("vpl-estimate", estimate + " -o " + path("whole.vpl"));
   EXPECT_GE(runInPieces("vpl-estimate", estimate + " -o " + path("pieces.vpl")), 1);
   EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
@@ -56,9 +56,11 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
                     morePhotons = scene_ + " --integrator light --size 64x48 --spp 4096";
   for (const auto& [name, work] : {std::pair{"vpl-estimate", more}, {"vpl-render", morePhotons}}) {
     const std::string shard = work + " --shard 2/3";
-    succeed(name, shard + " -o " + path("whole.shard"));
-    EXPECT_GE(runInPieces(name, shard + " -o " + path("pieces.shard")), 1);
-    EXPECT_EQ(readAll(at("pieces.shard")), readAll(at("whole.shard")));
+    const std::string whole = name + std::string("-whole.shard"),
+                      pieces = name + std::string("-pieces.shard");
+    succeed(name, shard + " -o " + path(whole));
+    EXPECT_GE(runInPieces(name, shard + " -o " + path(pieces)), 1);
+    EXPECT_EQ(readAll(at(pieces)), readAll(at(whole)));
   }
   EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to continue
 }

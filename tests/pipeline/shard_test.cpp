@@ -26,7 +26,7 @@ class ShardRun : public PipelineTest {
   // The command in this many shards gives the bytes of `whole`.
   void expectTheSame(const std::string& name, const std::string& arguments, int of,
                      const std::string& whole) const {
-    const std::string merged = "merged" + fs::path(whole).extension().string();
+    const std::string merged = "merged-" + whole;
     succeed("vpl-merge", makeShards(name, arguments, of) + "--quiet -o " + path(merged));
     EXPECT_EQ(readAll(at(merged)), readAll(at(whole))) << name << arguments << " in " << of;
   }
@@ -56,7 +56,7 @@ class ShardRun : public PipelineTest {
 };
 
 TEST_F(ShardRun, PlaceGivesTheSameBytesInAnyNumber) {
-  expectTheSameInParts("vpl-place", scene_ + " -n 20k --seed 5", "whole.vpl", {1, 7, 64});
+  expectTheSameInParts("vpl-place", scene_ + " -n 20k --seed 5", "placed.vpl", {1, 7, 64});
   expectTheSameInParts("vpl-place", scene_ + " -n 3k --depth 5", "deep.vpl", {3});
   expectTheSameInParts("vpl-place", scene_ + " -n 3k --method light", "light.vpl", {1, 7});
 }

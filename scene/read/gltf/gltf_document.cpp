@@ -89,7 +89,8 @@ void readGlb(const std::string& bytes, GltfDocument& out) {
 }  // namespace
 
 GltfDocument readGltfDocument(const fs::path& file) {
-  if (!isRegularFile(file)) throw InputError(file, "no such file; name a .gltf or .glb");
+  if (!isRegularFile(file))
+    throw InputError(file, whyUnreadable(file, "file") + "; name a .gltf or .glb");
   const std::string bytes = readText(file);
   requireNoUtf16(file, bytes);
   GltfDocument out{file, {}, {}, false};

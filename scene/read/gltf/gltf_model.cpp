@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-
 bool isDataUri(const std::string& uri) { return uri.starts_with("data:"); }
 
 // Decodes a percent-encoded relative reference (RFC 3986).
@@ -102,8 +101,8 @@ GltfModel::GltfModel(const fs::path& file, SceneBuilder& builder) : file_(file),
   std::string problem, warnings;
   if (!parser.LoadASCIIFromString(&model_, &problem, &warnings, text.data(),
                                   static_cast<unsigned>(text.size()), "")) {
-    throw InputError(file,
-                     "cannot read the glTF: " + problem.substr(0, problem.find('\n')) + kExportAgain);
+    throw InputError(
+        file, "cannot read the glTF: " + problem.substr(0, problem.find('\n')) + kExportAgain);
   }
 }
 
@@ -111,7 +110,8 @@ fs::path GltfModel::pathOf(const std::string& uri, const std::string& pointer) c
   const std::string name = decodedUri(uri);
   const size_t colon = name.find(':');
   if (colon != std::string::npos && colon < name.find('/'))
-    fail(pointer, "names '" + name.substr(0, 60) + "', which is no file beside the scene" + kExportAgain);
+    fail(pointer,
+         "names '" + name.substr(0, 60) + "', which is no file beside the scene" + kExportAgain);
   return (file_.parent_path() / name).lexically_normal();
 }
 
@@ -130,7 +130,8 @@ void GltfModel::readBuffers(GltfDocument& document) {
       } else {
         const fs::path path = pathOf(uri, pointer + "/uri");
         if (!isRegularFile(path))
-          fail(pointer + "/uri", "no such file: " + path.string() + "; put it there");
+          fail(pointer + "/uri",
+               whyUnreadable(path, "file") + ": " + path.string() + "; put it there");
         builder_.addFile(path);
         bytes = readText(path);
       }

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core/files.h"
+#include "core/read_file.h"
 #include "scene/read/obj/load_materials.h"
 #include "scene/read/obj/read_obj.h"
 #include "scene/triangulate.h"
@@ -139,19 +140,27 @@ ObjReading readOrWarn(const fs::path& obj, const fs::path& materials, SceneBuild
 void loadObj(const fs::path& obj, const fs::path& materials, const Affine& transform,
              SceneBuilder& builder) {
   if (!isRegularFile(obj) || !std::ifstream(obj)) {
-    throw InputError(obj, "no such OBJ file; check 'file' in the scene.toml");
+    throw InputError(obj, whyUnreadable(obj, "OBJ file") + "; check 'file' in the scene.toml");
   }
   if (!materials.empty() && !isRegularFile(materials)) {
-    throw InputError(materials, "no such MTL file; check 'materials' in the scene.toml");
+    throw InputError(
+        materials, whyUnreadable(materials, "MTL file") + "; check 'materials' in the scene.toml");
   }
   builder.addFile(obj);
   ObjReading reading = readOrWarn(obj, materials, builder);
   for (const fs::path& library : reading.libraries.missing) {
     builder.addFile(library);
-    builder.warn(library.string() + ": no such material library; its materials are grey");
+    builder.warn(library.string() + ": " + whyUnreadable(library, "material library") +
+                 "; its materials are grey");
   }
   for (const fs::path& library : reading.libraries.read) builder.addFile(library);
   warnOfStrangeKeys(reading.libraries, builder);
+  if (!reading.strangeKeywords.empty()) {
+    builder.warn(
+        obj.string() + ": lines are ignored, since their keywords have no meaning here: " +
+        listOf(reading.strangeKeywords, [](const std::string& keyword) { return keyword; }) +
+        "; correct those that are misspelt (keywords are in lower case)");
+  }
   const std::vector<uint32_t> numbers = addMaterials(obj, reading, builder);
 
   CutFaces cut = cutFaces(reading.mesh, numbers);

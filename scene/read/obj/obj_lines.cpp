@@ -1,7 +1,9 @@
 #include "scene/read/obj/obj_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string_view>
 
@@ -34,10 +36,25 @@ struct Stretch {
   std::optional<std::string_view> material;  // that of its last usemtl
   bool materialUsed = false;
   std::vector<std::string_view> libraries;
-  size_t badLine = kNot;  // counted from its first line
-  std::string problem;    // problem of that line
+  std::map<std::string, size_t> strange;  // unknown keywords, and their lines as for badLine
+  size_t badLine = kNot;                  // counted from its first line
+  std::string problem;                    // problem of that line
   static constexpr size_t kNot = ~size_t{0};
 };
+
+constexpr size_t kMaxStrange = 20;  // unknown keywords of a stretch that are remembered
+constexpr size_t kMaxNamed = 32;    // characters of one that a message shows
+
+// The keywords as a message names them, in the order of their lines.
+std::vector<std::string> named(const std::map<std::string, size_t>& strange) {
+  std::vector<std::pair<size_t, std::string_view>> byLine;
+  for (const auto& [keyword, line] : strange) byLine.emplace_back(line, keyword);
+  std::ranges::sort(byLine);
+  std::vector<std::string> out;
+  for (const auto& [line, keyword] : byLine)
+    out.push_back("'" + std::string(keyword) + "' (line " + std::to_string(line) + ")");
+  return out;
+}
 
 void noteProblem(const std::string& problem, Stretch& s) {
   if (problem.empty() || s.badLine != Stretch::kNot) return;
@@ -77,6 +94,15 @@ void noteVertex(std::string_view rest, Stretch& s) {
   ++s.vertices;
 }
 
+// Keywords whose lines change no mesh: names, groups, points, lines, and how others draw it.
+bool changesNoMesh(std::string_view keyword) {
+  static constexpr std::array<std::string_view, 20> kKeywords{
+      "g",      "o",          "s",         "mg",       "p",        "l",   "vp",
+      "vw",     "t",          "bevel",     "c_interp", "d_interp", "lod", "usemap",
+      "maplib", "shadow_obj", "trace_obj", "ctech",    "stech",    "vc"};
+  return keyword.starts_with('#') || std::ranges::find(kKeywords, keyword) != kKeywords.end();
+}
+
 // Takes note of a line. Returns false if tinyobj does not need it.
 bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
   if (keyword == "usemtl") {
@@ -97,6 +123,8 @@ bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
     if (!trimmed(rest).empty()) s.libraries.push_back(trimmed(rest));
     return false;
   } else {
+    if (!changesNoMesh(keyword) && s.strange.size() < kMaxStrange)
+      s.strange.try_emplace(std::string(keyword.substr(0, kMaxNamed)), s.newlines);
     return false;
   }
   return true;
@@ -162,6 +190,7 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
 
   std::set<std::string_view> materials;
   std::optional<std::string_view> material;
+  std::map<std::string, size_t> strange;
   size_t line = 1;
   for (const Stretch& s : stretches) {
     if (s.badLine != Stretch::kNot) {
@@ -169,6 +198,7 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
     }
     out.pieces.push_back({s.begin, s.end, out.vertices, out.normals, out.coordinates, {}});
     if (material) out.pieces.back().material = std::string(*material);
+    for (const auto& [keyword, at] : s.strange) strange.try_emplace(keyword, line + at);
     line += s.newlines;
     for (const size_t v : s.verticesOfWords) out.verticesOfWords.push_back(out.vertices + v);
     out.vertices += s.vertices;
@@ -182,6 +212,7 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
     if (s.facesBeforeNames) materials.insert(material.value_or(""));
     if (s.material) material = s.material;
   }
+  out.strangeKeywords = named(strange);
   for (const std::string_view word : materials) out.materials.push_back(fromOneWord(word));
   std::sort(out.materials.begin(), out.materials.end());
   return out;

@@ -27,9 +27,10 @@ struct ObjMesh {
 struct ObjReading {
   ObjMesh mesh;
   MaterialLibraries libraries;
-  std::vector<std::string> unknown;  // materials that faces use and no library defines
-  size_t lostTriangles = 0;          // triangles of faces with indices beyond int
-  size_t unusableFaces = 0;          // faces of fewer than three corners
+  std::vector<std::string> unknown;          // materials that faces use and no library defines
+  size_t lostTriangles = 0;                  // triangles of faces with indices beyond int
+  size_t unusableFaces = 0;                  // faces of fewer than three corners
+  std::vector<std::string> strangeKeywords;  // ignored ones, as MeshLines has them
 };
 
 // `materials` replaces the libraries that the OBJ names; empty: those are used, and hold for the

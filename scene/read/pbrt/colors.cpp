@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/files.h"
+#include "core/number_text.h"
 
 namespace bnvpl::pbrt {
 
@@ -34,11 +35,21 @@ Vec3 rgbOf(const Param& p) {
   return {float(p.numbers[0]), float(p.numbers[1]), float(p.numbers[2])};
 }
 
+void noteClamped(const Param& p, double most, Notes& notes) {
+  const auto beyond =
+      std::ranges::find_if(p.numbers, [&](double n) { return n < 0.0 || n > most; });
+  if (beyond == p.numbers.end()) return;
+  notes.add(p.place, "'" + p.name + "' has " + shortestText(*beyond) + ", which counts as " +
+                         (*beyond < 0.0 ? "0" : shortestText(most)));
+}
+
 // Reads a spectrum from a name, a file, or pairs of numbers.
 Spectrum Colors::spectrum(const Param& p) const {
   if (p.strings.empty()) {
     const auto s = spectrumOf(p.numbers);
-    if (!s) failAt(p.place, "'" + p.name + "' must be pairs of rising wavelength (nm) and value");
+    if (!s)
+      failAt(p.place,
+             "'" + p.name + "' must be pairs of rising wavelength (nm) and value, not negative");
     return *s;
   }
   if (p.strings.size() != 1) failAt(p.place, "'" + p.name + "' must be one spectrum");
@@ -51,13 +62,18 @@ Spectrum Colors::spectrum(const Param& p) const {
   return readSpd(file);
 }
 
+Vec3 Colors::checked(const Param& p, double most) const {
+  noteClamped(p, most, notes_);
+  return p.type == ParamType::Float ? Vec3{float(p.numbers[0])} : rgbOf(p);
+}
+
 Vec3 Colors::light(const Params& params, const std::string& name, ColorSpace space) const {
   const Param* p = params.find(
       name, {ParamType::Rgb, ParamType::Blackbody, ParamType::Spectrum, ParamType::Float},
       "an rgb, blackbody or spectrum");
   if (!p) return intoGamut(srgbOfLight(Vec3{1.0f}, space));
   if (p->type == ParamType::Rgb)
-    return intoGamut(srgbOfLight(max(rgbOf(*p), Vec3{}), p->colorSpace));
+    return intoGamut(srgbOfLight(max(checked(*p), Vec3{}), p->colorSpace));
   if (p->type == ParamType::Blackbody)
     return intoGamut(srgbOf(xyzOfLight(blackbody(temperatureOf(*p))))) * scaleOf(*p);
   if (p->type == ParamType::Float) {
@@ -70,9 +86,9 @@ Vec3 Colors::light(const Params& params, const std::string& name, ColorSpace spa
 }
 
 Vec3 Colors::reflectance(const Param& p) const {
-  if (p.type == ParamType::Rgb) return clamped(srgbOfReflectance(rgbOf(p), p.colorSpace), 1.0f);
-  if (p.type == ParamType::Float && p.numbers.size() == 1)
-    return clamped(Vec3{float(p.numbers[0])}, 1.0f);
+  if (p.type == ParamType::Rgb)
+    return clamped(srgbOfReflectance(checked(p, 1.0), p.colorSpace), 1.0f);
+  if (p.type == ParamType::Float && p.numbers.size() == 1) return clamped(checked(p, 1.0), 1.0f);
   if (p.type == ParamType::Spectrum) return clamped(srgbOf(xyzUnderD65(spectrum(p))), 1.0f);
   failAt(p.place, "'" + p.name + "' must be an rgb or spectrum");
 }
@@ -80,9 +96,8 @@ Vec3 Colors::reflectance(const Param& p) const {
 Vec3 Colors::unbounded(const Param& p) const {
   constexpr float kMaxFloat = 1e30f;
   if (p.type == ParamType::Rgb)
-    return clamped(srgbOfReflectance(rgbOf(p), p.colorSpace), kMaxFloat);
-  if (p.type == ParamType::Float && p.numbers.size() == 1)
-    return clamped(Vec3{float(p.numbers[0])}, kMaxFloat);
+    return clamped(srgbOfReflectance(checked(p), p.colorSpace), kMaxFloat);
+  if (p.type == ParamType::Float && p.numbers.size() == 1) return clamped(checked(p), kMaxFloat);
   if (p.type == ParamType::Spectrum) return clamped(srgbOf(xyzUnderD65(spectrum(p))), kMaxFloat);
   failAt(p.place, "'" + p.name + "' must be an rgb or spectrum");
 }

@@ -28,6 +28,8 @@ class Colors {
   MetalRgb metal(const Params& params, const std::string& eta, const std::string& k) const;
 
  private:
+  // The numbers of an rgb, or a float three times; those that are clamped to 0..most are noted.
+  Vec3 checked(const Param& p, double most = kMax) const;
   Spectrum spectrum(const Param& p) const;
   bool isSpectrum(const Param* p) const { return p && p->type == ParamType::Spectrum; }
 
@@ -38,5 +40,7 @@ class Colors {
 
 // The three numbers of an rgb.
 Vec3 rgbOf(const Param& p);
+// Notes a number of the parameter that is below 0 or above `most`, as which it counts.
+void noteClamped(const Param& p, double most, Notes& notes);
 
 }  // namespace bnvpl::pbrt

@@ -107,6 +107,8 @@ std::vector<uint32_t> Params::indices(const std::string& name, size_t each, size
       failAt(*placeOf(name), quoted(name) + " has " + shortestText(numbers[i]) +
                                  ", outside of the " + std::to_string(below) + " vertices");
     }
+    if (numbers[i] != std::floor(numbers[i]))
+      failAt(*placeOf(name), quoted(name) + " has " + shortestText(numbers[i]) + ", no integer");
     out[i] = static_cast<uint32_t>(numbers[i]);
   }
   return out;

@@ -47,6 +47,7 @@ std::optional<Spectrum> spectrumOf(const std::vector<double>& pairs) {
   Spectrum s;
   for (size_t i = 0; i < pairs.size(); i += 2) {
     if (!s.nm.empty() && !(pairs[i] > s.nm.back())) return std::nullopt;
+    if (pairs[i + 1] < 0.0) return std::nullopt;
     s.nm.push_back(pairs[i]);
     s.value.push_back(pairs[i + 1]);
   }
@@ -65,7 +66,9 @@ Spectrum readSpd(const fs::path& file) {
   }
   std::optional<Spectrum> spectrum = spectrumOf(numbers);
   if (!spectrum)
-    throw InputError(file, "is no spectrum: pairs of rising wavelength (nm) and value are needed");
+    throw InputError(
+        file,
+        "is no spectrum: pairs of rising wavelength (nm) and value, not negative, are needed");
   return *spectrum;
 }
 

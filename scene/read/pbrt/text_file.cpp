@@ -50,7 +50,8 @@ std::string unpacked(const fs::path& file, const std::string& packed) {
 }  // namespace
 
 std::string readPacked(const fs::path& file) {
-  if (!isRegularFile(file)) throw InputError(file, "no such file; check its name");
+  if (!isRegularFile(file))
+    throw InputError(file, whyUnreadable(file, "file") + "; check its name");
   std::string text = readText(file);
   const bool packed = text.size() > 2 && text[0] == '\x1f' && text[1] == '\x8b';
   if (packed) text = unpacked(file, text);

@@ -8,8 +8,9 @@ namespace {
 
 constexpr size_t kMaxTextureDepth = 64;  // textures of textures
 
-float one(const Param& p, float most) {
+float one(const Param& p, float most, Notes& notes) {
   if (p.numbers.size() != 1) failAt(p.place, "'" + p.name + "' must be one number or a texture");
+  noteClamped(p, double{most}, notes);
   return std::clamp(float(p.numbers[0]), 0.0f, most);
 }
 
@@ -59,7 +60,7 @@ Scalar Textures::scalar(const Params& params, const std::string& name, float oth
                         float most) {
   const Param* p = params.find(name);
   if (!p) return otherwise;
-  if (p->type != ParamType::Texture) return one(*p, most);
+  if (p->type != ParamType::Texture) return one(*p, most, notes_);
   const uint32_t texture = named(*p, false);
   return texture == kNone ? Scalar(otherwise) : Scalar(1.0f, texture);
 }
@@ -94,7 +95,7 @@ uint32_t Textures::image(const fs::path& file, bool srgb) {
 }
 
 uint32_t Textures::constantOf(const Param& p, bool isSpectrum) {
-  return constant(isSpectrum ? colors_.unbounded(p) : Vec3{one(p, 1e30f)});
+  return constant(isSpectrum ? colors_.unbounded(p) : Vec3{one(p, 1e30f, notes_)});
 }
 
 uint32_t Textures::operand(const TextureEntity& t, const std::string& name, float otherwise) {

@@ -53,7 +53,8 @@ constexpr const char* kBackslashCure =
 }  // namespace
 
 toml::table parseToml(const fs::path& file) {
-  if (!isRegularFile(file)) throw InputError(file, "no such file; name a scene.toml");
+  if (!isRegularFile(file))
+    throw InputError(file, whyUnreadable(file, "file") + "; name a scene.toml");
   const std::string text = readText(file);
   requireNoUtf16(file, text);
   refuseDeepKeys(file, text);

@@ -34,9 +34,15 @@ void refuseNonFinite(const fs::path& file, const Image& image) {
 
 void refuseTampering(const fs::path& file, const Image& image) {
   const auto found = image.attributes.find(kImageHashAttribute);
-  if (found == image.attributes.end() ||
-      found->second == hashText(hashImage(image, ExrPixelType::Float)))
-    return;
+  const bool ours = std::ranges::any_of(image.attributes, [](const auto& attribute) {
+    return attribute.first.starts_with("bnvpl.");
+  });
+  if (!ours) return;
+  if (found == image.attributes.end())
+    throw InputError(file, std::string("its attribute ") + kImageHashAttribute +
+                               " is gone, by which changes show: another program changed the "
+                               "image; rerun vpl-render");
+  if (found->second == hashText(hashImage(image, ExrPixelType::Float))) return;
   throw InputError(file,
                    "pixels or history are not those that vpl-render wrote: another program changed "
                    "them; rerun vpl-render");
