@@ -60,11 +60,11 @@ TEST_F(ToToml, KeepsInstances) {
   writeTinyScene(at("."));
   writeAll(at("tiny.toml"), readAll(at("tiny.toml")) +
                                 "[[mesh]]\nfile = \"tiny.obj\"\nscale = 0.5\n"
-                                "[[mesh.instance]]\ntranslate = [1, 2, 3]\n"
+                                "[[mesh.instance]]\ntranslate = [1, 2, 2]\n"
                                 "[[mesh.instance]]\nrotate_deg = [0, 30, 0]\nscale = [1, -2, 1]\n");
   const Scene copy = copyOf("tiny.toml");
   ASSERT_EQ(copy.instances.size(), 2u);
-  EXPECT_EQ(copy.instances[0].point({}), Vec3(1, 2, 3));
+  EXPECT_EQ(copy.instances[0].point({}), Vec3(1, 2, 2));
   EXPECT_EQ(copy.instances[1].mirrored, 1u);
   EXPECT_EQ(copy.prototypes.size(), 1u);
 }
