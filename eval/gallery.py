@@ -24,7 +24,7 @@ from PIL import Image
 
 import results_page
 import write_docs
-from bnvpl_eval import images, output, settings
+from bnvpl_eval import images, output, settings, stage_runs
 from bnvpl_eval.runner import Run, Runner
 from evaluate import commit
 
@@ -96,68 +96,18 @@ class Gallery:
     photons: str
 
     def lit(self, scene: Scene, seed: int) -> Run:
-        inputs = {"scene": scene.path}
-        placed = self.runner.run(
-            "vpl-place",
-            [
-                "{scene}",
-                *scene.options,
-                "-n",
-                120_000,
-                "--seed",
-                seed,
-                "-o",
-                "@candidates.vpl",
-                "--quiet",
-            ],
-            inputs,
-            ["candidates.vpl"],
-        )
-        kept = self.runner.run(
-            "vpl-eliminate",
-            ["{candidates}", "-n", 3000, "-o", "@vpls.vpl", "--quiet"],
-            {"candidates": placed["candidates.vpl"]},
-            ["vpls.vpl"],
-        )
-        return self.runner.run(
-            "vpl-estimate",
-            [
-                "{scene}",
-                "{vpls}",
-                "--seed",
-                seed,
-                "--photons",
-                self.photons,
-                "-o",
-                "@lit.vpl",
-                "--quiet",
-            ],
-            {**inputs, "vpls": kept["vpls.vpl"]},
-            ["lit.vpl"],
-        )
+        more = (*scene.options, "-n", 120_000, "--seed", seed)
+        placed = stage_runs.placed(self.runner, scene.path, *more)
+        kept = stage_runs.kept(self.runner, placed["candidates.vpl"], "-n", 3000)
+        more = ("--seed", seed, "--photons", self.photons)
+        return stage_runs.estimated(self.runner, scene.path, kept["vpls.vpl"], *more)
 
     def image(self, scene: Scene, integrator: str, width: int, spp: int, seed: int) -> Path:
-        options = [
-            *scene.options,
-            "--size",
-            scene.film(width),
-            "--spp",
-            spp,
-            "--seed",
-            seed,
-            "-o",
-            "@image.exr",
-            "--quiet",
-        ]
-        inputs = {"scene": scene.path}
-        if integrator == "vpl":
-            inputs["lit"] = self.lit(scene, seed)["lit.vpl"]
-            options.insert(0, "{lit}")
-        else:
-            options += ["--integrator", integrator]
-        return self.runner.run("vpl-render", ["{scene}", *options], inputs, ["image.exr"])[
-            "image.exr"
-        ]
+        lit = self.lit(scene, seed)["lit.vpl"] if integrator == "vpl" else None
+        by = () if lit else ("--integrator", integrator)
+        size = ("--size", scene.film(width), "--spp", spp, "--seed", seed)
+        options = (*scene.options, *size, *by)
+        return stage_runs.rendered(self.runner, scene.path, lit, *options)["image.exr"]
 
     def row(self, scene: Scene) -> str:
         shown = {

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "pipelines"))
 import gallery
-import stages
-from bnvpl_eval import images, settings
+import stage_options
+from bnvpl_eval import images, settings, stage_runs
 from bnvpl_eval.runner import Run, Runner
 
 
@@ -27,7 +27,7 @@ def options_of(counts: dict[str, Any]) -> tuple[list[Any], list[Any], list[Any],
 
 
 SETTINGS = {
-    name: options_of(counts) for name, counts in stages.presets().items() if name != "final"
+    name: options_of(counts) for name, counts in stage_options.presets().items() if name != "final"
 }
 # Names for integrators with options.
 VARIANTS = {
@@ -59,50 +59,19 @@ class Rooms:
         lit: Path | None = None,
         by: Runner | None = None,
     ) -> Run:
-        inputs = {"scene": scene.path} | ({"lit": lit} if lit else {})
-        return (by or self.runner).run(
-            "vpl-render",
-            [
-                "{scene}",
-                *(["{lit}"] if lit else []),
-                *scene.options,
-                "--size",
-                scene.film(self.width),
-                *options,
-                "--layers",
-                "direct,indirect",
-                "-o",
-                "@image.exr",
-                "--quiet",
-            ],
-            inputs,
-            ["image.exr"],
-        )
+        tools = by or self.runner
+        size = ("--size", scene.film(self.width), *options, "--layers", "direct,indirect")
+        return stage_runs.rendered(tools, scene.path, lit, *scene.options, *size)
 
     def lit(
         self, scene: gallery.Scene, setting: tuple[Any, ...], by: Runner | None = None
     ) -> tuple[Path, float]:
         """Lit VPLs, and CPU seconds of the stages before render."""
         (place, eliminate, estimate, _), tools = setting, by or self.runner
-        inputs = {"scene": scene.path}
-        placed = tools.run(
-            "vpl-place",
-            ["{scene}", *scene.options, *place, "-o", "@candidates.vpl", "--quiet"],
-            inputs,
-            ["candidates.vpl"],
-        )
-        kept = tools.run(
-            "vpl-eliminate",
-            ["{candidates}", *eliminate, "-o", "@vpls.vpl", "--quiet"],
-            {"candidates": placed["candidates.vpl"]},
-            ["vpls.vpl"],
-        )
-        lit = tools.run(
-            "vpl-estimate",
-            ["{scene}", "{vpls}", *estimate, *self.bounces(), "-o", "@lit.vpl", "--quiet"],
-            {**inputs, "vpls": kept["vpls.vpl"]},
-            ["lit.vpl"],
-        )
+        placed = stage_runs.placed(tools, scene.path, *scene.options, *place)
+        kept = stage_runs.kept(tools, placed["candidates.vpl"], *eliminate)
+        more = (*estimate, *self.bounces())
+        lit = stage_runs.estimated(tools, scene.path, kept["vpls.vpl"], *more)
         return lit["lit.vpl"], sum(run.cpu_s for run in (placed, kept, lit))
 
     def ours(self, scene: gallery.Scene, setting: str) -> tuple[Path, float]:

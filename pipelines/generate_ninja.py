@@ -21,6 +21,7 @@ import pathlib
 import shlex
 
 import output_guard
+import stage_options
 import stages
 
 # A stage uses all cores, so one runs at a time, whatever -j is. The same holds for shards, unless a
@@ -54,7 +55,7 @@ rule shard
 def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
     p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
-    stages.add_arguments(p)
+    stage_options.add_arguments(p)
     p.add_argument(
         "--launcher",
         default="",
@@ -68,7 +69,7 @@ def arguments() -> argparse.Namespace:
         help="each task writes what it took to OUT/SCENE/run, for vpl-inspect run",
     )
     options = p.parse_args()
-    stages.complete(options)
+    stage_options.complete(options)
     if options.launcher and max(options.shards.values()) == 1:
         p.error("--launcher starts shards; add --shards N")
     return options
@@ -80,7 +81,7 @@ def build(task: stages.Task, out: str, options: argparse.Namespace) -> list[str]
     if options.record:
         after = [word for stage in task.after for word in ("--after", stage)]
         command = [
-            stages.relative(stages.HERE / "record.py"),
+            stage_options.relative(stage_options.HERE / "record.py"),
             f"{out}/run",
             task.name,
             "--stage",
@@ -91,7 +92,7 @@ def build(task: stages.Task, out: str, options: argparse.Namespace) -> list[str]
             *command,
         ]
     if task.shard:
-        command = [*stages.words_of(options.launcher, "--launcher"), *command]
+        command = [*stage_options.words_of(options.launcher, "--launcher"), *command]
     rule = "shard" if task.shard else "read_scene" if task.depfile else "run"
     rows = [f"build {' | '.join(task.outputs)}: {rule} {' '.join(task.inputs)}"]
     if task.depfile:
@@ -114,10 +115,12 @@ def write_graph(target: pathlib.Path, text: str) -> None:
 def main() -> None:
     options = arguments()
     for scene in options.scenes:
-        stages.check_scene(scene)
+        stage_options.check_scene(scene)
     names = [stages.name_of(scene) for scene in options.scenes]
     if len(set(names)) < len(names):
-        stages.refuse("two scenes would share a folder; give them to two runs with different --out")
+        stage_options.refuse(
+            "two scenes would share a folder; give them to two runs with different --out"
+        )
     rows = [HEADER.format(out=options.out, shard_pool="" if options.launcher else "stage")]
     for scene in options.scenes:
         tasks, out = stages.tasks_of(scene, options), stages.folder_of(scene, options)

@@ -10,10 +10,10 @@
 namespace bnvpl {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
 // Whether the projection of a point near the triangle's plane lies in the triangle.
-bool isInside(Vec3 p, const Corners& c, Vec3 normal) {
+bool isInside(Vec3 p, const TriangleCorners& c, Vec3 normal) {
   for (size_t i = 0; i < 3; ++i) {
     const Vec3 edge = c[(i + 1) % 3] - c[i];
     if (dot(cross(edge, p - c[i]), normal) < 0.0f) return false;
@@ -43,7 +43,7 @@ class Lights {
     return true;
   }
   // Notes the lights that lie in the triangle.
-  void meet(const Corners& c, uint32_t material) {
+  void meet(const TriangleCorners& c, uint32_t material) {
     Bounds box;
     for (const Vec3 p : c) box.extend(p);
     if (!areNear(box)) return;
@@ -72,7 +72,7 @@ class Lights {
 void meetRange(const Scene& scene, uint32_t begin, uint32_t end, const Instance* at,
                Lights& lights) {
   for (uint32_t t = begin; t < end; ++t) {
-    Corners c{scene.corner(t, 0), scene.corner(t, 1), scene.corner(t, 2)};
+    TriangleCorners c{scene.corner(t, 0), scene.corner(t, 1), scene.corner(t, 2)};
     if (at) std::ranges::transform(c, c.begin(), [&](Vec3 p) { return at->point(p); });
     lights.meet(c, scene.triangles[t].material);
   }

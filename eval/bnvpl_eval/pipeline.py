@@ -9,6 +9,7 @@ from typing import Any
 
 from .runner import Run, Runner
 from .settings import ROOT, View
+from .stage_runs import estimated, kept, kept_by_rejection, placed, rendered
 
 # Methods of the comparison, and the options that differ from the tools' defaults.
 METHODS = {
@@ -105,142 +106,44 @@ def shadow_rays(runner: Runner, view: View, c: Configuration, seed: int) -> floa
 
 
 def candidates(runner: Runner, view: View, c: Configuration, seed: int) -> Run:
-    return runner.run(
-        "vpl-place",
-        [
-            "{scene}",
-            "-n",
-            c.candidates,
-            "--seed",
-            seed,
-            *c.place,
-            "-o",
-            "@candidates.vpl",
-            "--quiet",
-        ],
-        {"scene": ROOT / view.file},
-        ["candidates.vpl"],
-    )
+    return placed(runner, ROOT / view.file, "-n", c.candidates, "--seed", seed, *c.place)
 
 
-def lit_by_light(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
+def from_lights(runner: Runner, view: View, count: int, c: Configuration, seed: int) -> Run:
     """VPLs at vertices of paths from the lights."""
-    scene = {"scene": ROOT / view.file}
-    run = runner.run(
-        "vpl-place",
-        [
-            "{scene}",
-            "--method",
-            "light",
-            "-n",
-            c.vpls,
-            "--seed",
-            seed,
-            *c.place,
-            "-o",
-            "@lit.vpl",
-            "--quiet",
-        ],
-        scene,
-        ["lit.vpl"],
-    )
-    return run["lit.vpl"], [run]
+    options = ("--method", "light", "-n", count, "--seed", seed, *c.place)
+    return placed(runner, ROOT / view.file, *options, output="lit.vpl")
 
 
 def lit_by_rejection(
     runner: Runner, view: View, c: Configuration, seed: int
 ) -> tuple[Path, list[Run]]:
     """VPLs from the lights that Russian roulette keeps by their share of the image."""
-    scene = {"scene": ROOT / view.file}
-    placed = runner.run(
-        "vpl-place",
-        [
-            "{scene}",
-            "--method",
-            "light",
-            "-n",
-            c.vpls * REJECTION_CANDIDATES,
-            "--seed",
-            seed,
-            *c.place,
-            "-o",
-            "@all.vpl",
-            "--quiet",
-        ],
-        scene,
-        ["all.vpl"],
-    )
-    run = runner.run(
-        "vpl-eliminate",
-        [
-            "{all}",
-            "--scene",
-            "{scene}",
-            "--method",
-            "rejection",
-            "-n",
-            c.vpls,
-            "--seed",
-            seed,
-            *c.eliminate,
-            "-o",
-            "@lit.vpl",
-            "--quiet",
-        ],
-        {**scene, "all": placed["all.vpl"]},
-        ["lit.vpl"],
-    )
-    return run["lit.vpl"], [placed, run]
+    vpls = from_lights(runner, view, c.vpls * REJECTION_CANDIDATES, c, seed)
+    options = ("-n", c.vpls, "--seed", seed, *c.eliminate)
+    run = kept_by_rejection(runner, vpls["lit.vpl"], ROOT / view.file, *options)
+    return run["lit.vpl"], [vpls, run]
 
 
 def lit_by_estimate(
     runner: Runner, view: View, c: Configuration, seed: int
 ) -> tuple[Path, list[Run]]:
     """VPLs that are placed, thinned out, and lit by vpl-estimate."""
-    scene = {"scene": ROOT / view.file}
-    placed = candidates(runner, view, c, seed)
-    kept = runner.run(
-        "vpl-eliminate",
-        [
-            "{candidates}",
-            "-n",
-            c.vpls,
-            *ELIMINATE[c.method],
-            *c.eliminate,
-            *(("--seed", seed) if c.method == "random" else ()),
-            "-o",
-            "@vpls.vpl",
-            "--quiet",
-        ],
-        {"candidates": placed["candidates.vpl"]},
-        ["vpls.vpl"],
-    )
-    run = runner.run(
-        "vpl-estimate",
-        [
-            "{scene}",
-            "{vpls}",
-            "--seed",
-            seed,
-            *(() if c.method == "paths" else ("--photons", c.photons)),
-            *ESTIMATE.get(c.method, ()),
-            *c.estimate,
-            "-o",
-            "@lit.vpl",
-            "--stats",
-            "@stats.json",
-            "--quiet",
-        ],
-        {**scene, "vpls": kept["vpls.vpl"]},
-        ["lit.vpl", "stats.json"],
-    )
-    return run["lit.vpl"], [placed, kept, run]
+    before = candidates(runner, view, c, seed)
+    options = ("-n", c.vpls, *ELIMINATE[c.method], *c.eliminate)
+    options += ("--seed", seed) if c.method == "random" else ()
+    vpls = kept(runner, before["candidates.vpl"], *options)
+    photons = () if c.method == "paths" else ("--photons", c.photons)
+    options = ("--seed", seed, *photons, *ESTIMATE.get(c.method, ()), *c.estimate)
+    run = estimated(runner, ROOT / view.file, vpls["vpls.vpl"], *options)
+    return run["lit.vpl"], [before, vpls, run]
 
 
 def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
     """The lit VPLs, and the runs that made them."""
     if c.method == "light":
-        return lit_by_light(runner, view, c, seed)
+        run = from_lights(runner, view, c.vpls, c, seed)
+        return run["lit.vpl"], [run]
     if c.method == "rejection":
         return lit_by_rejection(runner, view, c, seed)
     return lit_by_estimate(runner, view, c, seed)
@@ -249,55 +152,16 @@ def lit(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, 
 def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path, list[Run]]:
     """The image with its layers direct and indirect, and the runs of all stages."""
     vpls, runs = lit(runner, view, c, seed)
-    run = runner.run(
-        "vpl-render",
-        [
-            "{scene}",
-            "{lit}",
-            "--size",
-            c.film,
-            "--spp",
-            c.spp,
-            "--seed",
-            seed,
-            *RENDER.get(c.method, ()),
-            *c.render,
-            "--layers",
-            "direct,indirect,cutsize",
-            "-o",
-            "@image.exr",
-            "--stats",
-            "@stats.json",
-            "--quiet",
-        ],
-        {"scene": ROOT / view.file, "lit": vpls},
-        ["image.exr", "stats.json"],
-    )
+    options = ("--size", c.film, "--spp", c.spp, "--seed", seed)
+    layers = ("--layers", "direct,indirect,cutsize")
+    more = (*RENDER.get(c.method, ()), *c.render, *layers)
+    run = rendered(runner, ROOT / view.file, vpls, *options, *more)
     return run["image.exr"], runs + [run]
 
 
 def traced(
     runner: Runner, view: View, film: str, spp: int, seed: int, integrator: str = "path"
 ) -> tuple[Path, list[Run]]:
-    run = runner.run(
-        "vpl-render",
-        [
-            "{scene}",
-            "--size",
-            film,
-            "--integrator",
-            integrator,
-            "--spp",
-            spp,
-            "--seed",
-            seed,
-            "--layers",
-            "direct,indirect",
-            "-o",
-            "@image.exr",
-            "--quiet",
-        ],
-        {"scene": ROOT / view.file},
-        ["image.exr"],
-    )
+    options = ("--size", film, "--integrator", integrator, "--spp", spp, "--seed", seed)
+    run = rendered(runner, ROOT / view.file, None, *options, "--layers", "direct,indirect")
     return run["image.exr"], [run]

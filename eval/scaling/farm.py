@@ -24,6 +24,7 @@ import farm_graph  # noqa: E402
 import farm_picture  # noqa: E402
 import farm_schedule  # noqa: E402
 import output_guard  # noqa: E402
+import stage_options  # noqa: E402
 import stages  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
@@ -77,7 +78,7 @@ def add_farm(p: argparse.ArgumentParser) -> None:
     p.add_argument("--cores", type=int, default=16, help="of a node (default 16)")
     p.add_argument(
         "--cpus",
-        action=stages.PerStage,
+        action=stage_options.PerStage,
         stages=KINDS,
         pattern=r"[1-9]\d*",
         what="a count from 1",
@@ -90,7 +91,7 @@ def add_times(p: argparse.ArgumentParser) -> None:
     """Options of what tasks take, by themselves and through failures."""
     p.add_argument(
         "--scale",
-        action=stages.PerStage,
+        action=stage_options.PerStage,
         stages=KINDS[:4],
         pattern=r"\d+(\.\d+)?",
         what="a factor",
@@ -159,7 +160,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
     p = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    stages.add_arguments(p)
+    stage_options.add_arguments(p)
     p.set_defaults(bin="bin")  # no tool runs, so any name will do
     add_farm(p)
     add_times(p)
@@ -176,7 +177,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
     )
     options = p.parse_args(words)
     refuse_what_is_wrong(p, options)
-    stages.complete(options)
+    stage_options.complete(options)
     if options.svg:
         output_guard.or_exit(output_guard.check, *picture_of(options))
     return options
@@ -331,7 +332,7 @@ def main(words: list[str]) -> None:
         try:
             outcome = farm_schedule.simulate(jobs, farm_of(options, nodes))
         except ValueError as problem:
-            stages.refuse(str(problem))
+            stage_options.refuse(str(problem))
         rows.append(row_of(jobs, farm_of(options, nodes), outcome, cpu_s))
     print_rows(rows)
     print_limit(rows)

@@ -12,7 +12,7 @@ import subprocess
 from typing import Any
 
 import cost
-import stages
+import stage_options
 
 ROOM_MEMORY, SPARE_MIB = 1.5, 256
 ROOM_TIME, SPARE_MIN = 4, 10
@@ -25,18 +25,18 @@ def look(scene: str, options: argparse.Namespace, *more: str) -> Any:
     try:
         done = subprocess.run(command, text=True, capture_output=True)
     except OSError:
-        stages.refuse(
+        stage_options.refuse(
             f"there is no {command[0]} that runs, which looks at the scene; build the tools, or "
             "give --memory and --time"
         )
     if done.returncode:
-        stages.refuse(done.stderr.strip() + "; or give --memory and --time")
+        stage_options.refuse(done.stderr.strip() + "; or give --memory and --time")
     return json.loads(done.stdout)
 
 
 def pixels_of(seen: dict[str, Any], options: argparse.Namespace) -> int:
     """Pixels of the largest film."""
-    words = stages.words_of(options.render_flags, "--render-flags")
+    words = stage_options.words_of(options.render_flags, "--render-flags")
     if "--size" in words[:-1]:
         films = [words[words.index("--size") + 1]]
     elif options.views:
@@ -66,7 +66,7 @@ class Needs:
                     cost.count(text) for text in (o.candidates, o.vpls, o.photons, o.spp or "256")
                 ]
             except ValueError as problem:
-                stages.refuse(str(problem))
+                stage_options.refuse(str(problem))
             candidates, vpls, photons, spp = counts
             self.whole = cost.Counts(
                 seen["triangles"], candidates, vpls, photons, pixels_of(seen, o), spp

@@ -24,6 +24,7 @@ sys.path.insert(0, str(HERE.parent))
 import needs  # noqa: E402
 import output_guard  # noqa: E402
 import record  # noqa: E402
+import stage_options  # noqa: E402
 import stages  # noqa: E402
 import task as task_program  # noqa: E402
 
@@ -47,7 +48,7 @@ def add_limits(p: argparse.ArgumentParser) -> None:
     """Options of what each stage's tasks may use."""
     p.add_argument(
         "--cpus",
-        action=stages.PerStage,
+        action=stage_options.PerStage,
         stages=KINDS,
         pattern=r"[1-9]\d*",
         what="a count from 1",
@@ -56,7 +57,7 @@ def add_limits(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument(
         "--memory",
-        action=stages.PerStage,
+        action=stage_options.PerStage,
         stages=KINDS,
         pattern=r"\d+[KMGT]?|auto",
         what="a size such as 4G",
@@ -65,7 +66,7 @@ def add_limits(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument(
         "--time",
-        action=stages.PerStage,
+        action=stage_options.PerStage,
         stages=KINDS,
         pattern=r"\d+|\d+(:\d\d){1,2}|\d+-\d+(:\d\d){0,2}|auto",
         what="a time such as 90 (minutes), 2:00:00 or 1-12 (days and hours)",
@@ -79,10 +80,11 @@ def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0] + "\n" + __doc__.split("\n\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"STAGE is one of {', '.join(KINDS)}; of --shards {', '.join(stages.DIVIDED)}.",
+        epilog=f"STAGE is one of {', '.join(KINDS)}; "
+        f"of --shards {', '.join(stage_options.DIVIDED)}.",
     )
     p.add_argument("scene", metavar="SCENE", help="scene.toml")
-    stages.add_arguments(p, shards="16")
+    stage_options.add_arguments(p, shards="16")
     add_limits(p)
     p.add_argument(
         "--at-once",
@@ -110,8 +112,8 @@ def arguments() -> argparse.Namespace:
         p.error(f"--at-once {options.at_once} is not 1 or more")
     if options.retries < 0:
         p.error(f"--retries {options.retries} is not 0 or more")
-    stages.complete(options)
-    stages.check_scene(options.scene)
+    stage_options.complete(options)
+    stage_options.check_scene(options.scene)
     return options
 
 
@@ -153,7 +155,7 @@ class Submission:
         """Checks every file that the run will write, before it writes any."""
         for folder in (self.run, self.run / "earlier"):
             if folder.exists() and not folder.is_dir():
-                stages.refuse(
+                stage_options.refuse(
                     f"{folder}: is no folder, which the run needs there; give another --out, or "
                     "remove it"
                 )
@@ -169,7 +171,7 @@ class Submission:
             line for line in self.slurm("squeue", "--noheader", "--format=%A %F", "--me").split()
         } & known
         if queued:
-            stages.refuse(
+            stage_options.refuse(
                 f"jobs {', '.join(sorted(queued))} of this run are still queued; wait, or end "
                 "them with scancel"
             )
@@ -186,10 +188,14 @@ class Submission:
         try:
             done = subprocess.run(command, text=True, stdout=subprocess.PIPE)
         except FileNotFoundError:
-            stages.refuse(f"there is no {command[0]} here; run this where Slurm's commands are")
+            stage_options.refuse(
+                f"there is no {command[0]} here; run this where Slurm's commands are"
+            )
         if done.returncode:
             self.undo()
-            stages.refuse(f"{command[0]} failed, as it says above; no job of this run is left")
+            stage_options.refuse(
+                f"{command[0]} failed, as it says above; no job of this run is left"
+            )
         return done.stdout
 
     def undo(self) -> None:
@@ -219,7 +225,7 @@ class Submission:
             "--requeue",
             "--open-mode=append",
             *words,
-            *stages.words_of(chosen.sbatch, "--sbatch"),
+            *stage_options.words_of(chosen.sbatch, "--sbatch"),
             f"--wrap=exec {shlex.join(command)}",
         ]
         if chosen.dry_run:
@@ -291,7 +297,7 @@ class Submission:
         if not self.options.dry_run:
             for command in ("sbatch", "squeue", "scancel"):
                 if not shutil.which(command):
-                    stages.refuse(
+                    stage_options.refuse(
                         f"there is no {command} here; run this where Slurm's commands are"
                     )
             self.check_files([name for name, _ in jobs])

@@ -260,7 +260,7 @@ TEST_F(Rerun, QualitiesAreThoseOfOneFile) {
       for (const std::string& part :
            {"candidates.vpl -n " + of["CANDIDATES"] + " ", "vpls.vpl -n " + of["VPLS"] + " ",
             " --photons " + of["PHOTONS"] + " ", " --spp " + of["SPP"] + " ",
-            of["PHOTONS"] + behind("ESTIMATE") + " --", "image.png" + behind("RENDER") + " --"}) {
+            of["PHOTONS"] + behind("ESTIMATE") + " --", behind("RENDER") + " --"}) {
         EXPECT_TRUE(contains(text, part)) << quality << ": " << part << "\n" << text;
       }
     }

@@ -165,9 +165,9 @@ std::vector<std::string> materialNames(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> taken;
   for (const Material& m : scene.materials) {
-    const std::string name = cleanName(m.name);
-    const std::string numbered = name + " (" + std::to_string(names.size());
-    std::string own = name.empty() ? numbered + ")" : name;
+    const std::string name = cleanName(m.name), shown = name.empty() ? "unnamed" : name;
+    const std::string numbered = shown + " (" + std::to_string(names.size());
+    std::string own = shown;
     for (size_t copy = 1; !taken.insert(own).second; ++copy)
       own = numbered + (copy > 1 ? ", " + std::to_string(copy) : "") + ")";
     names.push_back(own);
