@@ -9,6 +9,7 @@
 namespace bnvpl {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Sine and cosine by their Taylor series, accurate to one ulp for |x| <= pi / 4, and the same on
 // every machine.

@@ -56,9 +56,11 @@ def commit() -> str:
         "--",
         "core",
         "formats",
+        "images",
         "scene",
         "spatial",
         "tools",
+        "transport",
     )
     return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
 

@@ -13,6 +13,7 @@
 #include "core/prefetch.h"
 #include "core/random.h"
 #include "core/vec3.h"
+#include "spatial/cell_along.h"
 
 namespace bnvpl {
 
@@ -135,14 +136,9 @@ class ReachGrid {
     }
   };
 
-  static int64_t floorOf(float v) {  // std::floor is a function call without SSE4.1
-    const float bounded = std::clamp(v, -1e15f, 1e15f);
-    const auto whole = static_cast<int64_t>(bounded);
-    return whole - (bounded < static_cast<float>(whole) ? 1 : 0);
-  }
   Cell cellOf(Vec3 at) const {
     const Vec3 cells = (at - origin_) * cellsPerUnit_;
-    return {floorOf(cells.x), floorOf(cells.y), floorOf(cells.z)};
+    return {cellAlong(cells.x), cellAlong(cells.y), cellAlong(cells.z)};
   }
   // Each axis has 21 bits. Cells two million apart share a list; the distance test tells them
   // apart.

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/random.h"
+#include "spatial/cell_along.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/facing.h"
 
@@ -29,12 +30,6 @@ uint64_t hashOf(int64_t x, int64_t y, int64_t z, int level, uint32_t facing) {
   return mix64(bits(x) | bits(y) << 18 | bits(z) << 36 | uint64_t{facing} << 54 |
                static_cast<uint64_t>(level + 128) << 57) |
          1;  // 0 marks an empty slot
-}
-
-int64_t cellAlong(float cells) {
-  const float bounded = std::clamp(cells, -1e15f, 1e15f);
-  const auto whole = static_cast<int64_t>(bounded);
-  return whole - (bounded < static_cast<float>(whole) ? 1 : 0);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@ namespace bnvpl {
 template <typename Enum>
 using Choices = std::map<std::string, Enum>;
 
-inline const Choices<bool> kOnOff{{"on", true}, {"off", false}};
 
 template <typename Enum>
 std::string nameOf(Enum value, const Choices<Enum>& choices) {

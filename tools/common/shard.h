@@ -32,7 +32,6 @@ class ShardOutput {
   ShardOutput(const ShardOutput&) = delete;
   ShardOutput& operator=(const ShardOutput&) = delete;
 
-  const ShardSink& sink() const { return sink_; }
   // Restricts `whole` to the units of this shard, whose results go to the file. Must not outlive
   // this object.
   Resume only(Resume whole) const;

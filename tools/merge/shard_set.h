@@ -22,7 +22,6 @@ class ShardSet {
   ShardSet& operator=(const ShardSet&) = delete;
 
   const ShardRun& whole() const { return whole_; }
-  size_t files() const { return files_.size(); }
   uint64_t of() const { return of_; }
   const ShardParts& parts() const { return parts_; }
   // Throws InputError with the command that makes missing parts.

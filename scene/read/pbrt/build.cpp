@@ -15,7 +15,6 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr size_t kAtOnce = 256;                 // shapes that are in memory beside the scene
-constexpr size_t kMaxCopied = size_t{1} << 27;  // triangles that lamps of objects may become
 
 // A shape and its transforms: one in the world, or one for each instance of its object.
 struct Placed {
@@ -83,7 +82,7 @@ class Meshes {
   }
 
  private:
-  // Stores a shape of many instances once, unless it emits: emission depends on the transform.
+  // Stores a shape of many instances once. None of those emits: pbrt has no lamps in objects.
   void place(const Placed& placed, MeshData mesh) {
     const Shape& shape = *placed.shape;
     for (const std::string& note : mesh.notes) reader_.notes.add(shape.place, note);
@@ -93,18 +92,12 @@ class Meshes {
     } else {
       builder_.addFile(file);
     }
-    if (placed.worldFromShape.size() > 1 && shape.areaLight == kNone)
-      return share(placed, std::move(mesh), file);
-    if (placed.worldFromShape.size() > 1)
-      copied_ += placed.worldFromShape.size() * mesh.triangles.size();
-    if (copied_ > kMaxCopied)
-      failAt(shape.place, "the lamps of objects are more than 2^27 triangles; place fewer");
-    for (const Affine& transform : placed.worldFromShape) {
-      const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));
-      if (material == kNone) return;  // an interface has no surface
-      for (Triangle& t : mesh.triangles) t.material = material;
-      builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles}, transform);
-    }
+    if (placed.worldFromShape.size() > 1) return share(placed, std::move(mesh), file);
+    const Affine& transform = placed.worldFromShape.front();
+    const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));
+    if (material == kNone) return;  // an interface has no surface
+    for (Triangle& t : mesh.triangles) t.material = material;
+    builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles}, transform);
   }
 
   void share(const Placed& placed, MeshData mesh, const fs::path& file) {
@@ -129,7 +122,6 @@ class Meshes {
   const LightReader& reader_;
   Materials& materials_;
   SceneBuilder& builder_;
-  size_t copied_ = 0;
 };
 
 // Notes the parameters that no reader used.

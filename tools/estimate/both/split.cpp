@@ -25,7 +25,7 @@ constexpr double kMaxDeviations = 2.0;
 constexpr int kParts = 16;
 // Share of the mean flux that is added to a VPL's flux where its error is weighted by one over the
 // flux.
-constexpr double kMinFlux = 0.1, kMinFluxOfError = 0.01;
+constexpr double kMinFlux = 0.1;
 // Budgets that smallestAllocation() tries, in steps of a quarter of an octave.
 constexpr int kSteps = 24;
 constexpr double kStep = 0.8408964152537145;  // 2^(-1/4)

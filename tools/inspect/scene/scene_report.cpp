@@ -1,16 +1,15 @@
 #include "tools/inspect/scene/scene_report.h"
 
-#include <numbers>
 #include <sstream>
 
 #include "core/files.h"
+#include "core/sampling.h"
 #include "tools/common/film_size.h"
 
 namespace bnvpl {
 
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Json vectorJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
 

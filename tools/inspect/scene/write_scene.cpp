@@ -1,7 +1,6 @@
 #include "tools/inspect/scene/write_scene.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "core/number_text.h"
 #include "core/sampling.h"
@@ -19,7 +18,6 @@ std::string listText(Vec3 v) {
 
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 std::string placeText(const Scene& scene, Vec3 p) {
   const auto [x, y, z] = scene.origin;

@@ -17,7 +17,7 @@ constexpr float kCertain = 3.0f;
 constexpr float kMinSurvival = 0.4f;
 // Shadow rays to lights from the first vertex, which many samples reuse.
 constexpr unsigned kFirstLightRays = 2;
-// Cost of a ray in the units of cost:: (measured: theory.md).
+// Cost of a ray in the units of cost:: (measured: tools/render/tile/theory.md).
 constexpr double kCostOfRay = 30.0;
 
 }  // namespace

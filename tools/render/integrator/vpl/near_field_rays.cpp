@@ -19,7 +19,7 @@ constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 constexpr unsigned kFirstLightRays = 4;
 // Minimal importance of rough lobes whose light VPLs carry.
 constexpr float kMinImportance = 0.1f;
-// Cost of a ray in the units of cost:: (measured: theory.md).
+// Cost of a ray in the units of cost:: (measured: tools/render/tile/theory.md).
 constexpr double kCostOfRay = 16.0;
 
 }  // namespace
