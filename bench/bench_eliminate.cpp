@@ -11,7 +11,7 @@
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/elimination/greedy.h"

@@ -6,8 +6,8 @@
 
 #include "core/parallel.h"
 #include "tests/support/pipeline.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/gather/gather.h"
-#include "tools/common/streams.h"
 #include "transport/camera.h"
 #include "transport/photon_walk.h"
 

@@ -4,7 +4,6 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <array>
 #include <atomic>
@@ -15,6 +14,7 @@
 #include <memory>
 #include <sstream>
 
+#include "core/hash.h"
 #include "formats/atomic_file.h"
 #include "formats/output_target.h"
 
@@ -28,19 +28,14 @@ constexpr const char* kCure = "; name a folder that does not exist yet";
 
 // Hexadecimal XXH3-64; empty if the file cannot be read.
 std::string checksumOf(const fs::path& file) {
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                              XXH3_freeState);
-  XXH3_64bits_reset(state.get());
+  Hasher hasher;
   std::ifstream in(file, std::ios::binary);
   if (!in) return "";
   std::array<char, 1 << 16> block;
   while (in.read(block.data(), block.size()) || in.gcount() > 0)
-    XXH3_64bits_update(state.get(), block.data(), static_cast<size_t>(in.gcount()));
+    hasher.add(std::as_bytes(std::span(block)).first(static_cast<size_t>(in.gcount())));
   if (in.bad()) return "";
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));
-  return text;
+  return hashText(hasher.digest());
 }
 
 // Returns false if the folder has no list that bnvpl wrote.

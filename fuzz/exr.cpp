@@ -1,5 +1,5 @@
 // EXR files, as images of `vpl-inspect compare` and as environments.
-#include "formats/exr_io.h"
+#include "formats/image/exr_io.h"
 #include "fuzz/sane_scene.h"
 #include "images/comparison.h"
 

@@ -6,10 +6,10 @@
 #include <sstream>
 
 #include "fuzz/fuzz.h"
-#include "tools/common/exposure.h"
-#include "tools/common/film_size.h"
-#include "tools/common/run_tool.h"
-#include "tools/common/stage_cli.h"
+#include "tools/common/options/exposure.h"
+#include "tools/common/options/film_size.h"
+#include "tools/common/run/run_tool.h"
+#include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl {
 namespace {

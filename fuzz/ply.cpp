@@ -1,7 +1,7 @@
 // PLY: the columns of an accepted file have equal length, and the scene that refers to it is valid
 // for all numbers. Its shape is an area light with a bump map, so that areas, normals and tangents
 // are computed. The input is m.ply.
-#include "scene/read/pbrt/ply.h"
+#include "scene/read/pbrt/shapes/ply.h"
 
 #include "fuzz/sane_scene.h"
 #include "fuzz/tiny_tga.h"

@@ -5,9 +5,10 @@
 // place of "@", which mutations would not find.
 #include <cstring>
 
-#include "formats/vpl_layout.h"
+#include "core/hash.h"
+#include "formats/vpl/vpl_layout.h"
 #include "fuzz/fuzz.h"
-#include "tools/common/build_id.h"
+#include "tools/common/stage/build_id.h"
 #include "tools/merge/shard_set.h"
 
 namespace bnvpl {

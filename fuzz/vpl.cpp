@@ -7,11 +7,12 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/hash.h"
 #include "formats/provenance.h"
-#include "formats/vpl_io.h"
-#include "formats/vpl_layout.h"
+#include "formats/vpl/vpl_io.h"
+#include "formats/vpl/vpl_layout.h"
 #include "fuzz/fuzz.h"
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/inspect/provenance.h"
 
 namespace bnvpl {

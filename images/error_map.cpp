@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "formats/tonemap.h"
+#include "formats/image/tonemap.h"
 
 namespace bnvpl {
 namespace {

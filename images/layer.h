@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "formats/image.h"
+#include "formats/image/image.h"
 
 namespace bnvpl {
 

@@ -1,7 +1,7 @@
 #include "images/mask.h"
 
 #include "core/files.h"
-#include "formats/pixels_io.h"
+#include "formats/image/pixels_io.h"
 
 namespace bnvpl {
 namespace {

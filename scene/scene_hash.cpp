@@ -1,42 +1,38 @@
 #include "scene/scene_hash.h"
 
-#include <xxhash.h>
-
-#include <memory>
 #include <span>
 #include <type_traits>
 
+#include "core/hash.h"
 #include "scene/material_inputs.h"
 
 namespace bnvpl {
 
 namespace {
 
-class Hasher {
+class SceneHasher {
  public:
-  Hasher() : state_(XXH3_createState(), XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
-
   template <typename T>
   void value(const T& v) {
     static_assert(std::has_unique_object_representations_v<T> || std::is_same_v<T, float> ||
                   std::is_same_v<T, Vec3>);  // padding bytes are not content
-    XXH3_64bits_update(state_.get(), &v, sizeof v);
+    hasher_.add(bytesOf(v));
   }
   template <typename T>
   void array(const std::vector<T>& v) {
     value(uint64_t{v.size()});
-    XXH3_64bits_update(state_.get(), v.data(), v.size() * sizeof(T));
+    hasher_.add(std::as_bytes(std::span(v)));
   }
-  uint64_t digest() const { return XXH3_64bits_digest(state_.get()); }
+  uint64_t digest() const { return hasher_.digest(); }
 
  private:
-  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+  Hasher hasher_;
 };
 
-void hashModel(Hasher& h, const Material& m) {
+void hashModel(SceneHasher& h, const Material& m) {
   h.value(static_cast<uint32_t>(m.model.index()));
   struct Inputs {
-    Hasher& h;
+    SceneHasher& h;
     void operator()(const Colour& c) const { h.value(c.value), h.value(c.texture); }
     void operator()(const Scalar& s) const { h.value(s.value), h.value(s.texture); }
     void operator()(uint32_t number) const { h.value(number); }
@@ -50,7 +46,7 @@ void hashModel(Hasher& h, const Material& m) {
   h.value(uint32_t{m.coatRelief.heightInTexels});
 }
 
-void hashMaterial(Hasher& h, const Material& m) {
+void hashMaterial(SceneHasher& h, const Material& m) {
   static const PhongModel kNoPhong;
   const auto* phong = std::get_if<PhongModel>(&m.model);
   const PhongModel& p = phong ? *phong : kNoPhong;
@@ -64,7 +60,7 @@ void hashMaterial(Hasher& h, const Material& m) {
   if (more) hashModel(h, m);
 }
 
-void hashExpressions(Hasher& h, const std::vector<TextureExpression>& expressions) {
+void hashExpressions(SceneHasher& h, const std::vector<TextureExpression>& expressions) {
   for (const TextureExpression& e : expressions) {
     for (const uint32_t i :
          {static_cast<uint32_t>(e.kind), e.image, static_cast<uint32_t>(e.channel),
@@ -79,7 +75,7 @@ void hashExpressions(Hasher& h, const std::vector<TextureExpression>& expression
 }  // namespace
 
 uint64_t hashScene(const Scene& scene) {
-  Hasher h;
+  SceneHasher h;
   h.array(scene.positions);
   h.array(scene.normals);
   h.array(scene.uvs);
@@ -118,7 +114,7 @@ uint64_t hashScene(const Scene& scene) {
 }
 
 uint64_t hashView(const Camera& c, const Film& film) {
-  Hasher h;
+  SceneHasher h;
   for (const Vec3 v : {c.position, c.forward, c.right, c.up}) h.value(v);
   h.value(c.verticalFovRad);
   if (c.shift != std::array<float, 2>{}) h.value(c.shift[0]), h.value(c.shift[1]);

@@ -3,9 +3,9 @@
 
 #include "core/errors.h"
 #include "tests/support/pipeline.h"
-#include "tools/common/escape_text.h"
-#include "tools/common/option.h"
-#include "tools/common/stage_cli.h"
+#include "tools/common/files/escape_text.h"
+#include "tools/common/options/option.h"
+#include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl::test {
 namespace {

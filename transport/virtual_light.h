@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "transport/bsdf.h"
 #include "transport/virtual_light_kinds.h"
 

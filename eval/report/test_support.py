@@ -229,7 +229,7 @@ def browser() -> webdriver.Chrome:
 
 
 def to_srgb8(linear: npt.ArrayLike, ev: float = 0.0) -> list[int]:
-    """The encoding of formats/tonemap.h."""
+    """The encoding of formats/image/tonemap.h."""
     v = np.clip(np.asarray(linear, np.float64) * 2.0**ev, 0, 1)
     encoded = np.where(v <= 0.0031308, 12.92 * v, 1.055 * v ** (1 / 2.4) - 0.055)
     return [int(x) for x in np.floor(encoded * 255 + 0.5)]

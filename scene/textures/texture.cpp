@@ -6,8 +6,8 @@
 
 #include "core/files.h"
 #include "core/prefetch.h"
-#include "formats/exr_io.h"
-#include "formats/pixels_io.h"
+#include "formats/image/exr_io.h"
+#include "formats/image/pixels_io.h"
 #include "scene/textures/pfm.h"
 #include "scene/textures/radiance_hdr.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 namespace {

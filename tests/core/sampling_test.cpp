@@ -10,7 +10,7 @@
 
 #include "core/cdf.h"
 #include "core/random.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 namespace {

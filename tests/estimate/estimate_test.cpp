@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 
-#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
+#include "tests/transport/plain_scene.h"
 
 namespace bnvpl::test {
 namespace {

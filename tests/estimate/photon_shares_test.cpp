@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/scene/plain_scene.h"
 #include "tests/support/grey_cube.h"
+#include "tests/transport/plain_scene.h"
 
 namespace bnvpl::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "tools/common/checkpoint.h"
+#include "tools/common/run/checkpoint.h"
 
 namespace bnvpl {
 namespace {

@@ -2,7 +2,7 @@
 #include <limits>
 #include <utility>
 
-#include "formats/exr_io.h"
+#include "formats/image/exr_io.h"
 #include "tests/formats/test_files.h"
 
 namespace bnvpl {

@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "formats/pixels_io.h"
-#include "formats/raster_check.h"
+#include "formats/image/pixels_io.h"
+#include "formats/image/raster_check.h"
 
 namespace bnvpl {
 namespace {

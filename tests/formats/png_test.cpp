@@ -1,7 +1,7 @@
 #include <limits>
 
-#include "formats/png_io.h"
-#include "formats/tonemap.h"
+#include "formats/image/png_io.h"
+#include "formats/image/tonemap.h"
 #include "tests/formats/test_files.h"
 
 namespace bnvpl {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "formats/vpl_format.h"
+#include "formats/vpl/vpl_format.h"
 #include "tests/support/emit_points.h"
 
 namespace bnvpl {

@@ -1,7 +1,7 @@
 // The list of columns and everything derived from it.
-#include "formats/vpl_columns.h"
+#include "formats/vpl/vpl_columns.h"
 
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/formats/test_files.h"
 
 namespace bnvpl {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/formats/test_files.h"
 #include "tests/support/messages.h"
 

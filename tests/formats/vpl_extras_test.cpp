@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "formats/vpl_io.h"
-#include "formats/vpl_layout.h"
+#include "formats/vpl/vpl_io.h"
+#include "formats/vpl/vpl_layout.h"
 #include "tests/formats/test_files.h"
 #include "tests/support/messages.h"
 

@@ -1,7 +1,7 @@
 // Pins the bytes of version 4 of the format: any change here requires a new version.
 #include <sstream>
 
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/formats/test_files.h"
 
 namespace bnvpl {

@@ -5,7 +5,7 @@
 #include <csignal>
 #include <limits>
 
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/formats/test_files.h"
 
 namespace bnvpl {

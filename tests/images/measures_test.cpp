@@ -1,7 +1,7 @@
 // SMAPE, measures per channel and of luminance, and masks.
 #include <cmath>
 
-#include "formats/png_io.h"
+#include "formats/image/png_io.h"
 #include "images/comparison.h"
 #include "tests/formats/test_files.h"
 #include "tests/support/flat_image.h"

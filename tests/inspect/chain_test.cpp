@@ -1,4 +1,5 @@
 // Files that no stage writes: their contents were changed and hashed again.
+#include "core/hash.h"
 #include "tools/inspect/check/chain.h"
 
 #include "tests/inspect/inspect_files.h"

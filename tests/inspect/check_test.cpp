@@ -1,3 +1,4 @@
+#include "core/hash.h"
 #include "tools/inspect/check/check.h"
 
 #include "tests/inspect/foreign_exr.h"

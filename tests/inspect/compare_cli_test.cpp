@@ -1,8 +1,8 @@
 // `vpl-inspect compare` on the command line: masks, FLIP and pictures.
-#include "formats/png_io.h"
+#include "formats/image/png_io.h"
 #include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/run_inspect.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

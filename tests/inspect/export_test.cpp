@@ -4,7 +4,7 @@
 #include <map>
 #include <sstream>
 
-#include "formats/vpl_columns.h"
+#include "formats/vpl/vpl_columns.h"
 #include "tests/inspect/inspect_files.h"
 #include "tools/inspect/export/export_table.h"
 

@@ -6,7 +6,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
 
-#include "formats/image.h"
+#include "formats/image/image.h"
 
 namespace bnvpl {
 

@@ -8,12 +8,13 @@
 #include <iterator>
 #include <string>
 
-#include "formats/exr_io.h"
-#include "formats/vpl_io.h"
+#include "core/hash.h"
+#include "formats/image/exr_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/support/emit_points.h"
 #include "tests/support/flat_image.h"
 #include "tests/support/messages.h"
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
 

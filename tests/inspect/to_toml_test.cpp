@@ -1,5 +1,5 @@
 // vpl-inspect scene --to-toml writes a scene equal to the original, and replaces no other files.
-#include "formats/png_io.h"
+#include "formats/image/png_io.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "tests/support/pipeline.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/estimate/photon_shares.h"
 #include "tools/render/film/film.h"
 

@@ -1,7 +1,7 @@
 // Sources of NaN and infinity, and the handling of samples that are still not finite.
-#include "formats/exr_io.h"
+#include "formats/image/exr_io.h"
 #include "tests/numbers/room.h"
-#include "tests/scene/plain_scene.h"
+#include "tests/transport/plain_scene.h"
 #include "transport/photon_walk.h"
 
 namespace bnvpl::test {

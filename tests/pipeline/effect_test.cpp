@@ -1,11 +1,11 @@
 // Options without effect, malformed numbers, and the contents of records.
 #include <nlohmann/json.hpp>
 
-#include "formats/checkpoint.h"
-#include "formats/exr_io.h"
-#include "formats/vpl_io.h"
+#include "formats/image/exr_io.h"
+#include "formats/shard/checkpoint.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

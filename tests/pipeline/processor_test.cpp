@@ -1,6 +1,6 @@
 // --processor any gives the same bytes on all processors; tests/bytes/processors.py emulates some.
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

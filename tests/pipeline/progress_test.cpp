@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
-#include "tools/common/progress_meter.h"
+#include "tools/common/run/exit_codes.h"
+#include "tools/common/run/progress_meter.h"
 
 namespace bnvpl {
 namespace {

@@ -1,7 +1,7 @@
 // --checkpoint: stages that are stopped and continued.
-#include "formats/checkpoint.h"
+#include "formats/shard/checkpoint.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

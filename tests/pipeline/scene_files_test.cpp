@@ -1,9 +1,9 @@
 // Scene files written by other programs, and messages about those that lack something.
 #include <algorithm>
 
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

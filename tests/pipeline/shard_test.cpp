@@ -3,9 +3,9 @@
 #include <functional>
 #include <sstream>
 
-#include "formats/shard_file.h"
+#include "formats/shard/shard_file.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -1,9 +1,9 @@
 // Requests that no memory could serve are refused at once, with an estimate.
 #include <fstream>
 
-#include "formats/vpl_layout.h"
+#include "formats/vpl/vpl_layout.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 

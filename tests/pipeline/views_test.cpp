@@ -1,7 +1,7 @@
 // VPLs that serve several views of one scene: their placement, and checks of the views that they
 // were placed for.
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -1,7 +1,7 @@
 // .vpl files between the executables: extra columns, other versions, and the maker of a file.
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -4,7 +4,7 @@
 #include "tests/support/gather_checks.h"
 #include "tests/support/gather_of.h"
 #include "tests/support/pipeline.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::test {

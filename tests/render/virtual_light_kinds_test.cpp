@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "tests/support/pipeline.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {

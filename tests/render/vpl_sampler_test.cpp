@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/sampling.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "scene/scene_builder.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 

@@ -11,7 +11,7 @@
 #include "spatial/reach_grid.h"
 #include "spatial/region_grid.h"
 #include "tests/eliminate/clouds.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scene/plain_scene.h"
+#include "tests/transport/plain_scene.h"
 
 namespace bnvpl::test {
 

@@ -1,7 +1,7 @@
 // Rows of stage Lit with several emission points.
 #pragma once
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 
 namespace bnvpl {
 

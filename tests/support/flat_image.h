@@ -1,7 +1,7 @@
 // An image of one colour.
 #pragma once
 
-#include "formats/image.h"
+#include "formats/image/image.h"
 
 namespace bnvpl {
 

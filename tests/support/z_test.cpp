@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "formats/exr_io.h"
+#include "formats/image/exr_io.h"
 #include "tests/support/student_t.h"
 
 namespace bnvpl::test {

@@ -13,7 +13,7 @@
 #include <functional>
 #include <string>
 
-#include "formats/image.h"
+#include "formats/image/image.h"
 
 namespace bnvpl::test {
 

@@ -1,7 +1,7 @@
 // --estimate of vpl-eliminate.
 #pragma once
 
-#include "tools/common/cost.h"
+#include "tools/common/stage/cost.h"
 #include "tools/eliminate/eliminate.h"
 
 namespace bnvpl {

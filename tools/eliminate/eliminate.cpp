@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 
 namespace bnvpl {
 

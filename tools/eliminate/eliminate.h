@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "formats/vpl_table.h"
-#include "tools/common/method.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/stage/method.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 

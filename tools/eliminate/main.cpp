@@ -3,9 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "formats/vpl_io.h"
-#include "tools/common/memory.h"
-#include "tools/common/stage_run.h"
+#include "core/hash.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/run/memory.h"
+#include "tools/common/stage/stage_run.h"
 #include "tools/eliminate/cost_of_eliminating.h"
 #include "tools/eliminate/report.h"
 

@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "spatial/local_density.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 namespace {

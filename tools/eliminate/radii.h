@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "core/vec3.h"
 #include "spatial/local_density.h"
-#include "tools/common/option.h"
+#include "tools/common/options/option.h"
 
 namespace bnvpl {
 

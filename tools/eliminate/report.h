@@ -1,7 +1,7 @@
 // The summary of vpl-eliminate.
 #pragma once
 
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/eliminate/eliminate.h"
 
 namespace bnvpl {

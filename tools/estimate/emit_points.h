@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "formats/vpl_columns.h"
-#include "tools/common/option.h"
+#include "formats/vpl/vpl_columns.h"
+#include "tools/common/options/option.h"
 #include "transport/rays.h"
 
 namespace bnvpl {

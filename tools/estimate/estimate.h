@@ -6,8 +6,8 @@
 
 #include "core/progress.h"
 #include "core/resume.h"
-#include "formats/vpl_table.h"
-#include "tools/common/method.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/stage/method.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 
@@ -21,7 +21,7 @@ struct EnergyAccount {
   double deposited = 0;  // flux deposited in VPLs
   double outside = 0;    // no VPL reaches the hit: it lies outside the region that lights the view
   double uncovered = 0;  // VPLs reach the hit, but none on a compatible surface
-  double hidden = 0;        // some are on a compatible surface, but none is in sight
+  double hidden = 0;     // some are on a compatible surface, but none is in sight
   uint64_t photons = 0, hits = 0, rays = 0, guardRays = 0;
   uint64_t nonFinite = 0;  // photons cut off because their flux became NaN or infinite
 };

@@ -2,9 +2,10 @@
 //   vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 10M
 #include <CLI/CLI.hpp>
 
-#include "formats/vpl_io.h"
-#include "tools/common/memory.h"
-#include "tools/common/stage_run.h"
+#include "core/hash.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/run/memory.h"
+#include "tools/common/stage/stage_run.h"
 #include "tools/estimate/report.h"
 
 namespace bnvpl {

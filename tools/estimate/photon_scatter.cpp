@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "transport/photon_walk.h"
 
 namespace bnvpl {

@@ -1,7 +1,7 @@
 // The summary of vpl-estimate.
 #pragma once
 
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/estimate/estimate.h"
 
 namespace bnvpl {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/resume.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 

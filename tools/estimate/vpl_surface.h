@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "formats/vpl_table.h"
-#include "tools/common/option.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/options/option.h"
 #include "transport/rays.h"
 
 namespace bnvpl {

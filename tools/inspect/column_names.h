@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "formats/vpl_columns.h"
+#include "formats/vpl/vpl_columns.h"
 
 namespace bnvpl {
 

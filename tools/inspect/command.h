@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
 

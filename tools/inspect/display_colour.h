@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 
 namespace bnvpl {
 

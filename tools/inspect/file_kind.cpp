@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "core/files.h"
-#include "formats/shard_file.h"
-#include "formats/vpl_format.h"
+#include "formats/shard/shard_file.h"
+#include "formats/vpl/vpl_format.h"
 
 namespace bnvpl {
 

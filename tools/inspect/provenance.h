@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/image.h"
-#include "tools/common/run_tool.h"
+#include "formats/image/image.h"
+#include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "core/files.h"
-#include "tools/common/depfile.h"
-#include "tools/common/exit_codes.h"
-#include "tools/common/exposure.h"
-#include "tools/common/run_files.h"
+#include "tools/common/files/depfile.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/options/exposure.h"
+#include "tools/common/run/exit_codes.h"
 #include "tools/merge/merge.h"
 
 namespace bnvpl {

@@ -3,7 +3,8 @@
 #include <array>
 #include <charconv>
 
-#include "formats/vpl_layout.h"
+#include "core/hash.h"
+#include "formats/vpl/vpl_layout.h"
 
 namespace bnvpl {
 

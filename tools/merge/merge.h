@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/vpl_table.h"
-#include "tools/common/output_kind.h"
-#include "tools/common/run_tool.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/files/output_kind.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/merge/shard_set.h"
 
 namespace bnvpl {

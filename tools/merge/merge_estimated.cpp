@@ -1,6 +1,6 @@
-#include "formats/vpl_io.h"
-#include "tools/common/memory.h"
-#include "tools/common/scene_options.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/run/memory.h"
+#include "tools/common/stage/scene_options.h"
 #include "tools/estimate/report.h"
 #include "tools/merge/merge.h"
 

@@ -1,5 +1,5 @@
 #include "core/memory.h"
-#include "formats/vpl_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tools/merge/merge.h"
 #include "tools/place/place.h"
 #include "tools/place/report.h"

@@ -1,5 +1,5 @@
 #include "core/memory.h"
-#include "tools/common/film_size.h"
+#include "tools/common/options/film_size.h"
 #include "tools/merge/merge.h"
 #include "tools/render/outputs.h"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <tuple>
 
-#include "tools/common/build_id.h"
-#include "tools/common/checkpoint.h"
-#include "tools/common/processor_id.h"
-#include "tools/common/shell_text.h"
+#include "tools/common/files/shell_text.h"
+#include "tools/common/run/checkpoint.h"
+#include "tools/common/stage/build_id.h"
+#include "tools/common/stage/processor_id.h"
 
 namespace bnvpl {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/common/shard.h"
+#include "tools/common/stage/shard.h"
 
 namespace bnvpl {
 

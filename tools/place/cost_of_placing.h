@@ -1,7 +1,7 @@
 // --estimate of vpl-place.
 #pragma once
 
-#include "tools/common/cost.h"
+#include "tools/common/stage/cost.h"
 #include "tools/place/place.h"
 
 namespace bnvpl {

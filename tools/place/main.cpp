@@ -2,9 +2,10 @@
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include <CLI/CLI.hpp>
 
+#include "core/hash.h"
 #include "core/memory.h"
-#include "formats/vpl_io.h"
-#include "tools/common/stage_run.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/stage/stage_run.h"
 #include "tools/place/cost_of_placing.h"
 #include "tools/place/report.h"
 #include "tools/place/views_option.h"

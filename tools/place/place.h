@@ -5,9 +5,9 @@
 
 #include "core/progress.h"
 #include "core/resume.h"
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "scene/scene.h"
-#include "tools/common/method.h"
+#include "tools/common/stage/method.h"
 #include "tools/place/view_turns.h"
 #include "transport/lights.h"
 #include "transport/rays.h"

@@ -1,7 +1,7 @@
 // The summary that vpl-place prints, and the memory that it needs.
 #pragma once
 
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/place/place.h"
 
 namespace bnvpl {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/common/scene_options.h"
+#include "tools/common/stage/scene_options.h"
 #include "tools/place/place.h"
 
 namespace bnvpl {

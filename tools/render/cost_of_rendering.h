@@ -1,7 +1,7 @@
 // --estimate of vpl-render.
 #pragma once
 
-#include "tools/common/cost.h"
+#include "tools/common/stage/cost.h"
 #include "tools/render/render.h"
 
 namespace bnvpl {

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/memory.h"
-#include "formats/vpl_io.h"
-#include "tools/common/exposure.h"
-#include "tools/common/film_size.h"
-#include "tools/common/memory.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/options/exposure.h"
+#include "tools/common/options/film_size.h"
+#include "tools/common/run/memory.h"
 #include "tools/render/integrator/light_in_glass.h"
 #include "tools/render/outputs.h"
 

@@ -1,8 +1,8 @@
 // What vpl-render reads, and whether files and options fit together.
 #pragma once
 
-#include "formats/vpl_table.h"
-#include "tools/common/scene_options.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/stage/scene_options.h"
 #include "tools/render/render.h"
 
 namespace bnvpl {

@@ -2,8 +2,9 @@
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
 #include <CLI/CLI.hpp>
 
-#include "tools/common/film_size.h"
-#include "tools/common/stage_run.h"
+#include "core/hash.h"
+#include "tools/common/options/film_size.h"
+#include "tools/common/stage/stage_run.h"
 #include "tools/render/cost_of_rendering.h"
 #include "tools/render/inputs.h"
 #include "tools/render/outputs.h"

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "formats/png_io.h"
-#include "formats/tonemap.h"
-#include "tools/common/exposure.h"
+#include "core/hash.h"
+#include "formats/image/png_io.h"
+#include "formats/image/tonemap.h"
+#include "tools/common/options/exposure.h"
 
 namespace bnvpl {
 

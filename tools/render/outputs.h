@@ -1,8 +1,8 @@
 // Files and summary of vpl-render.
 #pragma once
 
-#include "formats/exr_io.h"
-#include "tools/common/run_tool.h"
+#include "formats/image/exr_io.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/render/render.h"
 
 namespace bnvpl {

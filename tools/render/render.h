@@ -5,7 +5,7 @@
 
 #include "core/progress.h"
 #include "core/resume.h"
-#include "formats/image.h"
+#include "formats/image/image.h"
 #include "tools/render/film/passes.h"
 #include "tools/render/integrator/integrator.h"
 

@@ -7,14 +7,14 @@
 #include "core/parallel.h"
 #include "scene/read/pbrt/lights.h"
 #include "scene/read/pbrt/materials.h"
-#include "scene/read/pbrt/shapes.h"
-#include "scene/read/pbrt/transform.h"
+#include "scene/read/pbrt/shapes/shapes.h"
+#include "scene/read/pbrt/syntax/transform.h"
 
 namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kAtOnce = 256;                 // shapes that are in memory beside the scene
+constexpr size_t kAtOnce = 256;  // shapes that are in memory beside the scene
 
 // A shape and its transforms: one in the world, or one for each instance of its object.
 struct Placed {

@@ -1,7 +1,7 @@
 // Turns a Description into a scene: interprets types and parameters.
 #pragma once
 
-#include "scene/read/pbrt/description.h"
+#include "scene/read/pbrt/syntax/description.h"
 #include "scene/scene_builder.h"
 
 namespace bnvpl::pbrt {

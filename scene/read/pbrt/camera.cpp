@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/read/pbrt/transform.h"
+#include "scene/read/pbrt/syntax/transform.h"
 
 namespace bnvpl::pbrt {
 

@@ -1,7 +1,7 @@
 // Converts the film and camera of a pbrt file.
 #pragma once
 
-#include "scene/read/pbrt/colors.h"
+#include "scene/read/pbrt/colors/colors.h"
 #include "scene/scene_builder.h"
 
 namespace bnvpl::pbrt {

@@ -5,7 +5,7 @@
 
 #include "core/files.h"
 #include "scene/read/pbrt/octahedral.h"
-#include "scene/read/pbrt/transform.h"
+#include "scene/read/pbrt/syntax/transform.h"
 
 namespace bnvpl::pbrt {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "scene/read/pbrt/transform.h"
+#include "scene/read/pbrt/syntax/transform.h"
 
 namespace bnvpl::pbrt {
 

@@ -1,7 +1,7 @@
 #include "scene/read/pbrt/read_pbrt.h"
 
 #include "scene/read/pbrt/build.h"
-#include "scene/read/pbrt/parser.h"
+#include "scene/read/pbrt/syntax/parser.h"
 
 namespace bnvpl {
 

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "scene/read/pbrt/colors.h"
+#include "scene/read/pbrt/colors/colors.h"
 #include "scene/scene_builder.h"
 
 namespace bnvpl::pbrt {

@@ -1,5 +1,5 @@
 // Conversion of spectra to linear sRGB, and colour spaces.
-#include "scene/read/pbrt/spectrum.h"
+#include "scene/read/pbrt/colors/spectrum.h"
 #include "tests/scene/pbrt/pbrt_files.h"
 
 namespace bnvpl {

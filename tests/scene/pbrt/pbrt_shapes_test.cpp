@@ -2,7 +2,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "scene/read/pbrt/ply.h"
+#include "scene/read/pbrt/shapes/ply.h"
 #include "tests/scene/pbrt/pbrt_files.h"
 
 namespace bnvpl {

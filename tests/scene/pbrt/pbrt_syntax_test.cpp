@@ -1,7 +1,7 @@
 // Directives, transforms, files and mistakes in pbrt files.
 #include <zlib.h>
 
-#include "scene/read/pbrt/lexer.h"
+#include "scene/read/pbrt/syntax/lexer.h"
 #include "tests/scene/pbrt/pbrt_files.h"
 #include "tests/support/world_triangles.h"
 

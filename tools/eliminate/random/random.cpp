@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "spatial/morton_order.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/radii.h"
 

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "spatial/local_density.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/eliminate/eliminate.h"
 #include "transport/camera.h"
 #include "transport/specular_path.h"

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/estimate/both/phases.h"
 #include "tools/estimate/both/split.h"
 #include "tools/estimate/photon_scatter.h"

@@ -3,8 +3,8 @@
 
 #include <atomic>
 
-#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
+#include "tests/transport/plain_scene.h"
 #include "tools/estimate/both/receivers.h"
 
 namespace bnvpl::test {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "transport/rays.h"
 
 namespace bnvpl::methods::estimate::both {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/estimate/vpl_paths.h"
 
 namespace bnvpl::methods::estimate::paths {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
+#include "tests/transport/plain_scene.h"
 
 namespace bnvpl::test {
 namespace {

@@ -4,8 +4,9 @@
 #include <charconv>
 #include <unordered_map>
 
-#include "formats/vpl_io.h"
-#include "tools/common/shell_text.h"
+#include "core/hash.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/files/shell_text.h"
 
 namespace bnvpl {
 namespace {

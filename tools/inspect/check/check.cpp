@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "formats/exr_io.h"
-#include "formats/vpl_io.h"
+#include "core/hash.h"
+#include "formats/image/exr_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "scene/scene_hash.h"
 #include "tools/inspect/file_kind.h"
 

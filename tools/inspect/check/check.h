@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "scene/scene.h"
 #include "tools/inspect/provenance.h"
 

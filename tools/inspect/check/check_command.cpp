@@ -1,12 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "formats/vpl_io.h"
-#include "tools/common/escape_text.h"
-#include "tools/common/exit_codes.h"
-#include "tools/common/run_files.h"
-#include "tools/common/scene_options.h"
-#include "tools/common/standard_streams.h"
+#include "core/hash.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/files/escape_text.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/files/standard_streams.h"
+#include "tools/common/run/exit_codes.h"
+#include "tools/common/stage/scene_options.h"
 #include "tools/inspect/check/chain.h"
 #include "tools/inspect/check/check.h"
 #include "tools/inspect/command.h"

@@ -5,14 +5,14 @@
 #include <memory>
 #include <optional>
 
-#include "formats/exr_io.h"
-#include "formats/png_io.h"
+#include "formats/image/exr_io.h"
+#include "formats/image/png_io.h"
 #include "images/difference_image.h"
 #include "images/error_map.h"
-#include "tools/common/choice.h"
-#include "tools/common/exposure.h"
-#include "tools/common/run_files.h"
-#include "tools/common/standard_streams.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/files/standard_streams.h"
+#include "tools/common/options/choice.h"
+#include "tools/common/options/exposure.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/compare/compare_report.h"
 #include "tools/inspect/file_kind.h"

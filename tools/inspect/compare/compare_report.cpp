@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/common/escape_text.h"
-#include "tools/common/exit_codes.h"
+#include "tools/common/files/escape_text.h"
+#include "tools/common/run/exit_codes.h"
 #include "tools/inspect/append_text.h"
 
 namespace bnvpl {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "images/comparison.h"
-#include "tools/common/exit_codes.h"
-#include "tools/common/run_tool.h"
+#include "tools/common/run/exit_codes.h"
+#include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
 

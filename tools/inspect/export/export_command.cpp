@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "formats/vpl_io.h"
-#include "tools/common/exit_codes.h"
-#include "tools/common/run_files.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/run/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/export/export_table.h"
 

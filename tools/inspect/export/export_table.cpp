@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "core/files.h"
-#include "formats/tonemap.h"
-#include "formats/vpl_io.h"
-#include "tools/common/output_kind.h"
+#include "formats/image/tonemap.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/files/output_kind.h"
 #include "tools/inspect/column_names.h"
 #include "tools/inspect/display_colour.h"
 #include "tools/inspect/facets.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "formats/atomic_file.h"
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 
 namespace bnvpl {
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/exr_io.h"
-#include "formats/vpl_io.h"
+#include "core/hash.h"
+#include "formats/image/exr_io.h"
+#include "formats/vpl/vpl_io.h"
 #include "tools/inspect/column_names.h"
 #include "tools/inspect/file_kind.h"
 #include "tools/inspect/info/shard_report.h"

@@ -1,9 +1,9 @@
 // Describes the contents of a file, as data and as text: `vpl-inspect info`.
 #pragma once
 
-#include "formats/image.h"
-#include "formats/vpl_table.h"
-#include "tools/common/run_tool.h"
+#include "formats/image/image.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "formats/shard_file.h"
-#include "tools/common/run_tool.h"
-#include "tools/common/shard_info.h"
+#include "formats/shard/shard_file.h"
+#include "tools/common/run/run_tool.h"
+#include "tools/common/stage/shard_info.h"
 #include "tools/inspect/append_text.h"
 #include "tools/inspect/provenance.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 
 namespace bnvpl {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "formats/tonemap.h"
-#include "formats/vpl_io.h"
-#include "tools/common/streams.h"
+#include "formats/image/tonemap.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/files/streams.h"
 #include "tools/inspect/display_colour.h"
 #include "transport/camera.h"
 #include "transport/walk.h"

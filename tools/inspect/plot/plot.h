@@ -2,7 +2,7 @@
 // the thesis: `vpl-inspect plot`.
 #pragma once
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "tools/inspect/plot/plot_canvas.h"
 #include "transport/rays.h"
 

@@ -2,14 +2,14 @@
 #include <cstdio>
 #include <memory>
 
-#include "formats/png_io.h"
-#include "formats/vpl_io.h"
-#include "tools/common/choice.h"
-#include "tools/common/depfile.h"
-#include "tools/common/exit_codes.h"
-#include "tools/common/film_size.h"
-#include "tools/common/run_files.h"
-#include "tools/common/scene_options.h"
+#include "formats/image/png_io.h"
+#include "formats/vpl/vpl_io.h"
+#include "tools/common/files/depfile.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/options/choice.h"
+#include "tools/common/options/film_size.h"
+#include "tools/common/run/exit_codes.h"
+#include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/plot/plot.h"
 

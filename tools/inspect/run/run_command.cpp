@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "tools/common/exit_codes.h"
-#include "tools/common/run_files.h"
-#include "tools/common/standard_streams.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/files/standard_streams.h"
+#include "tools/common/run/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/run/run_report.h"
 #include "tools/inspect/run/run_timeline.h"

@@ -6,7 +6,7 @@
 
 #include "core/files.h"
 #include "core/read_file.h"
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
 namespace {

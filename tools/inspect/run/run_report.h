@@ -1,7 +1,7 @@
 // Reports what a pipeline ran, where and for how long: `vpl-inspect run`.
 #pragma once
 
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 #include "tools/inspect/run/run_records.h"
 
 namespace bnvpl {

@@ -2,10 +2,10 @@
 #include <memory>
 #include <optional>
 
-#include "tools/common/exit_codes.h"
-#include "tools/common/run_files.h"
-#include "tools/common/scene_options.h"
-#include "tools/common/standard_streams.h"
+#include "tools/common/files/run_files.h"
+#include "tools/common/files/standard_streams.h"
+#include "tools/common/run/exit_codes.h"
+#include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/scene/scene_report.h"
 #include "tools/inspect/scene/write_scene.h"

@@ -2,14 +2,14 @@
 
 #include <sstream>
 
+#include "core/hash.h"
 #include "core/files.h"
 #include "core/sampling.h"
-#include "tools/common/film_size.h"
+#include "tools/common/options/film_size.h"
 
 namespace bnvpl {
 
 namespace {
-
 
 Json vectorJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
 

@@ -1,7 +1,7 @@
 // Describes how a scene is interpreted, as data and as text: `vpl-inspect scene`.
 #pragma once
 
-#include "tools/common/run_tool.h"
+#include "tools/common/run/run_tool.h"
 #include "transport/lights.h"
 
 namespace bnvpl {

@@ -4,8 +4,8 @@
 
 #include "core/number_text.h"
 #include "core/sampling.h"
-#include "formats/exr_io.h"
-#include "formats/png_io.h"
+#include "formats/image/exr_io.h"
+#include "formats/image/png_io.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
 #include "tools/inspect/scene/scene_difference.h"
@@ -17,7 +17,6 @@ std::string listText(Vec3 v) {
 }
 
 namespace {
-
 
 std::string placeText(const Scene& scene, Vec3 p) {
   const auto [x, y, z] = scene.origin;

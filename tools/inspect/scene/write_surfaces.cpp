@@ -2,7 +2,7 @@
 
 #include "core/number_text.h"
 #include "scene/material_inputs.h"
-#include "tools/common/json_text.h"
+#include "tools/common/files/json_text.h"
 #include "tools/inspect/scene/write_scene.h"
 
 namespace bnvpl {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/place/path_rows.h"
 #include "transport/walk.h"
 

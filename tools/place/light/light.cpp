@@ -2,7 +2,7 @@
 #include <array>
 
 #include "spatial/local_density.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/place/path_rows.h"
 #include "transport/photon_walk.h"
 

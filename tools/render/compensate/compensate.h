@@ -8,9 +8,9 @@
 #include <span>
 
 #include "core/random.h"
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "spatial/reach_grid.h"
-#include "tools/common/method.h"
+#include "tools/common/stage/method.h"
 #include "transport/rays.h"
 #include "transport/virtual_light_kinds.h"
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/film/film_sums.h"
 #include "tools/render/film/fireflies.h"
 #include "tools/render/film/splat_sums.h"

@@ -5,7 +5,7 @@
 
 #include "core/progress.h"
 #include "core/resume.h"
-#include "formats/image.h"
+#include "formats/image/image.h"
 #include "scene/scene.h"
 #include "tools/render/film/integrator.h"
 #include "tools/render/film/layers.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/image.h"
+#include "formats/image/image.h"
 #include "tools/render/film/film.h"
 
 namespace bnvpl {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/common/clock.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
+#include "tools/common/run/clock.h"
 #include "tools/render/film/fireflies.h"
 #include "tools/render/film/pass_error.h"
 #include "tools/render/splat/add_splats.h"

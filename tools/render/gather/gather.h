@@ -9,7 +9,7 @@
 
 #include "core/progress.h"
 #include "core/random.h"
-#include "tools/common/method.h"
+#include "tools/common/stage/method.h"
 #include "tools/render/light_tree/light_tree.h"
 #include "tools/render/sample.h"
 #include "transport/bsdf.h"

@@ -6,8 +6,8 @@
 
 #include "core/cost_probe.h"
 #include "core/progress.h"
-#include "formats/vpl_table.h"
-#include "tools/common/method.h"
+#include "formats/vpl/vpl_table.h"
+#include "tools/common/stage/method.h"
 #include "tools/render/film/integrator.h"
 #include "transport/lights.h"
 #include "transport/rays.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/common/option.h"
+#include "tools/common/options/option.h"
 
 namespace bnvpl {
 

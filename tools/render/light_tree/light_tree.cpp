@@ -5,7 +5,7 @@
 #include <numeric>
 #include <queue>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 

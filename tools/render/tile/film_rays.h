@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/parallel.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/camera_vertex.h"
 #include "tools/render/gather/gather.h"
 

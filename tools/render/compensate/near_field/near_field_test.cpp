@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "core/sampling.h"
-#include "tests/scene/plain_scene.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
-#include "tools/common/streams.h"
+#include "tests/transport/plain_scene.h"
+#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "core/cdf.h"
 #include "core/parallel.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::methods::gather::lightslice {

@@ -4,7 +4,7 @@
 
 #include "core/cdf.h"
 #include "core/parallel.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {

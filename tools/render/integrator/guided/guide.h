@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "spatial/near_surfaces.h"
 #include "spatial/region_grid.h"
 #include "tools/render/integrator/guided/direction_grid.h"

@@ -2,7 +2,7 @@
 #include <array>
 #include <memory>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/integrator/guided/guided_rays.h"
 #include "tools/render/integrator/path_tracer.h"
 #include "tools/render/integrator/tile_options.h"

@@ -1,6 +1,6 @@
 #include "tools/render/integrator/light/light_tracer.h"
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/splat/film_connection.h"
 
 namespace bnvpl {

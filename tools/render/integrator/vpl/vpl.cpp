@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/gather/point_gather.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"

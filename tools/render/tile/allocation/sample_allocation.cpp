@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/film/tiles.h"
 #include "tools/render/tile/allocation/parity_pattern.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "core/parallel.h"
-#include "tools/common/streams.h"
+#include "tools/common/files/streams.h"
 #include "tools/render/splat/add_splats.h"
 #include "tools/render/splat/film_connection.h"
 #include "transport/photon_walk.h"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "formats/vpl_table.h"
+#include "formats/vpl/vpl_table.h"
 #include "spatial/region_grid.h"
 
 namespace bnvpl {

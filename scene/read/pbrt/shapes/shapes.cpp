@@ -1,0 +1,46 @@
+#include "scene/read/pbrt/shapes/shapes.h"
+
+#include "scene/read/pbrt/shapes/ply.h"
+#include "scene/read/pbrt/syntax/text_file.h"
+
+namespace bnvpl::pbrt {
+
+fs::path meshFileOf(const Shape& shape, const fs::path& folder) {
+  if (shape.type != "plymesh") return {};
+  const std::string name = shape.params.text("filename");
+  if (name.empty()) failAt(shape.place, "the plymesh needs a \"string filename\"");
+  return (folder / name).lexically_normal();
+}
+
+MeshData tessellate(const Shape& shape, const fs::path& folder) {
+  const Params& params = shape.params;
+  MeshData mesh;
+  if (shape.type == "plymesh") {
+    const fs::path file = meshFileOf(shape, folder);
+    mesh = readPly(file, readPacked(file));
+    mesh.windByNormals();
+    if (params.has("displacement"))
+      mesh.notes.push_back("plymesh: 'displacement' of the shape is ignored");
+    params.ignore({"edgelength"});
+  } else if (shape.type == "trianglemesh") {
+    mesh = triangleMesh(params, shape.place);
+  } else if (shape.type == "bilinearmesh") {
+    mesh = bilinearMesh(params, shape.place);
+  } else if (shape.type == "loopsubdiv") {
+    mesh = loopSubdivision(params, shape.place);
+  } else if (shape.type == "sphere") {
+    mesh = sphere(params);
+  } else if (shape.type == "disk") {
+    mesh = disk(params);
+  } else if (shape.type == "cylinder") {
+    mesh = cylinder(params);
+  } else {
+    mesh.notes.push_back("shape '" + shape.type + "' is not read; it is left out");
+    for (const Param* p : params.all()) params.ignore({p->name.c_str()});
+  }
+  params.ignore({"alpha"});
+  if (shape.reverseOrientation) mesh.reverse();
+  return mesh;
+}
+
+}  // namespace bnvpl::pbrt

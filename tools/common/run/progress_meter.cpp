@@ -1,0 +1,98 @@
+#include "tools/common/run/progress_meter.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "tools/common/files/standard_streams.h"
+#include "tools/common/run/clock.h"
+#include "tools/common/run/run_tool.h"
+
+namespace bnvpl {
+
+namespace {
+constexpr double kTerminalIntervalS = 0.2;
+constexpr double kLogIntervalS = 10.0;  // few lines for build logs
+constexpr double kReportIntervalS = 0.2;
+}  // namespace
+
+std::string durationText(double seconds) {
+  constexpr double kLongestS = 3.6e9;  // a million hours
+  const auto s = static_cast<uint64_t>(std::llround(std::clamp(seconds, 0.0, kLongestS)));
+  char text[48];
+  if (s < 60) return std::to_string(s) + " s";
+  if (s < 3600) {
+    std::snprintf(text, sizeof text, "%u min %02u s", unsigned(s / 60), unsigned(s % 60));
+  } else {
+    const uint64_t min = (s + 30) / 60;
+    std::snprintf(text, sizeof text, "%u h %02u min", unsigned(min / 60), unsigned(min % 60));
+  }
+  return text;
+}
+
+std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
+                         std::optional<double> leftS) {
+  if (total == 0)
+    return what + " " + formatSi(static_cast<double>(done)) + " in " + durationText(elapsedS);
+  const double share = static_cast<double>(done) / static_cast<double>(total);
+  char percent[32];
+  std::snprintf(percent, sizeof percent, " (%.0f %%)", std::floor(100.0 * share));
+  return what + " " + formatSi(static_cast<double>(done)) + " of " +
+         formatSi(static_cast<double>(total)) + percent +
+         (leftS ? ", " + durationText(*leftS) + " left" : "");
+}
+
+ProgressMeter::ProgressMeter(std::string what, uint64_t total, bool quiet)
+    : work_{std::move(what), total, nowS()},
+      quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      nextPrintS_(work_.startS + (terminal_ ? kTerminalIntervalS : kLogIntervalS)) {}
+
+ProgressMeter::~ProgressMeter() { eraseProgress(); }
+
+void ProgressMeter::add(uint64_t done) {
+  done_.fetch_add(done, std::memory_order_relaxed);
+  if (quiet_) return;
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock()) return;  // another thread is printing
+  const double now = nowS();
+  if (now < nextReportS_) return;
+  nextReportS_ = now + kReportIntervalS;
+  const uint64_t sum = done_;
+  work_.left.report(now, sum);
+  if (now < nextPrintS_) return;
+  nextPrintS_ = now + (terminal_ ? kTerminalIntervalS : kLogIntervalS);
+  print(now, sum);
+}
+
+void ProgressMeter::beginPhase(std::string_view what, uint64_t total) {
+  const std::scoped_lock lock(mutex_);
+  main_ = std::exchange(work_, {std::string(what), total, nowS()});
+  mainDone_ = done_.exchange(0);
+  work_.left.report(work_.startS, 0);
+  nextReportS_ = 0.0;
+}
+
+void ProgressMeter::endPhase() {
+  const std::scoped_lock lock(mutex_);
+  const double tookS = nowS() - work_.startS;
+  work_ = std::move(main_);
+  work_.startS += tookS;
+  work_.left.skip(tookS);
+  done_ = mainDone_;
+  nextReportS_ = 0.0;
+}
+
+void ProgressMeter::print(double nowS, uint64_t done) const {
+  const std::string text = progressText(work_.what, done, work_.total, nowS - work_.startS,
+                                        work_.left.seconds(work_.total));
+  if (terminal_)
+    showProgress(text);
+  else
+    ErrorLine().add(runningTool()).add(": ").add(text);
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,58 @@
+// Progress with an estimate of the time that is left: one rewritten line on a terminal, otherwise
+// an occasional plain line that begins with the tool's name.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/progress.h"
+#include "tools/common/run/time_left.h"
+
+namespace bnvpl {
+
+// "47 s", "2 min 05 s", "1 h 46 min". Negative counts as 0.
+std::string durationText(double seconds);
+
+// "samples 12M of 40M (30 %), 2 min 05 s left", without the time as long as that is unknown. If
+// `total` is 0, the text ends with the elapsed time: "samples 12M in 34 s".
+std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
+                         std::optional<double> leftS);
+
+class ProgressMeter {
+ public:
+  // `what` names the work ("photons"), `total` its size in the units passed to add().
+  ProgressMeter(std::string what, uint64_t total, bool quiet);
+  ~ProgressMeter();  // erases the line on a terminal
+
+  void add(uint64_t done);  // from any thread
+  // Preparations are shown under their own names; their time does not count for the main work.
+  ProgressFn callback() {
+    return {[this](uint64_t done) { add(done); },
+            [this](std::string_view what, uint64_t total) { beginPhase(what, total); },
+            [this] { endPhase(); }};
+  }
+
+ private:
+  struct Work {
+    std::string what;
+    uint64_t total;
+    double startS;  // moved later by the time of its preparations
+    TimeLeft left = {};
+  };
+  void beginPhase(std::string_view what, uint64_t total);
+  void endPhase();
+  void print(double nowS, uint64_t done) const;
+
+  Work work_;
+  Work main_{};  // the work that continues after the phase
+  uint64_t mainDone_ = 0;
+  bool quiet_, terminal_;
+  std::atomic<uint64_t> done_{0};
+  std::mutex mutex_;
+  double nextReportS_ = 0.0, nextPrintS_;
+};
+
+}  // namespace bnvpl

@@ -1,0 +1,9 @@
+#include "tools/common/stage/build_id.h"
+
+#include "bnvpl_build_id.h"  // made by cmake/build_id.cmake
+
+namespace bnvpl {
+
+std::string buildId() { return BNVPL_VERSION "+" BNVPL_BUILD_ID; }
+
+}  // namespace bnvpl

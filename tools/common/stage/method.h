@@ -1,0 +1,41 @@
+// A method of a stage: one folder with its code, its test and its theory.md. The build lists the
+// folders of a slot and generates the function that returns its methods (cmake/Methods.cmake).
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "tools/common/options/option.h"
+
+namespace bnvpl {
+
+// Make is the type of a function that turns inputs and option values into what the slot needs. The
+// function may throw InputError and UsageError.
+template <typename Make>
+struct Method {
+  std::string_view name;     // on the command line and in the record
+  std::string_view summary;  // one line
+  std::span<const Option> options;
+  Make make;
+};
+
+// The methods of a slot as entries of its StageSpec.
+template <typename M>
+std::vector<MethodEntry> entriesOf(std::span<const M* const> methods) {
+  std::vector<MethodEntry> entries;
+  for (const M* m : methods) entries.push_back({m->name, m->summary, m->options});
+  return entries;
+}
+
+// The method called `name`, which exists: resolve() refuses other names.
+template <typename M>
+const M& methodNamed(std::span<const M* const> methods, std::string_view name) {
+  for (const M* m : methods) {
+    if (m->name == name) return *m;
+  }
+  throw std::logic_error("no method " + std::string(name));
+}
+
+}  // namespace bnvpl
