@@ -38,13 +38,15 @@ void parseAlone(const std::string& text) {
 }
 
 // Options of all kinds that the stages have.
-constexpr std::array kStageOptions{letterFor("-n", countOption("count", "1", 0x1p53, "", "help")),
-                                   seedOption(), switchOption("recentre", "on", "help"),
-                                   textOption("layers", "", "", "help")};
-constexpr std::array kMethodOptions{
-    wholeOption("bounces", "1", 0, 1000, "", "help"),
-    neededBy({Condition{"recentre", "on"}}, realOption("radius", "1", 0.01, 100, "", "help")),
-    choiceOption("density", "local", "local|uniform", "help")};
+constexpr auto kCountOption = letterFor("-n", countOption("count", "1", 0x1p53, "", "help"));
+constexpr auto kRecentreOption = switchOption("recentre", "on", "help");
+constexpr auto kStageOptions =
+    optionTable(kCountOption, kSeedOption, kRecentreOption, textOption("layers", "", "", "help"));
+constexpr auto kBouncesOption = wholeOption("bounces", "1", 0, 1000, "", "help");
+constexpr auto kRadiusOption =
+    neededBy({Condition{"recentre", "on"}}, realOption("radius", "1", 0.01, 100, "", "help"));
+constexpr auto kMethodOptions = optionTable(
+    kBouncesOption, kRadiusOption, choiceOption("density", "local", "local|uniform", "help"));
 
 void parseTogether(const std::vector<std::string>& arguments) {
   static const StageSpec spec{
@@ -66,16 +68,16 @@ void parseTogether(const std::vector<std::string>& arguments) {
   }
   Values values;
   if (!accepted<UsageError>([&] { values = resolve(spec, given); })) return;
-  require(values.whole("count") >= 1 && values.whole("count") <= uint64_t{1} << 53,
+  require(values[kCountOption] >= 1 && values[kCountOption] <= uint64_t{1} << 53,
           "counts are from 1 to 2^53");
-  if (values.text("method") == "b") {
-    require(!values.has("bounces"), "options of another method are refused");
+  if (values[OptionKey<std::string>{"method"}] == "b") {
+    require(!values.has(kBouncesOption), "options of another method are refused");
     return;
   }
-  require(values.whole("bounces") <= 1000, "whole numbers are in range");
-  require(values.has("radius") == values.on("recentre"), "an option needs what it needs");
-  if (!values.has("radius")) return;
-  require(values.real("radius") >= 0.01 && values.real("radius") <= 100.0, "numbers are in range");
+  require(values[kBouncesOption] <= 1000, "whole numbers are in range");
+  require(values.has(kRadiusOption) == values[kRecentreOption], "an option needs what it needs");
+  if (!values.has(kRadiusOption)) return;
+  require(values[kRadiusOption] >= 0.01 && values[kRadiusOption] <= 100.0, "numbers are in range");
 }
 
 }  // namespace

@@ -5,18 +5,21 @@
 #include "tests/support/pipeline.h"
 #include "tools/common/files/escape_text.h"
 #include "tools/common/options/option.h"
+#include "tools/common/stage/method.h"
 #include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl::test {
 namespace {
 
-constexpr std::array kStage{letterFor("-n", countOption("count", "", 100, "VPLs", "how many")),
-                            seedOption()};
-constexpr std::array kA{
-    choiceOption("density", "local", "uniform|local", "help"),
-    neededBy({Condition{"density", "local"}}, realOption("share", "0.2", 0, 1, "", "help"))};
-constexpr std::array kB{realOption("error", "0.1", 0, 1, "", "of b")};
-constexpr std::array kC{realOption("error", "0.5", 0, 1, "", "of c")};
+constexpr auto kCountOption = letterFor("-n", countOption("count", "", 100, "VPLs", "how many"));
+constexpr auto kStage = optionTable(kCountOption, kSeedOption);
+constexpr auto kDensityOption = choiceOption("density", "local", "uniform|local", "help");
+constexpr auto kA = optionTable(
+    kDensityOption,
+    neededBy({Condition{"density", "local"}}, realOption("share", "0.2", 0, 1, "", "help")));
+constexpr auto kErrorOption = realOption("error", "0.1", 0, 1, "", "of b");
+constexpr auto kB = optionTable(kErrorOption);
+constexpr auto kC = optionTable(realOption("error", "0.5", 0, 1, "", "of c"));
 
 StageSpec spec() {
   return {"vpl-x",
@@ -36,13 +39,13 @@ std::string refusal(const Given& given) {
 
 TEST(Options, DefaultsAreThoseOfTheMethodInUse) {
   const Values a = resolve(spec(), {{"count", "7"}});
-  EXPECT_EQ(a.whole("count"), 7u);
-  EXPECT_EQ(a.text("method"), "a");
-  EXPECT_EQ(a.real("share"), 0.2);
-  EXPECT_FALSE(a.has("error"));
-  EXPECT_FALSE(a.has("inner"));
-  EXPECT_EQ(resolve(spec(), {{"count", "7"}, {"method", "b"}}).real("error"), 0.1);
-  EXPECT_EQ(resolve(spec(), {{"count", "7"}, {"method", "c"}}).real("error"), 0.5);
+  EXPECT_EQ(a[kCountOption], 7u);
+  EXPECT_EQ(a[kMethodSlot], "a");
+  EXPECT_EQ(a[OptionKey<double>{"share"}], 0.2);
+  EXPECT_EQ(a.find("error"), nullptr);
+  EXPECT_EQ(a.find("inner"), nullptr);
+  EXPECT_EQ(resolve(spec(), {{"count", "7"}, {"method", "b"}})[kErrorOption], 0.1);
+  EXPECT_EQ(resolve(spec(), {{"count", "7"}, {"method", "c"}})[kErrorOption], 0.5);
 }
 
 TEST(Options, WithoutEffectAreRefusedWithWhatTheyNeed) {
@@ -61,7 +64,7 @@ TEST(Options, WithoutEffectAreRefusedWithWhatTheyNeed) {
 // "-1", 2^64, empty text, octal and hexadecimal digits are refused or read literally.
 TEST(Options, WholeNumbersAreWhatIsTyped) {
   const auto seed = [](const std::string& text) {
-    return resolve(spec(), {{"count", "1"}, {"seed", text}}).whole("seed");
+    return resolve(spec(), {{"count", "1"}, {"seed", text}})[kSeedOption];
   };
   EXPECT_EQ(seed("010"), 10u);
   EXPECT_EQ(seed("18446744073709551615"), UINT64_MAX);
@@ -74,7 +77,7 @@ TEST(Options, WholeNumbersAreWhatIsTyped) {
 }
 
 TEST(Options, CountsNameTheirOption) {
-  EXPECT_EQ(resolve(spec(), {{"count", "0.1k"}}).whole("count"), 100u);
+  EXPECT_EQ(resolve(spec(), {{"count", "0.1k"}})[kCountOption], 100u);
   EXPECT_EQ(refusal({{"count", "101"}}), "--count: '101' is out of range: from 1 to 100");
   EXPECT_EQ(refusal({{"count", "3x"}}),
             "--count: '3x' has an unknown suffix; write a whole number such as 3000, 3k or 10M");
@@ -94,12 +97,12 @@ TEST(Options, RealsAreFiniteAndInRange) {
 }
 
 TEST(Options, DurationsAreSeconds) {
-  constexpr std::array kOptions{
-      optional(durationOption("time", "help")),
-      neededBy({Condition{"time"}}, realOption("k", "1", 0, 9, "", "help"))};
+  constexpr auto kOptions =
+      optionTable(optional(durationOption("time", "help")),
+                  neededBy({Condition{"time"}}, realOption("k", "1", 0, 9, "", "help")));
   const StageSpec timed{"vpl-z", kOptions, {}};
   const auto seconds = [&](const std::string& text) {
-    return resolve(timed, {{"time", text}}).real("time");
+    return resolve(timed, {{"time", text}})[OptionKey<double>{"time"}];
   };
   EXPECT_EQ(seconds("60s"), 60.0);
   EXPECT_EQ(seconds("2m"), 120.0);
@@ -117,17 +120,17 @@ TEST(Options, DurationsAreSeconds) {
   }
   EXPECT_EQ(seconds("0.001s"), 0.001);
   // The option has no value unless it is given, and neither has an option that needs it.
-  EXPECT_FALSE(resolve(timed).has("time"));
-  EXPECT_FALSE(resolve(timed).has("k"));
-  EXPECT_TRUE(resolve(timed, {{"time", "1s"}}).has("k"));
+  EXPECT_EQ(resolve(timed).find("time"), nullptr);
+  EXPECT_EQ(resolve(timed).find("k"), nullptr);
+  EXPECT_NE(resolve(timed, {{"time", "1s"}}).find("k"), nullptr);
   EXPECT_THROW(resolve(timed, {{"k", "2"}}), UsageError);
 }
 
 TEST(Options, NeedsCombine) {
-  constexpr std::array kOptions{choiceOption("only", "all", "all|direct", "help"),
-                                realOption("area", "0", 0, 9, "", "help"),
-                                neededBy({Condition{"only", "all"}, Condition{"area", "0"}},
-                                         realOption("k", "1", 0, 9, "", "help"))};
+  constexpr auto kOptions = optionTable(choiceOption("only", "all", "all|direct", "help"),
+                                        realOption("area", "0", 0, 9, "", "help"),
+                                        neededBy({Condition{"only", "all"}, Condition{"area", "0"}},
+                                                 realOption("k", "1", 0, 9, "", "help")));
   const StageSpec both{
       "vpl-y",
       kOptions,

@@ -14,8 +14,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/hash.h"
 #include "core/files.h"
+#include "core/hash.h"
 #include "core/read_file.h"
 #include "formats/image/exr_header.h"
 #include "formats/vpl/vpl_layout.h"

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <utility>
 
-#include "core/hash.h"
 #include "core/files.h"
+#include "core/hash.h"
 #include "formats/atomic_file.h"
 #include "formats/vpl/vpl_layout.h"
 

@@ -4,8 +4,8 @@
 #include <bit>
 #include <cstring>
 
-#include "core/hash.h"
 #include "core/files.h"
+#include "core/hash.h"
 #include "formats/vpl/vpl_layout.h"
 
 namespace bnvpl {

@@ -1,7 +1,7 @@
 // Files that no stage writes: their contents were changed and hashed again.
-#include "core/hash.h"
 #include "tools/inspect/check/chain.h"
 
+#include "core/hash.h"
 #include "tests/inspect/inspect_files.h"
 
 namespace bnvpl {

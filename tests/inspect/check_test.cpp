@@ -1,6 +1,6 @@
-#include "core/hash.h"
 #include "tools/inspect/check/check.h"
 
+#include "core/hash.h"
 #include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/inspect_files.h"
 

@@ -70,25 +70,13 @@ TEST_F(ToToml, KeepsInstances) {
 }
 
 TEST_F(ToToml, NamesMaterialsWithoutAName) {
-  const auto material = [](const std::string& grey) {
-    return "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[" + grey + "," + grey + "," + grey +
-           ",1],\"metallicFactor\":0},"
-           "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}}";
-  };
-  const auto mesh = [](const std::string& number) {
-    return "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":" + number + "}]}";
-  };
-  writeAll(
-      at("s.gltf"),
-      "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/"
-      "octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAA\"}],"
-      "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
-      "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[-1,-1,0],\"max\":[1,1,0]}],"
-      "\"materials\":[" +
-          material("0.5") + "," + material("0.25") + "],\"meshes\":[" + mesh("0") + "," +
-          mesh("1") +
-          "],\"nodes\":[{\"mesh\":0},{\"mesh\":1,\"translation\":[0,0,-1]}],"
-          "\"scenes\":[{\"nodes\":[0,1]}]}");
+  writeAll(at("s.gltf"), R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":
+    "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAA"}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,
+    "count":3,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]}],
+    "materials":[{"extensions":{"KHR_materials_specular":{"specularFactor":0}}}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+    "nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}]})");
   EXPECT_EQ(convert("s.gltf", "copy").code, 0);
   EXPECT_EQ(sceneDifference(loadScene(at("s.gltf")), loadScene(at("copy/scene.toml"))), "");
 }

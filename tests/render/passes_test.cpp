@@ -6,6 +6,7 @@
 
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl::test {
 namespace {
@@ -242,7 +243,7 @@ TEST(Passes, EndByTimeErrorOrNumber) {
 
 TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
-  EXPECT_EQ(resolveRender({}).whole("spp"), 16u);
+  EXPECT_EQ(resolveRender({})[kSppOption], 16u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->passes, 0xffffffffu / kPassSpp);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}, {"spp", "33"}}))->passes, 32u / kPassSpp);
   EXPECT_EQ(budgetOf(resolveRender({{"spp", "33"}, {"passes", "3"}}))->passes, 3u);

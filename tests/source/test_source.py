@@ -20,7 +20,7 @@ LAYERS = ["core", "formats", "spatial", "scene", "transport", "images", "tools"]
 STAGES = ["place", "eliminate", "estimate", "render"]
 # What vpl-render is made of, from the record of a sample up to the integrators.
 RENDER = [
-    ["sample.h", "camera_vertex.h", "tile_dimensions.h"],
+    ["sample.h", "camera_vertex.h", "tile_dimensions.h", "stage_options.h"],
     ["splat"],
     ["film"],
     ["light_tree"],

@@ -13,7 +13,7 @@ struct GatherOf {
       : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
     const Values values = resolve(renderSpec(), options);
     const ProgressFn silent;
-    gather = methodNamed(gatherMethods(), values.text("gather"))
+    gather = methodNamed(gatherMethods(), values[OptionKey<std::string>{"gather"}])
                  .make({world.rays, vpls, tree, 1,
                         [this] {
                           looksAtFilm = true;

@@ -12,18 +12,19 @@ constexpr double kBytesPerRow = 3 * sizeof(Vec3) + sizeof(uint32_t);
 Cost costOfEliminating(const VplTable& candidates, const Values& options, const RayScene* rays,
                        const LightSet* lights, const ProgressFn& progress) {
   constexpr uint64_t kFirst = 1 << 14, kFewPoints = 400;
-  if (candidates.size() < options.whole("count"))
+  if (candidates.size() < options[kEliminateCountOption])
     eliminate(candidates, options, rays, lights);  // refuses
   // Each candidate is judged by all of these points.
-  const uint64_t points = options.has("camera-points") ? options.whole("camera-points") : 0,
+  const uint64_t points = options.has(kCameraPointsKey) ? options[kCameraPointsKey] : 0,
                  judges = std::min(points, kFewPoints);
   const auto part = [&](uint64_t count) {
     std::vector<uint32_t> rows(count);
     for (uint64_t i = 0; i < count; ++i)
       rows[i] = static_cast<uint32_t>(i * candidates.size() / count);
     Values some = options;
-    some.set("count", std::max<uint64_t>(1, options.whole("count") * count / candidates.size()));
-    if (points > 0) some.set("camera-points", judges);
+    some.set(kEliminateCountOption,
+             std::max<uint64_t>(1, options[kEliminateCountOption] * count / candidates.size()));
+    if (points > 0) some.set(kCameraPointsKey.name, judges);
     eliminate(keepRows(candidates, rows), some, rays, lights, progress);
   };
   Cost cost = costOfRows(candidates.size(), kFirst, part,

@@ -10,8 +10,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr std::array kOptions{
-    letterFor("-n", countOption("count", "", 0x1p53, "", "VPLs to keep"))};
+constexpr auto kOptions = optionTable(kEliminateCountOption);
 
 void requireEnough(size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");
@@ -32,7 +31,7 @@ const StageSpec& eliminateSpec() {
 }
 
 const EliminateMethod& eliminateMethod(const Values& options) {
-  return methodNamed(eliminateMethods(), options.text("method"));
+  return methodNamed(eliminateMethods(), options[kMethodSlot]);
 }
 
 EliminateResult eliminate(const VplTable& candidates, const Values& options, const RayScene* rays,
@@ -42,7 +41,7 @@ EliminateResult eliminate(const VplTable& candidates, const Values& options, con
     throw UsageError("--method " + std::string(method.name) +
                      " needs the scene; add --scene SCENE");
   }
-  requireEnough(candidates.size(), options.whole("count"));
+  requireEnough(candidates.size(), options[kEliminateCountOption]);
   const Kept kept = method.make({candidates, rays, lights, progress}, options);
   EliminateResult result{keepRows(candidates, kept.rows), kept.rMax, kept.area};
   VplTable& table = result.table;

@@ -12,6 +12,12 @@
 
 namespace bnvpl {
 
+inline constexpr WholeOption kEliminateCountOption =
+    letterFor("-n", countOption("count", "", 0x1p53, "", "VPLs to keep"));
+
+// Points of the image at which a method measures VPLs, where it does.
+inline constexpr OptionKey<uint64_t> kCameraPointsKey{"camera-points"};
+
 // Rows that a method keeps.
 struct Kept {
   std::vector<uint32_t> rows;  // ascending, so they stay in path order

@@ -76,10 +76,10 @@ double packedDiskRadius(double area, double count) { return std::sqrt(area / (kT
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
                               double count, const Values& options, const ProgressFn& progress) {
   const auto candidates = static_cast<double>(position.size());
-  const auto neighbours = [&] { return static_cast<unsigned>(options.whole("neighbours")); };
-  const double given = options.real("area");
+  const auto neighbours = [&] { return static_cast<unsigned>(options[kNeighboursOption]); };
+  const double given = options[kAreaOption];
   CandidateRadii result;
-  if (options.text("density") == "uniform") {
+  if (options[kDensityOption] == "uniform") {
     result.area = given > 0.0 ? given : estimateArea(position, normal, neighbours(), 1, progress);
     result.rMax = packedDiskRadius(result.area, count);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));
@@ -94,7 +94,7 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   result.area = given > 0.0 ? given : estimate;
   result.rMax = packedDiskRadius(result.area, count);
   // VPLs per unit of area are N ((1 - w) / (M share) + w / A), which integrates to N.
-  const double shareScale = result.area / estimate, w = options.real("uniform-share");
+  const double shareScale = result.area / estimate, w = options[kUniformShareOption];
   parallelFor(position.size(), 4096, [&](size_t i) {
     const double share = static_cast<double>(result.radius[i]) * shareScale;
     const double density = (1.0 - w) / (candidates * share) + w / result.area;

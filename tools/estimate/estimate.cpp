@@ -6,7 +6,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr std::array kOptions{seedOption()};
+constexpr auto kOptions = optionTable(kSeedOption);
 
 }  // namespace
 
@@ -19,12 +19,12 @@ const StageSpec& estimateSpec() {
 }
 
 Work estimateWork(const VplTable& vpls, const Values& options) {
-  return methodNamed(estimateMethods(), options.text("method")).work(vpls, options);
+  return methodNamed(estimateMethods(), options[kMethodSlot]).work(vpls, options);
 }
 
 EstimateResult estimate(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
                         const Values& options, const ProgressFn& progress, const Resume& resume) {
-  return methodNamed(estimateMethods(), options.text("method"))
+  return methodNamed(estimateMethods(), options[kMethodSlot])
       .make({vpls, rays, lights, progress, resume}, options);
 }
 

@@ -271,12 +271,11 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
                                  const ScatterRule& rule) {
   in.lights.requirePower();
   const double power = double{mean(in.lights.totalPower())};
-  const PhotonShares shares(in.lights, options.whole("photons"));
-  const PhotonScatter scatter(in.vpls, in.rays, options.real32("radius"),
+  const PhotonShares shares(in.lights, options[kPhotonsOption]);
+  const PhotonScatter scatter(in.vpls, in.rays, options.real32(kRadiusOption),
                               power / static_cast<double>(shares.total()), shares.total());
-  const PhotonRun run{streamKey(options.whole("seed"), Stream::Photons),
-                      options.whole("emit-points"),
-                      static_cast<unsigned>(options.whole("max-bounces")), shares, scatter};
+  const PhotonRun run{streamKey(options[kSeedOption], Stream::Photons), options[kEmitPointsOption],
+                      static_cast<unsigned>(options[kPhotonBouncesOption]), shares, scatter};
   const PhotonSums sums = tracePhotons(in, run, rule);
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
   fillTable(result.table, sums, scatter);

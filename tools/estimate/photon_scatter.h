@@ -17,11 +17,14 @@ namespace bnvpl {
 
 // Options of the photon methods. Sums over more than 2^36 photons would exceed their fixed-point
 // range.
-inline constexpr std::array kPhotonOptions{
-    countOption("photons", "10M", 0x1p36, "", "photons from all lights in total"), kRadiusOption,
-    wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"), kEmitPointsOption};
+inline constexpr auto kPhotonsOption =
+    countOption("photons", "10M", 0x1p36, "", "photons from all lights in total");
+inline constexpr auto kPhotonBouncesOption =
+    wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon");
+inline constexpr auto kPhotonOptions =
+    optionTable(kPhotonsOption, kRadiusOption, kPhotonBouncesOption, kEmitPointsOption);
 inline Work photonWork(const VplTable&, const Values& options) {
-  return {"photons", options.whole("photons")};
+  return {"photons", options[kPhotonsOption]};
 }
 
 // Hit of a photon on a rough surface.

@@ -16,7 +16,7 @@
 
 namespace bnvpl {
 
-inline constexpr Option kPathsOption =
+inline constexpr WholeOption kPathsOption =
     countOption("paths", "4", 1u << 20, "", "paths from each point");
 
 // Estimate of a VPL's flux from points of its surface, W.

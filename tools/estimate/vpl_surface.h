@@ -9,7 +9,7 @@
 
 namespace bnvpl {
 
-inline constexpr Option kRadiusOption =
+inline constexpr RealOption kRadiusOption =
     realOption("radius", "1.7", 0.01, 100, "r_max", "distance within which a VPL collects light");
 // Reach of each VPL, world units.
 std::vector<float> reachOf(const VplTable& vpls, float radius);

@@ -45,7 +45,7 @@ OutputKind placedKind(const ShardRun& whole) {
 std::vector<fs::path> mergePlaced(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                   Summary& summary) {
   const Values options = placeOptionsOf(shards.whole());
-  const uint64_t count = options.whole("count");
+  const uint64_t count = options[kPlaceCountOption];
   requireMemory(kBytesPerPlaced * static_cast<double>(count), std::to_string(count) + " VPLs",
                 "place fewer with -n");
   const Json& record = shards.whole().run;

@@ -2,6 +2,7 @@
 #include "tools/common/options/film_size.h"
 #include "tools/merge/merge.h"
 #include "tools/render/outputs.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 
@@ -10,7 +11,7 @@ std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output,
   const ShardRun& whole = shards.whole();
   Values options = optionsOf(whole, renderSpec(), resolveRender);
   if (budgetOf(options)) throw InputError("shards of passes cannot be merged; make them again");
-  options.set("exposure", output.exposure);
+  options.set(kExposureOption, output.exposure);
   const Film film = parseSize(fieldOf<std::string>(fieldOf<Json>(whole.run, "view"), "size"));
   requireMemory(bytesPerPixelOf(options) * film.width * film.height,
                 "an image of " + sizeText(film) + " pixels", "choose a smaller --size");

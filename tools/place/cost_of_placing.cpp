@@ -14,13 +14,13 @@ Cost costOfPlacing(const PlaceInputs& inputs, const Values& options, const Progr
   double paths = 0.0, besideRows = 0.0;
   const auto part = [&](uint64_t count) {
     Values some = options;
-    some.set("count", count);
+    some.set(kPlaceCountOption, count);
     const MemoryWatch memory;
     const PlaceResult placed = place(inputs, some, progress);
     paths = static_cast<double>(placed.paths) / static_cast<double>(count);
     besideRows = memory.peak() - kBytesPerPlaced * static_cast<double>(count);
   };
-  Cost cost = costOfRows(options.whole("count"), kFirst, part, [&](uint64_t count) {
+  Cost cost = costOfRows(options[kPlaceCountOption], kFirst, part, [&](uint64_t count) {
     const auto wave = static_cast<double>(kChunksPerWave * kPathsPerChunk);
     return std::ceil(paths * static_cast<double>(count) / wave);
   });

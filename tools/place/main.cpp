@@ -13,7 +13,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr Option kSpareOption =
+constexpr RealOption kSpareOption =
     realOption("shard-spare", "", 0, 10, "of its part",
                "spare VPLs that a shard places; vpl-merge says if they are needed");
 
@@ -25,7 +25,7 @@ struct Request : StageRequest {
 int runPlace(const Request& request, const ToolOptions& tool) {
   StageRun run("vpl-place", request, tool);
   const Values options = resolve(placeSpec(), request.given);
-  const uint64_t count = options.whole("count");
+  const uint64_t count = options[kPlaceCountOption];
   const double rowBytes = request.shard ? 0.0 : kBytesPerPlaced * static_cast<double>(count);
   run.used.reads("scene", request.scene.file);
   const PlaceMethod& method = placeMethod(options);

@@ -9,13 +9,7 @@ namespace bnvpl {
 
 namespace {
 
-// vpl-eliminate cannot search more candidates.
-constexpr double kMaxCount = 0x1p31 - 1;
-
-constexpr std::array kOptions{
-    letterFor("-n", countOption("count", "120k", kMaxCount, "",
-                                "VPLs to place; --method light may place slightly fewer")),
-    seedOption()};
+constexpr auto kOptions = optionTable(kPlaceCountOption, kSeedOption);
 
 }  // namespace
 
@@ -28,7 +22,7 @@ const StageSpec& placeSpec() {
 }
 
 const PlaceMethod& placeMethod(const Values& options) {
-  return methodNamed(placeMethods(), options.text("method"));
+  return methodNamed(placeMethods(), options[kMethodSlot]);
 }
 
 namespace {
@@ -57,7 +51,7 @@ PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn
   if (resume.pause) return placeInPieces(in, options, progress, resume);
   const PlaceMethod& method = placeMethod(options);
   PlaceResult result =
-      collectRows(in.rays.scene().name(), {options.whole("count"), method.last, in.views.turns},
+      collectRows(in.rays.scene().name(), {options[kPlaceCountOption], method.last, in.views.turns},
                   progress, method.make(in, options));
   method.finish(result);
   result.table.sceneHash = in.rays.scene().contentHash;
@@ -66,7 +60,7 @@ PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn
 
 PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
                        const Resume& resume, const ProgressFn& progress) {
-  return traceShard(in.rays.scene().name(), options.whole("count"), spare, resume, progress,
+  return traceShard(in.rays.scene().name(), options[kPlaceCountOption], spare, resume, progress,
                     placeMethod(options).make(in, options));
 }
 
@@ -74,7 +68,8 @@ PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ViewTurn
                        const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly) {
   const PlaceMethod& method = placeMethod(options);
-  PlaceResult result = joinShards({options.whole("count"), method.last, turns}, source, endedEarly);
+  PlaceResult result =
+      joinShards({options[kPlaceCountOption], method.last, turns}, source, endedEarly);
   method.finish(result);
   result.table.sceneHash = sceneHash;
   return result;

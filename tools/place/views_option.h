@@ -10,7 +10,7 @@
 
 namespace bnvpl {
 
-inline constexpr Option kViewSharesOption =
+inline constexpr TextOption kViewSharesOption =
     textOption("view-shares", "", "N,...",
                "of several views: the parts of each in the paths; equal unless given");
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/render/stage_options.h"
+
 namespace bnvpl {
 
 namespace {
@@ -12,7 +14,7 @@ namespace {
 Given withoutPasses(const Given& given, const Values& options) {
   const auto budget = budgetOf(options);
   if (!budget) return given;
-  if (!options.has("passes")) {
+  if (!options.has(kPassesOption)) {
     throw UsageError(
         "--estimate cannot know how many passes --time and --target-error take; give --passes");
   }
@@ -44,7 +46,7 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   constexpr uint64_t kMaxSpp = 64;  // as many as are taken together: more are more of the same
   const auto& [film, given, options, apart] = image;
   const Values plain = resolveRender(withoutPasses(given, options));
-  const uint64_t spp = plain.whole("spp"), tried = std::min(spp, kMaxSpp);
+  const uint64_t spp = plain[kSppOption], tried = std::min(spp, kMaxSpp);
   const Film& small = rays.scene().film;
   const double pixels = double(film.width) * film.height,
                fewPixels = double(small.width) * small.height;

@@ -9,6 +9,7 @@
 #include "tools/common/run/memory.h"
 #include "tools/render/integrator/light_in_glass.h"
 #include "tools/render/outputs.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 
@@ -32,7 +33,7 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
                        bool inShards) {
   const IntegratorMethod& integrator = integratorOf(options);
   layersOf(options);
-  parseExposure(options.text("exposure"));
+  parseExposure(options[kExposureOption]);
   if (inShards && budgetOf(options)) {
     throw UsageError(
         "--shard has no passes over the whole film, by which --time, --target-error and --passes "
@@ -54,7 +55,7 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
 
 VplTable readLit(const fs::path& lit, const Values& options, bool estimating) {
   if (lit.empty()) return {};
-  const bool nearField = options.has("compensate") && options.text("compensate") == "near-field";
+  const bool nearField = options.has(kCompensateSlot) && options[kCompensateSlot] == "near-field";
   if (!estimating) {
     requireMemoryFor(lit, nearField ? kBytesPerVplWithNearField : kBytesPerVpl,
                      "keep fewer VPLs with vpl-eliminate -n");

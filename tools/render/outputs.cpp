@@ -8,6 +8,7 @@
 #include "formats/image/png_io.h"
 #include "formats/image/tonemap.h"
 #include "tools/common/options/exposure.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 
@@ -52,14 +53,14 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 
 double bytesPerPixelOf(const Values& options) {
   double bytes = 250;  // measured: 245 to 300, depending on layers
-  if (options.has("fireflies") && options.text("fireflies") == "redistribute") bytes += 40;
+  if (redistributesFireflies(options)) bytes += 40;
   if (budgetOf(options)) bytes += 120;              // sums over passes
   if (integratorOf(options).photons) bytes += 168;  // exact sums of photons
   return bytes;
 }
 
 ExrPixelType pixelTypeOf(const Values& options) {
-  return options.text("pixels") == "half" ? ExrPixelType::Half : ExrPixelType::Float;
+  return options[kPixelsOption] == "half" ? ExrPixelType::Half : ExrPixelType::Float;
 }
 
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
@@ -78,7 +79,7 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
   warn(losses.below, " values are too small for half precision and became 0");
   warnOfBlack(image);
   if (paths.png.empty()) return;
-  const float ev = exposureOf(image, options.text("exposure"));
+  const float ev = exposureOf(image, options[kExposureOption]);
   writePreview(files.add(paths.png), image, ev);
   char line[64];
   std::snprintf(line, sizeof line, "preview at exposure %+.2f EV: ", double{ev});
@@ -87,7 +88,7 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
 
 PreviewFn previewTo(const ImagePaths& paths, const Values& options) {
   if (paths.png.empty()) return {};
-  return [png = paths.png, exposure = options.text("exposure")](const Image& image) {
+  return [png = paths.png, exposure = options[kExposureOption]](const Image& image) {
     AtomicFile file(png);
     writePreview(file, image, exposureOf(image, exposure));
     file.commit();
@@ -115,7 +116,7 @@ Values optionsMade(const RenderResult& result, const Given& given) {
 
 void finishImage(RenderResult& result, const Values& made, const std::string& provenance) {
   auto& attributes = result.image.attributes;
-  attributes["bnvpl.samplesPerPixel"] = std::to_string(made.whole("spp"));
+  attributes["bnvpl.samplesPerPixel"] = std::to_string(made[kSppOption]);
   if (result.passes) {
     attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
     char error[32];
@@ -127,7 +128,7 @@ void finishImage(RenderResult& result, const Values& made, const std::string& pr
 }
 
 Json withLayers(Json run, const Values& options) {
-  run["layers"] = options.text("layers");
+  run["layers"] = options[kLayersKey];
   return run;
 }
 
@@ -140,12 +141,12 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
                 "repeats this image",
                 static_cast<unsigned long long>(passes.passes), kPassSpp, passes.timeS,
                 passes.error, static_cast<unsigned long long>(passes.passes),
-                options.on("adaptive") ? "" : " --adaptive off");
+                options[kAdaptiveOption] ? "" : " --adaptive off");
   summary.add("passes", passes.passes, line);
   summary.add("relative_error", passes.error);
   summary.add("passes_time_s", passes.timeS);
   summary.add("ended_by", passes.endedBy);
-  const double wantedS = options.has("time") ? options.real("time") : INFINITY;
+  const double wantedS = options.has(kTimeOption) ? options[kTimeOption] : INFINITY;
   if (passes.passes == kMinPasses && passes.timeS > 1.1 * wantedS) {
     std::snprintf(line, sizeof line,
                   "two passes, the fewest, took %.1f s instead of --time's %.6g; choose a smaller "
@@ -159,7 +160,7 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
 
 void reportRender(const RenderResult& result, const Values& options, Summary& summary) {
   const FilmStats& stats = result.stats;
-  const std::string& only = options.text("only");
+  const std::string& only = options[kOnlyOption];
   std::string means;
   char line[256];
   for (const auto& [name, value] :
@@ -170,7 +171,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     summary.add(std::string("mean_") + name, value);
   }
   std::snprintf(line, sizeof line, "%d x %d pixels, %llu spp: %s W/(m2 sr)", result.image.width,
-                result.image.height, static_cast<unsigned long long>(options.whole("spp")),
+                result.image.height, static_cast<unsigned long long>(options[kSppOption]),
                 means.c_str());
   summary.add("samples", stats.samples, line);
   if (result.passes) reportPasses(*result.passes, options, summary);

@@ -5,55 +5,28 @@
 
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 
 namespace {
 
-const std::string& layersHelp() {
-  static const std::string help = "extra channels of the image, or all" + layerList();
-  return help;
-}
-
-constexpr double kMaxSpp = 0x1p32 - 1;
-
 std::span<const Option> stageOptions() {
-  static const std::array options{
-      countOption("spp", "16", kMaxSpp, "",
-                  "samples per pixel; with --time, --target-error or --passes an upper limit, if "
-                  "given"),
-      unrecorded(optional(durationOption(
-          "time",
-          "render passes over the film, as many as are expected to end within this time; at "
-          "least two"))),
-      unrecorded(optional(
-          realOption("target-error", "", 0.0001, 10, "",
-                     "render passes until the estimated error of the image is at most this"))),
-      optional(wholeOption("passes", "", kMinPasses, 0x1p40, "",
-                           "render this many passes; with --time or --target-error at most this "
-                           "many")),
-      neededBy({Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
-               switchOption("adaptive", "on",
-                            "after the first passes, take more samples where the error is larger")),
-      choiceOption("only", "all", "all|direct|indirect", "light that the image shows"),
-      seedOption(),
-      unrecorded(textOption("layers", "", "NAME,...", layersHelp())),
-      unrecorded(textOption("size", "", "WIDTHxHEIGHT",
-                            "size of the film instead of the scene's; keeps the vertical field of "
-                            "view")),
-      choiceOption("pixels", "float", "half|float", "EXR channel type"),
-      unrecorded(textOption("exposure", "auto", "EV|auto",
-                            "exposure of the PNG, in stops; auto: the mean becomes middle grey"))};
+  static const std::string layersHelp = "extra channels of the image, or all" + layerList();
+  static const std::array options = optionTable(
+      kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kAdaptiveOption, kOnlyOption,
+      kSeedOption, unrecorded(textOption(kLayersKey.name, "", "NAME,...", layersHelp)), kSizeOption,
+      kPixelsOption, kExposureOption);
   return options;
 }
 
 Only onlyOf(const Values& options) {
-  const std::string& name = options.text("only");
+  const std::string& name = options[kOnlyOption];
   return name == "direct" ? Only::Direct : name == "indirect" ? Only::Indirect : Only::Everything;
 }
 
 FilmOptions filmOptionsOf(const Values& options) {
-  return {static_cast<uint32_t>(options.whole("spp")), options.whole("seed"), onlyOf(options),
+  return {static_cast<uint32_t>(options[kSppOption]), options[kSeedOption], onlyOf(options),
           layersOf(options), redistributesFireflies(options)};
 }
 
@@ -95,43 +68,43 @@ const StageSpec& renderSpec() {
 Values resolveRender(const Given& given) {
   Values options = resolve(renderSpec(), given);
   const bool limited = std::ranges::any_of(given, [](const auto& g) { return g.first == "spp"; });
-  if (budgetOf(options) && !limited) options.set("spp", static_cast<uint64_t>(kMaxSpp));
+  if (budgetOf(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
   return options;
 }
 
 std::optional<Budget> budgetOf(const Values& options) {
-  const bool time = options.has("time"), error = options.has("target-error"),
-             passes = options.has("passes");
+  const bool time = options.has(kTimeOption), error = options.has(kTargetErrorOption),
+             passes = options.has(kPassesOption);
   if (!time && !error && !passes) return {};
   Budget budget;
-  if (time) budget.timeS = options.real("time");
-  if (error) budget.error = options.real("target-error");
-  budget.passes = options.whole("spp") / kPassSpp;
+  if (time) budget.timeS = options[kTimeOption];
+  if (error) budget.error = options[kTargetErrorOption];
+  budget.passes = options[kSppOption] / kPassSpp;
   if (budget.passes < kMinPasses) {
     throw UsageError("--spp: with --time, --target-error or --passes it is at least " +
                      std::to_string(kMinPasses * kPassSpp) + ", for " + std::to_string(kMinPasses) +
                      " passes of " + std::to_string(kPassSpp));
   }
-  if (passes) budget.passes = std::min(budget.passes, options.whole("passes"));
-  budget.adaptive = options.on("adaptive");
+  if (passes) budget.passes = std::min(budget.passes, options[kPassesOption]);
+  budget.adaptive = options[kAdaptiveOption];
   return budget;
 }
 
 const IntegratorMethod& integratorOf(const Values& options) {
-  return methodNamed(integratorMethods(), options.text("integrator"));
+  return methodNamed(integratorMethods(), options[kIntegratorSlot]);
 }
 
 std::vector<const Layer*> layersOf(const Values& options) {
-  return parseLayers(options.text("layers"),
+  return parseLayers(options[kLayersKey],
                      integratorOf(options).gathers && onlyOf(options) != Only::Direct,
-                     budgetOf(options).has_value(), options.text("only"));
+                     budgetOf(options).has_value(), options[kOnlyOption]);
 }
 
 uint64_t renderWork(const Scene& scene, const Values& options) {
   const auto budget = budgetOf(options);
-  uint64_t spp = options.whole("spp");
+  uint64_t spp = options[kSppOption];
   if (budget) {
-    if (!options.has("passes") && spp == static_cast<uint64_t>(kMaxSpp)) return 0;
+    if (!options.has(kPassesOption) && spp == static_cast<uint64_t>(kUnlimitedSpp)) return 0;
     spp = budget->passes * kPassSpp;
   }
   const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * spp;

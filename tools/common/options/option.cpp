@@ -93,8 +93,8 @@ std::vector<Found> findAll(const StageSpec& spec, std::string_view name) {
   std::string methods;
   for (const Found& f : found) {
     // The slot itself has no effect: the message names what would give it one.
-    if (f.slot && !values.has(f.slot->name)) refuseFor(name, unmet(f.slot->needs, values), values);
-    const bool chosen = !f.slot || values.text(f.slot->name) == f.method->name;
+    if (f.slot && !values.find(f.slot->name)) refuseFor(name, unmet(f.slot->needs, values), values);
+    const bool chosen = !f.slot || values[OptionKey<std::string>{f.slot->name}] == f.method->name;
     if (chosen) refuseFor(name, unmet(f.option->needs, values), values);
     slot = f.slot->name;
     methods += (methods.empty() ? "" : "|") + std::string(f.method->name);
@@ -171,7 +171,7 @@ Values resolve(const StageSpec& spec, const Given& given) {
     for (const Option& o : m->options) takeOption(o, given, values);
   }
   for (const auto& [name, text] : given) {
-    if (values.has(name)) continue;
+    if (values.find(name)) continue;
     const std::vector<Found> found = findAll(spec, name);
     if (found.empty() || !found.front().option->harmless) refuseWithoutEffect(spec, name, values);
     parseValue(*found.front().option, text);

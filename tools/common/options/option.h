@@ -72,58 +72,88 @@ struct Option {
   bool harmless = false;         // where it has no effect, it is ignored instead of refused
 };
 
-// Makers of table entries, one for each kind.
-constexpr Option realOption(std::string_view name, std::string_view fallback, double least,
-                            double most, std::string_view unit, std::string_view help) {
-  return {name, Option::Kind::Real, fallback, least, most, unit, help};
+using Value = std::variant<bool, uint64_t, double, std::string>;
+
+// The name of an option whose value has this type: one of Value's alternatives.
+template <typename T>
+struct OptionKey {
+  std::string_view name;
+};
+
+// An option whose value has this type: values[kMaxCutOption] is a uint64_t.
+template <typename T>
+struct OptionOf : Option {
+  constexpr OptionKey<T> key() const { return {name}; }
+};
+using RealOption = OptionOf<double>;     // also durations, in seconds
+using WholeOption = OptionOf<uint64_t>;  // also counts
+using SwitchOption = OptionOf<bool>;
+using TextOption = OptionOf<std::string>;  // also choices
+
+// Makers of options, one for each kind.
+constexpr RealOption realOption(std::string_view name, std::string_view fallback, double least,
+                                double most, std::string_view unit, std::string_view help) {
+  return {{name, Option::Kind::Real, fallback, least, most, unit, help}};
 }
-constexpr Option wholeOption(std::string_view name, std::string_view fallback, double least,
-                             double most, std::string_view unit, std::string_view help) {
-  return {name, Option::Kind::Whole, fallback, least, most, unit, help};
+constexpr WholeOption wholeOption(std::string_view name, std::string_view fallback, double least,
+                                  double most, std::string_view unit, std::string_view help) {
+  return {{name, Option::Kind::Whole, fallback, least, most, unit, help}};
 }
-constexpr Option countOption(std::string_view name, std::string_view fallback, double most,
-                             std::string_view unit, std::string_view help) {
-  return {name, Option::Kind::Count, fallback, 1.0, most, unit, help};
+constexpr WholeOption countOption(std::string_view name, std::string_view fallback, double most,
+                                  std::string_view unit, std::string_view help) {
+  return {{name, Option::Kind::Count, fallback, 1.0, most, unit, help}};
 }
-constexpr Option switchOption(std::string_view name, std::string_view fallback,
-                              std::string_view help) {
-  return {name, Option::Kind::Switch, fallback, 0, 0, {}, help};
+constexpr SwitchOption switchOption(std::string_view name, std::string_view fallback,
+                                    std::string_view help) {
+  return {{name, Option::Kind::Switch, fallback, 0, 0, {}, help}};
 }
-constexpr Option choiceOption(std::string_view name, std::string_view fallback,
-                              std::string_view choices, std::string_view help) {
-  return {name, Option::Kind::Choice, fallback, 0, 0, {}, help, choices};
+constexpr TextOption choiceOption(std::string_view name, std::string_view fallback,
+                                  std::string_view choices, std::string_view help) {
+  return {{name, Option::Kind::Choice, fallback, 0, 0, {}, help, choices}};
 }
-constexpr Option textOption(std::string_view name, std::string_view fallback, std::string_view unit,
-                            std::string_view help) {
-  return {name, Option::Kind::Text, fallback, 0, 0, unit, help};
+constexpr TextOption textOption(std::string_view name, std::string_view fallback,
+                                std::string_view unit, std::string_view help) {
+  return {{name, Option::Kind::Text, fallback, 0, 0, unit, help}};
 }
-constexpr Option durationOption(std::string_view name, std::string_view help) {
-  return {name, Option::Kind::Duration, {}, 0x1p-10, 1e9, {}, help};
+constexpr RealOption durationOption(std::string_view name, std::string_view help) {
+  return {{name, Option::Kind::Duration, {}, 0x1p-10, 1e9, {}, help}};
+}
+template <typename T>
+constexpr OptionOf<T> harmless(OptionOf<T> option) {
+  option.harmless = true;
+  return option;
 }
 // The seed of a stage that draws random numbers. Scripts may pass it to every stage, also for
 // methods that draw none.
-constexpr Option seedOption() {
-  Option seed = wholeOption("seed", "1", 0, 0x1p64, {}, "random seed");
-  seed.harmless = true;
-  return seed;
-}
+inline constexpr WholeOption kSeedOption =
+    harmless(wholeOption("seed", "1", 0, 0x1p64, {}, "random seed"));
 
-constexpr Option letterFor(std::string_view letter, Option option) {
+template <typename T>
+constexpr OptionOf<T> letterFor(std::string_view letter, OptionOf<T> option) {
   option.letter = letter;
   return option;
 }
-constexpr Option neededBy(const Needs& needs, Option option) {
+template <typename T>
+constexpr OptionOf<T> neededBy(const Needs& needs, OptionOf<T> option) {
   option.needs = needs;
   return option;
 }
-constexpr Option unrecorded(Option option) {
+template <typename T>
+constexpr OptionOf<T> unrecorded(OptionOf<T> option) {
   option.recorded = false;
   return option;
 }
 
-constexpr Option optional(Option option) {
+template <typename T>
+constexpr OptionOf<T> optional(OptionOf<T> option) {
   option.optional = true;
   return option;
+}
+
+// The options of a stage or method, as Option without the types of their values.
+template <typename... T>
+constexpr std::array<Option, sizeof...(T)> optionTable(const OptionOf<T>&... options) {
+  return {static_cast<const Option&>(options)...};
 }
 
 // Concatenates two tables.
@@ -136,8 +166,6 @@ constexpr std::array<Option, A + B> joined(const std::array<Option, A>& a,
   return out;
 }
 
-using Value = std::variant<bool, uint64_t, double, std::string>;
-
 // The range of a number for people: "0 to 1000", "1 to 2^32 - 1"; empty for other kinds.
 std::string rangeOf(const Option& option);
 // The conditions for people: "--density local or --area 0"; empty if there are none.
@@ -148,26 +176,34 @@ Value parseValue(const Option& option, const std::string& text);
 // Parses a finite decimal number, as a part of a longer text; none for any other text.
 std::optional<double> parseReal(const std::string& text);
 
-// The values of the options that have an effect in a run, by name. The typed accessors throw
-// std::logic_error for an unknown name or another type.
+// The values of the options that have an effect in a run.
 class Values {
  public:
-  bool on(std::string_view name) const { return get<bool>(name); }
-  uint64_t whole(std::string_view name) const { return get<uint64_t>(name); }  // also Count
-  double real(std::string_view name) const { return get<double>(name); }  // also Duration, seconds
-  float real32(std::string_view name) const { return static_cast<float>(real(name)); }
-  const std::string& text(std::string_view name) const {  // also Choice
-    return get<std::string>(name);
+  // Throws std::logic_error for an option without a value, or another type than its table says.
+  template <typename T>
+  const T& operator[](OptionKey<T> key) const;
+  template <typename T>
+  const T& operator[](const OptionOf<T>& option) const {
+    return (*this)[option.key()];
   }
-  bool has(std::string_view name) const { return find(name) != nullptr; }
+  float real32(const RealOption& option) const { return static_cast<float>((*this)[option]); }
+  bool has(const Option& option) const { return find(option.name) != nullptr; }
+  template <typename T>
+  bool has(OptionKey<T> key) const {
+    return find(key.name) != nullptr;
+  }
 
+  template <typename T>
+  void set(const OptionOf<T>& option, T value) {
+    set(option.name, Value(std::move(value)));
+  }
+
+  // For code that takes options as data, such as conditions and records. Null without a value.
+  const Value* find(std::string_view name) const;
   void set(std::string_view name, Value value);
   const std::vector<std::pair<std::string, Value>>& list() const { return list_; }
 
  private:
-  template <typename T>
-  const T& get(std::string_view name) const;
-  const Value* find(std::string_view name) const;
   std::vector<std::pair<std::string, Value>> list_;  // in the order of the tables
 };
 

@@ -147,16 +147,17 @@ Value parseValue(const Option& option, const std::string& text) {
 }
 
 template <typename T>
-const T& Values::get(std::string_view name) const {
+const T& Values::operator[](OptionKey<T> key) const {
+  const std::string_view name = key.name;
   const Value* value = find(name);
   const T* typed = value ? std::get_if<T>(value) : nullptr;
   if (!typed) throw std::logic_error("no option " + std::string(name) + " of this type");
   return *typed;
 }
-template const bool& Values::get<bool>(std::string_view) const;
-template const uint64_t& Values::get<uint64_t>(std::string_view) const;
-template const double& Values::get<double>(std::string_view) const;
-template const std::string& Values::get<std::string>(std::string_view) const;
+template const bool& Values::operator[](OptionKey<bool>) const;
+template const uint64_t& Values::operator[](OptionKey<uint64_t>) const;
+template const double& Values::operator[](OptionKey<double>) const;
+template const std::string& Values::operator[](OptionKey<std::string>) const;
 
 const Value* Values::find(std::string_view name) const {
   for (const auto& [key, value] : list_) {

@@ -11,6 +11,8 @@
 
 namespace bnvpl {
 
+inline constexpr OptionKey<std::string> kMethodSlot{"method"};  // a stage with one set of methods
+
 // Make is the type of a function that turns inputs and option values into what the slot needs. The
 // function may throw InputError and UsageError.
 template <typename Make>

@@ -13,25 +13,24 @@ namespace bnvpl::methods::eliminate::elimination {
 
 namespace {
 
-constexpr auto kOptions = joined(
-    kRadiusOptions,
-    std::array{
-        realOption("alpha", "8", 0.1, 64, "", "exponent of the pair weights"),
-        // With limiting, all pairs nearer than a large part of r_max have the same weight. An area
-        // overestimated by 1.4 then keeps near-duplicates; without limiting it is harmless.
-        choiceOption("weight-limiting", "auto", "auto|on|off",
-                     "give all near pairs one weight; auto: with --area and --density uniform")});
+constexpr auto kAlphaOption = realOption("alpha", "8", 0.1, 64, "", "exponent of the pair weights");
+// With limiting, all pairs nearer than a large part of r_max have the same weight. An area
+// overestimated by 1.4 then keeps near-duplicates; without limiting it is harmless.
+constexpr auto kWeightLimitingOption =
+    choiceOption("weight-limiting", "auto", "auto|on|off",
+                 "give all near pairs one weight; auto: with --area and --density uniform");
+constexpr auto kOptions = joined(kRadiusOptions, optionTable(kAlphaOption, kWeightLimitingOption));
 
 // Parameters beta and gamma of weight limiting (Yuksel 2015, section 4.2).
 constexpr double kLimitBeta = 0.65, kLimitGamma = 1.5;
 
 PairWeight pairWeightRule(size_t candidates, double count, const Values& options) {
-  const std::string& limiting = options.text("weight-limiting");
-  const bool limited = limiting == "on" || (limiting == "auto" && options.real("area") > 0.0 &&
-                                            options.text("density") == "uniform");
+  const std::string& limiting = options[kWeightLimitingOption];
+  const bool limited = limiting == "on" || (limiting == "auto" && options[kAreaOption] > 0.0 &&
+                                            options[kDensityOption] == "uniform");
   const double kept = count / static_cast<double>(candidates);
   const double limit = limited ? (1.0 - std::pow(kept, kLimitGamma)) * kLimitBeta : 0.0;
-  return {options.real32("alpha"), static_cast<float>(limit)};
+  return {options.real32(kAlphaOption), static_cast<float>(limit)};
 }
 
 // Candidates in Morton order.
@@ -82,7 +81,7 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
 // Each step gives the result of the sequential greedy algorithm: remove the heaviest candidate
 // until no more than it keeps are left; of equal weights, the higher row goes first.
 Kept make(const EliminateInputs& in, const Values& options) {
-  const size_t count = options.whole("count");
+  const size_t count = options[kEliminateCountOption];
   Sorted left;
   left.row = mortonOrder(in.candidates.position);
   left.position = inOrder<Vec3>(in.candidates.position, left.row);

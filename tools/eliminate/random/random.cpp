@@ -14,7 +14,7 @@ namespace bnvpl::methods::eliminate::random {
 
 namespace {
 
-constexpr auto kOptions = joined(kRadiusOptions, std::array{seedOption()});
+constexpr auto kOptions = joined(kRadiusOptions, optionTable(kSeedOption));
 
 // The choice depends only on the seed and the row numbers.
 std::vector<uint32_t> randomRows(size_t candidates, size_t count, uint64_t seed) {
@@ -31,14 +31,14 @@ std::vector<uint32_t> randomRows(size_t candidates, size_t count, uint64_t seed)
 }
 
 Kept make(const EliminateInputs& in, const Values& options) {
-  const size_t count = options.whole("count");
+  const size_t count = options[kEliminateCountOption];
   const std::vector<uint32_t> order = mortonOrder(in.candidates.position);
   const CandidateRadii radii = candidateRadii(inOrder<Vec3>(in.candidates.position, order),
                                               inOrder<Vec3>(in.candidates.normal, order),
                                               static_cast<double>(count), options, in.progress);
   std::vector<float> radiusOfRow(order.size());
   parallelFor(order.size(), 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
-  Kept kept{randomRows(order.size(), count, options.whole("seed")), {}, radii.rMax, radii.area, {}};
+  Kept kept{randomRows(order.size(), count, options[kSeedOption]), {}, radii.rMax, radii.area, {}};
   std::sort(kept.rows.begin(), kept.rows.end());
   kept.radius = inOrder<float>(radiusOfRow, kept.rows);
   return kept;

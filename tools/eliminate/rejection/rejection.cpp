@@ -17,16 +17,18 @@ namespace bnvpl::methods::eliminate::rejection {
 
 namespace {
 
-constexpr std::array kOptions{
-    seedOption(),
-    countOption("camera-points", "400", 0x1p24, "",
-                "points of the image at which the contribution of VPLs is measured"),
-    // Gives every VPL a positive probability, without which the image would be biased: a VPL that
-    // lights none of the points may light other pixels.
-    realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL"),
-    // Without it, a VPL next to a point would outweigh all others.
-    realOption("clamp", "1", 0, 1000, "r_max",
-               "distance within which the measured contribution is clamped")};
+constexpr auto kCameraPointsOption =
+    countOption(kCameraPointsKey.name, "400", 0x1p24, "",
+                "points of the image at which the contribution of VPLs is measured");
+// Gives every VPL a positive probability, without which the image would be biased: a VPL that
+// lights none of the points may light other pixels.
+constexpr auto kLeastProbabilityOption =
+    realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL");
+// Without it, a VPL next to a point would outweigh all others.
+constexpr auto kClampOption = realOption(
+    "clamp", "1", 0, 1000, "r_max", "distance within which the measured contribution is clamped");
+constexpr auto kOptions =
+    optionTable(kSeedOption, kCameraPointsOption, kLeastProbabilityOption, kClampOption);
 
 // First rough vertices of `count` camera paths, spread over the film. Paths without one are left
 // out.
@@ -91,9 +93,9 @@ std::vector<double> probabilities(const std::vector<double>& brings, double coun
 
 Kept make(const EliminateInputs& in, const Values& options) {
   const VplTable& all = in.candidates;
-  const uint64_t key = streamKey(options.whole("seed"), Stream::Eliminate) + 1;
-  const std::vector<SurfacePoint> points = cameraPoints(in, key, options.whole("camera-points"));
-  const VplLights vpls = makeVplLights(all, *in.rays, options.real32("clamp"));
+  const uint64_t key = streamKey(options[kSeedOption], Stream::Eliminate) + 1;
+  const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
+  const VplLights vpls = makeVplLights(all, *in.rays, options.real32(kClampOption));
   std::vector<double> brings(all.size(), 0.0);
   parallelFor(vpls.size(), 16, [&](size_t k) {
     brings[vpls.row[k]] = contribution(vpls, k, *in.rays, points);
@@ -103,8 +105,9 @@ Kept make(const EliminateInputs& in, const Values& options) {
     throw InputError(in.rays->scene().name(),
                      "no VPL brings any light to what the camera sees; place more with vpl-place");
   }
-  const std::vector<double> p = probabilities(brings, static_cast<double>(options.whole("count")),
-                                              options.real("least-probability"));
+  const std::vector<double> p =
+      probabilities(brings, static_cast<double>(options[kEliminateCountOption]),
+                    options[kLeastProbabilityOption]);
   Kept kept;
   std::vector<Vec3> position, normal;
   for (uint32_t i = 0; i < p.size(); ++i) {

@@ -16,18 +16,17 @@ namespace bnvpl::methods::estimate::both {
 
 namespace {
 
-constexpr std::array kOptions{
-    countOption("photons", "10M", 0x1p36, "",
-                "total work, as a number of photons; paths take a part of it"),
-    realOption(
-        "irradiance-error", "0.005", 0, 1, "",
-        "less work is done if pilots predict this mean relative error of the irradiance from VPLs; "
-        "0: all work is done"),
-    kPathsOption,
-    kRadiusOption,
+constexpr auto kPhotonsOption = countOption(
+    "photons", "10M", 0x1p36, "", "total work, as a number of photons; paths take a part of it");
+constexpr auto kIrradianceErrorOption = realOption(
+    "irradiance-error", "0.005", 0, 1, "",
+    "less work is done if pilots predict this mean relative error of the irradiance from VPLs; "
+    "0: all work is done");
+constexpr auto kMaxBouncesOption =
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, including the one at the VPL"),
-    kEmitPointsOption};
+                "diffuse bounces between a light and the view, including the one at the VPL");
+constexpr auto kOptions = optionTable(kPhotonsOption, kIrradianceErrorOption, kPathsOption,
+                                      kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
 
 // Share of the work that each pilot gets, about.
 constexpr double kPilot = 1.0 / 32.0;
@@ -55,7 +54,7 @@ struct PhotonWork {
 
   PhotonWork(const EstimateInputs& in, const Values& options, uint64_t photons)
       : shares(in.lights, photons),
-        scatter(in.vpls, in.rays, options.real32("radius"),
+        scatter(in.vpls, in.rays, options.real32(kRadiusOption),
                 double{mean(in.lights.totalPower())} / static_cast<double>(shares.total()),
                 shares.total()) {}
 
@@ -71,7 +70,7 @@ struct PhotonWork {
 class Estimator {
  public:
   Estimator(const EstimateInputs& in, const Values& options)
-      : in_(in), options_(options), phases_(in.resume), work_(options.whole("photons")) {}
+      : in_(in), options_(options), phases_(in.resume), work_(options[kPhotonsOption]) {}
 
   EstimateResult run() {
     in_.lights.requirePower();
@@ -117,15 +116,15 @@ class Estimator {
 
   // Pilots need no emission points.
   size_t emitPointsOf(size_t phase) const {
-    return phase < kPhotonPhase ? 0 : options_.whole("emit-points");
+    return phase < kPhotonPhase ? 0 : options_[kEmitPointsOption];
   }
 
   PhotonWork trace(size_t phase, Stream stream, uint64_t count, std::span<const double> share = {},
                    double times = 1.0) {
     PhotonWork work(in_, options_, count);
     work.scatter.setShare(share);
-    const PhotonRun run{streamKey(options_.whole("seed"), stream), emitPointsOf(phase),
-                        maxBounces(), work.shares, work.scatter};
+    const PhotonRun run{streamKey(options_[kSeedOption], stream), emitPointsOf(phase), maxBounces(),
+                        work.shares, work.scatter};
     const auto equivalent = static_cast<uint64_t>(progressScale_ * static_cast<double>(count));
     work.sums = phases_.run(
         phase, times,
@@ -141,10 +140,10 @@ class Estimator {
 
   PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points,
                     uint64_t equivalent, double times = 1.0) {
-    if (!surfaceLights_) surfaceLights_ = makeSurfaceLights(in_, options_.whole("seed"));
+    if (!surfaceLights_) surfaceLights_ = makeSurfaceLights(in_, options_[kSeedOption]);
     const VplPaths gatherer(
-        in_, {streamKey(options_.whole("seed"), stream), options_.whole("paths"), maxBounces(),
-              options_.real32("radius"), emitPointsOf(phase), surfaceLights_.get()});
+        in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption], maxBounces(),
+              options_.real32(kRadiusOption), emitPointsOf(phase), surfaceLights_.get()});
     return phases_.run(
         phase, times,
         [&](const Resume& resume) {
@@ -174,7 +173,7 @@ class Estimator {
                   few > 0.0 ? all / few : 1.0);
   }
 
-  unsigned maxBounces() const { return static_cast<unsigned>(options_.whole("max-bounces")); }
+  unsigned maxBounces() const { return static_cast<unsigned>(options_[kMaxBouncesOption]); }
 
   // The parts of a cost probe share one split.
   const Split& splitOfProbe() {
@@ -198,12 +197,12 @@ class Estimator {
     const double whole = pilots.photonCost * static_cast<double>(work_);
 
     const auto vpls = static_cast<double>(in_.vpls.size());
-    const double guess = vpls * kGuessedRays * static_cast<double>(options_.whole("paths"));
+    const double guess = vpls * kGuessedRays * static_cast<double>(options_[kPathsOption]);
     if (guess * kMinPoints > kMaxPilotShare * whole) return photonsAlone(work_ - reported_);
     const uint64_t points =
         std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess), kMinPoints, kMaxPoints);
     // A cost probe measures every `step`-th VPL, which represents those that follow it in the file.
-    const double pathsOf = vpls * static_cast<double>(points * options_.whole("paths"));
+    const double pathsOf = vpls * static_cast<double>(points * options_[kPathsOption]);
     const auto step = static_cast<size_t>(probe ? std::ceil(pathsOf / kProbePaths) : 1.0);
     std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
     for (size_t i = 0; i < pointsOf.size(); i += step) pointsOf[i] = points;
@@ -222,7 +221,7 @@ class Estimator {
       pilots.pointCost.push_back(cost / pilots.points);
       spent += cost;
     }
-    const Budget budget{std::max(whole - spent, 0.5 * whole), options_.real("irradiance-error")};
+    const Budget budget{std::max(whole - spent, 0.5 * whole), options_[kIrradianceErrorOption]};
     const Split split =
         probe ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
     progressScale_ = static_cast<double>(work_ - reported_) * pilots.photonCost / split.cost;
@@ -293,7 +292,7 @@ class Estimator {
     EstimateResult result{in_.vpls,
                           accountOf(photons.sums, photons.scatter, photons.shares.total()), 0};
     VplTable& lit = result.table;
-    beginLit(lit, options_.real32("radius"));
+    beginLit(lit, options_.real32(kRadiusOption));
     std::vector<double> pathShare(lit.size());
     const FixedPoint& fixed = photons.scatter.fixed();
     for (size_t i = 0; i < lit.size(); ++i) {
@@ -336,7 +335,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
   return Estimator(in, options).run();
 }
 
-Work work(const VplTable&, const Values& options) { return {"photons", options.whole("photons")}; }
+Work work(const VplTable&, const Values& options) { return {"photons", options[kPhotonsOption]}; }
 
 }  // namespace
 

@@ -12,24 +12,25 @@ namespace bnvpl::methods::estimate::paths {
 
 namespace {
 
-constexpr std::array kOptions{
-    countOption("points", "64", 1u << 20, "", "points on the surface that each VPL stands for"),
-    kPathsOption, kRadiusOption,
+constexpr auto kPointsOption =
+    countOption("points", "64", 1u << 20, "", "points on the surface that each VPL stands for");
+constexpr auto kMaxBouncesOption =
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, including the one at the VPL"),
-    kEmitPointsOption};
+                "diffuse bounces between a light and the view, including the one at the VPL");
+constexpr auto kOptions =
+    optionTable(kPointsOption, kPathsOption, kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
-  const auto surfaceLights = makeSurfaceLights(in, options.whole("seed"));
+  const auto surfaceLights = makeSurfaceLights(in, options[kSeedOption]);
   // A cost probe (--estimate) takes fewer points and paths.
   CostProbe* const probe = in.resume.probe;
-  const uint64_t each = options.whole("points"), fewPoints = unitsToTry(probe, each, 8),
-                 paths = options.whole("paths"), fewPaths = unitsToTry(probe, paths, 8);
+  const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(probe, each, 8),
+                 paths = options[kPathsOption], fewPaths = unitsToTry(probe, paths, 8);
   const VplPaths gatherer(
-      in, {streamKey(options.whole("seed"), Stream::VplPaths), fewPaths,
-           static_cast<unsigned>(options.whole("max-bounces")), options.real32("radius"),
-           options.whole("emit-points"), surfaceLights.get()});
+      in, {streamKey(options[kSeedOption], Stream::VplPaths), fewPaths,
+           static_cast<unsigned>(options[kMaxBouncesOption]), options.real32(kRadiusOption),
+           options[kEmitPointsOption], surfaceLights.get()});
   const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
   Resume resume = in.resume;
   resume.times = static_cast<double>(each) * static_cast<double>(paths) /
@@ -38,7 +39,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
       gatherAll({in.vpls, in.rays, in.lights, in.progress, resume}, gatherer, points);
   EstimateResult result{in.vpls, {}, 0};
   VplTable& lit = result.table;
-  beginLit(lit, options.real32("radius"));
+  beginLit(lit, options.real32(kRadiusOption));
   for (size_t i = 0; i < lit.size(); ++i) {
     const PathSums& r = received.sums[i];
     const double flux = r.meanFlux();
@@ -55,7 +56,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 }
 
 Work work(const VplTable& vpls, const Values& options) {
-  return {"paths", vpls.size() * options.whole("points") * options.whole("paths")};
+  return {"paths", vpls.size() * options[kPointsOption] * options[kPathsOption]};
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <sstream>
 
-#include "core/hash.h"
 #include "core/files.h"
+#include "core/hash.h"
 #include "core/sampling.h"
 #include "tools/common/options/film_size.h"
 

@@ -11,10 +11,11 @@ namespace bnvpl::methods::place::camera {
 
 namespace {
 
-constexpr std::array kOptions{
+constexpr auto kDepthOption =
     wholeOption("depth", "2", 2, 1000, "",
                 "diffuse vertices of a path; the first is never a candidate, the second lights the "
-                "view directly")};
+                "view directly");
+constexpr auto kOptions = optionTable(kDepthOption);
 
 // State of a camera path that is being traced.
 class CameraPath {
@@ -90,8 +91,8 @@ void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned de
 // evenly. Paths pass through specular vertices. Each rough vertex from the second to the `depth`-th
 // becomes a candidate that faces the side it was seen from.
 TracePaths make(const PlaceInputs& in, const Values& options) {
-  const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceCamera);
-  const auto depth = static_cast<unsigned>(options.whole("depth"));
+  const uint64_t key = streamKey(options[kSeedOption], Stream::PlaceCamera);
+  const auto depth = static_cast<unsigned>(options[kDepthOption]);
   return [&rays = in.rays, &views = in.views, key, depth](uint64_t begin, PathRows& chunk) {
     traceCameraPaths(rays, views, depth, begin, key, chunk);
   };

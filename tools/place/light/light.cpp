@@ -10,8 +10,9 @@ namespace bnvpl::methods::place::light {
 
 namespace {
 
-constexpr std::array kOptions{
-    wholeOption("light-depth", "32", 1, 1000, "", "diffuse hits of a photon")};
+constexpr auto kLightDepthOption =
+    wholeOption("light-depth", "32", 1, 1000, "", "diffuse hits of a photon");
+constexpr auto kOptions = optionTable(kLightDepthOption);
 
 void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned depth, uint64_t path,
                      uint64_t key, PathRows& chunk) {
@@ -33,8 +34,8 @@ void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned dept
 
 TracePaths make(const PlaceInputs& in, const Values& options) {
   in.lights.requirePower();
-  const uint64_t key = streamKey(options.whole("seed"), Stream::PlaceLight);
-  const auto depth = static_cast<unsigned>(options.whole("light-depth"));
+  const uint64_t key = streamKey(options[kSeedOption], Stream::PlaceLight);
+  const auto depth = static_cast<unsigned>(options[kLightDepthOption]);
   return [&rays = in.rays, &lights = in.lights, key, depth](uint64_t begin, PathRows& chunk) {
     for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
       tracePhotonPath(rays, lights, depth, path, key, chunk);

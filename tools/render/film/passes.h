@@ -23,11 +23,11 @@
 #include <string_view>
 
 #include "tools/render/film/film.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 
-inline constexpr uint32_t kPassSpp = 4;    // samples per pixel in a pass, on average
-inline constexpr uint64_t kMinPasses = 2;  // passes that an error estimate needs
+inline constexpr uint32_t kPassSpp = 4;  // samples per pixel in a pass, on average
 
 struct Budget {
   double timeS = INFINITY;       // wall-clock time; a pass begins only if it is expected to fit

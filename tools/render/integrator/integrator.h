@@ -30,17 +30,22 @@ struct IntegratorInputs {
   }
 };
 
+inline constexpr OptionKey<std::string> kIntegratorSlot{"integrator"}, kGatherSlot{"gather"},
+    kCompensateSlot{"compensate"};
+
 // Option of the integrators that use camera samples.
-constexpr Option firefliesOption(std::string_view fallback) {
+constexpr TextOption firefliesOption(std::string_view fallback) {
   return choiceOption(
       "fireflies", fallback, "redistribute|keep",
       "excess of samples and photons that are far brighter than their surroundings: "
       "redistributed over the surface around, or kept");
 }
 
+inline constexpr OptionKey<std::string> kFirefliesKey = firefliesOption({}).key();
+
 // Whether fireflies are redistributed; false for methods without the option.
 inline bool redistributesFireflies(const Values& options) {
-  return options.has("fireflies") && options.text("fireflies") == "redistribute";
+  return options.has(kFirefliesKey) && options[kFirefliesKey] == "redistribute";
 }
 
 struct IntegratorMethod {

@@ -5,12 +5,12 @@
 namespace bnvpl {
 
 // The option of every integrator that traces paths.
-inline constexpr Option kMaxBouncesOption =
+inline constexpr WholeOption kMaxBouncesOption =
     neededBy({Condition{"only", "all|indirect"}},
              wholeOption("max-bounces", "32", 0, 1000, "",
                          "diffuse bounces after the first surface, as vpl-estimate's"));
 inline unsigned maxBouncesOf(const Values& options) {  // none counts for direct light
-  return options.has("max-bounces") ? static_cast<unsigned>(options.whole("max-bounces")) : 0;
+  return options.has(kMaxBouncesOption) ? static_cast<unsigned>(options[kMaxBouncesOption]) : 0;
 }
 
 // The reference: unbiased path tracing with next-event estimation and multiple importance sampling,

@@ -1,5 +1,6 @@
 #include "tools/render/integrator/tile_options.h"
 
+#include "tools/render/stage_options.h"
 #include "tools/render/tile/control/pixel_control_variate.h"
 
 namespace bnvpl {
@@ -8,16 +9,16 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
                     const FilmPoints& film, unsigned lightRays, TileParts& out) {
   if (in.only == Only::Indirect) return;
   if (lightRays > 0) {
-    const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options.whole("spp") * lightRays;
+    const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
     out.lightRays = lightRays;
     out.lights = std::make_unique<const TileLights>(
         in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
         in.seed, in.probe);
     out.visibleEmission = std::make_unique<const VisibleEmission>(in.rays, in.lights, film);
   }
-  if (options.whole("direct-samples") == 1) return;
+  if (options[kDirectSamplesOption] == 1) return;
   out.directSamples.emplace(in.rays, in.lights, out.visibleEmission.get(), out.surfaceLights,
-                            static_cast<unsigned>(options.whole("direct-samples")),
+                            static_cast<unsigned>(options[kDirectSamplesOption]),
                             in.only == Only::Direct);
 }
 
@@ -44,9 +45,9 @@ ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints
 
 SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator) {
-  if (!options.has("allocate") || !options.on("allocate")) return {};
+  if (!options.has(kAllocateKey) || !options[kAllocateKey]) return {};
   return findAllocation(
-      in.rays.scene(), in.seed, options.whole("spp"), in.progress,
+      in.rays.scene(), in.seed, options[kSppOption], in.progress,
       [&](const TileSamples& tile) { return integrator.render(tile, SampleAllocation{}); });
 }
 

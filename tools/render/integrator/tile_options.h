@@ -10,23 +10,24 @@ namespace bnvpl {
 inline constexpr Needs kIndirectIsShown{Condition{"only", "all|indirect"}},
     kDirectIsShown{Condition{"only", "all|direct"}};
 
-inline constexpr Option kDirectSamplesOption =
+inline constexpr WholeOption kDirectSamplesOption =
     neededBy(kDirectIsShown, wholeOption("direct-samples", "0", 0, 4096, "",
                                          "camera samples of direct light for each sample; 0: "
                                          "chosen by variance and cost; 1: the sample itself"));
-constexpr Option reuseOption(std::string_view fallback, std::string_view help) {
+constexpr WholeOption reuseOption(std::string_view fallback, std::string_view help) {
   return neededBy(kIndirectIsShown, wholeOption("reuse", fallback, 1, 32, "", help));
 }
-constexpr Option controlOption(std::string_view fallback) {
+constexpr TextOption controlOption(std::string_view fallback) {
   return neededBy(kIndirectIsShown,
                   choiceOption("control", fallback, "vpls|none",
                                "control variate of indirect light within a pixel: the VPLs' "
                                "prediction along more camera rays, or none"));
 }
-constexpr Option allocateOption(std::string_view help) {
+constexpr SwitchOption allocateOption(std::string_view help) {
   return neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "0"}},
                   switchOption("allocate", "on", help));
 }
+inline constexpr OptionKey<bool> kAllocateKey = allocateOption({}).key();
 
 // Adds the parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing if
 // the image shows only indirect light.

@@ -12,9 +12,9 @@ namespace bnvpl::methods::gather::lightcuts {
 
 namespace {
 
-constexpr std::array kOptions{realOption("error", "0.02", 0, 1, "share of the total",
-                                         "bound on the error of a cluster that is not refined"),
-                              kMaxCutOption};
+constexpr auto kErrorOption = realOption("error", "0.02", 0, 1, "share of the total",
+                                         "bound on the error of a cluster that is not refined");
+constexpr auto kOptions = optionTable(kErrorOption, kMaxCutOption);
 
 struct Cluster {
   float bound;  // bound on the error, summed over the channels
@@ -84,8 +84,8 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
 }
 
 Gather make(const GatherInputs& in, const Values& options) {
-  const auto error = double{options.real32("error")};
-  const auto maxCut = static_cast<size_t>(options.whole("max-cut"));
+  const auto error = double{options.real32(kErrorOption)};
+  const auto maxCut = static_cast<size_t>(options[kMaxCutOption]);
   return gatherEach(
       [&rays = in.rays, &vpls = in.vpls, &tree = in.tree, error, maxCut](const Bsdf& bsdf) {
         return gatherCut(rays, vpls, tree, error, maxCut, bsdf);

@@ -19,10 +19,13 @@ namespace bnvpl::methods::gather::lightslice {
 
 namespace {
 
-constexpr std::array kOptions{
-    countOption("slices", "300", 0x1p20, "", "minimal number of groups of neighbouring points"),
-    countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice"),
-    countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters")};
+constexpr auto kSlicesOption =
+    countOption("slices", "300", 0x1p20, "", "minimal number of groups of neighbouring points");
+constexpr auto kColumnsOption =
+    countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice");
+constexpr auto kNeighbourSlicesOption =
+    countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters");
+constexpr auto kOptions = optionTable(kSlicesOption, kColumnsOption, kNeighbourSlicesOption);
 constexpr double kCommonShare = 0.3;  // clusters found for all slices, over those of a slice
 constexpr size_t kDraws = 16;         // draws from each cluster; samples of a pixel take turns
 
@@ -185,7 +188,7 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   for (const SurfacePoint& p : film) points.push_back({placeOf(p, plan.scale), p});
   const uint64_t key = streamKey(in.seed, Stream::LightTree) + 1;
   Rng rng(key, 0);
-  slice(points, std::max<size_t>(1, points.size() / options.whole("slices")), rng, plan.slices);
+  slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), rng, plan.slices);
 
   Columns columns(in.vpls.size(), Vector(plan.slices.size()));
   const auto phase = in.progress.before("slices", plan.slices.size());
@@ -201,13 +204,13 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   std::iota(vpls.begin(), vpls.end(), 0u);
   std::erase_if(vpls, [&](uint32_t i) { return norms[i] == 0.0; });  // no slice sees them
   if (vpls.empty()) return plan;
-  const auto count = static_cast<size_t>(options.whole("columns"));
+  const auto count = static_cast<size_t>(options[kColumnsOption]);
   const auto common = sampled(vpls, columns, kCommonShare * double(count), rng);
   plan.draws.resize(plan.slices.size());
   parallelFor(plan.slices.size(), 1, [&](size_t s) {
     Rng own(key, s + 1);
     const Columns local =
-        rowsAbout(plan.slices[s], plan.slices, options.whole("neighbour-slices"), columns);
+        rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
     for (const auto& [cost, cluster] : refined(common, count, local)) {
       for (auto& draws : plan.draws[s]) draws.push_back(draw(cluster, norms, own));
     }

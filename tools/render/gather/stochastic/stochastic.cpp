@@ -12,8 +12,9 @@ namespace bnvpl::methods::gather::stochastic {
 
 namespace {
 
-constexpr std::array kOptions{
-    countOption("cut", "10", 0x1p20, "", "clusters of a point's cut, with a shadow ray each")};
+constexpr auto kCutOption =
+    countOption("cut", "10", 0x1p20, "", "clusters of a point's cut, with a shadow ray each");
+constexpr auto kOptions = optionTable(kCutOption);
 
 struct Cluster {
   float bound;
@@ -97,7 +98,7 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTre
 }
 
 Gather make(const GatherInputs& in, const Values& options) {
-  const auto cut = static_cast<size_t>(options.whole("cut"));
+  const auto cut = static_cast<size_t>(options[kCutOption]);
   return {[&rays = in.rays, &vpls = in.vpls, &tree = in.tree, cut](const TileReceivers& tile,
                                                                    std::span<Gathered> out) {
     for (size_t i = 0; i < out.size(); ++i) {

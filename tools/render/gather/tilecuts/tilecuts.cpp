@@ -16,11 +16,10 @@ namespace bnvpl::methods::gather::tilecuts {
 
 namespace {
 
-constexpr std::array kOptions{
-    // The predicted error is two and a half to five times the measured one (theory.md).
-    realOption("error", "0.05", 0, 1, "share of the tile's light",
-               "allowed standard deviation of a pixel"),
-    kMaxCutOption};
+// The predicted error is two and a half to five times the measured one (theory.md).
+constexpr auto kErrorOption = realOption("error", "0.05", 0, 1, "share of the tile's light",
+                                         "allowed standard deviation of a pixel");
+constexpr auto kOptions = optionTable(kErrorOption, kMaxCutOption);
 
 // Pixels along the side of a square that four packets share.
 constexpr uint32_t kSquare = 8;
@@ -146,8 +145,8 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
 }
 
 Gather make(const GatherInputs& in, const Values& values) {
-  const TileCutOptions options{values.real32("error"),
-                               static_cast<uint32_t>(values.whole("max-cut"))};
+  const TileCutOptions options{values.real32(kErrorOption),
+                               static_cast<uint32_t>(values[kMaxCutOption])};
   return {[&rays = in.rays, &vpls = in.vpls, &tree = in.tree, options](const TileReceivers& tile,
                                                                        std::span<Gathered> out) {
     gatherTile(rays, vpls, tree, options, tile, out);

@@ -13,11 +13,13 @@ namespace bnvpl::methods::gather::ward {
 
 namespace {
 
-constexpr std::array kOptions{
+constexpr auto kToleranceOption =
     realOption("tolerance", "0.1", 0, 1, "share of the light so far",
-               "shadow tests end when the untested VPLs contribute no more than this"),
+               "shadow tests end when the untested VPLs contribute no more than this");
+constexpr auto kVisibilityTestsOption =
     countOption("visibility-tests", "32", 65536, "rays",
-                "rays to each VPL from visible points, for its mean visibility")};
+                "rays to each VPL from visible points, for its mean visibility");
+constexpr auto kOptions = optionTable(kToleranceOption, kVisibilityTestsOption);
 
 // Visibility of each VPL, averaged over visible points that it faces. Ward counts while rendering,
 // which would depend on the order of pixels and threads. Here the counts are taken beforehand, from
@@ -106,9 +108,9 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vec
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto rates =
-      std::make_shared<const std::vector<float>>(hitRates(in, options.whole("visibility-tests")));
+      std::make_shared<const std::vector<float>>(hitRates(in, options[kVisibilityTestsOption]));
   return gatherEach([&rays = in.rays, &vpls = in.vpls, rates,
-                     tolerance = options.real("tolerance")](const Bsdf& bsdf) {
+                     tolerance = options[kToleranceOption]](const Bsdf& bsdf) {
     return gatherPoint(rays, vpls, *rates, tolerance, bsdf);
   });
 }

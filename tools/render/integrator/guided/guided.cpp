@@ -6,42 +6,48 @@
 #include "tools/render/integrator/guided/guided_rays.h"
 #include "tools/render/integrator/path_tracer.h"
 #include "tools/render/integrator/tile_options.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl::methods::integrator::guided {
 
 namespace {
 
 constexpr Needs kRaysAreSent{Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}};
-constexpr std::array kOptions{
-    kMaxBouncesOption,
-    kDirectSamplesOption,  // before those that need it
+// before those that need it
+constexpr auto kGuideShareOption =
     neededBy(kRaysAreSent, realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
-                                      "sampled from the guide; the others from the BSDF")),
+                                      "sampled from the guide; the others from the BSDF"));
+constexpr auto kGuideRaysOption =
     neededBy(kRaysAreSent, wholeOption("guide-rays", "256", 0, 1024, "",
                                        "rays from each VPL from which the guide is learned; "
-                                       "fewer in a short render")),
-    neededBy(
-        kRaysAreSent,
-        wholeOption("paths", "8", 1, 4096, "",
-                    "paths for indirect light from each shading point; with --allocate on, from a "
-                    "quarter of them to four times as many")),
+                                       "fewer in a short render"));
+constexpr auto kPathsOption = neededBy(
+    kRaysAreSent,
+    wholeOption("paths", "8", 1, 4096, "",
+                "paths for indirect light from each shading point; with --allocate on, from a "
+                "quarter of them to four times as many"));
+constexpr auto kReuseOption =
     reuseOption("32",
                 "samples of a tile that reuse the first vertices of each other's paths on diffuse "
-                "surfaces; 1: none"),
-    controlOption("none"),
-    allocateOption("allot paths and direct samples by pilots, to minimise the noise of the film"),
-    firefliesOption("keep")};
+                "surfaces; 1: none");
+constexpr auto kControlOption = controlOption("none");
+constexpr auto kAllocateOption =
+    allocateOption("allot paths and direct samples by pilots, to minimise the noise of the film");
+constexpr auto kFirefliesOption = firefliesOption("keep");
+constexpr auto kOptions =
+    optionTable(kMaxBouncesOption, kDirectSamplesOption, kGuideShareOption, kGuideRaysOption,
+                kPathsOption, kReuseOption, kControlOption, kAllocateOption, kFirefliesOption);
 
 // Paths per ray that learns, so that learning takes little of the time.
 constexpr uint64_t kPathsPerRay = 2;
 
 uint64_t samplesOf(const IntegratorInputs& in, const Values& options) {
-  return in.pixels() * options.whole("spp");
+  return in.pixels() * options[kSppOption];
 }
 
 uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
-  return std::min<uint64_t>(options.whole("guide-rays"),
-                            samplesOf(in, options) * options.whole("paths") /
+  return std::min<uint64_t>(options[kGuideRaysOption],
+                            samplesOf(in, options) * options[kPathsOption] /
                                 (kPathsPerRay * std::max<size_t>(1, in.lit.size())));
 }
 
@@ -65,25 +71,25 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
       streamKey(in.seed, Stream::SurfaceLights), in.progress);
   TileParts tile;
   tile.surfaceLights = parts->surfaceLights.get();
-  if (options.has("paths")) {
-    tile.raysEach = static_cast<unsigned>(options.whole("paths"));
+  if (options.has(kPathsOption)) {
+    tile.raysEach = static_cast<unsigned>(options[kPathsOption]);
     const uint64_t each = raysEach(in, options),
                    few = unitsToTry(in.probe, each, std::max<uint64_t>(64, kProbeRays / vpls));
     const CostProbe::Part part(in.probe, static_cast<double>(std::max<uint64_t>(1, each)) /
                                              static_cast<double>(std::max<uint64_t>(1, few)));
     tile.rays = std::make_unique<const GuidedRays>(
         in.rays, in.lights, Guide(in.lit, in.rays, in.lights, in.seed, few, in.progress),
-        *parts->surfaceLights, options.real32("guide-share"), tile.raysEach, maxBouncesOf(options),
-        in.only);
+        *parts->surfaceLights, options.real32(kGuideShareOption), tile.raysEach,
+        maxBouncesOf(options), in.only);
   }
-  if (indirect) tile.reuse = static_cast<unsigned>(options.whole("reuse"));
+  if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
   const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
-  const bool controlled = indirect && options.text("control") == "vpls";
+  const bool controlled = indirect && options[kControlOption] == "vpls";
   const FilmPoints film = controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
   if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
-                               tile.raysEach * options.whole("spp"), maxBouncesOf(options));
+                               tile.raysEach * options[kSppOption], maxBouncesOf(options));
   const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
   parts->integrator =

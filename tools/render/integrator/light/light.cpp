@@ -9,7 +9,7 @@ namespace bnvpl::methods::integrator::light {
 
 namespace {
 
-constexpr std::array kOptions{kMaxBouncesOption};
+constexpr auto kOptions = optionTable(kMaxBouncesOption);
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
   const unsigned maxBounces = maxBouncesOf(options);

@@ -8,17 +8,17 @@ namespace bnvpl::methods::integrator::path {
 
 namespace {
 
-constexpr std::array kOptions{
-    kMaxBouncesOption,
+constexpr auto kLightSamplingOption =
     switchOption("light-sampling", "on",
-                 "shadow rays to all lights; off: only to lights that no BSDF ray can hit"),
-    firefliesOption("keep")};
+                 "shadow rays to all lights; off: only to lights that no BSDF ray can hit");
+constexpr auto kFirefliesOption = firefliesOption("keep");
+constexpr auto kOptions = optionTable(kMaxBouncesOption, kLightSamplingOption, kFirefliesOption);
 
 struct Parts {
   LightSet lights;
   PathTracer tracer;
   Parts(const IntegratorInputs& in, const Values& options)
-      : lights(options.on("light-sampling") ? in.lights : in.lights.onlyUnhittable()),
+      : lights(options[kLightSamplingOption] ? in.lights : in.lights.onlyUnhittable()),
         tracer(in.rays, lights, maxBouncesOf(options), in.only) {}
 };
 

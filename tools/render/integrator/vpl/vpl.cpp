@@ -7,43 +7,53 @@
 #include "tools/render/gather/point_gather.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl::methods::integrator::vpl {
 
 namespace {
 
-constexpr std::array kOptions{
+constexpr auto kLightOption =
     neededBy(kIndirectIsShown, choiceOption("light", "point", kLightKinds,
                                             "model of a VPL: a point with a bound on 1/d^2, or a "
-                                            "disk")),
+                                            "disk"));
+constexpr auto kClampOption =
     neededBy(kIndirectIsShown, realOption("clamp", "2", 0, 1000, "r_max",
                                           "radius of a VPL: 1/d^2 of a point is clamped within "
-                                          "it; a disk has this radius")),
-    kDirectSamplesOption,
+                                          "it; a disk has this radius"));
+constexpr auto kNearFieldRaysOption =
     neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
              wholeOption("near-field-rays", "8", 1, 4096, "",
                          "BSDF rays from each shading point, for compensation and light over "
                          "specular surfaces, and with --direct-samples 1 for direct light by MIS; "
-                         "with --allocate on, from a quarter of them to four times as many")),
+                         "with --allocate on, from a quarter of them to four times as many"));
+constexpr auto kReuseOption =
     reuseOption("8",
                 "samples of a tile that reuse the vertices of each other's near-field rays on "
-                "diffuse surfaces; 1: none"),
+                "diffuse surfaces; 1: none");
+constexpr auto kCausticPhotonsOption =
     neededBy(kIndirectIsShown,
              wholeOption("caustic-photons", "64", 0, 4096, "",
                          "photons per pixel, at most 16M in total, for light over mirrors, glass "
-                         "and near-specular lobes; 0: only near-field rays find it")),
-    controlOption("vpls"),
+                         "and near-specular lobes; 0: only near-field rays find it"));
+constexpr auto kControlOption = controlOption("vpls");
+constexpr auto kDirectOption =
     neededBy(kDirectIsShown, choiceOption("direct", "learned", "learned|each",
                                           "shadow rays to what each tile of the film has learned "
-                                          "to see, or one to each light")),
+                                          "to see, or one to each light"));
+constexpr auto kLightRaysOption =
     neededBy({Condition{"direct", "learned"}},
              wholeOption("light-rays", "8", 1, 4096, "",
                          "shadow rays from each shading point with --direct-samples 1; in any "
-                         "case, they set the number of rays that tiles learn from")),
-    allocateOption(
-        "allot near-field rays, clusters of tile cuts and direct samples by pilots, to minimise "
-        "the noise of the film"),
-    firefliesOption("redistribute")};
+                         "case, they set the number of rays that tiles learn from"));
+constexpr auto kAllocateOption = allocateOption(
+    "allot near-field rays, clusters of tile cuts and direct samples by pilots, to minimise "
+    "the noise of the film");
+constexpr auto kFirefliesOption = firefliesOption("redistribute");
+constexpr auto kOptions =
+    optionTable(kLightOption, kClampOption, kDirectSamplesOption, kNearFieldRaysOption,
+                kReuseOption, kCausticPhotonsOption, kControlOption, kDirectOption,
+                kLightRaysOption, kAllocateOption, kFirefliesOption);
 
 // Objects that live as long as the integrator. Each may borrow from those before it.
 struct Parts {
@@ -59,7 +69,7 @@ struct Parts {
 Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& film,
                   Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
-  Gather gather = methodNamed(gatherMethods(), options.text("gather"))
+  Gather gather = methodNamed(gatherMethods(), options[kGatherSlot])
                       .make({in.rays, parts.vpls, parts.tree, in.seed,
                              [film] { return film.all(); }, in.progress},
                             options);
@@ -76,26 +86,26 @@ uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
   constexpr uint64_t kMaxPhotons = 16000000;  // they take seconds, in each shard
   return in.only == Only::Direct
              ? 0
-             : std::min(kMaxPhotons, in.pixels() * options.whole("caustic-photons"));
+             : std::min(kMaxPhotons, in.pixels() * options[kCausticPhotonsOption]);
 }
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
   constexpr uint64_t kMaxSpp = 256;  // upper limit, as spp of a budget may be unlimited
   // Direct light needs no VPLs, so their clamp and kind are arbitrary.
   const bool indirect = in.only != Only::Direct;
-  const float clamp = indirect ? options.real32("clamp") : 1.0f;
-  const LightKind light = indirect ? lightKindNamed(options.text("light")) : LightKind{};
+  const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
+  const LightKind light = indirect ? lightKindNamed(options[kLightOption]) : LightKind{};
   const auto parts = std::make_shared<Parts>();
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
   Compensation compensation;
-  if (options.has("compensate")) {
-    compensation = methodNamed(compensateMethods(), options.text("compensate"))
+  if (options.has(kCompensateSlot)) {
+    compensation = methodNamed(compensateMethods(), options[kCompensateSlot])
                        .make({in.lit, in.rays, clamp, light}, options);
   }
   TileParts tile;
   // With --only direct, direct samples trace BSDF rays of their own.
-  if (options.has("near-field-rays") && (compensation || hasSpecularLobes(in.rays.scene())))
-    tile.raysEach = static_cast<unsigned>(options.whole("near-field-rays"));
+  if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.rays.scene())))
+    tile.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
   if (indirect && tile.raysEach > 0) {
     parts->surfaceLights = std::make_unique<const SurfaceLights>(
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
@@ -105,20 +115,20 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   tile.gather = std::move(gather.tile);
-  const bool learned = in.only != Only::Indirect && options.text("direct") == "learned";
-  const bool controlled = indirect && options.text("control") == "vpls";
+  const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
+  const bool controlled = indirect && options[kControlOption] == "vpls";
   const FilmPoints film = controlled || learned ? filmRays.all() : FilmPoints{};
   if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film,
-                 learned ? static_cast<unsigned>(options.whole("light-rays")) : 0, tile);
+                 learned ? static_cast<unsigned>(options[kLightRaysOption]) : 0, tile);
   if (tile.raysEach > 0) {
     tile.rays = std::make_unique<const NearFieldRays>(in.rays, in.lights, std::move(gather.point),
                                                       std::move(compensation), tile.raysEach,
                                                       tile.surfaceLights, in.only);
   }
-  if (indirect) tile.reuse = static_cast<unsigned>(options.whole("reuse"));
+  if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * std::min(options.whole("spp"), kMaxSpp),
+                               tile.raysEach * std::min(options[kSppOption], kMaxSpp),
                                /*bounces=*/0);  // VPLs carry the light of further bounces
   const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
                sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
