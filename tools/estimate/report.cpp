@@ -46,7 +46,7 @@ std::string causeOfDark(const EstimateResult& result, bool none) {
   }
   if (result.table.reach < kCovering) {
     return "they reach so little that most light falls between them; raise --radius (" +
-           std::string(kRadiusOption.fallback) + " unless given)";
+           std::string(kRadiusOption.defaultText) + " unless given)";
   }
   if (a.outside > 0.5 * a.reflected) {
     return "most photons go where the view does not look; raise --photons, try --method paths, or "

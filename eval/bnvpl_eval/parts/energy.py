@@ -43,9 +43,8 @@ def run(context: Context) -> None:
             "energy",
             "Energy",
             "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because "
-            "no VPL reaches the "
-            "hit (outside: it lights nothing in view), none on a compatible surface (uncovered), or "
-            "in sight (hidden). "
+            "no VPL reaches the hit (outside: it lights nothing in view), none on a compatible "
+            "surface (uncovered), or in sight (hidden). "
             "Near-field rays restore what uncovered and hidden lose.",
             COLUMNS,
             rows,

@@ -42,7 +42,7 @@ CLI::Option* addOption(CLI::App& cli, const Option& option,
       [option, take = std::move(take)](const std::string& text) { take(parseValue(option, text)); },
       helpOf(option));
   added->type_name(typeOf(option));
-  if (!option.fallback.empty()) added->default_str(std::string(option.fallback));
+  if (!option.defaultText.empty()) added->default_str(std::string(option.defaultText));
   return added;
 }
 

@@ -124,10 +124,10 @@ void takeOption(const Option& o, const Given& given, Values& values) {
   if (!satisfied(o.needs, values)) return;
   const std::string* text = textOf(given, o.name);
   if (!text && o.optional) return;
-  if (!text && o.fallback.empty() && o.kind != Option::Kind::Text) {
+  if (!text && o.defaultText.empty() && o.kind != Option::Kind::Text) {
     throw UsageError("--" + std::string(o.name) + " is required");
   }
-  values.set(o.name, parseValue(o, text ? *text : std::string(o.fallback)));
+  values.set(o.name, parseValue(o, text ? *text : std::string(o.defaultText)));
 }
 
 // Whether the option cannot have this value where what is needed holds.
@@ -161,7 +161,7 @@ Values resolve(const StageSpec& spec, const Given& given) {
   for (const MethodSlot& slot : spec.slots) {
     if (!satisfied(slot.needs, known)) continue;
     const std::string* text = textOf(given, slot.name);
-    const MethodEntry& method = chosen(slot, text ? *text : std::string(slot.fallback));
+    const MethodEntry& method = chosen(slot, text ? *text : std::string(slot.defaultText));
     for (Values* v : {&values, &known}) v->set(slot.name, std::string(method.name));
     methods.push_back(&method);
     for (const Option& o : method.options) takeOption(o, given, known);
@@ -192,14 +192,14 @@ void requireSound(const StageSpec& spec) {
     for (const Option& o : options) {
       if (!names.insert(o.name).second) fail(o.name, "is listed twice");
       if (o.help.empty()) fail(o.name, "has no help");
-      if (!o.fallback.empty()) parseValue(o, std::string(o.fallback));
+      if (!o.defaultText.empty()) parseValue(o, std::string(o.defaultText));
     }
   };
   std::set<std::string_view> stage;
   checkTable(spec.options, stage);
   for (const MethodSlot& slot : spec.slots) {
     if (!stage.insert(slot.name).second) fail(slot.name, "is listed twice");
-    chosen(slot, std::string(slot.fallback));
+    chosen(slot, std::string(slot.defaultText));
   }
   for (size_t s = 0; s < spec.slots.size(); ++s) {
     for (const MethodEntry& m : spec.slots[s].methods) {

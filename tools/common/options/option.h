@@ -60,9 +60,9 @@ struct Option {
   };
   std::string_view name;  // "max-cut": --max-cut on the command line, max-cut in the record
   Kind kind;
-  std::string_view fallback;  // the default as typed; empty: the option is required
-  double least, most;         // the range, both ends included; whole numbers: 2^64 is no limit
-  std::string_view unit;      // empty: none
+  std::string_view defaultText;  // the default as typed; empty: the option is required
+  double min, max;               // the range, both ends included; whole numbers: 2^64 is no limit
+  std::string_view unit;         // empty: none
   std::string_view help;
   std::string_view choices = {};  // Choice: "local|uniform"
   Needs needs = {};
@@ -91,29 +91,29 @@ using SwitchOption = OptionOf<bool>;
 using TextOption = OptionOf<std::string>;  // also choices
 
 // Makers of options, one for each kind.
-constexpr RealOption realOption(std::string_view name, std::string_view fallback, double least,
-                                double most, std::string_view unit, std::string_view help) {
-  return {{name, Option::Kind::Real, fallback, least, most, unit, help}};
+constexpr RealOption realOption(std::string_view name, std::string_view defaultText, double min,
+                                double max, std::string_view unit, std::string_view help) {
+  return {{name, Option::Kind::Real, defaultText, min, max, unit, help}};
 }
-constexpr WholeOption wholeOption(std::string_view name, std::string_view fallback, double least,
-                                  double most, std::string_view unit, std::string_view help) {
-  return {{name, Option::Kind::Whole, fallback, least, most, unit, help}};
+constexpr WholeOption wholeOption(std::string_view name, std::string_view defaultText, double min,
+                                  double max, std::string_view unit, std::string_view help) {
+  return {{name, Option::Kind::Whole, defaultText, min, max, unit, help}};
 }
-constexpr WholeOption countOption(std::string_view name, std::string_view fallback, double most,
+constexpr WholeOption countOption(std::string_view name, std::string_view defaultText, double max,
                                   std::string_view unit, std::string_view help) {
-  return {{name, Option::Kind::Count, fallback, 1.0, most, unit, help}};
+  return {{name, Option::Kind::Count, defaultText, 1.0, max, unit, help}};
 }
-constexpr SwitchOption switchOption(std::string_view name, std::string_view fallback,
+constexpr SwitchOption switchOption(std::string_view name, std::string_view defaultText,
                                     std::string_view help) {
-  return {{name, Option::Kind::Switch, fallback, 0, 0, {}, help}};
+  return {{name, Option::Kind::Switch, defaultText, 0, 0, {}, help}};
 }
-constexpr TextOption choiceOption(std::string_view name, std::string_view fallback,
+constexpr TextOption choiceOption(std::string_view name, std::string_view defaultText,
                                   std::string_view choices, std::string_view help) {
-  return {{name, Option::Kind::Choice, fallback, 0, 0, {}, help, choices}};
+  return {{name, Option::Kind::Choice, defaultText, 0, 0, {}, help, choices}};
 }
-constexpr TextOption textOption(std::string_view name, std::string_view fallback,
+constexpr TextOption textOption(std::string_view name, std::string_view defaultText,
                                 std::string_view unit, std::string_view help) {
-  return {{name, Option::Kind::Text, fallback, 0, 0, unit, help}};
+  return {{name, Option::Kind::Text, defaultText, 0, 0, unit, help}};
 }
 constexpr RealOption durationOption(std::string_view name, std::string_view help) {
   return {{name, Option::Kind::Duration, {}, 0x1p-10, 1e9, {}, help}};
@@ -216,7 +216,7 @@ struct MethodEntry {
 // A set of methods, one of which is selected by an option.
 struct MethodSlot {
   std::string_view name;  // "gather": --gather NAME
-  std::string_view fallback;
+  std::string_view defaultText;
   std::string_view help;
   std::vector<MethodEntry> methods;
   Needs needs = {};  // see Option::needs

@@ -67,7 +67,7 @@ uint64_t countOf(const Option& o, const std::string& text) {
     value *= 1e9;
   else if (!suffix.empty())
     refuseAs("has an unknown suffix");
-  if (error != std::errc{} || !(value >= o.least && value <= o.most)) refuseRange(o, text);
+  if (error != std::errc{} || !(value >= o.min && value <= o.max)) refuseRange(o, text);
   // Scaling rounds: 2.01 times 1e3 is 2009.9999999999998.
   const double whole = std::round(value);
   if (std::fabs(value - whole) > 1e-15 * value) refuseAs("is not whole");
@@ -83,7 +83,7 @@ double durationOf(const Option& o, const std::string& text) {
   if (error == std::errc::invalid_argument || seconds == 0.0)
     refuse(o, "'" + text + "' is not a duration; write one such as 90s, 2m or 1.5h");
   value *= seconds;
-  if (error != std::errc{} || !(value >= o.least && value <= o.most)) {
+  if (error != std::errc{} || !(value >= o.min && value <= o.max)) {
     refuse(o, "'" + text +
                   "' is out of range: write a duration from 0.001s to 1e9s, such as 90s, 2m "
                   "or 1.5h");
@@ -120,7 +120,7 @@ bool inRange(const Option& o, const Value& value) {
   const uint64_t* whole = std::get_if<uint64_t>(&value);
   if (!real && !whole) return true;
   const double number = real ? *real : static_cast<double>(*whole);
-  return number >= o.least && number <= o.most;
+  return number >= o.min && number <= o.max;
 }
 
 }  // namespace
@@ -130,8 +130,8 @@ std::string rangeOf(const Option& o) {
       o.kind != Option::Kind::Real) {
     return {};
   }
-  // A `most` of 2^64 excludes no 64-bit number.
-  return limitText(o.least) + " to " + (o.most == 0x1p64 ? "2^64 - 1" : limitText(o.most));
+  // A `max` of 2^64 excludes no 64-bit number.
+  return limitText(o.min) + " to " + (o.max == 0x1p64 ? "2^64 - 1" : limitText(o.max));
 }
 
 std::optional<double> parseReal(const std::string& text) {

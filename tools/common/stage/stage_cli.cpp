@@ -20,8 +20,8 @@ CLI::Option* addText(CLI::App& cli, std::string_view name, std::string_view lett
 
 void addOne(CLI::App& cli, const Option& o, Given& given) {
   CLI::Option* option = addText(cli, o.name, o.letter, given, helpOf(o))->type_name(typeOf(o));
-  if (!o.fallback.empty()) option->default_str(std::string(o.fallback));
-  if (o.fallback.empty() && o.kind != Option::Kind::Text && !o.optional) option->required();
+  if (!o.defaultText.empty()) option->default_str(std::string(o.defaultText));
+  if (o.defaultText.empty() && o.kind != Option::Kind::Text && !o.optional) option->required();
 }
 
 void addSlot(CLI::App& cli, const MethodSlot& slot, Given& given) {
@@ -33,7 +33,7 @@ void addSlot(CLI::App& cli, const MethodSlot& slot, Given& given) {
   }
   addText(cli, slot.name, {}, given, help)
       ->type_name(names)
-      ->default_str(std::string(slot.fallback));
+      ->default_str(std::string(slot.defaultText));
 }
 
 // An option of one or several methods, which --help lists once.
@@ -47,7 +47,7 @@ std::string helpOf(const Shared& s, bool oneDefault) {
   std::vector<std::pair<std::string, std::string>> meanings;  // with the methods that share it
   for (size_t i = 0; i < s.options.size(); ++i) {
     std::string help = helpOf(*s.options[i]);
-    if (!oneDefault) help += "; default " + std::string(s.options[i]->fallback);
+    if (!oneDefault) help += "; default " + std::string(s.options[i]->defaultText);
     const auto same = std::ranges::find(meanings, help, [](const auto& m) { return m.first; });
     if (same == meanings.end())
       meanings.emplace_back(help, s.methods[i]);
@@ -82,11 +82,11 @@ void addMethodOptions(CLI::App& cli, const MethodSlot& slot, std::vector<std::st
     bool oneDefault = true;
     for (size_t i = 0; i < s.options.size(); ++i) {
       methods += (i > 0 ? ", " : "") + s.methods[i];
-      oneDefault = oneDefault && s.options[i]->fallback == first.fallback;
+      oneDefault = oneDefault && s.options[i]->defaultText == first.defaultText;
     }
     CLI::Option* option = addText(cli, name, {}, given, helpOf(s, oneDefault));
     option->type_name(typeOf(first))->group("With --" + std::string(slot.name) + " " + methods);
-    if (oneDefault) option->default_str(std::string(first.fallback));
+    if (oneDefault) option->default_str(std::string(first.defaultText));
   }
 }
 
@@ -95,7 +95,7 @@ Json describe(std::span<const Option> options) {
   for (const Option& o : options) {
     list.push_back({{"name", o.name},
                     {"type", typeOf(o)},
-                    {"default", o.fallback},
+                    {"default", o.defaultText},
                     {"range", rangeOf(o)},
                     {"unit", o.kind == Option::Kind::Text ? "" : o.unit},
                     {"needs", needText(o.needs)},
@@ -139,7 +139,7 @@ Json describeSpec(const StageSpec& spec) {
           {{"name", m.name}, {"summary", m.summary}, {"options", describe(m.options)}});
     }
     slots.push_back({{"name", slot.name},
-                     {"default", slot.fallback},
+                     {"default", slot.defaultText},
                      {"help", slot.help},
                      {"needs", needText(slot.needs)},
                      {"methods", methods}});
