@@ -61,6 +61,7 @@ struct CompensateInputs {
 };
 
 using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;
+// Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const CompensateMethod* const> compensateMethods();
 
 }  // namespace bnvpl

@@ -67,6 +67,7 @@ struct GatherInputs {
 };
 
 using GatherMethod = Method<Gather (*)(const GatherInputs&, const Values&)>;
+// Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();
 
 // Makes a Gather that handles each receiver separately: fn(bsdf) -> Gathered.

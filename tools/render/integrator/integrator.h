@@ -56,6 +56,7 @@ struct IntegratorMethod {
   bool photons = false;  // traces photons for indirect light
   bool gathers = false;  // gathers VPLs, so that --gather and --compensate apply
 };
+// Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const IntegratorMethod* const> integratorMethods();
 
 }  // namespace bnvpl

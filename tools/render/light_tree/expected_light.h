@@ -16,7 +16,7 @@ inline Vec3 maxReflected(const Bsdf& bsdf) {
 
 // Relative deviation of a cluster's light between its VPLs, per unit of its size over distance,
 // which covers falloff, cosines and partial visibility, and per unit of the spread of its normals
-// (measured: docs/theory.md, "Tile cuts").
+// (measured: theory.md).
 inline constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
 // Largest value of a single draw, over the deviation that a sample may have.
 inline constexpr float kMaxDraw = 2.0f;

@@ -15,8 +15,7 @@ constexpr float kReachWithoutPhotons = 2.0f;
 // kMinFound of them lie on its surface. If fewer do, the surface is a sliver of unknown area.
 constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
 // A ray shorter than this many r_max ends in a crevice or a corner, where the light differs from
-// the mean over the VPL's surface: further rays find the point's own light instead (measured:
-// docs/theory.md, "Near field").
+// the mean over the VPL's surface: further rays find the point's own light instead (measured).
 constexpr float kShortRay = 0.7f;
 constexpr float kUnknown = -1.0f;  // an area that is not measured yet
 

@@ -13,7 +13,7 @@ namespace {
 // share.
 constexpr unsigned kMaxExtensions = 16;
 // Number of VPLs sampled at a vertex: few, and fewer at later vertices, whose noise matters less
-// (measured: docs/theory.md, "Near field").
+// (measured).
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
 // Shadow rays to lights from the first vertex.
 constexpr unsigned kFirstLightRays = 4;

@@ -31,7 +31,7 @@
 namespace bnvpl {
 
 // Costs in units of one shadow ray of a tile's gather, which are traced eight at a time (measured:
-// integrator/vpl/theory.md).
+// tools/render/tile/theory.md).
 namespace cost {
 inline constexpr double kCluster = 0.07, kCameraRay = 8.0, kBsdfRay = 7.0, kLightRay = 4.0,
                         kReuseRay = 1.5;
