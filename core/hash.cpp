@@ -1,20 +1,18 @@
 #include "core/hash.h"
 
-#define XXH_STATIC_LINKING_ONLY  // declares the state's members, so that it needs no allocator
 #include <xxhash.h>
 
 #include <cstdio>
+#include <new>
 
 namespace bnvpl {
 
-struct Hasher::State {
-  XXH3_state_t hash;
-};
-
-Hasher::Hasher() : state_(std::make_unique<State>()) { XXH3_64bits_reset(&state_->hash); }
-Hasher::~Hasher() = default;
-void Hasher::add(Bytes bytes) { XXH3_64bits_update(&state_->hash, bytes.data(), bytes.size()); }
-uint64_t Hasher::digest() const { return XXH3_64bits_digest(&state_->hash); }
+Hasher::Hasher() : state_(XXH3_createState(), [](XXH3_state_s* state) { XXH3_freeState(state); }) {
+  if (!state_) throw std::bad_alloc();
+  XXH3_64bits_reset(state_.get());
+}
+void Hasher::add(Bytes bytes) { XXH3_64bits_update(state_.get(), bytes.data(), bytes.size()); }
+uint64_t Hasher::digest() const { return XXH3_64bits_digest(state_.get()); }
 
 uint64_t hashPieces(const std::vector<Bytes>& pieces) {
   Hasher hasher;

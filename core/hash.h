@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+struct XXH3_state_s;
+
 namespace bnvpl {
 
 using Bytes = std::span<const std::byte>;
@@ -21,16 +23,11 @@ Bytes bytesOf(const T& value) {
 class Hasher {
  public:
   Hasher();  // throws std::bad_alloc
-  ~Hasher();
-  Hasher(const Hasher&) = delete;
-  Hasher& operator=(const Hasher&) = delete;
-
   void add(Bytes bytes);
   uint64_t digest() const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<XXH3_state_s, void (*)(XXH3_state_s*)> state_;
 };
 
 // Hash of the concatenated pieces.

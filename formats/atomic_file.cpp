@@ -92,31 +92,28 @@ void syncFolder(const fs::path& target) {
 class FolderLocks {
  public:
   explicit FolderLocks(const std::vector<fs::path>& folders) {
-    std::map<std::pair<dev_t, ino_t>, int> open;  // in an order that all runs share: no deadlock
     for (const fs::path& folder : folders) {
       struct stat info {};
       const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      const bool known = fd >= 0 && ::fstat(fd, &info) == 0;
-      if (known && open.emplace(std::pair(info.st_dev, info.st_ino), fd).second)
-        descriptors_.push_back(fd);
-      else if (fd >= 0)
-        ::close(fd);
+      if (fd < 0) continue;
+      const bool known = ::fstat(fd, &info) == 0;
+      if (!known || !open_.emplace(std::pair(info.st_dev, info.st_ino), fd).second) ::close(fd);
     }
     int tries = 400;
-    for (const auto& [identity, fd] : open) {
+    for (const auto& [identity, fd] : open_) {
       while (::flock(fd, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR) &&
              --tries > 0)
         ::usleep(5000);
     }
   }
   ~FolderLocks() {
-    for (const int fd : descriptors_) ::close(fd);
+    for (const auto& [identity, fd] : open_) ::close(fd);
   }
   FolderLocks(const FolderLocks&) = delete;
   FolderLocks& operator=(const FolderLocks&) = delete;
 
  private:
-  std::vector<int> descriptors_;
+  std::map<std::pair<dev_t, ino_t>, int> open_;  // in an order that all runs share: no deadlock
 };
 
 }  // namespace

@@ -141,18 +141,9 @@ class Lamps {
   }
 
   Bounds boxOf(const Instance& instance) {
-    const Prototype& p = scene_.prototypes[instance.prototype];
-    const auto [it, isNew] = boxes_.try_emplace(instance.prototype);
-    Bounds& own = it->second;
-    for (uint32_t t = p.begin; isNew && t < p.end; ++t)
-      for (const Vec3 c : cornersOf(t)) own.extend(c);
-    Bounds box;
-    for (int k = 0; k < 8; ++k) {
-      box.extend(
-          instance.point({k & 1 ? own.upper.x : own.lower.x, k & 2 ? own.upper.y : own.lower.y,
-                          k & 4 ? own.upper.z : own.lower.z}));
-    }
-    return box;
+    const auto [own, isNew] = boxes_.try_emplace(instance.prototype);
+    if (isNew) own->second = scene_.boxOf(scene_.prototypes[instance.prototype]);
+    return instance.box(own->second);
   }
 
   const Scene& scene_;

@@ -78,33 +78,17 @@ void meetRange(const Scene& scene, uint32_t begin, uint32_t end, const Instance*
   }
 }
 
-// Box around the eight transformed corners of a box.
-Bounds transformed(const Bounds& box, const Instance& by) {
-  Bounds out;
-  for (int corner = 0; corner < 8; ++corner) {
-    out.extend(
-        by.point({(corner & 1 ? box.upper : box.lower).x, (corner & 2 ? box.upper : box.lower).y,
-                  (corner & 4 ? box.upper : box.lower).z}));
-  }
-  return out;
-}
-
 }  // namespace
 
-std::vector<std::string> lightsInSurfaces(const Scene& scene) {
+std::string lightsInSurfaces(const Scene& scene) {
   Lights lights(scene);
   if (lights.empty()) return {};
   meetRange(scene, 0, scene.worldEnd(), nullptr, lights);
   std::vector<Bounds> boxes;
-  for (const Prototype& p : scene.prototypes) {
-    Bounds& box = boxes.emplace_back();
-    for (uint32_t t = p.begin; t < p.end; ++t) {
-      for (size_t i = 0; i < 3; ++i) box.extend(scene.corner(t, i));
-    }
-  }
+  for (const Prototype& p : scene.prototypes) boxes.push_back(scene.boxOf(p));
   for (const Instance& instance : scene.instances) {
     const Prototype& p = scene.prototypes[instance.prototype];
-    if (!lights.areNear(transformed(boxes[instance.prototype], instance))) continue;
+    if (!lights.areNear(instance.box(boxes[instance.prototype]))) continue;
     meetRange(scene, p.begin, p.end, &instance, lights);
   }
   if (lights.found().empty()) return {};
@@ -113,10 +97,10 @@ std::vector<std::string> lightsInSurfaces(const Scene& scene) {
   const std::string more = lights.found().size() == 1
                                ? ""
                                : " (and " + std::to_string(lights.found().size() - 1) + " more)";
-  return {scene.name() + ": the light at (" + shortestText(p.x) + ", " + shortestText(p.y) + ", " +
-          shortestText(p.z) + ")" + more + " lies in a surface of '" +
-          scene.materials[material].name +
-          "': rounding decides what it lights; move it to the side that it should light"};
+  return scene.name() + ": the light at (" + shortestText(p.x) + ", " + shortestText(p.y) + ", " +
+         shortestText(p.z) + ")" + more + " lies in a surface of '" +
+         scene.materials[material].name +
+         "': rounding decides what it lights; move it to the side that it should light";
 }
 
 }  // namespace bnvpl

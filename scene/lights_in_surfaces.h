@@ -3,14 +3,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "scene/scene.h"
 
 namespace bnvpl {
 
-// Returns a warning that names the lights that lie nearer to a triangle than ray origins are
-// offset. Needs Scene::bounds.
-std::vector<std::string> lightsInSurfaces(const Scene& scene);
+// Returns a warning that names the first light which lies nearer to a triangle than ray origins are
+// offset, and counts the others; empty if there is none. Needs Scene::bounds.
+std::string lightsInSurfaces(const Scene& scene);
 
 }  // namespace bnvpl

@@ -73,6 +73,15 @@ struct Instance {
     };
     return {row(0), row(1), row(2)};
   }
+  // The box around the transformed corners of a box.
+  Bounds box(const Bounds& own) const {
+    Bounds out;
+    for (int k = 0; k < 8; ++k) {
+      out.extend(point({k & 1 ? own.upper.x : own.lower.x, k & 2 ? own.upper.y : own.lower.y,
+                        k & 4 ? own.upper.z : own.lower.z}));
+    }
+    return out;
+  }
   // Transforms a vector in the surface, such as a tangent.
   Vec3 vector(Vec3 v) const { return point(v) - point({}); }
 };
@@ -168,6 +177,14 @@ struct Scene {
   }
   Vec3 corner(uint32_t triangle, size_t i) const {
     return positions[triangles[triangle].position[i]];
+  }
+  // The box around a prototype, in its own coordinates.
+  Bounds boxOf(const Prototype& p) const {
+    Bounds box;
+    for (uint32_t t = p.begin; t < p.end; ++t) {
+      for (size_t i = 0; i < 3; ++i) box.extend(corner(t, i));
+    }
+    return box;
   }
 };
 

@@ -114,14 +114,7 @@ void SceneBuilder::extendBounds() {
   if (scene_.instances.empty()) scene_.nearSize = near.diagonal();
   for (size_t p = 0; p < boxes.size(); ++p)
     extend(boxes[p], scene_.prototypes[p].begin, scene_.prototypes[p].end);
-  for (const Instance& i : scene_.instances) {
-    const Bounds& box = boxes[i.prototype];
-    for (int corner = 0; corner < 8; ++corner) {
-      scene_.bounds.extend(
-          i.point({corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                   corner & 4 ? box.upper.z : box.lower.z}));
-    }
-  }
+  for (const Instance& i : scene_.instances) scene_.bounds.extend(i.box(boxes[i.prototype]));
 }
 
 void SceneBuilder::requirePlace(const FilePoint& p, const char* what) const {
@@ -179,7 +172,7 @@ Scene SceneBuilder::finish() {
   for (const std::string& warning : liftCoplanarLamps(scene_)) warn(warning);
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex
   requireSize();
-  for (const std::string& warning : lightsInSurfaces(scene_)) warn(warning);
+  if (const std::string warning = lightsInSurfaces(scene_); !warning.empty()) warn(warning);
   placeViews();
   if (!scene_.hasLight()) warn(scene_.name() + ": " + kNoLight);
   scene_.contentHash = hashScene(scene_);

@@ -150,8 +150,8 @@ void readPixels(Imf::InputPart& in, Image& image) {
 
 Image readChecked(const fs::path& file) {
   refuseDishonestAttributes(file);
-  Imf::Header::setMaxImageSize(kMaxExrSide,
-                               kMaxExrSide);  // or OpenEXR allocates its line table first
+  // Without a limit OpenEXR allocates its line table before it reads.
+  Imf::Header::setMaxImageSize(kMaxExrSide, kMaxExrSide);
   // Not Imf::InputFile: that allocates lines and tiles of any size as it opens the file, and takes
   // deep images.
   Imf::MultiPartInputFile parts(file.c_str(), kNoThreads, /*reconstructChunkOffsetTable=*/false);

@@ -22,18 +22,18 @@ uint8_t times(unsigned x, unsigned y) {
   return static_cast<uint8_t>((product + (product >> 8)) >> 8);
 }
 
-class Reader {
+class JpegReader {
  public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {
+  explicit JpegReader(std::string_view bytes) : bytes_(bytes) {
     jpeg_.err = jpeg_std_error(&errors_);
     jpeg_.client_data = this;
     errors_.error_exit = onError;
     errors_.emit_message = onMessage;
     progress_.progress_monitor = onProgress;
   }
-  ~Reader() { jpeg_destroy_decompress(&jpeg_); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg_); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
 
   Pixels read() {
     if (!readHeader()) fail();
@@ -83,7 +83,7 @@ class Reader {
     throw PixelError(text.data());
   }
 
-  static Reader& of(j_common_ptr jpeg) { return *static_cast<Reader*>(jpeg->client_data); }
+  static JpegReader& of(j_common_ptr jpeg) { return *static_cast<JpegReader*>(jpeg->client_data); }
   [[noreturn]] static void onError(j_common_ptr jpeg) { std::longjmp(of(jpeg).back_, 1); }
   // Keeps the first warning; negative levels are warnings, others are traces.
   static void onMessage(j_common_ptr jpeg, int level) {
@@ -109,6 +109,6 @@ class Reader {
 
 bool isJpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 
-Pixels readJpeg(std::string_view bytes) { return Reader(bytes).read(); }
+Pixels readJpeg(std::string_view bytes) { return JpegReader(bytes).read(); }
 
 }  // namespace bnvpl

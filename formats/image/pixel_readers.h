@@ -13,6 +13,8 @@ struct PixelError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+inline constexpr uint32_t kMaxImageSide = 32768;
+
 // Throws PixelError if a file of so many bytes cannot hold so many pixels. Readers call it before
 // they allocate the image.
 void requirePlausible(int64_t width, int64_t height, size_t bytes);

@@ -9,7 +9,6 @@ namespace {
 
 // Deflate expands a byte to at most 1032, and a byte of a PNG has at most 8 pixels.
 constexpr size_t kMaxPixelsPerByte = size_t{1032} * 8;
-constexpr int64_t kMaxSide = 32768;
 constexpr size_t kMaxPixels = size_t{1} << 28;
 constexpr size_t kMaxBytes = size_t{1} << 30;  // stb_image counts bytes in an int
 
@@ -27,7 +26,7 @@ Pixels decode(const fs::path& file, const std::string& bytes, const Read& read) 
 }  // namespace
 
 void requirePlausible(int64_t width, int64_t height, size_t bytes) {
-  const bool sides = width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide;
+  const bool sides = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
   const size_t count = sides ? static_cast<size_t>(width) * static_cast<size_t>(height) : 0;
   if (!sides || count > kMaxPixels || count / kMaxPixelsPerByte > bytes)
     throw PixelError("it claims more pixels than a file of its size can hold");

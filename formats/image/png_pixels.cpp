@@ -13,14 +13,13 @@ namespace bnvpl {
 namespace {
 
 constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
-constexpr png_uint_32 kMaxSide = 32768;
 constexpr size_t kMaxMessage = 120;
 
 using Rgba = std::array<uint8_t, 4>;
 
-class Reader {
+class PngReader {
  public:
-  explicit Reader(std::string_view bytes) : left_(bytes) {
+  explicit PngReader(std::string_view bytes) : left_(bytes) {
     png_ = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, this, onError, onWarning, this, allocate,
                                     release);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
@@ -28,9 +27,9 @@ class Reader {
     png_destroy_read_struct(&png_, nullptr, nullptr);
     throw std::bad_alloc();
   }
-  ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
 
   Pixels read(bool rgba) {
     const size_t bytes = left_.size();
@@ -54,7 +53,7 @@ class Reader {
   bool readHeader() {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_read_fn(png_, this, take);
-    png_set_user_limits(png_, kMaxSide, kMaxSide);
+    png_set_user_limits(png_, kMaxImageSide, kMaxImageSide);
     // Chunks that describe no pixels are not parsed; tRNS is none of them.
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER,
@@ -96,8 +95,8 @@ class Reader {
     table.fill({0, 0, 0, 255});
     for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
       const bool has = clear && i < static_cast<size_t>(alphaCount);
-      table[i] = {colours[i].red, colours[i].green, colours[i].blue, has ? alphas[i] : Rgba{}[0]};
-      if (!has) table[i][3] = 255;
+      table[i] = {colours[i].red, colours[i].green, colours[i].blue,
+                  static_cast<uint8_t>(has ? alphas[i] : 255)};
     }
     Pixels out{numbers.width, numbers.height, rgba || clear ? 4u : 3u, {}, numbers.damage};
     out.values.reserve(numbers.values.size() * out.channels);
@@ -118,13 +117,13 @@ class Reader {
     throw PixelError(message_.data());
   }
 
-  static Reader& of(void* reader) { return *static_cast<Reader*>(reader); }
+  static PngReader& of(void* reader) { return *static_cast<PngReader*>(reader); }
   static void onError(png_structp png, png_const_charp text) {
     std::snprintf(of(png_get_error_ptr(png)).message_.data(), kMaxMessage, "%s", text);
     png_longjmp(png, 1);
   }
   static void onWarning(png_structp png, png_const_charp text) {
-    Reader& reader = of(png_get_error_ptr(png));
+    PngReader& reader = of(png_get_error_ptr(png));
     if (reader.message_[0] == '\0') std::snprintf(reader.message_.data(), kMaxMessage, "%s", text);
   }
   static void take(png_structp png, png_bytep out, size_t count) {
@@ -151,6 +150,6 @@ class Reader {
 
 bool isPng(std::string_view bytes) { return bytes.starts_with(kSignature); }
 
-Pixels readPng(std::string_view bytes, bool rgba) { return Reader(bytes).read(rgba); }
+Pixels readPng(std::string_view bytes, bool rgba) { return PngReader(bytes).read(rgba); }
 
 }  // namespace bnvpl

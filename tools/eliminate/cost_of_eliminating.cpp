@@ -24,7 +24,7 @@ Cost costOfEliminating(const VplTable& candidates, const Values& options, const 
     Values some = options;
     some.set(kEliminateCountOption,
              std::max<uint64_t>(1, options[kEliminateCountOption] * count / candidates.size()));
-    if (points > 0) some.set(kCameraPointsKey.name, judges);
+    if (points > 0) some.set(kCameraPointsKey, judges);
     eliminate(keepRows(candidates, rows), some, rays, lights, progress);
   };
   Cost cost = costOfRows(candidates.size(), kFirst, part,

@@ -194,8 +194,12 @@ class Values {
   }
 
   template <typename T>
+  void set(OptionKey<T> key, T value) {
+    set(key.name, Value(std::move(value)));
+  }
+  template <typename T>
   void set(const OptionOf<T>& option, T value) {
-    set(option.name, Value(std::move(value)));
+    set(option.key(), std::move(value));
   }
 
   // For code that takes options as data, such as conditions and records. Null without a value.

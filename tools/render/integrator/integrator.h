@@ -34,9 +34,9 @@ inline constexpr OptionKey<std::string> kIntegratorSlot{"integrator"}, kGatherSl
     kCompensateSlot{"compensate"};
 
 // Option of the integrators that use camera samples.
-constexpr TextOption firefliesOption(std::string_view fallback) {
+constexpr TextOption firefliesOption(std::string_view defaultText) {
   return choiceOption(
-      "fireflies", fallback, "redistribute|keep",
+      "fireflies", defaultText, "redistribute|keep",
       "excess of samples and photons that are far brighter than their surroundings: "
       "redistributed over the surface around, or kept");
 }

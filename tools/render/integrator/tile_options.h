@@ -14,12 +14,12 @@ inline constexpr WholeOption kDirectSamplesOption =
     neededBy(kDirectIsShown, wholeOption("direct-samples", "0", 0, 4096, "",
                                          "camera samples of direct light for each sample; 0: "
                                          "chosen by variance and cost; 1: the sample itself"));
-constexpr WholeOption reuseOption(std::string_view fallback, std::string_view help) {
-  return neededBy(kIndirectIsShown, wholeOption("reuse", fallback, 1, 32, "", help));
+constexpr WholeOption reuseOption(std::string_view defaultText, std::string_view help) {
+  return neededBy(kIndirectIsShown, wholeOption("reuse", defaultText, 1, 32, "", help));
 }
-constexpr TextOption controlOption(std::string_view fallback) {
+constexpr TextOption controlOption(std::string_view defaultText) {
   return neededBy(kIndirectIsShown,
-                  choiceOption("control", fallback, "vpls|none",
+                  choiceOption("control", defaultText, "vpls|none",
                                "control variate of indirect light within a pixel: the VPLs' "
                                "prediction along more camera rays, or none"));
 }

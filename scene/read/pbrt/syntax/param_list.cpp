@@ -1,10 +1,7 @@
 #include "scene/read/pbrt/syntax/param_list.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
-
-#include "core/number_text.h"
 
 namespace bnvpl::pbrt {
 
@@ -70,12 +67,6 @@ void checkValues(const Param& p) {
   const bool strings = wantsStrings(p.type), either = p.type == ParamType::Spectrum;
   if (!p.numbers.empty() && !p.strings.empty())
     failAt(p.place, "'" + p.name + "' mixes numbers and strings");
-  if (p.type == ParamType::Integer) {
-    const auto broken =
-        std::ranges::find_if(p.numbers, [](double n) { return n != std::floor(n); });
-    if (broken != p.numbers.end())
-      failAt(p.place, "'" + p.name + "' must be integers, not " + shortestText(*broken));
-  }
   if (p.type == ParamType::Unknown || either) return;
   if (strings ? !p.numbers.empty() : !p.strings.empty()) {
     failAt(p.place, "'" + p.name + "' must be " +

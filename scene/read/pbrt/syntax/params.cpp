@@ -108,7 +108,7 @@ std::vector<uint32_t> Params::indices(const std::string& name, size_t each, size
                                  ", outside of the " + std::to_string(below) + " vertices");
     }
     if (numbers[i] != std::floor(numbers[i]))
-      failAt(*placeOf(name), quoted(name) + " has " + shortestText(numbers[i]) + ", no integer");
+      failAt(*placeOf(name), quoted(name) + " must be integers, not " + shortestText(numbers[i]));
     out[i] = static_cast<uint32_t>(numbers[i]);
   }
   return out;
