@@ -94,13 +94,14 @@ std::string lightsInSurfaces(const Scene& scene) {
   if (lights.found().empty()) return {};
   const auto& [number, material] = *lights.found().begin();
   const Vec3 p = scene.lights[number].position;
+  const std::string& name = scene.materials[material].name;
   const std::string more = lights.found().size() == 1
                                ? ""
                                : " (and " + std::to_string(lights.found().size() - 1) + " more)";
   return scene.name() + ": the light at (" + shortestText(p.x) + ", " + shortestText(p.y) + ", " +
-         shortestText(p.z) + ")" + more + " lies in a surface of '" +
-         scene.materials[material].name +
-         "': rounding decides what it lights; move it to the side that it should light";
+         shortestText(p.z) + ")" + more + " lies in a surface" +
+         (name.empty() ? "" : " of '" + name + "'") +
+         ": rounding decides what it lights; move it to the side that it should light";
 }
 
 }  // namespace bnvpl

@@ -86,6 +86,10 @@ TEST_F(Told, LightsInASurface) {
     expectWarning(with(in), "lies in a surface of 'paint'");
   for (const char* beside : {"[0.25, 0.5, 0.01]", "[1.5, 0, 0]", "[0, 0, 2]"})
     EXPECT_EQ(countContaining(with(beside).warnings, "lies in"), 0u) << beside;
+  const Scene grey = loadMesh("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nf 1 2 3\n", "", "",
+                              "[[light]]\ntype = \"point\"\nintensity = [1, 1, 1]\n"
+                              "position = [0.5, 0, 0]\n");
+  expectWarning(grey, "lies in a surface: rounding");
   const std::string twice =
       "[[mesh.instance]]\ntranslate = [0, 0, 3]\n[[mesh.instance]]\ntranslate = [5, 0, 0]\n";
   expectWarning(with("[0.25, 0.5, 3]", twice), "the light at (0.25, 0.5, 3) lies in");

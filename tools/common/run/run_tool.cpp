@@ -111,7 +111,7 @@ void requireOwnValues(const CLI::App& cli, const std::vector<std::string>& words
     const std::string &text = words[i], name = text.substr(0, text.find('='));
     if (!option || std::ranges::find(option->results(), text) == option->results().end()) continue;
     if (!optionNamed(cli, name) && !(above && optionNamed(*above, name))) continue;
-    throw UsageError(words[i - 1] + " has no value, for '" + text +
+    throw UsageError(words[i - 1] + " has no value: '" + text +
                      "' behind it is an option; give it one (a file of that name is ./" + text +
                      ")");
   }
