@@ -93,35 +93,36 @@ class Rng {
  public:
   constexpr Rng(uint64_t key, uint64_t index) : state_(mix64(key + index * 0x9e3779b97f4a7c15u)) {}
   // Random numbers of one path among many that share their first vertex, such as those of a pixel.
-  // The first kSpread dimensions are stratified over all paths with this key.
-  static constexpr Rng spread(uint64_t key, uint32_t index) {
+  // The first kStratifiedPoints dimensions are stratified over all paths with this key.
+  static constexpr Rng stratified(uint64_t key, uint32_t index) {
     Rng rng(key, index);
-    rng.key_ = key, rng.index_ = index, rng.spread_ = kSpread;
+    rng.key_ = key, rng.index_ = index, rng.pointsLeft_ = kStratifiedPoints;
     return rng;
   }
-  constexpr float next() { return spread_ > 0 ? nextOfSequence().x : nextAlone(); }
+  constexpr float next() { return pointsLeft_ > 0 ? nextOfSequence().x : nextAlone(); }
   constexpr Point2 nextPoint() {
-    if (spread_ > 0) return nextOfSequence();
+    if (pointsLeft_ > 0) return nextOfSequence();
     const float x = nextAlone();
     return {x, nextAlone()};
   }
 
  private:
-  static constexpr uint32_t kSpread = 8;  // later dimensions gain little from stratification
+  static constexpr uint32_t kStratifiedPoints =
+      8;  // later dimensions gain little from stratification
 
   constexpr float nextAlone() {
     ++dimension_;
     return toUnitFloat(mix64(state_ + dimension_ * 0xd1342543de82ef95u));
   }
   constexpr Point2 nextOfSequence() {
-    return owenSobol(index_, key_ + spread_-- * 0xd1342543de82ef95u);
+    return owenSobol(index_, key_ + pointsLeft_-- * 0xd1342543de82ef95u);
   }
 
   uint64_t state_;
   uint64_t dimension_ = 0;
   uint64_t key_ = 0;
   uint32_t index_ = 0;
-  uint32_t spread_ = 0;  // number of stratified points left
+  uint32_t pointsLeft_ = 0;  // number of stratified points left
 };
 
 }  // namespace bnvpl

@@ -38,7 +38,8 @@ class Bsdf {
     return ask([](const auto& b) { return b.roughAlbedo(); });
   }
   bool hasRough() const { return !isBlack(roughAlbedo()); }
-  // The constant part of the rough group's value, 1/sr, and whether it is the whole value.
+  // The constant part of the rough group's BSDF, 1/sr, without the cosine that eval() includes, and
+  // whether it is the whole BSDF of the group.
   Vec3 diffuseValue() const {
     return ask([](const auto& b) { return b.diffuseValue(); });
   }

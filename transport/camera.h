@@ -18,10 +18,10 @@ inline Vec3 cameraDirection(const Camera& camera, const Film& film, float x, flo
 
 // Film position of a point in the same coordinates, and its depth along the viewing axis, which is
 // not positive behind the camera.
-struct FilmPoint {
+struct RasterPoint {
   float x, y, depth;
 };
-inline FilmPoint projectToFilm(const Camera& camera, const Film& film, Vec3 p) {
+inline RasterPoint projectToFilm(const Camera& camera, const Film& film, Vec3 p) {
   const Vec3 d = p - camera.position;
   const float depth = dot(d, camera.forward);
   const float tanHalf = std::tan(0.5f * camera.verticalFovRad);

@@ -7,8 +7,8 @@
 namespace bnvpl {
 
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
-                         Vec3 throughput, PathLength length, const SurfaceLights* where, Rng& rng,
-                         Vec3& first, Vec3& later) {
+                         Vec3 throughput, PathLength length, const SpatialLightSampler* where,
+                         Rng& rng, Vec3& first, Vec3& later) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   LearnedStrata strata;

@@ -1,8 +1,8 @@
 // Light that leaves a rough vertex, estimated by path tracing.
 #pragma once
 
+#include "transport/spatial_light_sampler.h"
 #include "transport/specular_path.h"
-#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
@@ -17,7 +17,7 @@ struct PathLength {
 // distributions by which lights are sampled; null: by power. Returns the number of rough vertices
 // of the path, this one included; each takes about two rays.
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
-                         Vec3 throughput, PathLength length, const SurfaceLights* where, Rng& rng,
-                         Vec3& first, Vec3& later);
+                         Vec3 throughput, PathLength length, const SpatialLightSampler* where,
+                         Rng& rng, Vec3& first, Vec3& later);
 
 }  // namespace bnvpl

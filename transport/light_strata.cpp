@@ -13,27 +13,27 @@ constexpr double kMin = 0.1;  // min probability of a stratum, relative to a uni
 
 }  // namespace
 
-LightStrata::LightStrata(const LightSet& lights, size_t most) : cells_(lights.size()) {
+LightStrata::LightStrata(const LightSet& lights, size_t maxStrata) : cells_(lights.size()) {
   for (uint32_t i = 0; i < lights.size(); ++i) {
     cells_[i].share = lights.pickProbability(i);
     if (cells_[i].share > 0.0f) order_.push_back(i);
   }
-  if (2 * order_.size() <= most) {
-    cutUp(lights, most);
+  if (2 * order_.size() <= maxStrata) {
+    cutUp(lights, maxStrata);
   } else {
-    putTogether(lights, most);
+    putTogether(lights, maxStrata);
   }
 }
 
 // Each light has a stratum; divisible lights get the remaining ones in proportion to power.
-void LightStrata::cutUp(const LightSet& lights, size_t most) {
+void LightStrata::cutUp(const LightSet& lights, size_t maxStrata) {
   std::vector<LightSet::Extent> extents;
   double divisible = 0.0;
   for (const uint32_t i : order_) {
     extents.push_back(lights.extent(i));
     if (extents.back().divisible) divisible += double{cells_[i].share};
   }
-  const auto left = static_cast<double>(most - order_.size());
+  const auto left = static_cast<double>(maxStrata - order_.size());
   const std::vector<uint32_t> own = order_;
   order_.clear();
   for (size_t k = 0; k < own.size(); ++k) {
@@ -62,7 +62,7 @@ void LightStrata::add(uint32_t light, const LightSet::Extent& extent, size_t par
 
 // Groups neighbours along a Morton curve until they have an equal part of the power. Lights at
 // infinity have a stratum each.
-void LightStrata::putTogether(const LightSet& lights, size_t most) {
+void LightStrata::putTogether(const LightSet& lights, size_t maxStrata) {
   std::vector<uint32_t> local, own = order_;
   std::vector<Vec3> centres;
   order_.clear();
@@ -77,7 +77,8 @@ void LightStrata::putTogether(const LightSet& lights, size_t most) {
   }
   double total = 0.0;
   for (const uint32_t i : local) total += double{cells_[i].share};
-  const double part = total / static_cast<double>(most - std::min(most - 1, order_.size()));
+  const double part =
+      total / static_cast<double>(maxStrata - std::min(maxStrata - 1, order_.size()));
   std::vector<double> weights;
   for (const uint32_t k : mortonOrder(centres)) {
     const uint32_t light = local[k];

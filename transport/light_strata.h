@@ -24,8 +24,8 @@ struct LightPlace {
 class LightStrata {
  public:
   static constexpr size_t kMax = 1024;
-  // `most` is the max number of strata. Lights without power have none.
-  explicit LightStrata(const LightSet& lights, size_t most = kMax);
+  // `maxStrata` is at least 1. Lights without power have none.
+  explicit LightStrata(const LightSet& lights, size_t maxStrata = kMax);
 
   size_t size() const { return strata_.size(); }
   // Fraction of the total power.

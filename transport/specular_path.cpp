@@ -1,6 +1,6 @@
 #include "transport/specular_path.h"
 
-#include "transport/surface_lights.h"
+#include "transport/spatial_light_sampler.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -17,15 +17,15 @@ bool isPlain(const Material& material) {
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& start, Rng& rng,
-                                const SpecularLightSampling& behind) {
+                                const SpecularLightSampling& specularLights) {
   SurfacePoint first;
   rays.closestHit(origin, direction, first);
-  return followSpecularPath(rays, lights, first, direction, start, rng, behind);
+  return followSpecularPath(rays, lights, first, direction, start, rng, specularLights);
 }
 
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
-                                Rng& rng, const SpecularLightSampling& behind,
+                                Rng& rng, const SpecularLightSampling& specularLights,
                                 float roughImportance) {
   SpecularPath end;
   LearnedStrata strata;  // those of the last specular vertex
@@ -34,12 +34,12 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
   Arrival arrival = start;
   arrival.shared = {};
   while (true) {
-    Vec3& met = end.links == 0 ? end.emissionFirst : end.emissionLater;
+    Vec3& met = end.specularBounces == 0 ? end.emissionFirst : end.emissionLater;
     if (end.hit.triangle == kNone) {
       met += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
     }
-    if (end.links == 0) end.firstDistance = end.hit.distance;
+    if (end.specularBounces == 0) end.firstDistance = end.hit.distance;
     met += end.throughput * emissionHit(lights, end.hit, arrival);
 
     const Material& material = rays.scene().materials[end.hit.material];
@@ -49,18 +49,19 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
       return end;
     }
     const Bsdf bsdf(rays.scene(), end.hit);
-    const LobeChoice lobes = chooseLobes(bsdf, rng, end.links == 0 ? roughImportance : 1.0f);
+    const LobeChoice lobes =
+        chooseLobes(bsdf, rng, end.specularBounces == 0 ? roughImportance : 1.0f);
     end.throughput *= 1.0f / lobes.probability;
     if (!lobes.specular()) {
       end.rough = bsdf.hasRough();
       return end;
     }
-    if (++end.links > kMaxSpecular) return end;
+    if (++end.specularBounces > kMaxSpecular) return end;
     if (!bsdf.specularIsDelta()) {
-      end.spread = true;
-      strata = end.links == 1 && behind.first ? *behind.first
-               : behind.others                ? behind.others->at(end.hit.position, end.hit.ng)
-                                              : LearnedStrata{};
+      end.hasNonDelta = true;
+      strata = end.specularBounces == 1 && specularLights.first ? *specularLights.first
+               : specularLights.others ? specularLights.others->at(end.hit.position, end.hit.ng)
+                                       : LearnedStrata{};
       end.emissionLater +=
           end.throughput * directLight(rays, lights, Reflected{bsdf, LobeGroup::Specular},
                                        {learnedBy(strata), LightChoice::One, start.shared},

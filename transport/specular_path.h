@@ -6,22 +6,22 @@
 
 namespace bnvpl {
 
-class SurfaceLights;
+class SpatialLightSampler;
 
 // Distributions by which near-specular vertices sample lights; without one, they sample by power.
 struct SpecularLightSampling {
-  const LearnedStrata* first = nullptr;   // for the first specular vertex
-  const SurfaceLights* others = nullptr;  // for the others, and for the first without `first`
+  const LearnedStrata* first = nullptr;         // for the first specular vertex
+  const SpatialLightSampler* others = nullptr;  // for the others, and for the first without `first`
 };
 
 struct SpecularPath {
   bool rough = false;  // whether the path took the rough lobes at `hit`
   SurfacePoint hit;
-  Vec3 throughput;      // from the start to the hit, over the probability of choosing `rough`
-  unsigned links = 0;   // number of specular vertices
-  bool spread = false;  // whether one of them has a near-specular rather than a delta lobe
-  Vec3 emissionFirst;   // emission hit by the first segment
-  Vec3 emissionLater;   // emission hit later, and light sampled at near-specular vertices
+  Vec3 throughput;  // from the start to the hit, over the probability of choosing `rough`
+  unsigned specularBounces = 0;  // number of specular vertices
+  bool hasNonDelta = false;      // whether one of them has a near-specular rather than a delta lobe
+  Vec3 emissionFirst;            // emission hit by the first segment
+  Vec3 emissionLater;            // emission hit later, and light sampled at near-specular vertices
   float firstDistance = INFINITY;  // distance of the first hit along the ray
 };
 
@@ -29,12 +29,12 @@ struct SpecularPath {
 // vertices.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
-                                const SpecularLightSampling& behind = {});
+                                const SpecularLightSampling& specularLights = {});
 // The same with a given first hit; first.triangle is kNone if the ray leaves the scene.
 // `roughImportance` is passed to chooseLobes() at the first hit.
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
-                                Rng& rng, const SpecularLightSampling& behind = {},
+                                Rng& rng, const SpecularLightSampling& specularLights = {},
                                 float roughImportance = 1.0f);
 
 }  // namespace bnvpl

@@ -8,12 +8,13 @@
 namespace bnvpl {
 
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind) {
-  VplLights vpls;
-  vpls.kind = kind;
+  VplLights lights;
+  lights.kind = kind;
   // Min distance, below which rays cannot tell points apart. It keeps 1/d^2 finite without a clamp.
   const float nearest = rays.scene().offsetSize() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
+    ++lights.vpls;
     // Each emission point emits an equal part of the flux; coinciding points become one light.
     const auto at = std::span(lit.emitPosition).subspan(i * lit.emitPoints, lit.emitPoints);
     for (size_t k = 0; k < at.size(); ++k) {
@@ -21,15 +22,15 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
       const auto same = std::count(at.begin(), at.end(), at[k]);
       const Vec3 normal = lit.emitNormal[i * lit.emitPoints + k];
       const float part = static_cast<float>(same) / static_cast<float>(lit.emitPoints);
-      vpls.row.push_back(static_cast<uint32_t>(i));
-      vpls.position.push_back(rays.offsetOrigin(at[k], normal));
-      vpls.normal.push_back(normal);
-      vpls.intensity.push_back(lit.flux[i] * (part / kPi));
-      vpls.clamp2.push_back(
+      lights.row.push_back(static_cast<uint32_t>(i));
+      lights.position.push_back(rays.offsetOrigin(at[k], normal));
+      lights.normal.push_back(normal);
+      lights.intensity.push_back(lit.flux[i] * (part / kPi));
+      lights.clamp2.push_back(
           std::max(clamp * clamp * lit.radius[i] * lit.radius[i], nearest * nearest));
     }
   }
-  return vpls;
+  return lights;
 }
 
 }  // namespace bnvpl

@@ -9,14 +9,17 @@
 
 namespace bnvpl {
 
-// Columns of the VPLs that carry flux.
+// Columns of the emission points of the VPLs that carry flux. A VPL has one, or several with
+// --emit.
 struct VplLights {
   LightKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // intensity along the normal, flux / pi, W/sr
-  std::vector<uint32_t> row;    // row of the VplTable
+  std::vector<uint32_t> row;    // row of the VplTable, ascending
   std::vector<float> clamp2;    // squared size of the kind, (clamp * radius)^2; never 0
+
+  size_t vpls = 0;  // number of rows that carry flux
 
   size_t size() const { return position.size(); }
 };
@@ -26,13 +29,14 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp,
                         LightKind kind = {});
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
-struct Coupling {
-  Vec3 transfer;         // BSDF * cosines * falloff, 1/m2
-  float clamped = 0.0f;  // contribution that the bound removes, relative to transfer
+struct VplTransfer {
+  Vec3 transfer;           // BSDF * cosines * falloff, 1/m2
+  float clampLoss = 0.0f;  // contribution that the bound removes, relative to transfer
 };
 
 // Returns false if the contribution is 0 regardless of visibility, as behind either surface.
-inline bool couple(const VplLights& vpls, size_t i, const Bsdf& bsdf, Coupling& out) {
+inline bool unoccludedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf,
+                               VplTransfer& out) {
   const Vec3 d = vpls.position[i] - bsdf.point().position;
   const float d2 = lengthSquared(d);
   if (!(d2 > 0.0f)) return false;
@@ -43,23 +47,24 @@ inline bool couple(const VplLights& vpls, size_t i, const Bsdf& bsdf, Coupling& 
   if (isBlack(value)) return false;
   const float bounded = falloff(vpls.kind, d2, vpls.clamp2[i]);
   out.transfer = value * (facing * invDistance * bounded);
-  out.clamped = 1.0f / (d2 * bounded) - 1.0f;
+  out.clampLoss = 1.0f / (d2 * bounded) - 1.0f;
   return true;
 }
 
 // The same without the receiver's BSDF, and without branches, so that the compiler can vectorise it
 // over receivers.
-struct BareCoupling {
-  float transfer;  // cosines * falloff, 1/m2; undefined unless lit
-  float clamped;   // the same as in Coupling
-  int lit;         // 0: the contribution is 0 regardless of visibility
+struct GeometryTerm {
+  float value;      // cosines * falloff, 1/m2; undefined unless it contributes
+  float clampLoss;  // the same as in VplTransfer
+  int contributes;  // 0: the contribution is 0 regardless of visibility
 };
 template <typename Kind>
-BareCoupling coupleBare(Vec3 position, Vec3 normal, float clamp2, Vec3 receiver, Vec3 ns, Vec3 ng) {
+GeometryTerm geometryTerm(Vec3 position, Vec3 normal, float clamp2, Vec3 receiver, Vec3 ns,
+                          Vec3 ng) {
   const Vec3 d = position - receiver;
   const float d2 = lengthSquared(d);
   const float emitter = Kind::emitted(normal, d), received = dot(ns, d), above = dot(ng, d);
-  const float far2 = Kind::spread(d2, clamp2);
+  const float far2 = Kind::boundedDistance2(d2, clamp2);
   const float far4 = d2 * far2;  // 0 where the VPL is at the point
   return {emitter * received / far4, far2 / d2 - 1.0f,
           (emitter > 0.0f) & (received > 0.0f) & (above > 0.0f) & (far4 > 0.0f)};

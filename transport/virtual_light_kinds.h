@@ -3,10 +3,11 @@
 //
 // A kind is a struct of static functions, and an entry of the list LightKinds:
 //   name       value of the command-line option
-//   spread     replaces d^2, so that light falls off with 1/spread; it must be at least d2 and not
+//   boundedDistance2     replaces d^2, so that light falls off with 1/boundedDistance2; it must be
+//   at least d2 and not
 //              decrease with d2
 //   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
-//              compensation adds back: 1 - d^2 / spread
+//              compensation adds back: 1 - d^2 / boundedDistance2
 //   emitted    emission in a direction relative to that along the axis, times the distance
 //   mostEmitted, expectedEmitted
 //              the same for a cluster whose axes fill a cone, without the distance: an upper bound
@@ -49,7 +50,7 @@ struct LambertEmission {
 struct PointLight : LambertEmission {
   static constexpr std::string_view name = "point";
   template <typename F>
-  static F spread(F d2, F size2) {
+  static F boundedDistance2(F d2, F size2) {
     return larger(d2, size2);
   }
   static float removed(float distanceOverSize) {
@@ -63,7 +64,7 @@ struct PointLight : LambertEmission {
 struct DiskLight : LambertEmission {
   static constexpr std::string_view name = "disk";
   template <typename F>
-  static F spread(F d2, F size2) {
+  static F boundedDistance2(F d2, F size2) {
     return d2 + size2;
   }
   static float removed(float distanceOverSize) {
@@ -118,7 +119,7 @@ auto withKind(LightKind kind, const Fn& fn) {
 
 // The kind's falloff, which replaces 1/d^2, in 1/m2.
 inline float falloff(LightKind kind, float distanceSquared, float size2) {
-  return 1.0f / withKind(kind, [&](auto k) { return k.spread(distanceSquared, size2); });
+  return 1.0f / withKind(kind, [&](auto k) { return k.boundedDistance2(distanceSquared, size2); });
 }
 
 }  // namespace bnvpl

@@ -39,7 +39,7 @@ TEST(Random, StreamsAndSeedsShareNoKey) {
     for (const Stream s :
          {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
           Stream::PixelSamples, Stream::LightTree, Stream::Plot, Stream::AreaEstimate,
-          Stream::LightTracer, Stream::FilmPoints, Stream::VplPaths}) {
+          Stream::LightTracer, Stream::PrimaryPoints, Stream::VplPaths}) {
       keys.insert(streamKey(seed, s));
     }
   }
@@ -90,7 +90,7 @@ TEST(Random, SpreadNumbersFillEveryIntervalOnce) {
   std::array<std::set<uint32_t>, kNumbers + 2> intervals;
   const auto of = [](float u) { return static_cast<uint32_t>(u * float{kPaths}); };
   for (uint32_t i = 0; i < kPaths; ++i) {
-    Rng rng = Rng::spread(5, i);
+    Rng rng = Rng::stratified(5, i);
     for (uint32_t d = 0; d < kNumbers; ++d) intervals[d].insert(of(rng.next()));
     const Point2 point = rng.nextPoint();
     intervals[kNumbers].insert(of(point.x)), intervals[kNumbers + 1].insert(of(point.y));

@@ -20,7 +20,7 @@ TEST(Estimate, EnergyAccountCloses) {
   const EnergyAccount& a = result.energy;
   EXPECT_NEAR(a.emitted, double{mean(world.lights.totalPower())}, 1e-4 * a.emitted);
   EXPECT_NEAR(a.escaped + a.absorbed, a.emitted, 1e-4 * a.emitted);
-  EXPECT_NEAR(a.deposited + a.outside + a.uncovered + a.hidden, a.reflected, 1e-6 * a.reflected);
+  EXPECT_NEAR(a.deposited + a.outside + a.incompatible + a.hidden, a.reflected, 1e-6 * a.reflected);
   EXPECT_NEAR(totalFlux(result.table), a.deposited, 1e-5 * a.deposited);
   EXPECT_GT(a.deposited, 0.0);
 }

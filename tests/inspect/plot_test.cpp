@@ -39,7 +39,7 @@ TEST_F(Plot, DotsStandWhereTheRowsProject) {
   EXPECT_EQ(counts.facingAway, 1u);
   EXPECT_EQ(counts.outside, 1u);
 
-  const FilmPoint film = projectToFilm(scene_.camera, scene_.film, table.position[0]);
+  const RasterPoint film = projectToFilm(scene_.camera, scene_.film, table.position[0]);
   const float x = film.x * 80, y = film.y * 60;
   const std::vector<size_t> pixels = changed(rays, dots, 5.0f);
   ASSERT_FALSE(pixels.empty());

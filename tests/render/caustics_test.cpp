@@ -86,9 +86,9 @@ TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
       return Gathered{};
     };
     const NearFieldRays rays = nearField(world, lit, compensate, count);
-    RayContributions brought;
-    rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1000, 0, 7, brought);
-    EXPECT_GT(mean(brought.indirect), 0.0f);
+    RayContributions contribution;
+    rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1000, 0, 7, contribution);
+    EXPECT_GT(mean(contribution.indirect), 0.0f);
     return points;
   };
   EXPECT_GT(gathers("none"), 50u);
@@ -118,9 +118,9 @@ TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
   unsigned bring = 0;
   constexpr unsigned kRays = 2000;
   for (unsigned k = 0; k < kRays; ++k) {
-    RayContributions brought;
-    rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1, k, 7, brought);
-    bring += mean(brought.indirect) > 0.0f;
+    RayContributions contribution;
+    rays.send({Directions(bsdf), Vec3(1.0f), {}, {}}, 1, k, 7, contribution);
+    bring += mean(contribution.indirect) > 0.0f;
   }
   EXPECT_GT(bring, kRays / 20);  // 31 if rays chose lobes by reflectance alone
 }

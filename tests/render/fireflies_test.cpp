@@ -18,12 +18,13 @@ namespace bnvpl {
 namespace {
 
 // Sets the radiance of a sample at a pixel of the film.
-using Brought = std::function<void(uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out)>;
+using Contribution =
+    std::function<void(uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out)>;
 
 struct Shown {
   uint32_t width = 64, height = 48;
   Only only = Only::Everything;
-  Image operator()(const Brought& brought, uint32_t spp, bool spread) const {
+  Image operator()(const Contribution& contribution, uint32_t spp, bool spread) const {
     Scene scene;
     scene.film = {width, height};
     const FilmOptions options{.spp = spp,
@@ -34,8 +35,9 @@ struct Shown {
       for (size_t k = 0; k < tile.samples.size(); ++k) {
         const auto p = static_cast<uint32_t>(k % tile.pixels);
         tile.samples[k].radiance.depth = 1.0f;
-        brought(tile.x + p % tile.width, tile.y + p / tile.width,
-                tile.firstSlot + static_cast<uint32_t>(k / tile.pixels), tile.samples[k].radiance);
+        contribution(tile.x + p % tile.width, tile.y + p / tile.width,
+                     tile.firstSample + static_cast<uint32_t>(k / tile.pixels),
+                     tile.samples[k].radiance);
       }
     }};
     FilmStats stats;
@@ -56,7 +58,7 @@ bool there(uint32_t x, uint32_t y, uint32_t slot) { return x == kX && y == kY &&
 size_t index(const Shown& film) { return size_t{kY} * film.width + kX; }
 
 // A grey room where one sample of the first pass finds light of another colour.
-Brought firefly(Vec3 light) {
+Contribution firefly(Vec3 light) {
   return [light, found = std::make_shared<std::atomic<bool>>()](
              uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     out.direct = Vec3(0.5f);
@@ -103,10 +105,11 @@ TEST(Fireflies, OfSeveralPixelsAreHiddenTogether) {
   const auto finds = [](uint32_t x, uint32_t y) {
     return x / 4 == kX / 4 && y / 4 == kY / 4 && (x + y) % 2 == 0;
   };
-  const Brought brought = [&](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution contribution = [&](uint32_t x, uint32_t y, uint32_t slot,
+                                        RadianceSample& out) {
     out.indirect = Vec3(slot == 3 && finds(x, y) ? 8.0f : 1.0f);
   };
-  const Image kept = film(brought, 16, false), spread = film(brought, 16, true);
+  const Image kept = film(contribution, 16, false), spread = film(contribution, 16, true);
   EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6);
   for (uint32_t i = 0; i < spread.pixelCount(); ++i) {
     if (!finds(i % film.width, i / film.width)) {
@@ -118,13 +121,14 @@ TEST(Fireflies, OfSeveralPixelsAreHiddenTogether) {
 TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
   const Shown film;
   for (const bool seen : {false, true}) {
-    const Brought brought = [seen](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    const Contribution contribution = [seen](uint32_t x, uint32_t y, uint32_t slot,
+                                             RadianceSample& out) {
       out.direct = out.indirect = Vec3(0.5f);
       if (!there(x, y, slot)) return;
       out.direct += Vec3(800.0f);
       if (seen) out.emission = Vec3(800.0f);
     };
-    const Image image = film(brought, 16, true);
+    const Image image = film(contribution, 16, true);
     if (seen) {
       EXPECT_FLOAT_EQ((*image.find("G"))[index(film)], 51.0f);
     } else {
@@ -139,7 +143,7 @@ TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
 TEST(Fireflies, OfOneKindOfLightAlone) {
   for (const Only only : {Only::Direct, Only::Indirect}) {
     const Shown film{.only = only};
-    const Brought both = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    const Contribution both = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
       out.direct = out.indirect = Vec3(there(x, y, slot) ? 160.0f : 1.0f);
     };
     const Image kept = film(both, 16, false), spread = film(both, 16, true);
@@ -156,11 +160,11 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
   for (const auto& [width, height] : {std::array{64u, 48u}, {1u, 1u}, {1u, 64u}, {3u, 2u}}) {
     const Shown film{.width = width, .height = height};
     for (const auto& [x, y] : {std::array{0u, 0u}, {width - 1, height - 1}, {width / 2, 0u}}) {
-      const Brought brought = [x = x, y = y](uint32_t u, uint32_t v, uint32_t slot,
-                                             RadianceSample& out) {
+      const Contribution contribution = [x = x, y = y](uint32_t u, uint32_t v, uint32_t slot,
+                                                       RadianceSample& out) {
         out.indirect = Vec3(1.0f + float(u % 3) + (u == x && v == y && slot == 3 ? 80.0f : 0.0f));
       };
-      const Image kept = film(brought, 16, false), spread = film(brought, 16, true);
+      const Image kept = film(contribution, 16, false), spread = film(contribution, 16, true);
       EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6)
           << width << ' ' << x << ' ' << y;
       for (const float v : *spread.find("G")) ASSERT_TRUE(std::isfinite(v) && v > 0.5f);
@@ -171,14 +175,14 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
 // The camera sees no surface to the left.
 TEST(Fireflies, LeavePixelsWithoutSurfaceBlack) {
   const Shown film;
-  const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution contribution = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     if (x < kX - 1) {
       out.depth = 0.0f;
       return;
     }
     out.indirect = Vec3(there(x, y, slot) ? 500.0f : 1.0f);
   };
-  const Image image = film(brought, 16, true);
+  const Image image = film(contribution, 16, true);
   EXPECT_LT((*image.find("G"))[index(film)], 1.4f);
   EXPECT_NEAR(sumOf(image, "G"), (64 - kX + 1) * 48 + 499.0 / 16.0, 1e-2);
   for (size_t i = 0; i < image.pixelCount(); ++i) {
@@ -220,21 +224,21 @@ TEST(Fireflies, IntegratorsReportVisibleEmission) {
 // The edge of a bright half lies inside a pixel.
 TEST(Fireflies, AreNotEdgesNorNoiseThatAllPixelsShare) {
   const Shown film;
-  const Brought edge = [](uint32_t x, uint32_t, uint32_t slot, RadianceSample& out) {
+  const Contribution edge = [](uint32_t x, uint32_t, uint32_t slot, RadianceSample& out) {
     out.indirect = Vec3(x > 30 || (x == 30 && slot == 5) ? 100.0f : 1.0f);
   };
-  const Brought noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     out.indirect = Vec3(random64(x, y, slot) % 4 == 0 ? 1.0f : 0.0f);
   };
-  for (const Brought& brought : {edge, noise}) {
-    const Image kept = film(brought, 64, false), spread = film(brought, 64, true);
+  for (const Contribution& contribution : {edge, noise}) {
+    const Image kept = film(contribution, 64, false), spread = film(contribution, 64, true);
     EXPECT_EQ(*spread.find("G"), *kept.find("G"));
   }
 }
 
 TEST(Fireflies, MoreSamplesLeaveThemWhereTheyAre) {
   const Shown film;
-  const Brought found = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution found = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     out.indirect = Vec3(x == kX && y == kY && slot % 16 == 3 ? 160.0f : 1.0f);
   };
   const auto at = [&](uint32_t spp, bool spread) {
@@ -246,7 +250,7 @@ TEST(Fireflies, MoreSamplesLeaveThemWhereTheyAre) {
 
 // Two samples of a pixel, in one pass or in two, are two fireflies.
 TEST(Fireflies, TwoOfAPixelAreSpread) {
-  const Brought twice = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution twice = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     const bool found = x == kX && y == kY && (slot == 3 || slot == 7);
     out.indirect = Vec3(found ? 60.0f : 1.0f);
   };
@@ -262,7 +266,7 @@ TEST(Fireflies, TwoOfAPixelAreSpread) {
 // Nothing hides a firefly in the dark; one too bright for a small film is at least no dot.
 TEST(Fireflies, StayWhereAllElseIsDark) {
   const Shown film;
-  const Brought dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     if (there(x, y, slot)) out.indirect = Vec3(16.0f);
   };
   const Image black = film(dark, 16, true);
@@ -280,14 +284,15 @@ TEST(Fireflies, StopAtEdges) {
   const Shown film;
   enum class Edge { Normal, Depth, Albedo };
   for (const Edge edge : {Edge::Normal, Edge::Depth, Edge::Albedo}) {
-    const Brought brought = [edge](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+    const Contribution contribution = [edge](uint32_t x, uint32_t y, uint32_t slot,
+                                             RadianceSample& out) {
       const bool beyond = x >= 32;
       out.normal = beyond && edge == Edge::Normal ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
       out.depth = beyond && edge == Edge::Depth ? 2.0f : 1.0f;
       out.albedo = Vec3(beyond && edge == Edge::Albedo ? 0.2f : 0.8f);
       out.indirect = Vec3(there(x, y, slot) ? 20.0f : 1.0f);
     };
-    const Image kept = film(brought, 16, false), moved = film(brought, 16, true);
+    const Image kept = film(contribution, 16, false), moved = film(contribution, 16, true);
     EXPECT_NEAR(sumOf(moved, "G") / sumOf(kept, "G"), 1.0, 1e-6);
     EXPECT_GT((*moved.find("G"))[index(film) + 1], 1.001f);
     for (size_t i = 0; i < moved.pixelCount(); ++i) {
@@ -301,17 +306,17 @@ TEST(Fireflies, StopAtEdges) {
 // On a bumpy surface no pixel resembles its neighbours, so fireflies are spread across edges.
 TEST(Fireflies, AreHiddenOnBumpySurfaces) {
   const Shown film;
-  const Brought brought = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution contribution = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     const float tilt = (x + y) % 2 == 0 ? 0.6f : -0.6f;
     out.normal = Vec3(tilt, 0, 0.8f);
     out.indirect = Vec3(there(x, y, slot) ? 20.0f : 1.0f);
   };
-  const Image image = film(brought, 16, true);
+  const Image image = film(contribution, 16, true);
   for (const float v : *image.find("G")) ASSERT_LE(v, 1.0f + 0.125f + 0.03f);
 }
 
 TEST(Fireflies, SameBytesForAnyThreads) {
-  const Brought noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
     const float u = toUnitFloat(random64(x, y, slot));
     out.indirect = Vec3(0.1f / (u + 1e-4f), u, 1.0f);
     out.direct = Vec3(0.03f / (1.0f - u + 1e-4f));

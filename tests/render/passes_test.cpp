@@ -179,7 +179,7 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
       seen([](uint32_t p, float shared, float own) { return shared + float(p) * own; });
   for (const bool photons : {false, true}) {
     if (photons) {
-      both.photons = [](uint64_t begin, uint64_t end, Splats& out) {
+      both.tracePhotons = [](uint64_t begin, uint64_t end, Splats& out) {
         for (uint64_t i = begin; i < end; ++i) {
           out.list.push_back({static_cast<uint32_t>(random64(5, i, 0) % 960),
                               Vec3(toUnitFloat(random64(5, i, 1)))});
@@ -210,7 +210,7 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
 TEST(Passes, CountThePhotonsOfEachPass) {
   const Film film(16, 16);
   Integrator both = seen([](uint32_t, float, float) { return 1.0f; });
-  both.photons = [](uint64_t begin, uint64_t end, Splats& out) {
+  both.tracePhotons = [](uint64_t begin, uint64_t end, Splats& out) {
     for (uint64_t i = begin; i < end; ++i) {
       out.list.push_back({static_cast<uint32_t>(random64(3, i, 0) % 256), Vec3(1.0f)});
     }

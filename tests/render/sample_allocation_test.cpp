@@ -18,7 +18,7 @@ TEST(SampleAllocation, SamplesGrowWithDeviationAndFallWithTheRootOfCost) {
 
 // The samples of a pixel affect only the number of samples of the other parity.
 TEST(SampleAllocation, APixelDoesNotDecideOnItsOwnSamples) {
-  const TileSlots tile{64, 8};
+  const TileLayout tile{64, 8};
   const SampleAllocation allocation{0.01, 0.0, 1e6};
   std::vector<PixelMoments> pixels(64);
   for (PixelMoments& p : pixels) {

@@ -33,31 +33,31 @@ TYPED_TEST(EachLightKind, FallOffWithDistanceAndNeverExceedAPoint) {
   constexpr float kSize2 = 0.04f;
   float before = 0.0f;
   for (float d = 0.0f; d < 3.0f; d += 0.01f) {
-    const float spread = TypeParam::spread(d * d, kSize2);
-    EXPECT_GE(spread, before);
-    EXPECT_GE(spread, d * d);
-    EXPECT_GT(spread, 0.0f);
-    before = spread;
+    const float boundedDistance2 = TypeParam::boundedDistance2(d * d, kSize2);
+    EXPECT_GE(boundedDistance2, before);
+    EXPECT_GE(boundedDistance2, d * d);
+    EXPECT_GT(boundedDistance2, 0.0f);
+    before = boundedDistance2;
   }
-  EXPECT_NEAR(TypeParam::spread(1e6f, kSize2), 1e6f, 1.0f);
+  EXPECT_NEAR(TypeParam::boundedDistance2(1e6f, kSize2), 1e6f, 1.0f);
 }
 
 TYPED_TEST(EachLightKind, RemoveWhatTheyDoNotEmit) {
   for (float d = 0.01f; d < 3.0f; d += 0.01f) {
-    EXPECT_NEAR(TypeParam::removed(d / 0.2f), 1.0f - d * d / TypeParam::spread(d * d, 0.04f),
-                1e-5f);
+    EXPECT_NEAR(TypeParam::removed(d / 0.2f),
+                1.0f - d * d / TypeParam::boundedDistance2(d * d, 0.04f), 1e-5f);
   }
 }
 
 TYPED_TEST(EachLightKind, FourAtOnceAreFourSingleOnes) {
   alignas(16) float d2[4] = {0.01f, 0.04f, 0.3f, 7.0f}, cosine[4] = {-0.9f, 0.1f, 0.5f, 0.99f};
-  alignas(16) float spread[4], most[4];
+  alignas(16) float boundedDistance2[4], most[4];
   const float cosHalf = std::cos(0.4f), sinHalf = std::sin(0.4f);
-  _mm_store_ps(spread, TypeParam::spread(_mm_load_ps(d2), _mm_set1_ps(0.04f)));
+  _mm_store_ps(boundedDistance2, TypeParam::boundedDistance2(_mm_load_ps(d2), _mm_set1_ps(0.04f)));
   _mm_store_ps(most, TypeParam::mostEmitted(_mm_load_ps(cosine), _mm_set1_ps(cosHalf),
                                             _mm_set1_ps(sinHalf)));
   for (int lane = 0; lane < 4; ++lane) {
-    EXPECT_EQ(spread[lane], TypeParam::spread(d2[lane], 0.04f));
+    EXPECT_EQ(boundedDistance2[lane], TypeParam::boundedDistance2(d2[lane], 0.04f));
     EXPECT_EQ(most[lane], TypeParam::mostEmitted(cosine[lane], cosHalf, sinHalf));
   }
 }

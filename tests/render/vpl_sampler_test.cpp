@@ -73,9 +73,9 @@ void requireRightProbabilities(size_t count, bool glossy) {
     const Bsdf bsdf(scene, at);
     std::map<uint32_t, double> sends;  // light of the VPLs that can light the point
     double all = 0.0;
-    Coupling c;
+    VplTransfer c;
     for (uint32_t i = 0; i < count; ++i) {
-      if (!couple(lights, i, bsdf, c)) continue;
+      if (!unoccludedTransfer(lights, i, bsdf, c)) continue;
       all += sends[i] = double{mean(c.transfer * lights.intensity[i])};
     }
     const VplSampler::Point point(sampler, bsdf);

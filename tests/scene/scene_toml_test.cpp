@@ -175,7 +175,7 @@ TEST(Camera, FilmCornersAndBack) {
   EXPECT_NEAR(corner.x / -corner.z, -2.0f, 1e-5f);  // 2 : 1, and 45 degrees up
   EXPECT_NEAR(corner.y / -corner.z, 1.0f, 1e-5f);
   EXPECT_NEAR(length(corner), 1.0f, 1e-6f);
-  const FilmPoint back = projectToFilm(
+  const RasterPoint back = projectToFilm(
       camera, film, camera.position + 7.0f * cameraDirection(camera, film, 0.2f, 0.9f));
   EXPECT_NEAR(back.x, 0.2f, 1e-5f);
   EXPECT_NEAR(back.y, 0.9f, 1e-5f);

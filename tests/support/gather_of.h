@@ -17,7 +17,7 @@ struct GatherOf {
                  .make({world.rays, vpls, tree, 1,
                         [this] {
                           looksAtFilm = true;
-                          return FilmPoints{};
+                          return PrimaryPoints{};
                         },
                         silent},
                        values);

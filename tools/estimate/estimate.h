@@ -14,14 +14,14 @@
 namespace bnvpl {
 
 // Where the light went, W (linear sRGB, averaged over the channels).
-// emitted = escaped + absorbed, and reflected = deposited + outside + uncovered + hidden.
+// emitted = escaped + absorbed, and reflected = deposited + outside + incompatible + hidden.
 struct EnergyAccount {
   double emitted = 0, escaped = 0, absorbed = 0;
   double reflected = 0;  // flux that leaves the rough hits
   double deposited = 0;  // flux deposited in VPLs
   double outside = 0;    // no VPL reaches the hit: it lies outside the region that lights the view
-  double uncovered = 0;  // VPLs reach the hit, but none on a compatible surface
-  double hidden = 0;     // some are on a compatible surface, but none is in sight
+  double incompatible = 0;  // VPLs reach the hit, but none on a compatible surface
+  double hidden = 0;        // some are on a compatible surface, but none is in sight
   uint64_t photons = 0, hits = 0, rays = 0, guardRays = 0;
   uint64_t nonFinite = 0;  // photons cut off because their flux became NaN or infinite
 };

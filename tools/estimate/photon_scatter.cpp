@@ -143,7 +143,7 @@ EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, ui
   a.reflected = watts(kReflected);
   a.deposited = watts(kDeposited);
   a.outside = watts(kOutside);
-  a.uncovered = watts(kUncovered);
+  a.incompatible = watts(kIncompatible);
   a.hidden = watts(kHidden);
   a.photons = photons;
   a.hits = sums.hits;
@@ -239,7 +239,7 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
   }
   scatter.tally(sums,
                 found.miss == Coverage::Miss::Outside        ? kOutside
-                : found.miss == Coverage::Miss::Incompatible ? kUncovered
+                : found.miss == Coverage::Miss::Incompatible ? kIncompatible
                                                              : kHidden,
                 hit.flux);
 }

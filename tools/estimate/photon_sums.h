@@ -63,7 +63,7 @@ enum Tally {
   kReflected,
   kDeposited,
   kOutside,
-  kUncovered,
+  kIncompatible,
   kHidden,
   kTallies
 };

@@ -83,12 +83,12 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
                 formatSi(double(a.photons)).c_str(), formatSi(double(a.hits)).c_str(), a.emitted,
                 percent(a.escaped, a.emitted), percent(a.absorbed, a.emitted));
   summary.add("photons", a.photons, line);
-  std::snprintf(
-      line, sizeof line,
-      "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, uncovered "
-      "%.2f %%, hidden %.2f %%",
-      a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
-      percent(a.uncovered, a.reflected), percent(a.hidden, a.reflected));
+  std::snprintf(line, sizeof line,
+                "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, "
+                "incompatible "
+                "%.2f %%, hidden %.2f %%",
+                a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
+                percent(a.incompatible, a.reflected), percent(a.hidden, a.reflected));
   summary.add("hits", a.hits, line);
   summary.add("rays", a.rays);
   summary.add("guard_rays", a.guardRays);
@@ -98,7 +98,7 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
                            {"reflected", a.reflected},
                            {"deposited", a.deposited},
                            {"dropped_outside", a.outside},
-                           {"dropped_uncovered", a.uncovered},
+                           {"dropped_incompatible", a.incompatible},
                            {"dropped_hidden", a.hidden}});
 }
 

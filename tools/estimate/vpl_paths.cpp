@@ -55,7 +55,7 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
   Vec3 first, later;
   const auto addPath = [&](const Bsdf& bsdf) {
     r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_,
-                                  settings_.surfaceLights, rng, first, later);
+                                  settings_.spatialLights, rng, first, later);
   };
   // Exitance is the integral of the cosine times radiance over outgoing directions. MTL materials
   // reflect it by roughAlbedo(), whatever the directions, as they do for photons. The albedo of
@@ -86,11 +86,12 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
   return double{mean(all)};
 }
 
-std::unique_ptr<const SurfaceLights> makeSurfaceLights(const EstimateInputs& in, uint64_t seed) {
+std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const EstimateInputs& in,
+                                                             uint64_t seed) {
   if (in.resume.source) return nullptr;
-  return std::make_unique<const SurfaceLights>(in.rays, in.lights, in.vpls.position, in.vpls.normal,
-                                               in.vpls.radius, streamKey(seed, Stream::PathLights),
-                                               ProgressFn{});
+  return std::make_unique<const SpatialLightSampler>(
+      in.rays, in.lights, in.vpls.position, in.vpls.normal, in.vpls.radius,
+      streamKey(seed, Stream::PathLights), ProgressFn{});
 }
 
 PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,

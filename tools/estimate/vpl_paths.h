@@ -32,11 +32,11 @@ struct PathSums {  // without padding, as its bytes are saved
 class VplPaths {
  public:
   struct Settings {
-    uint64_t key, paths;                           // paths from each point
-    unsigned maxBounces;                           // at least 1, the bounce at the VPL
-    float radius;                                  // reach in units of each VPL's r_max
-    size_t emitPoints;                             // per VPL
-    const SurfaceLights* surfaceLights = nullptr;  // learned distribution for light sampling
+    uint64_t key, paths;                                 // paths from each point
+    unsigned maxBounces;                                 // at least 1, the bounce at the VPL
+    float radius;                                        // reach in units of each VPL's r_max
+    size_t emitPoints;                                   // per VPL
+    const SpatialLightSampler* spatialLights = nullptr;  // learned distribution for light sampling
   };
   VplPaths(const EstimateInputs& in, const Settings& settings)
       : in_(in),
@@ -62,7 +62,8 @@ class VplPaths {
 
 // Learns the distribution of light sampling for paths from the VPLs' surfaces. Null for a merge,
 // which traces no paths.
-std::unique_ptr<const SurfaceLights> makeSurfaceLights(const EstimateInputs& in, uint64_t seed);
+std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const EstimateInputs& in,
+                                                             uint64_t seed);
 
 struct PathResult {
   std::vector<PathSums> sums;  // one per VPL

@@ -12,9 +12,9 @@ namespace bnvpl {
 // Follows a camera ray to the first rough vertex. Emission that it hits on the way is direct light.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                     Vec3 direction, Rng& rng, RadianceSample& out,
-                                    const SpecularLightSampling& behind = {}) {
+                                    const SpecularLightSampling& specularLights = {}) {
   const SpecularPath path =
-      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, behind);
+      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, specularLights);
   out.emission = path.emissionFirst;
   out.direct = path.emissionFirst + path.emissionLater;
   if (path.firstDistance < INFINITY) {
@@ -26,12 +26,12 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
 // The same for the camera ray through a pixel, at a point of the pixel's unit square.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
                                     uint32_t y, Point2 at, Rng& rng, RadianceSample& out,
-                                    const SpecularLightSampling& behind = {}) {
+                                    const SpecularLightSampling& specularLights = {}) {
   const Scene& scene = rays.scene();
   const Vec3 direction = cameraDirection(scene.camera, scene.film,
                                          (static_cast<float>(x) + at.x) / float(scene.film.width),
                                          (static_cast<float>(y) + at.y) / float(scene.film.height));
-  return traceCameraPath(rays, lights, scene.camera.position, direction, rng, out, behind);
+  return traceCameraPath(rays, lights, scene.camera.position, direction, rng, out, specularLights);
 }
 
 // Albedo and normal of the shading point.
@@ -47,11 +47,11 @@ inline void describeShadingPoint(const Bsdf& bsdf, RadianceSample& out) {
 template <typename Leaving>
 RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
                          Only only, bool indirect, Rng& rng, const Leaving& leaving,
-                         const SpecularLightSampling& behind = {}) {
+                         const SpecularLightSampling& specularLights = {}) {
   RadianceSample out;
   const SpecularPath path =
-      traceCameraPath(rays, lights, sample.origin, sample.direction, rng, out, behind);
-  const bool directOnly = only == Only::Direct || (!indirect && path.links == 0);
+      traceCameraPath(rays, lights, sample.origin, sample.direction, rng, out, specularLights);
+  const bool directOnly = only == Only::Direct || (!indirect && path.specularBounces == 0);
   if (!path.rough) return out;
   const Bsdf bsdf(rays.scene(), path.hit);
   describeShadingPoint(bsdf, out);

@@ -58,7 +58,7 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   UnitsToTry units;
   units.apart = apart;
   // Photons go in rounds of as many samples as 64 tiles have; some of each round are to be tried.
-  if (integrator.photons) units.fewest *= 1.0 + 64.0 / double(tried);
+  if (integrator.tracePhotons) units.fewest *= 1.0 + 64.0 / double(tried);
   Cost cost = costOfUnits(
       [&](const Resume& resume) {
         renderSamples(rays, integrator, plain, static_cast<uint32_t>(tried), progress, resume);

@@ -181,9 +181,12 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
         percentOf(stats.clamped, stats.indirect), percentOf(stats.compensated, stats.indirect));
     summary.add("mean_clamped", stats.clamped, only == "direct" ? "" : line);
     summary.add("mean_compensated", stats.compensated);
-    std::snprintf(line, sizeof line, "%zu VPLs with flux, mean cut %.1f, %.1f shadow rays a sample",
-                  result.vpls, stats.cut, stats.shadowRays);
+    std::snprintf(
+        line, sizeof line,
+        "%zu VPLs with flux and %zu emission points, mean cut %.1f, %.1f shadow rays a sample",
+        result.vpls, result.emissionPoints, stats.cut, stats.shadowRays);
     summary.add("vpls", result.vpls, only == "direct" ? "" : line);
+    summary.add("emission_points", result.emissionPoints);
     summary.add("mean_cut", stats.cut);
     summary.add("mean_shadow_rays", stats.shadowRays);
   }

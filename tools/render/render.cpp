@@ -140,6 +140,7 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   const Integrator integrator = makeIntegrator(rays, lights, lit, options, progress);
   RenderResult result;
   result.vpls = integrator.vpls;
+  result.emissionPoints = integrator.emissionPoints;
   result.lamps = integrator.lamps;
   result.sparseLamps = integrator.sparseLamps;
   if (const auto budget = budgetOf(options)) {

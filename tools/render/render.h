@@ -30,9 +30,9 @@ uint64_t renderWork(const Scene& scene, const Values& options);
 struct RenderResult {
   Image image;
   FilmStats stats;
-  size_t vpls = 0;                    // number of VPLs with flux
-  size_t lamps = 0, sparseLamps = 0;  // see Integrator
-  std::optional<PassesDone> passes;   // set if there is a budget
+  size_t vpls = 0, emissionPoints = 0;  // see Integrator
+  size_t lamps = 0, sparseLamps = 0;    // see Integrator
+  std::optional<PassesDone> passes;     // set if there is a budget
 };
 
 // Makes the integrator of render(). `probe` is set for a cost estimate.
@@ -43,7 +43,7 @@ Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const Vp
 void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume);
 
-// Joins the shards of an image. `film` is that of the shards; `vpls` of the result stays 0.
+// Joins the shards of an image. `film` is that of the shards; Counts of VPLs in the result stay 0.
 RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source);
 
 // Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A

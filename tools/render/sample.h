@@ -44,20 +44,19 @@ inline constexpr uint32_t kTileSide = 8;  // pixels
 // Side of the blocks of a tile whose pixels reuse each other's vertices first.
 inline constexpr uint32_t kBlockSide = 4;
 
-// How the samples of a tile lie in memory: slot by slot, row by row. A slot holds one sample of
-// each pixel.
-struct TileSlots {
-  uint32_t pixels = 0;     // in each slot
-  uint32_t width = 1;      // pixels in a row
-  uint32_t x = 0, y = 0;   // the first pixel, on the film
-  uint32_t firstSlot = 0;  // index of the first slot among all
-  uint32_t allSlots = 1;   // samples per pixel
-  uint64_t key = 0;        // keys the tile's random numbers
-  uint32_t turn = 0;       // offset of slot 0 in sequences that the whole film shares; random for
-                           // each pass over the film
+// How the samples of a tile lie in memory: by their index within the pixel, then row by row.
+struct TileLayout {
+  uint32_t pixels = 0;
+  uint32_t width = 1;            // pixels in a row
+  uint32_t x = 0, y = 0;         // the first pixel, on the film
+  uint32_t firstSample = 0;      // index within the pixel of the first sample
+  uint32_t samplesPerPixel = 1;  // in the whole image or pass
+  uint64_t key = 0;              // keys the tile's random numbers
+  // Offset of sample 0 in sequences that the whole film shares; random for each pass.
+  uint32_t sequenceOffset = 0;
 };
 
-struct TileSamples : TileSlots {
+struct TileSamples : TileLayout {
   std::span<CameraSample> samples;
 };
 

@@ -29,15 +29,15 @@ enum TileDimension : uint32_t {
   kDimDirectPilots = 3u << 29,
   // Shadow rays to lights.
   kDimLight = 1u << 30,
-  // The pattern of parities and blocks of a slot.
+  // The pattern of parities and blocks of a sample index.
   kDimParity = 11u << 28
 };
 
 namespace dimensions {
 inline constexpr std::array kAll{
-    kDimProbe,        kDimVpl,         kDimStratum,       kDimPacket,       kDimRoulette,
-    kDimRay,          kDimMoreRays0,   kDimMoreRays1,     kDimCameraPath,   kDimEmissionRays,
-    kDimControlRays,  kDimDirectSamples, kDimDirectPilots, kDimLight,       kDimParity};
+    kDimProbe,       kDimVpl,           kDimStratum,      kDimPacket,     kDimRoulette,
+    kDimRay,         kDimMoreRays0,     kDimMoreRays1,    kDimCameraPath, kDimEmissionRays,
+    kDimControlRays, kDimDirectSamples, kDimDirectPilots, kDimLight,      kDimParity};
 constexpr bool distinct() {
   for (size_t i = 0; i < kAll.size(); ++i)
     if (std::count(kAll.begin(), kAll.end(), kAll[i]) != 1) return false;

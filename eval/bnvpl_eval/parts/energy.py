@@ -10,7 +10,7 @@ COLUMNS = [
     column("label"),
     column("mean_ratio", "mean ratio, indirect"),
     column("full_mean_ratio", "mean ratio, full image", better="one"),
-    *(column(key, key, "%") for key in ("deposited", "outside", "uncovered", "hidden")),
+    *(column(key, key, "%") for key in ("deposited", "outside", "incompatible", "hidden")),
 ]
 
 
@@ -35,7 +35,7 @@ def run(context: Context) -> None:
                 shown |= {"deposited": 100 * account["deposited"] / whole}
                 shown |= {
                     key: 100 * account["dropped_" + key] / whole
-                    for key in ("outside", "uncovered", "hidden")
+                    for key in ("outside", "incompatible", "hidden")
                 }
             rows.append(shown)
     context.tables.append(
@@ -44,8 +44,8 @@ def run(context: Context) -> None:
             "Energy",
             "Of the energy that photons leave at surfaces: deposited at VPLs, or dropped because "
             "no VPL reaches the hit (outside: it lights nothing in view), none on a compatible "
-            "surface (uncovered), or in sight (hidden). "
-            "Near-field rays restore what uncovered and hidden lose.",
+            "surface (incompatible), or in sight (hidden). "
+            "Near-field rays restore what incompatible and hidden lose.",
             COLUMNS,
             rows,
         )

@@ -13,8 +13,8 @@ class PbrtCamera : public PbrtFiles {
                     " \"integer yresolution\"" + film.substr(blank) + "\n" + before +
                     "\nWorldBegin\n" + kSquareShape);
   }
-  static FilmPoint pixel(const Scene& s, Vec3 p) {
-    FilmPoint f = projectToFilm(s.camera, s.film, p);
+  static RasterPoint pixel(const Scene& s, Vec3 p) {
+    RasterPoint f = projectToFilm(s.camera, s.film, p);
     f.x *= float(s.film.width);
     f.y *= float(s.film.height);
     return f;
@@ -26,7 +26,7 @@ TEST_F(PbrtCamera, LooksAlongZWithXToTheRight) {
   const Scene s = view("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 90");
   EXPECT_EQ(s.film.width, 200u);
   expectNear(s.camera.position, {0, 0, -5}, 1e-5f);
-  const FilmPoint right = pixel(s, {5, 0, 0}), up = pixel(s, {0, 5, 0});
+  const RasterPoint right = pixel(s, {5, 0, 0}), up = pixel(s, {0, 5, 0});
   // The field of view spans the shorter side: 90 degrees reach 50 pixels up.
   EXPECT_NEAR(right.x, 150.0f, 0.01f);
   EXPECT_NEAR(right.y, 50.0f, 0.01f);
@@ -79,7 +79,7 @@ TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
       const Vec3 part = cameraDirection(s.camera, s.film, x / 40, y / 40);
       expectNear(part, cameraDirection(whole.camera, whole.film, (x + 10) / 100, (y + 20) / 80),
                  1e-6f);
-      const FilmPoint back = projectToFilm(s.camera, s.film, s.camera.position + 3.0f * part);
+      const RasterPoint back = projectToFilm(s.camera, s.film, s.camera.position + 3.0f * part);
       EXPECT_NEAR(back.x, x / 40, 1e-5f);
       EXPECT_NEAR(back.y, y / 40, 1e-5f);
     }

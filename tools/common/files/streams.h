@@ -16,11 +16,11 @@ enum class Stream : uint32_t {
   Plot,
   AreaEstimate,
   LightTracer,
-  FilmPoints,
+  PrimaryPoints,
   VplPaths,
-  TileLights,
-  SurfaceLights,  // light selection in vpl-render
-  PathLights,     // light selection in vpl-estimate
+  TileLightSampler,
+  SpatialLightSampler,  // light selection in vpl-render
+  PathLights,           // light selection in vpl-estimate
   Guide = 16,
   Caustics,
   Allocation,

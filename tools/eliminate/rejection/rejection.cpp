@@ -56,9 +56,9 @@ double contribution(const VplLights& vpls, size_t i, const RayScene& rays,
                     const std::vector<SurfacePoint>& points) {
   double sum = 0.0;
   for (const SurfacePoint& p : points) {
-    Coupling c;
+    VplTransfer c;
     const Bsdf bsdf(rays.scene(), p);
-    if (!couple(vpls, i, bsdf, c)) continue;
+    if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     if (rays.occluded(rays.offsetOrigin(p.position, p.ng), vpls.position[i])) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
     sum += double{light.x} + double{light.y} + double{light.z};

@@ -140,10 +140,10 @@ class Estimator {
 
   PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points,
                     uint64_t equivalent, double times = 1.0) {
-    if (!surfaceLights_) surfaceLights_ = makeSurfaceLights(in_, options_[kSeedOption]);
+    if (!spatialLights_) spatialLights_ = makeSpatialLightSampler(in_, options_[kSeedOption]);
     const VplPaths gatherer(
         in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption], maxBounces(),
-              options_.real32(kRadiusOption), emitPointsOf(phase), surfaceLights_.get()});
+              options_.real32(kRadiusOption), emitPointsOf(phase), spatialLights_.get()});
     return phases_.run(
         phase, times,
         [&](const Resume& resume) {
@@ -326,7 +326,7 @@ class Estimator {
   const EstimateInputs& in_;
   const Values& options_;
   Phases<4, kPhotonPhase> phases_;
-  std::unique_ptr<const SurfaceLights> surfaceLights_;
+  std::unique_ptr<const SpatialLightSampler> spatialLights_;
   uint64_t work_, reported_ = 0;  // in photons: all work, and that of the phases begun
   double progressScale_ = 1.0;    // photons of progress per photon traced, if less work is enough
 };

@@ -22,7 +22,7 @@ constexpr auto kOptions =
 
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
-  const auto surfaceLights = makeSurfaceLights(in, options[kSeedOption]);
+  const auto spatialLights = makeSpatialLightSampler(in, options[kSeedOption]);
   // A cost probe (--estimate) takes fewer points and paths.
   CostProbe* const probe = in.resume.probe;
   const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(probe, each, 8),
@@ -30,7 +30,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
   const VplPaths gatherer(
       in, {streamKey(options[kSeedOption], Stream::VplPaths), fewPaths,
            static_cast<unsigned>(options[kMaxBouncesOption]), options.real32(kRadiusOption),
-           options[kEmitPointsOption], surfaceLights.get()});
+           options[kEmitPointsOption], spatialLights.get()});
   const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
   Resume resume = in.resume;
   resume.times = static_cast<double>(each) * static_cast<double>(paths) /

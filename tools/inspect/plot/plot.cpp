@@ -132,7 +132,7 @@ std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
   std::vector<Fate> fates(table.size());
   parallelFor(table.size(), 256, [&](size_t i) {
     const Vec3 position = table.position[i];
-    const FilmPoint film = projectToFilm(scene.camera, scene.film, position);
+    const RasterPoint film = projectToFilm(scene.camera, scene.film, position);
     dots[i] = {film.x * static_cast<float>(scene.film.width),
                film.y * static_cast<float>(scene.film.height), film.depth, colours[i], false};
     const bool faces = dot(table.normal[i], scene.camera.position - position) > 0.0f;

@@ -35,7 +35,7 @@ struct Uncovered {
   // Radiance that leaves the point without first-bounce light, W/(m2 sr), from the VPL's flux. If
   // empty, further rays estimate it. Shadow rays always estimate first-bounce light, as a VPL does
   // not know the edges of shadows.
-  std::optional<Vec3> scattered;
+  std::optional<Vec3> multiBounceRadiance;
   UncoveredShare byDistance = {};  // for other receivers that reuse the point
 };
 
@@ -44,10 +44,10 @@ struct Compensation {
   // Looks up the VPLs at the hits of a batch of rays, so that memory accesses overlap. Skips
   // points that hit nothing.
   std::function<void(std::span<const SurfacePoint>, std::span<ReachGrid::Lookup>)> lookUp;
-  // Uncovered light of a point that a ray hit at `distance`, world units. `near`: its look-up, or
-  // null.
-  std::function<Uncovered(const SurfacePoint& point, float distance, const ReachGrid::Lookup* near,
-                          Rng& rng)>
+  // Uncovered light of a point that a ray hit at `distance`, world units. `coverLookup`: its
+  // look-up, or null.
+  std::function<Uncovered(const SurfacePoint& point, float distance,
+                          const ReachGrid::Lookup* coverLookup, Rng& rng)>
       uncovered;
   explicit operator bool() const { return uncovered != nullptr; }
 };

@@ -13,17 +13,17 @@ namespace bnvpl {
 
 namespace {
 
-// Samples per pixel in each pass over the film. Work can be interrupted between the tiles of a
-// pass.
-constexpr uint32_t kSlotsPerPass = 64;
+// Samples per pixel in each round over the film. Work can be interrupted between the tiles of a
+// round.
+constexpr uint32_t kSamplesPerRound = 64;
 
 constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons";
 
-// What samples and photons have brought, and of a checkpoint how far they are: passes, the tiles of
-// one, then photons.
+// Sums of the samples and photons so far, and for a checkpoint how far they are: rounds, the tiles
+// of one, then photons.
 struct FilmState {
   struct Progress {
-    uint64_t pass = 0;
+    uint64_t round = 0;
     SplatProgress splats;
   };
   FilmState(const Film& film, bool photons, const Shard& of)
@@ -32,9 +32,9 @@ struct FilmState {
         counts(pixels.size()),
         splats(photons ? pixels.size() : 0),
         shard(of) {
-    beginPass();
+    beginRound();
   }
-  void beginPass() { done = unitsToDo(tiles.count(), shard); }
+  void beginRound() { done = unitsToDo(tiles.count(), shard); }
 
   std::string encode() const {
     std::string bytes;
@@ -95,7 +95,7 @@ struct FilmState {
   };
   Tiles tiles;
   Progress at;
-  std::vector<uint8_t> done;  // tiles of the current pass
+  std::vector<uint8_t> done;  // tiles of the current round
   std::vector<PixelSums> pixels;
   std::vector<PixelCounts> counts;
   SplatSums splats;
@@ -133,19 +133,19 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
-  FilmState film(scene.film, static_cast<bool>(integrator.photons), resume.shard);
+  FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard);
   const Tiles& tiles = film.tiles;
   if (!resume.state.empty()) film.decode(resume.state);
-  const uint64_t perPass = integrator.wholePixels ? options.spp : kSlotsPerPass;
-  const uint64_t passes = (options.spp + perPass - 1) / perPass;
-  const auto slotsBefore = [&](uint64_t p) {
-    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * perPass));
+  const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
+  const uint64_t rounds = (options.spp + perRound - 1) / perRound;
+  const auto samplesBefore = [&](uint64_t p) {
+    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * perRound));
   };
   const auto state = [&] { return film.encode(); };
   const uint64_t own = resume.shard.shareOf(film.pixels.size());
-  if (progress) progress(own * slotsBefore(film.at.pass));
-  for (; film.at.pass < passes; ++film.at.pass, film.beginPass()) {
-    const uint32_t begin = slotsBefore(film.at.pass), end = slotsBefore(film.at.pass + 1);
+  if (progress) progress(own * samplesBefore(film.at.round));
+  for (; film.at.round < rounds; ++film.at.round, film.beginRound()) {
+    const uint32_t begin = samplesBefore(film.at.round), end = samplesBefore(film.at.round + 1);
     const auto report = [&](const Tile& tile) {
       if (progress) progress(uint64_t{tile.pixels()} * (end - begin));
     };
@@ -165,12 +165,12 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         },
         state);
   }
-  if (integrator.photons) {
+  if (integrator.tracePhotons) {
     const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
     const auto phase = progress.before("photons", resume.shard.shareOf(photons));
     if (progress) progress(film.at.splats.traced);
     addSplats(
-        integrator.photons, photons, film.at.splats,
+        integrator.tracePhotons, photons, film.at.splats,
         [&](const Splat& splat) { film.splats.add(splat); }, progress, resume, state);
     film.splats.addNonFinite(film.at.splats.nonFinite);
   }

@@ -7,7 +7,7 @@
 #include "core/resume.h"
 #include "formats/image/image.h"
 #include "scene/scene.h"
-#include "tools/render/film/integrator.h"
+#include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
 
 namespace bnvpl {

@@ -30,11 +30,11 @@ void addLayer(const Layer& layer, const FilmSums& film, Image& image) {
 }
 
 FilmStats statsOf(const FilmSums& film, uint64_t samples) {
-  const auto meanOf = [&](size_t slot) {
+  const auto meanOf = [&](size_t channel) {
     return parallelSum(film.sums.size(),
                        [&](size_t i) {
                          const auto& sum = film.sums[i].sum;
-                         return (sum[slot] + sum[slot + 1] + sum[slot + 2]) / 3.0;
+                         return (sum[channel] + sum[channel + 1] + sum[channel + 2]) / 3.0;
                        }) *
            film.perSample / static_cast<double>(film.sums.size());
   };

@@ -10,14 +10,14 @@ namespace bnvpl {
 
 namespace {
 
-template <PixelSums::Slot kSlot>
+template <PixelSums::Channel kChannel>
 double meanOf(const LayerPixel& p, size_t channel) {
-  return p.sums.sum[kSlot + channel] * p.perSample;
+  return p.sums.sum[kChannel + channel] * p.perSample;
 }
 
-template <PixelSums::Slot kSlot, size_t kKind>
+template <PixelSums::Channel kChannel, size_t kKind>
 double lightOf(const LayerPixel& p, size_t channel) {
-  return meanOf<kSlot>(p, channel) + double{p.redistributed[kKind][channel]};
+  return meanOf<kChannel>(p, channel) + double{p.redistributed[kKind][channel]};
 }
 
 // Mean depth of the samples that hit a surface, or infinity if none did.

@@ -18,9 +18,9 @@ namespace bnvpl {
 using BothLights = std::array<Vec3, 2>;
 
 // Sums over a pixel's samples of the values of RadianceSample, and the brightest of these samples.
-// A Slot is the index of a value's first channel.
+// A Channel is the index of a value's first channel.
 struct PixelSums {
-  enum Slot {
+  enum Channel {
     kDirect = 0,
     kIndirect = 3,
     kClamped = 6,
@@ -42,9 +42,9 @@ struct PixelSums {
     const double* of = &sum[kPhotons + 3 * k];
     return {float(of[0]), float(of[1]), float(of[2])};
   }
-  void keepBrightest(size_t kind, Vec3 brought) {
+  void keepBrightest(size_t kind, Vec3 contribution) {
     for (Vec3& kept : brightest[kind]) {
-      if (mean(brought) > mean(kept)) std::swap(brought, kept);
+      if (mean(contribution) > mean(kept)) std::swap(contribution, kept);
     }
   }
 };

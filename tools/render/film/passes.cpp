@@ -27,7 +27,7 @@ struct PassesState {
   };
   PassesState(size_t pixels, size_t tiles)
       : done(tiles),
-        slots(tiles),
+        spp(tiles),
         samples(tiles),
         inverse(tiles),
         sums(pixels),
@@ -37,9 +37,9 @@ struct PassesState {
 
   Progress at;
   std::vector<uint8_t> done;        // tiles of the current pass
-  std::vector<uint32_t> slots;      // samples per pixel of each tile in the current pass
+  std::vector<uint32_t> spp;        // samples per pixel of each tile in the current pass
   std::vector<uint64_t> samples;    // samples per pixel of each tile in the finished passes
-  std::vector<double> inverse;      // sum over finished passes of 1 / slots
+  std::vector<double> inverse;      // sum over finished passes of 1 / spp
   std::vector<PixelSums> sums;      // sums of the passes' means
   std::vector<PixelCounts> counts;  // sums over samples
   std::vector<Rgb> values;          // shown R, G, B of the current pass
@@ -47,7 +47,7 @@ struct PassesState {
 
   template <typename Fn>
   void forArrays(const Fn& fn) {
-    fn(done), fn(slots), fn(samples), fn(inverse), fn(sums), fn(counts), fn(values), fn(squares);
+    fn(done), fn(spp), fn(samples), fn(inverse), fn(sums), fn(counts), fn(values), fn(squares);
   }
   std::string encode() {
     std::string bytes;
@@ -126,7 +126,7 @@ class Passes {
   uint64_t samplesSoFar() const {
     uint64_t sum = 0;
     for (size_t t = 0; t < tiles_.count(); ++t) {
-      const uint64_t now = state_.done[t] ? state_.slots[t] : 0;
+      const uint64_t now = state_.done[t] ? state_.spp[t] : 0;
       sum += (state_.samples[t] + now) * tiles_.at(t).pixels();
     }
     return sum;
@@ -146,11 +146,11 @@ class Passes {
   void chooseSlots() {
     const uint64_t passes = state_.at.pass;
     std::fill(state_.done.begin(), state_.done.end(), 0);
-    if (passes < kUniformPasses || !budget_.adaptive || integrator_.photons) {
-      std::fill(state_.slots.begin(), state_.slots.end(), kPassSpp);
+    if (passes < kUniformPasses || !budget_.adaptive || integrator_.tracePhotons) {
+      std::fill(state_.spp.begin(), state_.spp.end(), kPassSpp);
     } else {
-      state_.slots = allocateSamples(tiles_, variances_, state_.inverse, passes, kPassSpp,
-                                     random64(key_, passes, kDrawSlots));
+      state_.spp = allocateSamples(tiles_, variances_, state_.inverse, passes, kPassSpp,
+                                   random64(key_, passes, kDrawSlots));
     }
   }
 
@@ -163,38 +163,40 @@ class Passes {
         state_.done, resume,
         [&](size_t index) {
           makeTile(index);
-          if (progress) progress(uint64_t{tiles_.at(index).pixels()} * state_.slots[index]);
+          if (progress) progress(uint64_t{tiles_.at(index).pixels()} * state_.spp[index]);
         },
         state);
-    if (!integrator_.photons) return;
+    if (!integrator_.tracePhotons) return;
     constexpr float kShare = 1.0f / kPassSpp;
     addSplats(
-        integrator_.photons, (state_.at.pass + 1) * kPassSpp * state_.sums.size(), state_.at.splats,
+        integrator_.tracePhotons, (state_.at.pass + 1) * kPassSpp * state_.sums.size(),
+        state_.at.splats,
         [&](const Splat& splat) {
           addSplat(splat, kShare, state_.sums, state_.counts);
           if (!isFinite(splat.radiance) || options_.only == Only::Direct) return;
-          const Vec3 brought = splat.radiance * kShare;
-          for (size_t c = 0; c < 3; ++c) state_.values[splat.pixel][c] += double{brought[int(c)]};
+          const Vec3 contribution = splat.radiance * kShare;
+          for (size_t c = 0; c < 3; ++c)
+            state_.values[splat.pixel][c] += double{contribution[int(c)]};
         },
         progress, resume, state);
   }
 
   void makeTile(size_t index) {
     const Tile tile = tiles_.at(index);
-    const uint32_t slots = state_.slots[index];
+    const uint32_t spp = state_.spp[index];
     const uint64_t key = random64(key_, state_.at.pass, kDrawPass);
-    const auto turn = static_cast<uint32_t>(random64(key, index, kDrawTurn) >> 33);
+    const auto sequenceOffset = static_cast<uint32_t>(random64(key, index, kDrawTurn) >> 33);
     std::vector<PixelSums> sums(tile.pixels());
-    sampleTile(scene_, integrator_, key, tile, {0, slots, slots, kMaxSlots, turn},
+    sampleTile(scene_, integrator_, key, tile, {0, spp, spp, kMaxSlots, sequenceOffset},
                [&](uint32_t p, const RadianceSample& sample) {
                  addSample(sample, sums[p], state_.counts[tiles_.pixelIndex(tile, p)]);
                });
     for (uint32_t p = 0; p < tile.pixels(); ++p) {
       const size_t i = tiles_.pixelIndex(tile, p);
-      for (double& sum : sums[p].sum) sum /= slots;
+      for (double& sum : sums[p].sum) sum /= spp;
       for (size_t kind = 0; kind < 2; ++kind) {
-        for (const Vec3 brought : sums[p].brightest[kind])
-          state_.sums[i].keepBrightest(kind, brought * (1.0f / static_cast<float>(slots)));
+        for (const Vec3 contribution : sums[p].brightest[kind])
+          state_.sums[i].keepBrightest(kind, contribution * (1.0f / static_cast<float>(spp)));
       }
       for (size_t k = 0; k < sums[p].sum.size(); ++k) state_.sums[i].sum[k] += sums[p].sum[k];
       for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownRadiance(sums[p], options_.only, c);
@@ -204,8 +206,8 @@ class Passes {
   void closePass() {
     ++state_.at.pass;
     for (size_t t = 0; t < tiles_.count(); ++t) {
-      state_.samples[t] += state_.slots[t];
-      state_.inverse[t] += 1.0 / state_.slots[t];
+      state_.samples[t] += state_.spp[t];
+      state_.inverse[t] += 1.0 / state_.spp[t];
     }
     std::fill(state_.done.begin(), state_.done.end(), 0);
     const double passes = double(state_.at.pass);

@@ -38,9 +38,9 @@ SurfaceFilter::SurfaceFilter(std::span<const PixelSums> sums, size_t width, Edge
     const auto& sum = sums[i].sum;
     const double hits = sum[PixelSums::kHits];
     if (!(hits > 0.0)) return;
-    const auto mean = [&](size_t slot) {
-      return Vec3(float(sum[slot] / hits), float(sum[slot + 1] / hits),
-                  float(sum[slot + 2] / hits));
+    const auto mean = [&](size_t channel) {
+      return Vec3(float(sum[channel] / hits), float(sum[channel + 1] / hits),
+                  float(sum[channel + 2] / hits));
     };
     Surface& s = surfaces_[i];
     const Vec3 normal = mean(PixelSums::kNormal);

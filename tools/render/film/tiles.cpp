@@ -15,10 +15,10 @@ bool isFinite(const RadianceSample& r) {
          isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
 }
 
-void addTo(PixelSums& p, size_t slot, Vec3 v) {
-  p.sum[slot] += double{v.x};
-  p.sum[slot + 1] += double{v.y};
-  p.sum[slot + 2] += double{v.z};
+void addTo(PixelSums& p, size_t channel, Vec3 v) {
+  p.sum[channel] += double{v.x};
+  p.sum[channel + 1] += double{v.y};
+  p.sum[channel + 2] += double{v.z};
 }
 
 }  // namespace
@@ -66,16 +66,16 @@ void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
 }
 
 CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
-                        uint32_t slot) {
+                        uint32_t sample) {
   const uint64_t index = uint64_t{y} * scene.film.width + x;
-  const Point2 jitter = r2Sequence(slot, double{toUnitFloat(random64(key, index, 0))},
+  const Point2 jitter = r2Sequence(sample, double{toUnitFloat(random64(key, index, 0))},
                                    double{toUnitFloat(random64(key, index, 1))});
   CameraSample s;
   s.origin = scene.camera.position;
   s.direction =
       cameraDirection(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
                       (float(y) + jitter.y) / float(scene.film.height));
-  s.rng = Rng(key + 1, index * stride + slot);
+  s.rng = Rng(key + 1, index * stride + sample);
   return s;
 }
 

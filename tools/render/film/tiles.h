@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "tools/render/film/integrator.h"
+#include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
 
 namespace bnvpl {
@@ -39,18 +39,18 @@ class Tiles {
 };
 
 // Range of samples of each pixel of a tile.
-struct SlotRange {
+struct SampleRange {
   uint32_t first = 0, end = 0;
-  uint32_t all = 0;     // number of samples that are stratified together
-  uint64_t stride = 0;  // random streams reserved for each pixel; at least `all`
-  uint32_t turn = 0;    // see TileSlots
+  uint32_t all = 0;             // number of samples that are stratified together
+  uint64_t stride = 0;          // random streams reserved for each pixel; at least `all`
+  uint32_t sequenceOffset = 0;  // see TileLayout
 };
 
-// Calls take(pixel of the tile, its RadianceSample) for each sample, slot by slot. The result
-// depends only on the key, the tile's position and the slots.
+// Calls take(pixel of the tile, its RadianceSample) for each sample, by the sample's index
+// within the pixel. The result depends only on the key, the tile's position and the range.
 template <typename Take>
 void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
-                const SlotRange& slots, const Take& take);
+                const SampleRange& range, const Take& take);
 
 // Adds a sample to the sums of its pixel. A sample that is not finite counts as zero.
 void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& counts);
@@ -58,29 +58,29 @@ void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& coun
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
               std::span<PixelCounts> counts);
 
-// Camera ray of a sample, stratified with those of the pixel's other slots.
+// Camera ray of a sample, stratified with the pixel's other samples.
 CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
-                        uint32_t slot);
+                        uint32_t sample);
 
 template <typename Take>
 void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
-                const SlotRange& slots, const Take& take) {
-  constexpr uint32_t kSlotsAtOnce = 16;  // samples of each pixel that are held in memory together
+                const SampleRange& range, const Take& take) {
+  constexpr uint32_t kSamplesAtOnce = 16;  // samples of each pixel that are held in memory together
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
-  for (uint32_t slot = slots.first, slotEnd; slot < slots.end; slot = slotEnd) {
-    slotEnd =
-        slot + std::min(slots.end - slot,
-                        integrator.wholePixels ? UINT32_MAX : kSlotsAtOnce);  // avoids overflow
+  for (uint32_t sample = range.first, batchEnd; sample < range.end; sample = batchEnd) {
+    batchEnd =
+        sample + std::min(range.end - sample,
+                          integrator.wholePixels ? UINT32_MAX : kSamplesAtOnce);  // avoids overflow
     samples.clear();
-    for (uint32_t s = slot; s < slotEnd; ++s) {
+    for (uint32_t s = sample; s < batchEnd; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
-        samples.push_back(makeSample(scene, key, slots.stride, tile.x(p), tile.y(p), s));
+        samples.push_back(makeSample(scene, key, range.stride, tile.x(p), tile.y(p), s));
       }
     }
-    integrator.samples(
-        {{tile.pixels(), tile.width(), tile.x0, tile.y0, slot, slots.all, tileKey, slots.turn},
-         samples});
+    integrator.renderTile({{tile.pixels(), tile.width(), tile.x0, tile.y0, sample, range.all,
+                            tileKey, range.sequenceOffset},
+                           samples});
     for (size_t k = 0; k < samples.size(); ++k) {
       take(static_cast<uint32_t>(k % tile.pixels()), samples[k].radiance);
     }

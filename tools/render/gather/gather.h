@@ -26,14 +26,14 @@ struct Gathered {
 };
 
 // The receivers of a tile's samples; null where a sample has none.
-struct TileReceivers : TileSlots {
+struct TileReceivers : TileLayout {
   std::span<const Bsdf* const> bsdf;
   // Variance, relative to the tile's squared light, that a further shadow ray of a sample must
   // remove to be efficient (SampleAllocation); 0 if unknown.
   double marginalCost = 0.0;
   float otherLight = 0.0f;  // mean light of the tile besides the VPLs', channels added, W/(m2 sr)
   // Light of the film's median tile, in the same unit.
-  float filmLight = std::numeric_limits<float>::infinity();
+  float medianTileLight = std::numeric_limits<float>::infinity();
 };
 
 // One result for each receiver.
@@ -50,7 +50,7 @@ struct Gather {
 
 // The shading point of each pixel, row by row; its triangle is kNone where there is none.
 // `emission`: emission that the camera path hits before, mean of the channels, W/(m2 sr).
-struct FilmPoints {
+struct PrimaryPoints {
   uint32_t width = 0, height = 0;
   std::vector<SurfacePoint> points;
   std::vector<float> emission;
@@ -62,8 +62,8 @@ struct GatherInputs {
   const VplLights& vpls;
   const LightTree& tree;  // empty if there are no VPLs
   uint64_t seed;
-  std::function<FilmPoints()> film;  // traces the film's points when it is called
-  const ProgressFn& progress;        // reports preparations
+  std::function<PrimaryPoints()> primaryPoints;  // traces the film's points when it is called
+  const ProgressFn& progress;                    // reports preparations
 };
 
 using GatherMethod = Method<Gather (*)(const GatherInputs&, const Values&)>;

@@ -10,13 +10,13 @@ Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng) con
   const float shift = rng.next(), perDraw = 1.0f / static_cast<float>(draws);
   for (unsigned k = 0; k < draws; ++k) {
     const auto draw = point.draw((static_cast<float>(k) + shift) * perDraw, rng);
-    Coupling c;
-    if (!draw || !couple(vpls_, draw->vpl, bsdf, c)) continue;
+    VplTransfer c;
+    if (!draw || !unoccludedTransfer(vpls_, draw->vpl, bsdf, c)) continue;
     ++out.shadowRays;
     if (rays_.occluded(from, vpls_.position[draw->vpl])) continue;
     const Vec3 light = c.transfer * vpls_.intensity[draw->vpl] * (perDraw / draw->probability);
     out.radiance += light;
-    out.clamped += light * c.clamped;
+    out.clamped += light * c.clampLoss;
   }
   return out;
 }

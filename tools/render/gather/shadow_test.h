@@ -22,13 +22,13 @@ class ShadowTest {
   // Adds the contribution of VPL i, times `weight`, if it is visible. Traces no ray if the
   // contribution is 0 anyway.
   void add(size_t i, float weight, Gathered& out) const {
-    Coupling c;
-    if (!couple(vpls_, i, bsdf_, c)) return;
+    VplTransfer c;
+    if (!unoccludedTransfer(vpls_, i, bsdf_, c)) return;
     ++out.shadowRays;
     if (rays_.occluded(from_, vpls_.position[i])) return;
     const Vec3 light = c.transfer * vpls_.intensity[i] * weight;
     out.radiance += light;
-    out.clamped += light * c.clamped;
+    out.clamped += light * c.clampLoss;
   }
 
  private:

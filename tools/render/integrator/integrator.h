@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
-#include "tools/render/film/integrator.h"
+#include "tools/render/film/integrator_interface.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 

@@ -6,18 +6,18 @@
 namespace bnvpl {
 
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
-                    const FilmPoints& film, unsigned lightRays, TileParts& out) {
+                    const PrimaryPoints& film, unsigned lightRays, TileParts& out) {
   if (in.only == Only::Indirect) return;
   if (lightRays > 0) {
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
     out.lightRays = lightRays;
-    out.lights = std::make_unique<const TileLights>(
+    out.lights = std::make_unique<const TileLightSampler>(
         in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
         in.seed, in.probe);
     out.visibleEmission = std::make_unique<const VisibleEmission>(in.rays, in.lights, film);
   }
   if (options[kDirectSamplesOption] == 1) return;
-  out.directSamples.emplace(in.rays, in.lights, out.visibleEmission.get(), out.surfaceLights,
+  out.directSamples.emplace(in.rays, in.lights, out.visibleEmission.get(), out.spatialLights,
                             static_cast<unsigned>(options[kDirectSamplesOption]),
                             in.only == Only::Direct);
 }
@@ -35,7 +35,7 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
                                           bounces, in.seed, in.progress);
 }
 
-ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& film) {
+ControlVariateFn makeControlVariate(const IntegratorInputs& in, const PrimaryPoints& film) {
   const auto control =
       std::make_shared<const PixelControlVariate>(in.rays, in.lights, film, in.lit);
   return [control](const TileSamples& tile, std::span<const SpecularPath> paths) {

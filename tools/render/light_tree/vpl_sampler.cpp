@@ -131,7 +131,8 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
     value = load(sums);
   }
   const __m128 away2 = larger(d2, all(kClosest) * radius2);
-  return store(value * larger(cosine, zero) * emitter / Kind::spread(away2, load(f.clamp2)));
+  return store(value * larger(cosine, zero) * emitter /
+               Kind::boundedDistance2(away2, load(f.clamp2)));
 }
 
 std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {

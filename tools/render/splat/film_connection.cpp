@@ -20,7 +20,7 @@ float samplesPerArea(const Scene& scene, const SurfacePoint& seen) {
 std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex) {
   const Scene& scene = rays.scene();
   const Film& film = scene.film;
-  const FilmPoint at = projectToFilm(scene.camera, film, vertex.position);
+  const RasterPoint at = projectToFilm(scene.camera, film, vertex.position);
   if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return {};
   const Vec3 way = vertex.position - scene.camera.position;
   if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon arrived on the other side

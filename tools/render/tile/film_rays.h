@@ -10,13 +10,13 @@ namespace bnvpl {
 
 class FilmRays {
  public:
-  // `surfaceLights` may be null. Borrows all.
-  FilmRays(const RayScene& rays, const LightSet& lights, const SurfaceLights* surfaceLights,
+  // `spatialLights` may be null. Borrows all.
+  FilmRays(const RayScene& rays, const LightSet& lights, const SpatialLightSampler* spatialLights,
            uint64_t seed)
       : rays_(rays),
         lights_(lights),
-        surfaceLights_(surfaceLights),
-        key_(streamKey(seed, Stream::FilmPoints)) {}
+        spatialLights_(spatialLights),
+        key_(streamKey(seed, Stream::PrimaryPoints)) {}
 
   // The shading point; its triangle is kNone if there is none. `emission` receives the emission on
   // the camera path, mean of the channels.
@@ -27,15 +27,15 @@ class FilmRays {
     RadianceSample sample;
     SpecularPath path = traceCameraPath(rays_, lights_, static_cast<uint32_t>(pixel % width),
                                         static_cast<uint32_t>(pixel / width), {x, y}, rng, sample,
-                                        {nullptr, surfaceLights_});
+                                        {nullptr, spatialLights_});
     if (!path.rough) path.hit.triangle = kNone;
     if (emission) *emission = mean(sample.direct);
     return path.hit;
   }
 
-  FilmPoints all() const {
+  PrimaryPoints all() const {
     const Film& size = rays_.scene().film;
-    FilmPoints film{size.width, size.height, {}, {}};
+    PrimaryPoints film{size.width, size.height, {}, {}};
     film.points.resize(size_t{film.width} * film.height);
     film.emission.resize(film.points.size());
     parallelFor(film.points.size(), 64,
@@ -46,7 +46,7 @@ class FilmRays {
  private:
   const RayScene& rays_;
   const LightSet& lights_;
-  const SurfaceLights* surfaceLights_;
+  const SpatialLightSampler* spatialLights_;
   uint64_t key_;
 };
 

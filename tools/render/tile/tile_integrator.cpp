@@ -12,11 +12,12 @@ namespace {
 
 // With sample allocation a quarter of the rays is a pilot, and at most four times as many follow.
 constexpr unsigned kPilotShare = 4, kMaxTimes = 4;
-// The pilot reuses vertices in every kSlotsPerPilot-th slot, to estimate the noise of reused light.
-constexpr size_t kSlotsPerPilot = 4;
+// The pilot reuses vertices in one of kSamplesPerPilot sample indices, to estimate the noise of
+// reused light.
+constexpr size_t kSamplesPerPilot = 4;
 
-uint32_t slotOf(const TileSlots& tile, size_t sample) {
-  return tile.firstSlot + static_cast<uint32_t>(sample / tile.pixels);
+uint32_t sampleIndexOf(const TileLayout& tile, size_t sample) {
+  return tile.firstSample + static_cast<uint32_t>(sample / tile.pixels);
 }
 
 }  // namespace
@@ -45,7 +46,7 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
     if (!points.bsdf[i] || only_ == Only::Indirect || parts_.directSamples) continue;
     const uint64_t key = random64(tile.key, i % tile.pixels, kDimLight);
     s.radiance.direct += points.paths[i].throughput *
-                         directAt(*points.bsdf[i], learned, slotOf(tile, i), key, s.rng);
+                         directAt(*points.bsdf[i], learned, sampleIndexOf(tile, i), key, s.rng);
   }
   if (parts_.rays) cost += addRays(tile, points, learned, allocation, pilot.light);
   if (parts_.control) parts_.control(tile, points.paths);
@@ -70,16 +71,18 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
   const size_t count = tile.samples.size();
   ShadingPoints out{std::vector<SpecularPath>(count), {}, std::vector<const Bsdf*>(count, nullptr)};
   out.bsdfs.reserve(count);
-  const SpecularLightSampling behind{learned.strata, parts_.surfaceLights};
+  const SpecularLightSampling specularLights{learned.strata, parts_.spatialLights};
   for (CameraSample& s : tile.samples) s.radiance = {};
   if (parts_.directSamples && only_ == Only::Direct) return out;
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
-    Rng rng = Rng::spread(random64(tile.key, pixel, kDimCameraPath), slotOf(tile, i));
-    out.paths[i] = traceCameraPath(rays_, lights_, s.origin, s.direction, rng, s.radiance, behind);
+    Rng rng = Rng::stratified(random64(tile.key, pixel, kDimCameraPath), sampleIndexOf(tile, i));
+    out.paths[i] =
+        traceCameraPath(rays_, lights_, s.origin, s.direction, rng, s.radiance, specularLights);
     if (parts_.visibleEmission && !parts_.directSamples)
-      parts_.visibleEmission->average(s.radiance, 1, tile, pixel, slotOf(tile, i), behind);
+      parts_.visibleEmission->average(s.radiance, 1, tile, pixel, sampleIndexOf(tile, i),
+                                      specularLights);
     if (!out.paths[i].rough) continue;
     out.bsdf[i] = &out.bsdfs.emplace_back(rays_.scene(), out.paths[i].hit);
     describeShadingPoint(*out.bsdf[i], s.radiance);
@@ -89,7 +92,7 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
 
 // Direct light at a shading point by shadow rays, with MIS weights against the rays for indirect
 // light.
-Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t slot,
+Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex,
                               uint64_t key, Rng& rng) const {
   const Reflected reflected{bsdf};
   const LightSampling sampling{learned, LightChoice::Each};
@@ -97,7 +100,7 @@ Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uin
     const BsdfRays others{bsdf, static_cast<float>(parts_.raysEach)};
     return directLight(rays_, lights_, reflected, sampling, others, LightNumbers(rng));
   }
-  const LightNumbers numbers(slot * parts_.lightRays, key);
+  const LightNumbers numbers(sampleIndex * parts_.lightRays, key);
   if (!parts_.rays) return directLight(rays_, lights_, reflected, sampling, NoRays{}, numbers);
   const Directions directions = parts_.rays->directionsFrom(bsdf);
   const auto rayPdf = [&](Vec3 wi) {
@@ -106,16 +109,18 @@ Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uin
   return directLight(rays_, lights_, reflected, sampling, rayPdf, numbers);
 }
 
-// `direct`: mean direct light of the tile; the noise of VPLs counts relative to all light.
+// `meanDirect`: direct light, the mean over the tile; the noise of VPLs counts relative to all
+// light.
 void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& points,
-                                const SampleAllocation& allocation, Vec3 direct) const {
+                                const SampleAllocation& allocation, Vec3 meanDirect) const {
   std::vector<Gathered> gathered(points.bsdf.size());
   TileReceivers receivers{tile, points.bsdf};
   receivers.marginalCost = allocation.marginalCost;
   if (allocation.marginalCost > 0.0) {
-    receivers.otherLight =
-        direct.x + direct.y + direct.z + static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
-    receivers.filmLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
+    // The sum of three channels from the root of their mean square.
+    receivers.otherLight = meanDirect.x + meanDirect.y + meanDirect.z +
+                           static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
+    receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
   }
   parts_.gather(receivers, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) {
@@ -128,10 +133,10 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
 }
 
 // The rays of a tile's samples for indirect light.
-class TileIntegrator::RayTracing {
+class TileIntegrator::TileIndirectRays {
  public:
-  RayTracing(const TileIntegrator& integrator, const TileSamples& tile, const ShadingPoints& points,
-             const LearnedLight& learned)
+  TileIndirectRays(const TileIntegrator& integrator, const TileSamples& tile,
+                   const ShadingPoints& points, const LearnedLight& learned)
       : parts_(integrator.parts_),
         rays_(integrator.rays_),
         tile_(tile),
@@ -151,26 +156,26 @@ class TileIntegrator::RayTracing {
   }
   // Traces as many rays as sample allocation asks for, of which `pilot` from each shading point are
   // done.
-  void sendMore(unsigned pilot, const SampleAllocation& allocation, Vec3 direct) {
-    reuse(kSlotsPerPilot);
-    const std::array<unsigned, 2> all = allocate(pilot, allocation, direct);
+  void sendMore(unsigned pilot, const SampleAllocation& allocation, Vec3 meanDirect) {
+    reuse(kSamplesPerPilot);
+    const std::array<unsigned, 2> all = allocate(pilot, allocation, meanDirect);
     for (size_t i = 0; i < found_.size(); ++i) {
       const uint32_t parity = pattern_.parity(i);
       sendFrom(i, all[parity] - pilot,
-               random64(tile_.key, uint64_t{i % tile_.pixels} << 32 | tile_.firstSlot,
+               random64(tile_.key, uint64_t{i % tile_.pixels} << 32 | tile_.firstSample,
                         kDimMoreRays0 + parity));
     }
   }
-  // Reuses vertices in every `everySlot`-th slot. A group lies in one slot and has one parity, as
-  // the other parity decides on the number of its rays; its pixels lie together where there are
-  // enough.
-  void reuse(size_t everySlot) {
+  // Reuses vertices at every `everyNth`-th sample index. A group has one sample index and one
+  // parity, as the other parity decides on the number of its rays; its pixels lie together where
+  // there are enough.
+  void reuse(size_t everyNth) {
     if (parts_.reuse < 2) return;
     std::vector<size_t> members;
-    for (size_t slot = 0; slot < found_.size(); slot += everySlot * tile_.pixels) {
+    for (size_t first = 0; first < found_.size(); first += everyNth * tile_.pixels) {
       for (const uint32_t parity : {0u, 1u}) {
         members.clear();
-        for (size_t i = slot; i < slot + tile_.pixels; ++i)
+        for (size_t i = first; i < first + tile_.pixels; ++i)
           if (points_.bsdf[i] && pattern_.parity(i) == parity) members.push_back(i);
         std::ranges::stable_sort(members, {}, [&](size_t i) { return pattern_.block(i); });
         for (size_t begin = 0; begin < members.size(); begin += parts_.reuse) {
@@ -200,11 +205,12 @@ class TileIntegrator::RayTracing {
   void sendFrom(size_t sample, unsigned rays, uint64_t key) {
     if (!points_.bsdf[sample] || rays == 0) return;
     const SpecularPath& path = points_.paths[sample];
-    parts_.rays->send({directions_[points_.indexOf(sample)], path.throughput, learned_,
-                       parts_.caustics && path.links == 0 ? parts_.caustics->shared(path.hit)
-                                                          : SharedWithPhotons{},
-                       parts_.reuse > 1},
-                      rays, slotOf(tile_, sample) * rays, key, found_[sample]);
+    parts_.rays->send(
+        {directions_[points_.indexOf(sample)], path.throughput, learned_,
+         parts_.caustics && path.specularBounces == 0 ? parts_.caustics->shared(path.hit)
+                                                      : SharedWithPhotons{},
+         parts_.reuse > 1},
+        rays, sampleIndexOf(tile_, sample) * rays, key, found_[sample]);
   }
 
   void reuseWithin(std::span<const size_t> members) {
@@ -223,11 +229,11 @@ class TileIntegrator::RayTracing {
   // Where the pilot reused vertices, their light takes the place of the light of the rays' own
   // vertices.
   std::array<unsigned, 2> allocate(unsigned pilot, const SampleAllocation& allocation,
-                                   Vec3 direct) const {
-    const size_t count = found_.size(), slots = count / tile_.pixels;
-    const size_t asked = (slots + kSlotsPerPilot - 1) / kSlotsPerPilot;
+                                   Vec3 meanDirect) const {
+    const size_t count = found_.size(), perPixel = count / tile_.pixels;
+    const size_t asked = (perPixel + kSamplesPerPilot - 1) / kSamplesPerPilot;
     // The light of a sample is the mean over its rays.
-    const double reusedToRays = double(slots) / double(asked) * pilot * pilot;
+    const double reusedToRays = double(perPixel) / double(asked) * pilot * pilot;
     struct Sums {
       Vec3 light;
       double samples = 0.0, squares = 0.0, rays = 0.0;
@@ -247,7 +253,7 @@ class TileIntegrator::RayTracing {
     for (const size_t parity : {0u, 1u}) {
       const Sums& others = sums[1 - parity];
       if (!(others.rays > 0.0)) continue;
-      const Vec3 light = direct + others.light * static_cast<float>(1.0 / others.samples);
+      const Vec3 light = meanDirect + others.light * static_cast<float>(1.0 / others.samples);
       rays[parity] = samplesFor(allocation.relative(others.squares / others.rays, light), costOfOne,
                                 allocation.marginalCost, pilot, kMaxTimes * parts_.raysEach);
     }
@@ -269,12 +275,12 @@ class TileIntegrator::RayTracing {
 // Returns the cost of the rays.
 double TileIntegrator::addRays(const TileSamples& tile, const ShadingPoints& points,
                                const LearnedLight& learned, const SampleAllocation& allocation,
-                               Vec3 direct) const {
-  RayTracing tracing(*this, tile, points, learned);
+                               Vec3 meanDirect) const {
+  TileIndirectRays tracing(*this, tile, points, learned);
   if (allocation.marginalCost > 0.0 && only_ != Only::Direct) {
     const unsigned pilot = (parts_.raysEach + kPilotShare - 1) / kPilotShare;
     tracing.send(pilot);
-    tracing.sendMore(pilot, allocation, direct);
+    tracing.sendMore(pilot, allocation, meanDirect);
   } else {
     tracing.send(parts_.raysEach);
   }

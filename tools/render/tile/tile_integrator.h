@@ -10,10 +10,10 @@
 #include "tools/render/tile/allocation/sample_allocation.h"
 #include "tools/render/tile/caustics/caustics.h"
 #include "tools/render/tile/direct/direct_samples.h"
-#include "tools/render/tile/direct/tile_lights.h"
+#include "tools/render/tile/direct/tile_light_sampler.h"
 #include "tools/render/tile/reuse/indirect_rays.h"
+#include "transport/spatial_light_sampler.h"
 #include "transport/specular_path.h"
-#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
@@ -28,12 +28,13 @@ struct TileParts {
   std::unique_ptr<const IndirectRays> rays;
   unsigned raysEach = 0;  // from each shading point
   unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse
-  std::unique_ptr<const TileLights> lights;  // null: one shadow ray to each light
-  unsigned lightRays = 0;                    // shadow rays sampled from what the tile has learned
+  std::unique_ptr<const TileLightSampler> lights;  // null: one shadow ray to each light
+  unsigned lightRays = 0;  // shadow rays sampled from what the tile has learned
   std::unique_ptr<const VisibleEmission> visibleEmission;
   std::unique_ptr<const Caustics> caustics;
   ControlVariateFn control;
-  const SurfaceLights* surfaceLights = nullptr;  // for light sampling at near-specular vertices
+  const SpatialLightSampler* spatialLights =
+      nullptr;  // for light sampling at near-specular vertices
   std::optional<DirectSamples> directSamples;
 };
 
@@ -48,14 +49,14 @@ class TileIntegrator {
 
  private:
   struct ShadingPoints;
-  class RayTracing;
+  class TileIndirectRays;
   ShadingPoints traceCameraPaths(const TileSamples& tile, const LearnedLight& learned) const;
-  Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t slot, uint64_t key,
+  Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex, uint64_t key,
                 Rng& rng) const;
   void gatherVpls(const TileSamples& tile, const ShadingPoints& points,
-                  const SampleAllocation& allocation, Vec3 direct) const;
+                  const SampleAllocation& allocation, Vec3 meanDirect) const;
   double addRays(const TileSamples& tile, const ShadingPoints& points, const LearnedLight& learned,
-                 const SampleAllocation& allocation, Vec3 direct) const;
+                 const SampleAllocation& allocation, Vec3 meanDirect) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

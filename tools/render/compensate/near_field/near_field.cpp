@@ -53,7 +53,7 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, Lig
   for (std::atomic<float>& area : area_) area = kUnknown;
 }
 
-std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
+std::optional<Vec3> NearField::multiBounceRadianceOf(uint32_t vpl) const {
   if (!covers_) return {};  // the flux of a single photon belongs to no area
   // Two threads may measure the same area; both find the same value.
   float area = area_[vpl].load(std::memory_order_relaxed);
@@ -66,8 +66,8 @@ std::optional<Vec3> NearField::scatteredBy(uint32_t vpl) const {
 }
 
 Uncovered NearField::uncovered(const SurfacePoint& point, float distance,
-                               const ReachGrid::Lookup& near, Rng& rng) const {
-  const Coverage::Found found = coverage_.pick(point.position, point.ng, near, rng);
+                               const ReachGrid::Lookup& coverLookup, Rng& rng) const {
+  const Coverage::Found found = coverage_.pick(point.position, point.ng, coverLookup, rng);
   if (!found.vpl) {
     return {covers_ ? 1.0f : 0.0f, {}, {covers_ ? INFINITY : 0.0f, INFINITY, kind_}};
   }
@@ -75,7 +75,7 @@ Uncovered NearField::uncovered(const SurfacePoint& point, float distance,
   const float share = withKind(kind_, [&](auto k) { return k.removed(relative); });
   const float shortest = kShortRay * lit_.radius[*found.vpl];
   if (distance < shortest) return {share, {}, {shortest, clampRadius_[*found.vpl], kind_}};
-  return {share, scatteredBy(*found.vpl), {}};
+  return {share, multiBounceRadianceOf(*found.vpl), {}};
 }
 
 namespace methods::compensate::near_field {
@@ -84,14 +84,15 @@ namespace {
 
 Compensation make(const CompensateInputs& in, const Values&) {
   const auto field = std::make_shared<const NearField>(in.lit, in.rays, in.clamp, in.light);
-  return {
-      [field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> near) {
-        field->coverage().lookUp(hits, near);
-      },
-      [field](const SurfacePoint& point, float distance, const ReachGrid::Lookup* near, Rng& rng) {
-        return field->uncovered(point, distance,
-                                near ? *near : field->coverage().lookUp(point.position), rng);
-      }};
+  return {[field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> coverLookup) {
+            field->coverage().lookUp(hits, coverLookup);
+          },
+          [field](const SurfacePoint& point, float distance, const ReachGrid::Lookup* coverLookup,
+                  Rng& rng) {
+            return field->uncovered(
+                point, distance,
+                coverLookup ? *coverLookup : field->coverage().lookUp(point.position), rng);
+          }};
 }
 
 }  // namespace

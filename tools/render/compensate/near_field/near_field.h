@@ -18,15 +18,15 @@ class NearField {
   // Borrows the table and the scene. `clamp` and `kind`: those of makeVplLights().
   NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {});
 
-  // `near`: the result of coverage().lookUp() for the point.
-  Uncovered uncovered(const SurfacePoint& point, float distance, const ReachGrid::Lookup& near,
-                      Rng& rng) const;
+  // `coverLookup`: the result of coverage().lookUp() for the point.
+  Uncovered uncovered(const SurfacePoint& point, float distance,
+                      const ReachGrid::Lookup& coverLookup, Rng& rng) const;
   const Coverage& coverage() const { return coverage_; }
 
  private:
-  // Mean of Uncovered::scattered over the surface that the VPL covers; empty if its area is
-  // unknown.
-  std::optional<Vec3> scatteredBy(uint32_t vpl) const;
+  // Mean of Uncovered::multiBounceRadiance over the surface that the VPL covers; empty if its area
+  // is unknown.
+  std::optional<Vec3> multiBounceRadianceOf(uint32_t vpl) const;
 
   const VplTable& lit_;
   const RayScene& rays_;

@@ -130,9 +130,9 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
     if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
     const float distance = 0.8f * clamp * lit.radius[0];
     const Uncovered uncovered = uncoveredAt(nearField, hit, distance, rng);
-    if (!uncovered.scattered) continue;
+    if (!uncovered.multiBounceRadiance) continue;
     ++known;
-    sum += double{uncovered.scattered->x};
+    sum += double{uncovered.multiBounceRadiance->x};
     EXPECT_LT(distanceToAShareOfAVplThatReaches(lit, hit, distance / clamp, uncovered.share), 1e-5)
         << uncovered.share;
   }
@@ -166,7 +166,7 @@ TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
     Rng rng(streamKey(1, Stream::PixelSamples), 0);
     const Uncovered uncovered = uncoveredAt(NearField(lit, rays, 2.0f), hit, 1.0f, rng);
     EXPECT_NEAR(uncovered.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
-    return uncovered.scattered;
+    return uncovered.multiBounceRadiance;
   };
   const auto known = [](float area) { return (3.0f - 1.0f) / (kPi * area); };
   for (const float width : {3.0f, 1.0f, 0.25f}) {

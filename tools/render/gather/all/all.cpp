@@ -12,14 +12,14 @@ Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf
   out.cut = static_cast<uint32_t>(vpls.size());
   const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   RgbSum total, clamped;
-  Coupling c;
+  VplTransfer c;
   for (size_t i = 0; i < vpls.size(); ++i) {
-    if (!couple(vpls, i, bsdf, c)) continue;
+    if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     ++out.shadowRays;
     if (rays.occluded(from, vpls.position[i])) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
     total.add(light);
-    clamped.add(light * c.clamped);
+    clamped.add(light * c.clampLoss);
   }
   out.radiance = total.toVec3();
   out.clamped = clamped.toVec3();

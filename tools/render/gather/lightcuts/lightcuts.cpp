@@ -20,7 +20,7 @@ struct Cluster {
   float bound;  // bound on the error, summed over the channels
   uint32_t node;
   Vec3 transfer;  // transfer of the representative times its visibility
-  float clamped;
+  float clampLoss;
 };
 bool lessBound(const Cluster& a, const Cluster& b) {
   return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
@@ -39,17 +39,17 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
   const auto account = [&](const Cluster& c, double sign) {
     const Vec3 light = c.transfer * tree.nodes[c.node].intensity;
     total.add(light, sign);
-    clamped.add(light * c.clamped, sign);
+    clamped.add(light * c.clampLoss, sign);
   };
   const auto evaluate = [&](uint32_t node) {
     Cluster c{errorBound(tree.nodes[node], receiver), node, {}, 0.0f};
     const uint32_t r = tree.nodes[node].representative;
-    Coupling coupling;
-    if (couple(vpls, r, bsdf, coupling)) {
+    VplTransfer transfer;
+    if (unoccludedTransfer(vpls, r, bsdf, transfer)) {
       ++out.shadowRays;
       if (!rays.occluded(from, vpls.position[r])) {
-        c.transfer = coupling.transfer;
-        c.clamped = coupling.clamped;
+        c.transfer = transfer.transfer;
+        c.clampLoss = transfer.clampLoss;
       }
     }
     return c;
@@ -71,7 +71,7 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
     for (const uint32_t child : {n.left, n.right}) {
       if (tree.nodes[child].representative == n.representative) {
         // The child has the representative of its parent, so its visibility is known.
-        insert({errorBound(tree.nodes[child], receiver), child, worst.transfer, worst.clamped});
+        insert({errorBound(tree.nodes[child], receiver), child, worst.transfer, worst.clampLoss});
       } else {
         insert(evaluate(child));
       }

@@ -178,7 +178,7 @@ struct Plan {
 
 Plan planOf(const GatherInputs& in, const Values& options) {
   Plan plan;
-  std::vector<SurfacePoint> film = in.film().points;
+  std::vector<SurfacePoint> film = in.primaryPoints().points;
   std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
   if (film.empty()) return plan;
   Bounds seen;
@@ -228,8 +228,8 @@ Gather make(const GatherInputs& in, const Values& options) {
       const Vector at = placeOf(tile.bsdf[i]->point(), plan->scale);
       const auto apart = [&](const Placed& s) { return ((s.at - at) * (s.at - at)).sum(); };
       const auto slice = std::ranges::min_element(plan->slices, {}, apart) - plan->slices.begin();
-      const size_t slot = tile.firstSlot + i / tile.pixels;
-      const auto& draws = plan->draws[slice][(tile.turn + slot) % kDraws];
+      const size_t sample = tile.firstSample + i / tile.pixels;
+      const auto& draws = plan->draws[slice][(tile.sequenceOffset + sample) % kDraws];
       const ShadowTest test(rays, vpls, *tile.bsdf[i]);
       for (const VplDraw& d : draws) test.add(d.index, d.weight, out[i]);
       out[i].cut = static_cast<uint32_t>(draws.size());

@@ -102,7 +102,7 @@ Gather make(const GatherInputs& in, const Values& options) {
   return {[&rays = in.rays, &vpls = in.vpls, &tree = in.tree, cut](const TileReceivers& tile,
                                                                    std::span<Gathered> out) {
     for (size_t i = 0; i < out.size(); ++i) {
-      const uint64_t sample = i + uint64_t{tile.firstSlot} * tile.pixels;
+      const uint64_t sample = i + uint64_t{tile.firstSample} * tile.pixels;
       out[i] = tile.bsdf[i] ? gatherPoint(rays, vpls, tree, cut, *tile.bsdf[i],
                                           random64(tile.key, sample, 0))
                             : Gathered{};

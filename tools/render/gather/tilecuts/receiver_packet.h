@@ -7,7 +7,7 @@
 #include <span>
 
 #include "tools/render/gather/gather.h"
-#include "tools/render/light_tree/expected_light.h"
+#include "tools/render/light_tree/cluster_deviation.h"
 
 namespace bnvpl {
 
@@ -16,38 +16,40 @@ struct ReceiverPacket {
   using Lanes = std::array<float, kSize>;
 
   alignas(64) Lanes x{}, y{}, z{}, sx{}, sy{}, sz{}, gx{}, gy{}, gz{};  // point; ns; ng
-  alignas(64) Lanes mostRed{}, mostGreen{}, mostBlue{};  // maxReflected(), 1/sr; 0: empty lane
-  alignas(64) Lanes red{}, green{}, blue{};              // irradiance, W/m2
+  alignas(64) Lanes maxReflectedRed{}, maxReflectedGreen{},
+      maxReflectedBlue{};                    // maxReflected(), 1/sr; 0: empty lane
+  alignas(64) Lanes red{}, green{}, blue{};  // irradiance, W/m2
   alignas(64) Lanes clampedRed{}, clampedGreen{}, clampedBlue{};
   std::array<Vec3, kSize> offset{};                   // offset ray origins
   std::array<Vec3, kSize> glossy{}, glossyClamped{};  // radiance of glossy lobes
   std::array<const Bsdf*, kSize> bsdf{};
-  std::array<uint32_t, kSize> receiver{};  // index among the tile's receivers
-  std::array<uint32_t, kSize> place{};     // neighbours in the image have neighbouring places
+  std::array<uint32_t, kSize> receiver{};    // index among the tile's receivers
+  std::array<uint32_t, kSize> pixelOrder{};  // neighbours in the image have neighbouring places
   std::array<uint32_t, kSize> shadowRays{};
   uint32_t count = 0;
   uint32_t lobes = 0;  // mask of the lanes with glossy lobes
   uint32_t clusters = 0;
-  Bounds bounds;           // bounds of the points
-  float brightest = 0.0f;  // maximum of maxReflected() over receivers and channels, 1/sr
-  float stratum = 0.0f;    // stratum of its draws, in [0, 1)
+  Bounds bounds;               // bounds of the points
+  float brightest = 0.0f;      // maximum of maxReflected() over receivers and channels, 1/sr
+  float stratumOffset = 0.0f;  // stratum of its draws, in [0, 1)
   uint64_t rouletteKey = 0;
   uint32_t rouletteDraw = 0;
 
-  void add(uint32_t receiverOfTile, const Bsdf& b, Vec3 offsetPoint, uint32_t placeInTile) {
+  void add(uint32_t receiverOfTile, const Bsdf& b, Vec3 offsetPoint, uint32_t orderInTile) {
     const uint32_t lane = count++;
     const SurfacePoint& p = b.point();
     bsdf[lane] = &b;
     receiver[lane] = receiverOfTile;
     offset[lane] = offsetPoint;
-    place[lane] = placeInTile;
+    pixelOrder[lane] = orderInTile;
     x[lane] = p.position.x, y[lane] = p.position.y, z[lane] = p.position.z;
     sx[lane] = p.ns.x, sy[lane] = p.ns.y, sz[lane] = p.ns.z;
     gx[lane] = p.ng.x, gy[lane] = p.ng.y, gz[lane] = p.ng.z;
     bounds.extend(p.position);
-    const Vec3 most = maxReflected(b);
-    mostRed[lane] = most.x, mostGreen[lane] = most.y, mostBlue[lane] = most.z;
-    brightest = std::max(brightest, maxComponent(most));
+    const Vec3 maxReflectance = maxReflected(b);
+    maxReflectedRed[lane] = maxReflectance.x, maxReflectedGreen[lane] = maxReflectance.y,
+    maxReflectedBlue[lane] = maxReflectance.z;
+    brightest = std::max(brightest, maxComponent(maxReflectance));
     if (!b.diffuseOnly()) lobes |= 1u << lane;
   }
 

@@ -14,20 +14,20 @@ constexpr size_t kWaiting = 256;
 // Transfer from a VPL to all receivers of a packet. Returns the mask of those that it may light.
 // The compiler can vectorise the loops over lanes.
 template <typename Kind>
-uint32_t couplePacket(const VplLights& vpls, uint32_t i, const ReceiverPacket& p,
-                      ReceiverPacket::Lanes& transfer, ReceiverPacket::Lanes& clamped) {
+uint32_t geometryOfPacket(const VplLights& vpls, uint32_t i, const ReceiverPacket& p,
+                          ReceiverPacket::Lanes& transfer, ReceiverPacket::Lanes& clampLoss) {
   const Vec3 at = vpls.position[i], normal = vpls.normal[i];
   const float clamp2 = vpls.clamp2[i];
-  alignas(64) std::array<int, ReceiverPacket::kSize> faces;
+  alignas(64) std::array<int, ReceiverPacket::kSize> contributes;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
-    const BareCoupling c =
-        coupleBare<Kind>(at, normal, clamp2, {p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
-                         {p.gx[l], p.gy[l], p.gz[l]});
-    faces[l] = c.lit, transfer[l] = c.transfer, clamped[l] = c.clamped;
+    const GeometryTerm c =
+        geometryTerm<Kind>(at, normal, clamp2, {p.x[l], p.y[l], p.z[l]},
+                           {p.sx[l], p.sy[l], p.sz[l]}, {p.gx[l], p.gy[l], p.gz[l]});
+    contributes[l] = c.contributes, transfer[l] = c.value, clampLoss[l] = c.clampLoss;
   }
   uint32_t lanes = 0;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
-    lanes |= static_cast<uint32_t>(faces[l]) << l;
+    lanes |= static_cast<uint32_t>(contributes[l]) << l;
   }
   return lanes & ((1u << p.count) - 1);
 }
@@ -39,35 +39,37 @@ ShadowQueue::ShadowQueue(const RayScene& rays, const VplLights& vpls,
     : rays_(rays), vpls_(vpls) {
   uint32_t places = 0;
   for (const ReceiverPacket& p : packets) {
-    for (uint32_t l = 0; l < p.count; ++l) places = std::max(places, p.place[l] + 1);
+    for (uint32_t l = 0; l < p.count; ++l) places = std::max(places, p.pixelOrder[l] + 1);
   }
   rayCount_.assign(places, 0);
 }
 
 void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, float negligible) {
-  Delivery& d = waiting_.emplace_back();
+  PendingContribution& d = waiting_.emplace_back();
   d.packet = &p;
   d.at = vpls_.position[vpl.index];
   const uint32_t lanes = withKind(vpls_.kind, [&](auto kind) {
-    return couplePacket<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clamped);
+    return geometryOfPacket<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clampLoss);
   });
   if (lanes == 0) return waiting_.pop_back();
   d.light = vpls_.intensity[vpl.index] * vpl.weight;
-  float most = 0.0f;
+  float largest = 0.0f;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
-    most = std::max(most, (lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f);
+    largest = std::max(largest, (lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f);
   }
-  const float chance = most * p.brightest * (d.light.x + d.light.y + d.light.z) / negligible;
-  if (chance < 1.0f) {
+  const float survivalProbability =
+      largest * p.brightest * (d.light.x + d.light.y + d.light.z) / negligible;
+  if (survivalProbability < 1.0f) {
     const float roulette = toUnitFloat(random64(p.rouletteKey, cluster, p.rouletteDraw));
-    if (roulette >= chance || chance < kMinProbability) return waiting_.pop_back();
-    d.light *= 1.0f / chance;
+    if (roulette >= survivalProbability || survivalProbability < kMinProbability)
+      return waiting_.pop_back();
+    d.light *= 1.0f / survivalProbability;
   }
   d.lanes = lanes;
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     ++p.shadowRays[l];
-    ++rayCount_[p.place[l]];
+    ++rayCount_[p.pixelOrder[l]];
   }
   raysWaiting_ += static_cast<size_t>(std::popcount(lanes));
   if (raysWaiting_ >= kWaiting) flush();
@@ -75,7 +77,7 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
 
 void ShadowQueue::flush() {
   traceAll();
-  for (const Delivery& d : waiting_) deliver(d);
+  for (const PendingContribution& d : waiting_) accumulate(d);
   waiting_.clear();
 }
 
@@ -91,28 +93,28 @@ void ShadowQueue::traceAll() {
   segments_.resize(raysWaiting_);
   hidden_.resize(raysWaiting_);
   for (uint32_t i = 0; i < waiting_.size(); ++i) {
-    const Delivery& d = waiting_[i];
+    const PendingContribution& d = waiting_[i];
     for (uint32_t rest = d.lanes; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<uint32_t>(std::countr_zero(rest));
-      const uint32_t at = rayCount_[d.packet->place[l]]++;
+      const uint32_t at = rayCount_[d.packet->pixelOrder[l]]++;
       order_[at] = {i, l};
       segments_[at] = {d.packet->offset[l], d.at};
     }
   }
   rays_.occluded(segments_, hidden_);
   for (size_t k = 0; k < order_.size(); ++k) {
-    waiting_[order_[k].delivery].lanes &= ~(uint32_t{hidden_[k]} << order_[k].lane);
+    waiting_[order_[k].pending].lanes &= ~(uint32_t{hidden_[k]} << order_[k].lane);
   }
   std::fill(rayCount_.begin(), rayCount_.end(), 0);
   raysWaiting_ = 0;
 }
 
-void ShadowQueue::deliver(const Delivery& d) {
+void ShadowQueue::accumulate(const PendingContribution& d) {
   if (d.lanes == 0) return;
   ReceiverPacket& p = *d.packet;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
     const float t = (d.lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f;
-    const float c = (d.lanes >> l & 1u) != 0 ? d.transfer[l] * d.clamped[l] : 0.0f;
+    const float c = (d.lanes >> l & 1u) != 0 ? d.transfer[l] * d.clampLoss[l] : 0.0f;
     p.red[l] += t * d.light.x;
     p.green[l] += t * d.light.y;
     p.blue[l] += t * d.light.z;
@@ -120,8 +122,8 @@ void ShadowQueue::deliver(const Delivery& d) {
     p.clampedGreen[l] += c * d.light.y;
     p.clampedBlue[l] += c * d.light.z;
   }
-  // Adds the difference between a glossy BSDF, which depends on the direction, and the diffuse
-  // value.
+  // writeTo() multiplies the sums above by the diffuse value. A glossy BSDF adds its difference from
+  // that value; eval() includes the cosine, which the transfer includes too.
   for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     const Bsdf& b = *p.bsdf[l];
@@ -130,7 +132,7 @@ void ShadowQueue::deliver(const Delivery& d) {
     const Vec3 lobe = b.eval(LobeGroup::Rough, direction) * (1.0f / cosine) - b.diffuseValue();
     const Vec3 reflected = lobe * d.light * d.transfer[l];
     p.glossy[l] += reflected;
-    p.glossyClamped[l] += reflected * d.clamped[l];
+    p.glossyClamped[l] += reflected * d.clampLoss[l];
   }
 }
 

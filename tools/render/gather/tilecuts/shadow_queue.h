@@ -26,24 +26,24 @@ class ShadowQueue {
 
  private:
   using Lanes = ReceiverPacket::Lanes;
-  struct Delivery {
+  struct PendingContribution {
     ReceiverPacket* packet;
     Vec3 at;         // position of the VPL
     Vec3 light;      // weighted intensity of the VPL, W/sr
     uint32_t lanes;  // mask of the lanes that may see it
     alignas(64) Lanes transfer;
-    alignas(64) Lanes clamped;  // light that the bound on 1/d^2 removed, over the rest
+    alignas(64) Lanes clampLoss;  // light that the bound on 1/d^2 removed, over the rest
   };
   struct Ray {
-    uint32_t delivery, lane;
+    uint32_t pending, lane;
   };
 
   void traceAll();
-  static void deliver(const Delivery& d);
+  static void accumulate(const PendingContribution& d);
 
   const RayScene& rays_;
   const VplLights& vpls_;
-  std::vector<Delivery> waiting_;
+  std::vector<PendingContribution> waiting_;
   std::vector<uint32_t> rayCount_;  // rays per place; while tracing, where those of a place begin
   size_t raysWaiting_ = 0;
   std::vector<Ray> order_;

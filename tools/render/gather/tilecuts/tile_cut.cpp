@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "tools/render/light_tree/expected_light.h"
+#include "tools/render/light_tree/cluster_deviation.h"
 
 namespace bnvpl {
 
@@ -18,7 +18,7 @@ using Probes = std::array<const Bsdf*, kProbes>;
 // refined down to single VPLs.
 constexpr float kBlockedShare = 0.01f;
 // Lower bound of the light at a probe, over the mean of all probes.
-constexpr float kDarkest = 0.2f;
+constexpr float kMinProbeLight = 0.2f;
 // Factor of the predicted variance when it is compared with the marginal cost. The measured
 // variance is a sixteenth of the prediction (theory.md), but sixteen pixels share the error, which
 // is visible as grain.
@@ -51,7 +51,7 @@ struct ProbeLanes {
  private:
   template <typename Kind>
   float varianceOf(const LightNode& n) const {
-    const Expectation<Kind> expected(n);
+    const DeviationModel<Kind> expected(n);
     alignas(32) std::array<float, kProbes> squares;
     for (size_t k = 0; k < kProbes; ++k) {
       const float d =
@@ -66,13 +66,13 @@ struct ProbeLanes {
 
 // Random receivers of the tile; all are null if there are none.
 Probes chooseProbes(const TileReceivers& tile) {
-  std::vector<const Bsdf*> lit;
+  std::vector<const Bsdf*> receivers;
   for (const Bsdf* b : tile.bsdf) {
-    if (b) lit.push_back(b);
+    if (b) receivers.push_back(b);
   }
   Probes probes{};
-  for (uint32_t k = 0; k < kProbes && !lit.empty(); ++k) {
-    probes[k] = lit[random64(tile.key, k, kDimProbe) % lit.size()];
+  for (uint32_t k = 0; k < kProbes && !receivers.empty(); ++k) {
+    probes[k] = receivers[random64(tile.key, k, kDimProbe) % receivers.size()];
   }
   return probes;
 }
@@ -91,8 +91,8 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
     for (const uint32_t node : tree.startCut) {
       const LightNode& n = tree.nodes[node];
       const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDimVpl)));
-      Coupling c;
-      if (!couple(vpls, vpl.index, b, c)) continue;
+      VplTransfer c;
+      if (!unoccludedTransfer(vpls, vpl.index, b, c)) continue;
       const Vec3 part = c.transfer * vpls.intensity[vpl.index] * vpl.weight;
       const bool blocked = rays.occluded(from, vpls.position[vpl.index]);
       light[k] += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
@@ -103,7 +103,7 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
   if (!(mean > 0.0f)) return light;
   float logarithms = 0.0f;
   for (float& l : light) {
-    l = std::max(l, kDarkest * mean);
+    l = std::max(l, kMinProbeLight * mean);
     logarithms += std::log(l);
   }
   const float typical = std::exp(logarithms / kCount);
@@ -129,21 +129,23 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
   std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
   for (float& l : light) {
     l += tile.otherLight;
-    if (l > tile.filmLight) l = std::sqrt(l * tile.filmLight);  // see SampleAllocation::relative
+    if (l > tile.medianTileLight)
+      l = std::sqrt(l * tile.medianTileLight);  // see SampleAllocation::relative
   }
   const ProbeLanes all(probes, light);
   TileCut cut;
-  const double most =
-      double{options.error} * double{options.error} * double(tile.allSlots) * double{kProbes};
+  const double maxVarianceSum = double{options.error} * double{options.error} *
+                                double(tile.samplesPerPixel) * double{kProbes};
   // Refining a cluster halves its variance, about, and costs a ray.
-  const double least = 2.0 * tile.marginalCost * double{kProbes} / kVarianceShare;
-  const auto allowed = static_cast<float>(std::max(most, least) / double{kProbes});
+  const double minVarianceToRefine = 2.0 * tile.marginalCost * double{kProbes} / kVarianceShare;
+  const auto allowedVariance =
+      static_cast<float>(std::max(maxVarianceSum, minVarianceToRefine) / double{kProbes});
   const float darkest = *std::min_element(light.begin(), light.end());
-  cut.allowed = std::sqrt(allowed) * darkest;
+  cut.allowedDeviation = std::sqrt(allowedVariance) * darkest;
   // Tracing a ray of contribution c with probability q adds the variance c^2 (1/q - 1). At the
   // marginal cost m, q = c / sqrt(m) is efficient.
   cut.negligible =
-      std::max(kRouletteShare * allowed, static_cast<float>(std::sqrt(tile.marginalCost))) *
+      std::max(kRouletteShare * allowedVariance, static_cast<float>(std::sqrt(tile.marginalCost))) *
       darkest;
   double sum = 0.0;
   std::vector<Open> heap;
@@ -154,13 +156,14 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
     std::push_heap(heap.begin(), heap.end());
   };
   for (const uint32_t node : tree.startCut) insert(node);
-  while (sum > most && heap.size() < options.maxCut && double{heap.front().variance} > least) {
-    const Open widest = heap.front();
+  while (sum > maxVarianceSum && heap.size() < options.maxCut &&
+         double{heap.front().variance} > minVarianceToRefine) {
+    const Open largest = heap.front();
     std::pop_heap(heap.begin(), heap.end());
     heap.pop_back();
-    sum -= double{widest.variance};
-    insert(tree.nodes[widest.node].left);
-    insert(tree.nodes[widest.node].right);
+    sum -= double{largest.variance};
+    insert(tree.nodes[largest.node].left);
+    insert(tree.nodes[largest.node].right);
   }
   for (const Open& open : heap) cut.nodes.push_back(open.node);
   std::sort(cut.nodes.begin(), cut.nodes.end());  // tree order keeps neighbours together

@@ -18,7 +18,7 @@ struct TileCutOptions {
 // Clusters, and the standard deviation that one sample may have, W/(m2 sr), summed over channels.
 struct TileCut {
   std::vector<uint32_t> nodes;
-  float allowed = 0.0f;
+  float allowedDeviation = 0.0f;
   float negligible = 0.0f;  // contribution below which Russian roulette applies, W/(m2 sr)
 };
 // Chooses the cut of a tile; it is empty if the tile has no receivers.

@@ -10,7 +10,7 @@
 #include "tools/render/gather/tilecuts/receiver_packet.h"
 #include "tools/render/gather/tilecuts/shadow_queue.h"
 #include "tools/render/gather/tilecuts/tile_cut.h"
-#include "tools/render/light_tree/expected_light.h"
+#include "tools/render/light_tree/cluster_deviation.h"
 
 namespace bnvpl::methods::gather::tilecuts {
 
@@ -21,58 +21,58 @@ constexpr auto kErrorOption = realOption("error", "0.05", 0, 1, "share of the ti
                                          "allowed standard deviation of a pixel");
 constexpr auto kOptions = optionTable(kErrorOption, kMaxCutOption);
 
-// Pixels along the side of a square that four packets share.
-constexpr uint32_t kSquare = 8;
-
-// Index of a pixel's packet. The pixels of each 2 x 2 belong to four different packets of a square.
+// Index of a pixel's packet. The pixels of each 2 x 2 belong to four different packets.
 uint32_t packetOfPixel(uint32_t x, uint32_t y, uint64_t tileKey) {
-  const uint32_t square = y / kSquare << 16 | x / kSquare;
-  const auto turn = static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDimPacket) % 4);
-  return square << 2 | ((y % 2 << 1 | x % 2) ^ turn);
+  const auto permutation =
+      static_cast<uint32_t>(random64(tileKey, y / 2 << 16 | x / 2, kDimPacket) % 4);
+  return (y % 2 << 1 | x % 2) ^ permutation;
 }
 
 // Index of a pixel in an order in which the pixels of each 2 x 2 are consecutive.
-uint32_t placeOfPixel(uint32_t x, uint32_t y, uint32_t width) {
+uint32_t orderOfPixel(uint32_t x, uint32_t y, uint32_t width) {
   return (y / 2 * ((width + 1) / 2) + x / 2) << 2 | y % 2 << 1 | x % 2;
 }
 
 // A packet takes a random pixel of each 2 x 2 in 8 x 8 pixels, as far as they have receivers.
 // Pixels of a packet share their error. Spread in this way the error is fine grain, while packets
 // of 4 x 4 neighbours would be visible as blocks. Draws from a cluster are stratified over all
-// packets of the tile and over the slots of each pixel, whose packet is the same in all slots.
+// packets of the tile and over the samples of each pixel, which are all in the same packet.
 std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceivers& tile) {
   std::vector<uint32_t> packetOf;  // one per pixel
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
   }
-  const auto slots = static_cast<uint32_t>(tile.bsdf.size() / tile.pixels);
+  const auto perPixel = static_cast<uint32_t>(tile.bsdf.size() / tile.pixels);
   constexpr uint32_t kSize = ReceiverPacket::kSize;
   std::vector<ReceiverPacket> packets;
-  packets.reserve(size_t{slots} * ((tile.pixels + kSize - 1) / kSize));
-  std::vector<uint32_t> lit;  // receivers of a slot
-  for (uint32_t slot = 0; slot < slots; ++slot) {
-    lit.clear();
+  packets.reserve(size_t{perPixel} * ((tile.pixels + kSize - 1) / kSize));
+  std::vector<uint32_t> receivers;  // those of one sample index
+  for (uint32_t sample = 0; sample < perPixel; ++sample) {
+    receivers.clear();
     for (uint32_t p = 0; p < tile.pixels; ++p) {
-      if (tile.bsdf[size_t{slot} * tile.pixels + p]) lit.push_back(slot * tile.pixels + p);
+      if (tile.bsdf[size_t{sample} * tile.pixels + p])
+        receivers.push_back(sample * tile.pixels + p);
     }
-    std::stable_sort(lit.begin(), lit.end(), [&](uint32_t a, uint32_t b) {
+    std::stable_sort(receivers.begin(), receivers.end(), [&](uint32_t a, uint32_t b) {
       return packetOf[a % tile.pixels] < packetOf[b % tile.pixels];
     });
-    const size_t ofSlot = (lit.size() + kSize - 1) / kSize;
-    const uint32_t imageSlot = tile.firstSlot + slot;
-    for (size_t number = 0; number < ofSlot; ++number) {
+    const size_t packetsHere = (receivers.size() + kSize - 1) / kSize;
+    const uint32_t sampleOfPixel = tile.firstSample + sample;
+    for (size_t number = 0; number < packetsHere; ++number) {
       ReceiverPacket& packet = packets.emplace_back();
-      packet.stratum = (static_cast<float>(imageSlot) +
-                        (static_cast<float>(number) + 0.5f) / static_cast<float>(ofSlot)) /
-                       static_cast<float>(tile.allSlots);
-      packet.rouletteKey = mix64(tile.key + imageSlot);
+      packet.stratumOffset =
+          (static_cast<float>(sampleOfPixel) +
+           (static_cast<float>(number) + 0.5f) / static_cast<float>(packetsHere)) /
+          static_cast<float>(tile.samplesPerPixel);
+      packet.rouletteKey = mix64(tile.key + sampleOfPixel);
       packet.rouletteDraw = kDimRoulette + static_cast<uint32_t>(number);
-      const size_t begin = number * lit.size() / ofSlot, end = (number + 1) * lit.size() / ofSlot;
+      const size_t begin = number * receivers.size() / packetsHere,
+                   end = (number + 1) * receivers.size() / packetsHere;
       for (size_t k = begin; k < end; ++k) {
-        const uint32_t pixel = lit[k] % tile.pixels;
-        const Bsdf& b = *tile.bsdf[lit[k]];
-        packet.add(lit[k], b, rays.offsetOrigin(b.point().position, b.point().ng),
-                   placeOfPixel(pixel % tile.width, pixel / tile.width, tile.width));
+        const uint32_t pixel = receivers[k] % tile.pixels;
+        const Bsdf& b = *tile.bsdf[receivers[k]];
+        packet.add(receivers[k], b, rays.offsetOrigin(b.point().position, b.point().ng),
+                   orderOfPixel(pixel % tile.width, pixel / tile.width, tile.width));
       }
     }
   }
@@ -81,15 +81,15 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
 
 template <typename Kind>
 bool exceedsAnywhere(const LightNode& n, float allowed, const ReceiverPacket& p) {
-  const Expectation<Kind> expected(n);
-  int near = 0;
+  const DeviationModel<Kind> expected(n);
+  int exceeds = 0;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
-    near |= expected
-                .at({p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
-                    {p.mostRed[l], p.mostGreen[l], p.mostBlue[l]})
-                .exceeds(allowed);
+    exceeds |= expected
+                   .at({p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
+                       {p.maxReflectedRed[l], p.maxReflectedGreen[l], p.maxReflectedBlue[l]})
+                   .exceeds(allowed);
   }
-  return near != 0;
+  return exceeds != 0;
 }
 // Whether a cluster of the tile's cut must be refined for a packet, because it is much nearer to
 // one of its receivers than to the probes: its deviation alone would exceed the allowed one.
@@ -114,14 +114,14 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
     brightest = std::max(brightest, packet.brightest);
   }
   const auto take = [&](uint32_t node, ReceiverPacket& packet) {
-    const float u = packet.stratum + toUnitFloat(random64(tile.key, node, kDimStratum));
+    const float u = packet.stratumOffset + toUnitFloat(random64(tile.key, node, kDimStratum));
     queue.add(packet, tree.draw(tree.nodes[node], u < 1.0f ? u : u - 1.0f), node, cut.negligible);
     ++packet.clusters;
   };
   std::vector<uint32_t> open;
   // Handles all samples cluster by cluster, so that rays to the same cluster are traced together.
   for (const uint32_t ofCut : cut.nodes) {
-    const bool far = surelyFar(tree.nodes[ofCut], cut.allowed, bounds, brightest);
+    const bool far = surelyFar(tree.nodes[ofCut], cut.allowedDeviation, bounds, brightest);
     for (ReceiverPacket& packet : packets) {
       if (far) {
         take(ofCut, packet);
@@ -131,7 +131,7 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
       while (!open.empty()) {
         const uint32_t node = open.back();
         open.pop_back();
-        if (tooNear(tree.nodes[node], cut.allowed, packet)) {
+        if (tooNear(tree.nodes[node], cut.allowedDeviation, packet)) {
           open.push_back(tree.nodes[node].right);
           open.push_back(tree.nodes[node].left);
         } else {

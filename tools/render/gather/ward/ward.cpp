@@ -27,7 +27,7 @@ constexpr auto kOptions = optionTable(kToleranceOption, kVisibilityTestsOption);
 // which few tests cannot establish.
 std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
   std::vector<SurfacePoint> seen;
-  for (const SurfacePoint& p : in.film().points) {
+  for (const SurfacePoint& p : in.primaryPoints().points) {
     if (p.triangle != kNone) seen.push_back(p);
   }
   std::vector<float> rates(in.vpls.size(), 0.5f);
@@ -37,8 +37,8 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
     uint32_t faced = 0, hits = 0;
     for (uint64_t k = 0; k < tests; ++k) {
       const SurfacePoint& p = seen[k * seen.size() / tests];
-      Coupling c;
-      if (!couple(in.vpls, i, Bsdf(in.rays.scene(), p), c)) continue;
+      VplTransfer c;
+      if (!unoccludedTransfer(in.vpls, i, Bsdf(in.rays.scene(), p), c)) continue;
       ++faced;
       hits += in.rays.occluded(in.rays.offsetOrigin(p.position, p.ng), in.vpls.position[i]) ? 0 : 1;
     }
@@ -52,7 +52,7 @@ struct Potential {
   float sum;  // unoccluded contribution, summed over the channels
   uint32_t vpl;
   Vec3 light;
-  float clamped;
+  float clampLoss;
 };
 bool brighter(const Potential& a, const Potential& b) {
   return a.sum != b.sum ? a.sum > b.sum : a.vpl < b.vpl;
@@ -61,11 +61,11 @@ bool brighter(const Potential& a, const Potential& b) {
 std::vector<Potential>& sortedPotentials(const VplLights& vpls, const Bsdf& bsdf) {
   thread_local std::vector<Potential> list;  // reused between calls to avoid allocations
   list.clear();
-  Coupling c;
+  VplTransfer c;
   for (uint32_t i = 0; i < vpls.size(); ++i) {
-    if (!couple(vpls, i, bsdf, c)) continue;
+    if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
-    list.push_back({light.x + light.y + light.z, i, light, c.clamped});
+    list.push_back({light.x + light.y + light.z, i, light, c.clampLoss});
   }
   std::ranges::sort(list, brighter);
   return list;
@@ -81,7 +81,7 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vec
   RgbSum total, clamped;
   const auto add = [&](const Potential& p, double share) {
     total.add(p.light, share);
-    clamped.add(p.light * p.clamped, share);
+    clamped.add(p.light * p.clampLoss, share);
   };
   // Number of visible VPLs among those tested, and its expectation from their mean visibility. The
   // ratio is the openness of this point.

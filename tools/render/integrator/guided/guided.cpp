@@ -53,7 +53,7 @@ uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
 
 // Objects that live as long as the integrator. Each may borrow from those before it.
 struct Parts {
-  std::unique_ptr<const SurfaceLights> surfaceLights;
+  std::unique_ptr<const SpatialLightSampler> spatialLights;
   std::unique_ptr<const TileIntegrator> integrator;
   SampleAllocation allocation = {};
 };
@@ -66,11 +66,11 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const bool indirect = in.only != Only::Direct;
   const auto vpls = std::max<uint64_t>(1, in.lit.size());
   const auto parts = std::make_shared<Parts>();
-  parts->surfaceLights = std::make_unique<const SurfaceLights>(
+  parts->spatialLights = std::make_unique<const SpatialLightSampler>(
       in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-      streamKey(in.seed, Stream::SurfaceLights), in.progress);
+      streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
   TileParts tile;
-  tile.surfaceLights = parts->surfaceLights.get();
+  tile.spatialLights = parts->spatialLights.get();
   if (options.has(kPathsOption)) {
     tile.raysEach = static_cast<unsigned>(options[kPathsOption]);
     const uint64_t each = raysEach(in, options),
@@ -79,13 +79,14 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                              static_cast<double>(std::max<uint64_t>(1, few)));
     tile.rays = std::make_unique<const GuidedRays>(
         in.rays, in.lights, Guide(in.lit, in.rays, in.lights, in.seed, few, in.progress),
-        *parts->surfaceLights, options.real32(kGuideShareOption), tile.raysEach,
+        *parts->spatialLights, options.real32(kGuideShareOption), tile.raysEach,
         maxBouncesOf(options), in.only);
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
+  const FilmRays filmRays(in.rays, in.lights, tile.spatialLights, in.seed);
   const bool controlled = indirect && options[kControlOption] == "vpls";
-  const FilmPoints film = controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
+  const PrimaryPoints film =
+      controlled || in.only != Only::Indirect ? filmRays.all() : PrimaryPoints{};
   if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),

@@ -44,7 +44,7 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
                         RayContributions& out) const {
   Rng rng = start.rng;
   SpecularPath vertex = followSpecularPath(rays_, lights_, *start.hit, start.direction,
-                                           start.arrival, rng, {nullptr, &surfaceLights_});
+                                           start.arrival, rng, {nullptr, &spatialLights_});
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.emissionFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
@@ -56,7 +56,7 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
       vertex.hit.position, vertex.hit.ng, {}, {}, UncoveredShare{INFINITY, INFINITY, {}}};
   Vec3 diffuse;
   float towardsStart = 0.0f;  // factor of RoughLeaving
-  if (reuse && vertex.links == 0) {
+  if (reuse && vertex.specularBounces == 0) {
     const std::optional<RoughLeaving> all = first.roughLeaving();
     const DiffusePart part = first.diffusePart();
     reused.leaving = all.value_or(part.leaving);
@@ -85,7 +85,7 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     const Bsdf& bsdf = bounce == 1 ? first : scattering.emplace(rays_.scene(), vertex.hit);
     const uint32_t region = guide_.regionAt(bsdf.point());
     const Directions directions = directionsIn(region, bsdf);
-    strata = surfaceLights_.at(bsdf.point().position, bsdf.point().ng);
+    strata = spatialLights_.at(bsdf.point().position, bsdf.point().ng);
     const LearnedLight lights{strata.all ? &strata : nullptr, bounce == 1 ? kFirstLightRays : 1};
     const auto rayPdf = [&](Vec3 wi) { return directions.pdf(wi); };
     const LightNumbers numbers = lights.strata ? LightNumbers::sequence(rng) : LightNumbers(rng);
@@ -112,7 +112,7 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     const Ray ray = rayOn(rays_, bsdf.point(), next);
     vertex = followSpecularPath(rays_, lights_, ray.origin, ray.direction,
                                 {next.pdf, bsdf.point().position, LightChoice::One, lights}, rng,
-                                {nullptr, &surfaceLights_});
+                                {nullptr, &spatialLights_});
     leaving += weight * (vertex.emissionFirst + vertex.emissionLater);
     if (bounce == maxBounces_ || !vertex.rough) break;
     weight = weight * vertex.throughput;

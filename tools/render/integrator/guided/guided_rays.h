@@ -4,24 +4,24 @@
 
 #include "tools/render/integrator/guided/guide.h"
 #include "tools/render/tile/reuse/indirect_rays.h"
+#include "transport/spatial_light_sampler.h"
 #include "transport/specular_path.h"
-#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
 class GuidedRays : public IndirectRays {
  public:
-  // `surfaceLights`: distribution for light sampling at vertices. `guideShare`: share of directions
+  // `spatialLights`: distribution for light sampling at vertices. `guideShare`: share of directions
   // that are sampled from the guide in regions that it knows; below 1. `misRays`: number of rays
   // from a shading point that MIS weights assume. `maxBounces`: limit of bounces after the shading
   // point.
   GuidedRays(const RayScene& rays, const LightSet& lights, Guide guide,
-             const SurfaceLights& surfaceLights, float guideShare, unsigned misRays,
+             const SpatialLightSampler& spatialLights, float guideShare, unsigned misRays,
              unsigned maxBounces, Only only)
       : rays_(rays),
         lights_(lights),
         guide_(std::move(guide)),
-        surfaceLights_(surfaceLights),
+        spatialLights_(spatialLights),
         guideShare_(guideShare),
         misRays_(misRays),
         maxBounces_(maxBounces),
@@ -47,7 +47,7 @@ class GuidedRays : public IndirectRays {
   const RayScene& rays_;
   const LightSet& lights_;
   Guide guide_;
-  const SurfaceLights& surfaceLights_;
+  const SpatialLightSampler& spatialLights_;
   float guideShare_;
   unsigned misRays_, maxBounces_;
   Only only_;

@@ -20,7 +20,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (photons) {
     const auto tracer =
         std::make_shared<const LightTracer>(in.rays, in.lights, maxBounces, in.seed);
-    result.photons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
+    result.tracePhotons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
       tracer->follow(begin, end, out);
     };
   }

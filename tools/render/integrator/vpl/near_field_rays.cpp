@@ -11,7 +11,7 @@ namespace {
 
 // Maximal number of segments of a path. The path goes on only with the probability of the uncovered
 // share.
-constexpr unsigned kMaxExtensions = 16;
+constexpr unsigned kMaxSegments = 16;
 // Number of VPLs sampled at a vertex: few, and fewer at later vertices, whose noise matters less
 // (measured).
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
@@ -28,13 +28,15 @@ double NearFieldRays::costOfRay() const { return kCostOfRay; }
 
 void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                          RayContributions& out) const {
-  std::array<ReachGrid::Lookup, RayScene::kBatch> near;
+  std::array<ReachGrid::Lookup, RayScene::kBatch> coverLookup;
   sendRays(
       rays_, from, misRays_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
-        if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, near);
+        if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, coverLookup);
       },
-      [&](size_t k, const FirstSegment& segment) { follow(segment, near[k], from.reuse, out); });
+      [&](size_t k, const FirstSegment& segment) {
+        follow(segment, coverLookup[k], from.reuse, out);
+      });
 }
 
 // A path from a shading point. A segment leads from a rough vertex over specular vertices to the
@@ -56,7 +58,7 @@ struct NearFieldRays::Path {
   float towardsStart = 0.0f;  // factor of its RoughLeaving
 
   bool isFirst() const { return segments == 1; }
-  bool isStraight() const { return segment.links == 0; }
+  bool isStraight() const { return segment.specularBounces == 0; }
   bool choseLobes() const { return isFirst() && isStraight() && atFirstHit; }
 
   LearnedLight learned(unsigned rays) const { return {strata.all ? &strata : nullptr, rays}; }
@@ -97,10 +99,10 @@ struct NearFieldRays::Path {
 //     leaves it; only the first-bounce light is sampled anew, by shadow rays;
 //   - otherwise survives with the probability of the uncovered share, is lit like a shading point
 //     by lights and VPLs, and goes on in a direction sampled from the BSDF.
-void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& near, bool reuse,
-                           RayContributions& out) const {
+void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& coverLookup,
+                           bool reuse, RayContributions& out) const {
   Path path{start, out, start.rng, start.throughput};
-  begin(path, near);
+  begin(path, coverLookup);
   for (bool goesOn = true; goesOn; ++path.segments) {
     const SpecularPath& segment = path.segment;
     const bool first = path.isFirst();
@@ -113,7 +115,7 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& n
       uncovered = *path.atFirstHit;
     } else if (segment.rough) {
       uncovered = uncoveredAt(segment.hit, path.isStraight(),
-                              first && path.isStraight() ? &near : nullptr, path.rng);
+                              first && path.isStraight() ? &coverLookup : nullptr, path.rng);
     }
     path.throughput *= segment.throughput;
     goesOn = uncovered.share > 0.0f;
@@ -124,7 +126,7 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& n
         if (reuse) path.makeReusable(uncovered, bsdf);
         shade(path, uncovered, bsdf);
         path.addLight();
-        goesOn = !uncovered.scattered && extend(path, bsdf);
+        goesOn = !uncovered.multiBounceRadiance && extend(path, bsdf);
       }
     }
     path.addLight();
@@ -134,25 +136,25 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& n
 
 // Follows the first segment. Where VPLs carry a part of the light that rough lobes would find, the
 // path takes specular lobes more often.
-void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& near) const {
+void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) const {
   const SurfacePoint& hit = *path.start.hit;
   if (hit.triangle != kNone && only_ != Only::Direct &&
       mayBeSpecular(rays_.scene().materials[hit.material])) {
-    path.atFirstHit = uncoveredAt(hit, true, &near, path.rng);
+    path.atFirstHit = uncoveredAt(hit, true, &coverLookup, path.rng);
     path.roughImportance = std::max(kMinImportance, path.atFirstHit->share);
   }
   path.segment = followSpecularPath(rays_, lights_, hit, path.start.direction, path.start.arrival,
-                                    path.rng, {nullptr, surfaceLights_}, path.roughImportance);
+                                    path.rng, {nullptr, spatialLights_}, path.roughImportance);
 }
 
-// `straight`: the segment passed no specular vertex. `near`: the VPLs at the hit; null: not looked
-// up yet.
+// `straight`: the segment passed no specular vertex. `coverLookup`: the VPLs at the hit; null: not
+// looked up yet.
 Uncovered NearFieldRays::uncoveredAt(const SurfacePoint& hit, bool straight,
-                                     const ReachGrid::Lookup* near, Rng& rng) const {
+                                     const ReachGrid::Lookup* coverLookup, Rng& rng) const {
   if (!compensation_) return {straight ? 0.0f : 1.0f, {}};
-  Uncovered out = compensation_.uncovered(hit, hit.distance, near, rng);
+  Uncovered out = compensation_.uncovered(hit, hit.distance, coverLookup, rng);
   // VPLs carry no light over specular vertices, but their radiance is right there, too.
-  if (!straight) out = {1.0f, out.scattered};
+  if (!straight) out = {1.0f, out.multiBounceRadiance};
   return out;
 }
 
@@ -160,7 +162,7 @@ Uncovered NearFieldRays::uncoveredAt(const SurfacePoint& hit, bool straight,
 // weight in shade(). Where it also decided on the lobes at the first hit, a part of it is already
 // in the probability of the rough ones.
 bool NearFieldRays::survives(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
-  if (uncovered.scattered) return true;
+  if (uncovered.multiBounceRadiance) return true;
   float probability = uncovered.share;
   if (path.choseLobes()) {
     const float specular = bsdf.specularProbability();
@@ -174,9 +176,9 @@ bool NearFieldRays::survives(Path& path, const Uncovered& uncovered, const Bsdf&
 // Adds first-bounce light by shadow rays, and further light as a VPL knows it or from all VPLs. If
 // the path will be extended, the shadow rays have MIS weights against the next segment's ray.
 void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
-  const bool known = uncovered.scattered.has_value(), first = path.isFirst();
+  const bool known = uncovered.multiBounceRadiance.has_value(), first = path.isFirst();
   const SurfacePoint& hit = path.segment.hit;
-  if (surfaceLights_) path.strata = surfaceLights_->at(hit.position, hit.ng);
+  if (spatialLights_) path.strata = spatialLights_->at(hit.position, hit.ng);
   const LearnedLight lights =
       path.learned(first && !(known && path.isStraight()) ? kFirstLightRays : 1);
   const float bsdfRays = known ? 0.0f : 1.0f;
@@ -185,7 +187,8 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
   const Vec3 firstBounce =
       directLight(rays_, lights_, Reflected{bsdf}, {lights}, BsdfRays{bsdf, bsdfRays}, numbers);
   if (known) {
-    path.light += path.throughput * (firstBounce + *uncovered.scattered) * uncovered.share;
+    path.light +=
+        path.throughput * (firstBounce + *uncovered.multiBounceRadiance) * uncovered.share;
     return;
   }
   const Gathered vpls = point_(bsdf, first ? kFirstDraws : kLaterDraws, path.rng);
@@ -199,7 +202,7 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
 bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   BsdfSample sample;
   Ray next;
-  if (path.segments == kMaxExtensions ||
+  if (path.segments == kMaxSegments ||
       !scatter(rays_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
     return false;
   }
@@ -208,7 +211,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   path.segment =
       followSpecularPath(rays_, lights_, next.origin, next.direction,
                          {sample.pdf, path.segment.hit.position, LightChoice::One, lights},
-                         path.rng, {nullptr, surfaceLights_});
+                         path.rng, {nullptr, spatialLights_});
   return true;
 }
 

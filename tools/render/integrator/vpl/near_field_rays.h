@@ -8,8 +8,8 @@
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/tile/reuse/indirect_rays.h"
+#include "transport/spatial_light_sampler.h"
 #include "transport/specular_path.h"
-#include "transport/surface_lights.h"
 
 namespace bnvpl {
 
@@ -17,16 +17,16 @@ class NearFieldRays : public IndirectRays {
  public:
   // `point`: gathers VPLs at the vertices of rays. `misRays`: the number of rays from a shading
   // point that MIS with shadow rays and photons assumes; other numbers remain unbiased.
-  // `surfaceLights`: distribution for light sampling at vertices; null: sampling by power.
+  // `spatialLights`: distribution for light sampling at vertices; null: sampling by power.
   NearFieldRays(const RayScene& rays, const LightSet& lights, GatherPoint point,
-                Compensation compensation, unsigned misRays, const SurfaceLights* surfaceLights,
-                Only only)
+                Compensation compensation, unsigned misRays,
+                const SpatialLightSampler* spatialLights, Only only)
       : rays_(rays),
         lights_(lights),
         point_(std::move(point)),
         compensation_(std::move(compensation)),
         misRays_(misRays),
-        surfaceLights_(surfaceLights),
+        spatialLights_(spatialLights),
         only_(only) {}
 
   void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
@@ -35,12 +35,13 @@ class NearFieldRays : public IndirectRays {
 
  private:
   struct Path;
-  // `near`: the VPLs at the first hit. `reuse`: whether other samples reuse the first vertex.
-  void follow(const FirstSegment& start, const ReachGrid::Lookup& near, bool reuse,
+  // `coverLookup`: the VPLs at the first hit. `reuse`: whether other samples reuse the first
+  // vertex.
+  void follow(const FirstSegment& start, const ReachGrid::Lookup& coverLookup, bool reuse,
               RayContributions& out) const;
-  void begin(Path& path, const ReachGrid::Lookup& near) const;
-  Uncovered uncoveredAt(const SurfacePoint& hit, bool straight, const ReachGrid::Lookup* near,
-                        Rng& rng) const;
+  void begin(Path& path, const ReachGrid::Lookup& coverLookup) const;
+  Uncovered uncoveredAt(const SurfacePoint& hit, bool straight,
+                        const ReachGrid::Lookup* coverLookup, Rng& rng) const;
   bool survives(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
   void shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
   bool extend(Path& path, const Bsdf& bsdf) const;
@@ -50,7 +51,7 @@ class NearFieldRays : public IndirectRays {
   GatherPoint point_;
   Compensation compensation_;
   unsigned misRays_;
-  const SurfaceLights* surfaceLights_;
+  const SpatialLightSampler* spatialLights_;
   Only only_;
 };
 

@@ -59,7 +59,7 @@ constexpr auto kOptions =
 struct Parts {
   VplLights vpls;
   LightTree tree;
-  std::unique_ptr<const SurfaceLights> surfaceLights;
+  std::unique_ptr<const SpatialLightSampler> spatialLights;
   std::unique_ptr<const PointGather> point;
   std::unique_ptr<const TileIntegrator> integrator;
   SampleAllocation allocation = {};
@@ -107,24 +107,24 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.rays.scene())))
     tile.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
   if (indirect && tile.raysEach > 0) {
-    parts->surfaceLights = std::make_unique<const SurfaceLights>(
+    parts->spatialLights = std::make_unique<const SpatialLightSampler>(
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-        streamKey(in.seed, Stream::SurfaceLights), in.progress);
+        streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
   }
-  tile.surfaceLights = parts->surfaceLights.get();
-  const FilmRays filmRays(in.rays, in.lights, tile.surfaceLights, in.seed);
+  tile.spatialLights = parts->spatialLights.get();
+  const FilmRays filmRays(in.rays, in.lights, tile.spatialLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   tile.gather = std::move(gather.tile);
   const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
   const bool controlled = indirect && options[kControlOption] == "vpls";
-  const FilmPoints film = controlled || learned ? filmRays.all() : FilmPoints{};
+  const PrimaryPoints film = controlled || learned ? filmRays.all() : PrimaryPoints{};
   if (controlled) tile.control = makeControlVariate(in, film);
   addDirectLight(in, options, filmRays, film,
                  learned ? static_cast<unsigned>(options[kLightRaysOption]) : 0, tile);
   if (tile.raysEach > 0) {
     tile.rays = std::make_unique<const NearFieldRays>(in.rays, in.lights, std::move(gather.point),
                                                       std::move(compensation), tile.raysEach,
-                                                      tile.surfaceLights, in.only);
+                                                      tile.spatialLights, in.only);
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
@@ -140,6 +140,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
           },
           {},
           gather.wholePixels,
+          parts->vpls.vpls,
           parts->vpls.size(),
           lamps,
           sparse};

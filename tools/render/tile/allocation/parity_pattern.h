@@ -13,24 +13,25 @@ namespace bnvpl {
 // The parity of a pixel of a checkerboard.
 inline uint32_t parity(uint32_t x, uint32_t y) { return (x + y) & 1u; }
 
-// A parity for each sample, half of each slot having either, and a block of kBlockSide x kBlockSide
-// pixels. Both differ from slot to slot, so that they leave no pattern in the image: blocks begin
-// at random places and wrap around the tile's borders, and the parity is a Walsh function of the
-// bits of x and y. It always contains the lowest bit of both, so that neighbours mostly differ in
-// parity: they reuse nothing of each other, and their noise is independent.
+// A parity for each sample, half of those of one sample index having either, and a block of
+// kBlockSide x kBlockSide pixels. Both differ between sample indices, so that they leave no pattern
+// in the image: blocks begin at random places and wrap around the tile's borders, and the parity is
+// a Walsh function of the bits of x and y. It always contains the lowest bit of both, so that
+// neighbours mostly differ in parity: they reuse nothing of each other, and their noise is
+// independent.
 class ParityPattern {
  public:
   explicit ParityPattern(const TileSamples& tile) : tile_(tile) {
-    const auto slots = static_cast<uint32_t>(tile.samples.size() / tile.pixels);
-    for (uint32_t s = 0; s < slots; ++s) {
-      auto random = random64(tile.key, tile.firstSlot + s, kDimParity);
+    const auto perPixel = static_cast<uint32_t>(tile.samples.size() / tile.pixels);
+    for (uint32_t s = 0; s < perPixel; ++s) {
+      auto random = random64(tile.key, tile.firstSample + s, kDimParity);
       const auto draw = [&](uint32_t count) {
         const auto value = static_cast<uint32_t>(random % count);
         random /= count;
         return value;
       };
-      slots_.push_back({1 | draw(kTileSide / 2) << 1, 1 | draw(kTileSide / 2) << 1,
-                        draw(kBlockSide), draw(kBlockSide)});
+      patterns_.push_back({1 | draw(kTileSide / 2) << 1, 1 | draw(kTileSide / 2) << 1,
+                           draw(kBlockSide), draw(kBlockSide)});
     }
   }
   uint32_t block(size_t sample) const {
@@ -39,14 +40,14 @@ class ParityPattern {
   }
   uint32_t parity(size_t sample) const {
     const Place at = placeOf(sample);
-    const Slot& slot = slots_[sample / tile_.pixels];
-    return static_cast<uint32_t>(std::popcount(at.x & slot.maskX) +
-                                 std::popcount(at.y & slot.maskY)) &
+    const Pattern& pattern = patterns_[sample / tile_.pixels];
+    return static_cast<uint32_t>(std::popcount(at.x & pattern.maskX) +
+                                 std::popcount(at.y & pattern.maskY)) &
            1u;
   }
 
  private:
-  struct Slot {
+  struct Pattern {
     uint32_t maskX, maskY, shiftX, shiftY;
   };
   struct Place {
@@ -54,13 +55,13 @@ class ParityPattern {
   };
   Place placeOf(size_t sample) const {
     const auto pixel = static_cast<uint32_t>(sample % tile_.pixels);
-    const Slot& slot = slots_[sample / tile_.pixels];
-    return {(pixel % tile_.width + slot.shiftX) % kTileSide,
-            (pixel / tile_.width + slot.shiftY) % kTileSide};
+    const Pattern& pattern = patterns_[sample / tile_.pixels];
+    return {(pixel % tile_.width + pattern.shiftX) % kTileSide,
+            (pixel / tile_.width + pattern.shiftY) % kTileSide};
   }
 
   const TileSamples& tile_;
-  std::vector<Slot> slots_;
+  std::vector<Pattern> patterns_;
 };
 
 }  // namespace bnvpl

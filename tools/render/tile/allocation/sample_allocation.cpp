@@ -61,9 +61,10 @@ unsigned samplesFor(double variance, double cost, double marginalCost, unsigned 
   return static_cast<unsigned>(std::lround(std::min(samples, double(max))));
 }
 
-std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels, const TileSlots& tile,
-                                        double cost, const SampleAllocation& allocation,
-                                        unsigned min, unsigned max) {
+std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
+                                        const TileLayout& tile, double cost,
+                                        const SampleAllocation& allocation, unsigned min,
+                                        unsigned max) {
   std::array<unsigned, 2> samples{};
   for (const uint32_t own : {0u, 1u}) {
     double variance = 0.0, degreesOfFreedom = 0.0;

@@ -71,9 +71,10 @@ struct PixelMoments {
 // the other parity. A pixel's own samples would make its weight depend on what they found, and the
 // mean biased. The whole tile decides, as few pixels find the rare bright samples that make most
 // of the noise.
-std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels, const TileSlots& tile,
-                                        double cost, const SampleAllocation& allocation,
-                                        unsigned min, unsigned max);
+std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
+                                        const TileLayout& tile, double cost,
+                                        const SampleAllocation& allocation, unsigned min,
+                                        unsigned max);
 
 // Runs the pilot: a few samples of some tiles. `render` makes the samples of a tile and returns the
 // mean cost of one. `spp`: samples per pixel of the image.

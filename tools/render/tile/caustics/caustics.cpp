@@ -101,12 +101,13 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
   Ray next{start.origin, start.direction};
   SurfacePoint hit;
   bool hidden = false;  // whether paths from the camera cannot find this light
-  for (unsigned links = 0; links <= kMaxSpecular && isFinite(flux); ++links) {
+  for (unsigned specularBounces = 0; specularBounces <= kMaxSpecular && isFinite(flux);
+       ++specularBounces) {
     rays_.closestHit(next.origin, next.direction, hit);
     if (hit.triangle == kNone) return lamp;
     const Bsdf bsdf(rays_.scene(), hit);
-    if (links == 0) hidden = lamp == kNoLamp && bsdf.specularIsDelta();
-    if (links > 0 && bsdf.hasRough()) {
+    if (specularBounces == 0) hidden = lamp == kNoLamp && bsdf.specularIsDelta();
+    if (specularBounces > 0 && bsdf.hasRough()) {
       connect(bsdf.point(), flux * bsdf.photonShadingFactor(), light, -start.direction, out);
       if (hidden && bounces_ > 0) followBounces(bsdf, flux, light, -start.direction, rng, out);
     }
@@ -115,7 +116,7 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
     if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
       return lamp;
     flux *= sample.weight;
-    if (links == 0) continue;
+    if (specularBounces == 0) continue;
     const float survive = std::min(1.0f, maxComponent(sample.weight));
     if (rng.next() >= survive) return lamp;
     flux *= 1.0f / survive;

@@ -21,7 +21,7 @@ constexpr double kMaxPrediction = 2.0;
 }  // namespace
 
 PixelControlVariate::PixelControlVariate(const RayScene& rays, const LightSet& lights,
-                                         const FilmPoints& film, const VplTable& lit)
+                                         const PrimaryPoints& film, const VplTable& lit)
     : scene_(rays.scene()),
       field_(lit),
       pixels_(rays, lights, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
@@ -32,7 +32,7 @@ Vec3 PixelControlVariate::predicted(const SpecularPath& path) const {
          field_.indirectAt(path.hit.position, path.hit.ng);
 }
 
-std::vector<float> PixelControlVariate::predictedAt(const FilmPoints& film) const {
+std::vector<float> PixelControlVariate::predictedAt(const PrimaryPoints& film) const {
   std::vector<float> values(film.points.size());
   parallelFor(values.size(), 1024, [&](size_t i) {
     const SurfacePoint& hit = film.points[i];
@@ -80,7 +80,7 @@ struct Variate {
 };
 
 // `groups`: sums over groups of `side` pixels of a row.
-Variate variateOf(const TileSlots& tile, uint32_t pixel, uint32_t side,
+Variate variateOf(const TileLayout& tile, uint32_t pixel, uint32_t side,
                   std::span<const CovarianceSums> groups) {
   const uint32_t x = pixel % tile.width, y = pixel / tile.width, height = tile.pixels / tile.width;
   Covariance around;
@@ -119,7 +119,7 @@ void PixelControlVariate::apply(const TileSamples& tile,
     const Variate& variate = variates[pixel];
     if (!(variate.beta > 0.0f)) continue;
     Vec3 sum;
-    pixels_.forEach(tile, pixel, tile.firstSlot + static_cast<uint32_t>(i / tile.pixels), {},
+    pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels), {},
                     [&](const SpecularPath& path, const RadianceSample&) {
                       sum += variate.of(predicted(path));
                     });

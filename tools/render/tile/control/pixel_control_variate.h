@@ -12,7 +12,7 @@ namespace bnvpl {
 class PixelControlVariate {
  public:
   // Borrows rays and lights.
-  PixelControlVariate(const RayScene& rays, const LightSet& lights, const FilmPoints& film,
+  PixelControlVariate(const RayScene& rays, const LightSet& lights, const PrimaryPoints& film,
                       const VplTable& lit);
 
   // Adds to the indirect light of each sample, which saw the end of its path,
@@ -25,7 +25,7 @@ class PixelControlVariate {
 
  private:
   Vec3 predicted(const SpecularPath& path) const;
-  std::vector<float> predictedAt(const FilmPoints& film) const;
+  std::vector<float> predictedAt(const PrimaryPoints& film) const;
 
   const Scene& scene_;
   IrradianceField field_;

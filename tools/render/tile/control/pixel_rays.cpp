@@ -15,7 +15,7 @@ constexpr double kRays = 8, kMinRays = 2, kMaxRays = 32;
 
 }  // namespace
 
-PixelRays::PixelRays(const RayScene& rays, const LightSet& lights, const FilmPoints& film,
+PixelRays::PixelRays(const RayScene& rays, const LightSet& lights, const PrimaryPoints& film,
                      std::span<const float> values, double minDeviation, TileDimension dimension)
     : rays_(rays),
       lights_(lights),

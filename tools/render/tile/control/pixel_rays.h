@@ -19,26 +19,27 @@ class PixelRays {
   // `values`: the quantity along one ray of each pixel. The more it varies around a pixel, the more
   // rays each of the pixel's samples gets; none where its deviation is below `minDeviation` times
   // its mean. Borrows rays and lights.
-  PixelRays(const RayScene& rays, const LightSet& lights, const FilmPoints& film,
+  PixelRays(const RayScene& rays, const LightSet& lights, const PrimaryPoints& film,
             std::span<const float> values, double minDeviation, TileDimension dimension);
 
   // Rays for each sample of a pixel of the tile.
-  unsigned count(const TileSlots& tile, uint32_t pixel) const {
+  unsigned count(const TileLayout& tile, uint32_t pixel) const {
     return raysEach_[size_t{tile.y + pixel / tile.width} * width_ + tile.x + pixel % tile.width];
   }
   // Calls fn(path, sample) for each ray. The rays are independent of the sample.
   template <typename Fn>
-  void forEach(const TileSlots& tile, uint32_t pixel, uint32_t slot,
-               const SpecularLightSampling& behind, const Fn& fn) const {
+  void forEach(const TileLayout& tile, uint32_t pixel, uint32_t sampleIndex,
+               const SpecularLightSampling& specularLights, const Fn& fn) const {
     const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
     const unsigned rays = count(tile, pixel);
     const uint64_t key = random64(tile.key, pixel, dimension_);
     for (unsigned k = 0; k < rays; ++k) {
-      const uint64_t index = uint64_t{slot} * rays + k;
-      Rng rng = Rng::spread(key, static_cast<uint32_t>(index));
+      const uint64_t index = uint64_t{sampleIndex} * rays + k;
+      Rng rng = Rng::stratified(key, static_cast<uint32_t>(index));
       const Point2 at = rng.nextPoint();
       RadianceSample sample;
-      const SpecularPath path = traceCameraPath(rays_, lights_, x, y, at, rng, sample, behind);
+      const SpecularPath path =
+          traceCameraPath(rays_, lights_, x, y, at, rng, sample, specularLights);
       fn(path, sample);
     }
   }

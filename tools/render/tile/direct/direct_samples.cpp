@@ -5,7 +5,7 @@
 
 #include "tools/render/camera_vertex.h"
 #include "tools/render/tile/allocation/parity_pattern.h"
-#include "transport/surface_lights.h"
+#include "transport/spatial_light_sampler.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -37,11 +37,11 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
                                            RadianceSample* layers) const {
-  Rng rng = Rng::spread(numbers.path, index);
+  Rng rng = Rng::stratified(numbers.path, index);
   const Point2 at = rng.nextPoint();
   RadianceSample seen;
   const SpecularPath path =
-      traceCameraPath(rays_, lights_, x, y, at, rng, seen, {rays.lights.strata, surfaceLights_});
+      traceCameraPath(rays_, lights_, x, y, at, rng, seen, {rays.lights.strata, spatialLights_});
   Light light{seen.emission, seen.direct, {}, {}};
   if (layers) *layers = seen;
   if (!path.rough) return light;
@@ -49,9 +49,9 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   if (layers) describeShadingPoint(bsdf, *layers);
   LearnedLight learned = rays.lights;
   LearnedStrata around;
-  if (path.spread && surfaceLights_ && learned.strata) {
+  if (path.hasNonDelta && spatialLights_ && learned.strata) {
     // Near-specular reflection leads to points for which the tile's distribution is poor.
-    around = surfaceLights_->at(path.hit.position, path.hit.ng);
+    around = spatialLights_->at(path.hit.position, path.hit.ng);
     if (around.all) learned.strata = &around;
   }
   const LightNumbers random =
@@ -102,7 +102,7 @@ float bsdfRaysFor(double squareByBsdf, double varianceByLight, double lightRays)
 
 }  // namespace
 
-DirectSamples::Pilot DirectSamples::pilot(const TileSlots& tile,
+DirectSamples::Pilot DirectSamples::pilot(const TileLayout& tile,
                                           const LearnedStrata* strata) const {
   Pilot out;
   const Rays rays{lightsOf(strata)};
@@ -111,7 +111,7 @@ DirectSamples::Pilot DirectSamples::pilot(const TileSlots& tile,
     const uint32_t x = p % tile.width, y = p / tile.width;
     if (parity(x, y) != 0) continue;
     const RandomNumbers numbers(
-        random64(tile.key, uint64_t{p} << 32 | tile.firstSlot, kDimDirectPilots));
+        random64(tile.key, uint64_t{p} << 32 | tile.firstSample, kDimDirectPilots));
     const Light a = sample(tile.x + x, tile.y + y, rays, numbers, 0),
                 b = sample(tile.x + x, tile.y + y, rays, numbers, 1);
     out.variance += 0.5 * squared(a.all() - b.all());
@@ -135,18 +135,18 @@ struct Indirect {
 };
 
 Indirect indirectOf(const TileSamples& tile) {
-  const size_t slots = tile.samples.size() / tile.pixels;
+  const size_t perPixel = tile.samples.size() / tile.pixels;
   Indirect out;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     Vec3 sum;
     double squares = 0.0;
-    for (size_t s = 0; s < slots; ++s) {
+    for (size_t s = 0; s < perPixel; ++s) {
       const Vec3 v = tile.samples[s * tile.pixels + p].radiance.indirect;
       sum += v, squares += squared(v);
     }
     out.light += sum * (1.0f / static_cast<float>(tile.samples.size()));
-    if (slots > 1) {
-      out.variance += (squares - squared(sum) / double(slots)) / double(slots - 1);
+    if (perPixel > 1) {
+      out.variance += (squares - squared(sum) / double(perPixel)) / double(perPixel - 1);
     } else {  // from the difference to the next pixel of the row
       const uint32_t x = p % tile.width, other = x + 1 < tile.width ? p + 1 : p - std::min(x, 1u);
       out.variance += 0.5 * squared(sum - tile.samples[other].radiance.indirect);
@@ -176,15 +176,15 @@ unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, do
 
 // The direct samples of a pixel so far.
 struct DirectSamples::Pixel {
-  std::vector<Light> sums;  // for each slot
-  unsigned count = 0;       // in each slot
+  std::vector<Light> sums;  // for each sample index
+  unsigned count = 0;       // for each sample index
 };
 
 void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count,
                         Pixel& out, PixelMoments& moments) const {
   const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
   const RandomNumbers numbers(
-      random64(tile.key, uint64_t{pixel} << 32 | tile.firstSlot, kDimDirectSamples));
+      random64(tile.key, uint64_t{pixel} << 32 | tile.firstSample, kDimDirectSamples));
   uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
   for (size_t s = 0; s < out.sums.size(); ++s) {
     for (unsigned k = 0; k < count; ++k) {
@@ -204,17 +204,17 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
   const Rays rays{lightsOf(strata), pilot.bsdfRays};
   const double costOfOne = costOf(rays);
   const unsigned count = count_ > 0 ? count_ : countFor(tile, pilot, costOfOne, cost, allocation);
-  const size_t slots = tile.samples.size() / tile.pixels;
+  const size_t perPixel = tile.samples.size() / tile.pixels;
   const bool allocated = count_ == 0 && allocation.marginalCost > 0.0;
   std::vector<Pixel> pixels(tile.pixels);
   std::vector<PixelMoments> moments(tile.pixels);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
-    pixels[p].sums.resize(slots);
-    for (size_t s = 0; s < slots; ++s) {
+    pixels[p].sums.resize(perPixel);
+    for (size_t s = 0; s < perPixel; ++s) {
       const size_t i = s * tile.pixels + p;
       pixels[p].sums[s] = {
           paths[i].emissionFirst, paths[i].emissionFirst + paths[i].emissionLater, {}, {}};
-      moments[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(slots));
+      moments[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(perPixel));
     }
     add(tile, p, rays, allocated ? (count + 1) / 2 : count, pixels[p], moments[p]);
     moments[p].light += moments[p].sum * static_cast<float>(1.0 / moments[p].count);
@@ -251,8 +251,8 @@ void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const Learned
     out.direct = sum.met, out.emission = sum.emission;
     if (visibleEmission_) {
       visibleEmission_->average(out, cameraRays, tile, pixel,
-                                tile.firstSlot + static_cast<uint32_t>(s),
-                                {strata, surfaceLights_});
+                                tile.firstSample + static_cast<uint32_t>(s),
+                                {strata, spatialLights_});
     } else {
       const float each = 1.0f / static_cast<float>(cameraRays);
       out.direct *= each, out.emission *= each;

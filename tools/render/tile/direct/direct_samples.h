@@ -16,14 +16,14 @@ class DirectSamples {
   // pilot's samples are used for nothing else, so that the mean is unbiased.
   // `alone`: camera samples have no rays of their own; the direct samples also fill in depth,
   // normal and albedo.
-  // `visibleEmission` and `surfaceLights` may be null.
+  // `visibleEmission` and `spatialLights` may be null.
   DirectSamples(const RayScene& rays, const LightSet& lights,
-                const VisibleEmission* visibleEmission, const SurfaceLights* surfaceLights,
+                const VisibleEmission* visibleEmission, const SpatialLightSampler* spatialLights,
                 unsigned count, bool alone)
       : rays_(rays),
         lights_(lights),
         visibleEmission_(visibleEmission),
-        surfaceLights_(surfaceLights),
+        spatialLights_(spatialLights),
         count_(count),
         alone_(alone) {}
 
@@ -33,7 +33,7 @@ class DirectSamples {
     float bsdfRays = 1.0f;  // efficient mean number from each shading point, at most 1
   };
   // `strata`: the tile's learned distribution of lights; may be null.
-  Pilot pilot(const TileSlots& tile, const LearnedStrata* strata) const;
+  Pilot pilot(const TileLayout& tile, const LearnedStrata* strata) const;
   // Sets the direct light of the tile's camera samples. `paths`: their camera paths, whose emission
   // is included. `cost`: cost of a sample without its direct light. Returns the cost of a sample's
   // direct samples.
@@ -75,7 +75,7 @@ class DirectSamples {
   const RayScene& rays_;
   const LightSet& lights_;
   const VisibleEmission* visibleEmission_;
-  const SurfaceLights* surfaceLights_;
+  const SpatialLightSampler* spatialLights_;
   unsigned count_;
   bool alone_;
 };

@@ -72,7 +72,7 @@ void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, un
     size_t alive = 0;
     for (unsigned k = begin; k < end; ++k) {
       BsdfSample next;
-      Rng rng = Rng::spread(key, first + k);
+      Rng rng = Rng::stratified(key, first + k);
       if (!from.directions.sample(rng, next)) continue;
       rays[alive] = rayOn(scene, point, next);
       segments[alive] = {next.wi,

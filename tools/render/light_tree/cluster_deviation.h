@@ -21,21 +21,23 @@ inline constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
 // Largest value of a single draw, over the deviation that a sample may have.
 inline constexpr float kMaxDraw = 2.0f;
 
-// Light of one draw, W/(m2 sr), summed over channels.
-struct ExpectedLight {
+// Deviation of the light of one draw from that of the cluster, W/(m2 sr), summed over channels.
+struct ClusterDeviation {
   float deviation = 0.0f;
-  float most = 0.0f;  // if the whole cluster were at the nearest point of its box
+  float maxDraw = 0.0f;  // if the whole cluster were at the nearest point of its box
   // Whether the deviation is larger than allowed, or the maximum larger than kMaxDraw times that.
-  int exceeds(float allowed) const { return (deviation > allowed) | (most > kMaxDraw * allowed); }
+  int exceeds(float allowed) const {
+    return (deviation > allowed) | (maxDraw > kMaxDraw * allowed);
+  }
 };
 
 // Expected light of an inner node at a point. Distances are taken to the centre of the cluster's
 // box, which is cheaper than a bound. Cosines are the largest over the box, so the result is 0 only
 // if no light can arrive.
 template <typename Kind>
-class Expectation {
+class DeviationModel {
  public:
-  explicit Expectation(const LightNode& n)
+  explicit DeviationModel(const LightNode& n)
       : lower_(n.bounds.lower),
         upper_(n.bounds.upper),
         middle_(n.bounds.center()),
@@ -48,7 +50,7 @@ class Expectation {
         normalSpread_(kNormalSpread * (1.0f - n.cosHalfAngle)) {}
 
   // Without branches, so that the compiler can vectorise it over points.
-  ExpectedLight at(Vec3 point, Vec3 normal, Vec3 reflected) const {
+  ClusterDeviation at(Vec3 point, Vec3 normal, Vec3 reflected) const {
     const Vec3 d = middle_ - point;
     const float distance2 = larger(lengthSquared(d), closest2_);
     const float perDistance = 1.0f / std::sqrt(distance2);
@@ -56,17 +58,17 @@ class Expectation {
     const float receiver = dot(normal, d) * perDistance + 0.5f * angle;
     const float emitter =
         Kind::expectedEmitted(-(dot(axis_, d) * perDistance), 0.5f * angle, sinHalfAngle_);
-    const float spread = kSizeSpread * angle + normalSpread_;
-    const float sent = dot(reflected, intensity_) * share(receiver) * share(emitter);
+    const float deviation = kSizeSpread * angle + normalSpread_;
+    const float sent = dot(reflected, intensity_) * clamp01(receiver) * clamp01(emitter);
     const float x = larger(larger(lower_.x - point.x, point.x - upper_.x), 0.0f);
     const float y = larger(larger(lower_.y - point.y, point.y - upper_.y), 0.0f);
     const float z = larger(larger(lower_.z - point.z, point.z - upper_.z), 0.0f);
-    return {share(spread) * sent / Kind::spread(distance2, clamp2_),
-            sent / Kind::spread(x * x + y * y + z * z, clamp2_)};
+    return {clamp01(deviation) * sent / Kind::boundedDistance2(distance2, clamp2_),
+            sent / Kind::boundedDistance2(x * x + y * y + z * z, clamp2_)};
   }
 
  private:
-  static float share(float a) { return larger(a < 1.0f ? a : 1.0f, 0.0f); }
+  static float clamp01(float a) { return larger(a < 1.0f ? a : 1.0f, 0.0f); }
   Vec3 lower_, upper_, middle_, axis_, intensity_;
   float size_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
 };

@@ -1,5 +1,5 @@
 // Vertices far from the camera sample the lights that the VPLs around them see.
-#include "transport/surface_lights.h"
+#include "transport/spatial_light_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -16,14 +16,14 @@ VplTable litBy(const World& world) {
   return litVpls(world, {{"count", "150"}}, {{"photons", "100k"}}, {{"count", "3k"}});
 }
 
-SurfaceLights learned(const World& world, const VplTable& vpls) {
+SpatialLightSampler learned(const World& world, const VplTable& vpls) {
   return {world.rays, world.lights, vpls.position, vpls.normal, vpls.radius, 7, {}};
 }
 
-TEST(SurfaceLights, FewRaysGoToHiddenLights) {
+TEST(SpatialLightSampler, FewRaysGoToHiddenLights) {
   const World world(bulbs(kHidden));
   const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
-  const SurfaceLights lights = learned(world, vpls);
+  const SpatialLightSampler lights = learned(world, vpls);
   Rng rng(1, 0);
   size_t seen = 0;
   constexpr size_t kDraws = 4000;
@@ -39,10 +39,10 @@ TEST(SurfaceLights, FewRaysGoToHiddenLights) {
   EXPECT_GT(double(seen), 0.5 * kDraws);
 }
 
-TEST(SurfaceLights, ProbabilitiesOfAPlaceSumToOne) {
+TEST(SpatialLightSampler, ProbabilitiesOfAPlaceSumToOne) {
   const World world(manyLights());
   const VplTable vpls = keptVpls(world, {{"count", "150"}}, {{"count", "3k"}});
-  const SurfaceLights lights = learned(world, vpls);
+  const SpatialLightSampler lights = learned(world, vpls);
   for (size_t i = 0; i <= vpls.size(); ++i) {  // the last lies far from all VPLs
     const LearnedStrata strata = i < vpls.size()
                                      ? lights.at(vpls.position[i], vpls.normal[i])
@@ -54,7 +54,7 @@ TEST(SurfaceLights, ProbabilitiesOfAPlaceSumToOne) {
   }
 }
 
-TEST(SurfaceLights, OneLightLeavesNothingToChoose) {
+TEST(SpatialLightSampler, OneLightLeavesNothingToChoose) {
   Scene scene = bulbs(0);
   scene.lights.resize(1);
   const World world(std::move(scene));
@@ -63,7 +63,7 @@ TEST(SurfaceLights, OneLightLeavesNothingToChoose) {
 }
 
 // Point lights that light no visible surface change nothing, and hardly the noise.
-TEST(SurfaceLights, NearFieldRaysFindTheFewVisibleLights) {
+TEST(SpatialLightSampler, NearFieldRaysFindTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(kHidden));
   const VplTable lit = litBy(few);
   const auto by = [&](const World& world) -> Render {
@@ -81,7 +81,7 @@ TEST(SurfaceLights, NearFieldRaysFindTheFewVisibleLights) {
   EXPECT_LT(noiseOf(by(many)), 2.0 * noiseOf(by(few)));  // 7 times if lights were sampled by power
 }
 
-TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
+TEST(SpatialLightSampler, GuidedPathsHaveThePathTracersImage) {
   const World world(manyLights());
   const VplTable lit = litBy(world);
   const auto of = [&](const char* integrator, uint64_t first) -> Render {
@@ -95,7 +95,7 @@ TEST(SurfaceLights, GuidedPathsHaveThePathTracersImage) {
 }
 
 // Points seen over a near-specular lobe see other lights than their tile, which covers all cells.
-TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesSampleTheirOwnLights) {
+TEST(SpatialLightSampler, ShadingPointsBehindNearSpecularLobesSampleTheirOwnLights) {
   const World world(cellsBeforeMetal(/*seesMetal=*/true));
   const VplTable lit = litVpls(world, {{"count", "800"}});
   const auto direct = [&](const Given& options) -> Render {
@@ -115,7 +115,7 @@ TEST(SurfaceLights, ShadingPointsBehindNearSpecularLobesSampleTheirOwnLights) {
   EXPECT_LT(noiseOf(learned, 4), 2.0 * noiseOf(each, 4));  // 3.5 times with the tile's lights
 }
 
-TEST(SurfaceLights, PathsFromVplsFindTheFewVisibleLights) {
+TEST(SpatialLightSampler, PathsFromVplsFindTheFewVisibleLights) {
   const World few(bulbs(0)), many(bulbs(kHidden));
   const VplTable vpls = keptVpls(few, {{"count", "150"}}, {{"count", "3k"}});
   const auto fluxes = [&](const World& world, const char* seed) {

@@ -11,11 +11,12 @@ namespace bnvpl {
 // Immutable and thread-safe.
 struct Integrator {
   // Estimates the radiance of all samples of a tile.
-  std::function<void(const TileSamples& tile)> samples;
+  std::function<void(const TileSamples& tile)> renderTile;
   // Traces photons that add indirect light, one per sample of the film. May be empty.
-  Splatter photons = {};
-  bool wholePixels = false;  // every call needs all samples of its pixels
-  size_t vpls = 0;           // number of VPLs with flux
+  Splatter tracePhotons = {};
+  bool wholePixels = false;   // every call needs all samples of its pixels
+  size_t vpls = 0;            // number of VPLs with flux
+  size_t emissionPoints = 0;  // their number
   // Lamps whose caustics can be rendered by photons, and those of them with too few photons in
   // view.
   size_t lamps = 0, sparseLamps = 0;

@@ -1,4 +1,4 @@
-#include "transport/surface_lights.h"
+#include "transport/spatial_light_sampler.h"
 
 #include <algorithm>
 
@@ -40,9 +40,11 @@ std::vector<Group> groupsOf(std::span<const uint32_t> order, std::span<const Vec
 
 }  // namespace
 
-SurfaceLights::SurfaceLights(const RayScene& rays, const LightSet& lights,
-                             std::span<const Vec3> points, std::span<const Vec3> normals,
-                             std::span<const float> radii, uint64_t key, const ProgressFn& progress)
+SpatialLightSampler::SpatialLightSampler(const RayScene& rays, const LightSet& lights,
+                                         std::span<const Vec3> points,
+                                         std::span<const Vec3> normals,
+                                         std::span<const float> radii, uint64_t key,
+                                         const ProgressFn& progress)
     : strata_(lights, kStrata), groupOf_(points.size()) {
   if (strata_.size() < 2 || points.empty()) return;
   regions_ = RegionGrid(points, normals, radii);
@@ -78,7 +80,7 @@ SurfaceLights::SurfaceLights(const RayScene& rays, const LightSet& lights,
   everywhere_ = meanOf(groups_, strata_.size());
 }
 
-LearnedStrata SurfaceLights::at(Vec3 position, Vec3 normal) const {
+LearnedStrata SpatialLightSampler::at(Vec3 position, Vec3 normal) const {
   if (groups_.empty()) return {};
   const uint32_t point = regions_.at(position, normal);
   return {&strata_, point == UINT32_MAX ? StrataDistribution{} : groups_[groupOf_[point]].seen(),

@@ -1,5 +1,5 @@
 // Expected light of a cluster in tile cuts, and the quick test that avoids computing it.
-#include "tools/render/light_tree/expected_light.h"
+#include "tools/render/light_tree/cluster_deviation.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ LightNode cluster(Rng& rng) {
 
 // Clusters near and far, receivers with small and large BSDF values. Where the quick test says far,
 // no receiver in the box gets more light than allowed.
-TEST(Expectation, TheFarTestIsConservative) {
+TEST(DeviationModel, TheFarTestIsConservative) {
   Rng rng(streamKey(11, Stream::Plot), 0);
   int far = 0, exceeded = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -47,7 +47,7 @@ TEST(Expectation, TheFarTestIsConservative) {
     allowed *= rng.next();
     const bool says = surelyFar(n, allowed, receivers, brightest);
     far += says;
-    const Expectation<PointLight> expected(n);
+    const DeviationModel<PointLight> expected(n);
     for (int k = 0; k < 16; ++k) {
       const Vec3 at = receivers.lower + receivers.extent() * somewhere(rng);
       const Vec3 normal = someDirection(rng);
@@ -61,21 +61,21 @@ TEST(Expectation, TheFarTestIsConservative) {
 }
 
 // No light arrives behind either side, and light falls with the square of the distance.
-TEST(Expectation, KnowsSidesAndDistance) {
+TEST(DeviationModel, KnowsSidesAndDistance) {
   LightNode n;
   n.bounds.extend({-0.01f, -0.01f, 0.0f});
   n.bounds.extend({0.01f, 0.01f, 0.0f});
   n.left = 1, n.right = 2;
   n.axis = {0, 0, 1};
   n.intensity = Vec3(1.0f);
-  const Expectation<PointLight> expected(n);
+  const DeviationModel<PointLight> expected(n);
   const Vec3 white(1.0f / kPi);
-  const float near = expected.at({0, 0, 1}, {0, 0, -1}, white).most,
-              twice = expected.at({0, 0, 2}, {0, 0, -1}, white).most;
+  const float near = expected.at({0, 0, 1}, {0, 0, -1}, white).maxDraw,
+              twice = expected.at({0, 0, 2}, {0, 0, -1}, white).maxDraw;
   EXPECT_NEAR(near, 3.0f / kPi, 1e-2f);
   EXPECT_NEAR(twice / near, 0.25f, 1e-3f);
-  EXPECT_EQ(expected.at({0, 0, 1}, {0, 0, 1}, white).most, 0.0f);
-  EXPECT_EQ(expected.at({0, 0, -1}, {0, 0, 1}, white).most, 0.0f);
+  EXPECT_EQ(expected.at({0, 0, 1}, {0, 0, 1}, white).maxDraw, 0.0f);
+  EXPECT_EQ(expected.at({0, 0, -1}, {0, 0, 1}, white).maxDraw, 0.0f);
 }
 
 }  // namespace

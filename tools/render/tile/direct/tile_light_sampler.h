@@ -12,14 +12,14 @@
 
 namespace bnvpl {
 
-class TileLights {
+class TileLightSampler {
  public:
   // `raysOfTile`: number of shadow rays of a tile's samples; learning takes half as many, within
   // bounds. `shadingPoint`: returns the shading point of a pixel. `cost` is set for a cost
   // estimate. Borrows rays and lights.
-  TileLights(const RayScene& rays, const LightSet& lights,
-             std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
-             uint64_t seed, CostProbe* cost = nullptr);
+  TileLightSampler(const RayScene& rays, const LightSet& lights,
+                   std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
+                   uint64_t seed, CostProbe* cost = nullptr);
 
   // Distribution of the tile that contains the pixel. Thread-safe.
   LearnedStrata at(uint32_t x, uint32_t y) const;

@@ -1,4 +1,4 @@
-#include "tools/render/tile/direct/tile_lights.h"
+#include "tools/render/tile/direct/tile_light_sampler.h"
 
 #include <algorithm>
 
@@ -14,16 +14,16 @@ constexpr size_t kFilmTiles = 256;  // tiles, evenly spaced, whose mean stands f
 
 }  // namespace
 
-TileLights::TileLights(const RayScene& rays, const LightSet& lights,
-                       std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
-                       uint64_t seed, CostProbe* cost)
+TileLightSampler::TileLightSampler(const RayScene& rays, const LightSet& lights,
+                                   std::function<SurfacePoint(size_t pixel)> shadingPoint,
+                                   uint64_t raysOfTile, uint64_t seed, CostProbe* cost)
     : rays_(rays),
       lights_(lights),
       shadingPoint_(std::move(shadingPoint)),
       strata_(lights),
       probes_(std::clamp<uint64_t>(raysOfTile / 2 / std::max<size_t>(1, strata_.size()), 1,
                                    kMaxProbes)),
-      key_(streamKey(seed, Stream::TileLights)),
+      key_(streamKey(seed, Stream::TileLightSampler)),
       tilesX_((rays.scene().film.width + kTileSide - 1) / kTileSide),
       tilesY_((rays.scene().film.height + kTileSide - 1) / kTileSide),
       cost_(cost),
@@ -34,7 +34,7 @@ TileLights::TileLights(const RayScene& rays, const LightSet& lights,
   everywhere_ = meanOf(some, strata_.size());
 }
 
-const StrataValues& TileLights::probe(size_t tile) const {
+const StrataValues& TileLightSampler::probe(size_t tile) const {
   Tile& t = tiles_[tile];
   std::call_once(t.probed, [&] {
     const CostProbe::Unit part(cost_, cost_ ? cost_->partOfShared(9.0) : 1.0);
@@ -57,7 +57,7 @@ const StrataValues& TileLights::probe(size_t tile) const {
   return t.found;
 }
 
-const StrataValues& TileLights::learn(size_t tile) const {
+const StrataValues& TileLightSampler::learn(size_t tile) const {
   Tile& t = tiles_[tile];
   std::call_once(t.learned, [&] {
     const size_t x = tile % tilesX_, y = tile / tilesX_;
@@ -71,7 +71,7 @@ const StrataValues& TileLights::learn(size_t tile) const {
   return t.light;
 }
 
-LearnedStrata TileLights::at(uint32_t x, uint32_t y) const {
+LearnedStrata TileLightSampler::at(uint32_t x, uint32_t y) const {
   if (strata_.size() < 2) return {&strata_, {}, {}};
   return {&strata_, learn(y / kTileSide * tilesX_ + x / kTileSide).seen(), everywhere_.seen()};
 }
