@@ -23,6 +23,8 @@ from .settings import View
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+plt.rcParams["svg.hashsalt"] = "bnvpl"  # equal input gives equal bytes
+
 __all__ = ["output_guard", "plt"]
 
 LAYERS = {"indirect": "Indirect light", "full": "Full image"}

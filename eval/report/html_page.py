@@ -11,9 +11,8 @@ from typing import Any
 
 from hdr_image import HdrStore, read_png
 from html_table import number_text, table_html
-from palette import DARK, LIGHT
+from plot_figure import DARK, LIGHT, page_svg, slope_text
 from report_json import ReportError
-from svg_plot import plot_svg, slope_text
 
 WEB = Path(__file__).resolve().parent / "web"
 SCRIPTS = (
@@ -216,7 +215,7 @@ def plots_html(plots: list[dict[str, Any]]) -> str:
     for plot in plots:
         parts.append(
             f'<figure class="plot" id="plot-{plot["id"]}"><h3>{escape(plot["title"])}</h3>'
-            f"{plot_svg(plot, True)}{plot_svg(plot, False)}"
+            f"{page_svg(plot, True)}{page_svg(plot, False)}"
         )
         caption = escape(plot["caption"])
         parts.append(f"<figcaption>{caption}</figcaption>{data_html(plot)}</figure>")

@@ -14,6 +14,7 @@ from unittest import mock
 import numpy as np
 
 import make_report
+import plot_figure
 import plots
 from test_support import call, flat, report, run, write_exr, write_report
 
@@ -83,31 +84,33 @@ class InputTest(unittest.TestCase):
         )
         self.assertIn("0.100 ± 0.013", self.page.read_text())
 
-    def test_plot_labels(self) -> None:
+    def test_plots_of_the_page(self) -> None:
         page = self.make()
-        svg = page[page.index('<svg class="plot wide"') :]
-        svg = svg[: svg.index("</svg>")]
-        powers = re.findall(r'10<tspan class="power" dy="-5">([^<]*)</tspan>', svg)
-        self.assertEqual(set(powers), {"3", "4", "−3", "−2", "−1", "0"})
-        self.assertIn("slope −1.02", svg)
-        self.assertEqual(svg.count('class="bar"'), 24)
+        drawings = re.findall(r'<svg class="plot (?:wide|narrow)".*?</svg>', page, re.S)
+        self.assertEqual(len(drawings), 4)
+        for svg in drawings[:2]:  # the wide one and the narrow one
+            texts = re.findall(r"<text[^>]*>([^<]*)</text>", svg)
+            for text in ("1000", "10000", "0.001", "0.1", "VPLs", "relMSE", "slope −1.02"):
+                self.assertIn(text, texts)
+            # 0.02 ± 0.03 does not stretch the axis down to zero.
+            self.assertEqual([t for t in texts if t.startswith("10⁻") or t == "0.0001"], [])
+            self.assertEqual(svg.count("<title>"), 24)
+            self.assertIn("<title>series 2: 3000, 0.02</title>", svg)
+        for svg in drawings:
+            self.assertNotRegex(svg, r"#[0-9a-f]{6}\b", "a colour that ignores dark mode")
+        ids = re.findall(r'\bid="([^"]*)"', "".join(drawings))
+        self.assertEqual(len(ids), len(set(ids)))
 
-    def test_names_at_the_lines_ends_stay_apart(self) -> None:
-        for end in (1.0, 0.0001):  # all lines end near the top, or near the bottom
-
-            def edit(data: dict[str, Any], end: float = end) -> None:
-                for i, series in enumerate(data["plots"][0]["series"]):
-                    series.update(y=[0.01, 0.02, end * (1 + 0.01 * i)], error=None)
-
-            self.change(edit)
-            page = self.make()
-            svg = page[page.index('<svg class="plot wide"') :]
-            svg = svg[: svg.index("</svg>")]
-            places = sorted(float(y) for y in re.findall(r'class="name[^>]* y="([-\d.]+)"', svg))
-            self.assertEqual(len(places), 8)
-            self.assertGreaterEqual(np.diff(places).min(), 32, "names overlap")
-            self.assertGreater(places[0], 12)
-            self.assertLess(places[-1] + 16, 460)
+    def test_numbers_of_ticks(self) -> None:
+        cases = [
+            (0.5, True, "0.5"),
+            (-20000, True, "−20000"),
+            (0, False, "0"),
+            (1e-4, False, "10⁻⁴"),
+            (2e6, False, "2·10⁶"),
+        ]
+        for value, plain, text in cases:
+            self.assertEqual(plot_figure.tick_text(value, plain), text)
 
     def test_plots_as_files(self) -> None:
         for name, start in (("p.png", b"\x89PNG"), ("p.svg", b"<?xml")):
