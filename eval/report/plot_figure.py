@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import math
 import re
+import warnings
 from html import escape
 from textwrap import fill, wrap
 from typing import Any
@@ -20,6 +21,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.axis import Axis  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter  # noqa: E402
 
@@ -53,6 +55,7 @@ STYLE = {
     "legend.labelcolor": "linecolor",
     "path.simplify": False,
 }
+XLINK = "http://www.w3.org/1999/xlink"
 SUPERSCRIPT = str.maketrans("−0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -127,6 +130,13 @@ def draw(axes: Axes, plot: dict[str, Any]) -> list[Line2D]:
     return sorted(lines, key=lambda line: -float(line.get_ydata()[-1]))
 
 
+def add_legend(owner: Axes | Figure, lines: list[Line2D], **place: Any) -> None:
+    # Matplotlib leaves out labels that begin with an underscore, so the texts are set afterwards.
+    legend = owner.legend(lines, ["-"] * len(lines), **place)
+    for text, line in zip(legend.get_texts(), lines, strict=True):
+        text.set_text(line.get_label())
+
+
 def picture(
     plot: dict[str, Any], kind: str, dpi: int = 72, wide: bool = True, page: bool = False
 ) -> bytes:
@@ -143,14 +153,14 @@ def picture(
         lines = draw(axes, plot)
         if wide:
             figure.set_size_inches(9.4, 4.9)
-            axes.legend(handles=lines, loc="center left", bbox_to_anchor=(1.01, 0.5))
+            add_legend(axes, lines, loc="center left", bbox_to_anchor=(1.01, 0.5))
         else:
             rows = sum(line.get_label().count("\n") + 1 for line in lines)
             names, height = 0.16 * rows + 0.07 * len(lines) + 0.1, 3.0
             figure.set_size_inches(3.8, height + names)
             share = names / (height + names)
             figure.get_layout_engine().set(rect=(0, share, 1, 1 - share))
-            figure.legend(handles=lines, loc="lower left")
+            add_legend(figure, lines, loc="lower left")
         if not page:
             axes.set_title(plot["title"], loc="left", fontsize=11, fontweight="bold")
         buffer = io.BytesIO()
@@ -162,22 +172,31 @@ def picture(
     return buffer.getvalue()
 
 
+def page_style(style: str) -> str:
+    """The style of an element with the page's font and colours."""
+    style = re.sub(r"font: (?:\w+ )?([\d.]+px) [^;]*", r"font-size: \1", style)
+    for colour, variable in VARIABLES.items():
+        style = style.replace(colour, f"var(--{variable})")
+    return style
+
+
 def page_svg(plot: dict[str, Any], wide: bool) -> str:
     """The plot as an element of the page.
 
     The page holds a wide and a narrow drawing of each plot, and its style shows one of them. A
     single one, scaled, would have too small letters on a phone.
     """
-    text = picture(plot, "svg", wide=wide, page=True).decode()
-    text = re.sub(r"font: (?:\w+ )?([\d.]+px) [^;\"]*", r"font-size: \1", text)
-    for colour, variable in VARIABLES.items():
-        text = text.replace(colour, f"var(--{variable})")
+    with warnings.catch_warnings():
+        # The browser has fonts of its own for characters that Matplotlib's lacks.
+        warnings.filterwarnings("ignore", "Glyph .* missing")
+        text = picture(plot, "svg", wide=wide, page=True).decode()
     box = text[text.index("viewBox") : text.index(" xmlns=")]
     title = escape(f"{plot['title']}: {plot['y_label']} against {plot['x_label']}")
     root = ElementTree.fromstring(
-        f'<svg class="plot {"wide" if wide else "narrow"}" {box} role="img" aria-label="{title}">'
-        # The head, left out, has a file's name spaces and metadata, and a style for all elements.
-        + text[text.index('<g id="figure_1">') :].replace("xlink:href", "href")
+        f'<svg class="plot {"wide" if wide else "narrow"}" {box} role="img" aria-label="{title}" '
+        f'xmlns:xlink="{XLINK}">'
+        # The head, left out, has a file's metadata, and a style for all elements.
+        + text[text.index('<g id="figure_1">') :]
     )
     for i, s in enumerate(plot["series"]):
         markers = root.findall(f".//g[@id='series-{i}']//use")
@@ -186,6 +205,10 @@ def page_svg(plot: dict[str, Any], wide: bool) -> str:
                 f"{x:.6g}, {y:.4g}"
             )
     for element in root.iter():
+        if "style" in element.attrib:
+            element.set("style", page_style(element.attrib["style"]))
+        if link := element.attrib.pop(f"{{{XLINK}}}href", None):
+            element.set("href", link)
         if not re.fullmatch("[mp][0-9a-f]{10}", element.get("id", "")):
             element.attrib.pop("id", None)
     return ElementTree.tostring(root, encoding="unicode")

@@ -7,6 +7,7 @@ import json
 import re
 import tempfile
 import unittest
+from html import escape
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -100,6 +101,21 @@ class InputTest(unittest.TestCase):
             self.assertNotRegex(svg, r"#[0-9a-f]{6}\b", "a colour that ignores dark mode")
         ids = re.findall(r'\bid="([^"]*)"', "".join(drawings))
         self.assertEqual(len(ids), len(set(ids)))
+
+    def test_names_of_lines_are_shown_as_they_are(self) -> None:
+        names = ["_hidden", "#ffffff", "<b> & 'x'", "$x^2$", "font: 9px serif", "部屋"]
+
+        def edit(data: dict[str, Any]) -> None:
+            for series, name in zip(data["plots"][0]["series"], names, strict=False):
+                series.update(label=name, slope=None)
+
+        self.change(edit)
+        page = self.make()
+        for kind in ("wide", "narrow"):
+            svg = page[page.index(f'<svg class="plot {kind}"') :]
+            texts = re.findall(r"<text[^>]*>([^<]*)</text>", svg[: svg.index("</svg>")])
+            for name in names:
+                self.assertIn(escape(name, quote=False), texts)
 
     def test_numbers_of_ticks(self) -> None:
         cases = [
