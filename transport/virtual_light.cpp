@@ -14,7 +14,7 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
   const float nearest = rays.scene().offsetSize() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
-    ++lights.vpls;
+    ++lights.vplCount;
     // Each emission point emits an equal part of the flux; coinciding points become one light.
     const auto at = std::span(lit.emitPosition).subspan(i * lit.emitPoints, lit.emitPoints);
     for (size_t k = 0; k < at.size(); ++k) {

@@ -9,8 +9,7 @@
 
 namespace bnvpl {
 
-// Columns of the emission points of the VPLs that carry flux. A VPL has one, or several with
-// --emit.
+// The VPLs that carry flux, one entry for each place from which one shines (--emit-points).
 struct VplLights {
   LightKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
@@ -18,8 +17,7 @@ struct VplLights {
   std::vector<Vec3> intensity;  // intensity along the normal, flux / pi, W/sr
   std::vector<uint32_t> row;    // row of the VplTable, ascending
   std::vector<float> clamp2;    // squared size of the kind, (clamp * radius)^2; never 0
-
-  size_t vpls = 0;  // number of rows that carry flux
+  size_t vplCount = 0;          // rows of the table that carry flux
 
   size_t size() const { return position.size(); }
 };

@@ -3,9 +3,9 @@
 //
 // A kind is a struct of static functions, and an entry of the list LightKinds:
 //   name       value of the command-line option
-//   boundedDistance2     replaces d^2, so that light falls off with 1/boundedDistance2; it must be
-//   at least d2 and not
-//              decrease with d2
+//   boundedDistance2
+//              replaces d^2, so that light falls off with 1/boundedDistance2; it must be at least
+//              d2 and not decrease with d2
 //   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
 //              compensation adds back: 1 - d^2 / boundedDistance2
 //   emitted    emission in a direction relative to that along the axis, times the distance

@@ -83,9 +83,9 @@ TEST(Random, SobolPointsOfTwoKeysAreIndependent) {
   EXPECT_LT(std::sqrt(squares / kKeys), 2.0 / std::sqrt(double{kPoints}));
 }
 
-// Each number of a spread path, single or part of a point, falls into a different interval of
+// Each number of a stratified path, single or part of a point, falls into a different interval of
 // length 1/2^k for each of 2^k paths.
-TEST(Random, SpreadNumbersFillEveryIntervalOnce) {
+TEST(Random, StratifiedNumbersFillEveryIntervalOnce) {
   constexpr uint32_t kPaths = 64, kNumbers = 6;
   std::array<std::set<uint32_t>, kNumbers + 2> intervals;
   const auto of = [](float u) { return static_cast<uint32_t>(u * float{kPaths}); };

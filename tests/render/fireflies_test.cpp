@@ -19,7 +19,7 @@ namespace {
 
 // Sets the radiance of a sample at a pixel of the film.
 using Contribution =
-    std::function<void(uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out)>;
+    std::function<void(uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out)>;
 
 struct Shown {
   uint32_t width = 64, height = 48;
@@ -54,15 +54,15 @@ double sumOf(const Image& image, const char* channel) {
 }
 
 constexpr uint32_t kX = 20, kY = 30;  // the pixel where one sample finds extra light
-bool there(uint32_t x, uint32_t y, uint32_t slot) { return x == kX && y == kY && slot == 3; }
+bool there(uint32_t x, uint32_t y, uint32_t sample) { return x == kX && y == kY && sample == 3; }
 size_t index(const Shown& film) { return size_t{kY} * film.width + kX; }
 
 // A grey room where one sample of the first pass finds light of another colour.
 Contribution firefly(Vec3 light) {
   return [light, found = std::make_shared<std::atomic<bool>>()](
-             uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+             uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
     out.direct = Vec3(0.5f);
-    out.indirect = Vec3(0.5f) + (there(x, y, slot) && !found->exchange(true) ? light : Vec3());
+    out.indirect = Vec3(0.5f) + (there(x, y, sample) && !found->exchange(true) ? light : Vec3());
   };
 }
 
@@ -105,9 +105,9 @@ TEST(Fireflies, OfSeveralPixelsAreHiddenTogether) {
   const auto finds = [](uint32_t x, uint32_t y) {
     return x / 4 == kX / 4 && y / 4 == kY / 4 && (x + y) % 2 == 0;
   };
-  const Contribution contribution = [&](uint32_t x, uint32_t y, uint32_t slot,
+  const Contribution contribution = [&](uint32_t x, uint32_t y, uint32_t sample,
                                         RadianceSample& out) {
-    out.indirect = Vec3(slot == 3 && finds(x, y) ? 8.0f : 1.0f);
+    out.indirect = Vec3(sample == 3 && finds(x, y) ? 8.0f : 1.0f);
   };
   const Image kept = film(contribution, 16, false), spread = film(contribution, 16, true);
   EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6);
@@ -121,10 +121,10 @@ TEST(Fireflies, OfSeveralPixelsAreHiddenTogether) {
 TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
   const Shown film;
   for (const bool seen : {false, true}) {
-    const Contribution contribution = [seen](uint32_t x, uint32_t y, uint32_t slot,
+    const Contribution contribution = [seen](uint32_t x, uint32_t y, uint32_t sample,
                                              RadianceSample& out) {
       out.direct = out.indirect = Vec3(0.5f);
-      if (!there(x, y, slot)) return;
+      if (!there(x, y, sample)) return;
       out.direct += Vec3(800.0f);
       if (seen) out.emission = Vec3(800.0f);
     };
@@ -143,8 +143,8 @@ TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
 TEST(Fireflies, OfOneKindOfLightAlone) {
   for (const Only only : {Only::Direct, Only::Indirect}) {
     const Shown film{.only = only};
-    const Contribution both = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-      out.direct = out.indirect = Vec3(there(x, y, slot) ? 160.0f : 1.0f);
+    const Contribution both = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
+      out.direct = out.indirect = Vec3(there(x, y, sample) ? 160.0f : 1.0f);
     };
     const Image kept = film(both, 16, false), spread = film(both, 16, true);
     const char *shown = only == Only::Direct ? "direct.G" : "indirect.G",
@@ -160,9 +160,9 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
   for (const auto& [width, height] : {std::array{64u, 48u}, {1u, 1u}, {1u, 64u}, {3u, 2u}}) {
     const Shown film{.width = width, .height = height};
     for (const auto& [x, y] : {std::array{0u, 0u}, {width - 1, height - 1}, {width / 2, 0u}}) {
-      const Contribution contribution = [x = x, y = y](uint32_t u, uint32_t v, uint32_t slot,
+      const Contribution contribution = [x = x, y = y](uint32_t u, uint32_t v, uint32_t sample,
                                                        RadianceSample& out) {
-        out.indirect = Vec3(1.0f + float(u % 3) + (u == x && v == y && slot == 3 ? 80.0f : 0.0f));
+        out.indirect = Vec3(1.0f + float(u % 3) + (u == x && v == y && sample == 3 ? 80.0f : 0.0f));
       };
       const Image kept = film(contribution, 16, false), spread = film(contribution, 16, true);
       EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6)
@@ -175,12 +175,13 @@ TEST(Fireflies, KeepTheirEnergyAtBordersAndOnSmallFilms) {
 // The camera sees no surface to the left.
 TEST(Fireflies, LeavePixelsWithoutSurfaceBlack) {
   const Shown film;
-  const Contribution contribution = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution contribution = [](uint32_t x, uint32_t y, uint32_t sample,
+                                       RadianceSample& out) {
     if (x < kX - 1) {
       out.depth = 0.0f;
       return;
     }
-    out.indirect = Vec3(there(x, y, slot) ? 500.0f : 1.0f);
+    out.indirect = Vec3(there(x, y, sample) ? 500.0f : 1.0f);
   };
   const Image image = film(contribution, 16, true);
   EXPECT_LT((*image.find("G"))[index(film)], 1.4f);
@@ -224,11 +225,11 @@ TEST(Fireflies, IntegratorsReportVisibleEmission) {
 // The edge of a bright half lies inside a pixel.
 TEST(Fireflies, AreNotEdgesNorNoiseThatAllPixelsShare) {
   const Shown film;
-  const Contribution edge = [](uint32_t x, uint32_t, uint32_t slot, RadianceSample& out) {
-    out.indirect = Vec3(x > 30 || (x == 30 && slot == 5) ? 100.0f : 1.0f);
+  const Contribution edge = [](uint32_t x, uint32_t, uint32_t sample, RadianceSample& out) {
+    out.indirect = Vec3(x > 30 || (x == 30 && sample == 5) ? 100.0f : 1.0f);
   };
-  const Contribution noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-    out.indirect = Vec3(random64(x, y, slot) % 4 == 0 ? 1.0f : 0.0f);
+  const Contribution noise = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
+    out.indirect = Vec3(random64(x, y, sample) % 4 == 0 ? 1.0f : 0.0f);
   };
   for (const Contribution& contribution : {edge, noise}) {
     const Image kept = film(contribution, 64, false), spread = film(contribution, 64, true);
@@ -238,8 +239,8 @@ TEST(Fireflies, AreNotEdgesNorNoiseThatAllPixelsShare) {
 
 TEST(Fireflies, MoreSamplesLeaveThemWhereTheyAre) {
   const Shown film;
-  const Contribution found = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-    out.indirect = Vec3(x == kX && y == kY && slot % 16 == 3 ? 160.0f : 1.0f);
+  const Contribution found = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
+    out.indirect = Vec3(x == kX && y == kY && sample % 16 == 3 ? 160.0f : 1.0f);
   };
   const auto at = [&](uint32_t spp, bool spread) {
     return (*film(found, spp, spread).find("G"))[index(film)];
@@ -250,8 +251,8 @@ TEST(Fireflies, MoreSamplesLeaveThemWhereTheyAre) {
 
 // Two samples of a pixel, in one pass or in two, are two fireflies.
 TEST(Fireflies, TwoOfAPixelAreSpread) {
-  const Contribution twice = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-    const bool found = x == kX && y == kY && (slot == 3 || slot == 7);
+  const Contribution twice = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
+    const bool found = x == kX && y == kY && (sample == 3 || sample == 7);
     out.indirect = Vec3(found ? 60.0f : 1.0f);
   };
   for (const uint64_t passes : {0u, 2u}) {
@@ -266,8 +267,8 @@ TEST(Fireflies, TwoOfAPixelAreSpread) {
 // Nothing hides a firefly in the dark; one too bright for a small film is at least no dot.
 TEST(Fireflies, StayWhereAllElseIsDark) {
   const Shown film;
-  const Contribution dark = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-    if (there(x, y, slot)) out.indirect = Vec3(16.0f);
+  const Contribution dark = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
+    if (there(x, y, sample)) out.indirect = Vec3(16.0f);
   };
   const Image black = film(dark, 16, true);
   EXPECT_FLOAT_EQ((*black.find("G"))[index(film)], 1.0f);
@@ -284,13 +285,13 @@ TEST(Fireflies, StopAtEdges) {
   const Shown film;
   enum class Edge { Normal, Depth, Albedo };
   for (const Edge edge : {Edge::Normal, Edge::Depth, Edge::Albedo}) {
-    const Contribution contribution = [edge](uint32_t x, uint32_t y, uint32_t slot,
+    const Contribution contribution = [edge](uint32_t x, uint32_t y, uint32_t sample,
                                              RadianceSample& out) {
       const bool beyond = x >= 32;
       out.normal = beyond && edge == Edge::Normal ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
       out.depth = beyond && edge == Edge::Depth ? 2.0f : 1.0f;
       out.albedo = Vec3(beyond && edge == Edge::Albedo ? 0.2f : 0.8f);
-      out.indirect = Vec3(there(x, y, slot) ? 20.0f : 1.0f);
+      out.indirect = Vec3(there(x, y, sample) ? 20.0f : 1.0f);
     };
     const Image kept = film(contribution, 16, false), moved = film(contribution, 16, true);
     EXPECT_NEAR(sumOf(moved, "G") / sumOf(kept, "G"), 1.0, 1e-6);
@@ -306,18 +307,19 @@ TEST(Fireflies, StopAtEdges) {
 // On a bumpy surface no pixel resembles its neighbours, so fireflies are spread across edges.
 TEST(Fireflies, AreHiddenOnBumpySurfaces) {
   const Shown film;
-  const Contribution contribution = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
+  const Contribution contribution = [](uint32_t x, uint32_t y, uint32_t sample,
+                                       RadianceSample& out) {
     const float tilt = (x + y) % 2 == 0 ? 0.6f : -0.6f;
     out.normal = Vec3(tilt, 0, 0.8f);
-    out.indirect = Vec3(there(x, y, slot) ? 20.0f : 1.0f);
+    out.indirect = Vec3(there(x, y, sample) ? 20.0f : 1.0f);
   };
   const Image image = film(contribution, 16, true);
   for (const float v : *image.find("G")) ASSERT_LE(v, 1.0f + 0.125f + 0.03f);
 }
 
 TEST(Fireflies, SameBytesForAnyThreads) {
-  const Contribution noise = [](uint32_t x, uint32_t y, uint32_t slot, RadianceSample& out) {
-    const float u = toUnitFloat(random64(x, y, slot));
+  const Contribution noise = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
+    const float u = toUnitFloat(random64(x, y, sample));
     out.indirect = Vec3(0.1f / (u + 1e-4f), u, 1.0f);
     out.direct = Vec3(0.03f / (1.0f - u + 1e-4f));
   };

@@ -85,8 +85,7 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
   summary.add("photons", a.photons, line);
   std::snprintf(line, sizeof line,
                 "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, "
-                "incompatible "
-                "%.2f %%, hidden %.2f %%",
+                "incompatible %.2f %%, hidden %.2f %%",
                 a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
                 percent(a.incompatible, a.reflected), percent(a.hidden, a.reflected));
   summary.add("hits", a.hits, line);

@@ -87,7 +87,7 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
 }
 
 std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const EstimateInputs& in,
-                                                             uint64_t seed) {
+                                                                   uint64_t seed) {
   if (in.resume.source) return nullptr;
   return std::make_unique<const SpatialLightSampler>(
       in.rays, in.lights, in.vpls.position, in.vpls.normal, in.vpls.radius,

@@ -63,7 +63,7 @@ class VplPaths {
 // Learns the distribution of light sampling for paths from the VPLs' surfaces. Null for a merge,
 // which traces no paths.
 std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const EstimateInputs& in,
-                                                             uint64_t seed);
+                                                                   uint64_t seed);
 
 struct PathResult {
   std::vector<PathSums> sums;  // one per VPL

@@ -59,8 +59,8 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   };
   const auto part = [&](const StageTask& task) -> ShardRun {
     const Json made = record(recordOf(renderSpec(), options));
-    const RenderResult drawn = result(task, {});
-    const Json sources{{"vpls", drawn.vpls}, {"emission_points", drawn.emissionPoints}};
+    const RenderResult rendered = result(task, {});
+    const Json sources{{"vpls", rendered.vpls}, {"emission_points", rendered.emissionPoints}};
     return {withLayers(made, options), request.given, sources, request.command,
             extendProvenance(lit.provenance, made)};
   };

@@ -43,7 +43,7 @@ Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const Vp
 void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume);
 
-// Joins the shards of an image. `film` is that of the shards; Counts of VPLs in the result stay 0.
+// Joins the shards of an image. `film` is that of the shards. The result's counts of VPLs stay 0.
 RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source);
 
 // Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A

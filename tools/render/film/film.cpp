@@ -138,8 +138,8 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   if (!resume.state.empty()) film.decode(resume.state);
   const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
   const uint64_t rounds = (options.spp + perRound - 1) / perRound;
-  const auto samplesBefore = [&](uint64_t p) {
-    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, p * perRound));
+  const auto samplesBefore = [&](uint64_t round) {
+    return static_cast<uint32_t>(std::min<uint64_t>(options.spp, round * perRound));
   };
   const auto state = [&] { return film.encode(); };
   const uint64_t own = resume.shard.shareOf(film.pixels.size());

@@ -16,7 +16,7 @@ struct Integrator {
   Splatter tracePhotons = {};
   bool wholePixels = false;   // every call needs all samples of its pixels
   size_t vpls = 0;            // number of VPLs with flux
-  size_t emissionPoints = 0;  // their number
+  size_t emissionPoints = 0;  // places from which these VPLs shine
   // Lamps whose caustics can be rendered by photons, and those of them with too few photons in
   // view.
   size_t lamps = 0, sparseLamps = 0;

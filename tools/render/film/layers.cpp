@@ -10,14 +10,14 @@ namespace bnvpl {
 
 namespace {
 
-template <PixelSums::Channel kChannel>
+template <PixelSums::FirstChannel kFirst>
 double meanOf(const LayerPixel& p, size_t channel) {
-  return p.sums.sum[kChannel + channel] * p.perSample;
+  return p.sums.sum[kFirst + channel] * p.perSample;
 }
 
-template <PixelSums::Channel kChannel, size_t kKind>
+template <PixelSums::FirstChannel kFirst, size_t kKind>
 double lightOf(const LayerPixel& p, size_t channel) {
-  return meanOf<kChannel>(p, channel) + double{p.redistributed[kKind][channel]};
+  return meanOf<kFirst>(p, channel) + double{p.redistributed[kKind][channel]};
 }
 
 // Mean depth of the samples that hit a surface, or infinity if none did.

@@ -18,9 +18,9 @@ namespace bnvpl {
 using BothLights = std::array<Vec3, 2>;
 
 // Sums over a pixel's samples of the values of RadianceSample, and the brightest of these samples.
-// A Channel is the index of a value's first channel.
+// The enumerators are the indices of the values' first channels.
 struct PixelSums {
-  enum Channel {
+  enum FirstChannel {
     kDirect = 0,
     kIndirect = 3,
     kClamped = 6,

@@ -150,7 +150,7 @@ class Passes {
       std::fill(state_.spp.begin(), state_.spp.end(), kPassSpp);
     } else {
       state_.spp = allocateSamples(tiles_, variances_, state_.inverse, passes, kPassSpp,
-                                   random64(key_, passes, kDrawSlots));
+                                   random64(key_, passes, kDrawSpp));
     }
   }
 
@@ -185,9 +185,9 @@ class Passes {
     const Tile tile = tiles_.at(index);
     const uint32_t spp = state_.spp[index];
     const uint64_t key = random64(key_, state_.at.pass, kDrawPass);
-    const auto sequenceOffset = static_cast<uint32_t>(random64(key, index, kDrawTurn) >> 33);
+    const auto sequenceOffset = static_cast<uint32_t>(random64(key, index, kDrawOffset) >> 33);
     std::vector<PixelSums> sums(tile.pixels());
-    sampleTile(scene_, integrator_, key, tile, {0, spp, spp, kMaxSlots, sequenceOffset},
+    sampleTile(scene_, integrator_, key, tile, {0, spp, spp, kMaxPassSpp, sequenceOffset},
                [&](uint32_t p, const RadianceSample& sample) {
                  addSample(sample, sums[p], state_.counts[tiles_.pixelIndex(tile, p)]);
                });
@@ -229,8 +229,9 @@ class Passes {
     error_ = relativeError(variances_);
   }
 
-  static constexpr uint64_t kMaxSlots = uint64_t{1} << 20;  // limit of samples per pixel in a pass
-  enum Draw : uint32_t { kDrawPass, kDrawSlots, kDrawTurn };
+  // Limit of samples per pixel in a pass.
+  static constexpr uint64_t kMaxPassSpp = uint64_t{1} << 20;
+  enum Draw : uint32_t { kDrawPass, kDrawSpp, kDrawOffset };
 
   const Scene& scene_;
   const Integrator& integrator_;

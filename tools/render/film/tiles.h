@@ -68,17 +68,17 @@ void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, 
   constexpr uint32_t kSamplesAtOnce = 16;  // samples of each pixel that are held in memory together
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
-  for (uint32_t sample = range.first, batchEnd; sample < range.end; sample = batchEnd) {
-    batchEnd =
-        sample + std::min(range.end - sample,
-                          integrator.wholePixels ? UINT32_MAX : kSamplesAtOnce);  // avoids overflow
+  for (uint32_t begin = range.first, end; begin < range.end; begin = end) {
+    end =
+        begin + std::min(range.end - begin,
+                         integrator.wholePixels ? UINT32_MAX : kSamplesAtOnce);  // avoids overflow
     samples.clear();
-    for (uint32_t s = sample; s < batchEnd; ++s) {
+    for (uint32_t s = begin; s < end; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
         samples.push_back(makeSample(scene, key, range.stride, tile.x(p), tile.y(p), s));
       }
     }
-    integrator.renderTile({{tile.pixels(), tile.width(), tile.x0, tile.y0, sample, range.all,
+    integrator.renderTile({{tile.pixels(), tile.width(), tile.x0, tile.y0, begin, range.all,
                             tileKey, range.sequenceOffset},
                            samples});
     for (size_t k = 0; k < samples.size(); ++k) {

@@ -1,4 +1,4 @@
-// Expected light of a cluster of the light tree, and its deviation if one random VPL represents it.
+// Deviation of the light of a cluster of the light tree if one random VPL represents it.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,8 @@ inline constexpr float kSizeSpread = 0.7f, kNormalSpread = 0.5f;
 // Largest value of a single draw, over the deviation that a sample may have.
 inline constexpr float kMaxDraw = 2.0f;
 
-// Deviation of the light of one draw from that of the cluster, W/(m2 sr), summed over channels.
+// Light of one draw from a cluster, W/(m2 sr), summed over channels: its standard deviation and its
+// largest value.
 struct ClusterDeviation {
   float deviation = 0.0f;
   float maxDraw = 0.0f;  // if the whole cluster were at the nearest point of its box
@@ -31,9 +32,9 @@ struct ClusterDeviation {
   }
 };
 
-// Expected light of an inner node at a point. Distances are taken to the centre of the cluster's
-// box, which is cheaper than a bound. Cosines are the largest over the box, so the result is 0 only
-// if no light can arrive.
+// The deviation of an inner node's light at a point. Distances are taken to the centre of the
+// cluster's box, which is cheaper than a bound. Cosines are the largest over the box, so the result
+// is 0 only if no light can arrive.
 template <typename Kind>
 class DeviationModel {
  public:

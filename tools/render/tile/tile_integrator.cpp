@@ -117,7 +117,7 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
   TileReceivers receivers{tile, points.bsdf};
   receivers.marginalCost = allocation.marginalCost;
   if (allocation.marginalCost > 0.0) {
-    // The sum of three channels from the root of their mean square.
+    // Both lights are squares summed over three channels; of equal channels the sum is this root.
     receivers.otherLight = meanDirect.x + meanDirect.y + meanDirect.z +
                            static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
     receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));

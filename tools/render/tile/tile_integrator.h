@@ -33,8 +33,7 @@ struct TileParts {
   std::unique_ptr<const VisibleEmission> visibleEmission;
   std::unique_ptr<const Caustics> caustics;
   ControlVariateFn control;
-  const SpatialLightSampler* spatialLights =
-      nullptr;  // for light sampling at near-specular vertices
+  const SpatialLightSampler* spatialLights = nullptr;  // for near-specular vertices
   std::optional<DirectSamples> directSamples;
 };
 

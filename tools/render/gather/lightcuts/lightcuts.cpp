@@ -44,12 +44,12 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
   const auto evaluate = [&](uint32_t node) {
     Cluster c{errorBound(tree.nodes[node], receiver), node, {}, 0.0f};
     const uint32_t r = tree.nodes[node].representative;
-    VplTransfer transfer;
-    if (unoccludedTransfer(vpls, r, bsdf, transfer)) {
+    VplTransfer found;
+    if (unoccludedTransfer(vpls, r, bsdf, found)) {
       ++out.shadowRays;
       if (!rays.occluded(from, vpls.position[r])) {
-        c.transfer = transfer.transfer;
-        c.clampLoss = transfer.clampLoss;
+        c.transfer = found.transfer;
+        c.clampLoss = found.clampLoss;
       }
     }
     return c;

@@ -16,8 +16,8 @@ struct ReceiverPacket {
   using Lanes = std::array<float, kSize>;
 
   alignas(64) Lanes x{}, y{}, z{}, sx{}, sy{}, sz{}, gx{}, gy{}, gz{};  // point; ns; ng
-  alignas(64) Lanes maxReflectedRed{}, maxReflectedGreen{},
-      maxReflectedBlue{};                    // maxReflected(), 1/sr; 0: empty lane
+  // Channels of maxReflected(), 1/sr; 0 in an empty lane.
+  alignas(64) Lanes maxReflectedRed{}, maxReflectedGreen{}, maxReflectedBlue{};
   alignas(64) Lanes red{}, green{}, blue{};  // irradiance, W/m2
   alignas(64) Lanes clampedRed{}, clampedGreen{}, clampedBlue{};
   std::array<Vec3, kSize> offset{};                   // offset ray origins
@@ -31,7 +31,7 @@ struct ReceiverPacket {
   uint32_t clusters = 0;
   Bounds bounds;               // bounds of the points
   float brightest = 0.0f;      // maximum of maxReflected() over receivers and channels, 1/sr
-  float stratumOffset = 0.0f;  // stratum of its draws, in [0, 1)
+  float stratumOffset = 0.0f;  // shift of its draws along each cluster, in [0, 1)
   uint64_t rouletteKey = 0;
   uint32_t rouletteDraw = 0;
 
@@ -46,10 +46,11 @@ struct ReceiverPacket {
     sx[lane] = p.ns.x, sy[lane] = p.ns.y, sz[lane] = p.ns.z;
     gx[lane] = p.ng.x, gy[lane] = p.ng.y, gz[lane] = p.ng.z;
     bounds.extend(p.position);
-    const Vec3 maxReflectance = maxReflected(b);
-    maxReflectedRed[lane] = maxReflectance.x, maxReflectedGreen[lane] = maxReflectance.y,
-    maxReflectedBlue[lane] = maxReflectance.z;
-    brightest = std::max(brightest, maxComponent(maxReflectance));
+    const Vec3 bound = maxReflected(b);
+    maxReflectedRed[lane] = bound.x;
+    maxReflectedGreen[lane] = bound.y;
+    maxReflectedBlue[lane] = bound.z;
+    brightest = std::max(brightest, maxComponent(bound));
     if (!b.diffuseOnly()) lobes |= 1u << lane;
   }
 

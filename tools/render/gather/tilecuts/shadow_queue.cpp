@@ -122,8 +122,8 @@ void ShadowQueue::accumulate(const PendingContribution& d) {
     p.clampedGreen[l] += c * d.light.y;
     p.clampedBlue[l] += c * d.light.z;
   }
-  // writeTo() multiplies the sums above by the diffuse value. A glossy BSDF adds its difference from
-  // that value; eval() includes the cosine, which the transfer includes too.
+  // ReceiverPacket::writeTo() multiplies the sums above by the diffuse value. A glossy BSDF adds
+  // its difference from that value here. eval() includes the cosine, as the transfer does.
   for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     const Bsdf& b = *p.bsdf[l];

@@ -140,7 +140,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
           },
           {},
           gather.wholePixels,
-          parts->vpls.vpls,
+          parts->vpls.vplCount,
           parts->vpls.size(),
           lamps,
           sparse};

@@ -13,8 +13,8 @@ namespace bnvpl {
 // The parity of a pixel of a checkerboard.
 inline uint32_t parity(uint32_t x, uint32_t y) { return (x + y) & 1u; }
 
-// A parity for each sample, half of those of one sample index having either, and a block of
-// kBlockSide x kBlockSide pixels. Both differ between sample indices, so that they leave no pattern
+// A parity for each sample, and a block of kBlockSide x kBlockSide pixels. Half of the samples of
+// one index have either parity. Both differ between sample indices, so that they leave no pattern
 // in the image: blocks begin at random places and wrap around the tile's borders, and the parity is
 // a Walsh function of the bits of x and y. It always contains the lowest bit of both, so that
 // neighbours mostly differ in parity: they reuse nothing of each other, and their noise is
