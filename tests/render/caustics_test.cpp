@@ -194,6 +194,20 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
   EXPECT_LT(share(400000, false), 1.0f);
 }
 
+// Every integrator with caustic photons reports its lamps, and counts no VPLs if it gathers none.
+TEST(Caustics, IntegratorsReportTheirLamps) {
+  const World world = shiny(manyLights(), false);
+  const VplTable lit = fewVpls(world);
+  for (const char* integrator : {"vpl", "guided"}) {
+    const RenderResult image = renderVpls(world, lit, {{"integrator", integrator}, {"spp", "1"}});
+    EXPECT_GT(image.lamps, 0u) << integrator;
+    EXPECT_LE(image.sparseLamps, image.lamps) << integrator;
+    const bool gathers = integrator == std::string_view("vpl");
+    EXPECT_EQ(image.vpls > 0, gathers) << integrator;
+    EXPECT_EQ(image.emissionPoints > 0, gathers) << integrator;
+  }
+}
+
 // No ray can hit a point light over a mirror.
 TEST(Caustics, PhotonsCarryWhatNoRayCanHit) {
   const World world = shiny(bulbs(0), true);

@@ -96,14 +96,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
-  return {[parts](const TileSamples& samples) {
-            parts->integrator->render(samples, parts->allocation);
-          },
-          {},
-          false,
-          0,
-          lamps,
-          sparse};
+  return {.renderTile =
+              [parts](const TileSamples& samples) {
+                parts->integrator->render(samples, parts->allocation);
+              },
+          .lamps = lamps,
+          .sparseLamps = sparse};
 }
 
 }  // namespace

@@ -135,15 +135,15 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
-  return {[parts](const TileSamples& samples) {
-            parts->integrator->render(samples, parts->allocation);
-          },
-          {},
-          gather.wholePixels,
-          parts->vpls.vplCount,
-          parts->vpls.size(),
-          lamps,
-          sparse};
+  return {.renderTile =
+              [parts](const TileSamples& samples) {
+                parts->integrator->render(samples, parts->allocation);
+              },
+          .wholePixels = gather.wholePixels,
+          .vpls = parts->vpls.vplCount,
+          .emissionPoints = parts->vpls.size(),
+          .lamps = lamps,
+          .sparseLamps = sparse};
 }
 
 }  // namespace
