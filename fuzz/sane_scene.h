@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz/fuzz.h"
+#include "scene/material_inputs.h"
 #include "scene/scene.h"
 
 namespace bnvpl {
@@ -27,22 +28,20 @@ inline void requireSane(const EnvironmentImage& e) {
   for (const Vec3 radiance : e.radiance) require(isLight(radiance), "radiance is light");
 }
 
-inline void requireSane(const PhongModel& m, size_t textures) {
+inline void requireSane(const PhongModel& m) {
   for (const Vec3 c : {m.diffuse, m.glossy, m.mirror, m.transmission}) {
     require(isLight(c), "colours of materials are light");
   }
   require(std::isfinite(m.exponent) && m.exponent >= 0, "exponents are >= 0");
   require(std::isfinite(m.ior) && m.ior >= 1, "refractive indices are >= 1");
-  for (const uint32_t map : {m.diffuseMap, m.glossyMap}) {
-    require(map == kNone || map < textures, "maps are textures");
-  }
 }
 
 inline void requireSane(const Material& m, size_t textures) {
   require(isLight(m.emission), "colours of materials are light");
   require(std::isfinite(m.opacity), "opacities are finite");
-  require(m.opacityMap == kNone || m.opacityMap < textures, "maps are textures");
-  if (const auto* p = std::get_if<PhongModel>(&m.model)) requireSane(*p, textures);
+  forEachImage(m,
+               [&](uint32_t map) { require(map == kNone || map < textures, "maps are textures"); });
+  if (const auto* p = std::get_if<PhongModel>(&m.model)) requireSane(*p);
 }
 
 inline void requireSane(const TextureExpression& e, size_t number, size_t textures) {
@@ -62,9 +61,9 @@ inline void requireSane(const Scene& s, const Triangle& t) {
     if (t.uv[k] == kNone) continue;
     const auto [u, v] = s.uvs[t.uv[k]];
     const Material& m = s.materials[t.material];
-    const auto* phong = std::get_if<PhongModel>(&m.model);
-    if (phong && phong->diffuseMap != kNone) s.textures[phong->diffuseMap].lookup(u, v);
-    if (m.opacityMap != kNone) s.textures[m.opacityMap].lookupAlpha(u, v);
+    forEachImage(m, [&, u = u, v = v](uint32_t map) {
+      if (map != kNone) s.textures[map].lookup(u, v), s.textures[map].lookupAlpha(u, v);
+    });
   }
 }
 

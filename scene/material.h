@@ -139,8 +139,8 @@ struct MetallicRoughnessModel {
 };
 
 // A linear blend of two of Scene::materials: (1 - amount) of `first` plus `amount` of `second`.
-// Both have smaller numbers than the mix, which uses nothing but their models; neither has the
-// PhongModel. Mixes of mixes hold at most kMaxLobes lobes; further lobes are black.
+// Both have smaller numbers than the mix, which uses nothing but their models. Mixes of mixes hold
+// at most kMaxLobes lobes; further lobes are black.
 struct MixModel {
   uint32_t first = kNone, second = kNone;
   Scalar amount{0.5f};

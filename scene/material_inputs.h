@@ -107,6 +107,21 @@ void forEachField(M& m, const Fn& fn) {
   fn("amount", m.amount);
 }
 
+// Calls fn with the number of each image of Scene::textures that a material names itself, not by an
+// expression; kNone where it has none.
+template <typename Model, typename Fn>
+void forEachImage(Model&, const Fn&) {}
+template <Like<PhongModel> M, typename Fn>
+void forEachImage(M& m, const Fn& fn) {
+  fn(m.diffuseMap);
+  fn(m.glossyMap);
+}
+template <Like<Material> M, typename Fn>
+void forEachImage(M& m, const Fn& fn) {
+  fn(m.opacityMap);
+  std::visit([&](auto& model) { forEachImage(model, fn); }, m.model);
+}
+
 // Calls fn with each Colour and Scalar, and each number or switch as uint32_t, of a material, in a
 // fixed order. Leaves out the PhongModel and the coat's relief.
 template <typename Fn>

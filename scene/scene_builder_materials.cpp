@@ -18,12 +18,11 @@ constexpr uint32_t kMaxLookups = 1000;
 constexpr const char* kGrey = "it is grey";
 
 bool hasTexture(const Material& m) {
-  if (const auto* p = std::get_if<PhongModel>(&m.model)) {
-    if (p->diffuseMap != kNone || p->glossyMap != kNone) return true;
-  }
-  bool expression = false;
-  forEachExpression(m, [&](uint32_t number) { expression |= number != kNone; });
-  return expression || m.opacityMap != kNone;
+  bool any = false;
+  const auto use = [&](uint32_t number) { any |= number != kNone; };
+  forEachImage(m, use);
+  forEachExpression(m, use);
+  return any;
 }
 
 }  // namespace
@@ -151,13 +150,7 @@ void SceneBuilder::resolveTextures() {
   const auto resolve = [&](uint32_t& map) {
     if (map != kNone) map = read.indexOf.at(map);
   };
-  for (Material& m : scene_.materials) {
-    resolve(m.opacityMap);
-    if (auto* phong = std::get_if<PhongModel>(&m.model)) {
-      resolve(phong->diffuseMap);
-      resolve(phong->glossyMap);
-    }
-  }
+  for (Material& m : scene_.materials) forEachImage(m, resolve);
   for (TextureExpression& e : scene_.expressions) resolve(e.image);
   for (const uint32_t e : greyable_) {
     if (scene_.expressions[e].image == kNone)

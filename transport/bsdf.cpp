@@ -2,39 +2,111 @@
 
 #include <algorithm>
 
+#include "transport/bsdf/diffuse_transmission/diffuse_transmission.h"
+#include "transport/bsdf/mix/mix.h"
+
 namespace bnvpl {
 
-namespace {
+static_assert(std::is_trivially_copyable_v<Bsdf> && std::is_trivially_destructible_v<Bsdf>);
 
-// Constructs the model in place, because a LobeSum is large.
-std::variant<PhongBsdf, LobeSum> makeModel(const Scene& scene, const SurfacePoint& point) {
-  using Made = std::variant<PhongBsdf, LobeSum>;
-  const MaterialModel& model = scene.materials[point.material].model;
-  if (const auto* phong = std::get_if<PhongModel>(&model))
-    return Made(std::in_place_type<PhongBsdf>, scene, *phong, point);
-  return Made(std::in_place_type<LobeSum>, scene, model, point);
+float CoatAbove::through(float cosine) const {
+  return 1.0f - weight * ggxAlbedo({Vec3(0.04f), Vec3(1), {}}, cosine, alpha).x;
 }
 
-}  // namespace
+void addModel(const MaterialModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out) {
+  std::visit([&](const auto& m) { addLobes(m, inputs, weight, out); }, model);
+}
 
-// With textures, any model except Lambert's may be specular somewhere.
-bool mayBeSpecular(const Material& m) {
-  if (const auto* phong = std::get_if<PhongModel>(&m.model)) return hasSpecularLobes(*phong);
-  return !std::holds_alternative<DiffuseModel>(m.model);
+std::optional<bool> roughEverywhere(const Material& material) {
+  return std::visit([](const auto& m) { return roughEverywhere(m); }, material.model);
+}
+
+bool mayBeSpecular(const Material& material) {
+  return std::visit([](const auto& m) { return mayBeSpecular(m); }, material.model);
 }
 
 bool hasSpecularLobes(const Scene& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), mayBeSpecular);
+  return std::ranges::any_of(scene.materials, [](const Material& m) { return mayBeSpecular(m); });
 }
 
-Bsdf::Bsdf(const Scene& scene, const SurfacePoint& point)
-    : point_(point), model_(makeModel(scene, point)) {}
+bool isGlass(const Scene& scene, uint32_t material) {
+  if (material == kNone) return false;
+  return std::visit([&](const auto& m) { return isGlass(m, scene); },
+                    scene.materials[material].model);
+}
 
-bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const {
-  if (const auto* phong = std::get_if<PhongBsdf>(&model_))
-    return phong->sample(point_, group, transport, rng, out);
-  const float pick = rng.next();
-  return sample(group, transport, pick, rng.nextPoint(), out);
+Bsdf::Bsdf(const Scene& scene, const SurfacePoint& point) : point_(point) {
+  addModel(scene.materials[point.material].model, MaterialInputs(scene, point), Vec3(1), *this);
+  finish();
+}
+
+Bsdf::Bsdf(const SurfacePoint& point, Vec3 albedo) : point_(point) {
+  add(Vec3(1), LambertLobe{albedo});
+  finish();
+}
+
+uint32_t Bsdf::frame(Vec3 shadingNormal, float turns) {
+  needFrame();
+  for (uint32_t f = 0; f < frameCount_; ++f) {
+    if (frames_[f].ns == shadingNormal && frames_[f].turns == turns) return f;
+  }
+  if (frameCount_ == kMaxFrames) return 0;
+  std::construct_at(&frames_[frameCount_], point_, shadingNormal, turns);
+  return frameCount_++;
+}
+
+// Cosine-weighted mean over wi of the smaller transmittance of the coat, `most` at wo.
+float Bsdf::meanThrough(const CoatAbove& above, float most) {
+  constexpr int kSteps = 8;
+  float sum = 0.0f;
+  for (int i = 0; i < kSteps; ++i)
+    sum += std::min(most, above.through(std::sqrt((float(i) + 0.5f) / kSteps)));
+  return sum / kSteps;
+}
+
+void Bsdf::finish() {
+  roughAlbedo_ = min(roughAlbedo_, Vec3(1));
+  for (Summand& s : std::span(lobes_, count_))
+    s.share /= s.group == LobeGroup::Rough ? rough_ : specular_;
+  if (specular_ > 0.0f) specularProbability_ = specular_ / (specular_ + rough_);
+  if (specularProbability_ < kMinProbability) specularProbability_ = 0.0f;
+  reflectance_ = std::min(1.0f, maxComponent(albedo_));
+  if (reflectance_ < kMinProbability) reflectance_ = 0.0f;
+}
+
+std::optional<RoughLeaving> Bsdf::roughLeaving() const {
+  if (diffuseOnly_) return RoughLeaving{point_.ng, point_.ns};
+  const Summand* rough = nullptr;
+  for (const Summand& s : lobes()) {
+    if (s.group != LobeGroup::Rough) continue;
+    if (rough) return {};
+    rough = &s;
+  }
+  const auto* coated = std::get_if<CoatedBase>(&rough->lobe);
+  if (!coated || rough->frame != 0 || rough->above.weight > 0.0f) return {};
+  return RoughLeaving{point_.ng, point_.ns, coated->ior, coated->alpha};
+}
+
+// A diffuse base below a coat or layer looks much the same from all directions. Its albedo at
+// cosine 0.5 represents all of them.
+DiffusePart Bsdf::diffusePart() const {
+  constexpr float kHalfWay = 0.5f;
+  const Vec3 wo{std::sqrt(1.0f - kHalfWay * kHalfWay), 0.0f, kHalfWay};
+  DiffusePart part{{point_.ng, point_.ns}, {}};
+  for (const Summand& s : lobes()) {
+    if (s.group != LobeGroup::Rough || s.frame != 0) continue;
+    const float kept = s.above.weight > 0.0f ? s.above.through(kHalfWay) : 1.0f;
+    std::visit(
+        [&](const auto& l) {
+          using L = std::decay_t<decltype(l)>;
+          constexpr bool kLayered = std::is_same_v<L, LayeredBase> || std::is_same_v<L, CoatedBase>;
+          if constexpr (kLayered || std::is_same_v<L, LambertLobe>)
+            part.value += s.weight * l.albedo(wo) * (kept / kPi);
+          part.leaving.unbent |= kLayered;
+        },
+        s.lobe);
+  }
+  return part;
 }
 
 }  // namespace bnvpl

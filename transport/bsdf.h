@@ -7,108 +7,215 @@
 //             them, because a VPL cannot represent such light.
 // A path takes one group at a vertex, at random.
 //
-// Models of materials are in bsdf/<model>/: PhongBsdf for MTL; the others are sums of lobes
-// (LobeSum).
+// A BSDF is a weighted sum of lobes. Models of materials, bsdf/<model>/, add their lobes (mixes
+// those of their parts); evaluation and sampling are the same for all of them.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
+#include <type_traits>
 #include <variant>
 
-#include "transport/bsdf/lobe_sum.h"
+#include "transport/bsdf/coated_conductor/coated_conductor.h"
+#include "transport/bsdf/coated_diffuse/coated_diffuse.h"
+#include "transport/bsdf/conductor/conductor.h"
+#include "transport/bsdf/dielectric/dielectric.h"
+#include "transport/bsdf/diffuse/diffuse.h"
+#include "transport/bsdf/lobe_frame.h"
+#include "transport/bsdf/metallic_roughness/metallic_roughness.h"
 #include "transport/bsdf/phong/phong.h"
-#include "transport/bsdf/scatter.h"
+#include "transport/bsdf/rough_leaving.h"
 
 namespace bnvpl {
 
-class Bsdf {
-  template <typename Fn>
-  auto ask(const Fn& fn) const {
-    if (const auto* phong = std::get_if<PhongBsdf>(&model_)) return fn(*phong);
-    return fn(*std::get_if<LobeSum>(&model_));
-  }
+using Lobe = std::variant<LambertLobe, PhongLobe, GgxReflection, MultipleScattering, DielectricLobe,
+                          ThinSheetLobe, CoatedBase, CoatedMetal, LayeredBase>;
 
+// A glTF clearcoat over a lobe. It scales the lobe by the smaller of its transmittances at wo and
+// wi, so that the sum of coat and base is reciprocal and conserves energy.
+struct CoatAbove {
+  float weight = 0.0f, alpha = 0.0f;
+  uint32_t frame = 0;  // the coat's own frame, to which cosines refer
+  float through(float cosine) const;
+};
+
+class Bsdf {
  public:
+  static constexpr size_t kMaxLobes = 8, kMaxFrames = 4;
+
   Bsdf(const Scene& scene, const SurfacePoint& point);
   // A Lambertian surface of the given albedo.
-  Bsdf(const SurfacePoint& point, Vec3 albedo) : point_(point), model_(PhongBsdf(albedo)) {}
+  Bsdf(const SurfacePoint& point, Vec3 albedo);
 
-  // Fraction of the flux from wo that leaves through the rough lobes, 0..1. For MTL, the fraction
-  // at normal incidence.
-  Vec3 roughAlbedo() const {
-    return ask([](const auto& b) { return b.roughAlbedo(); });
-  }
-  bool hasRough() const { return !isBlack(roughAlbedo()); }
+  // Called by models. Ignores black lobes, and lobes beyond kMaxLobes.
+  template <typename L>
+  void add(Vec3 weight, const L& lobe, const CoatAbove& above = {}, uint32_t frame = 0);
+  // Index of the frame with this shading normal and rotation (LobeFrame), which is created if
+  // needed. Returns 0, the point's own frame, if there are kMaxFrames already.
+  uint32_t frame(Vec3 shadingNormal, float turns = 0.0f);
+  bool full() const { return count_ == kMaxLobes; }
+
+  // Fraction of the flux from wo that leaves through the rough lobes, 0..1, and whether it is taken
+  // to be the same for all wo. A Phong lobe's is that at normal incidence.
+  Vec3 roughAlbedo() const { return roughAlbedo_; }
+  bool albedoIsConstant() const { return albedoIsConstant_; }
+  bool hasRough() const { return !isBlack(roughAlbedo_); }
   // The constant part of the rough group's BSDF, 1/sr, without the cosine that eval() includes, and
   // whether it is the whole BSDF of the group.
-  Vec3 diffuseValue() const {
-    return ask([](const auto& b) { return b.diffuseValue(); });
-  }
-  bool diffuseOnly() const {
-    return ask([](const auto& b) { return b.diffuseOnly(); });
-  }
+  Vec3 diffuseValue() const { return diffuseValue_; }
+  bool diffuseOnly() const { return diffuseOnly_; }
   // How the rough group's value depends on wo, where it is a product of a factor of wi and one of
   // wo; else empty.
-  std::optional<RoughLeaving> roughLeaving() const {
-    return ask([&](const auto& b) { return b.roughLeaving(point_); });
-  }
+  std::optional<RoughLeaving> roughLeaving() const;
   // The part of the rough group's value that is such a product; black where there is none.
-  DiffusePart diffusePart() const {
-    return ask([&](const auto& b) { return b.diffusePart(point_); });
-  }
+  DiffusePart diffusePart() const;
   // Probability with which a path should take the specular group; 0 or 1 if there is only one.
-  float specularProbability() const {
-    return ask([](const auto& b) { return b.specularProbability(); });
-  }
+  float specularProbability() const { return specularProbability_; }
   // Whether the specular group has delta lobes only, which light sampling cannot reach.
-  bool specularIsDelta() const {
-    return ask([](const auto& b) { return b.specularIsDelta(); });
-  }
+  bool specularIsDelta() const { return specularIsDelta_; }
   // Survival probability for Russian roulette: the largest channel of the albedo of both groups.
-  float reflectance() const {
-    return ask([](const auto& b) { return b.reflectance(); });
-  }
+  float reflectance() const { return reflectance_; }
 
   // BSDF value of one group times |cos(ns, wi)|, 1/sr, for radiance transport; 0 for delta lobes.
   // Directions below the surface have a value where the group transmits.
   Vec3 eval(LobeGroup group, Vec3 wi) const {
-    return ask([&](const auto& b) { return b.eval(point_, group, wi); });
+    return evaluate<Transport::Radiance>(group, wi, Wanted::OnlyValue).value;
   }
   float pdf(LobeGroup group, Vec3 wi) const {
-    return ask([&](const auto& b) { return b.pdf(point_, group, wi); });
+    return evaluate<Transport::Radiance>(group, wi, Wanted::OnlyPdf).pdf;
   }
   // Upper bound of eval(Rough, wi) over directions whose cosine with ns is at most maxCosNs and
   // whose cosine with any axis a is at most maxCosine(a).
   template <typename MaxCosine>
   Vec3 roughUpperBound(float maxCosNs, const MaxCosine& maxCosine) const {
-    if (const auto* phong = std::get_if<PhongBsdf>(&model_))
-      return phong->roughUpperBound(point_, maxCosNs, maxCosine);
-    return std::get_if<LobeSum>(&model_)->roughUpperBound(maxCosNs, maxCosine);
+    if (maxCosNs <= 0.0f) return {};
+    const Vec3 bound = diffuseValue_ * maxCosNs;
+    if (diffuseOnly_) return bound;
+    Vec3 glossy;
+    for (uint32_t f = 0; f < frameCount_; ++f) {
+      // maxCosNs refers to the point's own normal; the cosine with another one is at most 1.
+      const bool known = frames_[f].z == frames_[0].ns;
+      glossy += glossyBound(f, known ? maxCosNs : 1.0f, maxCosine(frames_[f].mirrorAxis()));
+    }
+    return bound + glossy;
   }
   Vec3 glossyAxis() const {  // unit; the mirror image of wo, the axis of glossy lobes
-    if (std::holds_alternative<PhongBsdf>(model_)) return PhongBsdf::glossyAxis(point_);
-    return std::get_if<LobeSum>(&model_)->glossyAxis();
-  }
-  // Samples a direction. Returns false if the path is absorbed.
-  bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
-  // The same with random numbers as arguments: `pick` selects the lobe, `at` the direction. Always
-  // false for MTL's glass.
-  bool sample(LobeGroup group, Transport transport, float pick, Point2 at, BsdfSample& out) const {
-    return ask([&](const auto& b) { return b.sample(point_, group, transport, pick, at, out); });
+    return frameCount_ > 0 ? frames_[0].mirrorAxis() : reflect(point_.wo, point_.ns);
   }
 
+  // Samples a direction. Returns false if the path is absorbed.
+  bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
+  // The same with random numbers as arguments: `pick` selects the lobe, `at` the direction.
+  bool sample(LobeGroup group, Transport transport, float pick, Point2 at, BsdfSample& out) const;
+
   // shadingFactor() for the point's own shading normal.
-  float photonShadingFactor() const { return PhongBsdf::photonShadingFactor(point_); }
+  float photonShadingFactor() const {
+    if (point_.ns == point_.ng) return dot(point_.ng, point_.wo) > 0.0f ? 1.0f : 0.0f;
+    return shadingFactor(point_, point_.ns);
+  }
 
   const SurfacePoint& point() const { return point_; }
 
  private:
+  struct Summand {
+    Lobe lobe;
+    Vec3 weight;
+    CoatAbove above;
+    float coatOut = 1.0f;  // transmittance of the coat at wo
+    float share = 0.0f;    // largest albedo, then, by finish(), fraction of its group's samples
+    uint32_t frame = 0;
+    LobeGroup group = LobeGroup::Rough;
+    bool smooth = false;
+  };
+  enum class Wanted { OnlyValue, OnlyPdf, Both };
+  struct Evaluated {
+    Vec3 value;  // BSDF times the cosine for the transport
+    float pdf = 0.0f;
+  };
+  void finish();
+  void needFrame() {
+    if (frameCount_ == 0) std::construct_at(&frames_[frameCount_++], point_, point_.ns, 0.0f);
+  }
+  // Mean of the transmittance of a coat over a diffuse lobe.
+  static float meanThrough(const CoatAbove& above, float most);
+  Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
+  template <Transport transport>
+  Evaluated evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const;
+  Evaluated evaluateDiffuse(Transport transport, Vec3 wi) const;
+  bool sampleDiffuse(Transport transport, Point2 at, BsdfSample& out) const;
+  // Transmittance of the coat above the lobe for wo and wi; 1 without a coat.
+  float coat(const Summand& s, Vec3 wi) const;
+  // Whether the light's direction, wi for radiance and wo for photons, lies on one side of both the
+  // surface and the lobe's shading normal. Rough lobes require it of the point's own normal, too,
+  // by which VPLs are culled.
+  bool lit(const Summand& s, Transport transport, Vec3 wi) const;
+  // Value times cosine of a lobe for photons from wo that a camera at wi sees, both on the same
+  // side. Frames are bent for wi, as where the camera path arrives from there.
+  Vec3 adjointValue(const Summand& s, Vec3 wi) const;
+  // Fraction of the lobe's photons whose direction is cosine-distributed about the geometric
+  // normal.
+  float cosineShare(const Summand& s) const;
+  // Replaces |cos(normal, wi)| for photons: shadingFactor() of the normal times |ng.wi|.
+  float photonCosine(Vec3 normal, Vec3 wi) const;
+  std::span<const Summand> lobes() const { return {lobes_, count_}; }
+
   const SurfacePoint& point_;
-  std::variant<PhongBsdf, LobeSum> model_;
+  // Lambert's law needs no frame: the point's own is made with the first other lobe.
+  uint32_t frameCount_ = 0;
+  bool diffuseOnly_ = true, specularIsDelta_ = true, albedoIsConstant_ = true;
+  float specularProbability_ = 0.0f, reflectance_ = 0.0f;
+  float rough_ = 0.0f, specular_ = 0.0f;  // sums of the lobes' largest albedos
+  Vec3 albedo_, roughAlbedo_, diffuseValue_;
+  uint32_t count_ = 0;
+  union {  // elements are constructed when they are added
+    LobeFrame frames_[kMaxFrames];
+  };
+  union {
+    Summand lobes_[kMaxLobes];
+  };
 };
 
+template <typename L>
+void Bsdf::add(Vec3 weight, const L& lobe, const CoatAbove& above, uint32_t frame) {
+  constexpr bool kLambert = std::is_same_v<L, LambertLobe>;
+  if (full()) return;
+  if (!kLambert || lobe.group() == LobeGroup::Specular) needFrame();
+  Vec3 albedo = weight * lobe.albedo(kLambert ? Vec3() : frames_[frame].wo);
+  const LobeGroup group = lobe.group();
+  float coatOut = 1.0f;
+  if (above.weight > 0.0f) {
+    coatOut = above.through(frames_[above.frame].wo.z);
+    const bool diffuse = group == LobeGroup::Rough && std::is_same_v<L, LayeredBase>;
+    albedo *= diffuse ? meanThrough(above, coatOut) : coatOut;
+  }
+  if (isBlack(albedo)) return;
+  const float most = maxComponent(albedo);
+  new (&lobes_[count_++]) Summand{lobe, weight, above, coatOut, most, frame, group, lobe.smooth()};
+  albedo_ += albedo;
+  if (group == LobeGroup::Specular) {
+    specular_ += most;
+    specularIsDelta_ &= lobe.smooth();
+    return;
+  }
+  rough_ += most;
+  roughAlbedo_ += albedo;
+  if (kLambert) diffuseValue_ += albedo * (1.0f / kPi);
+  diffuseOnly_ &= kLambert;
+  albedoIsConstant_ &= kLambert || std::is_same_v<L, PhongLobe>;
+}
+
+// Adds the lobes of a model.
+void addModel(const MaterialModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
+
+// Whether a material without specular lobes has rough ones, where both hold at every point; else
+// empty. Paths end at such surfaces without a Bsdf.
+std::optional<bool> roughEverywhere(const Material& material);
 // Whether any material may have specular lobes.
 bool hasSpecularLobes(const Scene& scene);
 // Whether the material may have specular lobes at some point.
 bool mayBeSpecular(const Material& material);
+// Whether light may cross the material's surface by refraction.
+bool isGlass(const Scene& scene, uint32_t material);
 
 }  // namespace bnvpl

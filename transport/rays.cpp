@@ -1,6 +1,7 @@
 #include "transport/rays.h"
 
 #include "core/prefetch.h"
+#include "scene/material_inputs.h"
 #include "transport/ray_filters.h"
 #include "transport/shading_frame.h"
 
@@ -228,9 +229,7 @@ void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
     const auto &a = scene_.uvs[t.uv[0]], &b = scene_.uvs[t.uv[1]], &c = scene_.uvs[t.uv[2]];
     hit.u = b0 * a[0] + b1 * b[0] + b2 * c[0];
     hit.v = b0 * a[1] + b1 * b[1] + b2 * c[1];
-    const Material& m = scene_.materials[t.material];
-    if (!m.relief.flat() || !m.coatRelief.flat() || !std::holds_alternative<PhongModel>(m.model))
-      applyRelief(scene_, t, hit);
+    applyRelief(scene_, t, hit);
   }
 }
 
@@ -256,9 +255,9 @@ void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hi
   for (size_t i = 0; i < rays.size(); ++i) {
     if (hits[i].triangle == kNone) continue;
     describe(rays[i].direction, hits[i]);
-    const auto* phong = std::get_if<PhongModel>(&scene_.materials[hits[i].material].model);
-    if (phong && phong->diffuseMap != kNone)
-      scene_.textures[phong->diffuseMap].prefetch(hits[i].u, hits[i].v);
+    forEachImage(scene_.materials[hits[i].material], [&](uint32_t image) {
+      if (image != kNone) scene_.textures[image].prefetch(hits[i].u, hits[i].v);
+    });
   }
 }
 

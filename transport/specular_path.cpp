@@ -5,16 +5,6 @@
 
 namespace bnvpl {
 
-namespace {
-
-// Whether the material is Lambertian without a texture. Paths end there without making a Bsdf.
-bool isPlain(const Material& material) {
-  const auto* m = std::get_if<PhongModel>(&material.model);
-  return m && m->diffuseMap == kNone && !m->glass && isBlack(m->glossy) && isBlack(m->mirror);
-}
-
-}  // namespace
-
 SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& start, Rng& rng,
                                 const SpecularLightSampling& specularLights) {
@@ -42,10 +32,9 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     if (end.specularBounces == 0) end.firstDistance = end.hit.distance;
     met += end.throughput * emissionHit(lights, end.hit, arrival);
 
-    const Material& material = rays.scene().materials[end.hit.material];
-    if (isPlain(material)) {
+    if (const auto rough = roughEverywhere(rays.scene().materials[end.hit.material])) {
       rng.next();  // chooseLobes() would consume it
-      end.rough = !isBlack(material.phong().diffuse);
+      end.rough = *rough;
       return end;
     }
     const Bsdf bsdf(rays.scene(), end.hit);

@@ -5,8 +5,8 @@
 
 namespace bnvpl {
 
-// Turns `m`, which must not have the PhongModel, into a mix of `amount` of its model and a thin
-// sheet of index 1, which light crosses unchanged. Shadow rays do not cross it.
+// Turns `m` into a mix of `amount` of its model and a thin sheet of index 1, which light crosses
+// unchanged. Shadow rays do not cross it.
 void addTransparency(Scalar amount, SceneBuilder& builder, Material& m);
 
 }  // namespace bnvpl

@@ -57,13 +57,13 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
     r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_,
                                   settings_.spatialLights, rng, first, later);
   };
-  // Exitance is the integral of the cosine times radiance over outgoing directions. MTL materials
-  // reflect it by roughAlbedo(), whatever the directions, as they do for photons. The albedo of
-  // layered materials depends on the incident direction, so wo is sampled with a cosine-weighted
-  // density.
+  // Exitance is the integral of the cosine times radiance over outgoing directions. Where the
+  // albedo is constant, it is that of a diffuse surface of this albedo, as it is for photons. The
+  // albedo of layered materials depends on the incident direction, so wo is sampled with a
+  // cosine-weighted density.
   const Scene& scene = in_.rays.scene();
-  if (std::holds_alternative<PhongModel>(scene.materials[hit.material].model)) {
-    const Bsdf diffuse(hit, Bsdf(scene, hit).roughAlbedo());
+  if (const Bsdf bsdf(scene, hit); bsdf.albedoIsConstant()) {
+    const Bsdf diffuse(hit, bsdf.roughAlbedo());
     for (uint64_t j = 0; j < settings_.paths; ++j) addPath(diffuse);
   } else {
     SurfacePoint viewed = hit;

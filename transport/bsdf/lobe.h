@@ -15,6 +15,8 @@
 // wo.z is positive; wi.z is negative below the surface.
 #pragma once
 
+#include <optional>
+
 #include "transport/bsdf/scatter.h"
 
 namespace bnvpl {
@@ -42,6 +44,11 @@ class MaterialInputs {
                ? s.value * scene_.expressionAt(s.texture, point_.u, point_.v).x
                : s.value;
   }
+  // A constant times an image of Scene::textures.
+  Vec3 raw(Vec3 value, uint32_t image) const {
+    const bool textured = image != kNone && hasUv_ && !isBlack(value);
+    return textured ? value * scene_.textures[image].lookup(point_.u, point_.v) : value;
+  }
   Vec3 share(const Colour& c) const { return min(max(raw(c), Vec3()), Vec3(1)); }
   float share(const Scalar& s) const { return std::clamp(raw(s), 0.0f, 1.0f); }
   float ior(const Scalar& s) const { return std::clamp(raw(s), 1.0f, 100.0f); }
@@ -54,5 +61,19 @@ class MaterialInputs {
   const SurfacePoint& point_;
   bool hasUv_;
 };
+
+// Answers of most models to the questions of transport/bsdf.h; the others overload these.
+template <typename Model>
+std::optional<bool> roughEverywhere(const Model&) {
+  return {};
+}
+template <typename Model>
+bool mayBeSpecular(const Model&) {
+  return true;
+}
+template <typename Model>
+bool isGlass(const Model&, const Scene&) {
+  return false;
+}
 
 }  // namespace bnvpl

@@ -1,12 +1,11 @@
 #include "transport/bsdf/coated_conductor/coated_conductor.h"
 
+#include "transport/bsdf.h"
 #include "transport/bsdf/conductor/conductor.h"
-#include "transport/bsdf/lobe_sum.h"
 
 namespace bnvpl {
 
 namespace {
-
 
 // Cosine inside the coat of a direction with the given cosine outside (Snell's law).
 float within(float cosine, float ior) {
@@ -46,7 +45,7 @@ Vec3 CoatedMetal::albedo(Vec3 wo) const {
 }
 
 void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out) {
+              Bsdf& out) {
   const Ggx coat = ggxOf(model.coatRoughness, inputs);
   const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.coatIor));
   const GgxReflection metal{ggxOf(model.roughness, inputs),

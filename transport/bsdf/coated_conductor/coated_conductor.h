@@ -23,8 +23,8 @@ struct CoatedMetal {
   }
 };
 
-class LobeSum;
+class Bsdf;
 void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out);
+              Bsdf& out);
 
 }  // namespace bnvpl

@@ -1,16 +1,13 @@
 #include "transport/bsdf/coated_diffuse/coated_diffuse.h"
 
-#include "transport/bsdf/lobe_sum.h"
+#include "transport/bsdf.h"
 
 namespace bnvpl {
 
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out) {
+              Bsdf& out) {
   const Ggx ggx = ggxOf(model.roughness, inputs);
   const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.ior));
   const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();

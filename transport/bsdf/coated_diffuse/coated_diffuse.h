@@ -30,8 +30,8 @@ struct CoatedBase {
   }
 };
 
-class LobeSum;
+class Bsdf;
 void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out);
+              Bsdf& out);
 
 }  // namespace bnvpl

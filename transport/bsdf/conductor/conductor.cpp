@@ -1,6 +1,6 @@
 #include "transport/bsdf/conductor/conductor.h"
 
-#include "transport/bsdf/lobe_sum.h"
+#include "transport/bsdf.h"
 
 namespace bnvpl {
 
@@ -40,8 +40,7 @@ MultipleScattering multipleScattering(const FacetFresnel& metal, const Ggx& ggx)
   return {max(again, Vec3()) * (1.0f / (kPi * lost)), alpha, ggx.rough()};
 }
 
-void addLobes(const ConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out) {
+void addLobes(const ConductorModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out) {
   const GgxReflection metal{ggxOf(model.roughness, inputs),
                             metalFresnel(model.fresnel, 1.0f, inputs)};
   out.add(weight, metal);

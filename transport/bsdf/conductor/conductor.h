@@ -32,7 +32,7 @@ MultipleScattering multipleScattering(const FacetFresnel& metal, const Ggx& ggx)
 FacetFresnel metalFresnel(const ConductorFresnel& fresnel, float outside,
                           const MaterialInputs& inputs);
 
-class LobeSum;
-void addLobes(const ConductorModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out);
+class Bsdf;
+void addLobes(const ConductorModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
 
 }  // namespace bnvpl

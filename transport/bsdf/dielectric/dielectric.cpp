@@ -1,8 +1,8 @@
 #include "transport/bsdf/dielectric/dielectric.h"
 
+#include "transport/bsdf.h"
 #include "transport/bsdf/fresnel.h"
 #include "transport/bsdf/ggx/reflection.h"
-#include "transport/bsdf/lobe_sum.h"
 
 namespace bnvpl {
 
@@ -48,7 +48,7 @@ float DielectricLobe::pdf(Vec3 wo, Vec3 wi) const {
   return (1.0f - reflected) * facets * eta * eta * -i / (bend * bend);
 }
 
-// The weight of a smooth lobe leaves out radianceScale(), which LobeSum applies.
+// The weight of a smooth lobe leaves out radianceScale(), which Bsdf applies.
 bool DielectricLobe::sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const {
   const Vec3 h = smooth() ? Vec3{0, 0, 1} : ggx.sampleVisible(wo, at);
   const float cosine = std::min(1.0f, dot(wo, h));
@@ -75,8 +75,7 @@ bool ThinSheetLobe::sample(Vec3 wo, float pick, Point2, LobeSample& out) const {
   return true;
 }
 
-void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out) {
+void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out) {
   const float ior = inputs.ior(model.ior);
   const Vec3 reflection = inputs.share(model.reflection),
              transmission = inputs.share(model.transmission);

@@ -41,8 +41,9 @@ struct ThinSheetLobe {
   Vec3 bound(Vec3, float, float) const { return {}; }
 };
 
-class LobeSum;
-void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out);
+inline bool isGlass(const DielectricModel&, const Scene&) { return true; }
+
+class Bsdf;
+void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
 
 }  // namespace bnvpl

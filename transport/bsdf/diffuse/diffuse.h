@@ -5,7 +5,7 @@
 
 namespace bnvpl {
 
-// Cosines refer to the unbent shading normal (LobeSum), so that the value does not depend on wo.
+// Cosines refer to the unbent shading normal (Bsdf), so that the value does not depend on wo.
 struct LambertLobe {
   Vec3 colour;
   bool transmitted = false;
@@ -28,7 +28,13 @@ struct LambertLobe {
   }
 };
 
-class LobeSum;
-void addLobes(const DiffuseModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out);
+inline std::optional<bool> roughEverywhere(const DiffuseModel& m) {
+  if (m.reflectance.texture != kNone) return {};
+  return maxComponent(m.reflectance.value) > 0.0f;
+}
+inline bool mayBeSpecular(const DiffuseModel&) { return false; }
+
+class Bsdf;
+void addLobes(const DiffuseModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
 
 }  // namespace bnvpl

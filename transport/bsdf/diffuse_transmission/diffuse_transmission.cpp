@@ -1,11 +1,11 @@
 #include "transport/bsdf/diffuse_transmission/diffuse_transmission.h"
 
-#include "transport/bsdf/lobe_sum.h"
+#include "transport/bsdf.h"
 
 namespace bnvpl {
 
 void addLobes(const DiffuseTransmissionModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out) {
+              Bsdf& out) {
   const Vec3 r = inputs.share(model.reflectance), t = inputs.share(model.transmittance);
   const float scale = 1.0f / std::max(1.0f, maxComponent(r + t));
   out.add(weight, LambertLobe{r * scale});

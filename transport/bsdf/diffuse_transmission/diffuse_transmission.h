@@ -6,6 +6,6 @@
 namespace bnvpl {
 
 void addLobes(const DiffuseTransmissionModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out);
+              Bsdf& out);
 
 }  // namespace bnvpl

@@ -1,7 +1,7 @@
 #include "transport/bsdf/metallic_roughness/metallic_roughness.h"
 
+#include "transport/bsdf.h"
 #include "transport/bsdf/fresnel.h"
-#include "transport/bsdf/lobe_sum.h"
 #include "transport/bsdf/metallic_roughness/layered_albedo.h"
 
 namespace bnvpl {
@@ -65,7 +65,7 @@ Vec3 LayeredBase::albedo(Vec3 wo) const {
 }
 
 void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out) {
+              Bsdf& out) {
   const Vec3 base = inputs.share(model.baseColour);
   const float metallic = inputs.share(model.metallic), specular = inputs.share(model.specular);
   const float ior = inputs.raw(model.ior) > 0.0f ? inputs.ior(model.ior) : 0.0f;
@@ -79,14 +79,13 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
     ggx = {std::min(1.0f, ggx.alongX / aspect), std::max(kSmoothAlpha, ggx.alongY * aspect)};
     const float turns = inputs.raw(model.anisotropyTurns);
     const SurfacePoint& p = inputs.point();
-    if (std::isfinite(turns)) brushed = out.frame(p, p.ns, p.front ? turns : -turns);
+    if (std::isfinite(turns)) brushed = out.frame(p.ns, p.front ? turns : -turns);
   }
 
   const float clearcoat = inputs.share(model.clearcoat);
   const Ggx coat = ggxOf(Roughness(model.clearcoatRoughness, Roughness::Alpha::Square), inputs);
   const Vec3 coatNormal = inputs.point().coat;
-  const uint32_t coatFrame =
-      clearcoat > 0.0f && !isBlack(coatNormal) ? out.frame(inputs.point(), coatNormal) : 0;
+  const uint32_t coatFrame = clearcoat > 0.0f && !isBlack(coatNormal) ? out.frame(coatNormal) : 0;
   const CoatAbove above{clearcoat, coat.smooth() ? 0.0f : coat.meanAlpha(), coatFrame};
   // Metal and non-metal have the same facets, so one lobe with mixed reflectances represents both.
   out.add(weight,

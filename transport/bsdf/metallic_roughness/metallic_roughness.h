@@ -32,8 +32,12 @@ struct LayeredBase {
   float unlayered(float cosine) const;  // albedo of a white base under fresnel_mix
 };
 
-class LobeSum;
+inline bool isGlass(const MetallicRoughnessModel& model, const Scene&) {
+  return model.transmission.value > 0.0f;
+}
+
+class Bsdf;
 void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs, Vec3 weight,
-              LobeSum& out);
+              Bsdf& out);
 
 }  // namespace bnvpl

@@ -1,10 +1,14 @@
 #include "transport/bsdf/mix/mix.h"
 
-#include "transport/bsdf/lobe_sum.h"
+#include "transport/bsdf.h"
 
 namespace bnvpl {
 
-void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out) {
+bool isGlass(const MixModel& model, const Scene& scene) {
+  return isGlass(scene, model.first) || isGlass(scene, model.second);
+}
+
+void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out) {
   const float amount = inputs.share(model.amount);
   const auto add = [&](uint32_t part, float share) {
     if (part == kNone || share == 0.0f || out.full()) return;

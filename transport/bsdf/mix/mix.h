@@ -5,7 +5,9 @@
 
 namespace bnvpl {
 
-class LobeSum;
-void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, LobeSum& out);
+bool isGlass(const MixModel& model, const Scene& scene);
+
+class Bsdf;
+void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
 
 }  // namespace bnvpl
