@@ -21,6 +21,10 @@
 
 namespace bnvpl {
 
+class Bsdf;
+struct ModelReport;
+struct MtlModel;
+
 struct LobeSample {
   Vec3 wi;
   Vec3 weight;  // value * cosine / density; set by smooth lobes only

@@ -1,6 +1,7 @@
 #include <set>
 
 #include "tools/inspect/scene/scene_report.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -23,79 +24,10 @@ class MaterialReport {
 
   Json json = Json::object();
 
-  void operator()(const PhongModel& m) {
-    json["model"] = m.glass ? "glass" : "phong";
-    if (m.glass) {
-      json["ior"] = m.ior;
-      json["transmission"] = colourJson(m.transmission);
-      json["mirror"] = colourJson(m.mirror);
-      return;
-    }
-    image("diffuse", m.diffuse, m.diffuseMap);
-    if (!isBlack(m.glossy) || m.glossyMap != kNone) {
-      image("glossy", m.glossy, m.glossyMap);
-      json["exponent"] = m.exponent;
-    }
-    if (!isBlack(m.mirror)) json["mirror"] = colourJson(m.mirror);
-  }
-  void operator()(const DiffuseModel& m) {
-    json["model"] = "diffuse";
-    add("reflectance", m.reflectance);
-  }
-  void operator()(const DiffuseTransmissionModel& m) {
-    json["model"] = "diffuse transmission";
-    add("reflectance", m.reflectance);
-    add("transmittance", m.transmittance);
-  }
-  void operator()(const ConductorModel& m) {
-    json["model"] = "conductor";
-    add(m.fresnel);
-    add("roughness", m.roughness);
-    json["multiple_scattering"] = m.multipleScattering;
-  }
-  void operator()(const DielectricModel& m) {
-    json["model"] = m.thin ? "thin dielectric" : "dielectric";
-    add("ior", m.ior);
-    add("roughness", m.roughness);
-    add("reflection", m.reflection);
-    add("transmission", m.transmission);
-  }
-  void operator()(const CoatedDiffuseModel& m) {
-    json["model"] = "coated diffuse";
-    add("reflectance", m.reflectance);
-    add("ior", m.ior);
-    add("roughness", m.roughness);
-  }
-  void operator()(const CoatedConductorModel& m) {
-    json["model"] = "coated conductor";
-    add(m.fresnel);
-    add("roughness", m.roughness);
-    add("coat_ior", m.coatIor);
-    add("coat_roughness", m.coatRoughness);
-  }
-  void operator()(const MetallicRoughnessModel& m) {
-    json["model"] = "metallic-roughness";
-    add("base_colour", m.baseColour);
-    add("metallic", m.metallic);
-    add("roughness", m.roughness);
-    if (m.anisotropy.value > 0) add("anisotropy", m.anisotropy);
-    if (m.anisotropy.value > 0 && m.anisotropyTurns.value != 0)
-      add("anisotropy_turns", m.anisotropyTurns);
-    add("ior", m.ior);
-    if (m.specular.value != 1 || m.specular.texture != kNone) add("specular", m.specular);
-    if (m.specularColour.value != Vec3(1) || m.specularColour.texture != kNone)
-      add("specular_colour", m.specularColour);
-    if (m.clearcoat.value > 0) {
-      add("clearcoat", m.clearcoat);
-      add("clearcoat_roughness", m.clearcoatRoughness);
-    }
-    if (m.transmission.value > 0) add("transmission", m.transmission);
-  }
-  void operator()(const MixModel& m) {
-    json["model"] = "mix";
-    json["first"] = scene_.materials[m.first].name;
-    json["second"] = scene_.materials[m.second].name;
-    add("amount", m.amount);
+  void addModel(const ModelReport& report) {
+    json["model"] = report.model;
+    for (const auto& [name, parameter] : report.parameters)
+      std::visit([&](const auto& value) { add(name, value); }, parameter);
   }
 
   void addShared(const Material& m) {
@@ -122,10 +54,6 @@ class MaterialReport {
   }
 
  private:
-  void image(const std::string& name, Vec3 value, uint32_t map) {
-    json[name] = colourJson(value);
-    if (map != kNone) json[name + "_textures"] = Json::array({map});
-  }
   void textures(const std::string& name, uint32_t expression) {
     std::set<uint32_t> images;
     collectImages(scene_, expression, images);
@@ -139,17 +67,13 @@ class MaterialReport {
     json[name] = s.value;
     textures(name, s.texture);
   }
-  void add(const std::string& name, const Roughness& r) {
-    static constexpr const char* kAlpha[] = {"roughness", "roughness^2", "sqrt(roughness)"};
-    add(name, r.along);
-    if (r.across.value != r.along.value || r.across.texture != r.along.texture)
-      add(name + "_across", r.across);
-    json["alpha"] = kAlpha[static_cast<size_t>(r.alpha)];
+  void add(const std::string& name, const ModelReport::Image& i) {
+    json[name] = colourJson(i.value);
+    if (i.image != kNone) json[name + "_textures"] = Json::array({i.image});
   }
-  void add(const ConductorFresnel& f) {
-    if (f.byReflectance) return add("reflectance", f.reflectance);
-    add("eta", f.eta);
-    add("k", f.k);
+  template <typename Plain>
+  void add(const std::string& name, const Plain& value) {
+    json[name] = value;
   }
 
   const Scene& scene_;
@@ -160,7 +84,7 @@ class MaterialReport {
 Json describeMaterial(const Scene& scene, const Material& material) {
   MaterialReport report(scene);
   report.json["name"] = material.name;
-  std::visit(report, material.model);
+  report.addModel(describeModel(scene, material.model));
   report.addShared(material);
   return report.json;
 }

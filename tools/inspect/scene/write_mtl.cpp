@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <optional>
 
 #include "core/number_text.h"
 #include "tools/common/files/json_text.h"
 #include "tools/inspect/scene/write_scene.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -14,75 +14,6 @@ constexpr float kF0PerKs = 0.08f;  // reflectance at normal incidence (docs/scen
 std::string triple(Vec3 v) {
   return shortestText(v.x) + " " + shortestText(v.y) + " " + shortestText(v.z);
 }
-
-// The image of an expression that consists of the unmodified image; otherwise kNone.
-uint32_t plainImage(const Scene& scene, uint32_t expression) {
-  if (expression == kNone) return kNone;
-  const TextureExpression& e = scene.expressions[expression];
-  const bool plain = e.kind == TextureExpression::Kind::Image && e.channel == Channel::Rgb &&
-                     !e.invert && e.value == Vec3(1) && e.wrapU == Wrap::Repeat &&
-                     e.wrapV == Wrap::Repeat && e.uv == UvTransform();
-  return plain ? e.image : kNone;
-}
-
-Vec3 atNormalIncidence(const ConductorFresnel& f) {
-  if (f.byReflectance) return f.reflectance.value;
-  const Vec3 k2 = f.k.value * f.k.value, less = f.eta.value - Vec3(1), more = f.eta.value + Vec3(1);
-  const Vec3 mirrored = less * less + k2, all = more * more + k2;
-  return {mirrored.x / all.x, mirrored.y / all.y, mirrored.z / all.z};
-}
-
-// Approximates each model by Lambert, Phong lobe, mirror, glass, or metallic-roughness.
-class NearestMtl {
- public:
-  explicit NearestMtl(const Scene& scene) : scene_(scene) {}
-
-  PhongModel phong;
-  std::optional<MetallicRoughnessModel> facets;  // written beside Kd; specularColour holds f0
-
-  void operator()(const PhongModel& m) { phong = m; }
-  void operator()(const DiffuseModel& m) { diffuse(m.reflectance); }
-  void operator()(const MetallicRoughnessModel& m) {
-    if (m.transmission.value > 0.5f) return glass(m.ior.value, m.baseColour.value);
-    facets = m;
-    const float normal = (m.ior.value - 1.0f) / (m.ior.value + 1.0f);
-    facets->specularColour.value = m.specularColour.value * (normal * normal * m.specular.value);
-    diffuse(m.baseColour);
-  }
-  void operator()(const ConductorModel& m) { metal(m.fresnel, m.roughness.along.value); }
-  void operator()(const CoatedConductorModel& m) { metal(m.fresnel, m.roughness.along.value); }
-  void operator()(const CoatedDiffuseModel& m) { diffuse(m.reflectance); }
-  void operator()(const DiffuseTransmissionModel& m) { diffuse(m.reflectance); }
-  void operator()(const DielectricModel& m) { glass(m.ior.value, m.transmission.value); }
-  void operator()(const MixModel& m) {
-    const uint32_t part = m.amount.value < 0.5f ? m.first : m.second;
-    if (part != kNone) std::visit(*this, scene_.materials[part].model);
-  }
-
- private:
-  void diffuse(const Colour& c) {
-    phong.diffuse = min(c.value, Vec3(1));
-    phong.diffuseMap = plainImage(scene_, c.texture);
-  }
-  void metal(const ConductorFresnel& fresnel, float alpha) {
-    constexpr float kSmooth = 0.03f, kMaxExponent = 9999.0f;
-    const Vec3 albedo = min(atNormalIncidence(fresnel), Vec3(1));
-    if (alpha < kSmooth) {
-      phong.mirror = albedo;
-    } else {
-      phong.glossy = albedo;
-      phong.exponent = std::min(kMaxExponent, std::max(0.0f, 2.0f / (alpha * alpha) - 2.0f));
-    }
-  }
-  void glass(float ior, Vec3 colour) {
-    phong.glass = true;
-    phong.ior = std::clamp(ior, 1.0f, 100.0f);
-    phong.transmission = min(colour, Vec3(1));
-    phong.mirror = Vec3(1);
-  }
-
-  const Scene& scene_;
-};
 
 std::string mapLine(const Scene& scene, const std::string& key, const TextureExpression& e,
                     WrittenMaterials& used) {
@@ -136,12 +67,11 @@ std::string moreText(const Scene& scene, const Material& m, WrittenMaterials& us
 }
 
 std::string materialText(const Scene& scene, const Material& m, WrittenMaterials& used) {
-  NearestMtl nearest(scene);
-  std::visit(nearest, m.model);
+  const MtlModel nearest = modelToMtl(scene, m.model);
   const PhongModel& p = nearest.phong;
   std::string text = nearest.facets ? facetsText(*nearest.facets, p) : phongText(p);
   if (!isBlack(m.emission)) text += "Ke " + triple(m.emission) + "\n";
-  if (std::holds_alternative<PhongModel>(m.model)) text += moreText(scene, m, used);
+  if (nearest.exact) text += moreText(scene, m, used);
   if (p.glass) return text;
   return text + imageLine(scene, "map_Kd", p.diffuseMap, used) +
          imageLine(scene, "map_Ks", p.glossyMap, used) +

@@ -4,6 +4,7 @@
 #include "scene/material_inputs.h"
 #include "tools/common/files/json_text.h"
 #include "tools/inspect/scene/write_scene.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -144,10 +145,11 @@ void Surfaces::texture(uint32_t expression) {
 // Adds a material and, for a mix, its parts.
 void addWithParts(const Scene& scene, uint32_t material, std::set<uint32_t>& materials) {
   if (material == kNone || !materials.insert(material).second) return;
-  if (const auto* mix = std::get_if<MixModel>(&scene.materials[material].model)) {
-    addWithParts(scene, mix->first, materials);
-    addWithParts(scene, mix->second, materials);
-  }
+  const auto field = [&]<typename Field>(const char*, const Field& part) {
+    if constexpr (Like<Field, uint32_t>) addWithParts(scene, part, materials);
+  };
+  std::visit([&](const auto& model) { forEachField(model, field); },
+             scene.materials[material].model);
 }
 
 }  // namespace
@@ -155,8 +157,7 @@ void addWithParts(const Scene& scene, uint32_t material, std::set<uint32_t>& mat
 std::string surfacesText(const Scene& scene, WrittenMaterials& used) {
   std::set<uint32_t> materials;
   for (const uint32_t m : used.materials) {
-    if (!std::holds_alternative<PhongModel>(scene.materials[m].model))
-      addWithParts(scene, m, materials);
+    if (!modelToMtl(scene, scene.materials[m].model).exact) addWithParts(scene, m, materials);
   }
   Surfaces surfaces(scene, used);
   for (const uint32_t m : materials) surfaces.material(m);

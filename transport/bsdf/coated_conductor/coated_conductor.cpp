@@ -2,6 +2,7 @@
 
 #include "transport/bsdf.h"
 #include "transport/bsdf/conductor/conductor.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -52,6 +53,19 @@ void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, V
                             metalFresnel(model.fresnel, ior, inputs)};
   out.add(weight, GgxReflection{coat, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});
   out.add(weight, CoatedMetal{metal, ior, coat.smooth() ? 0.0f : coat.meanAlpha()});
+}
+
+ModelReport describe(const Scene&, const CoatedConductorModel& m) {
+  ModelReport out{"coated conductor", {}};
+  out.add(m.fresnel);
+  out.add("roughness", m.roughness);
+  out.add("coat_ior", m.coatIor);
+  out.add("coat_roughness", m.coatRoughness);
+  return out;
+}
+
+MtlModel toMtl(const Scene&, const CoatedConductorModel& m) {
+  return metalMtl(m.fresnel, m.roughness.along.value);
 }
 
 }  // namespace bnvpl

@@ -23,8 +23,9 @@ struct CoatedMetal {
   }
 };
 
-class Bsdf;
 void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out);
+ModelReport describe(const Scene& scene, const CoatedConductorModel& model);
+MtlModel toMtl(const Scene& scene, const CoatedConductorModel& model);
 
 }  // namespace bnvpl

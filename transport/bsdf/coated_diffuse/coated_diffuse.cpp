@@ -1,6 +1,7 @@
 #include "transport/bsdf/coated_diffuse/coated_diffuse.h"
 
 #include "transport/bsdf.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -19,6 +20,16 @@ void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec
     scale[c] = base[c] / (kPi * ior * ior * (1.0f - base[c] * trapped));
   out.add(weight, GgxReflection{ggx, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});
   out.add(weight, CoatedBase{scale, ior, alpha});
+}
+
+ModelReport describe(const Scene&, const CoatedDiffuseModel& m) {
+  ModelReport out{"coated diffuse", {{"reflectance", m.reflectance}, {"ior", m.ior}}};
+  out.add("roughness", m.roughness);
+  return out;
+}
+
+MtlModel toMtl(const Scene& scene, const CoatedDiffuseModel& m) {
+  return diffuseMtl(scene, m.reflectance);
 }
 
 }  // namespace bnvpl

@@ -30,8 +30,9 @@ struct CoatedBase {
   }
 };
 
-class Bsdf;
 void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out);
+ModelReport describe(const Scene& scene, const CoatedDiffuseModel& model);
+MtlModel toMtl(const Scene& scene, const CoatedDiffuseModel& model);
 
 }  // namespace bnvpl

@@ -1,6 +1,7 @@
 #include "transport/bsdf/conductor/conductor.h"
 
 #include "transport/bsdf.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -46,6 +47,18 @@ void addLobes(const ConductorModel& model, const MaterialInputs& inputs, Vec3 we
   out.add(weight, metal);
   if (model.multipleScattering && !metal.smooth())
     out.add(weight, multipleScattering(metal.fresnel, metal.ggx));
+}
+
+ModelReport describe(const Scene&, const ConductorModel& m) {
+  ModelReport out{"conductor", {}};
+  out.add(m.fresnel);
+  out.add("roughness", m.roughness);
+  out.add("multiple_scattering", m.multipleScattering);
+  return out;
+}
+
+MtlModel toMtl(const Scene&, const ConductorModel& m) {
+  return metalMtl(m.fresnel, m.roughness.along.value);
 }
 
 }  // namespace bnvpl

@@ -32,7 +32,8 @@ MultipleScattering multipleScattering(const FacetFresnel& metal, const Ggx& ggx)
 FacetFresnel metalFresnel(const ConductorFresnel& fresnel, float outside,
                           const MaterialInputs& inputs);
 
-class Bsdf;
 void addLobes(const ConductorModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
+ModelReport describe(const Scene& scene, const ConductorModel& model);
+MtlModel toMtl(const Scene& scene, const ConductorModel& model);
 
 }  // namespace bnvpl

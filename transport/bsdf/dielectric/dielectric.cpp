@@ -3,6 +3,7 @@
 #include "transport/bsdf.h"
 #include "transport/bsdf/fresnel.h"
 #include "transport/bsdf/ggx/reflection.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -87,6 +88,18 @@ void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 w
                       transmission};
   if (std::fabs(ior - 1.0f) < kNoBend) lobe.ggx = {0.0f, 0.0f};
   out.add(weight, lobe);
+}
+
+ModelReport describe(const Scene&, const DielectricModel& m) {
+  ModelReport out{m.thin ? "thin dielectric" : "dielectric", {{"ior", m.ior}}};
+  out.add("roughness", m.roughness);
+  out.add("reflection", m.reflection);
+  out.add("transmission", m.transmission);
+  return out;
+}
+
+MtlModel toMtl(const Scene&, const DielectricModel& m) {
+  return glassMtl(m.ior.value, m.transmission.value);
 }
 
 }  // namespace bnvpl

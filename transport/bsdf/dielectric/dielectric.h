@@ -43,7 +43,8 @@ struct ThinSheetLobe {
 
 inline bool isGlass(const DielectricModel&, const Scene&) { return true; }
 
-class Bsdf;
 void addLobes(const DielectricModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
+ModelReport describe(const Scene& scene, const DielectricModel& model);
+MtlModel toMtl(const Scene& scene, const DielectricModel& model);
 
 }  // namespace bnvpl

@@ -34,7 +34,8 @@ inline std::optional<bool> roughEverywhere(const DiffuseModel& m) {
 }
 inline bool mayBeSpecular(const DiffuseModel&) { return false; }
 
-class Bsdf;
 void addLobes(const DiffuseModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
+ModelReport describe(const Scene& scene, const DiffuseModel& model);
+MtlModel toMtl(const Scene& scene, const DiffuseModel& model);
 
 }  // namespace bnvpl

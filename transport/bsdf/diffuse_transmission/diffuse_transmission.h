@@ -7,5 +7,7 @@ namespace bnvpl {
 
 void addLobes(const DiffuseTransmissionModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out);
+ModelReport describe(const Scene& scene, const DiffuseTransmissionModel& model);
+MtlModel toMtl(const Scene& scene, const DiffuseTransmissionModel& model);
 
 }  // namespace bnvpl

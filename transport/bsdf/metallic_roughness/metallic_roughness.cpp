@@ -3,6 +3,7 @@
 #include "transport/bsdf.h"
 #include "transport/bsdf/fresnel.h"
 #include "transport/bsdf/metallic_roughness/layered_albedo.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -104,6 +105,34 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
   out.add(weight * clearcoat,
           GgxReflection{coat, {FacetFresnel::Kind::Schlick, Vec3(kCoatF0), Vec3(1)}}, {},
           coatFrame);
+}
+
+ModelReport describe(const Scene&, const MetallicRoughnessModel& m) {
+  ModelReport out{
+      "metallic-roughness",
+      {{"base_colour", m.baseColour}, {"metallic", m.metallic}, {"roughness", m.roughness}}};
+  if (m.anisotropy.value > 0) out.add("anisotropy", m.anisotropy);
+  if (m.anisotropy.value > 0 && m.anisotropyTurns.value != 0)
+    out.add("anisotropy_turns", m.anisotropyTurns);
+  out.add("ior", m.ior);
+  if (m.specular.value != 1 || m.specular.texture != kNone) out.add("specular", m.specular);
+  if (m.specularColour.value != Vec3(1) || m.specularColour.texture != kNone)
+    out.add("specular_colour", m.specularColour);
+  if (m.clearcoat.value > 0) {
+    out.add("clearcoat", m.clearcoat);
+    out.add("clearcoat_roughness", m.clearcoatRoughness);
+  }
+  if (m.transmission.value > 0) out.add("transmission", m.transmission);
+  return out;
+}
+
+MtlModel toMtl(const Scene& scene, const MetallicRoughnessModel& m) {
+  if (m.transmission.value > 0.5f) return glassMtl(m.ior.value, m.baseColour.value);
+  MtlModel mtl = diffuseMtl(scene, m.baseColour);
+  const float normal = (m.ior.value - 1.0f) / (m.ior.value + 1.0f);
+  mtl.facets = m;
+  mtl.facets->specularColour.value = m.specularColour.value * (normal * normal * m.specular.value);
+  return mtl;
 }
 
 }  // namespace bnvpl

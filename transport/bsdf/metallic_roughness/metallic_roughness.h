@@ -36,8 +36,9 @@ inline bool isGlass(const MetallicRoughnessModel& model, const Scene&) {
   return model.transmission.value > 0.0f;
 }
 
-class Bsdf;
 void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out);
+ModelReport describe(const Scene& scene, const MetallicRoughnessModel& model);
+MtlModel toMtl(const Scene& scene, const MetallicRoughnessModel& model);
 
 }  // namespace bnvpl

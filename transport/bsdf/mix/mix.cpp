@@ -1,6 +1,7 @@
 #include "transport/bsdf/mix/mix.h"
 
 #include "transport/bsdf.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -16,6 +17,20 @@ void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, 
   };
   add(model.first, 1.0f - amount);
   add(model.second, amount);
+}
+
+ModelReport describe(const Scene& scene, const MixModel& m) {
+  return {"mix",
+          {{"first", scene.materials[m.first].name},
+           {"second", scene.materials[m.second].name},
+           {"amount", m.amount}}};
+}
+
+MtlModel toMtl(const Scene& scene, const MixModel& m) {
+  const uint32_t part = m.amount.value < 0.5f ? m.first : m.second;
+  MtlModel mtl = part != kNone ? modelToMtl(scene, scene.materials[part].model) : MtlModel{};
+  mtl.exact = false;
+  return mtl;
 }
 
 }  // namespace bnvpl

@@ -7,7 +7,8 @@ namespace bnvpl {
 
 bool isGlass(const MixModel& model, const Scene& scene);
 
-class Bsdf;
 void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
+ModelReport describe(const Scene& scene, const MixModel& model);
+MtlModel toMtl(const Scene& scene, const MixModel& model);
 
 }  // namespace bnvpl

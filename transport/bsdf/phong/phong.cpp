@@ -1,6 +1,7 @@
 #include "transport/bsdf/phong/phong.h"
 
 #include "transport/bsdf.h"
+#include "transport/bsdf/model_report.h"
 
 namespace bnvpl {
 
@@ -29,5 +30,25 @@ void addLobes(const PhongModel& m, const MaterialInputs& inputs, Vec3 weight, Bs
   if (isBlack(mirror)) return;
   out.add(weight, GgxReflection{{0.0f, 0.0f}, {FacetFresnel::Kind::Schlick, mirror, mirror}});
 }
+
+ModelReport describe(const Scene&, const PhongModel& m) {
+  ModelReport out;
+  out.model = m.glass ? "glass" : "phong";
+  if (m.glass) {
+    out.add("ior", Scalar(m.ior));
+    out.add("transmission", Colour(m.transmission));
+    out.add("mirror", Colour(m.mirror));
+    return out;
+  }
+  out.add("diffuse", ModelReport::Image{m.diffuse, m.diffuseMap});
+  if (!isBlack(m.glossy) || m.glossyMap != kNone) {
+    out.add("glossy", ModelReport::Image{m.glossy, m.glossyMap});
+    out.add("exponent", Scalar(m.exponent));
+  }
+  if (!isBlack(m.mirror)) out.add("mirror", Colour(m.mirror));
+  return out;
+}
+
+MtlModel toMtl(const Scene&, const PhongModel& m) { return {m, {}, true}; }
 
 }  // namespace bnvpl

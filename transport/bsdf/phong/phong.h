@@ -44,7 +44,8 @@ std::optional<bool> roughEverywhere(const PhongModel& model);
 bool mayBeSpecular(const PhongModel& model);
 inline bool isGlass(const PhongModel& model, const Scene&) { return model.glass; }
 
-class Bsdf;
 void addLobes(const PhongModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out);
+ModelReport describe(const Scene& scene, const PhongModel& model);
+MtlModel toMtl(const Scene& scene, const PhongModel& model);
 
 }  // namespace bnvpl
