@@ -41,9 +41,11 @@ function(bnvpl_add_methods library slot)
     string(APPEND entries "      &methods::${slot}::${folder}::method,\n")
   endforeach()
   set(text "// Made by cmake/Methods.cmake from the folders of ${here}.\n#include \"${here}/${slot}.h\"\n\n")
-  string(APPEND text "namespace bnvpl {\nnamespace methods::${slot} {\n${declarations}}  // namespace methods::${slot}\n\n")
+  string(APPEND text
+    "namespace bnvpl {\nnamespace methods::${slot} {\n${declarations}}  // namespace methods::${slot}\n\n")
   string(APPEND text "std::span<const ${type}* const> ${slot}Methods() {\n")
-  string(APPEND text "  static const ${type}* const list[] = {\n${entries}  };\n  return list;\n}\n\n}  // namespace bnvpl\n")
+  string(APPEND text
+    "  static const ${type}* const list[] = {\n${entries}  };\n  return list;\n}\n\n}  // namespace bnvpl\n")
   set(registry ${CMAKE_CURRENT_BINARY_DIR}/${slot}_methods.cpp)
   file(GENERATE OUTPUT ${registry} CONTENT "${text}")
   target_sources(${library} PRIVATE ${registry})
