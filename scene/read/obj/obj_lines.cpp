@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "core/parallel.h"
@@ -131,7 +132,7 @@ bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
 }
 
 // Blanks out a comment behind the numbers of a line of `text`.
-std::string_view withoutComment(std::string_view rest, std::string& text) {
+std::string_view withoutComment(std::string_view rest, std::span<char> text) {
   size_t at = rest.find('#');
   while (at != rest.npos && at > 0 && !isBlank(rest[at - 1])) at = rest.find('#', at + 1);
   if (at == rest.npos) return rest;
@@ -140,10 +141,12 @@ std::string_view withoutComment(std::string_view rest, std::string& text) {
   return rest.substr(0, at);
 }
 
-void scan(std::string& text, Stretch& s) {
+// Ranges of one text are scanned in parallel: nothing but the characters of the own range is
+// written.
+void scan(std::span<char> text, Stretch& s) {
   std::replace(text.begin() + static_cast<std::ptrdiff_t>(s.begin),
                text.begin() + static_cast<std::ptrdiff_t>(s.end), '\0', ' ');  // tinyobj stops at 0
-  const std::string_view all = std::string_view(text).substr(0, s.end);
+  const std::string_view all(text.data(), s.end);
   for (size_t at = s.begin; at < s.end;) {
     const size_t end = lineEnd(all, at);
     const std::string_view line = all.substr(at, end - at);
@@ -161,7 +164,7 @@ void scan(std::string& text, Stretch& s) {
     const bool unnamed = keyword == "usemtl" && rest.empty();
     if (length > 0 && !note(keyword, rest, s)) text[at + begin] = '#';
     // tinyobj ignores a usemtl without a name, but reports a group.
-    if (unnamed) text.replace(at + begin, length, "g     ");
+    if (unnamed) std::ranges::fill(text.subspan(at + begin, length), ' '), text[at + begin] = 'g';
     s.newlines += end < s.end && all[end] == '\n';
     at = end + 1;
   }
