@@ -38,6 +38,17 @@ inline Vec3 sampleCosineHemisphere(float u, float v) {
   const Vec3 d = sampleDisk(u, v);
   return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
 }
+// The inverses.
+inline Point2 diskDrawnBy(Vec3 p) {
+  const bool wide = std::fabs(p.x) > std::fabs(p.y);
+  const float along = wide ? p.x : p.y, across = wide ? p.y : p.x;
+  if (along == 0.0f) return {0.5f, 0.5f};
+  const float r = std::copysign(std::min(1.0f, std::sqrt(p.x * p.x + p.y * p.y)), along);
+  const float other = r * std::atan(across / along) * (4.0f / kPi);
+  const float a = wide ? r : other, b = wide ? other : r;
+  return {0.5f * (a + 1.0f), 0.5f * (b + 1.0f)};
+}
+inline Point2 cosineHemisphereDrawnBy(Vec3 d) { return diskDrawnBy(d); }
 inline float pdfCosineHemisphere(float cosTheta) { return std::max(0.0f, cosTheta) / kPi; }
 
 // Uniform on the sphere; density 1/(4 pi).

@@ -71,6 +71,7 @@ struct Basis {
     t = {b, sign + n.y * n.y * a, -n.y};
   }
   Vec3 toWorld(Vec3 v) const { return v.x * s + v.y * t + v.z * n; }
+  Vec3 toLocal(Vec3 v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
 };
 
 // Axis-aligned box, which is empty until it is extended.

@@ -36,12 +36,17 @@ uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards) {
   return uint64_t{light} << 9 | static_cast<uint64_t>(step);
 }
 
-float SharedWithPhotons::ofRays(size_t light, Vec3 towards) const {
-  const float sent = lights ? photons * lights->pickProbability(light) : 0.0f;
-  if (!(sent > 0.0f)) return 1.0f;
+bool SharedWithPhotons::sends(size_t light, Vec3 towards) const {
+  if (!lights || !(photons * lights->pickProbability(light) > 0.0f)) return false;
+  return !lamps || !lights->hittable(light) ||
+         std::ranges::binary_search(*lamps, lampOf(*lights, light, towards));
+}
+
+float SharedWithPhotons::ofRays(size_t light, Vec3 towards, float guided) const {
+  if (!sends(light, towards)) return 1.0f;
   if (!lights->hittable(light)) return 0.0f;
-  if (lamps && !std::ranges::binary_search(*lamps, lampOf(*lights, light, towards))) return 1.0f;
-  return powerHeuristic(rays, sent * lights->photonDensity(light, towards));
+  return powerHeuristic(rays, photons * lights->pickProbability(light) * guided *
+                                  lights->photonDensity(light, towards));
 }
 
 bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& s) {
@@ -54,16 +59,19 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  return emitted * arrival.shared.ofRays(light, {}) *
-         hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival,
-                   [&] { return lights.drawnBy(light, hit); });
+  return emitted * arrival.shared.ofRays(light, -hit.wo, arrival.from, [&] {
+    return lights.drawnBy(light, hit);
+  }) * hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival, [&] {
+           return lights.drawnBy(light, hit);
+         });
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
-    sum += radiance * arrival.shared.ofRays(light, direction) *
-           hitWeight(lights, light, pdf, arrival, [&] { return lights.drawnBy(light, direction); });
+    sum += radiance * arrival.shared.ofRays(light, direction, arrival.from, [&] {
+      return lights.drawnBy(light, direction);
+    }) * hitWeight(lights, light, pdf, arrival, [&] { return lights.drawnBy(light, direction); });
   });
   return sum;
 }

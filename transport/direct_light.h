@@ -7,6 +7,7 @@
 
 #include "core/sampling.h"
 #include "transport/bsdf.h"
+#include "transport/emission_guide.h"
 #include "transport/light_strata.h"
 #include "transport/lights.h"
 
@@ -32,8 +33,25 @@ struct SharedWithPhotons {
   float photons = 0.0f;              // number of photons from all lights
   // Lamps (lampOf) that emit photons, ascending; null: all do. Rays alone estimate the others.
   const std::vector<uint64_t>* lamps = nullptr;
-  // Weight of rays. `towards` is the direction towards a light at infinity.
-  float ofRays(size_t light, Vec3 towards) const;
+  const EmissionGuide* guide = nullptr;  // density of the photons; null: by power
+  // Weight of rays that reach `from` from the direction `towards` a light. place() tells where on
+  // the light: drawnBy().
+  template <typename Place>
+  float ofRays(size_t light, Vec3 towards, Vec3 from, const Place& place) const {
+    if (!sends(light, towards)) return 1.0f;
+    if (!lights->hittable(light)) return 0.0f;
+    const float guided = guide && guide->guides()
+                             ? guide->density({static_cast<uint32_t>(light),
+                                               lights->emittedBy(light, place(), towards, from)})
+                             : 1.0f;
+    return ofRays(light, towards, guided);
+  }
+  // The same with the density of the photons relative to emission by power.
+  float ofRays(size_t light, Vec3 towards, float guided) const;
+
+ private:
+  // Whether photons carry light of the lamp.
+  bool sends(size_t light, Vec3 towards) const;
 };
 
 // Shadow rays by the learned distribution over the strata of all lights.
@@ -175,7 +193,9 @@ typename Reflects::Light shadowRay(const RayScene& rays, const LightSet& lights,
   if (isHidden(rays, reflected.point(), s)) return {};
   const float other = s.pdf > 0.0f ? rayPdf(s.wi) : 0.0f;  // s.pdf 0: no ray can hit the light
   const float weight = other > 0.0f ? powerHeuristic(s.pdf * count, other) : 1.0f;
-  return light * (weight * photons.ofRays(place.light, s.wi) / count);
+  return light * (weight * photons.ofRays(place.light, s.wi, reflected.point().position, [&] {
+           return place.at;
+         }) / count);
 }
 
 template <typename Reflects, typename RayPdf>

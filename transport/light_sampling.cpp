@@ -210,24 +210,71 @@ Vec3 facesAcross(Vec3 extent, Vec3 d) {
 
 }  // namespace
 
-PhotonStart LightSet::emitFromInfinity(const Light& light, Rng& rng) const {
-  const float u = rng.next(), v = rng.next();
+PhotonStart LightSet::emitFromInfinity(const Light& light, const EmissionPoint& at) const {
   Vec3 radiance;
   float pdf = 0.0f;
-  const Vec3 towards = sampleDirection(light, u, v, radiance, pdf);
+  const Vec3 towards = sampleDirection(light, at[0], at[1], radiance, pdf);
   const Vec3 d = -towards, e = scene_.bounds.extent();
   const Vec3 face = facesAcross(e, d);
   const float total = face.x + face.y + face.z;
-  const float pick = rng.next() * total;
-  const size_t axis = pick < face.x ? 0 : pick < face.x + face.y ? 1 : 2;
-  Vec3 p = scene_.bounds.lower + e * Vec3{rng.next(), rng.next(), rng.next()};
+  float along = at[2] * total;  // the faces lie side by side
+  size_t axis = 0;
+  while (axis < 2 && along >= face[axis]) along -= face[axis++];
+  const size_t across = (axis + 1) % 3, up = (axis + 2) % 3;
+  Vec3 p;
   p[axis] = d[axis] > 0.0f ? scene_.bounds.lower[axis] : scene_.bounds.upper[axis];
+  const float share = face[axis] > 0.0f ? std::min(along / face[axis], 1.0f) : 0.0f;
+  p[across] = scene_.bounds.lower[across] + e[across] * share;
+  p[up] = scene_.bounds.lower[up] + e[up] * at[3];
   PhotonStart start;
   start.direction = d;
   // The origin is moved back along the ray, so that a surface in the face itself is hit.
   start.origin = p - d * (0x1p-10f * scene_.bounds.diagonal());
   start.flux = radiance * (pdf > 0.0f ? total / pdf : total);
   return start;
+}
+
+EmissionPoint LightSet::emittedBy(size_t index, Point2 place, Vec3 towards, Vec3 from) const {
+  const Light& light = lights_[index];
+  EmissionPoint at{place.x, place.y, 0.0f, 0.0f};
+  if (light.area) {
+    const Vec3 n = samplePointOn(light, place.x, place.y).normal;
+    const bool back = light.twoSided && dot(n, towards) > 0.0f;
+    const Point2 direction = cosineHemisphereDrawnBy(Basis(back ? -n : n).toLocal(-towards));
+    at[2] = light.twoSided ? 0.5f * direction.x + (back ? 0.0f : 0.5f) : direction.x;
+    at[3] = direction.y;
+    return at;
+  }
+  if (light.spec.type != LightType::Directional && light.spec.type != LightType::Environment)
+    return at;
+  // The face of the box by which the ray enters it.
+  const Vec3 e = scene_.bounds.extent(), face = facesAcross(e, towards);
+  size_t axis = 0;
+  float least = INFINITY;
+  for (size_t k = 0; k < 3; ++k) {
+    if (!(face[k] > 0.0f)) continue;
+    const float end = towards[k] > 0.0f ? scene_.bounds.upper[k] : scene_.bounds.lower[k];
+    const float distance = (end - from[k]) / towards[k];
+    if (distance < least) least = distance, axis = k;
+  }
+  const auto share = [&](size_t k) {
+    const float x = from[k] + least * towards[k] - scene_.bounds.lower[k];
+    return e[k] > 0.0f ? std::clamp(x / e[k], 0.0f, 1.0f) : 0.0f;
+  };
+  float before = 0.0f;
+  for (size_t k = 0; k < axis; ++k) before += face[k];
+  at[2] = (before + share((axis + 1) % 3) * face[axis]) / (face.x + face.y + face.z);
+  at[3] = share((axis + 2) % 3);
+  return at;
+}
+
+std::span<const uint8_t> LightSet::emissionSides(size_t index) const {
+  static constexpr std::array<uint8_t, 4> kAll{0, 1, 2, 3};
+  const Light& light = lights_[index];
+  if (light.area || light.spec.type == LightType::Environment) return kAll;
+  // A sun's directions are too narrow to matter.
+  return light.spec.type == LightType::Directional ? std::span(kAll).last(2)
+                                                   : std::span(kAll).first(2);
 }
 
 float LightSet::photonDensity(size_t index, Vec3 towards) const {
@@ -241,29 +288,36 @@ float LightSet::photonDensity(size_t index, Vec3 towards) const {
 }
 
 PhotonStart LightSet::emit(size_t index, Rng& rng) const {
+  EmissionPoint at;
+  for (float& u : at) u = rng.next();
+  return emit(index, at);
+}
+
+PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {
   const Light& light = lights_[index];
   const LightSpec& s = light.spec;
   PhotonStart start;
   if (light.area) {
-    const float u = rng.next(), v = rng.next();
-    const auto [p, normal, emission, density] = samplePointOn(light, u, v);
+    const auto [p, normal, emission, density] = samplePointOn(light, at[0], at[1]);
     Vec3 n = normal;
-    if (light.twoSided && rng.next() < 0.5f) n = -n;
-    const float a = rng.next(), b = rng.next();
-    start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, b));
+    float a = at[2];
+    if (light.twoSided) {  // the halves of this dimension are the sides
+      const bool back = a < 0.5f;
+      if (back) n = -n;
+      a = 2.0f * a - (back ? 0.0f : 1.0f);
+    }
+    start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, at[3]));
     start.origin = rays_.offsetOrigin(p, n);
     start.flux = fluxOf(light, emission) * (1.0f / density);
   } else if (s.type == LightType::Point) {
-    const float u = rng.next(), v = rng.next();
-    start = {s.position, sampleSphere(u, v), light.power};
+    start = {s.position, sampleSphere(at[0], at[1]), light.power};
   } else if (s.type == LightType::Spot) {
-    const float u = rng.next(), v = rng.next();
-    const Vec3 d = sampleNarrowCone(u, v, versine(s.coneRad));
+    const Vec3 d = sampleNarrowCone(at[0], at[1], versine(s.coneRad));
     start.origin = s.position;
     start.direction = Basis(s.direction).toWorld(d);
     start.flux = s.emission * (spotFalloff(s, d.z) / pdfNarrowCone(versine(s.coneRad)));
   } else {
-    start = emitFromInfinity(light, rng);
+    start = emitFromInfinity(light, at);
   }
   return start;
 }

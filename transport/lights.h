@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,11 @@ struct PhotonStart {
   Vec3 direction;  // unit
   Vec3 flux;       // W, if this were the only photon of its light
 };
+
+// A point of the unit hypercube from which a light samples a photon: 0 and 1 are the place on an
+// area light, or the direction of another; 2 and 3 are the direction from an area light, or the
+// place on the scene's box of a light at infinity.
+using EmissionPoint = std::array<float, 4>;
 
 class LightSet {
  public:
@@ -84,7 +90,14 @@ class LightSet {
     }
   }
 
+  PhotonStart emit(size_t light, const EmissionPoint& at) const;
   PhotonStart emit(size_t light, Rng& rng) const;
+  // The dimensions of EmissionPoint on which a photon depends so that a density over them can be
+  // looked up again by emittedBy().
+  std::span<const uint8_t> emissionSides(size_t light) const;
+  // The inverse of emit() for a photon that reaches `from` straight from the light, in the
+  // direction `towards` the light. `place`: drawnBy() of the hit or the direction.
+  EmissionPoint emittedBy(size_t light, Point2 place, Vec3 towards, Vec3 from) const;
   // Density of one photon of emit(), 1/unit^2: per area of the emitter; for a light at infinity, pi
   // times the density per projected area and solid angle, to match the 1/pi of cosine emission. 0
   // if no ray can hit the light. `towards` is the direction towards a light at infinity.
@@ -129,7 +142,7 @@ class LightSet {
   float texelPdf(const Light& light, size_t x, uint32_t y) const;
   Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;
   bool sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const;
-  PhotonStart emitFromInfinity(const Light& light, Rng& rng) const;
+  PhotonStart emitFromInfinity(const Light& light, const EmissionPoint& at) const;
   struct EmitterPoint {
     Vec3 position, normal, emission;
     float density;  // relative to uniform sampling of the light's area

@@ -186,9 +186,9 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
     const Caustics caustics(world.rays, world.lights, photons, 8.0f, 0, 3, {});
-    EXPECT_GT(caustics.lamps(), 0u);
-    EXPECT_EQ(caustics.sparseLamps() == caustics.lamps(), left) << photons;
-    return caustics.shared(seen).ofRays(lamp, {0, 1, 0});
+    EXPECT_GT(caustics.stats().lamps, 0u);
+    EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
+    return caustics.shared(seen).ofRays(lamp, {0, 1, 0}, 1.0f);
   };
   EXPECT_EQ(share(16, true), 1.0f);
   EXPECT_LT(share(400000, false), 1.0f);
@@ -200,8 +200,8 @@ TEST(Caustics, IntegratorsReportTheirLamps) {
   const VplTable lit = fewVpls(world);
   for (const char* integrator : {"vpl", "guided"}) {
     const RenderResult image = renderVpls(world, lit, {{"integrator", integrator}, {"spp", "1"}});
-    EXPECT_GT(image.lamps, 0u) << integrator;
-    EXPECT_LE(image.sparseLamps, image.lamps) << integrator;
+    EXPECT_GT(image.caustics.lamps, 0u) << integrator;
+    EXPECT_LE(image.caustics.sparseLamps, image.caustics.lamps) << integrator;
     const bool gathers = integrator == std::string_view("vpl");
     EXPECT_EQ(image.vpls > 0, gathers) << integrator;
     EXPECT_EQ(image.emissionPoints > 0, gathers) << integrator;

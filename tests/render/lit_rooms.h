@@ -48,6 +48,57 @@ inline Scene bulbs(uint32_t hidden) {
   return scene;
 }
 
+inline void addQuad(SceneBuilder& builder, uint32_t material, Vec3 p, Vec3 a, Vec3 b) {
+  std::vector<double> positions;
+  for (const Vec3 c : {p, p + a, p + a + b, p + b})
+    positions.insert(positions.end(), {double{c.x}, double{c.y}, double{c.z}});
+  Mesh mesh{positions, {}, {}, {}};
+  for (const auto& corners : {std::array<uint32_t, 3>{0, 1, 2}, {0, 2, 3}})
+    mesh.triangles.push_back({corners, kNoCorners, kNoCorners, material});
+  builder.addMesh("quads", std::move(mesh));
+}
+
+// A room of 4 x 3 x 4 with a window of 2 x 1 on a square of ground, under a sun, whose light falls
+// through the window on a sheet of brushed metal. The camera looks at the wall opposite the window,
+// away from the sheet: one photon in some 500 enters by
+// default.
+inline Scene sunnyRoom(float ground = 24.0f) {
+  SceneBuilder builder("sunny room");
+  builder.setFilm({16, 12});
+  Camera camera;
+  camera.verticalFovRad = 1.2f;
+  camera.forward = {-1, 0, 0}, camera.right = {0, 0, -1};
+  builder.setCamera({1.8, 1.5, 0}, camera);
+  Material paint, metal;
+  paint.model = DiffuseModel{Vec3(0.6f)};
+  ConductorModel brushed;
+  brushed.roughness = Roughness(0.1f);
+  metal.model = brushed;
+  const uint32_t wall = builder.addMaterial(paint), sheet = builder.addMaterial(metal);
+  const auto quad = [&](uint32_t material, Vec3 p, Vec3 a, Vec3 b) {
+    addQuad(builder, material, p, a, b);
+  };
+  const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  quad(wall, {-0.5f * ground, -0.01f, -0.5f * ground}, ground * z, ground * x);
+  quad(wall, {-2, 0, -2}, 4.0f * z, 4.0f * x);
+  quad(sheet, {0, 0.02f, -1}, 2.0f * z, 1.5f * x);
+  quad(wall, {-2, 3, -2}, 4.0f * x, 4.0f * z);
+  quad(wall, {-2, 0, -2}, 3.0f * y, 4.0f * z);
+  quad(wall, {-2, 0, -2}, 4.0f * x, 3.0f * y);
+  quad(wall, {-2, 0, 2}, 3.0f * y, 4.0f * x);
+  quad(wall, {2, 0, -2}, 4.0f * z, 1.5f * y);  // below, above and beside the window
+  quad(wall, {2, 2.5f, -2}, 4.0f * z, 0.5f * y);
+  quad(wall, {2, 1.5f, -2}, 1.0f * z, 1.0f * y);
+  quad(wall, {2, 1.5f, 1}, 1.0f * z, 1.0f * y);
+  LightSpec sun;
+  sun.type = LightType::Directional;
+  sun.direction = normalize(Vec3{-0.6f, -0.8f, 0.1f});
+  sun.angularRadiusRad = 0.02f;
+  sun.emission = Vec3(10.0f);
+  builder.addLight(sun, {0, 0, 0});
+  return builder.finish();
+}
+
 // Eight cells in a row, open towards a metal sheet. Each holds a point light behind a cover, so
 // that it lights its own cell alone. The camera looks from between at the sheet, or at the covers,
 // whose light all comes via the sheet.
@@ -64,13 +115,7 @@ inline Scene cellsBeforeMetal(bool seesMetal) {
   metal.model = ConductorModel{};
   const uint32_t wall = builder.addMaterial(paint), sheet = builder.addMaterial(metal);
   const auto quad = [&](uint32_t material, Vec3 p, Vec3 a, Vec3 b) {
-    std::vector<double> positions;
-    for (const Vec3 c : {p, p + a, p + a + b, p + b})
-      positions.insert(positions.end(), {double{c.x}, double{c.y}, double{c.z}});
-    Mesh mesh{positions, {}, {}, {}};
-    for (const auto& corners : {std::array<uint32_t, 3>{0, 1, 2}, {0, 2, 3}})
-      mesh.triangles.push_back({corners, kNoCorners, kNoCorners, material});
-    builder.addMesh("cells", std::move(mesh));
+    addQuad(builder, material, p, a, b);
   };
   quad(sheet, {-4, -4, 3}, {0, 9, 0}, {16, 0, 0});
   quad(wall, {0, 0, 0}, {kCells, 0, 0}, {0, 1, 0});

@@ -8,6 +8,7 @@
 #include "core/resume.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
+#include "transport/emission_guide.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 
@@ -30,7 +31,8 @@ struct EstimateResult {
   VplTable table;             // its stage is Lit
   EnergyAccount energy = {};  // covers photons only; nonFinite counts paths, too
   uint64_t paths = 0;
-  double workShare = 1.0;  // part of the requested work that was done; less than 1 if enough
+  UsefulPhotons useful = {};  // photons that reach a VPL, as the pilot found
+  double workShare = 1.0;     // part of the requested work that was done; less than 1 if enough
 };
 
 struct EstimateInputs {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -113,10 +114,8 @@ void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scat
       vpls.firstBounceFlux[i][c] = static_cast<float>(scatter.fixed().decode(s.firstBounce[c]));
     }
     vpls.photons[i] = s.photons;
-    // If deposits are independent, the relative deviation is sqrt(sum of squares) over the sum.
-    const double rootSquares =
-        std::sqrt(static_cast<double>(s.squares) * 0x1p-20) * scatter.photonPower();
-    vpls.relativeError[i] = sum > 0.0 ? static_cast<float>(rootSquares / sum) : 0.0f;
+    vpls.relativeError[i] =
+        sum > 0.0 ? static_cast<float>(std::sqrt(scatter.variance(s)) / sum) : 0.0f;
   }
 }
 
@@ -163,6 +162,25 @@ PhotonSums sumsOfShards(const EstimateInputs& in, const PhotonRun& run) {
   return sums;
 }
 
+// The start of a photon, with its share of the flux of its light.
+PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photon, Rng& rng,
+                    size_t& light) {
+  if (!run.guide || !run.guide->guides()) {
+    light = run.shares.lightOf(photon);
+    PhotonStart start = lights.emit(light, rng);
+    start.flux *= run.shares.weight(light);
+    return start;
+  }
+  const auto total = static_cast<double>(run.shares.total());
+  const Emission e =
+      run.guide->draw((static_cast<double>(photon) + double{rng.next()}) / total, rng);
+  light = e.light;
+  PhotonStart start = lights.emit(light, e.at);
+  start.flux *= static_cast<float>(
+      1.0 / (total * double{lights.pickProbability(light)} * double{run.guide->density(e)}));
+  return start;
+}
+
 }  // namespace
 
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule) {
@@ -184,9 +202,8 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
         [&](PhotonWalk& walk, bool& hittable) {
           if (photon == end) return false;
           Rng rng(run.key, photon);
-          const size_t light = shares.lightOf(photon++);
-          PhotonStart start = in.lights.emit(light, rng);
-          start.flux *= shares.weight(light);
+          size_t light = 0;
+          const PhotonStart start = startOf(in.lights, run, photon++, rng, light);
           hittable = in.lights.hittable(light);
           walk = PhotonWalk(start, run.maxBounces, rng);
           if (walk.goesOn()) run.scatter.tally(sums, kEmitted, start.flux);
@@ -244,13 +261,13 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
                 hit.flux);
 }
 
-PhotonScatter::PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius,
-                             double photonPower, uint64_t photons)
+PhotonScatter::PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons)
     : radius_(radius),
-      fixed_(photonPower, photons),
-      photonPower_(photonPower),
-      perPhotonPower_(1.0 / photonPower),
-      coverage_(vpls.position, vpls.normal, reachOf(vpls, radius), rays) {}
+      photonPower_(double{mean(in.lights.totalPower())} / static_cast<double>(photons)),
+      fixed_(photonPower_, photons),
+      perPhotonPower_(1.0 / photonPower_),
+      squareUnit_(std::ldexp(1.0, -std::min(36, 54 - static_cast<int>(std::bit_width(photons))))),
+      coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, radius), in.rays) {}
 
 void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const {
   VplSum& s = sums.vpl[vpl];
@@ -261,7 +278,7 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
     if (hit.onlyPhotons) addChecked(s.onlyPhotons[c], units);
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
-  addChecked(s.squares, std::llrint(relative * relative * 0x1p20));
+  addChecked(s.squares, std::llrint(relative * relative / squareUnit_));
   const bool whole = share_.empty() || hit.onlyPhotons;
   sums.points.offer(vpl, whole ? relative : relative * share_[vpl], hit.point);
   ++s.photons;
@@ -270,14 +287,19 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
                                  const ScatterRule& rule) {
   in.lights.requirePower();
-  const double power = double{mean(in.lights.totalPower())};
   const PhotonShares shares(in.lights, options[kPhotonsOption]);
-  const PhotonScatter scatter(in.vpls, in.rays, options.real32(kRadiusOption),
-                              power / static_cast<double>(shares.total()), shares.total());
-  const PhotonRun run{streamKey(options[kSeedOption], Stream::Photons), options[kEmitPointsOption],
-                      static_cast<unsigned>(options[kPhotonBouncesOption]), shares, scatter};
+  const PhotonScatter scatter(in, options.real32(kRadiusOption), shares.total());
+  const auto maxBounces = static_cast<unsigned>(options[kPhotonBouncesOption]);
+  const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, shares.total());
+  const PhotonRun run{streamKey(options[kSeedOption], Stream::Photons),
+                      options[kEmitPointsOption],
+                      maxBounces,
+                      shares,
+                      scatter,
+                      &emission.guide};
   const PhotonSums sums = tracePhotons(in, run, rule);
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
+  result.useful = emission.useful;
   fillTable(result.table, sums, scatter);
   sums.points.fill(result.table);
   return result;

@@ -8,10 +8,12 @@
 #include <optional>
 
 #include "tools/estimate/estimate.h"
+#include "tools/estimate/photon_emission.h"
 #include "tools/estimate/photon_shares.h"
 #include "tools/estimate/photon_sums.h"
 #include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
+#include "transport/emission_guide.h"
 
 namespace bnvpl {
 
@@ -21,8 +23,8 @@ inline constexpr auto kPhotonsOption =
     countOption("photons", "10M", 0x1p36, "", "photons from all lights in total");
 inline constexpr auto kPhotonBouncesOption =
     wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon");
-inline constexpr auto kPhotonOptions =
-    optionTable(kPhotonsOption, kRadiusOption, kPhotonBouncesOption, kEmitPointsOption);
+inline constexpr auto kPhotonOptions = optionTable(kPhotonsOption, kEmissionOption, kRadiusOption,
+                                                   kPhotonBouncesOption, kEmitPointsOption);
 inline Work photonWork(const VplTable&, const Values& options) {
   return {"photons", options[kPhotonsOption]};
 }
@@ -39,8 +41,7 @@ struct PhotonHit {
 // Adds deposits of hits to exact sums. Thread-safe where each thread has its own sums.
 class PhotonScatter {
  public:
-  PhotonScatter(const VplTable& vpls, const RayScene& rays, float radius, double photonPower,
-                uint64_t photons);
+  PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons);
 
   // Sets the weight of each VPL's hits as emission points. Light that only photons find has weight
   // 1, and so have all hits unless weights are set.
@@ -54,12 +55,19 @@ class PhotonScatter {
   const Coverage& coverage() const { return coverage_; }
   const FixedPoint& fixed() const { return fixed_; }
   double photonPower() const { return photonPower_; }  // mean power of a photon, W
-  float radius() const { return radius_; }             // reach, in units of each VPL's r_max
+  // Variance of the flux of a VPL if deposits are independent, W^2.
+  double variance(const VplSum& s) const {
+    return static_cast<double>(s.squares) * squareUnit_ * photonPower_ * photonPower_;
+  }
+  float radius() const { return radius_; }  // reach, in units of each VPL's r_max
 
  private:
   float radius_;
+  double photonPower_;
   FixedPoint fixed_;
-  double photonPower_, perPhotonPower_;
+  double perPhotonPower_;
+  // Unit of VplSum::squares, which leaves room for the deposits of all photons.
+  double squareUnit_;
   Coverage coverage_;
   std::span<const double> share_;
 };
@@ -80,6 +88,7 @@ struct PhotonRun {
   unsigned maxBounces;
   const PhotonShares& shares;
   const PhotonScatter& scatter;
+  const EmissionGuide* guide = nullptr;  // null: photons by power
 };
 // Traces all photons and returns their sums. `in.resume` and `in.progress` are for this run alone;
 // progress counts photons.

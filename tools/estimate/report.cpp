@@ -101,6 +101,17 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
                            {"dropped_hidden", a.hidden}});
 }
 
+void reportEmission(const UsefulPhotons& useful, Summary& summary) {
+  char line[128] = "";
+  if (useful.guided > 0.0) {
+    std::snprintf(
+        line, sizeof line,
+        "guided emission: %.3g %% of the photons reach VPLs; by power it would be %.3g %%",
+        100.0 * useful.guided, 100.0 * useful.byPower);
+  }
+  summary.add("useful_photons", {{"by_power", useful.byPower}, {"guided", useful.guided}}, line);
+}
+
 void reportWork(double share, Summary& summary) {
   char line[128] = "";
   if (share < 0.995) {
@@ -121,6 +132,7 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
   const VplTable& vpls = result.table;
   const bool photons = result.paths == 0;
   if (result.energy.photons > 0) reportPhotons(result.energy, summary);
+  if (result.useful.byPower > 0.0) reportEmission(result.useful, summary);
   if (!photons) summary.add("paths", result.paths, formatSi(double(result.paths)) + " paths");
   reportWork(result.workShare, summary);
   const auto dark = static_cast<uint64_t>(

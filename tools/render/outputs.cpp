@@ -190,13 +190,24 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     summary.add("mean_cut", stats.cut);
     summary.add("mean_shadow_rays", stats.shadowRays);
   }
-  if (result.lamps > 0) {
+  const CausticStats& caustics = result.caustics;
+  if (caustics.useful.guided > 0.0) {
+    std::snprintf(
+        line, sizeof line,
+        "guided emission: %.3g %% of the caustic photons come into view; by power it would "
+        "be %.3g %%",
+        100.0 * caustics.useful.guided, 100.0 * caustics.useful.byPower);
+    summary.add("useful_caustic_photons",
+                {{"by_power", caustics.useful.byPower}, {"guided", caustics.useful.guided}}, line);
+  }
+  if (caustics.lamps > 0) {
     std::snprintf(line, sizeof line,
                   "caustics of %zu of %zu lamps by near-field rays alone: too few of their photons "
                   "come into view",
-                  result.sparseLamps, result.lamps);
-    summary.add("lamps", result.lamps);
-    summary.add("lamps_without_photons", result.sparseLamps, result.sparseLamps > 0 ? line : "");
+                  caustics.sparseLamps, caustics.lamps);
+    summary.add("lamps", caustics.lamps);
+    summary.add("lamps_without_photons", caustics.sparseLamps,
+                caustics.sparseLamps > 0 ? line : "");
   }
   summary.addNonFinite(stats.nonFinite, "samples");
 }

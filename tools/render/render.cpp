@@ -141,8 +141,7 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   RenderResult result;
   result.vpls = integrator.vpls;
   result.emissionPoints = integrator.emissionPoints;
-  result.lamps = integrator.lamps;
-  result.sparseLamps = integrator.sparseLamps;
+  result.caustics = integrator.caustics;
   if (const auto budget = budgetOf(options)) {
     result.image = renderPasses(rays.scene(), integrator, film, *budget, result.stats,
                                 result.passes.emplace(), progress, resume, preview);

@@ -31,8 +31,8 @@ struct RenderResult {
   Image image;
   FilmStats stats;
   size_t vpls = 0, emissionPoints = 0;  // see Integrator
-  size_t lamps = 0, sparseLamps = 0;    // see Integrator
-  std::optional<PassesDone> passes;     // set if there is a budget
+  CausticStats caustics = {};
+  std::optional<PassesDone> passes;  // set if there is a budget
 };
 
 // Makes the integrator of render(). `probe` is set for a cost estimate.

@@ -25,6 +25,8 @@ enum class Stream : uint32_t {
   Caustics,
   Allocation,
   CausticPilot,
+  CausticEmission,
+  PhotonEmission,
   PilotPhotons = 30,  // vpl-estimate --method both
   PilotPaths
 };

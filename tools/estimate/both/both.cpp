@@ -9,6 +9,7 @@
 #include "tools/common/files/streams.h"
 #include "tools/estimate/both/phases.h"
 #include "tools/estimate/both/split.h"
+#include "tools/estimate/both/split_records.h"
 #include "tools/estimate/photon_scatter.h"
 #include "tools/estimate/vpl_paths.h"
 
@@ -25,8 +26,9 @@ constexpr auto kIrradianceErrorOption = realOption(
 constexpr auto kMaxBouncesOption =
     wholeOption("max-bounces", "32", 1, 1000, "",
                 "diffuse bounces between a light and the view, including the one at the VPL");
-constexpr auto kOptions = optionTable(kPhotonsOption, kIrradianceErrorOption, kPathsOption,
-                                      kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
+constexpr auto kOptions =
+    optionTable(kPhotonsOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
+                kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
 
 // Share of the work that each pilot gets, about.
 constexpr double kPilot = 1.0 / 32.0;
@@ -42,9 +44,6 @@ constexpr double kProbePaths = 1 << 18, kProbePoints = 8.0;
 constexpr uint64_t kPhotonsOfUnit = 4096, kVplsOfUnit = 16, kMinUnits = 256;
 // Phases that shards divide. The phases before them are the pilots.
 constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
-// Names of the split's records in the files of shards.
-constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
-                           kPoints = "split.points", kShare = "split.share";
 
 // Photons of a phase, and the sums of their deposits.
 struct PhotonWork {
@@ -53,31 +52,30 @@ struct PhotonWork {
   PhotonSums sums;
 
   PhotonWork(const EstimateInputs& in, const Values& options, uint64_t photons)
-      : shares(in.lights, photons),
-        scatter(in.vpls, in.rays, options.real32(kRadiusOption),
-                double{mean(in.lights.totalPower())} / static_cast<double>(shares.total()),
-                shares.total()) {}
+      : shares(in.lights, photons), scatter(in, options.real32(kRadiusOption), shares.total()) {}
 
   double mean3(const std::array<int64_t, 3>& v) const {
     const FixedPoint& f = scatter.fixed();
     return (f.decode(v[0]) + f.decode(v[1]) + f.decode(v[2])) / 3.0;
-  }
-  double variance(const VplSum& s) const {
-    return static_cast<double>(s.squares) * 0x1p-20 * scatter.photonPower() * scatter.photonPower();
   }
 };
 
 class Estimator {
  public:
   Estimator(const EstimateInputs& in, const Values& options)
-      : in_(in), options_(options), phases_(in.resume), work_(options[kPhotonsOption]) {}
+      : in_(in),
+        options_(options),
+        phases_(in.resume),
+        emission_{EmissionGuide(in.lights)},
+        work_(options[kPhotonsOption]) {}
 
   EstimateResult run() {
     in_.lights.requirePower();
+    emission_ = learnPhotonEmission(in_, options_, maxBounces(), work_);
     const Split split = in_.resume.probe    ? splitOfProbe()
-                        : in_.resume.source ? splitOfShards()
+                        : in_.resume.source ? takeSplit(*in_.resume.source, in_.vpls.size())
                                             : pilot();
-    if (in_.resume.sink && in_.resume.shard.has(0)) giveSplit(split);
+    if (in_.resume.sink && in_.resume.shard.has(0)) giveSplit(*in_.resume.sink, split);
     // A cost probe traces about as many units of photons as of paths, so that any part of it has
     // both.
     const uint64_t sent =
@@ -123,8 +121,12 @@ class Estimator {
                    double times = 1.0) {
     PhotonWork work(in_, options_, count);
     work.scatter.setShare(share);
-    const PhotonRun run{streamKey(options_[kSeedOption], stream), emitPointsOf(phase), maxBounces(),
-                        work.shares, work.scatter};
+    const PhotonRun run{streamKey(options_[kSeedOption], stream),
+                        emitPointsOf(phase),
+                        maxBounces(),
+                        work.shares,
+                        work.scatter,
+                        &emission_.guide};
     const auto equivalent = static_cast<uint64_t>(progressScale_ * static_cast<double>(count));
     work.sums = phases_.run(
         phase, times,
@@ -215,7 +217,7 @@ class Estimator {
     for (size_t i = 0; i < in_.vpls.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
       pilots.byPhotons.push_back(
-          {photons.mean3(s.flux) - photons.mean3(s.onlyPhotons), photons.variance(s)});
+          {photons.mean3(s.flux) - photons.mean3(s.onlyPhotons), photons.scatter.variance(s)});
       pilots.byPaths.push_back({paths[i].meanFlux(), paths[i].variance()});
       const double cost = static_cast<double>(paths[i].rays);
       pilots.pointCost.push_back(cost / pilots.points);
@@ -263,29 +265,6 @@ class Estimator {
             std::vector<double>(in_.vpls.size(), 1.0)};
   }
 
-  // Every shard computes the same split, since each runs the whole pilots. The first one records
-  // it.
-  void giveSplit(const Split& split) const {
-    const ShardSink& sink = *in_.resume.sink;
-    giveRecord(sink, kCount, 0, std::array{split.photons});
-    giveRecord(sink, kCostShare, 0, std::array{split.costShare});
-    giveRecord(sink, kPoints, 0, split.points);
-    giveRecord(sink, kShare, 0, split.share);
-  }
-  Split splitOfShards() const {
-    const ShardSource& source = *in_.resume.source;
-    std::array<uint64_t, 1> photons{};
-    std::array<double, 1> costShare{};
-    Split split{0, std::vector<uint64_t>(in_.vpls.size()), std::vector<double>(in_.vpls.size())};
-    takeRecord(source, kCount, 0, photons);
-    takeRecord(source, kPoints, 0, split.points);
-    takeRecord(source, kShare, 0, split.share);
-    takeRecord(source, kCostShare, 0, costShare);
-    split.photons = photons[0];
-    split.costShare = costShare[0];
-    return split;
-  }
-
   // Flux of each VPL: share * photons + (1 - share) * paths, plus the light that only photons find.
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
@@ -311,12 +290,13 @@ class Estimator {
         sum += (shared + alone) / 3.0;
       }
       lit.photons[i] = s.photons;
-      const double variance = w * w * photons.variance(s) + rest * rest * r.variance();
+      const double variance = w * w * photons.scatter.variance(s) + rest * rest * r.variance();
       if (sum > 0.0) lit.relativeError[i] = static_cast<float>(std::sqrt(variance) / sum);
       result.paths += r.paths;
       result.energy.nonFinite += r.nonFinite;
     }
     result.workShare = split.costShare;
+    result.useful = emission_.useful;
     EmitPoints points = photons.sums.points;
     points.add(paths.points, pathShare);
     points.fill(lit);
@@ -326,6 +306,7 @@ class Estimator {
   const EstimateInputs& in_;
   const Values& options_;
   Phases<4, kPhotonPhase> phases_;
+  LearnedEmission emission_;
   std::unique_ptr<const SpatialLightSampler> spatialLights_;
   uint64_t work_, reported_ = 0;  // in photons: all work, and that of the phases begun
   double progressScale_ = 1.0;    // photons of progress per photon traced, if less work is enough

@@ -174,8 +174,11 @@ TEST(Both, ReportsProgressOnceForAllItsWork) {
     const Values options = resolve(
         estimateSpec(), {{"method", "both"}, {"photons", "300k"}, {"irradiance-error", error}});
     std::atomic<uint64_t> told{0};
-    const EstimateResult result =
-        estimate(vpls, world.rays, world.lights, options, [&](uint64_t n) { told += n; });
+    bool preparing = false;
+    const ProgressFn progress{[&](uint64_t n) { told += preparing ? 0 : n; },
+                              [&](std::string_view, uint64_t) { preparing = true; },
+                              [&] { preparing = false; }};
+    const EstimateResult result = estimate(vpls, world.rays, world.lights, options, progress);
     EXPECT_EQ(told, estimateWork(vpls, options).count) << error;
     EXPECT_GT(result.paths, 0u);
   }

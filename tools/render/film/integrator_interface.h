@@ -5,8 +5,15 @@
 
 #include "tools/render/sample.h"
 #include "tools/render/splat/splat.h"
+#include "transport/emission_guide.h"
 
 namespace bnvpl {
+
+struct CausticStats {
+  // Lamps whose caustics photons can render, and those of them with too few photons in view.
+  size_t lamps = 0, sparseLamps = 0;
+  UsefulPhotons useful = {};  // photons that come into view
+};
 
 // Immutable and thread-safe.
 struct Integrator {
@@ -17,9 +24,7 @@ struct Integrator {
   bool wholePixels = false;   // every call needs all samples of its pixels
   size_t vpls = 0;            // number of VPLs with flux
   size_t emissionPoints = 0;  // places from which these VPLs shine
-  // Lamps whose caustics can be rendered by photons, and those of them with too few photons in
-  // view.
-  size_t lamps = 0, sparseLamps = 0;
+  CausticStats caustics = {};
 };
 
 }  // namespace bnvpl

@@ -91,8 +91,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   addDirectLight(in, options, filmRays, film, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
                                tile.raysEach * options[kSppOption], maxBouncesOf(options));
-  const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
-               sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
+  const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
@@ -100,8 +99,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
               [parts](const TileSamples& samples) {
                 parts->integrator->render(samples, parts->allocation);
               },
-          .lamps = lamps,
-          .sparseLamps = sparse};
+          .caustics = caustics};
 }
 
 }  // namespace

@@ -130,8 +130,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   tile.caustics = makeCaustics(in, causticPhotons(in, options),
                                tile.raysEach * std::min(options[kSppOption], kMaxSpp),
                                /*bounces=*/0);  // VPLs carry the light of further bounces
-  const size_t lamps = tile.caustics ? tile.caustics->lamps() : 0,
-               sparse = tile.caustics ? tile.caustics->sparseLamps() : 0;
+  const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
@@ -142,8 +141,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
           .wholePixels = gather.wholePixels,
           .vpls = parts->vpls.vplCount,
           .emissionPoints = parts->vpls.size(),
-          .lamps = lamps,
-          .sparseLamps = sparse};
+          .caustics = caustics};
 }
 
 }  // namespace

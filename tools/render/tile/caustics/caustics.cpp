@@ -21,16 +21,44 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       raysOfPixel_(raysOfPixel),
       bounces_(bounces),
       width_(rays.scene().film.width),
-      light_(size_t{width_} * rays.scene().film.height) {
+      light_(size_t{width_} * rays.scene().film.height),
+      guide_(lights) {
+  learnEmission(streamKey(seed, Stream::CausticEmission), progress);
   chooseLamps(streamKey(seed, Stream::CausticPilot), progress);
   SplatProgress done;
   const auto phase = progress.before("caustic photons", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
-        for (uint64_t i = begin; i < end; ++i) follow(key_, i, out);
+        for (uint64_t i = begin; i < end; ++i) follow(key_, i, photons, out);
       },
       photons, done, [&](const Splat& splat) { add(splat, light_[splat.pixel]); }, progress, {},
       [] { return std::string(); });
+}
+
+// What a photon brings is its light on the film. Until the guide is there, the weights of MIS are
+// those of photons by power. While few caustic photons come into view, all photons that do show
+// from where it is lit.
+void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
+  LearnedEmission learned = bnvpl::learnEmission(
+      lights_, (photons_ + kLearnShare - 1) / kLearnShare, key,
+      [&](const Emission& e, const PhotonStart& start, Rng& rng, bool hints) {
+        Brought brought;
+        Splats splats;
+        const Vec3 flux = start.flux * (1.0f / static_cast<float>(photons_));
+        trace({e.light, 1.0f, start, flux, lights_.hittable(e.light)}, rng, splats);
+        for (const Splat& splat : splats.list) brought.wanted += double{mean(splat.radiance)};
+        if (!hints) return brought;
+        constexpr unsigned kHintBounces = 4;
+        followPhoton(rays_, PhotonWalk(start, kHintBounces, rng),
+                     [&](const Bsdf& bsdf, Vec3 arriving, bool) {
+                       if (const auto film = connectToFilm(rays_, bsdf.point()))
+                         brought.hint += double{mean(arriving * film->value) * film->perArea};
+                     });
+        return brought;
+      },
+      progress);
+  useful_ = learned.useful;
+  guide_ = std::move(learned.guide);
 }
 
 void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
@@ -46,7 +74,7 @@ void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
     const uint64_t begin = c * kChunk, end = std::min(count, begin + kChunk);
     for (uint64_t i = begin; i < end; ++i) {
       splats.list.clear();
-      const uint64_t lamp = follow(key, i, splats);
+      const uint64_t lamp = follow(key, i, count, splats);
       if (lamp == kNoLamp) continue;
       SplatMoments& found = chunks[c][lamp];
       for (const Splat& splat : splats.list) {
@@ -82,49 +110,55 @@ SharedWithPhotons Caustics::shared(const SurfacePoint& point) const {
 
 SharedWithPhotons Caustics::sharedBy(float samplesPerArea) const {
   return {&lights_, raysOfPixel_ * samplesPerArea, static_cast<float>(photons_),
-          chosen_ ? &dense_ : nullptr};
+          chosen_ ? &dense_ : nullptr, &guide_};
+}
+
+uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const {
+  Rng rng(key, index);
+  const double u{rng.next()};
+  const Emission e = guide_.draw(guide_.guides() ? (double(index) + u) / double(count) : u, rng);
+  const float guided = guide_.density(e);
+  const double probability = double{lights_.pickProbability(e.light)} * double{guided};
+  if (!(probability > 0.0)) return kNoLamp;
+  Photon photon{e.light, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light)};
+  const uint64_t lamp =
+      photon.hittable ? lampOf(lights_, e.light, -photon.start.direction) : kNoLamp;
+  if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
+    return lamp;  // the pilot does not need it, or its light is left to rays
+  photon.flux = photon.start.flux * static_cast<float>(1.0 / (probability * double(photons_)));
+  trace(photon, rng, out);
+  return lamp;
 }
 
 // Photons always take the specular lobes, as light over rough ones is not wanted. So every photon
 // carries the light that even a weakly reflecting coat reflects.
-uint64_t Caustics::follow(uint64_t key, uint64_t index, Splats& out) const {
-  Rng rng(key, index);
-  float probability = 1.0f;
-  const size_t light = lights_.pick(rng.next(), probability);
-  if (!(probability > 0.0f)) return kNoLamp;
-  const PhotonStart start = lights_.emit(light, rng);
-  const uint64_t lamp =
-      lights_.hittable(light) ? lampOf(lights_, light, -start.direction) : kNoLamp;
-  if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
-    return lamp;  // the pilot does not need it, or its light is left to rays
-  Vec3 flux = start.flux * static_cast<float>(1.0 / (double{probability} * double(photons_)));
-  Ray next{start.origin, start.direction};
+void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
+  Vec3 flux = photon.flux;
+  Ray next{photon.start.origin, photon.start.direction};
   SurfacePoint hit;
   bool hidden = false;  // whether paths from the camera cannot find this light
   for (unsigned specularBounces = 0; specularBounces <= kMaxSpecular && isFinite(flux);
        ++specularBounces) {
     rays_.closestHit(next.origin, next.direction, hit);
-    if (hit.triangle == kNone) return lamp;
+    if (hit.triangle == kNone) return;
     const Bsdf bsdf(rays_.scene(), hit);
-    if (specularBounces == 0) hidden = lamp == kNoLamp && bsdf.specularIsDelta();
+    if (specularBounces == 0) hidden = !photon.hittable && bsdf.specularIsDelta();
     if (specularBounces > 0 && bsdf.hasRough()) {
-      connect(bsdf.point(), flux * bsdf.photonShadingFactor(), light, -start.direction, out);
-      if (hidden && bounces_ > 0) followBounces(bsdf, flux, light, -start.direction, rng, out);
+      connect(bsdf.point(), flux * bsdf.photonShadingFactor(), photon, out);
+      if (hidden && bounces_ > 0) followBounces(bsdf, flux, photon, rng, out);
     }
-    if (!(bsdf.specularProbability() > 0.0f)) return lamp;
+    if (!(bsdf.specularProbability() > 0.0f)) return;
     BsdfSample sample;
-    if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
-      return lamp;
+    if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next)) return;
     flux *= sample.weight;
     if (specularBounces == 0) continue;
     const float survive = std::min(1.0f, maxComponent(sample.weight));
-    if (rng.next() >= survive) return lamp;
+    if (rng.next() >= survive) return;
     flux *= 1.0f / survive;
   }
-  return lamp;
 }
 
-void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 towards, Rng& rng,
+void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, Rng& rng,
                              Splats& out) const {
   BsdfSample sample;
   Ray next;
@@ -136,17 +170,18 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 tow
   for (SurfacePoint hit; walk.goesOn();) {
     rays_.closestHit(walk.next().origin, walk.next().direction, hit);
     walk.advance(rays_, hit, [&](const Bsdf& at, Vec3 arriving, bool) {
-      connect(at.point(), arriving, light, towards, out);
+      connect(at.point(), arriving, photon, out);
     });
   }
   rng = walk.rng();
 }
 
-void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
+void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon,
                        Splats& out) const {
   const auto film = connectToFilm(rays_, vertex);
   if (!film) return;
-  const float share = 1.0f - sharedBy(film->perArea).ofRays(light, towards);
+  const float share =
+      1.0f - sharedBy(film->perArea).ofRays(photon.light, -photon.start.direction, photon.guided);
   const Vec3 radiance = flux * film->value * (film->perArea * share);
   if (isFinite(radiance)) out.list.push_back({film->pixel, radiance});
 }

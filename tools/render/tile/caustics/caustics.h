@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "tools/render/film/integrator_interface.h"
 #include "tools/render/sample.h"
 #include "tools/render/splat/splat.h"
 #include "transport/direct_light.h"
+#include "transport/emission_guide.h"
 
 namespace bnvpl {
 
@@ -17,11 +19,11 @@ namespace bnvpl {
 // the first rough one. They share the light of lamps and sky with near-field rays by MIS; lights
 // that no ray can hit are theirs alone.
 //
-// A pilot with an eighth of the photons measures the noise of each lamp's photons (lampOf: a light,
-// or a region of a sky). With the splats r_k of a lamp, (sum r_k)^2 / sum r_k^2 is the number of
-// equal splats that would be as noisy. A lamp with fewer than kMinPilotPhotons of them is left to
-// near-field rays: for example the sun, if the camera is in a room and hardly a photon enters its
-// window. The photons of the image are independent of the pilot's, so that it stays unbiased.
+// Photons start where pilot photons found ways into view (EmissionGuide). A further pilot measures
+// the noise of each lamp's photons (lampOf: a light, or a region of a sky). With the splats r_k of
+// a lamp, (sum r_k)^2 / sum r_k^2 is the number of equal splats that would be as noisy. A lamp with
+// fewer than kMinPilotPhotons of them is left to near-field rays: for example one behind a door.
+// The photons of the image are independent of the pilots', so that it stays unbiased.
 //
 // No path from the camera can end at a light that no ray can hit if a perfect mirror or glass lies
 // before it. With `bounces` > 0 photons carry all of that light to directly visible surfaces: they
@@ -37,25 +39,33 @@ class Caustics {
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // Parameters of MIS with rays that leave a directly visible point.
   SharedWithPhotons shared(const SurfacePoint& point) const;
-  // Lamps that sent photons and that rays can hit, and those of them that are left to rays.
-  size_t lamps() const { return lamps_; }
-  size_t sparseLamps() const { return lamps_ - dense_.size(); }
+  CausticStats stats() const { return {lamps_, lamps_ - dense_.size(), useful_}; }
 
  private:
   static constexpr double kMinPilotPhotons = 4.0;
-  static constexpr uint64_t kPilotShare = 8;  // photons of the image per photon of the pilot
+  static constexpr uint64_t kPilotShare = 8;   // photons of the image per photon of the pilot
+  static constexpr uint64_t kLearnShare = 16;  // the same for the pilot of the emission
 
+  void learnEmission(uint64_t key, const ProgressFn& progress);
   void chooseLamps(uint64_t key, const ProgressFn& progress);
   static void add(const Splat& splat, PhotonLight& to);
   SharedWithPhotons sharedBy(float samplesPerArea) const;
   // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
   static constexpr uint64_t kNoLamp = UINT64_MAX;
-  uint64_t follow(uint64_t key, uint64_t index, Splats& out) const;
+  uint64_t follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const;
+  // Follows a photon through specular vertices. `flux` is that of the one photon of many.
+  struct Photon {
+    size_t light;
+    float guided;  // density of its emission, relative to emission by power
+    PhotonStart start;
+    Vec3 flux;
+    bool hittable;  // whether rays can hit the light
+  };
+  void trace(const Photon& photon, Rng& rng, Splats& out) const;
   // Follows the photon from a rough vertex, by its rough lobes.
-  void followBounces(const Bsdf& bsdf, Vec3 flux, size_t light, Vec3 towards, Rng& rng,
+  void followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, Rng& rng,
                      Splats& out) const;
-  void connect(const SurfacePoint& vertex, Vec3 flux, size_t light, Vec3 towards,
-               Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon, Splats& out) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
@@ -67,6 +77,8 @@ class Caustics {
   bool chosen_ = false;          // whether the pilot is done; until then all lamps send photons
   size_t lamps_ = 0;
   std::vector<PhotonLight> light_;
+  EmissionGuide guide_;
+  UsefulPhotons useful_;
 };
 
 }  // namespace bnvpl

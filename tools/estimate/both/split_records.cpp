@@ -1,0 +1,34 @@
+#include "tools/estimate/both/split_records.h"
+
+#include <array>
+
+namespace bnvpl::methods::estimate::both {
+
+namespace {
+
+constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
+                           kPoints = "split.points", kShare = "split.share";
+
+}  // namespace
+
+void giveSplit(const ShardSink& sink, const Split& split) {
+  giveRecord(sink, kCount, 0, std::array{split.photons});
+  giveRecord(sink, kCostShare, 0, std::array{split.costShare});
+  giveRecord(sink, kPoints, 0, split.points);
+  giveRecord(sink, kShare, 0, split.share);
+}
+
+Split takeSplit(const ShardSource& source, size_t vpls) {
+  std::array<uint64_t, 1> photons{};
+  std::array<double, 1> costShare{};
+  Split split{0, std::vector<uint64_t>(vpls), std::vector<double>(vpls)};
+  takeRecord(source, kCount, 0, photons);
+  takeRecord(source, kPoints, 0, split.points);
+  takeRecord(source, kShare, 0, split.share);
+  takeRecord(source, kCostShare, 0, costShare);
+  split.photons = photons[0];
+  split.costShare = costShare[0];
+  return split;
+}
+
+}  // namespace bnvpl::methods::estimate::both

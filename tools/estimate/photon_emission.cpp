@@ -1,0 +1,69 @@
+#include "tools/estimate/photon_emission.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/common/files/streams.h"
+#include "tools/estimate/photon_scatter.h"
+#include "transport/photon_walk.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Photons of the estimate per pilot photon. A quarter of the pilot estimates the VPLs' flux.
+constexpr uint64_t kPilotShare = 32, kFluxShare = 4;
+constexpr uint64_t kProbePhotons = 1 << 16;  // limit for a cost probe (--estimate)
+constexpr double kMinFlux = 0.1;
+
+// Weights of the VPLs' variances: one over the flux, by photons that start in proportion to power.
+std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonScatter& scatter,
+                                  const PhotonRun& run) {
+  const auto phase = in.progress.before("flux pilot, photons", run.shares.total());
+  const PhotonSums sums =
+      tracePhotons({in.vpls, in.rays, in.lights, in.progress, {}}, run, scatterToOneInSight);
+  std::vector<double> weights(in.vpls.size());
+  double mean = 0.0;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    for (const int64_t flux : sums.vpl[i].flux) weights[i] += scatter.fixed().decode(flux);
+    mean += weights[i] / static_cast<double>(weights.size());
+  }
+  for (double& w : weights) w = mean > 0.0 ? 1.0 / (w + kMinFlux * mean) : 1.0;
+  return weights;
+}
+
+}  // namespace
+
+LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
+                                    unsigned maxBounces, uint64_t photons) {
+  if (options[kEmissionOption] == "power" || in.resume.source) return {EmissionGuide(in.lights)};
+  const uint64_t pilot = (photons + kPilotShare - 1) / kPilotShare,
+                 sent = unitsToTry(in.resume.probe, pilot, kProbePhotons);
+  const CostProbe::Part part(in.resume.probe,
+                             static_cast<double>(pilot) / static_cast<double>(sent));
+  const uint64_t key = streamKey(options[kSeedOption], Stream::PhotonEmission);
+  const PhotonShares shares(in.lights, std::max<uint64_t>(1, sent / kFluxShare));
+  const PhotonScatter scatter(in, options.real32(kRadiusOption), shares.total());
+  const std::vector<double> weights =
+      weightsByFlux(in, scatter, {mix64(key), 0, maxBounces, shares, scatter});
+  const Coverage& coverage = scatter.coverage();
+  return learnEmission(
+      in.lights, sent - sent / kFluxShare, key,
+      [&](const Emission&, const PhotonStart& start, Rng& rng, bool) {
+        double squares = 0.0;
+        Rng choice = rng;  // which of several VPLs gets the light
+        followPhoton(
+            in.rays, PhotonWalk(start, maxBounces, rng), [&](const Bsdf& bsdf, Vec3 flux, bool) {
+              const SurfacePoint& hit = bsdf.point();
+              const auto found =
+                  coverage.pick(hit.position, hit.ng, coverage.lookUp(hit.position), choice);
+              if (!found.vpl) return;
+              const double deposit{mean(flux * bsdf.roughAlbedo())};
+              squares += deposit * deposit * weights[*found.vpl];
+            });
+        return Brought{std::sqrt(squares)};
+      },
+      in.progress);
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,20 @@
+// Where the photons of an estimate start.
+#pragma once
+
+#include "tools/common/options/option.h"
+#include "tools/estimate/estimate.h"
+
+namespace bnvpl {
+
+inline constexpr auto kEmissionOption =
+    choiceOption("emission", "guided", "guided|power",
+                 "photons start where pilot photons found ways to VPLs, or in proportion to power");
+
+// Learns from pilot photons, a small share of `photons`, from which emission photons reach VPLs.
+// The guide minimises the sum over VPLs of variance over flux, where a VPL's flux is not taken
+// below a tenth of the mean. Learns nothing with --emission power, and in a merge, which traces no
+// photon. `maxBounces`: that of the photons.
+LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
+                                    unsigned maxBounces, uint64_t photons);
+
+}  // namespace bnvpl

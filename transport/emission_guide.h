@@ -1,0 +1,100 @@
+// Photons start where they are likely to be useful: a density over the emission of all lights,
+// learned from pilot photons. (Jensen 1995, projection maps; Vorba et al. 2014 and Grittmann et al.
+// 2018, guided emission.)
+//
+// A photon is a light l, drawn with the probability P(l) in proportion to power, and a point u of
+// the unit hypercube from which LightSet::emit() samples it. Let f(l, u) be what a photon brings
+// then. Drawn with the density g relative to P(l) du instead, it brings f / g, which has the same
+// mean for any g > 0 and the least variance for g in proportion to |f| (of a cell: to the root of
+// the mean of f^2). Cells are boxes of the hypercube of each light. They are split where pilot
+// photons brought something.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/progress.h"
+#include "transport/lights.h"
+
+namespace bnvpl {
+
+// A point in the emission of all lights.
+struct Emission {
+  uint32_t light = 0;
+  EmissionPoint at{};
+};
+
+// Immutable and thread-safe.
+class EmissionGuide {
+ public:
+  // A useful pilot photon: `squares` is f^2 over the density with which it was drawn.
+  struct PilotPhoton {
+    Emission emission;
+    double squares = 0.0;
+  };
+
+  // Emission by power.
+  explicit EmissionGuide(const LightSet& lights) : lights_(&lights) {}
+  // `traced`: number of pilot photons, the useless ones included. The guide stays one by power
+  // unless it promises much less noise.
+  EmissionGuide(const LightSet& lights, std::span<const PilotPhoton> useful, double traced);
+
+  // Whether the density differs from emission by power.
+  bool guides() const { return !cdf_.empty(); }
+  // Draws a point; `choice`, in [0, 1), chooses the cell, or the light where nothing guides.
+  Emission draw(double choice, Rng& rng) const;
+  // The density g. It is at least kDefensive.
+  float density(const Emission& e) const;
+  // Second moment of what a photon brings, over that by power; 1 without a guide.
+  double relativeVariance() const { return relativeVariance_; }
+
+ private:
+  struct Cell {
+    uint32_t light;
+    EmissionPoint lower, size;
+    float density;
+  };
+  // A node of a light's tree. `dimension` 4: a leaf, whose cell is `child`. Otherwise the halves
+  // are the nodes `child` and child + 1.
+  struct Node {
+    uint8_t dimension = 4;
+    float middle = 0.0f;
+    uint32_t child = 0;
+  };
+  class Builder;
+
+  const LightSet* lights_;
+  std::vector<Node> nodes_;
+  std::vector<uint32_t> root_;  // one per light
+  std::vector<Cell> cells_;
+  std::vector<double> cdf_;  // running sums of the cells' probabilities
+  double relativeVariance_ = 1.0;
+};
+
+// What one photon brings, in any unit. `hint` is what a similar, more frequent kind of photon
+// brings from there, and shows the way as long as hardly a photon brings anything.
+struct Brought {
+  double wanted = 0.0, hint = 0.0;
+};
+// Follows a photon, with further random numbers. `hint` need not be set unless `hints`.
+using PhotonContribution =
+    std::function<Brought(const Emission&, const PhotonStart&, Rng&, bool hints)>;
+
+// Shares of the photons that bring something, 0..1.
+struct UsefulPhotons {
+  double byPower = 0.0;  // with emission by power
+  double guided = 0.0;   // with guided emission; 0: nothing is guided
+};
+
+struct LearnedEmission {
+  EmissionGuide guide;
+  UsefulPhotons useful = {};
+};
+
+// Traces `photons` pilot photons in several rounds, each guided by those before it. The photons'
+// flux is that of `photons` = 1, by power. Returns the same for any number of threads.
+LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t key,
+                              const PhotonContribution& contribution, const ProgressFn& progress);
+
+}  // namespace bnvpl
