@@ -11,8 +11,9 @@ namespace bnvpl {
 
 namespace {
 
-// Photons of the estimate per pilot photon. A quarter of the pilot estimates the VPLs' flux.
-constexpr uint64_t kPilotShare = 32, kFluxShare = 4;
+// Photons of the estimate per pilot photon, of which there are at most kMaxPilot. A quarter of them
+// estimates the VPLs' flux.
+constexpr uint64_t kPilotShare = 32, kMaxPilot = 1 << 20, kFluxShare = 4;
 constexpr uint64_t kProbePhotons = 1 << 16;  // limit for a cost probe (--estimate)
 constexpr double kMinFlux = 0.1;
 
@@ -37,7 +38,7 @@ std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonScatter&
 LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
                                     unsigned maxBounces, uint64_t photons) {
   if (options[kEmissionOption] == "power" || in.resume.source) return {EmissionGuide(in.lights)};
-  const uint64_t pilot = (photons + kPilotShare - 1) / kPilotShare,
+  const uint64_t pilot = std::min(kMaxPilot, (photons + kPilotShare - 1) / kPilotShare),
                  sent = unitsToTry(in.resume.probe, pilot, kProbePhotons);
   const CostProbe::Part part(in.resume.probe,
                              static_cast<double>(pilot) / static_cast<double>(sent));
