@@ -59,19 +59,18 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  return emitted * arrival.shared.ofRays(light, -hit.wo, arrival.from, [&] {
-    return lights.drawnBy(light, hit);
-  }) * hitWeight(lights, light, lights.pdfEmitted(light, hit, arrival.from), arrival, [&] {
-           return lights.drawnBy(light, hit);
-         });
+  const auto place = [&] { return lights.drawnBy(light, hit); };
+  const float ofRays = arrival.shared.ofRays(light, -hit.wo, arrival.from, place);
+  const float pdf = lights.pdfEmitted(light, hit, arrival.from);
+  return emitted * ofRays * hitWeight(lights, light, pdf, arrival, place);
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
-    sum += radiance * arrival.shared.ofRays(light, direction, arrival.from, [&] {
-      return lights.drawnBy(light, direction);
-    }) * hitWeight(lights, light, pdf, arrival, [&] { return lights.drawnBy(light, direction); });
+    const auto place = [&] { return lights.drawnBy(light, direction); };
+    const float ofRays = arrival.shared.ofRays(light, direction, arrival.from, place);
+    sum += radiance * ofRays * hitWeight(lights, light, pdf, arrival, place);
   });
   return sum;
 }
