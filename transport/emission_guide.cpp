@@ -21,7 +21,7 @@ constexpr double kDefensive = 0.2;
 // optimistic, as it is made by the photons from which the cells were learned.
 constexpr double kWorthwhile = 0.6;
 constexpr unsigned kRounds = 8;
-// With fewer useful photons than that, hints guide the next round.
+// With fewer useful photons, proxies guide the next round.
 constexpr size_t kFew = 128;
 // If so many useful photons do not make a guide, further rounds will not.
 constexpr size_t kEnough = 4096;
@@ -154,7 +154,7 @@ Emission EmissionGuide::draw(double choice, Rng& rng) const {
     float probability = 0.0f;
     e.light = static_cast<uint32_t>(
         lights_->pick(std::min(static_cast<float>(choice), 0x1.fffffep-1f), probability));
-    for (float& u : e.at) u = rng.next();
+    e.at = lights_->emissionPoint(e.light, rng);
     return e;
   }
   const auto chosen = std::upper_bound(cdf_.begin(), cdf_.end() - 1, choice) - cdf_.begin();
@@ -177,35 +177,36 @@ namespace {
 
 using PilotPhotons = std::vector<EmissionGuide::PilotPhoton>;
 
-// Photons of one round, and where they brought something: `squares` is f^2 by power here.
+// Useful photons of one round, by target and by proxy. `squares` is f^2 by power here.
 struct Round {
-  PilotPhotons wanted, hints;
+  PilotPhotons targets, proxies;
 };
 
 Round traceRound(const LightSet& lights, const EmissionGuide& guide, uint64_t count, uint64_t key,
-                 bool hints, const PhotonContribution& contribution, const ProgressFn& progress) {
+                 bool withProxy, const PilotEstimator& estimate, const ProgressFn& progress) {
   constexpr uint64_t kChunk = 1024;
   std::vector<Round> chunks((count + kChunk - 1) / kChunk);
-  parallelFor(chunks.size(), 1, [&](size_t c) {
-    const uint64_t begin = c * kChunk, end = std::min(count, begin + kChunk);
+  parallelFor(chunks.size(), 1, [&](size_t k) {
+    Round& chunk = chunks[k];
+    const uint64_t begin = k * kChunk, end = std::min(count, begin + kChunk);
     for (uint64_t i = begin; i < end; ++i) {
       Rng rng(key, i);
       const double choice = (double(i) + double{rng.next()}) / double(count);
       const Emission e = guide.draw(choice, rng);
-      const Brought b = contribution(e, lights.emit(e.light, e.at), rng, hints);
-      const auto add = [&](PilotPhotons& to, double brought) {
-        const double f = brought / double{lights.pickProbability(e.light)};
+      const PilotContribution c = estimate(e, lights.emit(e.light, e.at), rng, withProxy);
+      const auto add = [&](PilotPhotons& to, double contribution) {
+        const double f = contribution / double{lights.pickProbability(e.light)};
         if (std::isfinite(f) && f > 0.0) to.push_back({e, f * f});
       };
-      add(chunks[c].wanted, b.wanted);
-      if (hints) add(chunks[c].hints, b.hint);
+      add(chunk.targets, c.target);
+      if (withProxy) add(chunk.proxies, c.proxy);
     }
     if (progress) progress(end - begin);
   });
   Round all;
   for (const Round& c : chunks) {
-    all.wanted.insert(all.wanted.end(), c.wanted.begin(), c.wanted.end());
-    all.hints.insert(all.hints.end(), c.hints.begin(), c.hints.end());
+    all.targets.insert(all.targets.end(), c.targets.begin(), c.targets.end());
+    all.proxies.insert(all.proxies.end(), c.proxies.begin(), c.proxies.end());
   }
   return all;
 }
@@ -226,7 +227,7 @@ EmissionGuide guideBy(const LightSet& lights, PilotPhotons photons,
 }  // namespace
 
 LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t key,
-                              const PhotonContribution& contribution, const ProgressFn& progress) {
+                              const PilotEstimator& estimate, const ProgressFn& progress) {
   std::vector<EmissionGuide> guides;
   Round found;
   LearnedEmission out{EmissionGuide(lights)};
@@ -234,21 +235,21 @@ LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t
   const auto phase = progress.before("emission pilot, photons", count * kRounds);
   for (unsigned round = 0; round < kRounds; ++round) {
     guides.push_back(out.guide);
-    const bool hints = found.wanted.size() < kFew;
+    const bool withProxy = found.targets.size() < kFew;
     const Round now =
-        traceRound(lights, out.guide, count, key + round, hints, contribution, progress);
-    out.useful.guided = double(now.wanted.size()) / double(count);
-    found.wanted.insert(found.wanted.end(), now.wanted.begin(), now.wanted.end());
-    found.hints.insert(found.hints.end(), now.hints.begin(), now.hints.end());
-    const bool few = found.wanted.size() < kFew;
-    // Hints alone are not what photons are sent for.
+        traceRound(lights, out.guide, count, key + round, withProxy, estimate, progress);
+    out.useful.guided = double(now.targets.size()) / double(count);
+    found.targets.insert(found.targets.end(), now.targets.begin(), now.targets.end());
+    found.proxies.insert(found.proxies.end(), now.proxies.begin(), now.proxies.end());
+    const bool few = found.targets.size() < kFew;
+    // The final guide is by the target alone.
     out.guide = few && round + 1 == kRounds ? EmissionGuide(lights)
-                                            : guideBy(lights, few ? found.hints : found.wanted,
+                                            : guideBy(lights, few ? found.proxies : found.targets,
                                                       guides, count * (round + 1));
-    if (!out.guide.guides() && found.wanted.size() >= kEnough) break;
+    if (!out.guide.guides() && found.targets.size() >= kEnough) break;
   }
   if (!out.guide.guides()) out.useful.guided = 0.0;
-  for (const EmissionGuide::PilotPhoton& p : found.wanted)
+  for (const EmissionGuide::PilotPhoton& p : found.targets)
     out.useful.byPower += 1.0 / (densityOf(guides, p.emission) * double(count * guides.size()));
   return out;
 }

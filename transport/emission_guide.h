@@ -3,11 +3,11 @@
 // 2018, guided emission.)
 //
 // A photon is a light l, drawn with the probability P(l) in proportion to power, and a point u of
-// the unit hypercube from which LightSet::emit() samples it. Let f(l, u) be what a photon brings
-// then. Drawn with the density g relative to P(l) du instead, it brings f / g, which has the same
+// the unit hypercube from which LightSet::emit() samples it. Let f(l, u) be its contribution.
+// Drawn with the density g relative to P(l) du instead, it contributes f / g, which has the same
 // mean for any g > 0 and the least variance for g in proportion to |f| (of a cell: to the root of
 // the mean of f^2). Cells are boxes of the hypercube of each light. They are split where pilot
-// photons brought something.
+// photons contributed.
 #pragma once
 
 #include <functional>
@@ -46,7 +46,7 @@ class EmissionGuide {
   Emission draw(double choice, Rng& rng) const;
   // The density g. It is at least kDefensive.
   float density(const Emission& e) const;
-  // Second moment of what a photon brings, over that by power; 1 without a guide.
+  // Second moment of a photon's contribution, over that by power; 1 without a guide.
   double relativeVariance() const { return relativeVariance_; }
 
  private:
@@ -72,16 +72,16 @@ class EmissionGuide {
   double relativeVariance_ = 1.0;
 };
 
-// What one photon brings, in any unit. `hint` is what a similar, more frequent kind of photon
-// brings from there, and shows the way as long as hardly a photon brings anything.
-struct Brought {
-  double wanted = 0.0, hint = 0.0;
+// Contribution of one photon, in any unit. `proxy` is a similar contribution that is more often
+// nonzero. It guides the rounds until enough photons with a nonzero `target` are known.
+struct PilotContribution {
+  double target = 0.0, proxy = 0.0;
 };
-// Follows a photon, with further random numbers. `hint` need not be set unless `hints`.
-using PhotonContribution =
-    std::function<Brought(const Emission&, const PhotonStart&, Rng&, bool hints)>;
+// Follows a photon, with further random numbers. `proxy` need not be set unless `withProxy`.
+using PilotEstimator =
+    std::function<PilotContribution(const Emission&, const PhotonStart&, Rng&, bool withProxy)>;
 
-// Shares of the photons that bring something, 0..1.
+// Shares of the photons whose contribution is not zero, 0..1.
 struct UsefulPhotons {
   double byPower = 0.0;  // with emission by power
   double guided = 0.0;   // with guided emission; 0: nothing is guided
@@ -95,6 +95,6 @@ struct LearnedEmission {
 // Traces `photons` pilot photons in several rounds, each guided by those before it. The photons'
 // flux is that of `photons` = 1, by power. Returns the same for any number of threads.
 LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t key,
-                              const PhotonContribution& contribution, const ProgressFn& progress);
+                              const PilotEstimator& estimate, const ProgressFn& progress);
 
 }  // namespace bnvpl

@@ -287,10 +287,13 @@ float LightSet::photonDensity(size_t index, Vec3 towards) const {
   return kPi * pdf / (face.x + face.y + face.z);
 }
 
-PhotonStart LightSet::emit(size_t index, Rng& rng) const {
-  EmissionPoint at;
-  for (float& u : at) u = rng.next();
-  return emit(index, at);
+EmissionPoint LightSet::emissionPoint(size_t index, Rng& rng) const {
+  const Light& light = lights_[index];
+  const bool fromPoint =
+      !light.area && (light.spec.type == LightType::Point || light.spec.type == LightType::Spot);
+  EmissionPoint at{};
+  for (float& u : std::span(at).first(fromPoint ? 2 : 4)) u = rng.next();
+  return at;
 }
 
 PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {

@@ -91,7 +91,9 @@ class LightSet {
   }
 
   PhotonStart emit(size_t light, const EmissionPoint& at) const;
-  PhotonStart emit(size_t light, Rng& rng) const;
+  PhotonStart emit(size_t light, Rng& rng) const { return emit(light, emissionPoint(light, rng)); }
+  // A point by power. Dimensions on which the light's photons do not depend are 0.
+  EmissionPoint emissionPoint(size_t light, Rng& rng) const;
   // The dimensions of EmissionPoint on which a photon depends so that a density over them can be
   // looked up again by emittedBy().
   std::span<const uint8_t> emissionSides(size_t light) const;

@@ -23,7 +23,7 @@ LightSpec skyLight() {
 }
 
 // A floor of 400 x 400 on which a square of 2 x 2 counts: one in 40,000 of the photons of a sun.
-// Photons around it are hints.
+// Photons around it are the proxy.
 struct Plain {
   explicit Plain(const std::vector<LightSpec>& specs) : scene(ground()), rays(scene) {
     scene.lights = specs;
@@ -48,7 +48,7 @@ struct Plain {
   LearnedEmission learned(uint64_t key = 1) const {
     return learnEmission(*lights, kPilot, key,
                          [&](const Emission&, const PhotonStart& start, Rng&, bool) {
-                           return Brought{onSquare(start), onSquare(start, 10.0f)};
+                           return PilotContribution{onSquare(start), onSquare(start, 10.0f)};
                          },
                          {});
   }
@@ -124,10 +124,12 @@ TEST(EmissionGuide, ItsDensityIsThatOfItsDraws) {
 // Where all photons are useful, nothing is guided, and images do not change.
 TEST(EmissionGuide, IsOneByPowerWhereAllPhotonsAreUseful) {
   const Plain plain({sunLight(), skyLight()});
-  const LearnedEmission learned = learnEmission(*plain.lights, kPilot, 1,
-                                                [](const Emission&, const PhotonStart& s, Rng&,
-                                                   bool) { return Brought{double{mean(s.flux)}}; },
-                                                {});
+  const LearnedEmission learned =
+      learnEmission(*plain.lights, kPilot, 1,
+                    [](const Emission&, const PhotonStart& s, Rng&, bool) {
+                      return PilotContribution{double{mean(s.flux)}};
+                    },
+                    {});
   EXPECT_FALSE(learned.guide.guides());
   EXPECT_EQ(learned.guide.density({0, {}}), 1.0f);
   EXPECT_GT(learned.useful.byPower, 0.99);
@@ -135,9 +137,9 @@ TEST(EmissionGuide, IsOneByPowerWhereAllPhotonsAreUseful) {
 
 TEST(EmissionGuide, IsOneByPowerWhereNoPhotonIsUseful) {
   const Plain plain({sunLight()});
-  const LearnedEmission learned =
-      learnEmission(*plain.lights, kPilot, 1,
-                    [](const Emission&, const PhotonStart&, Rng&, bool) { return Brought{}; }, {});
+  const LearnedEmission learned = learnEmission(
+      *plain.lights, kPilot, 1,
+      [](const Emission&, const PhotonStart&, Rng&, bool) { return PilotContribution{}; }, {});
   EXPECT_FALSE(learned.guide.guides());
   EXPECT_EQ(learned.useful.guided, 0.0);
 }

@@ -62,7 +62,7 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
               const double deposit{mean(flux * bsdf.roughAlbedo())};
               squares += deposit * deposit * weights[*found.vpl];
             });
-        return Brought{std::sqrt(squares)};
+        return PilotContribution{std::sqrt(squares)};
       },
       in.progress);
 }

@@ -35,26 +35,25 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photon
       [] { return std::string(); });
 }
 
-// What a photon brings is its light on the film. Until the guide is there, the weights of MIS are
-// those of photons by power. While few caustic photons come into view, all photons that do show
-// from where it is lit.
+// The target is the light of a caustic photon on the film, and the proxy that of any photon. Until
+// the guide is there, the weights of MIS are those of photons by power.
 void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
   LearnedEmission learned = bnvpl::learnEmission(
       lights_, (photons_ + kLearnShare - 1) / kLearnShare, key,
-      [&](const Emission& e, const PhotonStart& start, Rng& rng, bool hints) {
-        Brought brought;
+      [&](const Emission& e, const PhotonStart& start, Rng& rng, bool withProxy) {
+        PilotContribution contribution;
         Splats splats;
         const Vec3 flux = start.flux * (1.0f / static_cast<float>(photons_));
         trace({e.light, 1.0f, start, flux, lights_.hittable(e.light)}, rng, splats);
-        for (const Splat& splat : splats.list) brought.wanted += double{mean(splat.radiance)};
-        if (!hints) return brought;
-        constexpr unsigned kHintBounces = 4;
-        followPhoton(rays_, PhotonWalk(start, kHintBounces, rng),
+        for (const Splat& splat : splats.list) contribution.target += double{mean(splat.radiance)};
+        if (!withProxy) return contribution;
+        constexpr unsigned kProxyBounces = 4;
+        followPhoton(rays_, PhotonWalk(start, kProxyBounces, rng),
                      [&](const Bsdf& bsdf, Vec3 arriving, bool) {
                        if (const auto film = connectToFilm(rays_, bsdf.point()))
-                         brought.hint += double{mean(arriving * film->value) * film->perArea};
+                         contribution.proxy += double{mean(arriving * film->value) * film->perArea};
                      });
-        return brought;
+        return contribution;
       },
       progress);
   useful_ = learned.useful;
