@@ -30,7 +30,7 @@ class SceneHasher {
 };
 
 void hashModel(SceneHasher& h, const Material& m) {
-  h.value(static_cast<uint32_t>(m.model.index()));
+  h.value(std::visit([](const auto& model) { return model.kHashId; }, m.model));
   struct Inputs {
     SceneHasher& h;
     void operator()(const Colour& c) const { h.value(c.value), h.value(c.texture); }

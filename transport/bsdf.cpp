@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include "transport/bsdf/diffuse_transmission/diffuse_transmission.h"
-#include "transport/bsdf/mix/mix.h"
-
 namespace bnvpl {
 
 static_assert(std::is_trivially_copyable_v<Bsdf> && std::is_trivially_destructible_v<Bsdf>);

@@ -17,15 +17,9 @@
 #include <type_traits>
 #include <variant>
 
-#include "transport/bsdf/coated_conductor/coated_conductor.h"
-#include "transport/bsdf/coated_diffuse/coated_diffuse.h"
-#include "transport/bsdf/conductor/conductor.h"
-#include "transport/bsdf/dielectric/dielectric.h"
-#include "transport/bsdf/diffuse/diffuse.h"
 #include "transport/bsdf/lobe_frame.h"
-#include "transport/bsdf/metallic_roughness/metallic_roughness.h"
-#include "transport/bsdf/phong/phong.h"
 #include "transport/bsdf/rough_leaving.h"
+#include "transport/bsdf_models.h"
 
 namespace bnvpl {
 

@@ -221,7 +221,7 @@ TEST_F(SceneToml, AMaterialThatNoFaceHasIsNamed) {
 TEST_F(SceneToml, MistakesInMaterialsAndTextures) {
   const std::string material = base_ + "[[material]]\nname = \"paint\"\n";  // 11 lines
   expectError(material, 10, {"[[material]]", "needs 'model'"});
-  expectError(material + "model = \"phong\"\n", 12, {"'phong'", "use one of diffuse, "});
+  expectError(material + "model = \"phong\"\n", 12, {"'phong'", "use one of coated_conductor, ", " diffuse, ", ", mix"});
   expectError(material + "model = \"diffuse\"\nreflectence = [1, 1, 1]\n", 13,
               {"did you mean 'reflectance'"});
   expectError(material + "model = \"diffuse\"\neta = [1, 1, 1]\n", 13, {"'eta'"});

@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "transport/bsdf.h"
-#include "transport/bsdf/diffuse_transmission/diffuse_transmission.h"
-#include "transport/bsdf/mix/mix.h"
 
 namespace bnvpl {
 

@@ -35,13 +35,13 @@ void readWrap(const TomlSection& s, TextureExpression& e) {
   e.wrapV = static_cast<Wrap>(choice(s, "wrap_v", kWrapNames, 0));
 }
 
-template <size_t N>
-MaterialModel modelOf(uint32_t index) {
-  if constexpr (N + 1 == std::variant_size_v<MaterialModel>)
-    return std::variant_alternative_t<N, MaterialModel>{};
-  else
-    return index == N ? MaterialModel(std::variant_alternative_t<N, MaterialModel>{})
-                      : modelOf<N + 1>(index);
+// The models that a [[material]] can name. Phong's is left to MTL.
+std::vector<MaterialModel> namedModels() {
+  std::vector<MaterialModel> models;
+  forEachModel([&](const auto& model) {
+    if constexpr (!std::same_as<decltype(model), const PhongModel&>) models.emplace_back(model);
+  });
+  return models;
 }
 
 std::vector<std::string> materialKeys(const MaterialModel& model) {
@@ -127,12 +127,14 @@ uint32_t TomlSurfaces::material(const TomlSection& s, const char* key) {
 void TomlSurfaces::readMaterial(const toml::table& table) {
   const auto* model = table.get("model");
   const auto text = model ? model->value_exact<std::string>() : std::nullopt;
-  const auto known = std::ranges::find(kModelNames, text.value_or(""));
+  const std::vector<MaterialModel> models = namedModels();
+  std::vector<const char*> names;
+  for (const MaterialModel& each : models) names.push_back(nameOf(each));
+  const auto known = std::ranges::find(names, std::string_view(text.value_or("")));
   Material m;
-  if (known != kModelNames.end() && known != kModelNames.begin())
-    m.model = modelOf<0>(static_cast<uint32_t>(known - kModelNames.begin()));
+  if (known != names.end()) m.model = models[static_cast<size_t>(known - names.begin())];
   const TomlSection s(file_, "[[material]]", table, materialKeys(m.model));
-  s.choice("model", std::span(kModelNames).subspan(1));  // the Phong model is left to MTL
+  s.choice("model", names);
   m.name = s.newName(materials_);
   struct Fields {
     TomlSurfaces& of;

@@ -64,7 +64,7 @@ void Surfaces::material(uint32_t number) {
   const Material& m = scene_.materials[number];
   materials_ += "\n[[material]]\n";
   add("name", inQuotes(used_.names[number]));
-  add("model", inQuotes(kModelNames[m.model.index()]));
+  add("model", inQuotes(nameOf(m.model)));
   const auto each = [&](const char* key, const auto& value) { field(key, value); };
   std::visit([&](const auto& model) { forEachField(model, each); }, m.model);
   if (!isBlack(m.emission)) add("emission", listText(m.emission));

@@ -1,0 +1,35 @@
+# Each model of materials is a header of scene/models, with its parameters, and a folder of transport/bsdf, with its
+# lobes. A model NAME_OF_IT has the struct NameOfItModel. This makes two headers from the list of files:
+#   scene/material_models.h    includes all structs; MaterialModel is the variant of them
+#   transport/bsdf_models.h    includes all headers transport/bsdf/NAME/NAME.h
+# A header without its folder, or a folder with lobes without its header, ends the configuration.
+function(bnvpl_generate_material_models folder)
+  file(GLOB names CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/scene/models ${CMAKE_SOURCE_DIR}/scene/models/*.h)
+  list(REMOVE_ITEM names parameters.h)
+  list(TRANSFORM names REPLACE "\\.h$" "")
+  list(SORT names)
+  set(head "// Made by cmake/MaterialModels.cmake from scene/models.\n#pragma once\n\n")
+  set(structs "")
+  set(lobes "")
+  set(types "")
+  foreach(name ${names})
+    if(NOT EXISTS ${CMAKE_SOURCE_DIR}/transport/bsdf/${name}/${name}.h)
+      message(FATAL_ERROR "scene/models/${name}.h has no transport/bsdf/${name}/${name}.h")
+    endif()
+    string(APPEND structs "#include \"scene/models/${name}.h\"\n")
+    string(APPEND lobes "#include \"transport/bsdf/${name}/${name}.h\"\n")
+    string(REPLACE "_" ";" words ${name})
+    set(type "")
+    foreach(word ${words})
+      string(SUBSTRING ${word} 0 1 first)
+      string(TOUPPER ${first} first)
+      string(SUBSTRING ${word} 1 -1 rest)
+      string(APPEND type ${first}${rest})
+    endforeach()
+    list(APPEND types ${type}Model)
+  endforeach()
+  list(JOIN types ", " types)
+  file(GENERATE OUTPUT ${folder}/scene/material_models.h CONTENT
+    "${head}#include <variant>\n\n${structs}\nnamespace bnvpl {\nusing MaterialModel = std::variant<${types}>;\n}\n")
+  file(GENERATE OUTPUT ${folder}/transport/bsdf_models.h CONTENT "${head}${lobes}")
+endfunction()
