@@ -88,6 +88,11 @@ inline void requireSaneMeshes(const Scene& s) {
   }
   for (const Instance& i : s.instances)
     require(i.prototype < s.prototypes.size(), "instances are of prototypes");
+  require(s.instanceObjects.size() == s.instances.size(), "instances have an entry for an object");
+  for (const uint32_t o : s.instanceObjects)
+    require(o == kNone || o < s.objectNames.size(), "instances are objects");
+  for (uint32_t t = 0; t < s.triangles.size(); ++t)
+    require(s.objectOf(t) < s.objectNames.size(), "triangles have an object");
   if (s.triangles.empty()) return;
   require(isFinite(s.bounds.lower) && isFinite(s.bounds.upper), "bounds are finite");
 }

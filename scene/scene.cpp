@@ -15,6 +15,12 @@ bool shines(const Scene& scene, const LightSpec& light) {
 
 }  // namespace
 
+uint32_t Scene::objectOf(uint32_t triangle, uint32_t instance) const {
+  if (instance != kNone && instanceObjects[instance] != kNone) return instanceObjects[instance];
+  const auto next = std::ranges::upper_bound(objectRuns, triangle, {}, &ObjectRun::firstTriangle);
+  return std::prev(next)->object;
+}
+
 bool Scene::hasLight() const {
   return std::any_of(lights.begin(), lights.end(),
                      [&](const LightSpec& light) { return shines(*this, light); }) ||

@@ -86,6 +86,11 @@ struct Instance {
   Vec3 vector(Vec3 v) const { return point(v) - point({}); }
 };
 
+// The triangles from `firstTriangle` up to the next run are part of one object.
+struct ObjectRun {
+  uint32_t firstTriangle, object;
+};
+
 enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 
 // A light that is not a surface. LightSet combines these with the emissive triangles.
@@ -146,6 +151,15 @@ struct Scene {
   // Origin of the scene's coordinates, in those of the files. It is 0 unless the scene lies so far
   // from 0 that floats would resolve it coarsely (sceneOrigin in affine.h).
   std::array<double, 3> origin{};
+
+  // Objects are the things that a scene file names: an `o` of an OBJ, a node of glTF, a shape or
+  // object of pbrt. Names are unique, each is one line, and each object has a triangle.
+  std::vector<std::string> objectNames;
+  std::vector<ObjectRun> objectRuns;      // ascending; the first begins at triangle 0
+  std::vector<uint32_t> instanceObjects;  // one for each instance; kNone: as its triangles
+  // Index into objectNames of what a ray hit: SurfacePoint::triangle and SurfacePoint::instance.
+  // Its cost is a binary search in objectRuns.
+  uint32_t objectOf(uint32_t triangle, uint32_t instance = kNone) const;
 
   std::vector<MeshRecord> meshes;  // for reports
   std::vector<Material> materials;

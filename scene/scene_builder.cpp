@@ -89,20 +89,25 @@ uint32_t SceneBuilder::beginPrototype() {
 }
 
 size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& transform) {
-  if (open_ != kNone) {
-    const auto all = [](std::span<const double> s) { return std::vector(s.begin(), s.end()); };
-    const auto grey = std::ranges::count(mesh.triangles, kNone, &Triangle::material);
-    prototypes_[open_].push_back({file, all(mesh.positions), all(mesh.normals), all(mesh.uvs),
-                                  std::move(mesh.triangles), transform});
-    return static_cast<size_t>(grey);
-  }
+  const auto grey = std::ranges::count(mesh.triangles, kNone, &Triangle::material);
+  giveSurfaces(file, mesh);
+  if (open_ == kNone) return addPart(file, std::move(mesh), transform, kNone);
+  const auto all = [](std::span<const double> s) { return std::vector(s.begin(), s.end()); };
+  prototypes_[open_].push_back({file, all(mesh.positions), all(mesh.normals), all(mesh.uvs),
+                                std::move(mesh.triangles), transform});
+  return static_cast<size_t>(grey);
+}
+
+size_t SceneBuilder::addPart(const fs::path& file, Mesh mesh, const Affine& transform,
+                             uint32_t object) {
   recordMesh(file.string(), mesh.triangles.size());
   const Base base = addCorners(file, mesh, transform);
   const bool mirrored = transform.determinant() < 0.0;
   const auto moved = [](uint32_t index, size_t begin, size_t end) {
     return index < end - begin ? static_cast<uint32_t>(begin + index) : kNone;
   };
-  size_t kept = 0, grey = 0;
+  uint32_t given = kNone, kept = kNone;  // a surface of the mesh, and what it is in the scene
+  size_t usableCount = 0, grey = 0;
   for (Triangle t : mesh.triangles) {
     if (mirrored) {
       for (auto* corners : {&t.position, &t.normal, &t.uv}) std::swap((*corners)[0], (*corners)[2]);
@@ -116,18 +121,21 @@ size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& tran
       usable = usable && t.position[k] != kNone && isFinite(points_[t.position[k]]);
     }
     if (!usable) continue;
-    if (t.material == kNone) {
-      t.material = greyMaterial();
-      ++grey;
+    if (t.material != given) {
+      given = t.material;
+      const auto [material, own] = surfaces_[given];
+      kept = surfaceOf(
+          {material == kNone ? greyMaterial() : material, object == kNone ? own : object});
     }
-    assert(t.material < scene_.materials.size());
-    mesh.triangles[kept++] = t;
+    grey += materialNumber(t) == kNone;
+    t.material = kept;
+    mesh.triangles[usableCount++] = t;
   }
-  if (kept < mesh.triangles.size()) {
-    warn(file.string() + ": " + std::to_string(mesh.triangles.size() - kept) +
+  if (usableCount < mesh.triangles.size()) {
+    warn(file.string() + ": " + std::to_string(mesh.triangles.size() - usableCount) +
          " triangles with missing or non-finite vertices are left out");
   }
-  mesh.triangles.resize(kept);
+  mesh.triangles.resize(usableCount);
   if (scene_.triangles.empty()) {
     scene_.triangles = std::move(mesh.triangles);
   } else {
@@ -142,7 +150,7 @@ size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& tran
 void SceneBuilder::shareMesh(const KeptMesh& kept, uint32_t prototype) {
   std::vector<Triangle> rest, lamps;
   for (const Triangle& t : kept.triangles) {
-    const bool lamp = t.material != kNone && !isBlack(scene_.materials[t.material].emission);
+    const bool lamp = materialNumber(t) != kNone && !isBlack(materialOf(t).emission);
     (lamp ? lamps : rest).push_back(t);
   }
   const auto uses = static_cast<size_t>(std::ranges::count(placed_, prototype, &Placed::prototype));
@@ -152,11 +160,11 @@ void SceneBuilder::shareMesh(const KeptMesh& kept, uint32_t prototype) {
   }
   for (const Placed& p : placed_) {
     if (p.prototype == prototype && !lamps.empty())
-      addMesh(kept.file, kept.mesh(lamps), p.toWorld * kept.transform);
+      addPart(kept.file, kept.mesh(lamps), p.toWorld * kept.transform, p.object);
   }
   if (rest.empty()) return;
   shared_ = prototype;
-  addMesh(kept.file, kept.mesh(std::move(rest)), kept.transform);
+  addPart(kept.file, kept.mesh(std::move(rest)), kept.transform, objectOfAll(prototype));
   shared_ = kNone;
   scene_.meshes[meshOfName_.at(kept.file.string())].instances += uses - 1;
 }
@@ -169,7 +177,8 @@ void SceneBuilder::placePrototypes() {
       if (uses > 1) shareMesh(kept, p);
       if (uses != 1) continue;
       const auto placed = std::ranges::find(placed_, p, &Placed::prototype);
-      addMesh(kept.file, kept.mesh(kept.triangles), placed->toWorld * kept.transform);
+      addPart(kept.file, kept.mesh(kept.triangles), placed->toWorld * kept.transform,
+              placed->object);
     }
     if (uses == 1) std::erase_if(placed_, [&](const Placed& o) { return o.prototype == p; });
     prototypes_[p] = {};

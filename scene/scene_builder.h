@@ -37,6 +37,9 @@ struct Mesh {
   // range. `material` is a number from addMaterial(), or kNone for grey. The front of a face, on
   // which it emits, is the side where its corners run anti-clockwise.
   std::vector<Triangle> triangles;
+  // Objects of the triangles, by numbers from addObject(); the first run begins at 0. A mesh
+  // without any is one object, with the name of its file.
+  std::vector<ObjectRun> objects = {};
 };
 
 class SceneBuilder {
@@ -84,6 +87,12 @@ class SceneBuilder {
   // finish() computes light.position from `position`, which has no meaning for lights at infinity.
   void addLight(const LightSpec& light, const FilePoint& position = {});
 
+  // Returns the number of the object of this name; equal names are one object. Control characters
+  // become '_'.
+  uint32_t addObject(std::string name);
+  // The object of a mesh that has no name but that of its file: "room" of "scenes/room.obj".
+  uint32_t addObjectOf(const fs::path& file) { return addObject(file.stem().string()); }
+
   // Leaves out triangles with a corner that has no finite position, with a warning that names
   // `file`. A transform that mirrors flips the windings, so that outside stays outside. Returns the
   // number of triangles that became grey for lack of a material; the loader reports why. Throws
@@ -95,8 +104,9 @@ class SceneBuilder {
   // triangles. Prototypes do not nest.
   uint32_t beginPrototype();
   void endPrototype() { open_ = kNone; }
-  void addInstance(uint32_t prototype, const Affine& toWorld) {
-    placed_.push_back({prototype, toWorld});
+  // The instance is the given object; kNone: its triangles keep theirs.
+  void addInstance(uint32_t prototype, const Affine& toWorld, uint32_t object = kNone) {
+    placed_.push_back({prototype, toWorld, object});
   }
 
   // Records a file that was read or found missing, once each, for depfiles.
@@ -128,7 +138,23 @@ class SceneBuilder {
   struct Placed {
     uint32_t prototype;
     Affine toWorld;
+    uint32_t object;
   };
+  // Until finish() lists the runs of objects, Triangle::material is an index into surfaces_, so
+  // that triangles keep their object wherever they are moved.
+  struct Surface {
+    uint32_t material, object;  // `material` is kNone for grey until the triangle is found usable
+    auto operator<=>(const Surface&) const = default;
+  };
+  uint32_t surfaceOf(Surface surface);
+  uint32_t materialNumber(const Triangle& t) const { return surfaces_[t.material].material; }
+  const Material& materialOf(const Triangle& t) const {
+    return scene_.materials[materialNumber(t)];
+  }
+  void giveSurfaces(const fs::path& file, Mesh& mesh);
+  // Adds a mesh whose triangles have surfaces; `object`, unless kNone, replaces theirs.
+  size_t addPart(const fs::path& file, Mesh mesh, const Affine& transform, uint32_t object);
+  uint32_t objectOfAll(uint32_t prototype) const;
   Corners cornersOf(const Triangle& t) const {
     return {points_[t.position[0]], points_[t.position[1]], points_[t.position[2]]};
   }
@@ -155,6 +181,7 @@ class SceneBuilder {
   void placeInstances();
   void dropDoubledLamps();
   void sortByMask();
+  void listObjects();
   void extendBounds();
   void placeViews();
   void requirePlace(const FilePoint& p, const char* what) const;
@@ -166,6 +193,10 @@ class SceneBuilder {
   std::vector<Part> parts_;
   std::vector<std::vector<KeptMesh>> prototypes_;
   std::vector<Placed> placed_;
+  std::vector<Surface> surfaces_;
+  std::map<Surface, uint32_t> surfaceNumbers_;
+  std::vector<std::string> objects_;  // names of the numbers from addObject()
+  std::map<std::string, uint32_t> objectNumbers_;
   uint32_t open_ = kNone;                     // prototype that receives meshes; kNone: the world
   uint32_t shared_ = kNone;                   // the same, during finish()
   std::vector<uint32_t> greyable_;            // numbers from addGreyableImage()

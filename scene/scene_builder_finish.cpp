@@ -32,7 +32,7 @@ Camera cameraThatSees(const Bounds& bounds) {
 
 // Moves opaque triangles to the front of the world and of each prototype.
 void SceneBuilder::sortByMask() {
-  const auto opaque = [&](const Triangle& t) { return !scene_.materials[t.material].masked(); };
+  const auto opaque = [&](const Triangle& t) { return !materialOf(t).masked(); };
   const auto begin = scene_.triangles.begin();
   const auto sort = [&](size_t from, size_t to) {
     const auto masked = std::stable_partition(begin + static_cast<std::ptrdiff_t>(from),
@@ -85,6 +85,7 @@ void SceneBuilder::placeInstances() {
       continue;
     }
     scene_.instances.push_back(instance);
+    scene_.instanceObjects.push_back(p.object);
   }
   if (scene_.instances.empty() && !scene_.prototypes.empty()) {
     scene_.triangles.resize(scene_.worldEnd());
@@ -168,6 +169,7 @@ Scene SceneBuilder::finish() {
   placeInstances();
   dropDoubledLamps();
   sortByMask();
+  listObjects();
   extendBounds();
   for (const std::string& warning : liftCoplanarLamps(scene_)) warn(warning);
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex

@@ -188,10 +188,10 @@ void SceneBuilder::warnOfMissingUvs() {
     std::vector<bool> warned(scene_.materials.size(), false);
     for (; next < part.endTriangle; ++next) {
       const Triangle& t = scene_.triangles[next];
-      const Material& m = scene_.materials[t.material];
-      if (warned[t.material] || !hasTexture(m)) continue;
+      const Material& m = materialOf(t);
+      if (warned[materialNumber(t)] || !hasTexture(m)) continue;
       if (std::find(t.uv.begin(), t.uv.end(), kNone) == t.uv.end()) continue;
-      warned[t.material] = true;
+      warned[materialNumber(t)] = true;
       warn(part.file.string() + ": material '" + m.name +
            "' has a texture but faces without texture coordinates; "
            "the plain material colour is used there");

@@ -179,7 +179,7 @@ void SceneBuilder::dropUnusable() {
 void SceneBuilder::dropDoubledLamps() {
   std::set<std::array<float, 9>> seen;
   const auto doubled = [&](const Triangle& t) {
-    if (isBlack(scene_.materials[t.material].emission)) return false;
+    if (isBlack(materialOf(t).emission)) return false;
     std::array<std::array<float, 3>, 3> corners;
     for (size_t k = 0; k < 3; ++k) {
       const Vec3 p = scene_.positions[t.position[k]];

@@ -11,6 +11,14 @@ namespace bnvpl {
 
 namespace {
 
+// The name of a placed node or, if it has none, of its mesh.
+std::string nameOf(const GltfModel& model, size_t node) {
+  const tinygltf::Node& from = model.parts().nodes[node];
+  if (!from.name.empty()) return from.name;
+  const std::string& mesh = model.parts().meshes[static_cast<size_t>(from.mesh)].name;
+  return mesh.empty() ? "node " + std::to_string(node) : mesh;
+}
+
 // Decodes and stores each mesh once for all nodes that show it, unless they pose it.
 class Meshes {
  public:
@@ -20,14 +28,16 @@ class Meshes {
         surfaces_(addGltfMaterials(model, builder)),
         prototypes_(model.parts().meshes.size()) {}
 
-  void add(size_t mesh, const Affine& world, const std::vector<Affine>& instances) {
+  void add(size_t mesh, const Affine& world, const std::vector<Affine>& instances,
+           uint32_t object) {
     std::optional<uint32_t>& prototype = prototypes_[mesh];
     if (!prototype) prototype = read(mesh, {});
-    for (const Affine& instance : instances) builder_.addInstance(*prototype, world * instance);
+    for (const Affine& instance : instances)
+      builder_.addInstance(*prototype, world * instance, object);
   }
   // The joints of a skin place the mesh; glTF ignores the transform of its node.
-  void addPosed(size_t mesh, const GltfPose& pose, const Affine& world) {
-    builder_.addInstance(read(mesh, pose), pose.joints.empty() ? world : Affine());
+  void addPosed(size_t mesh, const GltfPose& pose, const Affine& world, uint32_t object) {
+    builder_.addInstance(read(mesh, pose), pose.joints.empty() ? world : Affine(), object);
   }
 
  private:
@@ -59,11 +69,12 @@ void readGltf(const fs::path& file, const Defines&, SceneBuilder& builder) {
     addGltfLight(model, placement, builder);
     if (node.mesh < 0) continue;
     const auto mesh = static_cast<size_t>(node.mesh);
+    const uint32_t object = builder.addObject(nameOf(model, placement.node));
     const GltfPose pose = poseOf(model, placement.node, placed);
     if (pose.rests())
-      meshes.add(mesh, placement.world, instancesOf(model, placement.node));
+      meshes.add(mesh, placement.world, instancesOf(model, placement.node), object);
     else
-      meshes.addPosed(mesh, pose, placement.world);
+      meshes.addPosed(mesh, pose, placement.world, object);
   }
 }
 

@@ -33,18 +33,43 @@ std::vector<uint32_t> addMaterials(const fs::path& obj, const ObjReading& readin
 
 struct CutFaces {
   std::vector<Triangle> triangles;
+  std::vector<ObjectRun> objects;
   size_t crossing = 0;  // polygons that cross themselves
+};
+
+// Follows the names of an OBJ from face to face.
+class Objects {
+ public:
+  Objects(const fs::path& obj, const std::vector<MeshLines::Object>& names, SceneBuilder& builder)
+      : obj_(obj), builder_(builder), next_(names.begin()), end_(names.end()) {}
+
+  // Adds a run if the triangles from `triangle` on, of the next face, are of another object.
+  void before(size_t face, size_t triangle, std::vector<ObjectRun>& runs) {
+    const std::string* name = nullptr;
+    for (; next_ != end_ && next_->face <= face; ++next_) name = &next_->name;
+    if (!name && !runs.empty()) return;
+    const uint32_t object =
+        name && !name->empty() ? builder_.addObject(*name) : builder_.addObjectOf(obj_);
+    if (runs.empty() || runs.back().object != object)
+      runs.push_back({static_cast<uint32_t>(triangle), object});
+  }
+
+ private:
+  const fs::path& obj_;
+  SceneBuilder& builder_;
+  std::vector<MeshLines::Object>::const_iterator next_, end_;
 };
 
 // A polygon that lacks a vertex is lost as a whole: its triangles have no corners, and the builder
 // leaves them out and counts them.
-CutFaces cutFaces(const ObjMesh& mesh, const std::vector<uint32_t>& materials) {
+CutFaces cutFaces(const ObjMesh& mesh, const std::vector<uint32_t>& materials, Objects objects) {
   CutFaces out;
   out.triangles.reserve(mesh.counts.size());
   std::vector<FilePoint> outline;
   std::vector<std::array<uint32_t, 3>> cut;
   const ObjCorner* corner = mesh.corners.data();
   for (size_t f = 0; f < mesh.counts.size(); corner += mesh.counts[f++]) {
+    objects.before(f, out.triangles.size(), out.objects);
     const std::span<const ObjCorner> face(corner, mesh.counts[f]);
     const uint32_t material =
         mesh.materials[f] < 0 ? kNone : materials[static_cast<size_t>(mesh.materials[f])];
@@ -163,7 +188,7 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
   }
   const std::vector<uint32_t> numbers = addMaterials(obj, reading, builder);
 
-  CutFaces cut = cutFaces(reading.mesh, numbers);
+  CutFaces cut = cutFaces(reading.mesh, numbers, Objects(obj, reading.objects, builder));
   cut.triangles.resize(cut.triangles.size() + reading.lostTriangles,
                        {kNoCorners, kNoCorners, kNoCorners, kNone});
   if (cut.crossing > 0) builder.warn(obj.string() + ": " + crossingPolygons(cut.crossing));
@@ -173,7 +198,7 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
   }
   if (cut.triangles.empty()) builder.warn(obj.string() + ": has no faces; it adds nothing");
   Mesh mesh{reading.mesh.positions, reading.mesh.normals, reading.mesh.uvs,
-            std::move(cut.triangles)};
+            std::move(cut.triangles), std::move(cut.objects)};
   if (builder.addMesh(obj, std::move(mesh), transform) > 0) warnOfGrey(obj, reading, builder);
 }
 

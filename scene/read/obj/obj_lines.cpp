@@ -37,6 +37,12 @@ struct Stretch {
   std::optional<std::string_view> material;  // that of its last usemtl
   bool materialUsed = false;
   std::vector<std::string_view> libraries;
+  size_t faces = 0;  // faces that tinyobj reports
+  struct Name {
+    size_t face;
+    std::string_view name;
+  };
+  std::vector<Name> objects, groups;
   std::map<std::string, size_t> strange;  // unknown keywords, and their lines as for badLine
   size_t badLine = kNot;                  // counted from its first line
   std::string problem;                    // problem of that line
@@ -79,6 +85,7 @@ bool noteFace(std::string_view rest, Stretch& s) {
   const bool lost = corners.largest > INT32_MAX;
   (lost ? s.lostTriangles : s.triangles) += corners.count - 2;
   if (lost) return false;
+  ++s.faces;
   if (!s.material) {
     s.facesBeforeNames = true;
   } else if (!s.materialUsed) {
@@ -97,10 +104,10 @@ void noteVertex(std::string_view rest, Stretch& s) {
 
 // Keywords whose lines change no mesh: names, groups, points, lines, and how others draw it.
 bool changesNoMesh(std::string_view keyword) {
-  static constexpr std::array<std::string_view, 20> kKeywords{
-      "g",      "o",          "s",         "mg",       "p",        "l",   "vp",
-      "vw",     "t",          "bevel",     "c_interp", "d_interp", "lod", "usemap",
-      "maplib", "shadow_obj", "trace_obj", "ctech",    "stech",    "vc"};
+  static constexpr std::array<std::string_view, 18> kKeywords{
+      "s",      "mg",         "p",         "l",        "vp",    "vw",
+      "t",      "bevel",      "c_interp",  "d_interp", "lod",   "usemap",
+      "maplib", "shadow_obj", "trace_obj", "ctech",    "stech", "vc"};
   return keyword.starts_with('#') || std::ranges::find(kKeywords, keyword) != kKeywords.end();
 }
 
@@ -120,6 +127,9 @@ bool note(std::string_view keyword, std::string_view rest, Stretch& s) {
   } else if (keyword == "vt") {
     noteProblem(checkNumbers(keyword, rest, 1, 2).problem, s);
     ++s.coordinates;
+  } else if (keyword == "o" || keyword == "g") {
+    (keyword == "o" ? s.objects : s.groups).push_back({s.faces, trimmed(rest)});
+    return false;
   } else if (keyword == "mtllib") {
     if (!trimmed(rest).empty()) s.libraries.push_back(trimmed(rest));
     return false;
@@ -183,6 +193,12 @@ std::vector<Stretch> stretchesOf(std::string_view text, size_t bytes) {
   return out;
 }
 
+// Adds the names of a range whose first face is number `before`.
+void appendNames(const std::vector<Stretch::Name>& names, size_t before,
+                 std::vector<MeshLines::Object>& out) {
+  for (const auto& [face, name] : names) out.push_back({before + face, std::string(name)});
+}
+
 }  // namespace
 
 MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
@@ -194,7 +210,8 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
   std::set<std::string_view> materials;
   std::optional<std::string_view> material;
   std::map<std::string, size_t> strange;
-  size_t line = 1;
+  std::vector<MeshLines::Object> groups;
+  size_t line = 1, faces = 0;
   for (const Stretch& s : stretches) {
     if (s.badLine != Stretch::kNot) {
       throw InputError(file.string() + ":" + std::to_string(line + s.badLine) + ": " + s.problem);
@@ -210,11 +227,15 @@ MeshLines meshLines(const fs::path& file, std::string text, size_t pieceBytes) {
     out.triangles += s.triangles;
     out.lostTriangles += s.lostTriangles;
     out.unusableFaces += s.unusableFaces;
+    appendNames(s.objects, faces, out.objects);
+    appendNames(s.groups, faces, groups);
+    faces += s.faces;
     out.libraries.insert(out.libraries.end(), s.libraries.begin(), s.libraries.end());
     materials.insert(s.materials.begin(), s.materials.end());
     if (s.facesBeforeNames) materials.insert(material.value_or(""));
     if (s.material) material = s.material;
   }
+  if (out.objects.empty()) out.objects = std::move(groups);
   out.strangeKeywords = named(strange);
   for (const std::string_view word : materials) out.materials.push_back(fromOneWord(word));
   std::sort(out.materials.begin(), out.materials.end());

@@ -21,8 +21,15 @@ struct MeshLines {
   size_t unusableFaces = 0;  // faces of fewer than three corners
   // Indices of vertices with a word such as nan for a number, which tinyobj reads as 0.
   std::vector<size_t> verticesOfWords;
-  std::vector<std::string> materials;        // those that faces use, "" for none; sorted and unique
-  std::vector<std::string> libraries;        // the text behind each mtllib
+  std::vector<std::string> materials;  // those that faces use, "" for none; sorted and unique
+  std::vector<std::string> libraries;  // the text behind each mtllib
+  // Names behind `o`, or in a file without them behind `g`, with the first of the faces that
+  // follow. Faces count as tinyobj reports them. "" ends the last object.
+  struct Object {
+    size_t face;
+    std::string name;
+  };
+  std::vector<Object> objects;
   std::vector<std::string> strangeKeywords;  // keywords without meaning, with their first lines
 
   // Lines that can be parsed independently, from `begin` to `end` of the text.

@@ -153,6 +153,7 @@ void readObj(const fs::path& obj, const fs::path& materials,
   out.mesh = parsePieces(lines, out.libraries.numbers);
   out.lostTriangles = lines.lostTriangles;
   out.unusableFaces = lines.unusableFaces;
+  out.objects = lines.objects;
   out.strangeKeywords = lines.strangeKeywords;
   for (const size_t vertex : lines.verticesOfWords) out.mesh.positions.at(3 * vertex) = NAN;
 }

@@ -27,6 +27,7 @@ struct ObjMesh {
 struct ObjReading {
   ObjMesh mesh;
   MaterialLibraries libraries;
+  std::vector<MeshLines::Object> objects;
   std::vector<std::string> unknown;          // materials that faces use and no library defines
   size_t lostTriangles = 0;                  // triangles of faces with indices beyond int
   size_t unusableFaces = 0;                  // faces of fewer than three corners

@@ -20,7 +20,17 @@ constexpr size_t kAtOnce = 256;  // shapes that are in memory beside the scene
 struct Placed {
   const Shape* shape;
   std::vector<Affine> worldFromShape;
+  std::string object = {};  // the name of its object; empty in the world
 };
+
+// The "string name" of a shape or of Attribute "shape", else its file, relative to the scene's
+// folder, and line.
+std::string nameOf(const Shape& shape, const fs::path& folder) {
+  const std::string name = shape.params.text("name");
+  if (!name.empty()) return name;
+  const fs::path file = fs::path(*shape.place.file).lexically_proximate(folder);
+  return file.string() + ":" + std::to_string(shape.place.line);
+}
 
 std::vector<Placed> placedShapes(const Description& d) {
   std::vector<Placed> out;
@@ -33,7 +43,7 @@ std::vector<Placed> placedShapes(const Description& d) {
   }
   for (const auto& [name, transforms] : places) {
     for (const Shape& shape : d.objects.at(name).shapes) {
-      Placed placed{&shape, {}};
+      Placed placed{&shape, {}, name};
       for (const Affine& t : transforms) placed.worldFromShape.push_back(t * shape.worldFromObject);
       out.push_back(std::move(placed));
     }
@@ -97,7 +107,9 @@ class Meshes {
     const uint32_t material = materials_.of(shape, emission(shape, mesh, transform));
     if (material == kNone) return;  // an interface has no surface
     for (Triangle& t : mesh.triangles) t.material = material;
-    builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles}, transform);
+    const uint32_t object = objectOf(placed);
+    builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles, {{0, object}}},
+                     transform);
   }
 
   void share(const Placed& placed, MeshData mesh, const fs::path& file) {
@@ -107,8 +119,14 @@ class Meshes {
     const uint32_t prototype = builder_.beginPrototype();
     builder_.addMesh(file, {mesh.positions, mesh.normals, mesh.uvs, mesh.triangles});
     builder_.endPrototype();
+    const uint32_t object = objectOf(placed);
     for (const Affine& transform : placed.worldFromShape)
-      builder_.addInstance(prototype, transform);
+      builder_.addInstance(prototype, transform, object);
+  }
+
+  uint32_t objectOf(const Placed& placed) {
+    const std::string own = nameOf(*placed.shape, reader_.folder);
+    return builder_.addObject(placed.object.empty() ? own : placed.object);
   }
 
   Emission emission(const Shape& shape, const MeshData& mesh, const Affine& transform) const {

@@ -17,7 +17,8 @@ constexpr double kMaxMagnitude = TomlSection::kMaxMagnitude;
 // A smaller sun is a point: floats do not resolve directions within it.
 constexpr double kMinSunDeg = 1e-4;
 
-const std::vector<std::string> kTransformKeys{"transform", "translate", "rotate_deg", "scale"};
+const std::vector<std::string> kInstanceKeys{"name", "transform", "translate", "rotate_deg",
+                                             "scale"};
 
 Affine readMatrix(const TomlSection& s) {
   const auto rows = s.rows("transform", 4, 4);
@@ -127,8 +128,9 @@ void readMesh(const fs::path& file, const toml::table& table, const FileNames& n
   load();
   builder.endPrototype();
   for (const toml::table* t : tablesOf(file, table, "instance", "mesh.instance")) {
-    builder.addInstance(prototype,
-                        readTransform(TomlSection(file, "[[mesh.instance]]", *t, kTransformKeys)));
+    const TomlSection instance(file, "[[mesh.instance]]", *t, kInstanceKeys);
+    builder.addInstance(prototype, readTransform(instance),
+                        instance.has("name") ? builder.addObject(instance.newName({})) : kNone);
   }
 }
 
