@@ -5,6 +5,7 @@
 
 #include "core/files.h"
 #include "scene/read/gltf/load_gltf.h"
+#include "scene/read/obj/load_obj.h"
 #include "scene/read/pbrt/read_pbrt.h"
 #include "scene/read/toml/scene_toml.h"
 #include "scene/scene_builder.h"
@@ -17,23 +18,34 @@ struct Format {
   std::string_view extension;  // in lower case
   void (*read)(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 };
-constexpr std::array kFormats{Format{".toml", readSceneToml}, Format{".pbrt", readScenePbrt},
+constexpr std::array kFormats{Format{".toml", readSceneToml},    Format{".pbrt", readScenePbrt},
                               Format{".pbrt.gz", readScenePbrt}, Format{".gltf", readGltf},
-                              Format{".glb", readGltf}};
+                              Format{".glb", readGltf},          Format{".obj", readSceneObj}};
 
-const Format& formatOf(const fs::path& file) {
-  std::string name = file.filename().string(), known;
+std::string lowered(std::string name) {
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const Format& format : kFormats) {
-    if (name.ends_with(format.extension)) return format;
-    known += (known.empty() ? "" : ", ") + std::string(format.extension);
-  }
-  std::string problem = "is no scene file; scenes are read from " + known;
-  if (name.ends_with(".obj")) problem += "; the [[mesh]] of a .toml names an OBJ";
-  throw InputError(file, problem);
+  return name;
+}
+
+// Returns null for other files.
+const Format* formatOf(const fs::path& file) {
+  const std::string name = lowered(file.filename().string());
+  const auto known = std::ranges::find_if(
+      kFormats, [&](const Format& format) { return name.ends_with(format.extension); });
+  return known == kFormats.end() ? nullptr : &*known;
 }
 
 }  // namespace
+
+bool isSceneFile(const fs::path& path) { return formatOf(path) != nullptr; }
+
+void readSceneFile(const fs::path& path, const Defines& defines, SceneBuilder& builder) {
+  if (const Format* format = formatOf(path)) return format->read(path, defines, builder);
+  std::string known;
+  for (const Format& format : kFormats)
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  throw InputError(path, "is no scene file; scenes are read from " + known);
+}
 
 const std::string* Defines::find(const std::string& name) const {
   const auto it = values_.find(name);
@@ -54,9 +66,8 @@ Scene loadScene(const fs::path& path, const Defines& defines, const OnWarning& o
   std::error_code ignored;
   if (fs::is_directory(path, ignored))
     throw InputError(path, "is a folder; name the scene.toml in it");
-  const Format& format = formatOf(path);
   SceneBuilder builder(path, onWarning);
-  format.read(path, defines, builder);
+  readSceneFile(path, defines, builder);
   return builder.finish();
 }
 

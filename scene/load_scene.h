@@ -33,6 +33,13 @@ class Defines {
   std::map<std::string, Define> values_;
 };
 
+class SceneBuilder;
+
+// Whether the extension is that of a format that readSceneFile() reads.
+bool isSceneFile(const fs::path& path);
+// Adds a scene file and all files that it names, by its extension. Throws InputError.
+void readSceneFile(const fs::path& path, const Defines& defines, SceneBuilder& builder);
+
 // Reads a scene and all files that it names; the extension decides the format. Repairs are reported
 // in Scene::warnings and, as they occur, to `onWarning`, which alone receives those that precede an
 // error. Throws InputError with file, line (if any), problem and remedy; MemoryError or

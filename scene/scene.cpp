@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/files.h"
+
 namespace bnvpl {
 
 namespace {
@@ -28,8 +30,28 @@ bool Scene::hasLight() const {
                      [&](const Triangle& t) { return !isBlack(materials[t.material].emission); });
 }
 
-void Scene::requireLight() const {
-  if (!hasLight()) throw InputError(name() + ": " + kNoLight);
+std::string Scene::noLight() const {
+  const std::string problem = name() + ": has no light with power: its images are black; ";
+  if (isToml()) return problem + "add a [[light]] or an emissive material (Ke)";
+  const std::string mesh = files.front().filename().string();
+  fs::path lit = files.front();
+  lit.replace_filename(lit.stem().string() + "-lit.toml");
+  if (lit.string().find_first_of("'\"\\%") != std::string::npos)
+    return problem +
+           "name it in the [[mesh]] of a scene.toml that has a [[light]], and render that";
+  return problem +
+         "render a scene.toml with a [[light]] around it, such as that of: printf 'mesh = "
+         "[{file = \"" +
+         mesh +
+         "\"}]\\nlight = [{type = \"environment\", radiance = [1, 1, 1]}]"
+         "\\n' > '" +
+         lit.string() + "'";
 }
+
+void Scene::requireLight() const {
+  if (!hasLight()) throw InputError(noLight());
+}
+
+bool Scene::isToml() const { return !files.empty() && lowerExtension(files.front()) == ".toml"; }
 
 }  // namespace bnvpl

@@ -96,6 +96,7 @@ enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 // A light that is not a surface. LightSet combines these with the emissive triangles.
 struct LightSpec {
   LightType type = LightType::Point;
+  std::string name;          // empty if the file gives none
   Vec3 position;             // point, spot
   Vec3 direction{0, 0, -1};  // spot, directional: direction of propagation
   Vec3 emission;            // intensity W/sr; irradiance W/m2 (directional); radiance (environment)
@@ -106,10 +107,6 @@ struct LightSpec {
   float rotateRad = 0.0f;         // environment: rotation about +y
   float scale = 1.0f;             // environment: factor on the radiance
 };
-
-// Message about a scene without light: problem and remedy.
-inline constexpr const char* kNoLight =
-    "has no light with power: its images are black; add a [[light]] or an emissive material (Ke)";
 
 // A mesh by its name in the files. Its counts include triangles that are left out later.
 struct MeshRecord {
@@ -174,8 +171,12 @@ struct Scene {
 
   // Whether anything emits: a light that is not black, or a triangle with an emissive material.
   bool hasLight() const;
-  // Throws InputError, which names the scene, if nothing emits.
+  // Message about a scene without light: its name, the problem and a remedy.
+  std::string noLight() const;
+  // Throws InputError with noLight() if nothing emits.
   void requireLight() const;
+  // Whether the scene file is a scene.toml, to which lights can be added.
+  bool isToml() const;
 
   std::string name() const {  // for messages
     return files.empty() ? "the scene" : files.front().string();

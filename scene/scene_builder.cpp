@@ -22,14 +22,18 @@ SceneBuilder::SceneBuilder(fs::path sceneFile, OnWarning onWarning)
   scene_.files.push_back(std::move(sceneFile));
 }
 
-void SceneBuilder::setFilm(const Film& film) {
-  scene_.film = film;
-  for (View& view : scene_.views) view.film = film;
+void SceneBuilder::setFilm(const Film& film, size_t first) {
+  if (!including()) scene_.film = film;
+  for (size_t i = first; i < scene_.views.size(); ++i) scene_.views[i].film = film;
+}
+
+void SceneBuilder::dropCameras(size_t first) {
+  scene_.views.resize(first);
+  viewPositions_.resize(first);
 }
 
 void SceneBuilder::setCamera(const FilePoint& position, const Camera& camera) {
-  scene_.views.clear();
-  viewPositions_.clear();
+  dropCameras(0);
   addCamera("", position, camera, scene_.film);
 }
 
@@ -37,11 +41,14 @@ void SceneBuilder::addCamera(const std::string& name, const FilePoint& position,
                              const Camera& camera, const Film& film) {
   scene_.views.push_back({name, camera, film});
   viewPositions_.push_back(position);
+  if (including()) placeCamera(place_, scene_.views.back().camera, viewPositions_.back());
 }
 
 void SceneBuilder::addLight(const LightSpec& light, const FilePoint& position) {
   scene_.lights.push_back(light);
+  scene_.lights.back().name = onOneLine(light.name);
   lightPositions_.push_back(position);
+  if (including()) placeLight(place_, scene_.lights.back(), lightPositions_.back());
 }
 
 void SceneBuilder::addFile(const fs::path& file) {
@@ -91,10 +98,15 @@ uint32_t SceneBuilder::beginPrototype() {
 size_t SceneBuilder::addMesh(const fs::path& file, Mesh mesh, const Affine& transform) {
   const auto grey = std::ranges::count(mesh.triangles, kNone, &Triangle::material);
   giveSurfaces(file, mesh);
-  if (open_ == kNone) return addPart(file, std::move(mesh), transform, kNone);
+  const bool inWorld = open_ == kNone;
+  const auto isInstanced = [](const Include& include) { return !include.instances.empty(); };
+  if (inWorld && std::ranges::none_of(includes_, isInstanced))
+    return addPart(file, std::move(mesh), including() ? place_ * transform : transform, kNone);
+  if (inWorld) addInstance(beginPrototype(), {});
   const auto all = [](std::span<const double> s) { return std::vector(s.begin(), s.end()); };
   prototypes_[open_].push_back({file, all(mesh.positions), all(mesh.normals), all(mesh.uvs),
                                 std::move(mesh.triangles), transform});
+  if (inWorld) endPrototype();
   return static_cast<size_t>(grey);
 }
 

@@ -42,6 +42,9 @@ struct Mesh {
   std::vector<ObjectRun> objects = {};
 };
 
+// A name of a file as one line: control characters become '_'.
+std::string onOneLine(std::string name);
+
 class SceneBuilder {
  public:
   // End of the warning about a texture that cannot be read.
@@ -50,14 +53,17 @@ class SceneBuilder {
   // `onWarning` at once, even if an error follows and no Scene results.
   explicit SceneBuilder(fs::path sceneFile, OnWarning onWarning = {});
 
-  // Film and camera of a format that has one camera.
-  void setFilm(const Film& film);
-  // finish() computes camera.position from `position`.
+  // The film of all cameras from number `first` on, and of the scene if it has none.
+  void setFilm(const Film& film, size_t first = 0);
+  // The camera of a format that has one. finish() computes camera.position from `position`.
   void setCamera(const FilePoint& position, const Camera& camera);
   // Adds one of several cameras; the first is used unless the user chooses another. A scene without
   // a camera gets one that sees all of it, with a warning.
   void addCamera(const std::string& name, const FilePoint& position, const Camera& camera,
                  const Film& film);
+  // The cameras so far, without their positions, in the order of their numbers.
+  const std::vector<View>& views() const { return scene_.views; }
+  void dropCameras(size_t first);  // removes those from number `first` on
 
   // Starts to decode a texture in the background. Only the time of loading depends on it.
   void expectTexture(const TextureUse& use) { textures_.expect(use); }
@@ -73,9 +79,13 @@ class SceneBuilder {
   std::optional<Vec3> constantValue(uint32_t expression) const;
   uint32_t addMaterial(Material material);
   // Adds a material that replaces all that are added later under its name: their addMaterial()
-  // returns its number. The name must not be empty.
+  // returns its number. The name must not be empty; an outer file's replacement comes first.
   uint32_t addReplacement(Material material);
   bool isReplaced(const std::string& name) const { return replaced_.contains(name); }
+  // The material that replaces those of this name, which counts as used; null if none does.
+  const Material* useReplacement(const std::string& name);
+  // Adds a material that none replaces, whatever its name.
+  uint32_t addOwnMaterial(Material material);
   // Reads the radiance of an image at once. Negative values become 0, with a warning. Throws
   // InputError if the file is no image.
   EnvironmentImage readEnvironment(const fs::path& image);
@@ -93,6 +103,22 @@ class SceneBuilder {
   // The object of a mesh that has no name but that of its file: "room" of "scenes/room.obj".
   uint32_t addObjectOf(const fs::path& file) { return addObject(file.stem().string()); }
 
+  struct Place {
+    Affine toScene;
+    uint32_t object = kNone;  // what all that stands there is; kNone: its own objects
+  };
+  // What is added until endInclude() is part of a file within another. `place` leads from its
+  // coordinates to those of the outer file, and scales the light of lamps that are points by its
+  // square, so that the picture stays the same. With `instances` the file stands once at each of
+  // them, `place` counts first, its triangles are stored once and its cameras are left out.
+  // Replacements of materials that the file adds end with it; those of outer files come before
+  // them.
+  void beginInclude(const fs::path& file, const Affine& place, std::vector<Place> instances);
+  void endInclude();
+  bool including() const { return !includes_.empty(); }
+  // Why the file must not be included: it is being read, or there are too many. Empty: it may.
+  std::string whyNotInclude(const fs::path& file) const;
+
   // Leaves out triangles with a corner that has no finite position, with a warning that names
   // `file`. A transform that mirrors flips the windings, so that outside stays outside. Returns the
   // number of triangles that became grey for lack of a material; the loader reports why. Throws
@@ -105,9 +131,7 @@ class SceneBuilder {
   uint32_t beginPrototype();
   void endPrototype() { open_ = kNone; }
   // The instance is the given object; kNone: its triangles keep theirs.
-  void addInstance(uint32_t prototype, const Affine& toWorld, uint32_t object = kNone) {
-    placed_.push_back({prototype, toWorld, object});
-  }
+  void addInstance(uint32_t prototype, const Affine& toWorld, uint32_t object = kNone);
 
   // Records a file that was read or found missing, once each, for depfiles.
   void addFile(const fs::path& file);
@@ -146,6 +170,15 @@ class SceneBuilder {
     uint32_t material, object;  // `material` is kNone for grey until the triangle is found usable
     auto operator<=>(const Surface&) const = default;
   };
+  struct Include {
+    fs::path file;
+    Affine outer;  // place_ of the outer file
+    std::vector<Place> instances;
+    std::map<std::string, uint32_t> replacements;  // those of the outer file
+    size_t placed, lights, views;                  // how many there were
+  };
+  void placeLight(const Affine& place, LightSpec& light, FilePoint& position);
+  static void placeCamera(const Affine& place, Camera& camera, FilePoint& position);
   uint32_t surfaceOf(Surface surface);
   uint32_t materialNumber(const Triangle& t) const { return surfaces_[t.material].material; }
   const Material& materialOf(const Triangle& t) const {
@@ -193,6 +226,9 @@ class SceneBuilder {
   std::vector<Part> parts_;
   std::vector<std::vector<KeptMesh>> prototypes_;
   std::vector<Placed> placed_;
+  std::vector<Include> includes_;  // files that are being read, the innermost last
+  size_t includeCount_ = 0;
+  Affine place_;  // from the innermost of them to the scene, or to their outermost instances
   std::vector<Surface> surfaces_;
   std::map<Surface, uint32_t> surfaceNumbers_;
   std::vector<std::string> objects_;  // names of the numbers from addObject()

@@ -17,13 +17,16 @@ namespace {
 constexpr float kSmallestScene = 1e-6f, kLargestScene = 1e9f;
 
 // A camera above and to the right that looks at the middle.
-Camera cameraThatSees(const Bounds& bounds) {
+Camera cameraThatSees(const Bounds& bounds, const Film& film) {
   Camera c;
   c.verticalFovRad = 0.7f;
   c.forward = normalize(Vec3{-1.0f, -0.6f, -1.2f});
   c.right = normalize(cross(c.forward, {0, 1, 0}));
   c.up = cross(c.right, c.forward);
-  const float distance = 0.5f * bounds.diagonal() / std::sin(0.5f * c.verticalFovRad);
+  const float aspect = static_cast<float>(film.width) / static_cast<float>(film.height);
+  const float half = aspect < 1.0f ? std::atan(aspect * std::tan(0.5f * c.verticalFovRad))
+                                   : 0.5f * c.verticalFovRad;
+  const float distance = 0.5f * bounds.diagonal() / std::sin(half);
   c.position = bounds.center() - distance * c.forward;
   return c;
 }
@@ -131,7 +134,7 @@ void SceneBuilder::placeViews() {
   for (size_t i = 0; i < scene_.views.size(); ++i)
     scene_.views[i].camera.position = fromOrigin(viewPositions_[i], scene_.origin);
   if (scene_.views.empty()) {
-    scene_.views.push_back({"", cameraThatSees(scene_.bounds), scene_.film});
+    scene_.views.push_back({"", cameraThatSees(scene_.bounds, scene_.film), scene_.film});
     warn(scene_.name() + ": has no camera; one is placed that sees the whole scene");
   }
   scene_.camera = scene_.views.front().camera;
@@ -176,7 +179,7 @@ Scene SceneBuilder::finish() {
   requireSize();
   if (const std::string warning = lightsInSurfaces(scene_); !warning.empty()) warn(warning);
   placeViews();
-  if (!scene_.hasLight()) warn(scene_.name() + ": " + kNoLight);
+  if (!scene_.hasLight()) warn(scene_.noLight());
   scene_.contentHash = hashScene(scene_);
   return std::exchange(scene_, {});
 }

@@ -38,8 +38,10 @@ uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& othe
 }
 
 uint32_t SceneBuilder::addReplacement(Material material) {
-  assert(!material.name.empty() && !replacements_.contains(material.name));
+  assert(!material.name.empty());
   const std::string name = material.name;
+  if (replacements_.contains(name))
+    return addMaterial(std::move(material));  // that of an outer file
   return replacements_[name] = addMaterial(std::move(material));
 }
 
@@ -51,11 +53,19 @@ uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression
   return expression;
 }
 
+const Material* SceneBuilder::useReplacement(const std::string& name) {
+  const auto it = replacements_.find(name);
+  if (it == replacements_.end()) return nullptr;
+  replaced_.insert(name);
+  return &scene_.materials[it->second];
+}
+
 uint32_t SceneBuilder::addMaterial(Material material) {
-  if (const auto it = replacements_.find(material.name); it != replacements_.end()) {
-    replaced_.insert(material.name);
-    return it->second;
-  }
+  return useReplacement(material.name) ? replacements_.at(material.name)
+                                       : addOwnMaterial(std::move(material));
+}
+
+uint32_t SceneBuilder::addOwnMaterial(Material material) {
   uint32_t parts = 1;
   if (const auto* mix = std::get_if<MixModel>(&material.model)) {
     for (const uint32_t part : {mix->first, mix->second}) {

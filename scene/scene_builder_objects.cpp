@@ -6,9 +6,14 @@
 
 namespace bnvpl {
 
+std::string onOneLine(std::string name) {
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '_');
+  return name;
+}
+
 uint32_t SceneBuilder::addObject(std::string name) {
-  const auto control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  std::ranges::replace_if(name, control, '_');
+  name = onOneLine(std::move(name));
   const auto [it, isNew] = objectNumbers_.try_emplace(name, static_cast<uint32_t>(objects_.size()));
   if (isNew) objects_.push_back(std::move(name));
   return it->second;

@@ -209,14 +209,15 @@ Vec3 LightSet::totalPower() const {
 
 void LightSet::requirePower() const {
   if (hasPower()) return;
-  throw InputError(scene_.name() + ": " + kNoLight);
+  throw InputError(scene_.noLight());
 }
 
 std::string LightSet::name(size_t light) const {
   const Light& l = lights_[light];
   if (l.area) return "emissive material '" + scene_.materials[l.material].name + "'";
   const char* const names[] = {"point light", "spot light", "directional light", "environment"};
-  return names[static_cast<size_t>(l.spec.type)];
+  const std::string kind = names[static_cast<size_t>(l.spec.type)];
+  return l.spec.name.empty() ? kind : kind + " '" + l.spec.name + "'";
 }
 
 size_t LightSet::pick(float u, float& probability) const {

@@ -128,10 +128,25 @@ TEST_F(SceneFilesOfOthers, FoldersAreRefusedAsSuch) {
 }
 
 TEST_F(SceneFilesOfOthers, OtherFormatsAreRefusedByName) {
-  for (const char* name : {"my room.obj", "my room.mtl"}) {
-    fail("vpl-place", path(std::string("von Blender/") + name) + " -n 3 -o " + path("x"),
-         kExitInput, {name, "is no scene file; scenes are read from .toml"});
-  }
+  fail("vpl-place", path("von Blender/my room.mtl") + " -n 3 -o " + path("x"), kExitInput,
+       {"my room.mtl", "is no scene file; scenes are read from .toml"});
+}
+
+// An OBJ is a scene. Without a camera one is placed; without light the cure is a command.
+TEST_F(SceneFilesOfOthers, AnObjIsASceneOfItsOwn) {
+  const std::string obj = path("von Blender/my room.obj"), rest = " -n 30 -o " + path("c.vpl");
+  const Outcome ok = tool("vpl-place", obj + rest);
+  EXPECT_EQ(ok.code, kExitOk) << ok.err;
+  EXPECT_TRUE(contains(ok.err, "has no camera; one is placed that sees the whole scene")) << ok.err;
+  replaceAll("von Blender/my room.mtl", "Ke 10.000000 10.000000 10.000000", "Ke 0 0 0");
+  const std::string image = " --integrator path --spp 1 -o " + path("i.exr");
+  fail("vpl-render", obj + image, kExitInput, {"my room.obj: has no light with power"});
+  const Outcome dark = tool("vpl-place", obj + rest);
+  EXPECT_EQ(dark.code, kExitInput);
+  const size_t cure = dark.err.find("printf");
+  ASSERT_NE(cure, std::string::npos) << dark.err;
+  ASSERT_EQ(std::system(dark.err.substr(cure).c_str()), 0);
+  succeed("vpl-render", path("von Blender/my room-lit.toml") + image);
 }
 
 TEST_F(SceneFilesOfOthers, TheFieldOfViewTakesItsLimits) {

@@ -35,7 +35,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
     requireMemory(rowBytes, std::to_string(count) + " VPLs", "ask for fewer with -n");
   Scene scene = loadSceneFor(request.scene, Warnings::Hold);
   const PlaceViews views = placeViews(request.scene, request.viewShares, method, scene);
-  if (method.needsLight) scene.requireLight();
+  if (method.needsLight || !scene.isToml()) scene.requireLight();
   printHeldWarnings();
   run.filesReady(scene.files);
   const RayScene rays(scene, tool.processor);

@@ -80,6 +80,8 @@ void addGltfLight(const GltfModel& model, const GltfPlacement& placement, SceneB
   const auto index = static_cast<size_t>(it->second.Get("light").GetNumberAsInt());
   const tinygltf::Light& from = model.parts().lights[index];
   LightSpec light;
+  light.name = model.parts().nodes[placement.node].name;
+  if (light.name.empty()) light.name = from.name;
   for (size_t i = 0; i < 3; ++i) {
     const double colour = from.color.size() == 3 ? from.color[i] : 1.0;
     light.emission[i] = static_cast<float>(colour * from.intensity / kLumensPerWatt);

@@ -165,7 +165,7 @@ ObjReading readOrWarn(const fs::path& obj, const fs::path& materials, SceneBuild
 void loadObj(const fs::path& obj, const fs::path& materials, const Affine& transform,
              SceneBuilder& builder) {
   if (!isRegularFile(obj) || !std::ifstream(obj)) {
-    throw InputError(obj, whyUnreadable(obj, "OBJ file") + "; check 'file' in the scene.toml");
+    throw InputError(obj, whyUnreadable(obj, "OBJ file") + "; check its name");
   }
   if (!materials.empty() && !isRegularFile(materials)) {
     throw InputError(
@@ -200,6 +200,10 @@ void loadObj(const fs::path& obj, const fs::path& materials, const Affine& trans
   Mesh mesh{reading.mesh.positions, reading.mesh.normals, reading.mesh.uvs,
             std::move(cut.triangles), std::move(cut.objects)};
   if (builder.addMesh(obj, std::move(mesh), transform) > 0) warnOfGrey(obj, reading, builder);
+}
+
+void readSceneObj(const fs::path& file, const Defines&, SceneBuilder& builder) {
+  loadObj(file, {}, {}, builder);
 }
 
 }  // namespace bnvpl

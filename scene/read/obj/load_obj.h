@@ -1,6 +1,7 @@
 // Reads OBJ and MTL files into the meshes, materials and textures of a scene.
 #pragma once
 
+#include "scene/load_scene.h"
 #include "scene/scene_builder.h"
 
 namespace bnvpl {
@@ -9,5 +10,8 @@ namespace bnvpl {
 // InputError if a file cannot be read at all; repairs give a warning.
 void loadObj(const fs::path& obj, const fs::path& materials, const Affine& transform,
              SceneBuilder& builder);
+
+// Adds an OBJ that is a scene of its own.
+void readSceneObj(const fs::path& file, const Defines& defines, SceneBuilder& builder);
 
 }  // namespace bnvpl

@@ -23,15 +23,6 @@ struct Placed {
   std::string object = {};  // the name of its object; empty in the world
 };
 
-// The "string name" of a shape or of Attribute "shape", else its file, relative to the scene's
-// folder, and line.
-std::string nameOf(const Shape& shape, const fs::path& folder) {
-  const std::string name = shape.params.text("name");
-  if (!name.empty()) return name;
-  const fs::path file = fs::path(*shape.place.file).lexically_proximate(folder);
-  return file.string() + ":" + std::to_string(shape.place.line);
-}
-
 std::vector<Placed> placedShapes(const Description& d) {
   std::vector<Placed> out;
   for (const Shape& shape : d.shapes) out.push_back({&shape, {shape.worldFromObject}});

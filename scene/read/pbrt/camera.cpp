@@ -123,7 +123,6 @@ Sensor sensorOf(const Description& description, Notes& notes) {
 void buildCamera(const Description& description, Notes& notes, SceneBuilder& builder) {
   const Entity& entity = description.camera;
   const Pixels pixels = pixelsOf(description);
-  builder.setFilm(pixels.cropped());
   if (entity.type != "perspective") {
     notes.add(entity.place, "camera '" + entity.type +
                                 "' is not read; a perspective one of 90 "
@@ -149,7 +148,10 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
     failAt(entity.place, "the field of view is too small or too large");
   // Adding 0.0 turns -0 into 0.
   const FilePoint position = worldFromCamera->point({0, 0, 0});
-  builder.setCamera({position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, camera);
+  const bool given = entity.place.file || !builder.including();
+  if (given)
+    builder.addCamera("", {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, camera,
+                      pixels.cropped());
   const Params& p = entity.params;
   if (p.number("lensradius", 0.0, 0.0) > 0.0)
     notes.add(*p.placeOf("lensradius"), "depth of field is not rendered: everything is sharp");

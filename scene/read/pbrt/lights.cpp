@@ -36,6 +36,11 @@ class Builder {
   }
 
  private:
+  LightSpec named() const {
+    LightSpec spec;
+    spec.name = nameOf(light_, r_.folder);
+    return spec;
+  }
   double scale() const { return p_.number("scale", 1.0, 0.0); }
   // Factor that gives the light the `power` or `illuminance` of the file; 1 if the file has none.
   double aimedAt(const char* name, double has) const {
@@ -77,7 +82,7 @@ class Builder {
   }
 
   void point() {
-    LightSpec spec;
+    LightSpec spec = named();
     spec.emission = emission("I", scale() * aimedAt("power", 4.0 * std::numbers::pi));
     builder_.addLight(spec, from());
   }
@@ -85,7 +90,7 @@ class Builder {
   void spot() {
     const double cone = p_.number("coneangle", 30.0, 0.01, 180.0);
     const double delta = p_.number("conedeltaangle", 5.0, 0.0, 180.0);
-    LightSpec spec;
+    LightSpec spec = named();
     spec.type = LightType::Spot;
     spec.direction = towards({0, 0, 1});
     spec.coneRad = float(cone * std::numbers::pi / 180.0);
@@ -98,7 +103,7 @@ class Builder {
   }
 
   void distant() {
-    LightSpec spec;
+    LightSpec spec = named();
     spec.type = LightType::Directional;
     spec.direction = towards({0, 0, 1});
     spec.emission = emission("L", scale() * aimedAt("illuminance", 1.0));
@@ -106,7 +111,7 @@ class Builder {
   }
 
   void infinite() {
-    LightSpec spec;
+    LightSpec spec = named();
     spec.type = LightType::Environment;
     const fs::path file = image();
     if (p_.has("portal")) {
@@ -156,7 +161,7 @@ class Builder {
       r_.notes.add(light_.place,
                    "the goniometric light shines evenly to all sides, with the same power");
     }
-    LightSpec spec;
+    LightSpec spec = named();
     spec.emission =
         emission("I", scale() * share * aimedAt("power", 4.0 * std::numbers::pi * share));
     builder_.addLight(spec, from());

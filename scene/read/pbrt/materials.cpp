@@ -276,9 +276,14 @@ uint32_t Materials::Maker::of(const Shape& shape, const Emission& emission) {
   const auto known = numbers_.find(key);
   if (known != numbers_.end()) return known->second;
   Material m = *base;
+  const Material* replacement = builder_.useReplacement(m.name);
+  // A lamp of pbrt shines whatever its material is, unless the replacement states an emission.
+  const bool shines = replacement && !isBlack(e) && isBlack(replacement->emission);
+  if (shines) m = *replacement;
   m.emission = e;
   m.twoSidedEmission = emission.twoSided;
   if (!emission.image.empty()) m.emissionTexture = textures_.image(emission.image, true);
+  if (shines) return numbers_[key] = builder_.addOwnMaterial(std::move(m));
   setAlpha(shape, m);
   return numbers_[key] = builder_.addMaterial(std::move(m));
 }

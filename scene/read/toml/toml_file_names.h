@@ -12,6 +12,7 @@ class FileNames {
   FileNames(const fs::path& sceneFile, const Defines& defines)
       : folder_(sceneFile.parent_path()), defines_(defines) {}
 
+  const Defines& defines() const { return defines_; }
   fs::path resolve(const TomlSection& section, const char* key) const {
     return (folder_ / expand(section, key)).lexically_normal();
   }

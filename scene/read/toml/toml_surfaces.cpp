@@ -185,7 +185,7 @@ void TomlSurfaces::warnOfUnused() const {
   for (const auto& [name, number] : materials_) {
     if (builder_.isReplaced(name) || mixed_.contains(name)) continue;
     builder_.warn(file_.string() + ": [[material]] '" + name +
-                  "' has no effect: no face has a material of that name from an MTL");
+                  "' has no effect: no mesh has a material of that name");
   }
 }
 

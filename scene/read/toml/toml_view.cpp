@@ -33,13 +33,19 @@ Camera readCamera(const TomlSection& s, const FilePoint& position, bool mirrored
 }  // namespace
 
 TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirrored) {
-  const Film film =
-      readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
-  const TomlSection camera(
-      file, "[camera]", tableOf(file, root, "camera"),
-      {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift", "mirrored"});
-  const FilePoint position = camera.place("position");
-  return {film, position, readCamera(camera, position, mirrored)};
+  TomlView view;
+  if (root.contains("film")) {
+    view.film =
+        readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
+  }
+  if (root.contains("camera")) {
+    const TomlSection camera(
+        file, "[camera]", tableOf(file, root, "camera"),
+        {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift", "mirrored"});
+    view.position = camera.place("position");
+    view.camera = readCamera(camera, view.position, mirrored);
+  }
+  return view;
 }
 
 }  // namespace bnvpl

@@ -1,6 +1,8 @@
 // Reads [film] and [camera] of a TOML file.
 #pragma once
 
+#include <optional>
+
 #include "core/sampling.h"
 #include "scene/read/toml/toml_section.h"
 #include "scene/scene.h"
@@ -8,12 +10,12 @@
 namespace bnvpl {
 
 struct TomlView {
-  Film film;
-  FilePoint position{};  // position of the camera
-  Camera camera;         // everything but its position
+  std::optional<Film> film;
+  FilePoint position{};          // position of the camera
+  std::optional<Camera> camera;  // everything but its position
 };
 
-// Both sections must exist; `mirrored` is the default of the camera's 'mirrored'. Throws
+// The sections that the file has; `mirrored` is the default of the camera's 'mirrored'. Throws
 // InputError.
 TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirrored = false);
 

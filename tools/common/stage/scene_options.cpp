@@ -41,10 +41,10 @@ void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene, ViewCo
 }  // namespace
 
 void addSceneOptions(CLI::App& cli, SceneOptions& options, ViewCount views) {
-  addOptions(
-      cli, options,
-      addFile(cli, "scene", options.file, "the scene (.toml, .pbrt, .gltf, .glb)")->required(),
-      views);
+  addOptions(cli, options,
+             addFile(cli, "scene", options.file, "the scene (.toml, .pbrt, .gltf, .glb, .obj)")
+                 ->required(),
+             views);
 }
 
 CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::string& help) {

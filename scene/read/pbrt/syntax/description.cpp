@@ -2,6 +2,13 @@
 
 namespace bnvpl::pbrt {
 
+std::string nameOf(const Entity& entity, const fs::path& folder) {
+  const std::string name = entity.params.text("name");
+  if (!name.empty()) return name;
+  const fs::path file = fs::path(*entity.place.file).lexically_proximate(folder);
+  return file.string() + ":" + std::to_string(entity.place.line);
+}
+
 void Notes::add(const Place& place, const std::string& text) {
   const auto [it, isNew] = numberOf_.try_emplace(text, entries_.size());
   if (isNew) entries_.push_back({place, text, 0});

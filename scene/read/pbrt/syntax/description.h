@@ -20,6 +20,10 @@ struct Entity {
   ColorSpace colorSpace = ColorSpace::Srgb;  // for colours that it leaves out
 };
 
+// The "string name" of a shape or light, which its Attribute may state, else its file, relative to
+// the scene's folder, and line.
+std::string nameOf(const Entity& entity, const fs::path& folder);
+
 // A named material or, if the name is empty, a number in Description::materials; kNone is pbrt's
 // default, grey.
 struct MaterialRef {
