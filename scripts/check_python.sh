@@ -27,13 +27,14 @@ check() {
   MYPYPATH=$1 mypy --no-error-summary --explicit-package-bases --python-executable /usr/bin/python3 \
     --cache-dir "build/mypy/${1//[:\/]/_}" "${@:2}" || failed=1
 }
-check bench:pipelines:eval bench/*.py
+check bench:pipelines:eval:python bench/*.py
 check docs:eval/scaling docs/*.py
-check eval:eval/report:pipelines eval/*.py eval/bnvpl_eval eval/tests/*.py
+check eval:eval/report:pipelines:python eval/*.py eval/bnvpl_eval eval/tests/*.py
 check eval/cycles:pipelines eval/cycles/*.py
 check eval/scaling:bench:pipelines eval/scaling/*.py
 check eval/report:pipelines eval/report/*.py
 check pipelines:pipelines/slurm pipelines/*.py pipelines/slurm/*.py
+check python:python/examples:python/tests python/bnvpl python/examples/*.py python/tests/*.py
 check scenes scenes/generate.py scenes/generator
 check scenes/gltf-room scenes/gltf-room/*.py
 check scripts scripts/*.py

@@ -14,7 +14,8 @@ packages=(
   libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums
   libgtest-dev libbenchmark-dev                           # tests, benchmarks
-  python3-numpy python3-matplotlib python3-openimageio    # evaluation
+  python3-numpy python3-matplotlib python3-openimageio    # evaluation, package
+  python3-xxhash python3-pip                              # Python package
   chromium chromium-driver python3-selenium               # test of its report
   "$@"
 )

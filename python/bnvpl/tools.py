@@ -1,0 +1,123 @@
+"""Runs the tools."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Any
+
+from .layout import StrPath
+from .options import options_of, words_of
+from .progress import Progress, progress_of
+
+# The build folder of a checkout that holds this package.
+CHECKOUT_BIN = Path(__file__).resolve().parents[2] / "build/release/bin"
+
+
+class ToolError(RuntimeError):
+    """A tool failed: its exit code, its message and the command that ran."""
+
+    def __init__(self, code: int, message: str, command: list[str]) -> None:
+        tool = Path(command[0]).name
+        super().__init__(f"{tool}: {message}" if message else f"{tool}: exit code {code}")
+        self.code, self.message, self.command = code, message, command
+
+
+class ToolWarning(UserWarning):
+    """A line of a tool's stderr that is no error."""
+
+
+def find_tool(tool: str) -> str:
+    """Path of a tool: in the folder BNVPL_BIN, on the PATH, or in the build of this checkout."""
+    folder = os.environ.get("BNVPL_BIN")
+    found = shutil.which(tool, path=folder) or (None if folder else shutil.which(tool))
+    found = found or (None if folder else shutil.which(tool, path=CHECKOUT_BIN))
+    if found is None:
+        where = f"the folder {folder} of BNVPL_BIN" if folder else "the PATH"
+        raise FileNotFoundError(f"{tool}: is not in {where}; set BNVPL_BIN to the tools' folder")
+    return found
+
+
+def _listen(
+    stderr: IO[str], tool: str, progress: Callable[[Progress], object] | None
+) -> list[str]:
+    """Calls progress() as the tool goes. Returns the other lines, without the tool's name."""
+    lines = []
+    for line in stderr:
+        step = progress_of(line)
+        if step is None:
+            lines.append(line.strip().removeprefix(f"{tool}: "))
+        elif progress is not None:
+            progress(step)
+    return lines
+
+
+def _execute(
+    command: list[str], tool: str, progress: Callable[[Progress], object] | None
+) -> tuple[str, list[str]]:
+    """Runs a command. Returns its stdout and its warnings."""
+    with (
+        tempfile.TemporaryFile("w+") as stdout,
+        subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=stdout, stderr=subprocess.PIPE, text=True
+        ) as child,
+    ):
+        assert child.stderr is not None
+        try:
+            lines = _listen(child.stderr, tool, progress)
+        except BaseException:  # also of the caller's progress(), and Ctrl-C
+            child.send_signal(signal.SIGINT)  # the tool saves its checkpoint, if it has one
+            raise
+        code = child.wait()
+        stdout.seek(0)
+        text = stdout.read()
+    if code != 0:
+        raise ToolError(code if code > 0 else 128 - code, "\n".join(lines) or text.strip(), command)
+    return text, lines
+
+
+def run(
+    tool: str,
+    *arguments: StrPath,
+    progress: Callable[[Progress], object] | None = None,
+    **options: Any,
+) -> dict[str, Any]:
+    """Runs a tool and returns its statistics, those of --stats.
+
+    run("vpl-estimate", scene, vpls, output="lit.vpl", photons="10M") runs vpl-estimate SCENE VPLS
+    --output lit.vpl --photons 10M. Flags are True or False, None leaves an option out, lists and
+    dicts repeat it or join it with commas. A keyword that the tool does not know is a TypeError.
+    Warnings of the tool are Python's, of class ToolWarning. With estimate=True the result is the
+    need of time and memory. Raises ToolError if the tool fails.
+    """
+    executable = find_tool(tool)
+    command = str(arguments[0]) if tool == "vpl-inspect" and arguments else ""
+    known = options_of(executable, command)
+    if options.get("estimate"):
+        options["json"] = True
+    shown = ["--quiet"]
+    if progress is not None and "progress" in known:
+        shown += ["--progress", "json"]
+    with tempfile.TemporaryDirectory(prefix="bnvpl.") as folder:
+        stats = Path(options.pop("stats", None) or Path(folder) / "stats.json")
+        words = [executable, *(str(os.fspath(argument)) for argument in arguments)]
+        words += [*words_of(tool, known, options), "--stats", str(stats), *shown]
+        text, lines = _execute(words, tool, progress)
+        for line in lines:
+            warnings.warn(f"{tool}: {line}", ToolWarning, stacklevel=2)
+        if options.get("estimate"):
+            stats.write_text(text)
+        result: dict[str, Any] = json.loads(stats.read_text())
+        return result
+
+
+def scene_hash(scene: StrPath, **options: Any) -> str:
+    """Hash of a scene's content, 16 hex digits. Options: those of vpl-inspect scene."""
+    return str(run("vpl-inspect", "scene", scene, **options)["scene"]["hash"])

@@ -1,0 +1,119 @@
+"""Writes .vpl files."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+
+from . import columns as spec
+from . import layout as at
+from .columns import COLUMNS, STAGES, Array
+from .layout import Entry, Header, StrPath
+from .vpls import Vpls, typed
+
+
+def _provenance_text(vpls: Vpls) -> str:
+    """The text that was read, as long as it says the same as the records."""
+    if at.parse_provenance(vpls.provenance_text) == vpls.provenance:
+        return vpls.provenance_text
+    text = json.dumps(vpls.provenance, ensure_ascii=False, separators=(",", ":"))
+    if at.parse_provenance(text) is None:
+        raise ValueError(f"provenance is no list of objects that JSON can hold: {text[:80]}")
+    return text
+
+
+def _columns_in_order(vpls: Vpls) -> dict[str, Array]:
+    standard = [column.name for column in spec.standard_columns(vpls.stage)]
+    missing = [name for name in standard if name not in vpls.columns]
+    if missing:
+        raise ValueError(f"VPLs of stage {vpls.stage} need the column {missing[0]}")
+    extras = [name for name in vpls.columns if name not in standard]
+    later = [name for name in extras if name in COLUMNS]
+    if later:
+        raise ValueError(f"column {later[0]} is beyond stage {vpls.stage}")
+    if len(extras) > spec.MAX_EXTRA_COLUMNS:
+        raise ValueError(f"more than {spec.MAX_EXTRA_COLUMNS} columns of methods")
+    count = len(vpls)
+    return {name: typed(name, vpls.columns[name], count) for name in standard + extras}
+
+
+def _entry(vpls: Vpls, name: str, values: Array) -> Entry:
+    known = COLUMNS.get(name)
+    if known is not None:
+        return known.entry_of(values.shape[1] if known.of_emit_points else 1)
+    components = values.shape[1] if values.ndim > 1 else 1
+    unit = vpls.units.get(name, "1")
+    problem = spec.extra_problem(name, components, unit)
+    if problem:
+        raise ValueError(problem[1])
+    return Entry(name, 1 + at.TYPES.index(values.dtype.str), components, unit)
+
+
+def _pieces(vpls: Vpls) -> list[bytes]:
+    """The file behind its header: directory, provenance, columns, end mark."""
+    columns = _columns_in_order(vpls)
+    for name in columns:
+        bad = spec.bad_value(columns, name)
+        if bad:
+            raise ValueError(f"column {name}, row {bad[0]}: {bad[1]}")
+    text = _provenance_text(vpls).encode()
+    shape = [_entry(vpls, name, values) for name, values in columns.items()]
+    directory, _ = at.lay_out(shape, len(vpls), len(text))
+    pieces = [entry.pack() for entry in directory]
+    # Directory and header end at multiples of ALIGN, so that the padding of each piece is its own.
+    for piece in (text, *(values.tobytes() for values in columns.values())):
+        pieces += [piece, bytes(at.aligned(len(piece)) - len(piece))]
+    return [*pieces, at.END_MARK]
+
+
+def _header(vpls: Vpls, provenance_bytes: int, rest: bytes) -> bytes:
+    for value, what in ((vpls.r_max, "r_max"), (vpls.area, "area"), (vpls.reach, "reach")):
+        if not 0 <= value < math.inf:
+            raise ValueError(f"{what} is negative or not finite")
+    header = Header(
+        at.MAGIC,
+        at.VERSION,
+        1 + STAGES.index(vpls.stage),
+        len(vpls),
+        int(vpls.scene_hash, 16),
+        provenance_bytes,
+        Header.SIZE + len(rest),
+        0,
+        len(vpls.columns),
+        0,
+        vpls.r_max,
+        vpls.area,
+        vpls.reach,
+    )
+    header.checksum = at.checksum(header.pack(), rest)
+    return header.pack()
+
+
+def _refuse_other_file(path: Path) -> None:
+    """A file that is no .vpl may be somebody's work."""
+    if path.is_file() and path.stat().st_size:
+        with path.open("rb") as file:
+            if file.read(len(at.MAGIC)) != at.MAGIC:
+                raise FileExistsError(
+                    f"{path}: exists and is no .vpl file; name another file, or remove it"
+                )
+
+
+def save(path: StrPath, vpls: Vpls) -> None:
+    """Writes VPLs, whole or not at all. Raises ValueError where something is invalid."""
+    target = Path(path)
+    try:
+        pieces = _pieces(vpls)
+        rest = b"".join(pieces)
+        data = _header(vpls, len(_provenance_text(vpls).encode()), rest) + rest
+    except ValueError as error:
+        raise ValueError(f"{target}: not written: {error}") from None
+    _refuse_other_file(target)
+    partial = target.with_name(f"{target.name}.partial-{os.getpid()}")
+    try:
+        partial.write_bytes(data)
+        os.replace(partial, target)
+    finally:
+        partial.unlink(missing_ok=True)

@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""Tests of running the tools, and of reading their images.
+
+    test_tools.py BIN       # folder of the executables
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import time
+import unittest
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import OpenImageIO as oiio
+from support import BIN, SCENE, TestFiles, TestFolder, main
+
+import bnvpl
+from bnvpl import options, tools
+
+
+class Running(TestFiles):
+    def test_statistics(self) -> None:
+        stats = bnvpl.run("vpl-estimate", SCENE, self.vpls, output=self.lit, photons="40k")
+        self.assertEqual(stats["tool"], "vpl-estimate")
+        self.assertAlmostEqual(
+            stats["energy_W"]["deposited"], bnvpl.read_vpl(self.lit).flux.mean(1).sum(), places=6
+        )
+        kept = self.folder / "stats.json"
+        bnvpl.run("vpl-estimate", SCENE, self.vpls, output=self.lit, photons="40k", stats=kept)
+        self.assertIn('"vpl-estimate"', kept.read_text())
+
+    def test_progress(self) -> None:
+        steps: list[bnvpl.Progress] = []
+        image = self.folder / "i.exr"
+        given: dict[str, Any] = {"size": (16, 16), "spp": 4}
+        bnvpl.run("vpl-render", SCENE, self.lit, output=image, progress=steps.append, **given)
+        if "progress" not in options.options_of(str(BIN / "vpl-render")):
+            self.skipTest("these tools do not tell their progress to programs")
+        self.assertEqual((steps[-1].phase, steps[-1].share), ("samples", 1))
+        self.assertEqual(steps[-1].done, 4 * 16 * 16)
+
+    def test_what_progress_raises_ends_the_tool(self) -> None:
+        def give_up(_: bnvpl.Progress) -> None:
+            raise InterruptedError("enough")
+
+        image = self.folder / "long.exr"
+        if "progress" not in options.options_of(str(BIN / "vpl-render")):
+            self.skipTest("these tools do not tell their progress to programs")
+        begin = time.monotonic()
+        with self.assertRaisesRegex(InterruptedError, "enough"):
+            bnvpl.run(
+                "vpl-render", SCENE, output=image, integrator="path", spp="1M", progress=give_up
+            )
+        self.assertLess(time.monotonic() - begin, 60)
+        self.assertEqual(list(self.folder.glob("long*")), [])
+
+    def test_commands_of_vpl_inspect(self) -> None:
+        info = bnvpl.run("vpl-inspect", "info", self.lit)["info"]
+        self.assertEqual((info["rows"], info["stage"]), (300, "lit"))
+        scene = bnvpl.run("vpl-inspect", "scene", SCENE)["scene"]
+        self.assertEqual(scene["hash"], bnvpl.scene_hash(SCENE))
+        self.assertEqual(scene["hash"], bnvpl.read_vpl(self.lit).scene_hash)
+
+    def test_an_estimate_of_the_cost(self) -> None:
+        image = self.folder / "none.exr"
+        need = bnvpl.run("vpl-render", SCENE, self.lit, output=image, size="8x8", estimate=True)
+        self.assertGreater(need["memory_MiB"], 0)
+        self.assertFalse(image.exists())
+
+    def test_a_failure_has_code_message_and_command(self) -> None:
+        with self.assertRaises(bnvpl.ToolError) as caught:
+            bnvpl.run("vpl-estimate", SCENE, self.candidates, output=self.folder / "x.vpl")
+        error = caught.exception
+        self.assertEqual(error.code, 3)
+        self.assertTrue(error.message.startswith(f"{self.candidates}: is of stage candidates"))
+        self.assertIn("make it with vpl-eliminate", error.message)
+        self.assertEqual(str(error), f"vpl-estimate: {error.message}")
+        self.assertEqual(error.command[:3], [str(BIN / "vpl-estimate"), str(SCENE),
+                                             str(self.candidates)])
+        self.assertFalse((self.folder / "x.vpl").exists())
+        with self.assertRaises(bnvpl.ToolError) as caught:
+            bnvpl.run("vpl-place", SCENE, output=self.folder / "x.vpl", count="many")
+        self.assertEqual(caught.exception.code, 2)
+
+    def test_what_compare_finds_is_code_5(self) -> None:
+        for seed, name in ((1, "a.exr"), (2, "b.exr")):
+            image = self.folder / name
+            bnvpl.run("vpl-render", SCENE, self.lit, output=image, size="8x8", spp=1, seed=seed)
+        files = self.folder / "a.exr", self.folder / "b.exr"
+        self.assertGreater(bnvpl.run("vpl-inspect", "compare", *files)["compare"]["relmse"], 0)
+        with self.assertRaises(bnvpl.ToolError) as caught:
+            bnvpl.run("vpl-inspect", "compare", *files, max_relmse=1e-9)
+        self.assertEqual(caught.exception.code, 5)
+
+    def test_warnings_of_tools_are_warnings(self) -> None:
+        scene = self.folder / "odd.obj"
+        odd = self.folder / "scene.toml"
+        scene.write_text((SCENE.parent / "cornell.obj").read_text() + "\nnonsense 1 2\n")
+        (self.folder / "cornell.mtl").write_text((SCENE.parent / "cornell.mtl").read_text())
+        odd.write_text(SCENE.read_text().replace("cornell.obj", "odd.obj"))
+        with self.assertWarnsRegex(bnvpl.ToolWarning, "nonsense"):
+            bnvpl.run("vpl-place", odd, output=self.folder / "odd.vpl", count=10)
+
+    def test_an_unknown_keyword_names_the_nearest(self) -> None:
+        for tool, name, near in (
+            ("vpl-estimate", "photon", "did you mean photons"),
+            ("vpl-render", "max_cuts", "did you mean max_cut"),
+            ("vpl-merge", "zzz", "see vpl-merge --help"),
+        ):
+            with self.assertRaisesRegex(TypeError, f"{tool} has no option {name}; {near}"):
+                bnvpl.run(tool, SCENE, **{name: 1})  # type: ignore[arg-type]
+        with self.assertRaisesRegex(TypeError, "vpl-inspect has no option photons"):
+            bnvpl.run("vpl-inspect", "info", self.lit, photons=1)
+
+
+class Keywords(unittest.TestCase):
+    def test_words_of_a_command_line(self) -> None:
+        known = options.options_of(str(BIN / "vpl-render"))
+        given = {
+            "o": Path("x.exr"), "spp": np.int64(3), "size": (80, 60), "adaptive": False,
+            "layers": ["N", "Z"], "define": {"A": "b", "C": Path("d")}, "quiet": True,
+            "estimate": False, "png": None,
+        }  # fmt: skip
+        words = "--output x.exr --spp 3 --size 80x60 --adaptive off --layers N,Z --define A=b"
+        self.assertEqual(
+            options.words_of("vpl-render", known, given),
+            [*words.split(), "--define", "C=d", "--quiet"],
+        )
+        with self.assertRaisesRegex(TypeError, "quiet is a flag: True or False, not 3"):
+            options.words_of("vpl-render", known, {"quiet": 3})
+
+    def test_every_option_of_help_json_is_known(self) -> None:
+        for tool in ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render"):
+            known = options.options_of(str(BIN / tool))
+            text = subprocess.run([BIN / tool, "--help-json"], capture_output=True, check=True)
+            spec = json.loads(text.stdout)
+            named = [option["name"] for option in spec["options"]]
+            for slot in spec["slots"]:
+                named += [slot["name"]]
+                named += [o["name"] for m in slot["methods"] for o in m["options"]]
+            self.assertLessEqual({name.replace("-", "_") for name in named}, known.keys())
+            self.assertLessEqual({"output", "threads", "quiet", "stats"}, known.keys())
+
+
+class Finding(TestFolder):
+    def test_the_folder_that_the_environment_names(self) -> None:
+        self.assertEqual(bnvpl.find_tool("vpl-place"), str(BIN / "vpl-place"))
+        with mock.patch.dict(os.environ, BNVPL_BIN=str(self.folder)):
+            with self.assertRaisesRegex(FileNotFoundError, "vpl-place: is not in the folder"):
+                bnvpl.find_tool("vpl-place")
+
+    def test_the_path_and_then_the_build_of_the_checkout(self) -> None:
+        with mock.patch.dict(os.environ, PATH=str(BIN)):
+            del os.environ["BNVPL_BIN"]
+            self.assertEqual(bnvpl.find_tool("vpl-place"), str(BIN / "vpl-place"))
+            os.environ["PATH"] = "/nonexistent"
+            with mock.patch.object(tools, "CHECKOUT_BIN", BIN):
+                self.assertEqual(bnvpl.find_tool("vpl-place"), str(BIN / "vpl-place"))
+            with mock.patch.object(tools, "CHECKOUT_BIN", self.folder):
+                with self.assertRaisesRegex(FileNotFoundError, "is not in the PATH"):
+                    bnvpl.find_tool("vpl-place")
+
+
+class Images(TestFiles):
+    def test_layers(self) -> None:
+        file = self.folder / "i.exr"
+        bnvpl.run("vpl-render", SCENE, self.lit, output=file, size=(12, 10), spp=1, layers="all")
+        image = bnvpl.read_exr(file)
+        self.assertEqual(image["RGB"].shape, (10, 12, 3))
+        self.assertEqual(image["Z"].shape, (10, 12))
+        self.assertEqual(image["N"].shape, (10, 12, 3))
+        # Cameras of this scene look along z, so the normals of what they see have z <= 0.
+        self.assertLessEqual(image["N"][:, :, 2].max(), 0)
+        np.testing.assert_allclose(
+            image["direct"] + image["indirect"], image["RGB"], rtol=1e-3, atol=1e-3
+        )
+        # The left wall is red, the right one green: channels and columns are in order.
+        left, right = image["albedo"][5, 2], image["albedo"][5, -3]
+        self.assertGreater(left[0], left[1])
+        self.assertGreater(right[1], right[0])
+        self.assertEqual(image.provenance[-1]["tool"], "vpl-render")
+        self.assertEqual((image.film, image.origin), ((12, 10), (0, 0)))
+        with self.assertRaisesRegex(KeyError, "no layer albeda; the image has RGB"):
+            image["albeda"]
+
+    def test_half_floats_integers_and_a_crop(self) -> None:
+        file = self.folder / "x.exr"
+        spec = oiio.ImageSpec(3, 2, 5, oiio.HALF)
+        spec.channelnames = ("R", "G", "B", "A", "id")
+        spec.channelformats = (oiio.HALF, oiio.HALF, oiio.HALF, oiio.FLOAT, oiio.UINT)
+        spec.x, spec.y, spec.full_width, spec.full_height = 4, 5, 20, 10
+        pixels = np.arange(30, dtype=np.float32).reshape(2, 3, 5)
+        pixels[:, :, 3], pixels[:, :, 4] = 0.1, 1  # 1 is the greatest integer
+        out = oiio.ImageOutput.create(str(file))
+        self.assertTrue(out.open(str(file), spec) and out.write_image(pixels))
+        out.close()
+        image = bnvpl.read_exr(file)
+        self.assertEqual(image["RGB"][1, 2].tolist(), [25, 26, 27])
+        self.assertEqual(image["A"][0, 0], np.float32(0.1))
+        self.assertEqual((image["id"].dtype, image["id"][1, 1]), (np.uint32, 2**32 - 1))
+        self.assertEqual((image.film, image.origin), ((20, 10), (4, 5)))
+
+    def test_files_that_are_missing_or_no_images(self) -> None:
+        with self.assertRaises(FileNotFoundError):
+            bnvpl.read_exr(self.folder / "missing.exr")
+        with self.assertRaisesRegex(ValueError, "lit.vpl: cannot be read as an image"):
+            bnvpl.read_exr(self.lit)
+
+
+if __name__ == "__main__":
+    main()
