@@ -1,5 +1,6 @@
 """Reads and writes EXR images as NumPy arrays (height, width, 3) of float32, top row first."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,10 @@ import numpy.typing as npt
 import OpenImageIO as oiio
 
 from .guard import guarded, output_guard
+from .settings import ROOT
+
+sys.path.append(str(ROOT / "python"))
+import bnvpl  # noqa: E402
 
 
 def channel_names(layer: str) -> list[str]:
@@ -15,20 +20,20 @@ def channel_names(layer: str) -> list[str]:
     return [f"{layer}.{c}" if layer else c for c in "RGB"]
 
 
+def _opened(path: Path) -> bnvpl.Image:
+    try:
+        return bnvpl.read_exr(path)
+    except (OSError, ValueError) as error:
+        raise SystemExit(f"eval: {error}; delete it and rerun") from None
+
+
 def read(path: Path, layer: str = "") -> npt.NDArray[Any]:
-    source = oiio.ImageInput.open(str(path))
-    if source is None:
-        raise SystemExit(
-            f"eval: {path}: cannot be read as an image ({oiio.geterror()}); delete it and rerun"
-        )
-    spec = source.spec()
-    names = list(spec.channelnames)
-    missing = [name for name in channel_names(layer) if name not in names]
-    if missing:
-        raise SystemExit(f"eval: {path}: has no channel {missing[0]}; it holds {', '.join(names)}")
-    pixels = source.read_image(oiio.FLOAT)
-    source.close()
-    return np.ascontiguousarray(pixels[:, :, [names.index(name) for name in channel_names(layer)]])
+    """Reads R, G, B of the image itself, '', or of a layer."""
+    image = _opened(path)
+    pixels = image.layers.get(layer or "RGB")
+    if pixels is None or pixels.shape[2:] != (3,):
+        raise SystemExit(f"eval: {path}: has no layer {layer}; it holds {', '.join(image.layers)}")
+    return pixels
 
 
 def write_half(path: Path, layers: dict[str, npt.NDArray[Any]], note: str) -> None:
@@ -59,12 +64,9 @@ def write_half(path: Path, layers: dict[str, npt.NDArray[Any]], note: str) -> No
 
 
 def read_channel(path: Path, name: str) -> npt.NDArray[Any]:
-    """Reads one channel, of shape (height, width)."""
-    source = oiio.ImageInput.open(str(path))
-    names = list(source.spec().channelnames) if source else []
-    if name not in names:
-        raise SystemExit(f"eval: {path}: has no channel {name}; it holds {', '.join(names)}")
-    pixels = source.read_image(oiio.FLOAT)
-    source.close()
-    result: npt.NDArray[Any] = pixels[:, :, names.index(name)]
-    return result
+    """Reads a layer of one channel, of shape (height, width)."""
+    image = _opened(path)
+    pixels = image.layers.get(name)
+    if pixels is None or pixels.ndim != 2:
+        raise SystemExit(f"eval: {path}: has no channel {name}; it holds {', '.join(image.layers)}")
+    return pixels
