@@ -61,8 +61,8 @@ def _listen(
 
 def _execute(
     command: list[str], tool: str, progress: Callable[[Progress], object] | None
-) -> tuple[str, list[str]]:
-    """Runs a command. Returns its stdout and its warnings."""
+) -> tuple[int, str, list[str]]:
+    """Runs a command. Returns its exit code, its stdout and the lines of its stderr."""
     with (
         tempfile.TemporaryFile("w+") as stdout,
         subprocess.Popen(
@@ -77,10 +77,7 @@ def _execute(
             raise
         code = child.wait()
         stdout.seek(0)
-        text = stdout.read()
-    if code != 0:
-        raise ToolError(code if code > 0 else 128 - code, "\n".join(lines) or text.strip(), command)
-    return text, lines
+        return code if code >= 0 else 128 - code, stdout.read(), lines
 
 
 def run(
@@ -109,12 +106,15 @@ def run(
         stats = Path(options.pop("stats", None) or Path(folder) / "stats.json")
         words = [executable, *(str(os.fspath(argument)) for argument in arguments)]
         words += [*words_of(tool, known, options), "--stats", str(stats), *shown]
-        text, lines = _execute(words, tool, progress)
+        code, text, lines = _execute(words, tool, progress)
+        error = lines.pop() if code and lines else text.strip()  # the last line is the error
         for line in lines:
             warnings.warn(f"{tool}: {line}", ToolWarning, stacklevel=2)
+        if code:
+            raise ToolError(code, error, words)
         if options.get("estimate"):
             stats.write_text(text)
-        result: dict[str, Any] = json.loads(stats.read_text())
+        result: dict[str, Any] = json.loads(stats.read_text()) if stats.exists() else {}
         return result
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +21,13 @@ class _Attribute:
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
 
-    def __get__(self, vpls: Vpls, owner: type) -> Array:
+    @overload
+    def __get__(self, vpls: None, owner: type) -> _Attribute: ...
+    @overload
+    def __get__(self, vpls: Vpls, owner: type) -> Array: ...
+    def __get__(self, vpls: Vpls | None, owner: type) -> Array | _Attribute:
+        if vpls is None:
+            return self
         try:
             return vpls.columns[self.name]
         except KeyError:
