@@ -120,7 +120,7 @@ class Damage(TestFolder):
 
     def test_fields_of_the_header_and_the_directory(self) -> None:
         for name, at, value in (
-            ("lit", 0, b"\n"), ("lit", 0, b"\x09"), ("lit", 8, b"\3"), ("lit", 8, b"\5"),
+            ("lit", 0, b"\n"), ("lit", 0, b"\x09"), ("lit", 8, b"\0"), ("lit", 8, b"\xff"),
             ("lit", 12, b"\0"), ("lit", 12, b"\4"), ("lit", 12, b"\2"), ("lit", 16, b"\3"),
             ("lit", 16, b"\xff" * 8), ("lit", 32, b"\xff" * 8), ("lit", 32, b"\1"),
             ("lit", 40, b"\xff" * 8), ("lit", 48, b"\0"), ("lit", 56, b"\1"), ("lit", 56, b"\x20"),
@@ -137,7 +137,8 @@ class Damage(TestFolder):
             damaged = with_checksum(data[:at] + value + data[at + len(value) :])
             if at == layout.CHECKSUM_AT:
                 damaged = data[:at] + b"\0" + data[at + 1 :]
-            self.assertTrue(self.expect_same_error(damaged, f"{name}, {value!r} at {at}"))
+            what = f"{name}, {value!r} at {at}"
+            self.assertTrue(self.expect_same_error(damaged, what), what)
 
     def test_values_of_each_column(self) -> None:
         refused = set()
