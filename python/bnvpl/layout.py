@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import os
 import struct
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 StrPath = str | os.PathLike[str]
 
@@ -109,8 +109,8 @@ def lay_out(shape: list[Entry], count: int, provenance_bytes: int) -> tuple[list
     return directory, offset
 
 
-def checksum(header: bytes, rest: npt.NDArray[np.uint8] | bytes) -> int:
-    """XXH3-64 of the whole file, whose checksum is taken as zero."""
+def checksum(header: bytes, rest: Iterable[bytes | memoryview]) -> int:
+    """XXH3-64 of the whole file, a header and pieces, whose checksum is taken as zero."""
     try:
         import xxhash
     except ImportError as error:
@@ -119,7 +119,8 @@ def checksum(header: bytes, rest: npt.NDArray[np.uint8] | bytes) -> int:
             "read_vpl(path, verify=False) does without"
         ) from error
     state = xxhash.xxh3_64(header[:CHECKSUM_AT] + bytes(8) + header[COLUMNS_AT:])
-    state.update(rest if isinstance(rest, bytes) else rest.data)
+    for piece in rest:
+        state.update(piece)
     return state.intdigest()
 
 

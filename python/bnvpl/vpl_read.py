@@ -146,7 +146,7 @@ def _check_content(file: _File, header: Header, entries: list[Entry], end: int) 
     """Checks end mark, checksum and padding."""
     if file.bytes(end, len(at.END_MARK)) != at.END_MARK:
         file.fail(end, "no end mark")
-    whole = at.checksum(file.bytes(0, Header.SIZE), file.data[Header.SIZE :])
+    whole = at.checksum(file.bytes(0, Header.SIZE), [file.data[Header.SIZE :].data])
     if whole != header.checksum:
         file.fail(at.CHECKSUM_AT, "checksum does not match: the content is damaged")
     begins = [at.entry_at(len(entries)) + header.provenance_bytes]

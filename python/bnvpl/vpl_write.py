@@ -68,7 +68,7 @@ def _pieces(vpls: Vpls) -> list[bytes]:
     return [*pieces, at.END_MARK]
 
 
-def _header(vpls: Vpls, provenance_bytes: int, rest: bytes) -> bytes:
+def _header(vpls: Vpls, pieces: list[bytes]) -> bytes:
     for value, what in ((vpls.r_max, "r_max"), (vpls.area, "area"), (vpls.reach, "reach")):
         if not 0 <= value < math.inf:
             raise ValueError(f"{what} is negative or not finite")
@@ -78,8 +78,8 @@ def _header(vpls: Vpls, provenance_bytes: int, rest: bytes) -> bytes:
         1 + STAGES.index(vpls.stage),
         len(vpls),
         int(vpls.scene_hash, 16),
-        provenance_bytes,
-        Header.SIZE + len(rest),
+        len(_provenance_text(vpls).encode()),
+        Header.SIZE + sum(map(len, pieces)),
         0,
         len(vpls.columns),
         0,
@@ -87,7 +87,7 @@ def _header(vpls: Vpls, provenance_bytes: int, rest: bytes) -> bytes:
         vpls.area,
         vpls.reach,
     )
-    header.checksum = at.checksum(header.pack(), rest)
+    header.checksum = at.checksum(header.pack(), pieces)
     return header.pack()
 
 
@@ -106,14 +106,14 @@ def save(path: StrPath, vpls: Vpls) -> None:
     target = Path(path)
     try:
         pieces = _pieces(vpls)
-        rest = b"".join(pieces)
-        data = _header(vpls, len(_provenance_text(vpls).encode()), rest) + rest
+        header = _header(vpls, pieces)
     except ValueError as error:
         raise ValueError(f"{target}: not written: {error}") from None
     _refuse_other_file(target)
     partial = target.with_name(f"{target.name}.partial-{os.getpid()}")
     try:
-        partial.write_bytes(data)
+        with partial.open("wb") as file:
+            file.writelines([header, *pieces])
         os.replace(partial, target)
     finally:
         partial.unlink(missing_ok=True)

@@ -21,7 +21,7 @@ from bnvpl import columns, layout
 
 def with_checksum(data: bytes) -> bytes:
     """The file with the checksum that its content has, so that the checks behind it are reached."""
-    right = layout.checksum(data[: layout.Header.SIZE], data[layout.Header.SIZE :])
+    right = layout.checksum(data[: layout.Header.SIZE], [data[layout.Header.SIZE :]])
     at = layout.CHECKSUM_AT
     return data[:at] + right.to_bytes(8, "little") + data[at + 8 :]
 
@@ -114,7 +114,7 @@ class Damage(TestFolder):
 
     def test_files_that_are_cut_or_too_long(self) -> None:
         data = (GOLDEN / "lit.vpl").read_bytes()
-        for length in (1, 8, 50, 127, 128, 200, 900, len(data) - 8, len(data) - 1):
+        for length in (0, 1, 8, 50, 127, 128, 200, 900, len(data) - 8, len(data) - 1):
             self.assertTrue(self.expect_same_error(data[:length], f"{length} bytes"))
         self.assertTrue(self.expect_same_error(data + b"\0", "a byte too many"))
 
