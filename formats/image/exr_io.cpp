@@ -18,6 +18,7 @@
 #include "core/hash.h"
 #include "core/read_file.h"
 #include "formats/image/exr_header.h"
+#include "formats/image/exr_standard.h"
 #include "formats/vpl/vpl_layout.h"
 
 namespace bnvpl {
@@ -39,6 +40,10 @@ void refuseMalformed(const fs::path& file, const Image& image) {
     throw OutputError(file, "an image of " + std::to_string(image.width) + " x " +
                                 std::to_string(image.height) + " pixels cannot be written");
   }
+  const PixelBox box = dataWindowOf(image);
+  if (box.x0 < 0 || box.y0 < 0 || box.x1 > image.width || box.y1 > image.height ||
+      box.x0 >= box.x1 || box.y0 >= box.y1)
+    throw OutputError(file, "the data window is empty or larger than the image");
   if (image.channels.empty()) throw OutputError(file, "the image has no channels");
   for (const ImageChannel& channel : image.channels) {
     if (channel.name.empty() || channel.data.size() != image.pixelCount() ||
@@ -63,8 +68,7 @@ Imf::PixelType typeOf(const ImageChannel& channel, ExrPixelType type) {
 }
 
 Imf::Header makeHeader(const Image& image, ExrPixelType type) {
-  Imf::Header header(image.width,
-                     image.height);  // display and data window: (0,0) to the last pixel
+  Imf::Header header = standardHeader(image);
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const ImageChannel& channel : image.channels) {
     header.channels().insert(channel.name, Imf::Channel(typeOf(channel, type)));
@@ -172,6 +176,7 @@ Image readChecked(const fs::path& file) {
     // The attribute "type" describes the storage, not the image.
     if (text && std::string(it.name()) != "type") image.attributes[it.name()] = text->value();
   }
+  readStandard(header, image);
   Imf::InputPart in(parts, 0);
   readPixels(in, image);
   return image;
@@ -198,7 +203,8 @@ HalfLosses writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
     }
     Imf::OutputFile out(bytes, header, kNoThreads);
     out.setFrameBuffer(frame);
-    out.writePixels(image.height);
+    const PixelBox box = dataWindowOf(image);
+    out.writePixels(box.y1 - box.y0);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& problem) {
@@ -246,6 +252,10 @@ uint64_t hashImage(const Image& image, ExrPixelType type) {
   for (const auto& [name, value] : image.attributes) {
     if (name != kImageHashAttribute) text += "\n" + name + ":" + value;
   }
+  if (const auto& box = image.dataWindow)
+    text += "\n" + std::to_string(hashPieces({bytesOf(*box)}));
+  if (const auto& camera = image.camera)
+    text += "\n" + std::to_string(hashPieces({bytesOf(*camera)}));
   return hashPieces({std::as_bytes(std::span(text))});
 }
 

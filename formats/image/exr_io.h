@@ -1,4 +1,5 @@
-// OpenEXR images: scanlines, ZIP, any number of named channels, string attributes.
+// OpenEXR images: scanlines, ZIP, any number of named channels, string attributes, and the camera.
+// Colours are linear, with the primaries of Rec. 709.
 #pragma once
 
 #include <cstdint>
@@ -39,14 +40,16 @@ HalfLosses writeExr(AtomicFile& file, const Image& image, ExrPixelType type);
 // Attribute with the hash of the image, 16 hexadecimal digits, which reveals changes.
 inline constexpr const char* kImageHashAttribute = "bnvpl.hash";
 
-// XXH3-64 of size, channels in the order of their names, and all other attributes. It equals the
-// hash of the image that readExr() returns after `image` was written as `type`.
+// XXH3-64 of size, channels in the order of their names, all other attributes, data window and
+// camera. It equals the hash of the image that readExr() returns after `image` was written as
+// `type`.
 uint64_t hashImage(const Image& image, ExrPixelType type);
 
-// Reads every channel (half, float or uint) as float, in the order of their names, and every string
-// attribute. The image is the display window: pixels outside the data window are 0, and data
-// outside the display window is dropped. Only the first part of a multi-part file is read. Throws
-// InputError if the file is missing, damaged, incomplete or too large.
+// Reads every channel (half, float or uint) as float, in the order of their names, every string
+// attribute, and the camera if the file has both matrices. The image is the display window: pixels
+// outside the data window are 0, and data outside the display window is dropped. Only the first
+// part of a multi-part file is read. Throws InputError if the file is missing, damaged, incomplete
+// or too large.
 Image readExr(const fs::path& file);
 
 }  // namespace bnvpl

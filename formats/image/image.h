@@ -1,8 +1,10 @@
 // An image of named float channels, as in OpenEXR: "R", "direct.R", "N.X", "Z", ...
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,11 +16,34 @@ struct ImageChannel {
   std::vector<float> data;  // width * height values, row by row from the top
 };
 
+// The columns [x0, x1) and rows [y0, y1) of an image.
+struct PixelBox {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool operator==(const PixelBox&) const = default;
+};
+
+// The camera of an image as OpenEXR's standard attributes describe it (ImfStandardAttributes.h).
+// Matrices multiply row vectors from the right, (x, y, z, 1) M, as Imath's do, and are stored row
+// by row. World space is that of the scene's files.
+struct ImageCamera {
+  // To the camera at the origin: x points to the right, y up, and z along the viewing direction.
+  std::array<float, 16> worldToCamera{};
+  // To (0, 0) at the upper left corner of the film and (1, 1) at the lower right one, after
+  // division by the fourth coordinate.
+  std::array<float, 16> worldToNdc{};
+  // Width and centre of the film on the plane at distance 1 from the camera; y points up.
+  float screenWindowWidth = 1.0f;
+  std::array<float, 2> screenWindowCenter{};
+  bool operator==(const ImageCamera&) const = default;
+};
+
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<ImageChannel> channels;
   std::map<std::string, std::string> attributes;
+  std::optional<PixelBox> dataWindow;  // the pixels that have values; the others are 0. None: all
+  std::optional<ImageCamera> camera;
 
   size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 

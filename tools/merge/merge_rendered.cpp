@@ -16,8 +16,7 @@ std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output,
   requireMemory(bytesPerPixelOf(options) * film.width * film.height,
                 "an image of " + sizeText(film) + " pixels", "choose a smaller --size");
   RenderResult result = joinRendered(film, options, shards.source());
-  result.vpls = fieldOf<size_t>(whole.sources, "vpls");
-  result.emissionPoints = fieldOf<size_t>(whole.sources, "emission_points");
+  takeSources(whole.sources, result);
   finishImage(result, options, whole.history);
   reportRender(result, options, summary);
   if (findNonFinite(result.image))

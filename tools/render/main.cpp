@@ -61,8 +61,7 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   const auto part = [&](const StageTask& task) -> ShardRun {
     const Json made = record(recordOf(renderSpec(), options));
     const RenderResult rendered = result(task, {});
-    const Json sources{{"vpls", rendered.vpls}, {"emission_points", rendered.emissionPoints}};
-    return {withLayers(made, options), request.given, sources, request.command,
+    return {withLayers(made, options), request.given, sourcesOf(rendered), request.command,
             extendProvenance(lit.provenance, made)};
   };
   return run.make({record(resumableOptions(options)), "samples", renderWork(scene, options),

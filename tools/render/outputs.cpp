@@ -8,6 +8,7 @@
 #include "formats/image/png_io.h"
 #include "formats/image/tonemap.h"
 #include "tools/common/options/exposure.h"
+#include "tools/render/image_camera.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -33,8 +34,10 @@ float exposureOf(const Image& image, const std::string& text) {
 }
 
 void writePreview(AtomicFile& file, const Image& image, float ev) {
+  const auto provenance = image.attributes.find("bnvpl.provenance");
   writePng(file, image.width, image.height,
-           toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev));
+           toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev), 3,
+           provenance == image.attributes.end() ? std::string() : provenance->second);
 }
 
 // A black image is usually a mistake.
@@ -116,6 +119,7 @@ Values optionsMade(const RenderResult& result, const Given& given) {
 
 void finishImage(RenderResult& result, const Values& made, const std::string& provenance) {
   auto& attributes = result.image.attributes;
+  attributes["software"] = "bnvpl " BNVPL_VERSION;
   attributes["bnvpl.samplesPerPixel"] = std::to_string(made[kSppOption]);
   if (result.passes) {
     attributes["bnvpl.passes"] = std::to_string(result.passes->passes);
@@ -130,6 +134,18 @@ void finishImage(RenderResult& result, const Values& made, const std::string& pr
 Json withLayers(Json run, const Values& options) {
   run["layers"] = options[kLayersKey];
   return run;
+}
+
+Json sourcesOf(const RenderResult& result) {
+  return {{"vpls", result.vpls},
+          {"emission_points", result.emissionPoints},
+          {"camera", toJson(*result.image.camera)}};
+}
+
+void takeSources(const Json& sources, RenderResult& result) {
+  result.vpls = fieldOf<size_t>(sources, "vpls");
+  result.emissionPoints = fieldOf<size_t>(sources, "emission_points");
+  result.image.camera = imageCameraOf(fieldOf<Json>(sources, "camera"));
 }
 
 namespace {

@@ -29,6 +29,9 @@ Values optionsMade(const RenderResult& result, const Given& given);
 void finishImage(RenderResult& result, const Values& made, const std::string& provenance);
 // Adds the layers to the record of a shard: shards of one run must have the same.
 Json withLayers(Json run, const Values& options);
+// What vpl-merge needs of a shard's run besides its sums, and back.
+Json sourcesOf(const RenderResult& result);
+void takeSources(const Json& sources, RenderResult& result);
 void reportRender(const RenderResult& result, const Values& options, Summary& summary);
 
 }  // namespace bnvpl

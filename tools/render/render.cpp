@@ -5,6 +5,7 @@
 
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
+#include "tools/render/image_camera.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -148,6 +149,7 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   } else {
     result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
   }
+  result.image.camera = imageCameraOf(rays.scene());
   return result;
 }
 

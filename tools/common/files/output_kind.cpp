@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/files.h"
+#include "formats/image/png_io.h"
 #include "formats/shard/shard_file.h"
 #include "tools/common/stage/shard_info.h"
 
@@ -56,12 +57,10 @@ bool isExr(std::string_view bytes) {
   return bytes.starts_with("\x76\x2f\x31\x01"sv) && bytes.substr(8).starts_with("bnvpl."sv);
 }
 
-// A PNG as stb_image_write makes it: 8 bits, no chunk between header and pixels, and a zlib header
-// that zlib itself writes for levels 2 to 5 only. Pictures of other programs have other levels, and
-// chunks that tell of colours, dates and programs.
+// A PNG whose chunks before the pixels name this program.
 bool isPng(std::string_view bytes) {
-  return bytes.starts_with("\x89PNG\r\n\x1a\n\0\0\0\rIHDR"sv) && bytes.size() > 42 &&
-         bytes[24] == 8 && bytes.substr(37).starts_with("IDAT\x78\x5e"sv);
+  return bytes.starts_with("\x89PNG\r\n\x1a\n\0\0\0\rIHDR"sv) &&
+         bytes.substr(0, bytes.find("IDAT"sv)).find(kPngMark) != bytes.npos;
 }
 
 // The text begins with {"tool":"vpl-, apart from white space. Other JSON, such as a glTF scene,
