@@ -99,6 +99,7 @@ VplTable keepRows(const VplTable& table, std::span<const uint32_t> rows) {
   kept.rMax = table.rMax;
   kept.areaEstimate = table.areaEstimate;
   kept.reach = table.reach;
+  kept.indirectShare = table.indirectShare;
   kept.emitPoints = table.emitPoints;
   kept.sceneHash = table.sceneHash;
   kept.provenance = table.provenance;

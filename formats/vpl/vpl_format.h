@@ -22,7 +22,7 @@
 
 namespace bnvpl {
 
-inline constexpr uint32_t kVplVersion = 4;
+inline constexpr uint32_t kVplVersion = 5;
 inline constexpr uint64_t kVplAlign = 64;
 inline constexpr size_t kMaxExtraColumns = 256;        // max number in a file
 inline constexpr uint32_t kMaxExtraComponents = 1024;  // max number per extra column
@@ -45,14 +45,15 @@ struct VplHeader {
   double rMax = 0.0;                // scene units; 0 until known
   double areaEstimate = 0.0;        // scene units squared; 0 until known
   double reach = 0.0;               // distance within which VPLs received photons, in radii
-  std::array<char, 40> reserved{};  // zero; readers refuse anything else
+  double indirectShare = 1.0;       // VplTable::indirectShare
+  std::array<char, 32> reserved{};  // zero; readers refuse anything else
 };
 static_assert(sizeof(VplHeader) == 128 && std::is_trivially_copyable_v<VplHeader>);
 static_assert(offsetof(VplHeader, version) == 8 && offsetof(VplHeader, stage) == 12);
 static_assert(offsetof(VplHeader, count) == 16 && offsetof(VplHeader, sceneHash) == 24);
 static_assert(offsetof(VplHeader, provenanceBytes) == 32 && offsetof(VplHeader, fileBytes) == 40);
 static_assert(offsetof(VplHeader, checksum) == 48 && offsetof(VplHeader, columnCount) == 56);
-static_assert(offsetof(VplHeader, reserved) == 88);
+static_assert(offsetof(VplHeader, indirectShare) == 88 && offsetof(VplHeader, reserved) == 96);
 static_assert(offsetof(VplHeader, rowKind) == 60 && offsetof(VplHeader, rMax) == 64);
 static_assert(offsetof(VplHeader, areaEstimate) == 72 && offsetof(VplHeader, reach) == 80);
 

@@ -52,5 +52,7 @@ std::optional<BadValue> findBadValue(const VplTable& table);
 
 // Whether a length or area is finite and not negative.
 bool isMeasure(double value);
+// Whether a share is 0 to 1.
+constexpr bool isShare(double value) { return value >= 0.0 && value <= 1.0; }
 
 }  // namespace bnvpl

@@ -91,6 +91,9 @@ VplHeader readHeader(InputFile& in) {
   if (!isMeasure(header.areaEstimate)) {
     in.fail(offsetof(VplHeader, areaEstimate), "area estimate is not an area");
   }
+  if (!isShare(header.indirectShare)) {
+    in.fail(offsetof(VplHeader, indirectShare), "share of indirect light is not 0 to 1");
+  }
   return header;
 }
 

@@ -46,6 +46,7 @@ VplTable makeTable(const InputFile& in, Bytes file, Opening opening) {
   table.rMax = header.rMax;
   table.areaEstimate = header.areaEstimate;
   table.reach = header.reach;
+  table.indirectShare = header.indirectShare;
   table.sceneHash = header.sceneHash;
   table.checksum = header.checksum;
   table.provenance.assign(reinterpret_cast<const char*>(file.data()) + layout.provenanceOffset,

@@ -33,6 +33,8 @@ struct VplTable {
   // since Candidates
   std::vector<Vec3> position, normal, albedo;
   std::vector<uint32_t> id;
+  // Mean over the view of the share of its light that is indirect, 0 to 1; 1 where it is not known.
+  double indirectShare = 1.0;
 
   // since Eliminated
   std::vector<float> radius;

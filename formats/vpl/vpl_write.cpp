@@ -63,6 +63,7 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
   }
   require(isMeasure(table.rMax), "r_max is negative or not finite");
   require(isMeasure(table.reach), "reach is negative or not finite");
+  require(isShare(table.indirectShare), "share of indirect light is not 0 to 1");
   require(isMeasure(table.areaEstimate), "area is negative or not finite");
   require(isProvenance(provenance), "provenance is not a JSON array");
 }
@@ -83,6 +84,7 @@ void writeVpl(AtomicFile& file, const VplTable& table) {
   header.rMax = table.rMax;
   header.areaEstimate = table.areaEstimate;
   header.reach = table.reach;
+  header.indirectShare = table.indirectShare;
   header.checksum = hashPieces(filePieces(header, layout, provenance, table));
   for (const Bytes piece : filePieces(header, layout, provenance, table)) file.write(piece);
 }

@@ -109,6 +109,7 @@ inline void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.rMax, b.rMax);
   EXPECT_EQ(a.areaEstimate, b.areaEstimate);
   EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(a.indirectShare, b.indirectShare);
   EXPECT_EQ(a.emitPoints, b.emitPoints);
   EXPECT_EQ(a.sceneHash, b.sceneHash);
   EXPECT_EQ(a.provenance, b.provenance);
@@ -127,6 +128,7 @@ inline VplTable smallTable(VplStage stage) {
   table.normal = {{0.0f, 0.0f, 1.0f}, {-1.0f, 0.0f, 0.0f}};
   table.albedo = {{0.5f, 0.25f, 0.125f}, {1.0f, 0.0f, 0.75f}};
   table.id = {7, 258};
+  table.indirectShare = 0.625;
   table.sceneHash = 0x0123456789abcdefu;
   table.provenance = R"([{"tool":"vpl-place","version":"0.1.0","options":{"seed":1}}])";
   if (stage >= VplStage::Eliminated) {

@@ -77,8 +77,8 @@ TEST_F(VplDamage, EverySingleBitFlipIsRefused) {
 
 TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(0, 'x'), "byte 0: not a .vpl file");
-  EXPECT_SAYS(complaintAbout(8, 3u), "byte 8: version 3, expected 4; rerun vpl-place and every");
-  EXPECT_SAYS(complaintAbout(8, 5u), "byte 8: version 5, expected 4; use the bnvpl that wrote it");
+  EXPECT_SAYS(complaintAbout(8, 4u), "byte 8: version 4, expected 5; rerun vpl-place and every");
+  EXPECT_SAYS(complaintAbout(8, 6u), "byte 8: version 6, expected 5; use the bnvpl that wrote it");
   EXPECT_SAYS(complaintAbout(8, 0u), "byte 8: version 0");
   EXPECT_SAYS(complaintAbout(12, 0u), "byte 12: unknown stage 0");
   EXPECT_SAYS(complaintAbout(12, 4u), "byte 12: unknown stage 4");
@@ -97,7 +97,9 @@ TEST_F(VplDamage, EachHeaderFieldIsCheckedBehindTheChecksum) {
   EXPECT_SAYS(complaintAbout(64, -1.0), "byte 64: r_max");
   EXPECT_SAYS(complaintAbout(64, std::numeric_limits<double>::quiet_NaN()), "byte 64: r_max");
   EXPECT_SAYS(complaintAbout(72, std::numeric_limits<double>::infinity()), "byte 72: area");
-  for (size_t i = 88; i < 128; ++i) EXPECT_SAYS(complaintAbout(i, '\1'), "byte 88: reserved");
+  for (const double share : {-0.25, 1.5, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_SAYS(complaintAbout(88, share), "byte 88: share of indirect light is not 0 to 1");
+  for (size_t i = 96; i < 128; ++i) EXPECT_SAYS(complaintAbout(i, '\1'), "byte 96: reserved");
   EXPECT_SAYS(complaintAbout(80, -1.0), "byte 80: reach");
 }
 

@@ -1,4 +1,4 @@
-// Pins the bytes of version 4 of the format: any change here requires a new version.
+// Pins the bytes of version 5 of the format: any change here requires a new version.
 #include <sstream>
 
 #include "formats/vpl/vpl_io.h"
@@ -10,12 +10,12 @@ namespace {
 // smallTable(VplStage::Lit) with 16 bytes per line; lines of zeros are left out.
 constexpr size_t kLitBytes = 1608;
 constexpr const char* kLitDump = R"(
-0000: 89 56 50 4c 0d 0a 1a 0a 04 00 00 00 03 00 00 00
+0000: 89 56 50 4c 0d 0a 1a 0a 05 00 00 00 03 00 00 00
 0010: 02 00 00 00 00 00 00 00 ef cd ab 89 67 45 23 01
 0020: 3d 00 00 00 00 00 00 00 48 06 00 00 00 00 00 00
-0030: 03 d1 09 2c 06 3a 56 75 0b 00 00 00 00 00 00 00
+0030: 30 a2 21 0c 72 b0 4f dd 0b 00 00 00 00 00 00 00
 0040: 00 00 00 00 00 00 e8 3f 00 00 00 00 00 00 28 40
-0050: 00 00 00 00 00 00 04 40 00 00 00 00 00 00 00 00
+0050: 00 00 00 00 00 00 04 40 00 00 00 00 00 00 e4 3f
 0080: 70 6f 73 69 74 69 6f 6e 00 00 00 00 00 00 00 00
 0090: 00 00 00 00 00 00 00 00 01 00 00 00 03 00 00 00
 00a0: 80 03 00 00 00 00 00 00 18 00 00 00 00 00 00 00

@@ -110,6 +110,8 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
   expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });
+  for (const double share : {-0.5, 1.5, static_cast<double>(kNan)})
+    expectRefused(f, "share of indirect light", [&](VplTable& t) { t.indirectShare = share; });
   expectRefused(f, "provenance", [](VplTable& t) { t.provenance = "{}"; });
   EXPECT_EQ(fileCount(), 1u);  // no partial file remains
 }

@@ -41,6 +41,9 @@ class DeepCheck : public InspectTest {
 
 TEST_F(DeepCheck, ChangedRowsAreRefused) {
   EXPECT_EQ(problem(), "");
+  kept_.indirectShare = 0.5;
+  EXPECT_TRUE(contains(problem(), "v.vpl: its share of indirect light is not that of"));
+  kept_.indirectShare = candidates_.indirectShare;
   kept_.position[1].x += 0.001f;
   EXPECT_TRUE(contains(problem(), "v.vpl: row 1 (id 258) is not that of"));
   kept_.position[1] = candidates_.position[1];

@@ -249,9 +249,14 @@ TEST_F(ShardRun, ForgedShardsAreRefused) {
   }
   refused("", "", [](std::string& bytes) { bytes.resize(bytes.size() - 1); });
   refused("", "", [](std::string& bytes) { bytes.clear(); });
-  refused("", "", [](std::string& bytes) { bytes.replace(56, 4, "\xff\xff\xff\xff"); });  // NaN
-  refused("", "",
-          [](std::string& bytes) { bytes.replace(0, 8, "\xff\xff\xff\xff\xff\xff\xff\x7f"); });
+  const auto forged = [](bool share, size_t at, const std::string& with) {
+    return [=](std::string& bytes) {
+      if ((bytes.size() == sizeof(double)) == share) bytes.replace(at, with.size(), with);
+    };
+  };
+  refused("", "", forged(false, 56, "\xff\xff\xff\xff"));  // NaN
+  refused("", "", forged(true, 6, "\xff\xff"));            // a NaN as share of indirect light
+  refused("", "", forged(false, 0, "\xff\xff\xff\xff\xff\xff\xff\x7f"));
   EXPECT_FALSE(fs::exists(at("x.vpl")));
 }
 

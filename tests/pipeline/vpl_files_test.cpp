@@ -62,13 +62,13 @@ TEST_F(VplFiles, ColumnsOfMethodsLeaveTheOthersAlone) {
 }
 
 TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
-  for (const uint32_t version : {1u, 3u, 5u}) {
+  for (const uint32_t version : {1u, 4u, 6u}) {
     std::string bytes = readAll(at("lit.vpl"));
     bytes[offsetof(VplHeader, version)] = static_cast<char>(version);
     write("old.vpl", bytes);
-    const std::string says = "byte 8: version " + std::to_string(version) + ", expected 4; ";
+    const std::string says = "byte 8: version " + std::to_string(version) + ", expected 5; ";
     const std::string cure =
-        version < 4 ? "rerun vpl-place and every later stage" : "use the bnvpl that wrote it";
+        version < 5 ? "rerun vpl-place and every later stage" : "use the bnvpl that wrote it";
     fail("vpl-render", scene_ + " " + path("old.vpl") + " -o " + path("x.exr"), kExitInput,
          {"old.vpl", says + cure});
     fail("vpl-inspect", "info " + path("old.vpl"), kExitInput, {"old.vpl", says + cure});

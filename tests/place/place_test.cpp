@@ -30,10 +30,10 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
   const World world("u-shape/scene.toml");
   const Values options = resolve(placeSpec(), count(60000));
   const PlaceViews views(world.scene);
-  std::map<uint64_t, std::string> records;
+  std::map<std::pair<std::string, uint64_t>, std::string> records;
   ShardSink sink;
-  sink.record = [&](std::string_view, uint64_t unit, std::string_view bytes) {
-    EXPECT_TRUE(records.emplace(unit, bytes).second) << "twice: " << unit;
+  sink.record = [&](std::string_view work, uint64_t unit, std::string_view bytes) {
+    EXPECT_TRUE(records.emplace(std::pair(work, unit), bytes).second) << "twice: " << unit;
   };
   for (uint64_t i = 0; i < 5; ++i) {
     Resume resume;
@@ -42,19 +42,21 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
     placeShard({world.rays, world.lights, views}, options, 0.0, resume);
   }
   ShardSource source;
-  source.record = [&](std::string_view, uint64_t unit) -> std::optional<std::string> {
-    const auto found = records.find(unit);
+  source.record = [&](std::string_view work, uint64_t unit) -> std::optional<std::string> {
+    const auto found = records.find({std::string(work), unit});
     if (found == records.end()) return {};
     return found->second;
   };
   const uint64_t hash = world.scene.contentHash;
   const auto never = [](uint64_t) { FAIL(); };
-  EXPECT_EQ(joinPlaced(options, hash, views.turns, source, never).table.position,
-            placeVpls(world, count(60000)).table.position);
+  const VplTable joined = joinPlaced(options, hash, views.turns, source, never).table,
+                 whole = placeVpls(world, count(60000)).table;
+  EXPECT_EQ(joined.position, whole.position);
+  EXPECT_EQ(joined.indirectShare, whole.indirectShare);
   struct Early {
     uint64_t unit;
   };
-  records.erase(7);
+  records.erase({"paths", 7});
   try {
     joinPlaced(options, hash, views.turns, source, [](uint64_t unit) { throw Early{unit}; });
     FAIL();

@@ -3,6 +3,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "tools/place/indirect_share.h"
 #include "tools/place/path_rows.h"
 
 namespace bnvpl {
@@ -27,6 +28,25 @@ const PlaceMethod& placeMethod(const Values& options) {
 
 namespace {
 
+double indirectShareFor(const PlaceInputs& in, const Values& options) {
+  return placeMethod(options).forView ? indirectShare(in, options[kSeedOption]) : 1.0;
+}
+
+PlaceResult joinRows(const Values& options, const ViewTurns& turns, const ShardSource& source,
+                     const std::function<void(uint64_t unit)>& endedEarly) {
+  const PlaceMethod& method = placeMethod(options);
+  PlaceResult result =
+      joinShards({options[kPlaceCountOption], method.last, turns}, source, endedEarly);
+  method.finish(result);
+  return result;
+}
+
+PlaceResult traceRows(const PlaceInputs& in, const Values& options, double spare,
+                      const Resume& resume, const ProgressFn& progress) {
+  return traceShard(in.rays.scene().name(), options[kPlaceCountOption], spare, resume, progress,
+                    placeMethod(options).make(in, options));
+}
+
 // A run that can be interrupted is traced as a single shard, whose rows are kept in memory.
 PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
                           Resume resume) {
@@ -34,43 +54,49 @@ PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const Pr
   const ShardSink sink{
       [&](std::string_view, uint64_t, std::string_view bytes) { records.emplace_back(bytes); }, {}};
   resume.sink = &sink;
-  placeShard(in, options, 0.0, resume, progress);
+  traceRows(in, options, 0.0, resume, progress);
   const ShardSource source{[&](std::string_view, uint64_t unit) -> std::optional<std::string> {
                              if (unit >= records.size()) return {};
                              return std::move(records[unit]);
                            },
                            {}};
-  return joinPlaced(options, in.rays.scene().contentHash, in.views.turns, source,
-                    [](uint64_t) { throw std::logic_error("the paths of a whole ended early"); });
+  return joinRows(options, in.views.turns, source,
+                  [](uint64_t) { throw std::logic_error("the paths of a whole ended early"); });
+}
+
+PlaceResult placeAtOnce(const PlaceInputs& in, const Values& options, const ProgressFn& progress) {
+  const PlaceMethod& method = placeMethod(options);
+  PlaceResult result =
+      collectRows(in.rays.scene().name(), {options[kPlaceCountOption], method.last, in.views.turns},
+                  progress, method.make(in, options));
+  method.finish(result);
+  return result;
 }
 
 }  // namespace
 
 PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
                   const Resume& resume) {
-  if (resume.pause) return placeInPieces(in, options, progress, resume);
-  const PlaceMethod& method = placeMethod(options);
-  PlaceResult result =
-      collectRows(in.rays.scene().name(), {options[kPlaceCountOption], method.last, in.views.turns},
-                  progress, method.make(in, options));
-  method.finish(result);
+  PlaceResult result = resume.pause ? placeInPieces(in, options, progress, resume)
+                                    : placeAtOnce(in, options, progress);
+  result.table.indirectShare = indirectShareFor(in, options);
   result.table.sceneHash = in.rays.scene().contentHash;
   return result;
 }
 
 PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
                        const Resume& resume, const ProgressFn& progress) {
-  return traceShard(in.rays.scene().name(), options[kPlaceCountOption], spare, resume, progress,
-                    placeMethod(options).make(in, options));
+  PlaceResult counts = traceRows(in, options, spare, resume, progress);
+  if (placeMethod(options).forView && resume.shard.has(0))
+    giveIndirectShare(*resume.sink, indirectShareFor(in, options));
+  return counts;
 }
 
 PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ViewTurns& turns,
                        const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly) {
-  const PlaceMethod& method = placeMethod(options);
-  PlaceResult result =
-      joinShards({options[kPlaceCountOption], method.last, turns}, source, endedEarly);
-  method.finish(result);
+  PlaceResult result = joinRows(options, turns, source, endedEarly);
+  if (placeMethod(options).forView) result.table.indirectShare = takeIndirectShare(source);
   result.table.sceneHash = sceneHash;
   return result;
 }

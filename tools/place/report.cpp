@@ -1,6 +1,7 @@
 #include "tools/place/report.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace bnvpl {
 namespace {
@@ -23,6 +24,12 @@ void reportPlaced(const PlaceResult& placed, Summary& summary) {
       "placed " + std::to_string(placed.rows) + " on " + std::to_string(placed.paths) + " paths");
   if (!placed.rowsOfView.empty())
     summary.add("placed_of_views", placed.rowsOfView, textOf(placed.rowsOfView));
+  if (placed.table.size() > 0) {
+    const double share = placed.table.indirectShare;
+    char line[64];
+    std::snprintf(line, sizeof line, "%.0f %% of the light in view is indirect", 100.0 * share);
+    summary.add("indirect_share", share, placed.table.stage == VplStage::Lit ? "" : line);
+  }
   summary.add("paths", placed.paths);
   summary.add("rays", placed.rays);
   summary.addNonFinite(placed.nonFinite, "vertices of paths");

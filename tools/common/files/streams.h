@@ -27,6 +27,7 @@ enum class Stream : uint32_t {
   CausticPilot,
   CausticEmission,
   PhotonEmission,
+  IndirectShare,
   PilotPhotons = 30,  // vpl-estimate --method both
   PilotPaths
 };

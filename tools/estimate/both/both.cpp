@@ -21,8 +21,8 @@ constexpr auto kPhotonsOption = countOption(
     "photons", "10M", 0x1p36, "", "total work, as a number of photons; paths take a part of it");
 constexpr auto kIrradianceErrorOption = realOption(
     "irradiance-error", "0.005", 0, 1, "",
-    "less work is done if pilots predict this mean relative error of the irradiance from VPLs; "
-    "0: all work is done");
+    "less work is done if pilots predict this mean relative error of the light in view that comes "
+    "from VPLs; 0: all work is done");
 constexpr auto kMaxBouncesOption =
     wholeOption("max-bounces", "32", 1, 1000, "",
                 "diffuse bounces between a light and the view, including the one at the VPL");
@@ -37,6 +37,8 @@ constexpr double kGuessedRays = 10.0;
 constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
 // Paths are not used at all if their pilot would take more than this share of the work.
 constexpr double kMaxPilotShare = 0.25;
+// Less indirect light than this share of the light in view is treated as this share.
+constexpr double kMinIndirectShare = 0.05;
 // Limits of a cost probe (--estimate): photons and paths of the pilots, VPLs of the split, and
 // points per VPL after it.
 constexpr uint64_t kProbePhotons = 1 << 18, kProbeVpls = 8192;
@@ -175,6 +177,10 @@ class Estimator {
                   few > 0.0 ? all / few : 1.0);
   }
 
+  // The error of --irradiance-error is relative to all light in view, of which VPLs give a share.
+  double irradianceError() const {
+    return options_[kIrradianceErrorOption] / std::max(in_.vpls.indirectShare, kMinIndirectShare);
+  }
   unsigned maxBounces() const { return static_cast<unsigned>(options_[kMaxBouncesOption]); }
 
   // The parts of a cost probe share one split.
@@ -223,7 +229,7 @@ class Estimator {
       pilots.pointCost.push_back(cost / pilots.points);
       spent += cost;
     }
-    const Budget budget{std::max(whole - spent, 0.5 * whole), options_[kIrradianceErrorOption]};
+    const Budget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
         probe ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
     progressScale_ = static_cast<double>(work_ - reported_) * pilots.photonCost / split.cost;

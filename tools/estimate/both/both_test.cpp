@@ -187,7 +187,8 @@ TEST(Both, ReportsProgressOnceForAllItsWork) {
 // The method works until the stated error is the requested one, and then ends.
 TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   const World world("cornell/scene.toml");
-  const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+  VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+  vpls.indirectShare = 1.0;
   const auto run = [&](const char* error) {
     return lightVpls(world, vpls, {{"photons", "3M"}, {"irradiance-error", error}});
   };
@@ -208,6 +209,21 @@ TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   EXPECT_LT(some.energy.photons + some.paths, (all.energy.photons + all.paths) / 2);
   EXPECT_LT(few.energy.photons + few.paths, (some.energy.photons + some.paths) / 2);
   EXPECT_NEAR(totalFlux(few.table) / totalFlux(all.table), 1.0, 0.02);
+}
+
+// Where half of the light in view is indirect, VPLs may have twice the error. A share below 1/20
+// counts as 1/20.
+TEST(Both, WorksLessWhereLessOfTheLightIsIndirect) {
+  const World world("cornell/scene.toml");
+  VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
+  const auto run = [&](double share) {
+    vpls.indirectShare = share;
+    return lightVpls(world, vpls, {{"photons", "3M"}, {"irradiance-error", "0.004"}});
+  };
+  const EstimateResult all = run(1.0), half = run(0.5), least = run(0.05), none = run(0.0);
+  EXPECT_LT(half.energy.photons + half.paths, (all.energy.photons + all.paths) / 2);
+  EXPECT_EQ(least.table.flux, none.table.flux);
+  EXPECT_NEAR(totalFlux(half.table) / totalFlux(all.table), 1.0, 0.02);
 }
 
 // The error stated by the receivers matches the deviation of irradiances between seeds.

@@ -106,6 +106,8 @@ bool isScaled(const VplTable& from, size_t source, const VplTable& to, size_t ro
 std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
   if (!earlier.stage || !later.stage) return {};
   const VplTable from = readVpl(earlier.file), to = readVpl(later.file);
+  if (to.indirectShare != from.indirectShare)
+    return "its share of indirect light is not that of " + earlier.file.string();
   const bool kept = to.stage == VplStage::Eliminated || to.stage == from.stage;
   const bool reweighted = kept && from.stage == VplStage::Lit;
   if (!kept && to.size() != from.size())

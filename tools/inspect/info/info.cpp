@@ -112,6 +112,7 @@ Json describeTable(const VplTable& table) {
             {"checksum", hashText(table.checksum)}};
   if (table.rMax > 0.0) json["r_max"] = table.rMax;
   if (table.areaEstimate > 0.0) json["area_estimate"] = table.areaEstimate;
+  json["indirect_share"] = table.indirectShare;
   json["provenance"] = provenanceJson(table.provenance);
   json["columns"] = columnsJson(table);
   if (!table.extras.empty()) json["method_columns"] = methodColumnsJson(table);

@@ -40,6 +40,8 @@ void appendHead(std::string& text, const Json& d) {
            number(d["r_max"]).c_str(),
            d.contains("area_estimate") ? number(d["area_estimate"]).c_str() : "unknown");
   }
+  append(text, "  share of the light in view that is indirect %.3g\n",
+         d["indirect_share"].get<double>());
 }
 
 void appendProvenance(std::string& text, const Json& d) {
