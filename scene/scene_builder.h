@@ -86,6 +86,10 @@ class SceneBuilder {
   const Material* useReplacement(const std::string& name);
   // Adds a material that none replaces, whatever its name.
   uint32_t addOwnMaterial(Material material);
+  // All materials of this name that are added later emit `radiance` on their front or both sides,
+  // whatever they emit by themselves. An outer file's emission comes first.
+  void addEmission(const std::string& name, Vec3 radiance, bool twoSided);
+  bool isLit(const std::string& name) const { return lit_.contains(name); }
   // Reads the radiance of an image at once. Negative values become 0, with a warning. Throws
   // InputError if the file is no image.
   EnvironmentImage readEnvironment(const fs::path& image);
@@ -170,11 +174,16 @@ class SceneBuilder {
     uint32_t material, object;  // `material` is kNone for grey until the triangle is found usable
     auto operator<=>(const Surface&) const = default;
   };
+  struct Emission {
+    Vec3 radiance;
+    bool twoSided;
+  };
   struct Include {
     fs::path file;
     Affine outer;  // place_ of the outer file
     std::vector<Place> instances;
     std::map<std::string, uint32_t> replacements;  // those of the outer file
+    std::map<std::string, Emission> emissions;     // the same
     size_t placed, lights, views;                  // how many there were
   };
   void placeLight(const Affine& place, LightSpec& light, FilePoint& position);
@@ -243,6 +252,8 @@ class SceneBuilder {
   // For each of scene_.materials, the number of materials that it mixes, itself included.
   std::vector<uint32_t> mixParts_;
   std::map<std::string, uint32_t> replacements_;  // numbers by name
+  std::map<std::string, Emission> emissions_;     // by the name of the material
+  std::set<std::string> lit_;                     // names whose emission was used
   std::set<std::string> replaced_;                // names whose replacement was used
   uint32_t grey_ = kNone;
   Strays strays_;  // strays of the world

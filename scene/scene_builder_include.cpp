@@ -45,7 +45,7 @@ void SceneBuilder::beginInclude(const fs::path& file, const Affine& place,
   ++includeCount_;
   const Affine outer = place_;
   place_ = !instances.empty() ? place : including() ? outer * place : place;
-  includes_.push_back({file, outer, std::move(instances), replacements_, placed_.size(),
+  includes_.push_back({file, outer, std::move(instances), replacements_, emissions_, placed_.size(),
                        scene_.lights.size(), scene_.views.size()});
 }
 
@@ -54,6 +54,7 @@ void SceneBuilder::endInclude() {
   includes_.pop_back();
   place_ = done.outer;
   replacements_ = done.replacements;
+  emissions_ = done.emissions;
   if (done.instances.empty()) return;
   dropCameras(done.views);
   const auto from = [](const auto& all, size_t first) {

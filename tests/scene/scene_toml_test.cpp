@@ -55,8 +55,8 @@ TEST_F(SceneToml, UnknownKeysNameTheNearest) {
               {"'positon'", "'position'"});
   expectError("[films]\n" + base_, 0, {"unknown key 'films'", "'film'"});
   // No key is similar.
-  expectError(base_ + "[[light]]\ntype = \"point\"\npower = 3\n", 12,
-              {"unknown key 'power'; the keys here are ", "intensity"});
+  expectError(base_ + "[[light]]\ntype = \"point\"\nwattage = 3\n", 12,
+              {"unknown key 'wattage'; the keys here are ", "intensity"});
   expectError("[camera]\nfov = 3\n" + base_.substr(0, 0) + "[film]\nwidth = 8\nheight = 6\n", 2,
               {"'fov'"});
 }
@@ -121,7 +121,7 @@ TEST_F(SceneToml, LightKeysBelongToTheirType) {
               {"'position' has no meaning for a environment light"});
   expectError(sky + "image = \"a.exr\"\n", 10, {"exactly one of 'radiance' and 'image'"});
   expectError(base_ + "[[light]]\ntype = \"lamp\"\n", 11,
-              {"unknown type 'lamp'", "point, spot, directional"});
+              {"unknown type 'lamp'", "point, spot, sun, directional"});
   EXPECT_NE(loadError(base_ + "[[light]]\ntype = \"environment\"\nimage = \"gone.exr\"\n")
                 .find("gone.exr: "),
             std::string::npos);

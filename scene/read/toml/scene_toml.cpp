@@ -34,9 +34,15 @@ void readSceneToml(const fs::path& file, const Defines& defines, SceneBuilder& b
   const size_t cameras = builder.views().size();
 
   readTomlView(file, root);  // mistakes in small sections show before the meshes are read
+  const std::vector<std::string> lit = readTomlEmissions(file, root, builder);
   const TomlSurfaces surfaces(file, root, names, builder);
   readTomlMeshes(file, root, names, builder);
   surfaces.warnOfUnused();
+  for (const std::string& name : lit) {
+    if (builder.isLit(name)) continue;
+    builder.warn(file.string() + ": the [[light]] of material '" + name +
+                 "' has no effect: no mesh has a material of that name");
+  }
   setView(file, root, cameras, builder);
   readTomlLights(file, root, names, builder);
 }

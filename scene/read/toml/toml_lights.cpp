@@ -1,5 +1,8 @@
 #include "scene/read/toml/toml_lights.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "scene/read/toml/toml_view.h"
 
 namespace bnvpl {
@@ -9,33 +12,42 @@ namespace {
 // A smaller sun is a point: floats do not resolve directions within it.
 constexpr double kMinSunDeg = 1e-4;
 
-const std::vector<std::string> kLightKeys{"name",
-                                          "type",
-                                          "position",
-                                          "direction",
-                                          "intensity",
-                                          "irradiance",
-                                          "radiance",
-                                          "image",
-                                          "cone_deg",
-                                          "falloff_deg",
-                                          "angular_diameter_deg",
-                                          "rotate_deg",
-                                          "scale"};
+constexpr double kSunDeg = 0.533;  // angular diameter as seen from the Earth
+
+const std::vector<std::string> kLightKeys{"name",       "type",       "position",
+                                          "direction",  "look_at",    "up",
+                                          "intensity",  "power",      "radiance",
+                                          "irradiance", "image",      "material",
+                                          "width",      "height",     "radius",
+                                          "sides",      "cone_deg",   "falloff_deg",
+                                          "scale",      "rotate_deg", "angular_diameter_deg"};
 
 void requireKeys(const TomlSection& s, const std::string& type, std::set<std::string> allowed) {
   allowed.insert({"name", "type"});
   s.requireOnly("a " + type + " light", allowed);
 }
 
-void readPointLight(const TomlSection& s, LightSpec& light) {
-  light.emission = s.color("intensity");
+// W/sr. The power of a spot is that to all sides, were it a point.
+Vec3 intensityOf(const TomlSection& s) {
+  if (!s.has("power")) return s.color("intensity");
+  if (s.has("intensity")) s.fail("needs exactly one of 'power' and 'intensity'");
+  return s.color("power") * (0.25f / kPi);
+}
+
+Vec3 directionOf(const TomlSection& s, const FilePoint& position) {
+  return fromOrigin(tomlDirection(s, position), {});
+}
+
+void readPointLight(const TomlSection& s, const FilePoint& position, LightSpec& light) {
+  light.emission = intensityOf(s);
   if (light.type == LightType::Point) {
-    requireKeys(s, "point", {"position", "intensity"});
+    requireKeys(s, "point", {"position", "intensity", "power"});
     return;
   }
-  requireKeys(s, "spot", {"position", "intensity", "direction", "cone_deg", "falloff_deg"});
-  light.direction = s.direction("direction");
+  requireKeys(
+      s, "spot",
+      {"position", "intensity", "power", "direction", "look_at", "cone_deg", "falloff_deg"});
+  light.direction = directionOf(s, position);
   const double coneDeg = s.number("cone_deg", 0.01, 180.0);
   const double falloffDeg = s.number("falloff_deg", 0.0, 180.0, 0.0);
   if (falloffDeg > coneDeg) s.fail(s.node("falloff_deg"), "'falloff_deg' exceeds 'cone_deg'");
@@ -43,11 +55,12 @@ void readPointLight(const TomlSection& s, LightSpec& light) {
   light.falloffRad = radians(falloffDeg);
 }
 
-void readDirectionalLight(const TomlSection& s, LightSpec& light) {
-  requireKeys(s, "directional", {"direction", "irradiance", "angular_diameter_deg"});
+void readDirectionalLight(const TomlSection& s, const std::string& type, LightSpec& light) {
+  requireKeys(s, type, {"direction", "irradiance", "angular_diameter_deg"});
   light.direction = s.direction("direction");
   light.emission = s.color("irradiance");
-  const double diameterDeg = s.number("angular_diameter_deg", 0.0, 170.0, 0.0);
+  const double diameterDeg =
+      s.number("angular_diameter_deg", 0.0, 170.0, type == "sun" ? kSunDeg : 0.0);
   if (diameterDeg >= kMinSunDeg) light.angularRadiusRad = 0.5f * radians(diameterDeg);
 }
 
@@ -71,26 +84,67 @@ void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& build
   if (type == "point" || type == "spot") {
     light.type = type == "point" ? LightType::Point : LightType::Spot;
     position = s.place("position");
-    readPointLight(s, light);
-  } else if (type == "directional") {
+    readPointLight(s, position, light);
+  } else if (type == "directional" || type == "sun") {
     light.type = LightType::Directional;
-    readDirectionalLight(s, light);
+    readDirectionalLight(s, type, light);
   } else if (type == "environment") {
     light.type = LightType::Environment;
     readEnvironment(s, names, builder, light);
   } else {
     s.fail(s.node("type"),
-           "unknown type '" + type + "'; use point, spot, directional or environment");
+           "unknown type '" + type +
+               "'; use rectangle, disk, sphere, point, spot, sun, directional, environment or "
+               "material");
   }
   builder.addLight(light, position);
 }
 
 }  // namespace
 
+FilePoint tomlDirection(const TomlSection& s, const FilePoint& position) {
+  if (s.has("direction") == s.has("look_at"))
+    s.fail("needs exactly one of 'direction' and 'look_at'");
+  const char* key = s.has("direction") ? "direction" : "look_at";
+  FilePoint to = s.point(key);
+  if (s.has("look_at")) {
+    for (size_t i = 0; i < 3; ++i) to[i] -= position[i];
+  }
+  const double length = std::hypot(to[0], to[1], to[2]);
+  if (!(length > 0.0)) {
+    s.fail(s.node(key), s.has("direction") ? "'direction' must not be zero"
+                                           : "'look_at' equals 'position'; move one of them");
+  }
+  for (double& x : to) x /= length;
+  return to;
+}
+
+std::vector<std::string> readTomlEmissions(const fs::path& file, const toml::table& root,
+                                           SceneBuilder& builder) {
+  std::vector<std::string> out;
+  for (const toml::table* t : tablesOf(file, root, "light")) {
+    const TomlSection s(file, "[[light]]", *t, kLightKeys);
+    if (s.text("type") != "material") continue;
+    s.requireOnly("a material light", {"type", "material", "radiance", "sides"});
+    out.push_back(s.text("material"));
+    if (std::ranges::count(out, out.back()) > 1)
+      s.fail(s.node("material"), "the material '" + out.back() + "' has a [[light]] above");
+    builder.addEmission(out.back(), s.color("radiance"),
+                        s.has("sides") && s.integer("sides", 1, 2) == 2);
+  }
+  return out;
+}
+
 void readTomlLights(const fs::path& file, const toml::table& root, const FileNames& names,
                     SceneBuilder& builder) {
-  for (const toml::table* t : tablesOf(file, root, "light"))
-    readLight(TomlSection(file, "[[light]]", *t, kLightKeys), names, builder);
+  size_t number = 0;
+  for (const toml::table* t : tablesOf(file, root, "light")) {
+    const TomlSection s(file, "[[light]]", *t, kLightKeys);
+    const std::string type = s.text("type");
+    ++number;
+    if (type == "material" || readTomlAreaLight(file, s, type, number, builder)) continue;
+    readLight(s, names, builder);
+  }
 }
 
 }  // namespace bnvpl

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/files.h"
+#include "core/read_file.h"
 #include "scene/read/obj/load_obj.h"
 
 namespace bnvpl {

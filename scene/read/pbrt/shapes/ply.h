@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-#include "scene/read/pbrt/shapes/mesh_data.h"
+#include "scene/shapes/mesh_data.h"
 
 namespace bnvpl::pbrt {
 

@@ -1,9 +1,38 @@
 #include "scene/read/pbrt/shapes/shapes.h"
 
+#include <numbers>
+
 #include "scene/read/pbrt/shapes/ply.h"
 #include "scene/read/pbrt/syntax/text_file.h"
+#include "scene/shapes/quadrics.h"
 
 namespace bnvpl::pbrt {
+
+namespace {
+
+double phiMax(const Params& params) {
+  return params.number("phimax", 360.0, 0.0, 360.0) * std::numbers::pi / 180.0;
+}
+
+}  // namespace
+
+MeshData sphere(const Params& params) {
+  const double r = params.number("radius", 1.0, 0.0);
+  const double z0 = params.number("zmin", -r), z1 = params.number("zmax", r);
+  return sphereMesh(r, z0, z1, phiMax(params));
+}
+
+MeshData disk(const Params& params) {
+  const double r = params.number("radius", 1.0, 0.0),
+               inner = params.number("innerradius", 0.0, 0.0);
+  return diskMesh(r, inner, params.number("height", 0.0), phiMax(params));
+}
+
+MeshData cylinder(const Params& params) {
+  const double r = params.number("radius", 1.0, 0.0);
+  const double z0 = params.number("zmin", -1.0), z1 = params.number("zmax", 1.0);
+  return cylinderMesh(r, z0, z1, phiMax(params));
+}
 
 fs::path meshFileOf(const Shape& shape, const fs::path& folder) {
   if (shape.type != "plymesh") return {};

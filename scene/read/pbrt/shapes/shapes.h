@@ -1,9 +1,8 @@
-// Tessellates the shapes of a pbrt file. The corners of curved quadrics lie slightly outside the
-// shape, so that its area, and with it the power of an area light, is exact.
+// Tessellates the shapes of a pbrt file.
 #pragma once
 
-#include "scene/read/pbrt/shapes/mesh_data.h"
 #include "scene/read/pbrt/syntax/description.h"
+#include "scene/shapes/mesh_data.h"
 
 namespace bnvpl::pbrt {
 

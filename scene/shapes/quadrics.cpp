@@ -1,11 +1,10 @@
-// Sphere, disk and cylinder; declared in shapes.h.
+#include "scene/shapes/quadrics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "scene/read/pbrt/shapes/shapes.h"
-
-namespace bnvpl::pbrt {
+namespace bnvpl {
 
 namespace {
 
@@ -54,7 +53,7 @@ MeshData grid(size_t columns, size_t rows, const At& at) {
   return mesh;
 }
 
-double areaOf(const MeshData& mesh) {
+double areaOfMesh(const MeshData& mesh) {
   double sum = 0.0;
   for (const Triangle& t : mesh.triangles) {
     std::array<double, 3> d[2];
@@ -72,7 +71,7 @@ double areaOf(const MeshData& mesh) {
 // Scales x and y, and also z if `z`, so that the area is exact. `square` tells whether the area
 // grows with the square of the factor, else in proportion.
 void correctArea(MeshData& mesh, double exact, bool square, bool z) {
-  const double area = areaOf(mesh);
+  const double area = areaOfMesh(mesh);
   if (!(area > 0.0) || !std::isfinite(exact / area)) return;
   const double by = square ? std::sqrt(exact / area) : exact / area;
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -80,9 +79,6 @@ void correctArea(MeshData& mesh, double exact, bool square, bool z) {
   }
 }
 
-double phiMax(const Params& params) {
-  return params.number("phimax", 360.0, 0.0, 360.0) * std::numbers::pi / 180.0;
-}
 size_t stepsAround(double phi) {
   return std::max<size_t>(
       1, static_cast<size_t>(std::ceil(double(kAround) * phi / (2.0 * std::numbers::pi))));
@@ -90,9 +86,7 @@ size_t stepsAround(double phi) {
 
 }  // namespace
 
-MeshData sphere(const Params& params) {
-  const double r = params.number("radius", 1.0, 0.0), phi = phiMax(params);
-  const double z0 = params.number("zmin", -r), z1 = params.number("zmax", r);
+MeshData sphereMesh(double r, double z0, double z1, double phi) {
   const auto polar = [&](double z) {
     return r > 0.0 ? std::acos(std::clamp(z / r, -1.0, 1.0)) : 0;
   };
@@ -110,10 +104,7 @@ MeshData sphere(const Params& params) {
   return mesh;
 }
 
-MeshData disk(const Params& params) {
-  const double r = params.number("radius", 1.0, 0.0),
-               inner = params.number("innerradius", 0.0, 0.0);
-  const double height = params.number("height", 0.0), phi = phiMax(params);
+MeshData diskMesh(double r, double inner, double height, double phi) {
   MeshData mesh = grid(stepsAround(phi), 1, [&](double u, double v) {
     // v increases inwards, so triangles face +z unless the inner radius is larger: flipped below.
     const double here = r + v * (inner - r);
@@ -124,9 +115,7 @@ MeshData disk(const Params& params) {
   return mesh;
 }
 
-MeshData cylinder(const Params& params) {
-  const double r = params.number("radius", 1.0, 0.0), phi = phiMax(params);
-  const double z0 = params.number("zmin", -1.0), z1 = params.number("zmax", 1.0);
+MeshData cylinderMesh(double r, double z0, double z1, double phi) {
   const double low = std::min(z0, z1), high = std::max(z0, z1);
   MeshData mesh = grid(stepsAround(phi), 1, [&](double u, double v) {
     const FilePoint n{std::cos(u * phi), std::sin(u * phi), 0};
@@ -136,4 +125,15 @@ MeshData cylinder(const Params& params) {
   return mesh;
 }
 
-}  // namespace bnvpl::pbrt
+MeshData rectangleMesh(double width, double height) {
+  const double x = 0.5 * width, y = 0.5 * height;
+  MeshData mesh;
+  mesh.positions = {-x, -y, 0, x, -y, 0, x, y, 0, -x, y, 0};
+  mesh.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
+  mesh.addTriangle(0, 1, 2);
+  mesh.addTriangle(0, 2, 3);
+  mesh.pieces = 1;
+  return mesh;
+}
+
+}  // namespace bnvpl

@@ -1,6 +1,6 @@
-#include "scene/read/pbrt/shapes/mesh_data.h"
+#include "scene/shapes/mesh_data.h"
 
-namespace bnvpl::pbrt {
+namespace bnvpl {
 
 void MeshData::addTriangle(uint32_t a, uint32_t b, uint32_t c) {
   const std::array<uint32_t, 3> corners{a, b, c}, none{kNone, kNone, kNone};
@@ -35,4 +35,4 @@ void MeshData::reverse() {
   for (double& n : normals) n = -n;
 }
 
-}  // namespace bnvpl::pbrt
+}  // namespace bnvpl

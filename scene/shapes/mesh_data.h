@@ -6,9 +6,9 @@
 
 #include "scene/scene.h"
 
-namespace bnvpl::pbrt {
+namespace bnvpl {
 
-// The outside of a triangle, where it emits, has the normal (p1 - p0) x (p2 - p0), as in pbrt.
+// The outside of a triangle, where it emits, has the normal (p1 - p0) x (p2 - p0).
 struct MeshData {
   std::vector<double> positions, normals, uvs;  // empty if absent
   std::vector<Triangle> triangles;              // without materials
@@ -26,4 +26,4 @@ struct MeshData {
   void reverse();
 };
 
-}  // namespace bnvpl::pbrt
+}  // namespace bnvpl
