@@ -205,51 +205,85 @@ class Bench:
         )
 
 
+TOOLS = (*STAGES, "vpl-merge", "vpl-inspect")
+HEAD = ["| option | type | default | unit, range | |", "|---|---|---|---|---|"]
+
+
 def option_rows(options: list[dict[str, Any]]) -> Iterator[str]:
     for o in options:
-        facts = ", ".join(x for x in (o["unit"], o["range"]) if x)
-        needs = f" Needs `{o['needs']}`." if o["needs"] else ""
+        facts = ", ".join(x for x in (o.get("unit"), o.get("range")) if x)
+        needs = f" Needs `{o['needs']}`." if o.get("needs") else ""
+        excludes = f" Not with `{o['excludes']}`." if o.get("excludes") else ""
         kind = o["type"].replace("|", "\\|")
         text = o["help"].replace("\n  ", "<br>")
+        name = o["name"] if "letter" not in o and "methods" not in o else f"--{o['name']}"
+        letter = f"`{o['letter']}`, " if o.get("letter") else ""
         yield (
-            f"| `--{o['name']}` | {kind} | {o['default'] or '-'} | {facts or '-'} | "
-            f"{text}.{needs} |"
+            f"| {letter}`{name}` | {kind or '-'} | {o['default'] or '-'} | {facts or '-'} | "
+            f"{text}.{needs}{excludes} |"
         )
+
+
+def own_options(command: dict[str, Any]) -> list[dict[str, Any]]:
+    """Arguments and options but for slots and the options of their methods."""
+    slots = {slot["name"] for slot in command.get("slots", [])}
+    options = [o for o in command["options"] if "methods" not in o and o["name"] not in slots]
+    return [*command["arguments"], *options]
+
+
+def shared_rows(commands: list[dict[str, Any]]) -> list[str]:
+    """Rows that all commands have."""
+    others = [set(option_rows(own_options(command))) for command in commands[1:]]
+    rows = option_rows(own_options(commands[0]))
+    return [row for row in rows if all(row in other for other in others)]
+
+
+def command_lines(command: dict[str, Any], known: set[str], level: str) -> Iterator[str]:
+    """What a command line takes itself, without the rows that are known."""
+    yield f"{level} {command['tool']}"
+    yield ""
+    yield command["summary"].replace("\n", "  \n")
+    rows = [row for row in option_rows(own_options(command)) if row not in known]
+    yield from ("", *HEAD, *rows, "")
+
+
+def slot_lines(tool: str, slot: dict[str, Any]) -> Iterator[str]:
+    needs = f" Needs `{slot['needs']}`." if slot["needs"] else ""
+    yield from (f"### {tool} --{slot['name']}", "")
+    yield f"{slot['help'][0].upper()}{slot['help'][1:]}; default `{slot['default']}`.{needs}"
+    yield ""
+    yield from (f"- `{method['name']}`: {method['summary']}" for method in slot["methods"])
+    yield ""
+    for method in slot["methods"]:
+        if method["options"]:
+            yield from (f"With `--{slot['name']} {method['name']}`:", "", *HEAD)
+            yield from option_rows([{**o, "methods": {}} for o in method["options"]])
+            yield ""
 
 
 def options_page(bench: Bench) -> str:
     lines = [
         "# Options",
         "",
-        "Every option of the stages, as `--help` shows them; made by `docs/make_docs.py` from "
-        "the tables in the code.",
+        "Every option of the tools, as `--help-all` shows them; made by `docs/make_docs.py` from "
+        "`--help-json`.",
         "An option of a method is refused while another method is chosen.",
         "",
     ]
-    head = ["| option | type | default | unit, range | |", "|---|---|---|---|---|"]
-    for tool in STAGES:
-        spec = bench.spec(tool)
-        lines += [f"## {tool}", "", *head, *option_rows(spec["options"]), ""]
-        for slot in spec["slots"]:
-            needs = f" Needs `{slot['needs']}`." if slot["needs"] else ""
-            lines += [
-                f"### {tool} --{slot['name']}",
-                "",
-                f"{slot['help'][0].upper()}{slot['help'][1:]}; default `{slot['default']}`.{needs}",
-                "",
-            ]
-            for method in slot["methods"]:
-                lines += [f"- `{method['name']}`: {method['summary']}"]
-            lines += [""]
-            for method in slot["methods"]:
-                if method["options"]:
-                    lines += [
-                        f"With `--{slot['name']} {method['name']}`:",
-                        "",
-                        *head,
-                        *option_rows(method["options"]),
-                        "",
-                    ]
+    specs = {tool: bench.spec(tool) for tool in TOOLS}
+    of_tools = shared_rows(list(specs.values()))
+    of_stages = [
+        row for row in shared_rows([specs[tool] for tool in STAGES]) if row not in of_tools
+    ]
+    for heading, rows in ("all tools", of_tools), ("all stages", of_stages):
+        lines += [f"## Options of {heading}", "", *HEAD, *rows, ""]
+    known = {*of_tools, *of_stages}
+    for tool, spec in specs.items():
+        lines += command_lines(spec, known, "##")
+        for slot in spec.get("slots", []):
+            lines += slot_lines(tool, slot)
+        for command in spec.get("commands", []):
+            lines += command_lines(command, known, "###")
     return "\n".join(lines)
 
 

@@ -68,9 +68,13 @@ class Tools:
 
     def _renames(self) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
         """Pairs of options of this version and their spelling in an older build."""
-        text = subprocess.run(
-            [self.folder / "vpl-render", "--help"], capture_output=True, text=True
-        ).stdout
+        for help_option in "--help-all", "--help":  # an older build has only the second
+            asked = subprocess.run(
+                [self.folder / "vpl-render", help_option], capture_output=True, text=True
+            )
+            if asked.returncode == 0:
+                break
+        text = asked.stdout
         older: list[tuple[tuple[str, ...], tuple[str, ...]]] = []
         if "--fireflies" not in text:
             older += [

@@ -26,7 +26,13 @@ const StageSpec& eliminateSpec() {
   static const StageSpec spec{
       "vpl-eliminate",
       kOptions,
-      {{"method", "elimination", "which candidates stay", entriesOf(eliminateMethods())}}};
+      {{"method", "elimination", "which candidates stay", entriesOf(eliminateMethods())}},
+      {{"the best spread 6000 of the candidates",
+        "vpl-eliminate candidates.vpl -o vpls.vpl -n 6000"},
+       {"the same spacing everywhere",
+        "vpl-eliminate candidates.vpl -o vpls.vpl -n 6k --density uniform"},
+       {"VPLs from the lights, kept by what they do for the image",
+        "vpl-eliminate light.vpl -o lit.vpl -n 6k --method rejection --scene scene.toml"}}};
   return spec;
 }
 

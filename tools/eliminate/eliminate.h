@@ -13,7 +13,7 @@
 namespace bnvpl {
 
 inline constexpr WholeOption kEliminateCountOption =
-    letterFor("-n", countOption("count", "", 0x1p53, "", "VPLs to keep"));
+    inTopic(Topic::Main, letterFor("-n", countOption("count", "", 0x1p53, "", "VPLs to keep")));
 
 // Points of the image at which a method measures VPLs, where it does.
 inline constexpr OptionKey<uint64_t> kCameraPointsKey{"camera-points"};

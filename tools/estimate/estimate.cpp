@@ -14,7 +14,11 @@ const StageSpec& estimateSpec() {
   static const StageSpec spec{
       "vpl-estimate",
       kOptions,
-      {{"method", "both", "how VPLs get their flux", entriesOf(estimateMethods())}}};
+      {{"method", "both", "how VPLs get their flux", entriesOf(estimateMethods())}},
+      {{"the flux of all VPLs", "vpl-estimate scenes/cornell/scene.toml vpls.vpl -o lit.vpl"},
+       {"less work, for a preview", "vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 1M"},
+       {"a long run that may be stopped and goes on where it was",
+        "vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 1G --checkpoint saved"}}};
   return spec;
 }
 

@@ -7,8 +7,10 @@
 namespace bnvpl {
 
 inline constexpr auto kEmissionOption =
-    choiceOption("emission", "guided", "guided|power",
-                 "photons start where pilot photons found ways to VPLs, or in proportion to power");
+    inTopic(Topic::Speed,
+            choiceOption(
+                "emission", "guided", "guided|power",
+                "photons start where pilot photons found ways to VPLs, or in proportion to power"));
 
 // Learns from pilot photons, a small share of `photons`, from which emission photons reach VPLs.
 // The guide minimises the sum over VPLs of variance over flux, where a VPL's flux is not taken

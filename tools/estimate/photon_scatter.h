@@ -19,10 +19,10 @@ namespace bnvpl {
 
 // Options of the photon methods. Sums over more than 2^36 photons would exceed their fixed-point
 // range.
-inline constexpr auto kPhotonsOption =
-    countOption("photons", "10M", 0x1p36, "", "photons from all lights in total");
-inline constexpr auto kPhotonBouncesOption =
-    wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon");
+inline constexpr auto kPhotonsOption = inTopic(
+    Topic::Main, countOption("photons", "10M", 0x1p36, "", "photons from all lights in total"));
+inline constexpr auto kPhotonBouncesOption = inTopic(
+    Topic::Quality, wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"));
 inline constexpr auto kPhotonOptions = optionTable(kPhotonsOption, kEmissionOption, kRadiusOption,
                                                    kPhotonBouncesOption, kEmitPointsOption);
 inline Work photonWork(const VplTable&, const Values& options) {

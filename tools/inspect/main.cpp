@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "tools/common/options/help.h"
 #include "tools/inspect/command.h"
 
 // NOLINTNEXTLINE(bugprone-exception-escape): only a wrongly declared option throws, at every start
@@ -14,6 +15,10 @@ int main(int argc, char** argv) {
   cli.fallthrough();  // --threads and --quiet may stand after the subcommand too
   addToolOptions(cli, tool);
   cli.require_subcommand(1);
+  addExamples(cli, {{"what a file holds, and how it was made", "vpl-inspect info lit.vpl"},
+                    {"how a scene is understood", "vpl-inspect scene scenes/cornell/scene.toml"},
+                    {"how far an image is from a reference",
+                     "vpl-inspect compare image.exr reference.exr --diff difference.png"}});
   const Command commands[] = {infoCommand(cli),   checkCommand(cli),      exportCommand(cli),
                               sceneCommand(cli),  plotCommand(cli, tool), runCommand(cli),
                               compareCommand(cli)};

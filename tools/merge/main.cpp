@@ -1,6 +1,5 @@
 // vpl-merge: merges the shards of a stage into the same bytes that the stage writes without
 // --shard.
-//   vpl-merge parts/*.shard -o candidates.vpl
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -8,6 +7,7 @@
 #include "tools/common/files/depfile.h"
 #include "tools/common/files/run_files.h"
 #include "tools/common/options/exposure.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/merge/merge.h"
 
@@ -73,13 +73,17 @@ int main(int argc, char** argv) {
       ->required();
   CLI::Option* png = addFile(cli, "--png", output.png, "also write a preview of an image");
   addOption(cli,
-            textOption("exposure", "auto", "EV|auto",
-                       "exposure of the PNG, in stops; auto: maps the log-average to middle grey"),
+            inTopic(Topic::Files, textOption("exposure", "auto", "EV|auto",
+                                             "exposure of the PNG, in stops; auto: maps the "
+                                             "log-average to middle grey")),
             [&output](const Value& value) {
               output.exposure = std::get<std::string>(value);
               parseExposure(output.exposure);
             })
       ->needs(png);
+  addExamples(cli, {{"all shards of a stage", "vpl-merge parts/*.shard -o lit.vpl"},
+                    {"an image, with a preview", "vpl-merge *.shard -o image.exr --png image.png"},
+                    {"shards, for a later merge", "vpl-merge 1.shard 2.shard -o 1-2.shard"}});
   addToolOptions(cli, tool);
   addDepfileOption(cli, tool);
   return runTool(cli, tool, argc, argv, [&] { return runMerge(inputs, output, tool); });

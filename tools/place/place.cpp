@@ -18,7 +18,13 @@ const StageSpec& placeSpec() {
   static const StageSpec spec{
       "vpl-place",
       kOptions,
-      {{"method", "camera", "where VPLs are placed", entriesOf(placeMethods())}}};
+      {{"method", "camera", "where VPLs are placed", entriesOf(placeMethods())}},
+      {{"candidates for the view of the scene's camera",
+        "vpl-place scenes/cornell/scene.toml -o candidates.vpl"},
+       {"fewer candidates, for a quick look, and always the same",
+        "vpl-place scene.glb -o candidates.vpl -n 30k --seed 7"},
+       {"candidates for two cameras of the scene",
+        "vpl-place scene.pbrt -o candidates.vpl --camera 1 --camera 2"}}};
   return spec;
 }
 

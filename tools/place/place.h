@@ -37,8 +37,9 @@ struct PlaceViews {
 // vpl-eliminate cannot search more candidates.
 inline constexpr double kMaxPlaced = 0x1p31 - 1;
 inline constexpr WholeOption kPlaceCountOption =
-    letterFor("-n", countOption("count", "120k", kMaxPlaced, "",
-                                "VPLs to place; --method light may place slightly fewer"));
+    inTopic(Topic::Main,
+            letterFor("-n", countOption("count", "120k", kMaxPlaced, "",
+                                        "VPLs to place; --method light may place slightly fewer")));
 
 struct PlaceInputs {
   const RayScene& rays;

@@ -16,8 +16,9 @@ std::span<const Option> stageOptions() {
   static const std::string layersHelp = "extra channels of the image, or all" + layerList();
   static const std::array options = optionTable(
       kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kAdaptiveOption, kOnlyOption,
-      kSeedOption, unrecorded(textOption(kLayersKey.name, "", "NAME,...", layersHelp)), kSizeOption,
-      kPixelsOption, kExposureOption);
+      kSeedOption,
+      inTopic(Topic::Files, unrecorded(textOption(kLayersKey.name, "", "NAME,...", layersHelp))),
+      kSizeOption, kPixelsOption, kExposureOption);
   return options;
 }
 
@@ -62,7 +63,14 @@ const StageSpec& renderSpec() {
         "near-field",
         "what restores the light that clamped or missing VPLs lose",
         entriesOf(compensateMethods()),
-        {indirect, sampleLit}}}};
+        {indirect, sampleLit},
+        Topic::Expert}},
+      {{"an image of the scene, and a picture to look at",
+        "vpl-render scenes/cornell/scene.toml lit.vpl -o image.exr --png image.png"},
+       {"a small preview within ten seconds",
+        "vpl-render scene.toml lit.vpl -o preview.exr --size 320x240 --time 10s"},
+       {"a reference by path tracing, without VPLs",
+        "vpl-render scene.toml -o reference.exr --integrator path --spp 1024"}}};
   return spec;
 }
 

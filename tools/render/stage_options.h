@@ -7,15 +7,20 @@ namespace bnvpl {
 
 inline constexpr uint64_t kMinPasses = 2;  // passes that an error estimate needs
 inline constexpr double kUnlimitedSpp = 0x1p32 - 1;
-inline constexpr WholeOption kSppOption = countOption(
-    "spp", "16", kUnlimitedSpp, "",
-    "samples per pixel; with --time, --target-error or --passes an upper limit, if given");
-inline constexpr RealOption kTimeOption = unrecorded(optional(durationOption(
-    "time",
-    "render passes over the film, as many as are expected to end within this time; at least two")));
-inline constexpr RealOption kTargetErrorOption = unrecorded(
-    optional(realOption("target-error", "", 0.0001, 10, "",
-                        "render passes until the estimated error of the image is at most this")));
+inline constexpr WholeOption kSppOption = inTopic(
+    Topic::Main,
+    countOption(
+        "spp", "16", kUnlimitedSpp, "",
+        "samples per pixel; with --time, --target-error or --passes an upper limit, if given"));
+inline constexpr RealOption kTimeOption =
+    inTopic(Topic::Speed,
+            unrecorded(optional(durationOption("time",
+                                               "render passes over the film, as many as are "
+                                               "expected to end within this time; at least two"))));
+inline constexpr RealOption kTargetErrorOption = unrecorded(optional(
+    inTopic(Topic::Quality,
+            realOption("target-error", "", 0.0001, 10, "",
+                       "render passes until the estimated error of the image is at most this"))));
 inline constexpr WholeOption kPassesOption = optional(
     wholeOption("passes", "", kMinPasses, 0x1p40, "",
                 "render this many passes; with --time or --target-error at most this many"));
@@ -23,16 +28,17 @@ inline constexpr SwitchOption kAdaptiveOption =
     neededBy({Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
              switchOption("adaptive", "on",
                           "after the first passes, take more samples where the error is larger"));
-inline constexpr TextOption kOnlyOption =
-    choiceOption("only", "all", "all|direct|indirect", "light that the image shows");
-inline constexpr TextOption kSizeOption = unrecorded(
+inline constexpr TextOption kOnlyOption = inTopic(
+    Topic::Main, choiceOption("only", "all", "all|direct|indirect", "light that the image shows"));
+inline constexpr TextOption kSizeOption = unrecorded(inTopic(
+    Topic::Main,
     textOption("size", "", "WIDTHxHEIGHT",
-               "size of the film instead of the scene's; keeps the vertical field of view"));
+               "size of the film instead of the scene's; keeps the vertical field of view")));
 inline constexpr TextOption kPixelsOption =
     choiceOption("pixels", "float", "half|float", "EXR channel type");
-inline constexpr TextOption kExposureOption =
-    unrecorded(textOption("exposure", "auto", "EV|auto",
-                          "exposure of the PNG, in stops; auto: the mean becomes middle grey"));
+inline constexpr TextOption kExposureOption = unrecorded(inTopic(
+    Topic::Files, textOption("exposure", "auto", "EV|auto",
+                             "exposure of the PNG, in stops; auto: the mean becomes middle grey")));
 // The help lists the layers.
 inline constexpr OptionKey<std::string> kLayersKey{"layers"};
 

@@ -2,29 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/files.h"
+#include "core/nearest_name.h"
 #include "core/number_text.h"
 #include "core/read_file.h"
 
 namespace bnvpl {
 
 namespace {
-
-size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0]++;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
-    }
-  }
-  return row.back();
-}
 
 std::string lineOf(const fs::path& file, const toml::source_region& source) {
   return file.string() + ":" + std::to_string(source.begin.line) + ": ";
@@ -107,10 +93,7 @@ TomlSection::TomlSection(const fs::path& file, std::string name, const toml::tab
 void TomlSection::checkKnown(const std::string& key, const toml::node& node,
                              const std::vector<std::string>& known) const {
   if (std::find(known.begin(), known.end(), key) != known.end()) return;
-  const auto distance = [&](const std::string& name) { return editDistance(key, name); };
-  const std::string nearest = *std::ranges::min_element(known, {}, distance);
-  // Suggests a key if at most half of the letters differ, as after a swap in a short key.
-  if (2 * distance(nearest) <= std::max(key.size(), nearest.size()))
+  if (const std::string nearest = nearestName(key, known); !nearest.empty())
     fail(node, "unknown key '" + key + "'; did you mean '" + nearest + "'?");
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;

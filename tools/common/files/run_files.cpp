@@ -63,6 +63,7 @@ RunFiles& RunFiles::writes(const std::string& option, const fs::path& file,
 }
 
 RunFiles& RunFiles::writes(const ToolOptions& tool) {
+  noClobber_ = tool.noClobber;
   return writes("--stats", tool.stats, {OutputKind::Stats})
       .writes("--depfile", tool.depfile, {OutputKind::Depfile});
 }
@@ -161,10 +162,20 @@ void RunFiles::checkDepfileNames() const {
   for (const Named& out : outputs_) requireDepfileName(out.file);
 }
 
+// A checkpoint, which has no kinds, is meant to be found.
+void RunFiles::checkNew() const {
+  for (const Named& out : outputs_) {
+    if (!noClobber_ || out.kinds.empty() || !isRegularFile(out.file)) continue;
+    throw OutputError(out.file, "exists, and --no-clobber keeps it; name another file for " +
+                                    out.option + ", or remove this one");
+  }
+}
+
 void RunFiles::check() const {
   checkIdentities();
   checkPartialNames();
   checkExtensions();
+  checkNew();
   for (const Named& out : outputs_) replaceableTarget(out.file);
 }
 

@@ -28,13 +28,14 @@ class RunFiles {
   // is checked, as for a checkpoint, which is also read.
   RunFiles& writes(const std::string& option, const fs::path& file,
                    const std::vector<OutputKind>& kinds = {});
-  RunFiles& writes(const ToolOptions& tool);  // --stats and --depfile
+  RunFiles& writes(const ToolOptions& tool);  // --stats and --depfile; heeds --no-clobber
   // The tool whose shards an output of kind Shard may replace; unless called, the running one.
   RunFiles& shardsOf(const std::string& tool);
 
   // Call this first; it touches no file. Throws UsageError that names both options if an output is
   // also another output or an input, even through links or another spelling, and UsageError for an
-  // extension of another kind. Throws OutputError if an output cannot be written.
+  // extension of another kind. Throws OutputError if an output cannot be written, or exists
+  // with --no-clobber.
   void check() const;
 
   // Call this just before the work, when the scene's files are known: check() with these as inputs,
@@ -54,9 +55,11 @@ class RunFiles {
   void checkDepfileNames() const;
   void checkIdentities() const;
   void checkPartialNames() const;
+  void checkNew() const;
 
   std::vector<Named> inputs_, outputs_;
   std::string shardTool_;
+  bool noClobber_ = false;
 };
 
 }  // namespace bnvpl

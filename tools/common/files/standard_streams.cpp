@@ -29,12 +29,14 @@ void writeToStderr(std::string_view bytes) {
   }
 }
 
-size_t terminalColumns() {
+size_t columnsOf(int stream) {
   winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  return ::ioctl(stream, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 }  // namespace
+
+size_t outputColumns() { return columnsOf(STDOUT_FILENO); }
 
 void occupyClosedStreams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -91,7 +93,7 @@ void ErrorLine::flush() {
 
 void showProgress(const std::string& text) {
   progressShown = true;
-  writeToStderr(std::string(kEraseLine) + text.substr(0, terminalColumns() - 1));
+  writeToStderr(std::string(kEraseLine) + text.substr(0, columnsOf(STDERR_FILENO) - 1));
 }
 
 void eraseProgress() {

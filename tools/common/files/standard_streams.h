@@ -17,6 +17,9 @@ void occupyClosedStreams();
 // cannot take it. Escapes control characters other than line breaks and tabs.
 void print(const std::string& text);
 
+// Width of the terminal that stdout is; 80 if it is none.
+size_t outputColumns();
+
 // Prints text that was not requested; returns whether stdout took it.
 bool tryPrint(const std::string& text);
 

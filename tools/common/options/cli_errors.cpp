@@ -5,14 +5,38 @@
 #include <utility>
 #include <vector>
 
+#include "core/nearest_name.h"
+
 namespace bnvpl {
 
 namespace {
 
-std::string commandsOf(const CLI::App& cli) {
-  std::string names;
+std::vector<std::string> commandsOf(const CLI::App& cli) {
+  std::vector<std::string> names;
   for (const CLI::App* command : cli.get_subcommands([](const CLI::App*) { return true; }))
-    names += (names.empty() ? "" : ", ") + command->get_name();
+    names.push_back(command->get_name());
+  return names;
+}
+
+std::string describeCommand(const CLI::App& cli, const std::vector<std::string>& words) {
+  std::string list;
+  const std::vector<std::string> names = commandsOf(cli);
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string cure = "use one of " + list;
+  if (words.empty()) return "a command is missing; " + cure;
+  return "'" + words.front() + "' is no command" + didYouMean(words.front(), names, cure);
+}
+
+// Long names of the options of `cli` and of the sub-command that was given.
+std::vector<std::string> optionsOf(const CLI::App& cli) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : cli.get_options()) {
+    const auto& own = option->get_lnames();
+    names.insert(names.end(), own.begin(), own.end());
+  }
+  for (const CLI::App* sub : cli.get_subcommands()) {
+    for (std::string& name : optionsOf(*sub)) names.push_back(std::move(name));
+  }
   return names;
 }
 
@@ -24,7 +48,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
      {"--near-field", "--compensate near-field or none"}}};
 
 // Describes words that belong to no option.
-std::string describeExtras(const std::vector<std::string>& words) {
+std::string describeExtras(const CLI::App& cli, const std::vector<std::string>& words) {
   std::string list;
   bool option = false;
   for (const std::string& word : words) {
@@ -32,6 +56,10 @@ std::string describeExtras(const std::vector<std::string>& words) {
       if (word == before || word.starts_with(std::string(before) + "="))
         return std::string(before) + " is " + std::string(today) + " today";
     }
+    const std::string name = word.substr(0, word.find('='));
+    const std::string meant =
+        name.starts_with("--") ? didYouMean(name.substr(2), optionsOf(cli), "", "--") : "";
+    if (!meant.empty()) return "'" + name + "' is no option here" + meant;
     list += (list.empty() ? "'" : ", '") + word + "'";
     option = option || word.starts_with('-');
   }
@@ -44,13 +72,9 @@ std::string describeAny(const CLI::ParseError& error, const CLI::App& cli) {
   const std::string text = error.what();
   const std::vector<std::string> words = cli.remaining(true);
   std::smatch match;
-  if (text == "A subcommand is required") {
-    return (words.empty() ? std::string("a command is missing")
-                          : "'" + words.front() + "' is no command") +
-           "; use one of " + commandsOf(cli);
-  }
+  if (text == "A subcommand is required") return describeCommand(cli, words);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())
-    return describeExtras(words);
+    return describeExtras(cli, words);
   if (std::regex_match(text, match, std::regex("(.*): At Most \\d+ required but received \\d+")))
     return match.str(1) + " is given more than once; leave all but one out";
   if (std::regex_match(text, match, std::regex("(.*): \\d+ required (\\S+) missing")))
@@ -68,7 +92,8 @@ std::string describeAny(const CLI::ParseError& error, const CLI::App& cli) {
 std::string describe(const CLI::ParseError& error, const CLI::App& cli, const std::string& tool) {
   std::string command = tool;
   for (const CLI::App* sub : cli.get_subcommands()) command += " " + sub->get_name();
-  return describeAny(error, cli) + "; see " + command + " --help";
+  const std::string text = describeAny(error, cli);
+  return text + (text.ends_with('?') ? " See " : "; see ") + command + " --help";
 }
 
 }  // namespace bnvpl

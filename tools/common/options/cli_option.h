@@ -1,4 +1,4 @@
-// Options on a command line: their text in --help, and options outside the table of a stage.
+// Options on a command line outside the table of a stage.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,6 @@
 #include "tools/common/options/option.h"
 
 namespace bnvpl {
-
-// Texts for --help: "how far a VPL reaches for light (r_max, 0.01 to 100)", and "NUMBER".
-std::string helpOf(const Option& option);
-std::string typeOf(const Option& option);
 
 // Adds an option of one tool, parsed like those of a stage. `take` receives the value. An invalid
 // value makes the parsing of the command line throw UsageError.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/errors.h"
+#include "core/nearest_name.h"
 #include "tools/common/options/option_text.h"
 
 namespace bnvpl {
@@ -108,8 +109,8 @@ const MethodEntry& chosen(const MethodSlot& slot, const std::string& name) {
     if (m.name == name) return m;
     names.push_back(m.name);
   }
-  throw UsageError("--" + std::string(slot.name) + ": '" + name + "' is not a method; use " +
-                   orList(names));
+  throw UsageError("--" + std::string(slot.name) + ": '" + name + "' is not a method" +
+                   didYouMean(name, {names.begin(), names.end()}, "use " + orList(names)));
 }
 
 const std::string* textOf(const Given& given, std::string_view name) {

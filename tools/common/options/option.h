@@ -48,6 +48,10 @@ class Needs {
   size_t count_ = 0;
 };
 
+// Headings of --help, which tell what an option is about. --help leaves Expert to --help-all.
+enum class Topic { Main, Quality, Speed, Files, Expert };
+std::string_view headingOf(Topic topic);  // "What you need first"
+
 struct Option {
   enum class Kind {
     Switch,    // on or off
@@ -70,6 +74,7 @@ struct Option {
   bool recorded = true;          // false: does not change the result
   bool optional = false;         // has no value unless it is given
   bool harmless = false;         // where it has no effect, it is ignored instead of refused
+  Topic topic = Topic::Expert;
 };
 
 using Value = std::variant<bool, uint64_t, double, std::string>;
@@ -128,6 +133,11 @@ constexpr OptionOf<T> harmless(OptionOf<T> option) {
 inline constexpr WholeOption kSeedOption =
     harmless(wholeOption("seed", "1", 0, 0x1p64, {}, "random seed"));
 
+template <typename T>
+constexpr OptionOf<T> inTopic(Topic topic, OptionOf<T> option) {
+  option.topic = topic;
+  return option;
+}
 template <typename T>
 constexpr OptionOf<T> letterFor(std::string_view letter, OptionOf<T> option) {
   option.letter = letter;
@@ -224,6 +234,12 @@ struct MethodSlot {
   std::string_view help;
   std::vector<MethodEntry> methods;
   Needs needs = {};  // see Option::needs
+  Topic topic = Topic::Quality;
+};
+
+// A command line for the end of --help, and what it does.
+struct Example {
+  std::string_view purpose, command;
 };
 
 // All options of a stage. Slots are resolved in order; a slot may need an earlier slot or an option
@@ -232,6 +248,7 @@ struct StageSpec {
   std::string_view tool;
   std::span<const Option> options;
   std::vector<MethodSlot> slots;
+  std::vector<Example> examples = {};
 };
 
 // The given options as typed: name without dashes, and text.

@@ -5,7 +5,15 @@
 #include <charconv>
 #include <cmath>
 
+#include "tools/common/options/option.h"
+
 namespace bnvpl {
+
+std::string_view headingOf(Topic topic) {
+  constexpr std::array<std::string_view, 5> kHeadings{"What you need first", "Quality",
+                                                      "Speed and time", "Files", "Expert"};
+  return kHeadings[static_cast<size_t>(topic)];
+}
 
 std::vector<std::string_view> choicesIn(std::string_view names) {
   std::vector<std::string_view> out;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/errors.h"
+#include "core/nearest_name.h"
 #include "tools/common/options/option.h"
 #include "tools/common/options/option_text.h"
 
@@ -107,7 +108,8 @@ Value parsed(const Option& o, const std::string& text) {
     case Option::Kind::Choice: {
       const auto names = choicesIn(o.choices);
       if (holds(names, text)) return text;
-      refuse(o, "'" + text + "' is not one of its choices; use " + orList(names));
+      refuse(o, "'" + text + "' is not one of its choices" +
+                    didYouMean(text, {names.begin(), names.end()}, "use " + orList(names)));
     }
     case Option::Kind::Text:
       break;

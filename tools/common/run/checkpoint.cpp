@@ -4,6 +4,7 @@
 
 #include "formats/output_target.h"
 #include "formats/shard/checkpoint.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/clock.h"
 #include "tools/common/stage/processor_id.h"
 
@@ -62,15 +63,17 @@ std::string differenceOf(const Json& before, const Json& now) {
 }
 
 void addCheckpointOptions(CLI::App& cli, CheckpointOptions& options) {
-  CLI::Option* file =
+  CLI::Option* file = inTopic(
+      Topic::Files,
       addFile(cli, "--checkpoint", options.file,
               "save progress to this file periodically, and resume from it if it exists; removed "
-              "once the output is written");
+              "once the output is written"));
   addReal(cli, realOption("checkpoint-every", "", 0, 1e6, "", "seconds between two saves"),
           options.everyS)
       ->needs(file);
-  cli.add_flag("--checkpoint-replace", options.replace,
-               "start over if the checkpoint is damaged or belongs to another run")
+  inTopic(Topic::Expert,
+          cli.add_flag("--checkpoint-replace", options.replace,
+                       "start over if the checkpoint is damaged or belongs to another run"))
       ->needs(file);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "tools/common/files/json_text.h"
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/run/clock.h"
 #include "tools/common/run/run_tool.h"
@@ -16,6 +17,7 @@ namespace bnvpl {
 namespace {
 constexpr double kTerminalIntervalS = 0.2;
 constexpr double kLogIntervalS = 10.0;  // few lines for build logs
+constexpr double kJsonIntervalS = 0.5;
 constexpr double kReportIntervalS = 0.2;
 }  // namespace
 
@@ -45,17 +47,36 @@ std::string progressText(const std::string& what, uint64_t done, uint64_t total,
          (leftS ? ", " + durationText(*leftS) + " left" : "");
 }
 
-ProgressMeter::ProgressMeter(std::string what, uint64_t total, bool quiet)
-    : work_{std::move(what), total, nowS()},
-      quiet_(quiet),
-      terminal_(::isatty(STDERR_FILENO) == 1),
-      nextPrintS_(work_.startS + (terminal_ ? kTerminalIntervalS : kLogIntervalS)) {}
+std::string progressJson(const std::string& stage, const std::string& phase, uint64_t done,
+                         uint64_t total, double elapsedS, std::optional<double> leftS) {
+  const auto rounded = [](double seconds) { return std::round(1e3 * seconds) / 1e3; };
+  Json json{{"stage", stage}, {"phase", phase}, {"done", done}, {"total", nullptr}};
+  json["elapsed_s"] = rounded(elapsedS);
+  json["left_s"] = nullptr;
+  if (total > 0) json["total"] = total;
+  if (leftS) json["left_s"] = rounded(*leftS);
+  return jsonText(json);
+}
 
-ProgressMeter::~ProgressMeter() { eraseProgress(); }
+ProgressMeter::ProgressMeter(std::string what, uint64_t total, ProgressStyle style)
+    : work_{std::move(what), total, nowS()},
+      style_(style),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      nextPrintS_(work_.startS + intervalS()) {}
+
+ProgressMeter::~ProgressMeter() {
+  eraseProgress();
+  if (style_ == ProgressStyle::JsonLines) print(nowS(), done_);
+}
+
+double ProgressMeter::intervalS() const {
+  if (style_ == ProgressStyle::JsonLines) return kJsonIntervalS;
+  return terminal_ ? kTerminalIntervalS : kLogIntervalS;
+}
 
 void ProgressMeter::add(uint64_t done) {
   done_.fetch_add(done, std::memory_order_relaxed);
-  if (quiet_) return;
+  if (style_ == ProgressStyle::Silent) return;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;  // another thread is printing
   const double now = nowS();
@@ -64,7 +85,7 @@ void ProgressMeter::add(uint64_t done) {
   const uint64_t sum = done_;
   work_.left.report(now, sum);
   if (now < nextPrintS_) return;
-  nextPrintS_ = now + (terminal_ ? kTerminalIntervalS : kLogIntervalS);
+  nextPrintS_ = now + intervalS();
   print(now, sum);
 }
 
@@ -78,6 +99,7 @@ void ProgressMeter::beginPhase(std::string_view what, uint64_t total) {
 
 void ProgressMeter::endPhase() {
   const std::scoped_lock lock(mutex_);
+  if (style_ == ProgressStyle::JsonLines) print(nowS(), done_);
   const double tookS = nowS() - work_.startS;
   work_ = std::move(main_);
   work_.startS += tookS;
@@ -87,8 +109,13 @@ void ProgressMeter::endPhase() {
 }
 
 void ProgressMeter::print(double nowS, uint64_t done) const {
-  const std::string text = progressText(work_.what, done, work_.total, nowS - work_.startS,
-                                        work_.left.seconds(work_.total));
+  const double elapsedS = nowS - work_.startS;
+  const std::optional<double> leftS = work_.left.seconds(work_.total);
+  if (style_ == ProgressStyle::JsonLines) {
+    ErrorLine().add(progressJson(runningTool(), work_.what, done, work_.total, elapsedS, leftS));
+    return;
+  }
+  const std::string text = progressText(work_.what, done, work_.total, elapsedS, leftS);
   if (terminal_)
     showProgress(text);
   else

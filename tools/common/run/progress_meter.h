@@ -1,5 +1,6 @@
 // Progress with an estimate of the time that is left: one rewritten line on a terminal, otherwise
-// an occasional plain line that begins with the tool's name.
+// an occasional plain line that begins with the tool's name. --progress json makes it one JSON
+// object a line instead.
 #pragma once
 
 #include <atomic>
@@ -21,11 +22,18 @@ std::string durationText(double seconds);
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
                          std::optional<double> leftS);
 
+// {"stage": "vpl-render", "phase": "samples", "done": 3, "total": 9, "elapsed_s": 1.5, "left_s":
+// 3}, with null for what is unknown, such as a `total` of 0.
+std::string progressJson(const std::string& stage, const std::string& phase, uint64_t done,
+                         uint64_t total, double elapsedS, std::optional<double> leftS);
+
+enum class ProgressStyle { Silent, Lines, JsonLines };
+
 class ProgressMeter {
  public:
   // `what` names the work ("photons"), `total` its size in the units passed to add().
-  ProgressMeter(std::string what, uint64_t total, bool quiet);
-  ~ProgressMeter();  // erases the line on a terminal
+  ProgressMeter(std::string what, uint64_t total, ProgressStyle style);
+  ~ProgressMeter();  // erases the line on a terminal; prints the last object of JSON
 
   void add(uint64_t done);  // from any thread
   // Preparations are shown under their own names; their time does not count for the main work.
@@ -45,11 +53,13 @@ class ProgressMeter {
   void beginPhase(std::string_view what, uint64_t total);
   void endPhase();
   void print(double nowS, uint64_t done) const;
+  double intervalS() const;
 
   Work work_;
   Work main_{};  // the work that continues after the phase
   uint64_t mainDone_ = 0;
-  bool quiet_, terminal_;
+  ProgressStyle style_;
+  bool terminal_;
   std::atomic<uint64_t> done_{0};
   std::mutex mutex_;
   double nextReportS_ = 0.0, nextPrintS_;

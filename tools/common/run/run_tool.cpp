@@ -13,10 +13,12 @@
 #include <exception>
 #include <new>
 #include <sstream>
+#include <utility>
 
 #include "tools/common/files/escape_text.h"
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/options/cli_errors.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/clock.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/run/interrupt.h"
@@ -35,7 +37,12 @@ double peakMemoryMiB() {
 
 std::string toolName;  // begins each line on stderr
 std::vector<std::string> heldWarnings;
+bool strict = false;  // --strict
 char** arguments = nullptr;
+
+void tellWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
+  for (const std::string& w : warnings) ErrorLine().add(tool).add(": warning: ").add(w);
+}
 
 // Allocates no memory, since there may be none left.
 int fail(int code, const char* what, const char* more = "") {
@@ -56,7 +63,7 @@ int report() {
     return fail(kExitUsage, e.what());
   } catch (const InputError& e) {
     std::erase(heldWarnings, e.what());
-    printHeldWarnings();
+    tellWarnings(toolName, heldWarnings);
     return fail(kExitInput, e.what());
   } catch (const OutputError& e) {
     return fail(kExitOutput, e.what());
@@ -160,20 +167,36 @@ CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::pat
 }
 
 void addToolOptions(CLI::App& cli, ToolOptions& options) {
-  addOption(cli, wholeOption("threads", "0", 0, 65536, "", "worker threads; 0 uses every core"),
+  addHelpOptions(cli);
+  addOption(cli,
+            inTopic(Topic::Speed,
+                    wholeOption("threads", "0", 0, 65536, "", "worker threads; 0 uses every core")),
             [&options](const Value& value) {
               options.threads = static_cast<unsigned>(std::get<uint64_t>(value));
             });
-  cli.add_flag("--quiet", options.quiet, "no progress and no summary; errors and warnings stay");
-  addFile(cli, "--stats", options.stats, "also write the summary to this file, as JSON");
-  cli.set_version_flag("--version", cli.get_name() + " " + buildId());
-  cli.get_formatter()->column_width(34);
-  cli.get_formatter()->label("REQUIRED", "(required)");
+  inTopic(Topic::Expert, cli.add_flag("--quiet", options.quiet,
+                                      "no progress and no summary; errors and warnings stay"));
+  inTopic(Topic::Expert, cli.add_flag("--strict", options.strict,
+                                      "warnings are errors: nothing is written after one"));
+  inTopic(Topic::Files, cli.add_flag("--no-clobber", options.noClobber,
+                                     "refuse outputs that exist, before the work"));
+  addOption(cli,
+            choiceOption("progress", "text", "text|json",
+                         "text: for people; json: one JSON object a line on stderr, also with "
+                         "--quiet"),
+            [&options](const Value& value) {
+              options.jsonProgress = std::get<std::string>(value) == "json";
+            });
+  inTopic(Topic::Files,
+          addFile(cli, "--stats", options.stats, "also write the summary to this file, as JSON"));
+  inTopic(Topic::Expert, cli.set_version_flag("--version", cli.get_name() + " " + buildId(),
+                                              "show the version and exit"));
 }
 
 void addDepfileOption(CLI::App& cli, ToolOptions& options) {
-  addFile(cli, "--depfile", options.depfile,
-          "write the list of files that were read, as a rule for make and ninja");
+  inTopic(Topic::Expert,
+          addFile(cli, "--depfile", options.depfile,
+                  "write the list of files that were read, as a rule for make and ninja"));
 }
 
 void addProcessorOption(CLI::App& cli, ToolOptions& options) {
@@ -196,6 +219,7 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
   std::set_terminate(onTerminate);
   try {
     if (!parse(cli, argc, argv)) return kExitOk;
+    strict = options.strict;
     computeFor(options.processor);
     // Never destroyed: its destructor would let oneTBB start the threads that were held back, and a
     // failure to do so would end the process, with all outputs already in place.
@@ -281,20 +305,19 @@ void Summary::finish(const ToolOptions& options, OutputSet& files) const {
   std::snprintf(last, sizeof last, ": %.2f s, peak memory %.0f MiB\n", cost.timeS, cost.memoryMiB);
   // The outputs are complete: Make must not delete them because a log is full.
   if (!tryPrint(text + tool_ + last)) {
-    printWarnings(tool_, {std::string("the summary cannot be printed: ") + std::strerror(errno)});
+    tellWarnings(tool_, {std::string("the summary cannot be printed: ") + std::strerror(errno)});
   }
 }
 
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
-  for (const std::string& w : warnings) ErrorLine().add(tool).add(": warning: ").add(w);
+  tellWarnings(tool, warnings);
+  if (strict && !warnings.empty())
+    throw InputError("a warning is an error with --strict; nothing is written");
 }
 
 void holdWarning(const std::string& text) { heldWarnings.push_back(text); }
 
-void printHeldWarnings() {
-  printWarnings(toolName, heldWarnings);
-  heldWarnings.clear();
-}
+void printHeldWarnings() { printWarnings(toolName, std::exchange(heldWarnings, {})); }
 
 std::string formatSi(double value) {
   const char* const suffixes[] = {"", "k", "M", "G", "T"};

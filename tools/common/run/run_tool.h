@@ -20,6 +20,9 @@ struct ToolOptions {
   Processor processor = Processor::This;
   unsigned threads = 0;  // 0: all cores
   bool quiet = false;
+  bool strict = false;     // the first warning ends the tool, as bad input does
+  bool noClobber = false;  // existing outputs are refused
+  bool jsonProgress = false;
   fs::path stats;    // JSON summary, empty: none
   fs::path depfile;  // Make/ninja dependencies, empty: none
 };
@@ -31,7 +34,8 @@ CLI::Option* addFile(CLI::App& cli, const std::string& name, fs::path& file,
 CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::path>& files,
                      const std::string& help);
 
-// Adds --threads, --quiet, --stats and --version. addDepfileOption() is for tools that read more
+// Adds --threads, --quiet, --strict, --no-clobber, --progress, --stats, --version and the forms of
+// --help. addDepfileOption() is for tools that read more
 // files than the command line names.
 void addToolOptions(CLI::App& cli, ToolOptions& options);
 void addDepfileOption(CLI::App& cli, ToolOptions& options);
@@ -107,7 +111,8 @@ class Summary {
   std::vector<std::string> lines_;
 };
 
-// Prints each warning as one line on stderr. --quiet does not silence warnings.
+// Prints each warning as one line on stderr. --quiet does not silence warnings. Throws InputError
+// after them with --strict.
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
 
 // Holds a warning about an input back until printHeldWarnings(). If an InputError ends the tool,

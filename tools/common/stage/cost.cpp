@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "tools/common/files/standard_streams.h"
+#include "tools/common/options/help.h"
 
 namespace bnvpl {
 namespace {
@@ -62,10 +63,12 @@ Shard middleOf(double parts) {
 }  // namespace
 
 void addCostOptions(CLI::App& cli, CostOptions& options) {
-  CLI::Option* estimate = cli.add_flag(
-      "--estimate", options.estimate,
-      "do a small part of the work, print the estimated CPU time and memory, and write nothing");
-  cli.add_flag("--json", options.json, "print the estimate as JSON")->needs(estimate);
+  CLI::Option* estimate = inTopic(
+      Topic::Speed, cli.add_flag("--estimate", options.estimate,
+                                 "do a small part of the work, print the estimated CPU time and "
+                                 "memory, and write nothing"));
+  inTopic(Topic::Expert, cli.add_flag("--json", options.json, "print the estimate as JSON"))
+      ->needs(estimate);
 }
 
 double cpuSecondsSoFar() {

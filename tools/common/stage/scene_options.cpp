@@ -9,6 +9,7 @@
 #include "scene/choose_view.h"
 #include "scene/scene_hash.h"
 #include "tools/common/options/film_size.h"
+#include "tools/common/options/help.h"
 
 namespace bnvpl {
 
@@ -18,7 +19,8 @@ namespace {
 void addOptions(CLI::App& cli, SceneOptions& options, CLI::Option* scene, ViewCount views) {
   const bool several = views == ViewCount::Several;
   const std::string more = several ? "; repeat to place VPLs for several views" : "";
-  cli.add_option("--define", options.defines, "value of ${NAME} in the scene's file names")
+  inTopic(Topic::Expert, cli.add_option("--define", options.defines,
+                                        "value of ${NAME} in the scene's file names"))
       ->type_name("NAME=VALUE")
       ->take_all()
       ->allow_extra_args(false)  // otherwise it would take the arguments that follow

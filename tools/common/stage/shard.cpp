@@ -6,6 +6,7 @@
 
 #include "tools/common/files/escape_text.h"
 #include "tools/common/files/shell_text.h"
+#include "tools/common/options/help.h"
 #include "tools/common/stage/processor_id.h"
 
 namespace bnvpl {
@@ -45,11 +46,12 @@ std::string nameOf(const CLI::Option& option) {
 }  // namespace
 
 CLI::Option* addShardOption(CLI::App& cli, std::optional<Shard>& shard, const std::string& units) {
-  return cli
-      .add_option_function<std::string>(
-          "--shard", [&shard](const std::string& text) { shard = parseShard(text); },
-          "do only this part of the " + units +
-              " and write a .shard for vpl-merge: 3/64 is the third of 64 parts, 3-6/64 are four")
+  return inTopic(Topic::Expert,
+                 cli.add_option_function<std::string>(
+                     "--shard", [&shard](const std::string& text) { shard = parseShard(text); },
+                     "do only this part of the " + units +
+                         " and write a .shard for vpl-merge: 3/64 is the third of "
+                         "64 parts, 3-6/64 are four"))
       ->type_name("I/N");
 }
 

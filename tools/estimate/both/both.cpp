@@ -17,15 +17,19 @@ namespace bnvpl::methods::estimate::both {
 
 namespace {
 
-constexpr auto kPhotonsOption = countOption(
-    "photons", "10M", 0x1p36, "", "total work, as a number of photons; paths take a part of it");
-constexpr auto kIrradianceErrorOption = realOption(
-    "irradiance-error", "0.005", 0, 1, "",
-    "less work is done if pilots predict this mean relative error of the light in view that comes "
-    "from VPLs; 0: all work is done");
-constexpr auto kMaxBouncesOption =
+constexpr auto kPhotonsOption = inTopic(
+    Topic::Main, countOption("photons", "10M", 0x1p36, "",
+                             "total work, as a number of photons; paths take a part of it"));
+constexpr auto kIrradianceErrorOption = inTopic(
+    Topic::Speed,
+    realOption(
+        "irradiance-error", "0.005", 0, 1, "",
+        "less work is done if pilots predict this mean relative error of the light in view that comes "
+        "from VPLs; 0: all work is done"));
+constexpr auto kMaxBouncesOption = inTopic(
+    Topic::Quality,
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, including the one at the VPL");
+                "diffuse bounces between a light and the view, including the one at the VPL"));
 constexpr auto kOptions =
     optionTable(kPhotonsOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
                 kRadiusOption, kMaxBouncesOption, kEmitPointsOption);

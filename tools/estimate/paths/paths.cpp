@@ -14,9 +14,10 @@ namespace {
 
 constexpr auto kPointsOption =
     countOption("points", "64", 1u << 20, "", "points on the surface that each VPL stands for");
-constexpr auto kMaxBouncesOption =
+constexpr auto kMaxBouncesOption = inTopic(
+    Topic::Quality,
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, including the one at the VPL");
+                "diffuse bounces between a light and the view, including the one at the VPL"));
 constexpr auto kOptions =
     optionTable(kPointsOption, kPathsOption, kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
 

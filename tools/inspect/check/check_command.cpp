@@ -6,6 +6,7 @@
 #include "tools/common/files/escape_text.h"
 #include "tools/common/files/run_files.h"
 #include "tools/common/files/standard_streams.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/inspect/check/chain.h"
@@ -41,6 +42,10 @@ CLI::App* addCheckOptions(CLI::App& cli, CheckRequest& c) {
                 "require one complete chain of files, checked row by row; an error ends with the "
                 "commands that repair the chain");
   addSceneFlag(*sub, c.scene, "the scene (.toml) that all files must have been made from");
+  addExamples(*sub, {{"whether files are whole and belong together",
+                      "vpl-inspect check candidates.vpl vpls.vpl lit.vpl image.exr"},
+                     {"every row, against the scene",
+                      "vpl-inspect check lit.vpl --deep --scene scene.toml"}});
   return sub;
 }
 

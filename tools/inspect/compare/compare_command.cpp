@@ -13,6 +13,7 @@
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/options/choice.h"
 #include "tools/common/options/exposure.h"
+#include "tools/common/options/help.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/compare/compare_report.h"
 #include "tools/inspect/file_kind.h"
@@ -223,6 +224,12 @@ CLI::App* addCompareOptions(CLI::App& cli, CompareRequest& c) {
   addFlipOptions(*sub, c);
   addPictureOptions(*sub, c);
   sub->add_flag("--json", c.json, "print the measures as JSON");
+  addExamples(*sub,
+              {{"errors of an image", "vpl-inspect compare image.exr reference.exr"},
+               {"a test of indirect light, by exit code",
+                "vpl-inspect compare image.exr reference.exr --layer indirect --max-relmse 0.01"},
+               {"a picture of the differences as people see them",
+                "vpl-inspect compare image.exr reference.exr --diff flip.png --map flip"}});
   return sub;
 }
 

@@ -3,6 +3,7 @@
 
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/files/run_files.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/export/export_table.h"
@@ -19,6 +20,8 @@ CLI::App* addExportOptions(CLI::App& cli, ExportRequest& c) {
   CLI::App* sub = cli.add_subcommand("export", "Write the rows for other programs.");
   addFile(*sub, "file", c.file, ".vpl")->required();
   addFile(*sub, "-o,--output", c.output, ".ply (MeshLab, Blender) or .csv")->required();
+  addExamples(*sub, {{"the VPLs for Blender or MeshLab", "vpl-inspect export lit.vpl -o lit.ply"},
+                     {"the VPLs as a table", "vpl-inspect export lit.vpl -o lit.csv"}});
   return sub;
 }
 

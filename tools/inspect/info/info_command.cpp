@@ -3,6 +3,7 @@
 
 #include "tools/common/files/run_files.h"
 #include "tools/common/files/standard_streams.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/info/info.h"
@@ -22,6 +23,8 @@ CLI::App* addInfoOptions(CLI::App& cli, InfoRequest& c) {
                                      "channels of an .exr image, or what a .shard holds.");
   addFile(*sub, "file", c.file, ".vpl, .exr or .shard")->required();
   sub->add_flag("--json", c.json, "print the report as JSON");
+  addExamples(*sub, {{"rows, columns and history of a file", "vpl-inspect info lit.vpl"},
+                     {"the same for a script", "vpl-inspect info image.exr --json"}});
   return sub;
 }
 

@@ -8,6 +8,7 @@
 #include "tools/common/files/run_files.h"
 #include "tools/common/options/choice.h"
 #include "tools/common/options/film_size.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
@@ -42,6 +43,10 @@ CLI::App* addPlotOptions(CLI::App& cli, PlotRequest& c) {
                 "draw rings for visible rows whose lit side faces away");
   sub->add_option("--size", c.size, "size of the picture in pixels; default: the scene's film")
       ->type_name("WIDTHxHEIGHT");
+  addExamples(
+      *sub, {{"the VPLs in the view", "vpl-inspect plot lit.vpl --scene scene.toml -o vpls.png"},
+             {"their radii, as large dots",
+              "vpl-inspect plot lit.vpl --scene scene.toml -o radii.png --color radius --dot 9"}});
   return sub;
 }
 

@@ -3,6 +3,7 @@
 
 #include "tools/common/files/run_files.h"
 #include "tools/common/files/standard_streams.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/run/run_report.h"
@@ -27,6 +28,8 @@ CLI::App* addRunOptions(CLI::App& cli, RunRequest& c) {
       ->type_name("FOLDER");
   addFile(*sub, "--svg", c.svg, "timeline (.svg): hosts downwards, time to the right");
   sub->add_flag("--json", c.json, "print the report as JSON, with every attempt");
+  addExamples(*sub, {{"what a pipeline spent its time on",
+                      "vpl-inspect run out/cornell/run --svg timeline.svg"}});
   return sub;
 }
 

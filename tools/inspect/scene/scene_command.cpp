@@ -4,6 +4,7 @@
 
 #include "tools/common/files/run_files.h"
 #include "tools/common/files/standard_streams.h"
+#include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
@@ -45,6 +46,9 @@ CLI::App* addSceneOptions(CLI::App& cli, SceneRequest& c) {
          "also write the scene as scene.toml, OBJ and MTL; the folder must be new, empty or "
          "written by this option")
       ->type_name("FOLDER");
+  addExamples(*sub, {{"a report of the scene", "vpl-inspect scene scene.glb"},
+                     {"the scene as scene.toml, to change it",
+                      "vpl-inspect scene scene.pbrt --to-toml copy"}});
   return sub;
 }
 
@@ -54,6 +58,8 @@ int runScene(const SceneRequest& command, const ToolOptions& tool) {
   used.reads("scene", command.scene.file).writes(tool).check();
   std::optional<OutputFolder> folder;
   if (!command.toml.empty()) {
+    if (tool.noClobber && fs::exists(command.toml))
+      throw OutputError(command.toml, "exists, and --no-clobber keeps it; name another folder");
     requireOutside(command.toml, {command.scene.file}, "the run reads");
     requireOutside(command.toml, {tool.stats, tool.depfile}, "is another output");
     folder.emplace(command.toml);
@@ -62,6 +68,7 @@ int runScene(const SceneRequest& command, const ToolOptions& tool) {
   const Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
   if (folder) requireOutside(command.toml, scene.files, "the run reads");
+  if (tool.strict) printHeldWarnings();  // throws if there are any
   const RayScene rays(scene);
   Json description = describeScene(scene, LightSet(rays));
   if (folder) {

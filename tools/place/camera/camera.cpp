@@ -11,10 +11,11 @@ namespace bnvpl::methods::place::camera {
 
 namespace {
 
-constexpr auto kDepthOption =
+constexpr auto kDepthOption = inTopic(
+    Topic::Quality,
     wholeOption("depth", "2", 2, 1000, "",
                 "diffuse vertices of a path; the first is never a candidate, the second lights the "
-                "view directly");
+                "view directly"));
 constexpr auto kOptions = optionTable(kDepthOption);
 
 // State of a camera path that is being traced.

@@ -12,8 +12,9 @@ namespace bnvpl::methods::gather::lightcuts {
 
 namespace {
 
-constexpr auto kErrorOption = realOption("error", "0.02", 0, 1, "share of the total",
-                                         "bound on the error of a cluster that is not refined");
+constexpr auto kErrorOption =
+    inTopic(Topic::Quality, realOption("error", "0.02", 0, 1, "share of the total",
+                                       "bound on the error of a cluster that is not refined"));
 constexpr auto kOptions = optionTable(kErrorOption, kMaxCutOption);
 
 struct Cluster {

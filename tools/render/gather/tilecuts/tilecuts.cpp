@@ -17,8 +17,9 @@ namespace bnvpl::methods::gather::tilecuts {
 namespace {
 
 // The predicted error is two and a half to five times the measured one (theory.md).
-constexpr auto kErrorOption = realOption("error", "0.05", 0, 1, "share of the tile's light",
-                                         "allowed standard deviation of a pixel");
+constexpr auto kErrorOption =
+    inTopic(Topic::Quality, realOption("error", "0.05", 0, 1, "share of the tile's light",
+                                       "allowed standard deviation of a pixel"));
 constexpr auto kOptions = optionTable(kErrorOption, kMaxCutOption);
 
 // Index of a pixel's packet. The pixels of each 2 x 2 belong to four different packets.

@@ -17,10 +17,11 @@ constexpr auto kLightOption =
     neededBy(kIndirectIsShown, choiceOption("light", "point", kLightKinds,
                                             "model of a VPL: a point with a bound on 1/d^2, or a "
                                             "disk"));
-constexpr auto kClampOption =
-    neededBy(kIndirectIsShown, realOption("clamp", "2", 0, 1000, "r_max",
-                                          "radius of a VPL: 1/d^2 of a point is clamped within "
-                                          "it; a disk has this radius"));
+constexpr auto kClampOption = neededBy(
+    kIndirectIsShown,
+    inTopic(Topic::Quality, realOption("clamp", "2", 0, 1000, "r_max",
+                                       "radius of a VPL: 1/d^2 of a point is clamped within "
+                                       "it; a disk has this radius")));
 constexpr auto kNearFieldRaysOption =
     neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
              wholeOption("near-field-rays", "8", 1, 4096, "",

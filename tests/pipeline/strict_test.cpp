@@ -1,0 +1,70 @@
+// --strict, --no-clobber and --progress json.
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/pipeline/tool_runner.h"
+#include "tools/common/run/exit_codes.h"
+
+namespace bnvpl {
+namespace {
+
+class Strict : public PipelineTest {
+ protected:
+  // A scene of which a material has no effect, which is a warning.
+  std::string sceneWithWarning() const {
+    shell("cp -r scenes/cornell " + path("cornell"));
+    const std::string file = "cornell/scene.toml";
+    write(file, readAll(at(file)) + "\n[[material]]\nname = \"odd\"\nmodel = \"diffuse\"\n");
+    return path(file);
+  }
+};
+
+TEST_F(Strict, WarningsAreErrors) {
+  const std::string arguments = sceneWithWarning() + " -n 100 --quiet -o " + path("c.vpl");
+  const Outcome loose = tool("vpl-place", arguments);
+  EXPECT_EQ(loose.code, kExitOk) << loose.err;
+  EXPECT_TRUE(contains(loose.err, "warning: ")) << loose.err;
+  fs::remove(at("c.vpl"));
+  const Outcome strict = tool("vpl-place", arguments + " --strict");
+  EXPECT_EQ(strict.code, kExitInput);
+  EXPECT_EQ(strict.err,
+            loose.err + "vpl-place: a warning is an error with --strict; nothing is written\n");
+  EXPECT_FALSE(fs::exists(at("c.vpl")));
+  EXPECT_EQ(tool("vpl-inspect", "scene " + path("cornell/scene.toml")).code, kExitOk);
+  EXPECT_EQ(tool("vpl-inspect", "scene --strict " + path("cornell/scene.toml")).code, kExitInput);
+  succeed("vpl-place", scene_ + " -n 100 --quiet --strict -o " + path("c.vpl"));
+}
+
+TEST_F(Strict, NoClobberKeepsWhatExists) {
+  const std::string arguments = scene_ + " -n 100 --quiet --no-clobber -o " + path("c.vpl");
+  succeed("vpl-place", arguments);
+  const std::string before = readAll(at("c.vpl"));
+  fail("vpl-place", arguments + " --seed 2", kExitOutput,
+       {"c.vpl: exists, and --no-clobber keeps it; name another file for -o"});
+  EXPECT_EQ(readAll(at("c.vpl")), before);
+  const std::string exported = "export " + path("c.vpl") + " --no-clobber -o " + path("c.ply");
+  succeed("vpl-inspect", exported + " --quiet");
+  fail("vpl-inspect", exported, kExitOutput, {"c.ply: exists"});
+  succeed("vpl-place", arguments + " --estimate >/dev/null");  // writes nothing
+}
+
+TEST_F(Strict, ProgressAsJson) {
+  const Outcome placed =
+      tool("vpl-place", scene_ + " -n 5k --quiet --progress json -o " + path("c.vpl"));
+  ASSERT_EQ(placed.code, kExitOk) << placed.err;
+  std::istringstream lines(placed.err);
+  nlohmann::json last;
+  for (std::string line; std::getline(lines, line);) {
+    last = nlohmann::json::parse(line);
+    EXPECT_EQ(last.size(), 6u) << line;
+    EXPECT_GE(last.at("elapsed_s").get<double>(), 0.0);
+    EXPECT_TRUE(last.contains("left_s"));
+  }
+  EXPECT_EQ(last.at("stage"), "vpl-place");
+  EXPECT_EQ(last.at("phase"), "VPLs");
+  EXPECT_EQ(last.at("total"), 5000);
+  EXPECT_GE(last.at("done").get<int>(), 5000);
+}
+
+}  // namespace
+}  // namespace bnvpl
