@@ -45,9 +45,7 @@ def find_tool(tool: str) -> str:
     return found
 
 
-def _listen(
-    stderr: IO[str], tool: str, progress: Callable[[Progress], object] | None
-) -> list[str]:
+def _listen(stderr: IO[str], tool: str, progress: Callable[[Progress], object] | None) -> list[str]:
     """Calls progress() as the tool goes. Returns the other lines, without the tool's name."""
     lines = []
     for line in stderr:

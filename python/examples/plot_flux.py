@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Plots what lit VPLs emit, over the scene: radiant exitance, and the relative error of the flux.
 
-    plot_flux.py lit.vpl flux.png
+plot_flux.py lit.vpl flux.png
 """
 
 import sys

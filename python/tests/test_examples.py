@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests that the examples work, on the page and in their folder.
 
-    test_examples.py BIN       # folder of the executables
+test_examples.py BIN       # folder of the executables
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from unittest import mock
 
 import numpy as np
 import OpenImageIO as oiio
+
 from support import PACKAGE, ROOT, SCENE, TestFiles, TestFolder, main
 
+# isort: split
 import bnvpl
 
 README = PACKAGE / "README.md"

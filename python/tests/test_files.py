@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests that Python reads and writes .vpl files as the tools do.
 
-    test_files.py BIN       # folder of the executables
+test_files.py BIN       # folder of the executables
 """
 
 from __future__ import annotations
@@ -13,8 +13,10 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+
 from support import BIN, GOLDEN, ROOT, TestFolder, main
 
+# isort: split
 import bnvpl
 from bnvpl import columns, layout
 
@@ -58,8 +60,10 @@ class RoundTrip(TestFolder):
         )
         types = {"f32": "<f4", "u32": "<u4", "u64": "<u8"}
         self.assertEqual(
-            [(name, types[kind], int(width or 1), unit, since)
-             for name, kind, width, unit, since in rows],
+            [
+                (name, types[kind], int(width or 1), unit, since)
+                for name, kind, width, unit, since in rows
+            ],
             [(c.name, c.dtype, c.width, c.unit, c.since) for c in columns.COLUMNS.values()],
         )
 

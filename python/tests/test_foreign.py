@@ -1,14 +1,16 @@
 #!/usr/bin/python3
 """Tests that VPLs from elsewhere render with the right energy.
 
-    test_foreign.py BIN       # folder of the executables
+test_foreign.py BIN       # folder of the executables
 """
 
 from __future__ import annotations
 
 import numpy as np
+
 from support import GOLDEN, ROOT, SCENE, TestFolder, main
 
+# isort: split
 import bnvpl
 
 FURNACE = ROOT / "scenes/furnace/scene.toml"

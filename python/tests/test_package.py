@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests that the package can be installed, has types, and has the version of the tools.
 
-    test_package.py BIN       # folder of the executables
+test_package.py BIN       # folder of the executables
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 
 from support import PACKAGE, ROOT, TestFolder, main
 
+# isort: split
 import bnvpl
 
 

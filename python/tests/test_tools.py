@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests of running the tools, and of reading their images.
 
-    test_tools.py BIN       # folder of the executables
+test_tools.py BIN       # folder of the executables
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from unittest import mock
 
 import numpy as np
 import OpenImageIO as oiio
+
 from support import BIN, SCENE, TestFiles, TestFolder, main
 
+# isort: split
 import bnvpl
 from bnvpl import options, tools
 
@@ -80,8 +82,9 @@ class Running(TestFiles):
         self.assertTrue(error.message.startswith(f"{self.candidates}: is of stage candidates"))
         self.assertIn("make it with vpl-eliminate", error.message)
         self.assertEqual(str(error), f"vpl-estimate: {error.message}")
-        self.assertEqual(error.command[:3], [str(BIN / "vpl-estimate"), str(SCENE),
-                                             str(self.candidates)])
+        self.assertEqual(
+            error.command[:3], [str(BIN / "vpl-estimate"), str(SCENE), str(self.candidates)]
+        )
         self.assertFalse((self.folder / "x.vpl").exists())
         with self.assertRaises(bnvpl.ToolError) as caught:
             bnvpl.run("vpl-place", SCENE, output=self.folder / "x.vpl", count="many")
@@ -150,9 +153,9 @@ class Keywords(unittest.TestCase):
 class Finding(TestFolder):
     def test_the_folder_that_the_environment_names(self) -> None:
         self.assertEqual(bnvpl.find_tool("vpl-place"), str(BIN / "vpl-place"))
-        with mock.patch.dict(os.environ, BNVPL_BIN=str(self.folder)):
-            with self.assertRaisesRegex(FileNotFoundError, "vpl-place: is not in the folder"):
-                bnvpl.find_tool("vpl-place")
+        missing = self.assertRaisesRegex(FileNotFoundError, "vpl-place: is not in the folder")
+        with mock.patch.dict(os.environ, BNVPL_BIN=str(self.folder)), missing:
+            bnvpl.find_tool("vpl-place")
 
     def test_the_path_and_then_the_build_of_the_checkout(self) -> None:
         with mock.patch.dict(os.environ, PATH=str(BIN)):
@@ -161,9 +164,9 @@ class Finding(TestFolder):
             os.environ["PATH"] = "/nonexistent"
             with mock.patch.object(tools, "CHECKOUT_BIN", BIN):
                 self.assertEqual(bnvpl.find_tool("vpl-place"), str(BIN / "vpl-place"))
-            with mock.patch.object(tools, "CHECKOUT_BIN", self.folder):
-                with self.assertRaisesRegex(FileNotFoundError, "is not in the PATH"):
-                    bnvpl.find_tool("vpl-place")
+            missing = self.assertRaisesRegex(FileNotFoundError, "is not in the PATH")
+            with mock.patch.object(tools, "CHECKOUT_BIN", self.folder), missing:
+                bnvpl.find_tool("vpl-place")
 
 
 class Images(TestFiles):
