@@ -1,4 +1,4 @@
-"""The bytes of .vpl files, version 4, for reader and writer. Specification: formats/README.md."""
+"""The bytes of .vpl files, version 5, for reader and writer. Specification: formats/README.md."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ StrPath = str | os.PathLike[str]
 
 MAGIC = b"\x89VPL\r\n\x1a\n"
 END_MARK = b"VPL-END\n"
-VERSION = 4
+VERSION = 5
 ALIGN = 64
 TYPES = ("<f4", "<u4", "<u8")  # the first one has the number 1 in files
 # Positions of header fields.
 VERSION_AT, STAGE_AT, COUNT_AT, PROVENANCE_AT = 8, 12, 16, 32
 CHECKSUM_AT, COLUMNS_AT, KIND_AT, R_MAX_AT = 48, 56, 60, 64
-AREA_AT, REACH_AT, RESERVED_AT = 72, 80, 88
+AREA_AT, REACH_AT, SHARE_AT, RESERVED_AT = 72, 80, 88, 96
 MAX_PROVENANCE_DEPTH = 64
 
 
@@ -43,8 +43,9 @@ class Header:
     r_max: float
     area: float
     reach: float
+    indirect_share: float
 
-    STRUCT = struct.Struct("<8s2I5Q2I3d40x")
+    STRUCT = struct.Struct("<8s2I5Q2I4d32x")
     SIZE = STRUCT.size
 
     @classmethod

@@ -78,6 +78,8 @@ def _check_fields(file: _File, header: Header) -> None:
     ):
         if not 0 <= value < np.inf:
             file.fail(byte, problem)
+    if not 0 <= header.indirect_share <= 1:
+        file.fail(at.SHARE_AT, "share of indirect light is not 0 to 1")
 
 
 def _check_extra(file: _File, entries: list[Entry], index: int) -> None:
@@ -206,6 +208,7 @@ def read_vpl(path: StrPath, verify: bool = True) -> Vpls:
         header.r_max,
         header.area,
         header.reach,
+        header.indirect_share,
         f"{header.checksum:016x}",
         text,
     )

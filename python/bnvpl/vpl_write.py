@@ -72,6 +72,8 @@ def _header(vpls: Vpls, pieces: list[bytes]) -> bytes:
     for value, what in ((vpls.r_max, "r_max"), (vpls.area, "area"), (vpls.reach, "reach")):
         if not 0 <= value < math.inf:
             raise ValueError(f"{what} is negative or not finite")
+    if not 0 <= vpls.indirect_share <= 1:
+        raise ValueError("share of indirect light is not 0 to 1")
     header = Header(
         at.MAGIC,
         at.VERSION,
@@ -86,6 +88,7 @@ def _header(vpls: Vpls, pieces: list[bytes]) -> bytes:
         vpls.r_max,
         vpls.area,
         vpls.reach,
+        vpls.indirect_share,
     )
     header.checksum = at.checksum(header.pack(), pieces)
     return header.pack()

@@ -53,6 +53,7 @@ class Vpls:
     r_max: float = 0.0  # radius of uniform density, scene units; 0: unknown
     area: float = 0.0  # indirectly visible area, scene units squared; 0: unknown
     reach: float = 0.0  # distance of the photons that a VPL received, in radii; 0: not by photons
+    indirect_share: float = 1.0  # the view's share of indirect light; 1: unknown
     checksum: str = ""  # the file's, as later stages record it; empty for new VPLs
     provenance_text: str = "[]"  # as it stands in the file
 

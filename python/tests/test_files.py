@@ -41,6 +41,7 @@ class RoundTrip(TestFolder):
         lit = bnvpl.read_vpl(GOLDEN / "lit.vpl")
         self.assertEqual((lit.stage, lit.scene_hash), ("lit", "0123456789abcdef"))
         self.assertEqual((lit.r_max, lit.area, lit.reach), (0.75, 12.0, 2.5))
+        self.assertEqual(lit.indirect_share, 0.625)
         self.assertEqual(lit.flux.tolist(), [[1, 2, 4], [0, 0, 0]])
         self.assertEqual(lit.position.tolist(), [[1, 2, -3], [0.5, 0.25, -0.125]])
         self.assertEqual(lit.units["flux"], "W")
@@ -128,7 +129,8 @@ class Damage(TestFolder):
             ("lit", 12, b"\0"), ("lit", 12, b"\4"), ("lit", 12, b"\2"), ("lit", 16, b"\3"),
             ("lit", 16, b"\xff" * 8), ("lit", 32, b"\xff" * 8), ("lit", 32, b"\1"),
             ("lit", 40, b"\xff" * 8), ("lit", 48, b"\0"), ("lit", 56, b"\1"), ("lit", 56, b"\x20"),
-            ("lit", 60, b"\1"), ("lit", 64, struct.pack("<d", -1)), ("lit", 95, b"\1"),
+            ("lit", 60, b"\1"), ("lit", 64, struct.pack("<d", -1)), ("lit", 97, b"\1"),
+            ("lit", 88, struct.pack("<d", 1.5)), ("lit", 88, struct.pack("<d", np.nan)),
             ("lit", 72, struct.pack("<d", np.nan)), ("lit", 80, struct.pack("<d", np.inf)),
             ("lit", 130, b"x"), ("lit", 128 + 64 * 8 + 28, b"\6"), ("lit", 128 + 50, b"x"),
             ("methods", 128 + 64 * 5, b"R"), ("methods", 128 + 64 * 6, b"rich.lobes\0"),
@@ -210,6 +212,9 @@ class Refused(TestFolder):
         vpls = bnvpl.read_vpl(GOLDEN / "lit.vpl")
         vpls.reach = -1
         self.expect_refused(vpls, "reach is negative")
+        vpls = bnvpl.read_vpl(GOLDEN / "lit.vpl")
+        vpls.indirect_share = 2
+        self.expect_refused(vpls, "share of indirect light is not 0 to 1")
         vpls = bnvpl.read_vpl(GOLDEN / "lit.vpl")
         vpls.provenance.append({"tool": np.nan})
         self.expect_refused(vpls, "provenance is no list of objects")
