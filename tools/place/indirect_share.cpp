@@ -57,7 +57,7 @@ double shareOfView(const PlaceInputs& in, const View& view, uint64_t key) {
     sum += p.indirect / all;
     ++lit;
   }
-  return lit > 0 ? sum / static_cast<double>(lit) : 0.0;
+  return lit > 0 ? sum / static_cast<double>(lit) : 1.0;
 }
 
 }  // namespace
