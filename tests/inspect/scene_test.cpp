@@ -82,6 +82,45 @@ TEST_F(SceneReport, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
   EXPECT_EQ(runInspect("scene --to-toml " + quoted(at("copy")) + " " + scene).code, 0);
 }
 
+TEST_F(SceneReport, ListsObjectsAndWritesTheirNames) {
+  writeTinyScene(at("."));
+  std::string obj = readAll(at("tiny.obj"));
+  obj.insert(obj.find("f 5 6 7 8"), "o my \"floor\"\n");
+  writeAll(at("tiny.obj"), obj);
+  writeAll(
+      at("all.toml"),
+      readAll(at("tiny.toml")) + "[[mesh]]\nfile = \"tiny.obj\"\n[[mesh.instance]]\n" +
+          "translate = [0, 5, 0]\nname = \"copy\"\n[[mesh.instance]]\ntranslate = [0, 9, 0]\n" +
+          "[[light]]\nname = \"key\"\ntype = \"rectangle\"\nposition = [0, 20, 0]\n" +
+          "direction = [0, -1, 0]\nwidth = 1\nheight = 1\npower = [5, 5, 5]\n" +
+          "[[light]]\nname = \"bulb\"\ntype = \"point\"\nposition = [0, 20, 0]\n" +
+          "power = [5, 5, 5]\n");
+  const auto report = [&](const std::string& scene) {
+    const Outcome r = runInspect("scene --json " + quoted(at(scene)));
+    EXPECT_EQ(r.code, 0) << r.output;
+    return Json::parse(r.output);
+  };
+  const Json json = report("all.toml");
+  ASSERT_EQ(json["objects"].size(), 4u) << json["objects"];
+  std::map<std::string, std::pair<int, int>> objects;
+  for (const Json& o : json["objects"])
+    objects[o["name"]] = {o["triangles"].get<int>(), o["instances"].get<int>()};
+  EXPECT_EQ(objects.at("tiny"), std::pair(4, 1));  // two of the mesh, two of its instance
+  EXPECT_EQ(objects.at("my \"floor\""), std::pair(4, 1));
+  EXPECT_EQ(objects.at("copy"), std::pair(4, 1));
+  EXPECT_EQ(objects.at("key"), std::pair(2, 0));
+  EXPECT_EQ(json["lights"].back()["light"], "point light 'bulb'");
+  const Outcome text = runInspect("scene " + quoted(at("all.toml")));
+  EXPECT_TRUE(contains(text.output, "'copy': 4 triangles in 1 instances")) << text.output;
+  EXPECT_TRUE(contains(text.output, "emissive material 'key': (5 5 5) W")) << text.output;
+
+  ASSERT_EQ(runInspect("scene --to-toml " + quoted(at("copy")) + " " + quoted(at("all.toml"))).code,
+            0);
+  const Json again = report("copy/scene.toml");
+  EXPECT_EQ(again["objects"], json["objects"]);
+  EXPECT_EQ(again["lights"].back()["light"], "point light 'bulb'");
+}
+
 // Triangles of instances count too, although each mesh is stored once.
 TEST_F(SceneReport, CountsMaskedTriangles) {
   writeTinyScene(at("."));

@@ -35,10 +35,10 @@ struct SceneRequest {
 };
 
 CLI::App* addSceneOptions(CLI::App& cli, SceneRequest& c) {
-  CLI::App* sub = cli.add_subcommand(
-      "scene",
-      "Report how a scene is interpreted: meshes, materials, lights with their power, cameras, "
-      "textures, and everything that is ignored or approximated.");
+  CLI::App* sub = cli.add_subcommand("scene",
+                                     "Report how a scene is interpreted: meshes, objects, "
+                                     "materials, lights with their power, cameras, "
+                                     "textures, and everything that is ignored or approximated.");
   addSceneOptions(*sub, c.scene);
   sub->add_flag("--json", c.json, "print the report as JSON");
   sub->add_option(

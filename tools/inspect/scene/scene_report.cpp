@@ -1,5 +1,7 @@
 #include "tools/inspect/scene/scene_report.h"
 
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "core/files.h"
@@ -16,6 +18,32 @@ Json vectorJson(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
 // The point in the coordinates of the files.
 Json placeJson(const Scene& scene, Vec3 p) {
   return Json::array({p.x + scene.origin[0], p.y + scene.origin[1], p.z + scene.origin[2]});
+}
+
+// Objects and the triangles that they have in the scene, those of an instance once for each.
+Json describeObjects(const Scene& scene) {
+  std::vector<uint64_t> triangles(scene.objectNames.size()), instances(scene.objectNames.size());
+  for (uint32_t t = 0; t < scene.worldEnd(); ++t) ++triangles[scene.objectOf(t)];
+  std::vector<std::map<uint32_t, uint64_t>> own(scene.prototypes.size());
+  for (size_t p = 0; p < own.size(); ++p) {
+    for (uint32_t t = scene.prototypes[p].begin; t < scene.prototypes[p].end; ++t)
+      ++own[p][scene.objectOf(t)];
+  }
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    std::set<uint32_t> met;
+    for (const auto& [object, count] : own[scene.instances[i].prototype]) {
+      const uint32_t given = scene.instanceObjects[i];
+      const uint32_t here = given == kNone ? object : given;
+      triangles[here] += count;
+      instances[here] += met.insert(here).second;
+    }
+  }
+  Json list = Json::array();
+  for (size_t o = 0; o < triangles.size(); ++o) {
+    list.push_back(
+        {{"name", scene.objectNames[o]}, {"triangles", triangles[o]}, {"instances", instances[o]}});
+  }
+  return list;
 }
 
 Json describeViews(const Scene& scene) {
@@ -95,6 +123,7 @@ Json describeScene(const Scene& scene, const LightSet& lights) {
   for (const MeshRecord& m : scene.meshes)
     json["meshes"].push_back(
         {{"name", m.name}, {"triangles", m.triangles}, {"instances", m.instances}});
+  json["objects"] = describeObjects(scene);
   json["materials"] = Json::array();
   for (const Material& m : scene.materials) json["materials"].push_back(describeMaterial(scene, m));
   json["lights"] = describeLights(lights);
@@ -125,6 +154,10 @@ std::string sceneText(const Json& asFound) {
   section("meshes", [&](const Json& m) {
     return text(m, "name") + ": " + jsonText(m["triangles"]) + " triangles" +
            (m["instances"] == 1 ? "" : ", " + jsonText(m["instances"]) + " instances");
+  });
+  section("objects", [&](const Json& o) {
+    return "'" + text(o, "name") + "': " + jsonText(o["triangles"]) + " triangles" +
+           (o["instances"] == 0 ? "" : " in " + jsonText(o["instances"]) + " instances");
   });
   section("materials", [&](const Json& m) {
     return "'" + text(m, "name") + "': " + text(m, "model") + "; " +

@@ -6,8 +6,9 @@
 
 namespace bnvpl {
 
-// Meshes, materials, lights with their power, cameras, textures, and all warnings, which name what
-// is ignored or approximated. Lengths are in the scene's unit, angles in degrees, power in W.
+// Meshes, objects, materials, lights with their power, cameras, textures, and all warnings, which
+// name what is ignored or approximated. Lengths are in the scene's unit, angles in degrees, power
+// in W.
 Json describeScene(const Scene& scene, const LightSet& lights);
 
 // One material: its model and its parameters by name. Textures are numbers in the list of textures.

@@ -89,13 +89,11 @@ std::string cleanName(std::string name) {
   return name.substr(first, name.find_last_not_of(' ') + 1 - first);
 }
 
-}  // namespace
-
-std::vector<std::string> materialNames(const Scene& scene) {
+std::vector<std::string> uniqueNames(const std::vector<std::string>& given) {
   std::vector<std::string> names;
   std::set<std::string> taken;
-  for (const Material& m : scene.materials) {
-    const std::string name = cleanName(m.name), shown = name.empty() ? "unnamed" : name;
+  for (const std::string& each : given) {
+    const std::string name = cleanName(each), shown = name.empty() ? "unnamed" : name;
     const std::string numbered = shown + " (" + std::to_string(names.size());
     std::string own = shown;
     for (size_t copy = 1; !taken.insert(own).second; ++copy)
@@ -104,6 +102,16 @@ std::vector<std::string> materialNames(const Scene& scene) {
   }
   return names;
 }
+
+}  // namespace
+
+std::vector<std::string> materialNames(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Material& m : scene.materials) names.push_back(m.name);
+  return uniqueNames(names);
+}
+
+std::vector<std::string> objectNames(const Scene& scene) { return uniqueNames(scene.objectNames); }
 
 std::string mtlText(const Scene& scene, WrittenMaterials& used) {
   std::string text =

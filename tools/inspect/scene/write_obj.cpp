@@ -36,9 +36,11 @@ std::string placeText(Vec3 p, const FilePoint& origin) {
 
 }  // namespace
 
-// Keeps the scene's order of triangles, with one usemtl for consecutive triangles of one material.
+// Keeps the scene's order of triangles, with one usemtl for consecutive triangles of one material,
+// and one o for those of one object.
 std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
-                    const std::vector<std::string>& names) {
+                    const std::vector<std::string>& names,
+                    const std::vector<std::string>& objects) {
   const std::span triangles(&scene.triangles[begin], end - begin);
   const auto hasUv = [&](const Triangle& t, size_t k) {
     return t.uv[k] != kNone && isFinite(scene.uvs[t.uv[k]]);
@@ -60,8 +62,11 @@ std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
   for (const uint32_t i : normals.used) text += "vn" + placeText(scene.normals[i], {}) + "\n";
   for (const uint32_t i : uvs.used)
     text += "vt " + shortestText(scene.uvs[i][0]) + " " + shortestText(scene.uvs[i][1]) + "\n";
-  uint32_t material = kNone;
+  uint32_t material = kNone, object = kNone;
   for (const Triangle& t : triangles) {
+    const uint32_t here = scene.objectOf(begin + static_cast<uint32_t>(&t - triangles.data()));
+    if (here != object) text += "o " + objects[here] + "\n";
+    object = here;
     if (t.material != material) text += "usemtl " + names[t.material] + "\n";
     material = t.material;
     text += "f";

@@ -56,6 +56,7 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
   const auto add = [&](const char* key, const std::string& value) {
     text += std::string(key) + " = " + value + "\n";
   };
+  if (!l.name.empty()) add("name", inQuotes(l.name));
   switch (l.type) {
     case LightType::Point:
     case LightType::Spot:
@@ -86,8 +87,13 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
   return text;
 }
 
-std::string instanceText(const Scene& scene, const Instance& instance) {
-  std::string text = "\n[[mesh.instance]]\ntransform = [";
+std::string instanceText(const Scene& scene, size_t number,
+                         const std::vector<std::string>& objects) {
+  const Instance& instance = scene.instances[number];
+  const uint32_t object = scene.instanceObjects[number];
+  std::string text = "\n[[mesh.instance]]\n";
+  if (object != kNone) text += "name = " + inQuotes(objects[object]) + "\n";
+  text += "transform = [";
   for (size_t r = 0; r < 3; ++r) {
     const float* row = &instance.toWorld[4 * r];
     text += "[";
@@ -106,14 +112,16 @@ void writeText(OutputFolder& folder, const std::string& name, const std::string&
 // Writes the world, and each prototype with its instances; returns their TOML.
 std::string writeMeshes(const Scene& scene, const std::vector<std::string>& names,
                         OutputFolder& folder) {
+  const std::vector<std::string> objects = objectNames(scene);
   std::string toml;
   const auto write = [&](const std::string& name, uint32_t begin, uint32_t end) {
-    writeText(folder, name, objText(scene, begin, end, names));
+    writeText(folder, name, objText(scene, begin, end, names, objects));
     toml += "\n[[mesh]]\nfile = \"" + name + "\"\n";
   };
   if (scene.worldEnd() > 0) write("scene.obj", 0, scene.worldEnd());
   std::vector<std::string> instances(scene.prototypes.size());
-  for (const Instance& i : scene.instances) instances[i.prototype] += instanceText(scene, i);
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    instances[scene.instances[i].prototype] += instanceText(scene, i, objects);
   for (size_t p = 0; p < scene.prototypes.size(); ++p) {
     if (instances[p].empty()) continue;
     write("instanced-" + std::to_string(p) + ".obj", scene.prototypes[p].begin,

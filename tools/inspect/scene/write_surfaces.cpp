@@ -8,10 +8,10 @@
 
 namespace bnvpl {
 
-namespace {
-
 // JSON's quotes and escapes are TOML's too.
 std::string inQuotes(const std::string& text) { return jsonText(text); }
+
+namespace {
 
 std::string textureName(uint32_t expression) { return "t" + std::to_string(expression); }
 
