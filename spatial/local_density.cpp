@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/sampling.h"
+#include "spatial/all_neighbours.h"
 #include "spatial/compatible_surface.h"
 
 namespace bnvpl {
@@ -33,25 +34,27 @@ Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal,
   return reach;
 }
 
+// find(self, count, nearest) finds the points nearest to point `self`.
+template <typename Find>
 Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
-                unsigned k, const KdTree& tree, std::vector<Neighbour>& nearest) {
+                unsigned k, Find& find, std::vector<Neighbour>& nearest) {
   // On flat surfaces nearly all neighbours qualify, so that a short query usually suffices. Its
   // result is a prefix of that of the long query.
-  tree.nearest(position[self], k + k / 4 + 2, nearest);
+  find(self, k + k / 8 + 1, nearest);
   Reach reach = reachOnSheet(position, normal, self, nearest, k);
   if (reach.count == k) return reach;
-  tree.nearest(position[self], 3 * size_t{k} + 1, nearest);
+  find(self, 3 * size_t{k} + 1, nearest);
   reach = reachOnSheet(position, normal, self, nearest, k);
   if (reach.count > 0) return reach;
   const auto others = static_cast<unsigned>(nearest.size() - 1);
   return {nearest.back().distanceSquared, std::max(1u, others)};
 }
 
-}  // namespace
-
-std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows,
-                                 const ProgressFn& progress) {
+// makeFind() gives a `find` for a range of points.
+template <typename MakeFind>
+std::vector<float> sharesOf(std::span<const Vec3> position, std::span<const Vec3> normal,
+                            unsigned k, const MakeFind& makeFind, std::span<const uint32_t> rows,
+                            const ProgressFn& progress) {
   Bounds bounds;
   for (const Vec3 p : position) bounds.extend(p);
   const float smallest = 1e-6f * bounds.diagonal();
@@ -64,9 +67,10 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
   std::vector<float> share(count);
   parallelRanges(count, 256, [&](size_t begin, size_t end) {
     std::vector<Neighbour> nearest;
+    auto find = makeFind();
     for (size_t i = begin; i < end; ++i) {
       const auto self = rows.empty() ? static_cast<uint32_t>(i) : rows[i];
-      const Reach reach = findReach(position, normal, self, std::max(1u, k), tree, nearest);
+      const Reach reach = findReach(position, normal, self, std::max(1u, k), find, nearest);
       const float distanceSquared = std::max(reach.distanceSquared, smallest * smallest);
       share[i] = kPi * distanceSquared / static_cast<float>(reach.count);
     }
@@ -75,9 +79,28 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
   return share;
 }
 
+}  // namespace
+
+std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows,
+                                 const ProgressFn& progress) {
+  const auto find = [&](uint32_t self, size_t count, std::vector<Neighbour>& nearest) {
+    tree.nearest(position[self], count, nearest);
+  };
+  return sharesOf(
+      position, normal, k, [&] { return find; }, rows, progress);
+}
+
 std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
                                  unsigned k, const ProgressFn& progress) {
-  return surfaceShares(position, normal, k, KdTree(position), {}, progress);
+  const AllNeighbours points(position);
+  const auto makeFind = [&points] {
+    return [&points, query = AllNeighbours::Query{}](uint32_t self, size_t count,
+                                                     std::vector<Neighbour>& nearest) mutable {
+      points.nearest(self, count, query, nearest);
+    };
+  };
+  return sharesOf(position, normal, k, makeFind, {}, progress);
 }
 
 ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
+#include <set>
 
 #include "core/random.h"
 #include "tests/eliminate/keep.h"
@@ -141,6 +143,67 @@ TEST(Oracle, ManyCandidatesOfDensitiesFarApart) {
         density == "local" ? radiusOfAll(cloud, 100)
                            : std::vector<float>(cloud.size(), static_cast<float>(result.rMax));
     EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100));
+  }
+}
+
+// Sum of the power of the lowest 24 frequencies of points on the unit square, over that of random
+// points.
+double lowFrequencyPower(const Cloud& cloud, const std::vector<uint32_t>& rows) {
+  double power = 0.0;
+  int frequencies = 0;
+  for (int u = 0; u <= 3; ++u) {
+    for (int v = u > 0 ? -3 : 1; v <= 3; ++v, ++frequencies) {
+      double re = 0.0, im = 0.0;
+      for (const uint32_t row : rows) {
+        const double angle =
+            2.0 * M_PI * (u * double{cloud.position[row].x} + v * double{cloud.position[row].y});
+        re += std::cos(angle), im += std::sin(angle);
+      }
+      power += (re * re + im * im) / double(rows.size());
+    }
+  }
+  return power / frequencies;
+}
+
+struct Spacing {
+  double mean = 0.0, smallest = INFINITY;  // distance of the nearest over the sum of radii
+};
+Spacing spacingOf(const Cloud& cloud, const KeptRows& kept) {
+  Spacing spacing;
+  for (size_t a = 0; a < kept.rows.size(); ++a) {
+    double nearest = INFINITY;
+    for (size_t b = 0; b < kept.rows.size(); ++b) {
+      if (a == b) continue;
+      const float d = length(cloud.position[kept.rows[a]] - cloud.position[kept.rows[b]]);
+      nearest = std::min(nearest, double{d / (kept.radius[a] + kept.radius[b])});
+    }
+    spacing.mean += nearest / double(kept.rows.size());
+    spacing.smallest = std::min(spacing.smallest, nearest);
+  }
+  return spacing;
+}
+
+// 40 candidates per VPL are eliminated in steps. The result is as well spread as that of one step.
+TEST(Oracle, StepsKeepTheSpacing) {
+  for (const bool uneven : {false, true}) {
+    const Cloud cloud = uneven ? unevenPlane(24000, 5) : plane(24000, 1.0f, 1.0f, 5);
+    const KeptRows steps = keepRowsOf(cloud, keep(600, "local"));
+    const std::vector<float> radius = radiusOfAll(cloud, 600);
+    std::vector<uint32_t> row(cloud.size());
+    std::iota(row.begin(), row.end(), 0u);
+    ConflictGraph graph(cloud.position, cloud.normal, radius, row, PairWeight{});
+    KeptRows exact;
+    exact.rows = eliminateHeaviest(graph, 600);
+    for (const uint32_t r : exact.rows) exact.radius.push_back(radius[r]);
+    EXPECT_NE(std::set(steps.rows.begin(), steps.rows.end()),
+              std::set(exact.rows.begin(), exact.rows.end()));
+    const Spacing few = spacingOf(cloud, steps), all = spacingOf(cloud, exact);
+    EXPECT_GT(few.mean / all.mean, 0.98);
+    EXPECT_GT(few.smallest / all.smallest, 0.95);
+    if (!uneven) {
+      EXPECT_LT(lowFrequencyPower(cloud, steps.rows), 0.25);
+      EXPECT_LT(lowFrequencyPower(cloud, exact.rows), 0.25);
+    }
   }
 }
 

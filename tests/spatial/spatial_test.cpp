@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/random.h"
+#include "spatial/all_neighbours.h"
 #include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
@@ -47,12 +48,19 @@ std::vector<std::vector<Vec3>> clouds() {
 TEST(Spatial, NearestAreOrderedAndTiesGoToTheLowerIndex) {
   for (const std::vector<Vec3>& points : clouds()) {
     const KdTree tree(points);
+    const AllNeighbours all(points);
     std::vector<Neighbour> found;
+    AllNeighbours::Query query, next;
     for (size_t q = 0; q < points.size(); q += 97) {
       for (const size_t count : {1u, 7u, 60u, 5000u}) {
         std::vector<Neighbour> expected = allByDistance(points, points[q]);
         expected.resize(std::min(count, expected.size()));
         tree.nearest(points[q], count, found);
+        EXPECT_EQ(found, expected);
+        all.nearest(static_cast<uint32_t>(q), count, query, found);
+        EXPECT_EQ(found, expected);
+        if (count != 60) continue;
+        all.nearest(static_cast<uint32_t>(q), count, next, found);  // bound by the last point's
         EXPECT_EQ(found, expected);
       }
     }
@@ -64,6 +72,7 @@ TEST(Spatial, NoPoints) {
   std::vector<Neighbour> found{{1.0f, 2}};
   KdTree(none).nearest({}, 3, found);
   EXPECT_TRUE(found.empty());
+  AllNeighbours{none};
   EXPECT_TRUE(makeCellLists(none, {}).order.empty());
 }
 

@@ -42,9 +42,9 @@ struct Sorted {
 
 // All pairs nearer than two radii compete, so the work grows as candidates^2 / kept. Where this
 // exceeds kMaxWork and there are more than kMaxPerVpl candidates per VPL, a first step keeps
-// kStepFactor per VPL, with the radii for that number. This bounds the time where few are kept
-// (theory.md, "Cost").
-constexpr double kMaxPerVpl = 60, kStepFactor = 30, kMaxWork = 0x1p22;
+// kStepFactor per VPL, with the radii for that number (theory.md, "Cost"). kStepFactor makes the
+// work of both steps least at some 40 candidates per VPL.
+constexpr double kMaxPerVpl = 24, kStepFactor = 10, kMaxWork = 0x1p18;
 
 // Number of candidates that each step keeps. The last step keeps `count`.
 std::vector<size_t> stepsFor(size_t candidates, size_t count) {
@@ -69,11 +69,11 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
   }
   ConflictGraph graph(of.position, of.normal, std::move(radius), of.row,
                       pairWeightRule(of.row.size(), static_cast<double>(keep), options), progress);
-  std::vector<uint32_t> rows = eliminateHeaviest(graph, keep, progress);
-  std::sort(rows.begin(), rows.end());
+  std::vector<uint8_t> kept(1 + std::ranges::max(of.row));
+  for (const uint32_t row : eliminateHeaviest(graph, keep, progress)) kept[row] = 1;
   std::vector<uint32_t> places;
   for (uint32_t i = 0; i < of.row.size(); ++i) {
-    if (std::binary_search(rows.begin(), rows.end(), of.row[i])) places.push_back(i);
+    if (kept[of.row[i]]) places.push_back(i);
   }
   return places;
 }
