@@ -4,14 +4,22 @@ import argparse
 import pathlib
 import re
 import shlex
+import shutil
 import sys
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
 HERE = pathlib.Path(__file__).resolve().parent
-DEFAULT_BIN = HERE.parent / "build" / "release" / "bin"
+BUILT = HERE.parent / "build" / "release" / "bin"
 DIVIDED = ("place", "estimate", "render")  # stages that can be divided into shards
 MAX_SHARDS = 1500  # the command of vpl-merge names all shards, and Linux limits its length
+
+
+def default_bin() -> pathlib.Path:
+    """The build of this tree, or else the folder of what is installed."""
+    installed = shutil.which("vpl-render")
+    built = (BUILT / "vpl-render").exists() or not installed
+    return BUILT if built else pathlib.Path(str(installed)).parent
 
 
 def presets() -> dict[str, dict[str, str]]:
@@ -66,7 +74,7 @@ def add_arguments(parser: argparse.ArgumentParser, shards: str = "1") -> None:
     )
     parser.add_argument(
         "--bin",
-        default=relative(DEFAULT_BIN),
+        default=relative(default_bin()),
         help="folder of the executables (default %(default)s)",
     )
     parser.add_argument(

@@ -27,6 +27,7 @@ check() {
   MYPYPATH=$1 mypy --no-error-summary --explicit-package-bases --python-executable /usr/bin/python3 \
     --cache-dir "build/mypy/${1//[:\/]/_}" "${@:2}" || failed=1
 }
+check install install/*.py tests/install/*.py
 check bench:pipelines:eval:python bench/*.py
 check docs:eval/scaling docs/*.py
 check eval:eval/report:pipelines:python eval/*.py eval/bnvpl_eval eval/tests/*.py

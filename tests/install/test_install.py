@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""Installs the build into a folder and uses it: pages, completion, pipelines, licences, version.
+
+    tests/install/test_install.py BUILD
+
+Shells that are not here are skipped.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import pty
+import re
+import select
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILD = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT / "build/release"
+TOOLS = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render", "vpl-merge", "vpl-inspect")
+
+
+def run(*command: str | Path, **more: str) -> str:
+    """Output of a command, which must succeed."""
+    environment = {**os.environ, **more}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+    if done.returncode:
+        raise AssertionError(f"{command}: {done.stderr or done.stdout}")
+    return done.stdout
+
+
+class InstalledTest(unittest.TestCase):
+    prefix: Path
+    share: Path
+    path: str
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        folder = tempfile.TemporaryDirectory(prefix="bnvpl-install.")
+        cls.addClassCleanup(folder.cleanup)
+        cls.prefix = Path(folder.name) / "usr"
+        run("cmake", "--install", BUILD, "--prefix", cls.prefix)
+        cls.share = cls.prefix / "share"
+        cls.path = f"{cls.prefix / 'bin'}:{os.environ['PATH']}"
+
+    def spec(self, tool: str) -> dict[str, list[dict[str, str]]]:
+        described: dict[str, list[dict[str, str]]] = json.loads(
+            run(self.prefix / "bin" / tool, "--help-json")
+        )
+        return described
+
+
+class Installed(InstalledTest):
+    def test_pages_are_there_and_clean(self) -> None:
+        pages = [self.share / "man/man1" / f"{tool}.1" for tool in TOOLS]
+        pages += [self.share / "man/man7/bnvpl.7", self.share / "man/man5/vpl.5"]
+        for page in pages:
+            self.assertTrue(page.is_file(), page)
+            self.assertNotIn("@", page.read_text(), page)
+            if shutil.which("man"):
+                done = subprocess.run(
+                    ["man", "--warnings=w", "-E", "UTF-8", "-l", "-Tutf8", "-Z", page],
+                    capture_output=True,
+                    text=True,
+                    env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"},
+                    check=False,
+                )
+                self.assertEqual((done.returncode, done.stderr), (0, ""), page)
+
+    def test_pages_name_every_option(self) -> None:
+        for tool in TOOLS:
+            page = (self.share / "man/man1" / f"{tool}.1").read_text().replace("\\-", "-")
+            for option in self.spec(tool)["options"]:
+                self.assertIn(f"\\fB--{option['name']}\\fR", page)
+
+    def test_pipelines_take_what_is_on_the_path(self) -> None:
+        makefile = self.share / "bnvpl/pipelines/Makefile"
+        with tempfile.TemporaryDirectory() as folder:
+            out = f"OUT={folder}/out"
+            words = "CANDIDATES=1k VPLS=100 PHOTONS=10k SPP=1".split()
+            small = "RENDER_FLAGS=--size 32x24"
+            run("make", "-f", makefile, out, *words, small, PATH=self.path)
+            self.assertTrue((Path(folder) / "out/image.exr").is_file())
+            self.assertIn(
+                str(self.prefix / "bin/vpl-render"), (Path(folder) / "out/render.cmd").read_text()
+            )
+            ninja = self.share / "bnvpl/pipelines/generate_ninja.py"
+            scene = self.share / "bnvpl/scenes/cornell/scene.toml"
+            run(sys.executable, "-B", ninja, scene, "--out", folder, PATH=self.path)
+            graph = (Path(folder) / "build.ninja").read_text()
+            self.assertIn(str(self.prefix / "bin/vpl-place"), graph)
+
+    def test_licences_of_all_libraries(self) -> None:
+        doc = self.share / "doc/bnvpl"
+        self.assertTrue((doc / "LICENSE").is_file())
+        self.assertTrue((doc / "docs/guide.md").is_file())
+        table = (doc / "THIRD_PARTY.md").read_text()
+        for package in re.findall(r"^\| `([^`]+)`", table, re.M):
+            if Path(f"/usr/share/doc/{package}/copyright").exists():
+                self.assertTrue((doc / "licences" / package).is_file(), package)
+        listed = set(re.findall(r"`([^`]+)`", table))
+        script = (ROOT / "scripts/install_packages.sh").read_text()
+        libraries = set(re.findall(r"\b(?:lib|zlib|nlohmann)[\w.+-]*-dev\b", script))
+        used_by_tests = {"libgtest-dev", "libbenchmark-dev", "libboost-iostreams-dev"}
+        self.assertEqual(libraries - used_by_tests - listed, set())
+
+
+class Completion(InstalledTest):
+    def bash(self, *words: str) -> set[str]:
+        tool = words[0]
+        script = (
+            f"source '{self.share}/bash-completion/completions/{tool}'\n"
+            f"compopt() {{ echo compopt; }}\n"
+            f"COMP_WORDS=({' '.join(repr(w) for w in words)})\n"
+            f"COMP_CWORD={len(words) - 1}\n_{tool.replace('-', '_')}\n"
+            'printf "%s\\n" "${COMPREPLY[@]}"\n'
+        )
+        return set(run("bash", "--norc", "-c", script).split())
+
+    def test_bash(self) -> None:
+        for tool in TOOLS:
+            expected = {f"--{o['name']}" for o in self.spec(tool)["options"]}
+            expected |= {o["letter"] for o in self.spec(tool)["options"] if o["letter"]}
+            self.assertEqual(self.bash(tool, "-"), expected)
+        self.assertEqual(self.bash("vpl-place", "--met"), {"--method"})
+        self.assertEqual(self.bash("vpl-place", "--method", ""), {"camera", "light"})
+        self.assertEqual(self.bash("vpl-place", "-o", ""), {"compopt"})
+        self.assertEqual(self.bash("vpl-place", "-n", ""), set())
+        self.assertEqual(self.bash("vpl-inspect", "com"), {"compare"})
+        self.assertEqual(self.bash("vpl-inspect", "compare", "--max-relm"), {"--max-relmse"})
+        self.assertEqual(self.bash("vpl-inspect", "info", "--max-relm"), set())
+        self.assertIn("hdr-flip", self.bash("vpl-inspect", "compare", "a", "--map", ""))
+
+    @unittest.skipUnless(shutil.which("fish"), "fish is not here")
+    def test_fish(self) -> None:
+        def fish(line: str) -> set[str]:
+            tool = line.split()[0]
+            file = self.share / f"fish/vendor_completions.d/{tool}.fish"
+            script = f"source '{file}'; complete -C '{line}'"
+            with tempfile.TemporaryDirectory() as home:
+                lines = run("fish", "--no-config", "-c", script, HOME=home, PATH=self.path)
+            return {text.split("\t")[0] for text in lines.splitlines()}
+
+        for tool in TOOLS:
+            expected = {f"--{o['name']}" for o in self.spec(tool)["options"]}
+            self.assertEqual(fish(f"{tool} --") & expected, expected)
+        self.assertEqual(fish("vpl-place --method "), {"camera", "light"})
+        self.assertEqual(fish("vpl-inspect com"), {"compare"})
+        self.assertIn("--max-relmse", fish("vpl-inspect compare --max"))
+        self.assertNotIn("--max-relmse", fish("vpl-inspect info --max"))
+
+    def zsh(self, line: str) -> str:
+        """What zsh makes of a line and a tab, in a terminal of its own."""
+        child, terminal = pty.fork()
+        if child == 0:
+            os.environ.update(PATH=self.path, TERM="dumb", PS1="", COLUMNS="400")
+            os.execvp("zsh", ["zsh", "-f", "-i"])
+        text = b""
+
+        def read_until(end: bytes, seconds: float) -> None:
+            nonlocal text
+            limit = time.monotonic() + seconds
+            while time.monotonic() < limit and end not in text:
+                if select.select([terminal], [], [], 0.1)[0]:
+                    with contextlib.suppress(OSError):
+                        text += os.read(terminal, 65536)
+
+        setup = (
+            f"PROMPT= RPROMPT=; unsetopt zle_bracketed_paste prompt_sp; LISTMAX=9999\n"
+            f"fpath=('{self.share}/zsh/site-functions' $fpath)\n"
+            "autoload -Uz compinit; compinit -u -D; print rea''dy\n"
+        )
+        os.write(terminal, setup.encode())
+        read_until(b"ready", 60)
+        text = b""
+        os.write(terminal, line.encode() + b"\t")
+        read_until(b"\0", 4)
+        os.close(terminal)
+        os.waitpid(child, 0)
+        return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\r|\x07|.\x08", "", text.decode(errors="replace"))
+
+    @unittest.skipUnless(shutil.which("zsh"), "zsh is not here")
+    def test_zsh(self) -> None:
+        for tool in TOOLS:
+            file = self.share / f"zsh/site-functions/_{tool}"
+            run("zsh", "-f", "-n", file)
+        self.assertIn("vpl-place --method ", self.zsh("vpl-place --meth"))
+        choices = self.zsh("vpl-place --method ")
+        self.assertRegex(choices, r"camera\s+light")
+        self.assertIn("vpl-inspect compare", self.zsh("vpl-inspect comp"))
+        self.assertIn("--max-relmse", self.zsh("vpl-inspect compare --max-relm"))
+
+
+class Version(unittest.TestCase):
+    def test_one_version(self) -> None:
+        project = re.search(r"project\(bnvpl VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())
+        assert project
+        version = re.escape(project[1])
+        for file, pattern in (
+            ("CITATION.cff", rf"^version: {version}$"),
+            ("CHANGELOG.md", rf"^## \[{version}\] - (unreleased|20\d\d-\d\d-\d\d)$"),
+        ):
+            self.assertRegex((ROOT / file).read_text(), re.compile(pattern, re.M), file)
+        headings = re.findall(r"^## \[([^]]+)\]", (ROOT / "CHANGELOG.md").read_text(), re.M)
+        self.assertEqual(headings[0], project[1])
+        for packaging in ROOT.glob("python/pyproject.toml"):
+            self.assertIn(f'version = "{project[1]}"', packaging.read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
