@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from .layout import StrPath
-from .options import options_of, words_of
+from .options import spec_of, words_of
 from .progress import Progress, progress_of
 
 # The build folder of a checkout that holds this package.
@@ -88,22 +88,21 @@ def run(
 
     run("vpl-estimate", scene, vpls, output="lit.vpl", photons="10M") runs vpl-estimate SCENE VPLS
     --output lit.vpl --photons 10M. Flags are True or False, None leaves an option out, lists and
-    dicts repeat it or join it with commas. A keyword that the tool does not know is a TypeError.
+    dicts repeat it or join it with commas. Inputs may have keywords too: scene=, vpls=. A keyword
+    that is not in the tool's --help-json is a TypeError.
     Warnings of the tool are Python's, of class ToolWarning. With estimate=True the result is the
     need of time and memory. Raises ToolError if the tool fails.
     """
     executable = find_tool(tool)
     command = str(arguments[0]) if tool == "vpl-inspect" and arguments else ""
-    known = options_of(executable, command)
+    spec = spec_of(executable, command)
     if options.get("estimate"):
         options["json"] = True
-    shown = ["--quiet"]
-    if progress is not None and "progress" in known:
-        shown += ["--progress", "json"]
+    shown = ["--quiet"] if progress is None else ["--quiet", "--progress", "json"]
     with tempfile.TemporaryDirectory(prefix="bnvpl.") as folder:
         stats = Path(options.pop("stats", None) or Path(folder) / "stats.json")
-        words = [executable, *(str(os.fspath(argument)) for argument in arguments)]
-        words += [*words_of(tool, known, options), "--stats", str(stats), *shown]
+        words = [executable, *words_of(tool, spec, arguments, options)]
+        words += ["--stats", str(stats), *shown]
         code, text, lines = _execute(words, tool, progress)
         error = lines.pop() if code and lines else text.strip()  # the last line is the error
         for line in lines:

@@ -6,9 +6,7 @@ test_tools.py BIN       # folder of the executables
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
 import time
 import unittest
 from pathlib import Path
@@ -41,8 +39,6 @@ class Running(TestFiles):
         image = self.folder / "i.exr"
         given: dict[str, Any] = {"size": (16, 16), "spp": 4}
         bnvpl.run("vpl-render", SCENE, self.lit, output=image, progress=steps.append, **given)
-        if "progress" not in options.options_of(str(BIN / "vpl-render")):
-            self.skipTest("these tools do not tell their progress to programs")
         self.assertEqual((steps[-1].phase, steps[-1].share), ("samples", 1))
         self.assertEqual(steps[-1].done, 4 * 16 * 16)
 
@@ -51,8 +47,6 @@ class Running(TestFiles):
             raise InterruptedError("enough")
 
         image = self.folder / "long.exr"
-        if "progress" not in options.options_of(str(BIN / "vpl-render")):
-            self.skipTest("these tools do not tell their progress to programs")
         begin = time.monotonic()
         with self.assertRaisesRegex(InterruptedError, "enough"):
             bnvpl.run(
@@ -122,32 +116,38 @@ class Running(TestFiles):
 
 
 class Keywords(unittest.TestCase):
-    def test_words_of_a_command_line(self) -> None:
-        known = options.options_of(str(BIN / "vpl-render"))
-        given = {
-            "o": Path("x.exr"), "spp": np.int64(3), "size": (80, 60), "adaptive": False,
-            "layers": ["N", "Z"], "define": {"A": "b", "C": Path("d")}, "quiet": True,
-            "estimate": False, "png": None,
-        }  # fmt: skip
-        words = "--output x.exr --spp 3 --size 80x60 --adaptive off --layers N,Z --define A=b"
-        self.assertEqual(
-            options.words_of("vpl-render", known, given),
-            [*words.split(), "--define", "C=d", "--quiet"],
-        )
-        with self.assertRaisesRegex(TypeError, "quiet is a flag: True or False, not 3"):
-            options.words_of("vpl-render", known, {"quiet": 3})
+    def setUp(self) -> None:
+        self.spec = options.spec_of(str(BIN / "vpl-render"))
 
-    def test_every_option_of_help_json_is_known(self) -> None:
-        for tool in ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render"):
-            known = options.options_of(str(BIN / tool))
-            text = subprocess.run([BIN / tool, "--help-json"], capture_output=True, check=True)
-            spec = json.loads(text.stdout)
-            named = [option["name"] for option in spec["options"]]
-            for slot in spec["slots"]:
-                named += [slot["name"]]
-                named += [o["name"] for m in slot["methods"] for o in m["options"]]
-            self.assertLessEqual({name.replace("-", "_") for name in named}, known.keys())
-            self.assertLessEqual({"output", "threads", "quiet", "stats"}, known.keys())
+    def words(self, *positional: object, **given: object) -> str:
+        return " ".join(options.words_of("vpl-render", self.spec, positional, given))
+
+    def test_options(self) -> None:
+        self.assertEqual(self.words(o=Path("x.exr"), spp=np.int64(3)), "--output x.exr --spp 3")
+        self.assertEqual(self.words(max_cut=9, adaptive=False), "--max-cut 9 --adaptive off")
+        self.assertEqual(self.words(size=(80, 60), layers=["N", "Z"]), "--size 80x60 --layers N,Z")
+        defined = {"A": "b", "C": Path("d")}
+        self.assertEqual(self.words(define=defined), "--define A=b --define C=d")
+        self.assertEqual(self.words(quiet=True, estimate=False, png=None), "--quiet")
+        with self.assertRaisesRegex(TypeError, "quiet is a flag: True or False, not 3"):
+            self.words(quiet=3)
+        with self.assertRaisesRegex(TypeError, r"seed has one value, not \[1, 2\]"):
+            self.words(seed=[1, 2])
+
+    def test_inputs(self) -> None:
+        self.assertEqual(self.words("s.toml", "l.vpl", spp=1), "s.toml l.vpl --spp 1")
+        self.assertEqual(self.words(lit="l.vpl", scene="s.toml"), "s.toml l.vpl")
+        self.assertEqual(self.words(Path("s.toml"), lit="l.vpl"), "s.toml l.vpl")
+        merge = options.spec_of(str(BIN / "vpl-merge"))
+        given = {"shards": ["1.shard", "2.shard"]}
+        self.assertEqual(options.words_of("vpl-merge", merge, [], given), given["shards"])
+
+    def test_every_tool_tells_its_options(self) -> None:
+        for tool in ("place", "eliminate", "estimate", "render", "merge", "inspect"):
+            known = options.spec_of(str(BIN / f"vpl-{tool}")).options
+            self.assertLessEqual({"threads", "quiet", "stats", "progress"}, known.keys(), tool)
+        compare = options.spec_of(str(BIN / "vpl-inspect"), "compare")
+        self.assertLessEqual({"max_relmse", "threads"}, compare.options.keys())
 
 
 class Finding(TestFolder):
