@@ -108,6 +108,9 @@ inline void requireSane(const Scene& s) {
               std::fabs(dot(c.forward, c.right)) < 1e-3f && std::fabs(dot(c.forward, c.up)) < 1e-3f,
           "the camera is orthonormal");
   require(std::isfinite(c.shift[0]) && std::isfinite(c.shift[1]), "the lens is shifted by numbers");
+  require(c.lensRadius >= 0 && c.lensRadius <= 1e9f && c.focusDistance >= 1e-9f &&
+              c.focusDistance <= 1.0001e9f,
+          "the lens has a size");
   require(c.verticalFovRad > 0 && c.verticalFovRad < 3.15f, "the field of view is an angle");
   for (const EnvironmentImage& e : s.environments) requireSane(e);
   for (const LightSpec& l : s.lights) {

@@ -24,13 +24,19 @@ struct Film {
   uint32_t width = 640, height = 480;  // pixels
 };
 
-// Pinhole camera. Pixel (0, 0) is at the top left. The film's centre lies `shift` film heights to
-// the right of the viewing axis and above it, for crops and shifted lenses.
+// Limits of a lens, with which rays through it stay within floats.
+inline constexpr double kMaxLensLength = 1e9, kMinFocusDistance = 1e-9;
+
+// A pinhole or a thin lens. Pixel (0, 0) is at the top left. The film's centre lies `shift` film
+// heights to the right of the viewing axis and above it, for crops and shifted lenses.
 struct Camera {
   Vec3 position;
   Vec3 forward{0, 0, -1}, right{1, 0, 0}, up{0, 1, 0};  // orthonormal
   float verticalFovRad = 1.0f;                          // field of view of the unshifted film
   std::array<float, 2> shift{};
+  float lensRadius = 0.0f;     // 0: a pinhole, which sees everything sharp
+  float focusDistance = 1.0f;  // along the viewing axis, of the plane that the lens sees sharp; > 0
+  bool hasLens() const { return lensRadius > 0.0f; }
 };
 
 // A camera of the scene file and its film.

@@ -118,6 +118,7 @@ uint64_t hashView(const Camera& c, const Film& film) {
   for (const Vec3 v : {c.position, c.forward, c.right, c.up}) h.value(v);
   h.value(c.verticalFovRad);
   if (c.shift != std::array<float, 2>{}) h.value(c.shift[0]), h.value(c.shift[1]);
+  if (c.hasLens()) h.value(c.lensRadius), h.value(c.focusDistance);
   h.value(film.width);
   h.value(film.height);
   return h.digest();

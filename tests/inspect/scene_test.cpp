@@ -1,7 +1,9 @@
 // vpl-inspect scene: its report, and the scene that it writes, which equals the original.
+#include "scene/choose_view.h"
 #include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
+#include "tools/inspect/scene/scene_difference.h"
 
 namespace bnvpl {
 namespace {
@@ -56,6 +58,28 @@ TEST_F(SceneReport, AViewFileReplacesTheCamera) {
   ASSERT_EQ(ok.code, 0) << ok.output;
   EXPECT_EQ(loadScene(at("copy/scene.toml")).film.width, 20u);
   EXPECT_EQ(runInspect("scene --camera 3 " + quoted(at("tiny.toml"))).code, 2);
+}
+
+TEST_F(SceneReport, TellsAndWritesTheLens) {
+  writeTinyScene(at("."));
+  const std::string lens = "lens_radius = 0.1\nfocus_distance = 2.3\n";
+  std::string toml = readAll(at("tiny.toml"));
+  writeAll(at("tiny.toml"), toml.insert(toml.find("vertical_fov_deg"), lens));
+  const Outcome ok =
+      runInspect("scene --to-toml " + quoted(at("copy")) + " " + quoted(at("tiny.toml")));
+  EXPECT_NE(ok.output.find("lens_radius 0.1"), std::string::npos) << ok.output;
+  EXPECT_NE(ok.output.find("focus_distance 2.3"), std::string::npos) << ok.output;
+  Scene scene = loadScene(at("tiny.toml"));
+  const Scene copy = loadScene(at("copy/scene.toml"));
+  EXPECT_EQ(copy.camera.lensRadius, 0.1f);
+  EXPECT_EQ(copy.camera.focusDistance, 2.3f);
+  EXPECT_EQ(sceneDifference(scene, copy), "");
+  writeAll(at("view.toml"),
+           "[film]\nwidth = 80\nheight = 60\n[camera]\nposition = [0, 1, 4]\nlook_at = [0, 1, 0]\n"
+           "vertical_fov_deg = 50\nlens_radius = 0.5\nfocus_distance = 1\n");
+  useViewFile(at("view.toml"), scene);
+  EXPECT_EQ(scene.camera.lensRadius, 0.5f);
+  EXPECT_EQ(sceneDifference(scene, copy), "camera or film");
 }
 
 // A name may hold any bytes except those that end it.

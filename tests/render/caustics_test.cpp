@@ -197,7 +197,7 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
     const Caustics caustics(world.rays, world.lights, photons, 8.0f, 0, 3, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
-    return caustics.shared(seen).ofRays(lamp, {0, 1, 0}, 1.0f);
+    return caustics.shared(seen, world.scene.camera.position).ofRays(lamp, {0, 1, 0}, 1.0f);
   };
   EXPECT_EQ(share(16, true), 1.0f);
   EXPECT_LT(share(400000, false), 1.0f);

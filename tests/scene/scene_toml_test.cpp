@@ -1,4 +1,5 @@
 // Every mistake in a scene.toml is reported in one line with file, line, section and remedy.
+#include "scene/scene_hash.h"
 #include "tests/scene/scene_files.h"
 #include "transport/camera.h"
 
@@ -107,6 +108,25 @@ TEST_F(SceneToml, FieldOfViewHasLimits) {
               {"'vertical_fov_deg' must be a number"});
 }
 
+TEST_F(SceneToml, ALensNeedsRadiusAndDistance) {
+  const std::string lens =
+      "[film]\nwidth = 8\nheight = 6\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n"
+      "vertical_fov_deg = 40\n";
+  const Camera camera = load(lens + "lens_radius = 0.25\nfocus_distance = 4\n" + mesh_).camera;
+  EXPECT_EQ(camera.lensRadius, 0.25f);
+  EXPECT_EQ(camera.focusDistance, 4.0f);
+  EXPECT_FALSE(load(lens + mesh_).camera.hasLens());
+  EXPECT_FALSE(load(lens + "lens_radius = 0\n" + mesh_).camera.hasLens());
+  expectError(lens + "lens_radius = -1\nfocus_distance = 4\n" + mesh_, 8,
+              {"'lens_radius' must not be negative, but is -1"});
+  expectError(lens + "lens_radius = 1\n" + mesh_, 8, {"'lens_radius' needs 'focus_distance'"});
+  expectError(lens + "lens_radius = 1\nfocus_distance = 0\n" + mesh_, 9,
+              {"'focus_distance' is 0, outside 1e-09 to 1e+09"});
+  expectError(lens + "focus_distance = 4\n" + mesh_, 8, {"no effect without 'lens_radius'"});
+  expectError(lens + "lens_radius = 1\nfocal_distance = 4\n" + mesh_, 9,
+              {"did you mean 'focus_distance'?"});
+}
+
 TEST_F(SceneToml, LightKeysBelongToTheirType) {
   const std::string point =
       base_ + "[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = [1, 1, 1]\n";
@@ -179,6 +199,49 @@ TEST(Camera, FilmCornersAndBack) {
   EXPECT_NEAR(back.x, 0.2f, 1e-5f);
   EXPECT_NEAR(back.y, 0.9f, 1e-5f);
   EXPECT_LT(projectToFilm(camera, film, {1, 2, 4}).depth, 0.0f);
+}
+
+// Rays from all over the lens meet in the plane in focus; along each, projectToFilm() is the
+// inverse.
+TEST(Camera, RaysThroughALens) {
+  Camera camera;
+  camera.position = {1, 2, 3};
+  camera.shift = {0.1f, -0.2f};
+  camera.lensRadius = 0.5f;
+  camera.focusDistance = 4.0f;
+  const Film film{200, 100};
+  const Vec3 inFocus = camera.position + 4.0f * filmAtUnitDepth(camera, film, 0.2f, 0.9f);
+  for (const Point2 u : {Point2{0.5f, 0.5f}, {0.0f, 0.3f}, {0.9f, 0.6f}}) {
+    const Vec3 lens = sampleLens(camera, [&] { return u; });
+    EXPECT_LE(length(lens), 0.5f + 1e-6f);
+    EXPECT_EQ(dot(lens, camera.forward), 0.0f);
+    const Ray ray = cameraRay(camera, film, 0.2f, 0.9f, lens);
+    EXPECT_EQ(ray.origin, camera.position + lens);
+    EXPECT_LT(length(cross(inFocus - ray.origin, ray.direction)), 1e-5f);
+    for (const float distance : {0.5f, 20.0f}) {
+      const RasterPoint back =
+          projectToFilm(camera, film, ray.origin + distance * ray.direction, lens);
+      EXPECT_NEAR(back.x, 0.2f, 1e-5f);
+      EXPECT_NEAR(back.y, 0.9f, 1e-5f);
+      EXPECT_NEAR(back.depth, distance * dot(ray.direction, camera.forward), 1e-5f);
+    }
+  }
+  camera.lensRadius = 0.0f;
+  EXPECT_EQ(sampleLens(camera, []() -> Point2 { throw 1; }), Vec3());
+}
+
+// The record of an image tells one lens from another, and a pinhole has no distance.
+TEST(Camera, TheHashOfAViewFollowsTheLens) {
+  Camera camera;
+  const Film film{8, 6};
+  const uint64_t pinhole = hashView(camera, film);
+  camera.focusDistance = 3.0f;
+  EXPECT_EQ(hashView(camera, film), pinhole);
+  camera.lensRadius = 0.5f;
+  const uint64_t lens = hashView(camera, film);
+  EXPECT_NE(lens, pinhole);
+  camera.focusDistance = 2.0f;
+  EXPECT_NE(hashView(camera, film), lens);
 }
 
 TEST_F(SceneToml, BackslashesOfFileNamesCountAsSlashes) {

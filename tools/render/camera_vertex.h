@@ -23,15 +23,17 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
   return path;
 }
 
-// The same for the camera ray through a pixel, at a point of the pixel's unit square.
+// The same for a camera ray through a pixel, at a point of the pixel's unit square. A lens takes
+// the next point of `rng`.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
                                     uint32_t y, Point2 at, Rng& rng, RadianceSample& out,
                                     const SpecularLightSampling& specularLights = {}) {
   const Scene& scene = rays.scene();
-  const Vec3 direction = cameraDirection(scene.camera, scene.film,
-                                         (static_cast<float>(x) + at.x) / float(scene.film.width),
-                                         (static_cast<float>(y) + at.y) / float(scene.film.height));
-  return traceCameraPath(rays, lights, scene.camera.position, direction, rng, out, specularLights);
+  const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
+  const Ray ray =
+      cameraRay(scene.camera, scene.film, (static_cast<float>(x) + at.x) / float(scene.film.width),
+                (static_cast<float>(y) + at.y) / float(scene.film.height), lens);
+  return traceCameraPath(rays, lights, ray.origin, ray.direction, rng, out, specularLights);
 }
 
 // Albedo and normal of the shading point.

@@ -93,8 +93,31 @@ void aim(const Window& window, const Pixels& pixels, Camera& camera) {
                   static_cast<float>(y / (2.0 * half * part))};
 }
 
+double lengthOf(const FilePoint& v) { return std::hypot(v[0], v[1], v[2]); }
+
+// Lengths are those of the camera's space, which its transform may scale.
+void readLens(const Entity& entity, const Affine& worldFromCamera, Notes& notes, Camera& camera) {
+  const Params& p = entity.params;
+  const double radius = p.number("lensradius", 0.0, 0.0), distance = p.number("focaldistance", 1e6);
+  if (!(radius > 0.0)) return;
+  const double across = lengthOf(direction(worldFromCamera, {1, 0, 0})),
+               up = lengthOf(direction(worldFromCamera, {0, 1, 0})),
+               along = lengthOf(direction(worldFromCamera, {0, 0, 1}));
+  if (std::fabs(across - up) > 1e-3 * across)
+    notes.add(*p.placeOf("lensradius"), "an oval lens is rendered as a circle of the same area");
+  const double lens = radius * std::sqrt(across * up), focus = distance * along;
+  if (!(lens <= kMaxLensLength)) failAt(*p.placeOf("lensradius"), "the lens is too large");
+  if (!(focus >= kMinFocusDistance && focus <= kMaxLensLength)) {
+    const Place* given = p.placeOf("focaldistance");
+    failAt(given ? *given : entity.place,
+           "'focaldistance' must be above 0, and at most 1e9 in the world");
+  }
+  camera.lensRadius = static_cast<float>(lens);
+  camera.focusDistance = static_cast<float>(focus);
+}
+
 bool unit(FilePoint v, Vec3& out) {
-  const double length = std::hypot(v[0], v[1], v[2]);
+  const double length = lengthOf(v);
   if (!(length > 0.0) || !std::isfinite(length)) return false;
   out = {float(v[0] / length), float(v[1] / length), float(v[2] / length)};
   return true;
@@ -146,16 +169,13 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
   constexpr float kMin = 1e-5f, kMaxFov = 3.1415f;
   if (!(camera.verticalFovRad > kMin && camera.verticalFovRad < kMaxFov))
     failAt(entity.place, "the field of view is too small or too large");
+  readLens(entity, *worldFromCamera, notes, camera);
   // Adding 0.0 turns -0 into 0.
   const FilePoint position = worldFromCamera->point({0, 0, 0});
   const bool given = entity.place.file || !builder.including();
   if (given)
     builder.addCamera("", {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, camera,
                       pixels.cropped());
-  const Params& p = entity.params;
-  if (p.number("lensradius", 0.0, 0.0) > 0.0)
-    notes.add(*p.placeOf("lensradius"), "depth of field is not rendered: everything is sharp");
-  p.ignore({"focaldistance"});
 }
 
 }  // namespace bnvpl::pbrt

@@ -8,6 +8,21 @@ Film readFilm(const TomlSection& s) {
   return {s.integer("width", 1, kMaxFilmSide), s.integer("height", 1, kMaxFilmSide)};
 }
 
+void readLens(const TomlSection& s, Camera& c) {
+  if (s.has("lens_radius"))
+    c.lensRadius = static_cast<float>(s.number("lens_radius", 0.0, kMaxLensLength));
+  if (s.has("focus_distance")) {
+    if (!s.has("lens_radius")) {
+      s.fail(s.node("focus_distance"),
+             "'focus_distance' has no effect without 'lens_radius'; give both or none");
+    }
+    c.focusDistance =
+        static_cast<float>(s.number("focus_distance", kMinFocusDistance, kMaxLensLength));
+  } else if (c.hasLens()) {
+    s.fail(s.node("lens_radius"), "'lens_radius' needs 'focus_distance'; add it");
+  }
+}
+
 // Reads everything but the position.
 Camera readCamera(const TomlSection& s, const FilePoint& position, bool mirrored) {
   Camera c;
@@ -27,6 +42,7 @@ Camera readCamera(const TomlSection& s, const FilePoint& position, bool mirrored
   if (s.flag("mirrored", mirrored)) c.right = -c.right;
   c.verticalFovRad = radians(s.number("vertical_fov_deg", 0.001, 179.9));
   if (s.has("shift")) c.shift = s.pair("shift", 1000.0);
+  readLens(s, c);
   return c;
 }
 
@@ -39,9 +55,9 @@ TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirror
         readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
   }
   if (root.contains("camera")) {
-    const TomlSection camera(
-        file, "[camera]", tableOf(file, root, "camera"),
-        {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift", "mirrored"});
+    const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),
+                             {"position", "look_at", "forward", "up", "vertical_fov_deg", "shift",
+                              "mirrored", "lens_radius", "focus_distance"});
     view.position = camera.place("position");
     view.camera = readCamera(camera, view.position, mirrored);
   }

@@ -95,9 +95,28 @@ TEST_F(PbrtCamera, ScreenWindowsMayLieAnywhere) {
   expectNear(middle, normalize(s.camera.forward + s.camera.right + 1.5f * s.camera.up), 1e-6f);
 }
 
+// Lengths of the lens are those of the camera's space.
+TEST_F(PbrtCamera, Lens) {
+  const std::string camera =
+      "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3";
+  const Scene s = view("LookAt 0 0 -5  0 0 0  0 1 0 " + camera);
+  EXPECT_FLOAT_EQ(s.camera.lensRadius, 0.1f);
+  EXPECT_FLOAT_EQ(s.camera.focusDistance, 3.0f);
+  EXPECT_EQ(countContaining(s.warnings, "lens"), 0u);
+  const Scene scaled = view("Scale -2 2 2 LookAt 0 0 -5  0 0 0  0 1 0 " + camera);
+  EXPECT_FLOAT_EQ(scaled.camera.lensRadius, 0.05f);  // the world is half as large as it
+  EXPECT_FLOAT_EQ(scaled.camera.focusDistance, 1.5f);
+  const Scene uneven = view("Scale 2 8 1 " + camera);
+  EXPECT_EQ(countContaining(uneven.warnings, "oval lens"), 1u);
+  EXPECT_FLOAT_EQ(uneven.camera.lensRadius, 0.025f);
+  EXPECT_FLOAT_EQ(view("Camera \"perspective\" \"float lensradius\" 1").camera.focusDistance, 1e6f);
+  EXPECT_FALSE(view("Camera \"perspective\" \"float focaldistance\" 3").camera.hasLens());
+  expectError("Camera \"perspective\" \"float lensradius\" -1", "1:22", {"lensradius"});
+  expectError("Camera \"perspective\" \"float lensradius\" 1 \"float focaldistance\" 0", "1:43",
+              {"'focaldistance' must be above 0"});
+}
+
 TEST_F(PbrtCamera, WhatIsNotRenderedIsNoted) {
-  const Scene s = view("Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3");
-  EXPECT_EQ(countContaining(s.warnings, "depth of field"), 1u);
   EXPECT_EQ(countContaining(view("Camera \"realistic\"").warnings, "'realistic'"), 1u);
   expectError("Camera \"perspective\" \"float screenwindow\" [1 2]", "1:22", {"xmin"});
   expectError("Film \"rgb\" \"integer xresolution\" 0", "1:12", {"xresolution"});

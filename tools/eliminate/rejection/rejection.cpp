@@ -39,9 +39,10 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
   for (uint64_t i = 0; i < count; ++i) {
     const Point2 film = r2Sequence(i, 0.5, 0.5);
     Rng rng(key, i);
-    const SpecularPath path = followSpecularPath(
-        *in.rays, *in.lights, scene.camera.position,
-        cameraDirection(scene.camera, scene.film, film.x, film.y), Arrival{}, rng);
+    const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
+    const Ray ray = cameraRay(scene.camera, scene.film, film.x, film.y, lens);
+    const SpecularPath path =
+        followSpecularPath(*in.rays, *in.lights, ray.origin, ray.direction, Arrival{}, rng);
     if (path.rough) points.push_back(path.hit);
     if (in.progress) in.progress(1);
   }

@@ -56,7 +56,8 @@ bool Comparison::sameViews() const {
   return a_.film.width == b_.film.width && a_.film.height == b_.film.height &&
          samePlace(c.position, d.position) && near(c.forward, d.forward) &&
          near(c.right, d.right) && near(c.up, d.up) && near(c.verticalFovRad, d.verticalFovRad) &&
-         near(c.shift[0], d.shift[0]) && near(c.shift[1], d.shift[1]);
+         near(c.shift[0], d.shift[0]) && near(c.shift[1], d.shift[1]) &&
+         c.lensRadius == d.lensRadius && (!c.hasLens() || c.focusDistance == d.focusDistance);
 }
 
 bool Comparison::sameLight(const LightSpec& l, const LightSpec& m) const {

@@ -58,6 +58,9 @@ Json describeViews(const Scene& scene) {
                     {"vertical_fov_deg", c.verticalFovRad * kDegPerRad},
                     {"shift", c.shift},
                     {"film", sizeText(scene.views[i].film)}});
+    if (!c.hasLens()) continue;
+    list.back()["lens_radius"] = c.lensRadius;
+    list.back()["focus_distance"] = c.focusDistance;
   }
   return list;
 }

@@ -43,6 +43,10 @@ std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool
                      "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n";
   if (c.shift != std::array<float, 2>{})
     text += "shift = [" + shortestText(c.shift[0]) + ", " + shortestText(c.shift[1]) + "]\n";
+  if (c.hasLens()) {
+    text += "lens_radius = " + shortestText(c.lensRadius) +
+            "\nfocus_distance = " + shortestText(c.focusDistance) + "\n";
+  }
   if (isMirrored(c) != guess) text += std::string("mirrored = ") + (guess ? "false\n" : "true\n");
   return text;
 }

@@ -28,7 +28,8 @@ class CameraPath {
     const View& view = views.views[turn.view];
     const Point2 film = r2Sequence(turn.path, double{toUnitFloat(random64(key, 0, 2 * turn.view))},
                                    double{toUnitFloat(random64(key, 0, 2 * turn.view + 1))});
-    next_ = {view.camera.position, cameraDirection(view.camera, view.film, film.x, film.y)};
+    const Vec3 lens = sampleLens(view.camera, [&] { return rng_.nextPoint(); });
+    next_ = cameraRay(view.camera, view.film, film.x, film.y, lens);
   }
   const Ray& next() const { return next_; }
   // Processes the hit of next(): adds a candidate at a rough vertex after the first, and samples

@@ -70,11 +70,14 @@ CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint3
   const uint64_t index = uint64_t{y} * scene.film.width + x;
   const Point2 jitter = r2Sequence(sample, double{toUnitFloat(random64(key, index, 0))},
                                    double{toUnitFloat(random64(key, index, 1))});
+  const Vec3 lens =
+      sampleLens(scene.camera, [&] { return owenSobol(sample, random64(key, index, 2)); });
+  const Ray ray =
+      cameraRay(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
+                (float(y) + jitter.y) / float(scene.film.height), lens);
   CameraSample s;
-  s.origin = scene.camera.position;
-  s.direction =
-      cameraDirection(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
-                      (float(y) + jitter.y) / float(scene.film.height));
+  s.origin = ray.origin;
+  s.direction = ray.direction;
   s.rng = Rng(key + 1, index * stride + sample);
   return s;
 }

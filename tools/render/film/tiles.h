@@ -58,7 +58,8 @@ void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& coun
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
               std::span<PixelCounts> counts);
 
-// Camera ray of a sample, stratified with the pixel's other samples.
+// Camera ray of a sample: place in the pixel and point of the lens, stratified with those of the
+// pixel's other samples.
 CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
                         uint32_t sample);
 

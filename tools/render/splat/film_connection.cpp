@@ -9,25 +9,29 @@ namespace bnvpl {
 
 // Radiance of the pixel = 1 / A times the integral of radiance * |cos| / (d^2 cos^3 theta) over the
 // surfaces that it sees, with A the pixel's area on the plane at depth 1 and theta the angle to the
-// viewing axis, so that d cos theta is the depth.
-float samplesPerArea(const Scene& scene, const SurfacePoint& seen) {
-  const Vec3 way = seen.position - scene.camera.position;
+// viewing axis, so that d cos theta is the depth. With a lens this holds from each of its points,
+// as the pixel's image in the plane in focus is the same from all, and the radiance of the pixel is
+// the mean over the lens.
+float samplesPerArea(const Scene& scene, const SurfacePoint& seen, Vec3 origin) {
+  const Vec3 way = seen.position - origin;
   const float depth = dot(way, scene.camera.forward);
   return dot(seen.ng, seen.wo) * length(way) /
          (depth * depth * depth * pixelAreaAtUnitDepth(scene.camera, scene.film));
 }
 
-std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex) {
+std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex,
+                                            Vec3 lens) {
   const Scene& scene = rays.scene();
   const Film& film = scene.film;
-  const RasterPoint at = projectToFilm(scene.camera, film, vertex.position);
+  const RasterPoint at = projectToFilm(scene.camera, film, vertex.position, lens);
   if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return {};
-  const Vec3 way = vertex.position - scene.camera.position;
+  const Vec3 origin = scene.camera.hasLens() ? scene.camera.position + lens : scene.camera.position;
+  const Vec3 way = vertex.position - origin;
   if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon arrived on the other side
   // Traces a camera ray, so that the vertex scatters as for a camera path. Its hit is the vertex if
   // the triangle is the same or, at an edge, if it lies within the rounding of an offset origin.
   SurfacePoint seen;
-  if (!rays.closestHit(scene.camera.position, way / length(way), seen)) return {};
+  if (!rays.closestHit(origin, way / length(way), seen)) return {};
   const Vec3 tolerance = rays.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
   if (seen.triangle != vertex.triangle &&
       lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
@@ -40,7 +44,7 @@ std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfaceP
   const auto x = std::min(film.width - 1, static_cast<uint32_t>(at.x * float(film.width)));
   const auto y = std::min(film.height - 1, static_cast<uint32_t>(at.y * float(film.height)));
   seen.position = vertex.position;
-  return FilmConnection{y * film.width + x, samplesPerArea(scene, seen), value};
+  return FilmConnection{y * film.width + x, samplesPerArea(scene, seen, origin), value};
 }
 
 }  // namespace bnvpl

@@ -14,11 +14,13 @@ struct FilmConnection {
   Vec3 value;     // BSDF of the rough lobes, 1/sr
 };
 
-// Connects a vertex where a photon arrived from direction vertex.wo. Returns nothing if the camera
-// does not see it directly or the BSDF is 0. A photon of flux F adds F * value * perArea to the
-// radiance of the pixel.
-std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex);
-// perArea of a vertex that the camera sees; `seen.wo` points to the camera.
-float samplesPerArea(const Scene& scene, const SurfacePoint& seen);
+// Connects a vertex where a photon arrived from direction vertex.wo with a point of the lens, which
+// is relative to the camera's position and uniform on the lens (sampleLens()). Returns nothing if
+// it is not seen directly from there or the BSDF is 0. A photon of flux F adds F * value * perArea
+// to the radiance of the pixel.
+std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex,
+                                            Vec3 lens);
+// perArea of a vertex that is seen from `origin`, a point of the lens; `seen.wo` points there.
+float samplesPerArea(const Scene& scene, const SurfacePoint& seen, Vec3 origin);
 
 }  // namespace bnvpl

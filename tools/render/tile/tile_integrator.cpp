@@ -205,12 +205,12 @@ class TileIntegrator::TileIndirectRays {
   void sendFrom(size_t sample, unsigned rays, uint64_t key) {
     if (!points_.bsdf[sample] || rays == 0) return;
     const SpecularPath& path = points_.paths[sample];
-    parts_.rays->send(
-        {directions_[points_.indexOf(sample)], path.throughput, learned_,
-         parts_.caustics && path.specularBounces == 0 ? parts_.caustics->shared(path.hit)
-                                                      : SharedWithPhotons{},
-         parts_.reuse > 1},
-        rays, sampleIndexOf(tile_, sample) * rays, key, found_[sample]);
+    parts_.rays->send({directions_[points_.indexOf(sample)], path.throughput, learned_,
+                       parts_.caustics && path.specularBounces == 0
+                           ? parts_.caustics->shared(path.hit, tile_.samples[sample].origin)
+                           : SharedWithPhotons{},
+                       parts_.reuse > 1},
+                      rays, sampleIndexOf(tile_, sample) * rays, key, found_[sample]);
   }
 
   void reuseWithin(std::span<const size_t> members) {

@@ -2,6 +2,7 @@
 
 #include "tools/common/files/streams.h"
 #include "tools/render/splat/film_connection.h"
+#include "transport/camera.h"
 
 namespace bnvpl {
 
@@ -31,17 +32,18 @@ void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
     if (!(probability > 0.0f)) continue;
     PhotonStart start = lights_.emit(light, rng);
     start.flux *= static_cast<float>(1.0 / (double{probability} * pixels));
-    follow(PhotonWalk(start, maxBounces_ + 1, rng), index, out);
+    const Vec3 lens = sampleLens(rays_.scene().camera, [&] { return rng.nextPoint(); });
+    follow(PhotonWalk(start, maxBounces_ + 1, rng), lens, index, out);
   }
 }
 
-void LightTracer::follow(PhotonWalk photon, uint64_t index, Splats& out) const {
+void LightTracer::follow(PhotonWalk photon, Vec3 lens, uint64_t index, Splats& out) const {
   for (SurfacePoint hit; photon.goesOn();) {
     rays_.closestHit(photon.next().origin, photon.next().direction, hit);
     const PhotonWalk before = photon;
     bool seen = false;
     photon.advance(rays_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
-      if (!firstBounce) connect(bsdf.point(), flux, out);
+      if (!firstBounce) connect(bsdf.point(), lens, flux, out);
       seen = inSight(bsdf.point());
     });
     if (seen) return followBranches(before, hit, index, out);
@@ -53,23 +55,26 @@ void LightTracer::follow(PhotonWalk photon, uint64_t index, Splats& out) const {
 void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
                                  Splats& out) const {
   for (uint64_t k = 0; k < kBranches; ++k) {
+    const Vec3 lens = sampleLens(rays_.scene().camera, [&] {
+      return owenSobol(static_cast<uint32_t>(k), random64(key_ + 2, index, 0));
+    });
     PhotonWalk branch = photon.branch(1.0f / kBranches, Rng(key_ + 1, index * kBranches + k));
     branch.advance(rays_, hit, [](const Bsdf&, Vec3, bool) {});
     const PhotonFate fate = followPhoton(rays_, branch, [&](const Bsdf& bsdf, Vec3 flux, bool) {
-      connect(bsdf.point(), flux, out);
+      connect(bsdf.point(), lens, flux, out);
     });
     out.nonFinite += fate.finite ? 0 : 1;
   }
 }
 
-// Whether a vertex and the camera see each other. The vertex need not lie on the film.
+// Whether a vertex and the lens's centre see each other. The vertex need not lie on the film.
 bool LightTracer::inSight(const SurfacePoint& vertex) const {
   return !rays_.occluded(rays_.offsetOrigin(vertex.position, vertex.ng),
                          rays_.scene().camera.position);
 }
 
-void LightTracer::connect(const SurfacePoint& vertex, Vec3 flux, Splats& out) const {
-  if (const auto c = connectToFilm(rays_, vertex))
+void LightTracer::connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, Splats& out) const {
+  if (const auto c = connectToFilm(rays_, vertex, lens))
     out.list.push_back({c->pixel, flux * c->value * c->perArea});
 }
 

@@ -18,11 +18,12 @@ class LightTracer {
   void follow(uint64_t begin, uint64_t end, Splats& out) const;
 
  private:
-  void follow(PhotonWalk photon, uint64_t index, Splats& out) const;
+  // `lens`: the point of the lens with which the photon's vertices are connected.
+  void follow(PhotonWalk photon, Vec3 lens, uint64_t index, Splats& out) const;
   void followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
                       Splats& out) const;
   bool inSight(const SurfacePoint& vertex) const;
-  void connect(const SurfacePoint& vertex, Vec3 flux, Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, Splats& out) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

@@ -7,6 +7,7 @@
 #include "tools/common/files/streams.h"
 #include "tools/render/splat/add_splats.h"
 #include "tools/render/splat/film_connection.h"
+#include "transport/camera.h"
 #include "transport/photon_walk.h"
 #include "transport/walk.h"
 
@@ -44,13 +45,14 @@ void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
         PilotContribution contribution;
         Splats splats;
         const Vec3 flux = start.flux * (1.0f / static_cast<float>(photons_));
-        trace({e.light, 1.0f, start, flux, lights_.hittable(e.light)}, rng, splats);
+        const Vec3 lens = lensPoint(rng);
+        trace({e.light, 1.0f, start, flux, lights_.hittable(e.light), lens}, rng, splats);
         for (const Splat& splat : splats.list) contribution.target += double{mean(splat.radiance)};
         if (!withProxy) return contribution;
         constexpr unsigned kProxyBounces = 4;
         followPhoton(rays_, PhotonWalk(start, kProxyBounces, rng),
                      [&](const Bsdf& bsdf, Vec3 arriving, bool) {
-                       if (const auto film = connectToFilm(rays_, bsdf.point()))
+                       if (const auto film = connectToFilm(rays_, bsdf.point(), lens))
                          contribution.proxy += double{mean(arriving * film->value) * film->perArea};
                      });
         return contribution;
@@ -103,8 +105,12 @@ void Caustics::add(const Splat& splat, PhotonLight& to) {
   }
 }
 
-SharedWithPhotons Caustics::shared(const SurfacePoint& point) const {
-  return sharedBy(samplesPerArea(rays_.scene(), point));
+SharedWithPhotons Caustics::shared(const SurfacePoint& point, Vec3 origin) const {
+  return sharedBy(samplesPerArea(rays_.scene(), point, origin));
+}
+
+Vec3 Caustics::lensPoint(Rng& rng) const {
+  return sampleLens(rays_.scene().camera, [&] { return rng.nextPoint(); });
 }
 
 SharedWithPhotons Caustics::sharedBy(float samplesPerArea) const {
@@ -119,11 +125,12 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& 
   const float guided = guide_.density(e);
   const double probability = double{lights_.pickProbability(e.light)} * double{guided};
   if (!(probability > 0.0)) return kNoLamp;
-  Photon photon{e.light, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light)};
+  Photon photon{e.light, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light), {}};
   const uint64_t lamp =
       photon.hittable ? lampOf(lights_, e.light, -photon.start.direction) : kNoLamp;
   if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
     return lamp;  // the pilot does not need it, or its light is left to rays
+  photon.lens = lensPoint(rng);
   photon.flux = photon.start.flux * static_cast<float>(1.0 / (probability * double(photons_)));
   trace(photon, rng, out);
   return lamp;
@@ -177,7 +184,7 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
 
 void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon,
                        Splats& out) const {
-  const auto film = connectToFilm(rays_, vertex);
+  const auto film = connectToFilm(rays_, vertex, photon.lens);
   if (!film) return;
   const float share =
       1.0f - sharedBy(film->perArea).ofRays(photon.light, -photon.start.direction, photon.guided);

@@ -37,8 +37,9 @@ class Caustics {
            unsigned bounces, uint64_t seed, const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
-  // Parameters of MIS with rays that leave a directly visible point.
-  SharedWithPhotons shared(const SurfacePoint& point) const;
+  // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
+  // origin of the camera ray.
+  SharedWithPhotons shared(const SurfacePoint& point, Vec3 origin) const;
   CausticStats stats() const { return {lamps_, lamps_ - dense_.size(), useful_}; }
 
  private:
@@ -50,6 +51,7 @@ class Caustics {
   void chooseLamps(uint64_t key, const ProgressFn& progress);
   static void add(const Splat& splat, PhotonLight& to);
   SharedWithPhotons sharedBy(float samplesPerArea) const;
+  Vec3 lensPoint(Rng& rng) const;
   // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
   static constexpr uint64_t kNoLamp = UINT64_MAX;
   uint64_t follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const;
@@ -60,6 +62,7 @@ class Caustics {
     PhotonStart start;
     Vec3 flux;
     bool hittable;  // whether rays can hit the light
+    Vec3 lens;      // the point of the lens with which its vertices are connected
   };
   void trace(const Photon& photon, Rng& rng, Splats& out) const;
   // Follows the photon from a rough vertex, by its rough lobes.
