@@ -25,7 +25,7 @@ InputFolder makeFolder() {
   return folder;
 }
 
-void requireSane(const pbrt::MeshData& mesh) {
+void requireSane(const MeshData& mesh) {
   const size_t n = mesh.vertices();
   require(mesh.positions.size() == 3 * n, "each vertex has three coordinates");
   require(mesh.normals.empty() || mesh.normals.size() == 3 * n,

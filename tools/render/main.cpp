@@ -23,7 +23,6 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   run.checkFiles();
   const VplTable lit = readLit(files.lit, options, run.estimating());
   Scene scene = loadSceneFor(request.scene, files.lit.empty() ? Warnings::Print : Warnings::Hold);
-  if (!scene.isToml()) scene.requireLight();
   run.filesReady(scene.files);
   if (!options[kSizeOption].empty()) scene.film = parseSize(options[kSizeOption]);
   if (!files.lit.empty()) requireLitOf(scene, lit, files.lit);

@@ -125,7 +125,7 @@ std::string plySquare(const std::string& format) {
 
 TEST(Ply, EveryFormat) {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
-    const pbrt::MeshData mesh = pbrt::readPly("a.ply", plySquare(format));
+    const MeshData mesh = pbrt::readPly("a.ply", plySquare(format));
     const std::vector<double> wanted{0, 0, 1, 2, 0, 1, 2, 1, 1, 0, 1, 1};
     EXPECT_EQ(mesh.positions, wanted) << format;
     ASSERT_EQ(mesh.triangles.size(), 2u);

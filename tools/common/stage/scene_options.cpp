@@ -99,7 +99,10 @@ Scene loadSceneFor(const SceneOptions& options, Warnings warnings) {
                              "; the first is taken, another by --camera");
     holdWarning(scene.warnings.back());
   }
-  if (warnings == Warnings::Print) printHeldWarnings();
+  if (warnings == Warnings::Print) {
+    if (!scene.isToml()) scene.requireLight();
+    printHeldWarnings();
+  }
   return scene;
 }
 

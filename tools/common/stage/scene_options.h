@@ -28,11 +28,12 @@ CLI::Option* addSceneFlag(CLI::App& cli, SceneOptions& options, const std::strin
 Json toJson(const SceneOptions& options);
 SceneOptions sceneOptionsOf(const Json& json);
 
-// Whether loading a scene prints its warnings. Tools hold them (holdWarning()) if an earlier stage
-// has printed them, or if they report them in another way.
+// Whether loading a scene prints its warnings, and refuses one without light that is no .toml.
+// Tools hold them (holdWarning()) if an earlier stage has printed them, or if they report them
+// otherwise.
 enum class Warnings { Print, Hold };
 // Loads the scene. Its camera is the first view that the options name, otherwise the first of the
-// file.
+// file. Throws InputError.
 Scene loadSceneFor(const SceneOptions& options, Warnings warnings);
 
 // All views that the options name, otherwise the scene's own. Adds their files to scene.files.
