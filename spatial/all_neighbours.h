@@ -58,11 +58,11 @@ class AllNeighbours {
   void visitLeaf(uint32_t leaf, Search& search) const;
 
   uint32_t firstLeaf_ = 0;
-  std::vector<Box> boxes_;              // one per node
+  std::vector<Box> boxes_;              // one for each node
   std::vector<uint32_t> leafBegin_;     // first place of each leaf, and the number of points
-  std::vector<float> x_, y_, z_;        // by place
-  std::vector<uint32_t> index_;         // of the point at a place
-  std::vector<uint32_t> place_, leaf_;  // of each point
+  std::vector<float> x_, y_, z_;        // coordinates by place
+  std::vector<uint32_t> index_;         // index of the point at a place
+  std::vector<uint32_t> place_, leaf_;  // place and leaf of each point
 };
 
 }  // namespace bnvpl
