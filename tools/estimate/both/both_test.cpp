@@ -6,11 +6,12 @@
 #include "tests/support/pipeline.h"
 #include "tests/transport/plain_scene.h"
 #include "tools/estimate/both/receivers.h"
+#include "tools/estimate/both/split.h"
 
 namespace bnvpl::test {
 namespace {
 
-using methods::estimate::both::Receivers;
+using namespace methods::estimate::both;
 
 // The Cornell box lit by its area light and by a sky whose photons hardly ever find it, because
 // they cover a much larger box.
@@ -253,6 +254,46 @@ TEST(Both, ReceiversStateTheErrorOfIrradiance) {
   // A hundred times the variance is ten times the error.
   for (double& v : stated) v *= 100.0;
   EXPECT_NEAR(receivers.relativeError(flux, stated) / error, 10.0, 1.5);
+}
+
+// Estimate of a pilot that found few samples, one in twenty of which is twenty times as bright.
+PilotEstimate fewSamples(Rng& rng) {
+  PilotEstimate found;
+  for (float product = rng.next(); product > 0.6f; product *= rng.next()) {
+    const double size = rng.next() < 0.05f ? 20.0 : 1.0;
+    found.flux += size;
+    found.variance += size * size;
+  }
+  return found;
+}
+
+// Photons and paths are equally good everywhere, but the pilots found few samples. Weights that
+// believed the variances of these would waste work.
+TEST(Both, WeightsAreNotLedByFewSamplesOfThePilots) {
+  constexpr size_t kSide = 30, kVpls = kSide * kSide;
+  constexpr double kTimes = 30.0;  // work over that of a pilot
+  const World world("test/two-patches.toml");
+  VplTable vpls;
+  Pilots pilots;
+  pilots.photons = kVpls, pilots.points = 1.0, pilots.photonPower = 1.0, pilots.photonCost = 1.0;
+  pilots.pointCost.assign(kVpls, 1.0);
+  Rng rng(7, 0);
+  double variance = 0.0;  // mean over both pilots
+  for (size_t i = 0; i < kVpls; ++i) {
+    vpls.position.push_back({float(i % kSide), float(i / kSide), 0.0f});
+    vpls.normal.push_back({0, 0, 1});
+    for (std::vector<PilotEstimate>* pilot : {&pilots.byPhotons, &pilots.byPaths}) {
+      pilot->push_back(fewSamples(rng));
+      variance += pilot->back().variance / (2.0 * kVpls);
+    }
+  }
+  const Split split = splitWork(vpls, world.rays, pilots, {kTimes * kVpls, 0.0});
+  double result = 0.0;
+  for (size_t i = 0; i < kVpls; ++i) {
+    const double w = split.share[i], points = std::max(1e-3, double(split.points[i]));
+    result += variance * (w * w * kVpls / double(split.photons) + (1.0 - w) * (1.0 - w) / points);
+  }
+  EXPECT_LT(result / kVpls / (variance / kTimes), 1.5);
 }
 
 }  // namespace

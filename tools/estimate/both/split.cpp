@@ -13,10 +13,11 @@ namespace bnvpl::methods::estimate::both {
 
 namespace {
 
-// Variances are pooled over the nearest VPLs whose normals differ by at most 60 degrees. The wide
-// pool supplies only the ratio of the two variances: rare bright samples show only where many VPLs
-// are pooled.
+// Pilots are pooled over the nearest VPLs whose normals differ by at most 60 degrees. Rare bright
+// samples show only in the wide pool.
 constexpr size_t kPool = 16, kWidePool = 96, kNearest = 160;
+// Number of samples in a pool that are trusted as much as the pool around it.
+constexpr double kTrusted = 10.0;
 // Standard deviations by which the pilots may differ before one of them is taken to have missed
 // light.
 constexpr double kMaxDeviations = 2.0;
@@ -54,15 +55,27 @@ struct VplStatistics {
   double photonVariance = 0.0, pointVariance = 0.0, flux = 0.0, pointCost = 0.0;
 };
 
-// Averages over the VPLs of a pool: variance of the flux in each pilot, and flux weighted by
-// inverse variance.
-struct Comparison {
-  double byPhotons = 0.0, byPoints = 0.0, flux = 0.0;
-  double ratio() const { return byPhotons > 0.0 ? byPoints / byPhotons : 0.0; }
+// Sizes of typical samples of both pilots where nothing is known of a pool.
+struct Samples {
+  double photons = 0.0, points = 0.0;
 };
 
-Comparison compare(std::span<const uint32_t> pool, const Pilots& pilots, double photonSample,
-                   double pointSample) {
+// Both pilots in a pool. `flux` is the average over its VPLs, weighted by inverse variance.
+struct Comparison {
+  Pooled photons, points;
+  double flux = 0.0;
+};
+
+// Size of a typical sample, variance / flux. Where the pool has few samples, flux^2 / variance, it
+// is drawn towards that of the pool around it: rare bright samples show only where many VPLs are
+// pooled.
+double sampleSize(const Pooled& here, double around) {
+  if (!(here.flux > 0.0 && here.variance > 0.0)) return around;
+  const double samples = here.flux * here.flux / here.variance;
+  return (here.flux + kTrusted * around) / (samples + kTrusted);
+}
+
+Comparison compare(std::span<const uint32_t> pool, const Pilots& pilots, const Samples& anywhere) {
   Pooled photons, points;
   for (const uint32_t k : pool) {
     photons.flux += pilots.byPhotons[k].flux;
@@ -70,8 +83,8 @@ Comparison compare(std::span<const uint32_t> pool, const Pilots& pilots, double 
     points.flux += pilots.byPaths[k].flux;
     points.variance += pilots.byPaths[k].variance;
   }
-  photons.variance += missedSquared(photons, photonSample);
-  points.variance += missedSquared(points, pointSample);
+  photons.variance += missedSquared(photons, anywhere.photons);
+  points.variance += missedSquared(points, anywhere.points);
   // Light that one pilot found and the other missed comes to the other in samples as rare and
   // bright as one in all that it drew here.
   const double difference = photons.flux - points.flux;
@@ -81,22 +94,25 @@ Comparison compare(std::span<const uint32_t> pool, const Pilots& pilots, double 
   points.variance += missedByPoints * missedByPoints;
   photons.variance += missedByPhotons * missedByPhotons;
   const double sum = photons.variance + points.variance;
-  const auto size = static_cast<double>(pool.size());
-  return {photons.variance / size, points.variance / size,
-          sum > 0.0
-              ? (photons.flux * points.variance + points.flux * photons.variance) / (sum * size)
-              : 0.0};
+  const double flux =
+      sum > 0.0 ? (photons.flux * points.variance + points.flux * photons.variance) / sum : 0.0;
+  return {photons, points, flux / static_cast<double>(pool.size())};
 }
 
-VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots, double photonSample,
-                         double pointSample) {
+// Samples of either pilot come like photons: the variance of a sum is its flux times the size of a
+// typical sample. Both estimate one flux, so their variances compare as the sizes do.
+VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots,
+                         const Samples& anywhere) {
   const auto near = wide.first(std::min(kPool, wide.size()));
-  const Comparison here = compare(near, pilots, photonSample, pointSample);
-  const Comparison around = compare(wide, pilots, photonSample, pointSample);
+  const Comparison here = compare(near, pilots, anywhere), around = compare(wide, pilots, anywhere);
+  const double photons = sampleSize(here.photons, sampleSize(around.photons, anywhere.photons));
+  const double points = sampleSize(here.points, sampleSize(around.points, anywhere.points));
+  // A pilot may have missed one sample of the pool.
+  const double flux = here.flux + std::min(photons, points) / static_cast<double>(near.size());
   VplStatistics v;
   v.flux = here.flux;
-  v.photonVariance = here.byPhotons * pilots.photons;
-  v.pointVariance = here.byPhotons * std::max(here.ratio(), around.ratio()) * pilots.points;
+  v.photonVariance = photons * flux * pilots.photons;
+  v.pointVariance = points * flux * pilots.points;
   for (const uint32_t k : near)
     v.pointCost += pilots.pointCost[k] / static_cast<double>(near.size());
   return v;
@@ -104,8 +120,8 @@ VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots, d
 
 std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pilots) {
   const KdTree tree(vpls.position);
-  const double photonSample = std::max(meanSample(pilots.byPhotons), 1e-6 * pilots.photonPower);
-  const double pointSample = meanSample(pilots.byPaths);
+  const Samples anywhere{std::max(meanSample(pilots.byPhotons), 1e-6 * pilots.photonPower),
+                         meanSample(pilots.byPaths)};
   std::vector<VplStatistics> statistics(vpls.size());
   parallelRanges(vpls.size(), 256, [&](size_t begin, size_t end) {
     std::vector<Neighbour> near;
@@ -117,7 +133,7 @@ std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pil
         if (pool.size() < kWidePool && dot(vpls.normal[n.index], vpls.normal[i]) >= kMinNormalDot)
           pool.push_back(n.index);
       }
-      statistics[i] = poolPilots(pool, pilots, photonSample, pointSample);
+      statistics[i] = poolPilots(pool, pilots, anywhere);
     }
   });
   return statistics;
