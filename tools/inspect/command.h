@@ -19,6 +19,7 @@ Command checkCommand(CLI::App& cli);
 Command exportCommand(CLI::App& cli);
 Command plotCommand(CLI::App& cli, ToolOptions& tool);  // with --depfile
 Command sceneCommand(CLI::App& cli);
+Command doctorCommand(CLI::App& cli);
 Command runCommand(CLI::App& cli);
 Command compareCommand(CLI::App& cli);
 

@@ -47,7 +47,19 @@ void warnOfBlack(const Image& image) {
   }
   printWarnings("vpl-render",
                 {"the image is black: the camera looks away from everything, or no light comes to "
-                 "what it sees; vpl-inspect scene shows camera and lights"});
+                 "what it sees; vpl-inspect doctor SCENE tells which, and what to change"});
+}
+
+// Rooms lit around two corners are 20 to 30 times darker than even light.
+constexpr double kDark = 70.0;
+
+void warnOfDark(const RenderResult& result) {
+  const double shown = result.stats.direct + result.stats.indirect;
+  if (!(shown > 0.0) || kDark * shown > result.evenRadiance) return;
+  printWarnings("vpl-render",
+                {"the image is " + formatSi(result.evenRadiance / shown) +
+                 " times darker than the power of the lights would make it if it fell evenly on "
+                 "all surfaces; vpl-inspect doctor SCENE tells where their light goes"});
 }
 
 double percentOf(double part, double whole) { return whole > 0 ? 100 * part / whole : 0.0; }
@@ -225,6 +237,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     summary.add("lamps_without_photons", caustics.sparseLamps,
                 caustics.sparseLamps > 0 ? line : "");
   }
+  if (only == "all") warnOfDark(result);
   summary.addNonFinite(stats.nonFinite, "samples");
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
+#include "scene/surface_area.h"
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/image_camera.h"
@@ -151,6 +153,9 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   result.vpls = integrator.vpls;
   result.emissionPoints = integrator.emissionPoints;
   result.caustics = integrator.caustics;
+  // The reflected half is reflected again: 0.5 / (1 - 0.5) = 1.
+  if (const double area = surfaceArea(rays.scene()); area > 0.0)
+    result.evenRadiance = double{mean(lights.totalPower())} / (std::numbers::pi * area);
   if (const auto budget = budgetOf(options)) {
     result.image = renderPasses(rays.scene(), integrator, film, *budget, result.stats,
                                 result.passes.emplace(), progress, resume, preview);

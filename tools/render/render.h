@@ -33,6 +33,9 @@ struct RenderResult {
   size_t vpls = 0, emissionPoints = 0;  // see Integrator
   CausticStats caustics = {};
   std::optional<PassesDone> passes;  // set if there is a budget
+  // Mean radiance that the power of the lights makes if it falls evenly on all surfaces and half of
+  // it is reflected, W/(m2 sr); 0 if unknown.
+  double evenRadiance = 0.0;
 };
 
 // Makes the integrator of render(). `probe` is set for a cost estimate.
