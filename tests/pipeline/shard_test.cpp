@@ -81,6 +81,8 @@ TEST_F(ShardRun, RenderGivesTheSameBytesInAnyNumber) {
   expectTheSameInParts("vpl-render", render + " --integrator path --spp 70", "path.exr", {1, 7});
   expectTheSameInParts("vpl-render", render + " --integrator light --spp 16", "light.exr",
                        {1, 7, 64});
+  expectTheSameInParts("vpl-render", render + " --integrator light --spp 4 --filter mitchell",
+                       "mitchell.exr", {7});
   expectTheSameInParts("vpl-render", render + " --integrator light --only direct", "direct.exr",
                        {2});
 }

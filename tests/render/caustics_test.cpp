@@ -194,7 +194,7 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
       world.scene.camera.position,
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
-    const Caustics caustics(world.rays, world.lights, photons, 8.0f, 0, 3, {});
+    const Caustics caustics(world.rays, world.lights, {}, photons, 8.0f, 0, 3, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
     return caustics.shared(seen, world.scene.camera.position).ofRays(lamp, {0, 1, 0}, 1.0f);

@@ -207,12 +207,12 @@ TEST(Fireflies, IntegratorsReportVisibleEmission) {
   for (const Given& way : ways) {
     const Values options = resolveRender(test::with({{"only", "direct"}, {"spp", "4"}}, way));
     const ProgressFn quiet;
-    const Integrator integrator =
-        integratorOf(options).make({world.rays, world.lights, {}, 1, Only::Direct, quiet}, options);
+    const Integrator integrator = integratorOf(options).make(
+        {world.rays, world.lights, {}, 1, Only::Direct, {}, quiet}, options);
     float most = 0.0f;
     const Tiles tiles(world.scene.film);
     for (size_t t = 0; t < tiles.count(); ++t) {
-      sampleTile(world.scene, integrator, 1, tiles.at(t), {0, 4, 4, 4},
+      sampleTile(world.scene, {}, integrator, 1, tiles.at(t), {0, 4, 4, 4},
                  [&](uint32_t, const RadianceSample& sample) {
                    ASSERT_LT(mean(sample.direct - sample.emission), 0.5f * lamp);
                    most = std::max(most, mean(sample.emission));

@@ -20,7 +20,14 @@ LAYERS = ["core", "formats", "spatial", "scene", "transport", "images", "tools"]
 STAGES = ["place", "eliminate", "estimate", "render"]
 # What vpl-render is made of, from the record of a sample up to the integrators.
 RENDER = [
-    ["sample.h", "camera_vertex.h", "tile_dimensions.h", "stage_options.h"],
+    [
+        "sample.h",
+        "pixel_filter.h",
+        "pixel_filter.cpp",
+        "camera_vertex.h",
+        "tile_dimensions.h",
+        "stage_options.h",
+    ],
     ["splat"],
     ["film"],
     ["light_tree"],

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/sampling.h"
+#include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
 #include "transport/camera.h"
 #include "transport/specular_path.h"
@@ -10,11 +11,15 @@
 namespace bnvpl {
 
 // Follows a camera ray to the first rough vertex. Emission that it hits on the way is direct light.
+// `weight`, by the pixel filter, becomes part of the throughput and of all light.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
-                                    Vec3 direction, Rng& rng, RadianceSample& out,
+                                    Vec3 direction, float weight, Rng& rng, RadianceSample& out,
                                     const SpecularLightSampling& specularLights = {}) {
-  const SpecularPath path =
+  SpecularPath path =
       followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, specularLights);
+  if (weight != 1.0f) {
+    for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.emissionLater}) *part *= weight;
+  }
   out.emission = path.emissionFirst;
   out.direct = path.emissionFirst + path.emissionLater;
   if (path.firstDistance < INFINITY) {
@@ -23,17 +28,19 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
   return path;
 }
 
-// The same for a camera ray through a pixel, at a point of the pixel's unit square. A lens takes
-// the next point of `rng`.
+// The same for a camera ray of a pixel, at a place that its filter gives. A lens takes the next
+// point of `rng`.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
-                                    uint32_t y, Point2 at, Rng& rng, RadianceSample& out,
+                                    uint32_t y, const PixelFilter::Sample& sample, Rng& rng,
+                                    RadianceSample& out,
                                     const SpecularLightSampling& specularLights = {}) {
   const Scene& scene = rays.scene();
   const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
-  const Ray ray =
-      cameraRay(scene.camera, scene.film, (static_cast<float>(x) + at.x) / float(scene.film.width),
-                (static_cast<float>(y) + at.y) / float(scene.film.height), lens);
-  return traceCameraPath(rays, lights, ray.origin, ray.direction, rng, out, specularLights);
+  const Ray ray = cameraRay(scene.camera, scene.film,
+                            (static_cast<float>(x) + sample.at.x) / float(scene.film.width),
+                            (static_cast<float>(y) + sample.at.y) / float(scene.film.height), lens);
+  return traceCameraPath(rays, lights, ray.origin, ray.direction, sample.weight, rng, out,
+                         specularLights);
 }
 
 // Albedo and normal of the shading point.
@@ -51,8 +58,8 @@ RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const Cam
                          Only only, bool indirect, Rng& rng, const Leaving& leaving,
                          const SpecularLightSampling& specularLights = {}) {
   RadianceSample out;
-  const SpecularPath path =
-      traceCameraPath(rays, lights, sample.origin, sample.direction, rng, out, specularLights);
+  const SpecularPath path = traceCameraPath(rays, lights, sample.origin, sample.direction,
+                                            sample.weight, rng, out, specularLights);
   const bool directOnly = only == Only::Direct || (!indirect && path.specularBounces == 0);
   if (!path.rough) return out;
   const Bsdf bsdf(rays.scene(), path.hit);

@@ -18,7 +18,7 @@ std::span<const Option> stageOptions() {
   static const std::string layersHelp = "extra channels of the image, or all" + layerList();
   static const std::array options = optionTable(
       kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kAdaptiveOption, kOnlyOption,
-      kSeedOption,
+      kSeedOption, kFilterOption, kFilterRadiusOption,
       inTopic(Topic::Files, unrecorded(textOption(kLayersKey.name, "", "NAME,...", layersHelp))),
       kSizeOption, kPixelsOption, kExposureOption);
   return options;
@@ -29,9 +29,24 @@ Only onlyOf(const Values& options) {
   return name == "direct" ? Only::Direct : name == "indirect" ? Only::Indirect : Only::Everything;
 }
 
+PixelFilter filterOf(const Values& options) {
+  using Kind = PixelFilter::Kind;
+  const std::string& name = options[kFilterOption];
+  const Kind kind = name == "gaussian"          ? Kind::Gaussian
+                    : name == "blackman-harris" ? Kind::BlackmanHarris
+                    : name == "mitchell"        ? Kind::Mitchell
+                                                : Kind::Box;
+  if (options.has(kFilterRadiusOption)) return {kind, options.real32(kFilterRadiusOption)};
+  return {kind, PixelFilter::usualRadius(kind)};
+}
+
 FilmOptions filmOptionsOf(const Values& options) {
-  return {static_cast<uint32_t>(options[kSppOption]), options[kSeedOption], onlyOf(options),
-          layersOf(options), redistributesFireflies(options)};
+  return {static_cast<uint32_t>(options[kSppOption]),
+          options[kSeedOption],
+          onlyOf(options),
+          layersOf(options),
+          redistributesFireflies(options),
+          filterOf(options)};
 }
 
 // Whether the integrator traces photons for this image.
@@ -132,8 +147,8 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
 Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                           const Values& options, const ProgressFn& progress, CostProbe* probe) {
   const FilmOptions film = filmOptionsOf(options);
-  return integratorOf(options).make({rays, lights, lit, film.seed, film.only, progress, probe},
-                                    options);
+  return integratorOf(options).make(
+      {rays, lights, lit, film.seed, film.only, film.filter, progress, probe}, options);
 }
 
 void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,

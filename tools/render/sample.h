@@ -37,6 +37,7 @@ struct RadianceSample {
 struct CameraSample {
   Vec3 origin, direction;
   Rng rng{0, 0};
+  float weight = 1.0f;      // factor of the light by the pixel filter; may be negative
   RadianceSample radiance;  // the integrator fills this in
 };
 

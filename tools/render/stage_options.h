@@ -34,6 +34,16 @@ inline constexpr TextOption kSizeOption = unrecorded(inTopic(
     Topic::Main,
     textOption("size", "", "WIDTHxHEIGHT",
                "size of the film instead of the scene's; keeps the vertical field of view")));
+inline constexpr TextOption kFilterOption = inTopic(
+    Topic::Quality,
+    choiceOption("filter", "box", "box|gaussian|blackman-harris|mitchell",
+                 "pixel filter of samples and photons; albedo, N and Z are means over the samples, "
+                 "which are spread like the filter"));
+inline constexpr RealOption kFilterRadiusOption =
+    inTopic(Topic::Quality,
+            optional(realOption("filter-radius", "", 0.25, 8, "pixels",
+                                "half the width of the filter; without it, box 0.5, gaussian and "
+                                "blackman-harris 1.5, mitchell 2")));
 inline constexpr TextOption kPixelsOption =
     choiceOption("pixels", "float", "half|float", "EXR channel type");
 inline constexpr TextOption kExposureOption = unrecorded(inTopic(

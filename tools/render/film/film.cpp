@@ -156,7 +156,8 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         film.done, resume,
         [&](size_t index) {
           const Tile tile = tiles.at(index);
-          sampleTile(scene, integrator, key, tile, {begin, end, options.spp, options.spp},
+          sampleTile(scene, options.filter, integrator, key, tile,
+                     {begin, end, options.spp, options.spp},
                      [&](uint32_t p, const RadianceSample& sample) {
                        const size_t i = tiles.pixelIndex(tile, p);
                        addSample(sample, film.pixels[i], film.counts[i]);

@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
+#include "tools/render/pixel_filter.h"
 
 namespace bnvpl {
 
@@ -18,6 +19,7 @@ struct FilmOptions {
   Only only = Only::Everything;
   std::vector<const Layer*> layers;    // channels beside R, G, B
   bool redistributeFireflies = false;  // see fireflies.h
+  PixelFilter filter = {};
 };
 
 struct FilmStats {
@@ -34,10 +36,10 @@ inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
          (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
 }
 
-// Renders with a box filter and samples that are stratified in each pixel. A tile depends only on
-// the seed and its position. Progress counts samples and photons. The state of `resume` holds the
-// sums of every pixel. A shard returns a blank image; the sums of its tiles and of its photons go
-// to the sink.
+// Renders with samples that are stratified in each pixel and spread like its filter. A tile depends
+// only on the seed and its position. Progress counts samples and photons. The state of `resume`
+// holds the sums of every pixel. A shard returns a blank image; the sums of its tiles and of its
+// photons go to the sink.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
 

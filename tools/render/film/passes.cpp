@@ -187,7 +187,8 @@ class Passes {
     const uint64_t key = random64(key_, state_.at.pass, kDrawPass);
     const auto sequenceOffset = static_cast<uint32_t>(random64(key, index, kDrawOffset) >> 33);
     std::vector<PixelSums> sums(tile.pixels());
-    sampleTile(scene_, integrator_, key, tile, {0, spp, spp, kMaxPassSpp, sequenceOffset},
+    sampleTile(scene_, options_.filter, integrator_, key, tile,
+               {0, spp, spp, kMaxPassSpp, sequenceOffset},
                [&](uint32_t p, const RadianceSample& sample) {
                  addSample(sample, sums[p], state_.counts[tiles_.pixelIndex(tile, p)]);
                });

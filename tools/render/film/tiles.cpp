@@ -65,20 +65,21 @@ void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
   addTo(pixels[splat.pixel], PixelSums::kIndirect, splat.radiance * share);
 }
 
-CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
-                        uint32_t sample) {
+CameraSample makeSample(const Scene& scene, const PixelFilter& filter, uint64_t key,
+                        const SampleRange& range, uint32_t x, uint32_t y, uint32_t sample) {
   const uint64_t index = uint64_t{y} * scene.film.width + x;
   const Point2 jitter = r2Sequence(sample, double{toUnitFloat(random64(key, index, 0))},
                                    double{toUnitFloat(random64(key, index, 1))});
+  const auto [at, weight] = filter.sample(jitter, {sample, range.all, random64(key, index, 3)});
   const Vec3 lens =
       sampleLens(scene.camera, [&] { return owenSobol(sample, random64(key, index, 2)); });
-  const Ray ray =
-      cameraRay(scene.camera, scene.film, (float(x) + jitter.x) / float(scene.film.width),
-                (float(y) + jitter.y) / float(scene.film.height), lens);
+  const Ray ray = cameraRay(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
+                            (float(y) + at.y) / float(scene.film.height), lens);
   CameraSample s;
   s.origin = ray.origin;
   s.direction = ray.direction;
-  s.rng = Rng(key + 1, index * stride + sample);
+  s.weight = weight;
+  s.rng = Rng(key + 1, index * range.stride + sample);
   return s;
 }
 

@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
+#include "tools/render/pixel_filter.h"
 
 namespace bnvpl {
 
@@ -49,8 +50,8 @@ struct SampleRange {
 // Calls take(pixel of the tile, its RadianceSample) for each sample, by the sample's index
 // within the pixel. The result depends only on the key, the tile's position and the range.
 template <typename Take>
-void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
-                const SampleRange& range, const Take& take);
+void sampleTile(const Scene& scene, const PixelFilter& filter, const Integrator& integrator,
+                uint64_t key, const Tile& tile, const SampleRange& range, const Take& take);
 
 // Adds a sample to the sums of its pixel. A sample that is not finite counts as zero.
 void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& counts);
@@ -58,14 +59,14 @@ void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& coun
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
               std::span<PixelCounts> counts);
 
-// Camera ray of a sample: place in the pixel and point of the lens, stratified with those of the
-// pixel's other samples.
-CameraSample makeSample(const Scene& scene, uint64_t key, uint64_t stride, uint32_t x, uint32_t y,
-                        uint32_t sample);
+// Camera ray of a sample: place on the film and point of the lens, stratified with those of the
+// pixel's other samples, `range.all` in number.
+CameraSample makeSample(const Scene& scene, const PixelFilter& filter, uint64_t key,
+                        const SampleRange& range, uint32_t x, uint32_t y, uint32_t sample);
 
 template <typename Take>
-void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, const Tile& tile,
-                const SampleRange& range, const Take& take) {
+void sampleTile(const Scene& scene, const PixelFilter& filter, const Integrator& integrator,
+                uint64_t key, const Tile& tile, const SampleRange& range, const Take& take) {
   constexpr uint32_t kSamplesAtOnce = 16;  // samples of each pixel that are held in memory together
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
@@ -76,7 +77,7 @@ void sampleTile(const Scene& scene, const Integrator& integrator, uint64_t key, 
     samples.clear();
     for (uint32_t s = begin; s < end; ++s) {
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
-        samples.push_back(makeSample(scene, key, range.stride, tile.x(p), tile.y(p), s));
+        samples.push_back(makeSample(scene, filter, key, range, tile.x(p), tile.y(p), s));
       }
     }
     integrator.renderTile({{tile.pixels(), tile.width(), tile.x0, tile.y0, begin, range.all,

@@ -9,6 +9,7 @@
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
 #include "tools/render/film/integrator_interface.h"
+#include "tools/render/pixel_filter.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
 
@@ -21,6 +22,7 @@ struct IntegratorInputs {
   const VplTable& lit;  // stage Lit; empty unless the method needs VPLs
   uint64_t seed;
   Only only;
+  PixelFilter filter;
   const ProgressFn& progress;  // reports preparations
   CostProbe* probe = nullptr;  // set for a cost estimate
 

@@ -14,11 +14,12 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
     out.lights = std::make_unique<const TileLightSampler>(
         in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
         in.seed, in.probe);
-    out.visibleEmission = std::make_unique<const VisibleEmission>(in.rays, in.lights, film);
+    out.visibleEmission =
+        std::make_unique<const VisibleEmission>(in.rays, in.lights, in.filter, film);
   }
   if (options[kDirectSamplesOption] == 1) return;
-  out.directSamples.emplace(in.rays, in.lights, out.visibleEmission.get(), out.spatialLights,
-                            static_cast<unsigned>(options[kDirectSamplesOption]),
+  out.directSamples.emplace(in.rays, in.lights, in.filter, out.visibleEmission.get(),
+                            out.spatialLights, static_cast<unsigned>(options[kDirectSamplesOption]),
                             in.only == Only::Direct);
 }
 
@@ -31,13 +32,14 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
   constexpr uint64_t kProbePhotons = 1 << 18;  // limit for a cost estimate
   const uint64_t sent = unitsToTry(in.probe, photons, kProbePhotons);
   const CostProbe::Part part(in.probe, static_cast<double>(photons) / static_cast<double>(sent));
-  return std::make_unique<const Caustics>(in.rays, in.lights, sent, static_cast<float>(raysOfPixel),
-                                          bounces, in.seed, in.progress);
+  return std::make_unique<const Caustics>(in.rays, in.lights, in.filter, sent,
+                                          static_cast<float>(raysOfPixel), bounces, in.seed,
+                                          in.progress);
 }
 
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const PrimaryPoints& film) {
   const auto control =
-      std::make_shared<const PixelControlVariate>(in.rays, in.lights, film, in.lit);
+      std::make_shared<const PixelControlVariate>(in.rays, in.lights, in.filter, film, in.lit);
   return [control](const TileSamples& tile, std::span<const SpecularPath> paths) {
     control->apply(tile, paths);
   };
@@ -47,7 +49,7 @@ SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator) {
   if (!options.has(kAllocateKey) || !options[kAllocateKey]) return {};
   return findAllocation(
-      in.rays.scene(), in.seed, options[kSppOption], in.progress,
+      in.rays.scene(), in.filter, in.seed, options[kSppOption], in.progress,
       [&](const TileSamples& tile) { return integrator.render(tile, SampleAllocation{}); });
 }
 

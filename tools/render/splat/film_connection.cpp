@@ -20,11 +20,16 @@ float samplesPerArea(const Scene& scene, const SurfacePoint& seen, Vec3 origin) 
 }
 
 std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex,
-                                            Vec3 lens) {
+                                            Vec3 lens, const PixelFilter& filter) {
   const Scene& scene = rays.scene();
   const Film& film = scene.film;
   const RasterPoint at = projectToFilm(scene.camera, film, vertex.position, lens);
-  if (!(at.depth > 0.0f && at.x >= 0.0f && at.x < 1.0f && at.y >= 0.0f && at.y < 1.0f)) return {};
+  const auto width = static_cast<float>(film.width), height = static_cast<float>(film.height);
+  const float beyond = std::max(0.0f, filter.radius() - 0.5f), beyondX = beyond / width,
+              beyondY = beyond / height;
+  if (!(at.depth > 0.0f && at.x >= -beyondX && at.x < 1.0f + beyondX && at.y >= -beyondY &&
+        at.y < 1.0f + beyondY))
+    return {};
   const Vec3 origin = scene.camera.hasLens() ? scene.camera.position + lens : scene.camera.position;
   const Vec3 way = vertex.position - origin;
   if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon arrived on the other side
@@ -41,10 +46,8 @@ std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfaceP
   if (!(cosShading > 0.0f)) return {};
   const Vec3 value = Bsdf(scene, seen).eval(LobeGroup::Rough, vertex.wo) / cosShading;
   if (isBlack(value)) return {};
-  const auto x = std::min(film.width - 1, static_cast<uint32_t>(at.x * float(film.width)));
-  const auto y = std::min(film.height - 1, static_cast<uint32_t>(at.y * float(film.height)));
   seen.position = vertex.position;
-  return FilmConnection{y * film.width + x, samplesPerArea(scene, seen, origin), value};
+  return FilmConnection{{at.x * width, at.y * height}, samplesPerArea(scene, seen, origin), value};
 }
 
 }  // namespace bnvpl

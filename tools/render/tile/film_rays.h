@@ -10,11 +10,12 @@ namespace bnvpl {
 
 class FilmRays {
  public:
-  // `spatialLights` may be null. Borrows all.
-  FilmRays(const RayScene& rays, const LightSet& lights, const SpatialLightSampler* spatialLights,
-           uint64_t seed)
+  // `spatialLights` may be null. Borrows all but the filter.
+  FilmRays(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+           const SpatialLightSampler* spatialLights, uint64_t seed)
       : rays_(rays),
         lights_(lights),
+        filter_(filter),
         spatialLights_(spatialLights),
         key_(streamKey(seed, Stream::PrimaryPoints)) {}
 
@@ -25,9 +26,9 @@ class FilmRays {
     Rng rng(key_, pixel);
     const float x = rng.next(), y = rng.next();
     RadianceSample sample;
-    SpecularPath path = traceCameraPath(rays_, lights_, static_cast<uint32_t>(pixel % width),
-                                        static_cast<uint32_t>(pixel / width), {x, y}, rng, sample,
-                                        {nullptr, spatialLights_});
+    SpecularPath path = traceCameraPath(
+        rays_, lights_, static_cast<uint32_t>(pixel % width), static_cast<uint32_t>(pixel / width),
+        {filter_.sample({x, y}).at}, rng, sample, {nullptr, spatialLights_});
     if (!path.rough) path.hit.triangle = kNone;
     if (emission) *emission = mean(sample.direct);
     return path.hit;
@@ -46,6 +47,7 @@ class FilmRays {
  private:
   const RayScene& rays_;
   const LightSet& lights_;
+  PixelFilter filter_;
   const SpatialLightSampler* spatialLights_;
   uint64_t key_;
 };

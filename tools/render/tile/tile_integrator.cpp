@@ -78,8 +78,8 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
     CameraSample& s = tile.samples[i];
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
     Rng rng = Rng::stratified(random64(tile.key, pixel, kDimCameraPath), sampleIndexOf(tile, i));
-    out.paths[i] =
-        traceCameraPath(rays_, lights_, s.origin, s.direction, rng, s.radiance, specularLights);
+    out.paths[i] = traceCameraPath(rays_, lights_, s.origin, s.direction, s.weight, rng, s.radiance,
+                                   specularLights);
     if (parts_.visibleEmission && !parts_.directSamples)
       parts_.visibleEmission->average(s.radiance, 1, tile, pixel, sampleIndexOf(tile, i),
                                       specularLights);

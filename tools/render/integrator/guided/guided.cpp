@@ -83,7 +83,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
         maxBouncesOf(options), in.only);
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  const FilmRays filmRays(in.rays, in.lights, tile.spatialLights, in.seed);
+  const FilmRays filmRays(in.rays, in.lights, in.filter, tile.spatialLights, in.seed);
   const bool controlled = indirect && options[kControlOption] == "vpls";
   const PrimaryPoints film =
       controlled || in.only != Only::Indirect ? filmRays.all() : PrimaryPoints{};

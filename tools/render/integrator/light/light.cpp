@@ -19,7 +19,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   Integrator result{[paths](const TileSamples& tile) { paths->render(tile); }};
   if (photons) {
     const auto tracer =
-        std::make_shared<const LightTracer>(in.rays, in.lights, maxBounces, in.seed);
+        std::make_shared<const LightTracer>(in.rays, in.lights, in.filter, maxBounces, in.seed);
     result.tracePhotons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
       tracer->follow(begin, end, out);
     };

@@ -15,10 +15,11 @@ constexpr uint64_t kBranches = 32;
 
 }  // namespace
 
-LightTracer::LightTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces,
-                         uint64_t seed)
+LightTracer::LightTracer(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+                         unsigned maxBounces, uint64_t seed)
     : rays_(rays),
       lights_(lights),
+      filter_(filter),
       maxBounces_(maxBounces),
       key_(streamKey(seed, Stream::LightTracer)) {}
 
@@ -74,8 +75,12 @@ bool LightTracer::inSight(const SurfacePoint& vertex) const {
 }
 
 void LightTracer::connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, Splats& out) const {
-  if (const auto c = connectToFilm(rays_, vertex, lens))
-    out.list.push_back({c->pixel, flux * c->value * c->perArea});
+  const auto c = connectToFilm(rays_, vertex, lens, filter_);
+  if (!c) return;
+  const Vec3 radiance = flux * c->value * c->perArea;
+  forPixelsAt(rays_.scene().film, filter_, c->at, [&](uint32_t pixel, float value) {
+    out.list.push_back({pixel, radiance * value});
+  });
 }
 
 }  // namespace bnvpl

@@ -1,6 +1,7 @@
 // Light tracing (Dutre, Lafortune & Willems 1993), the adjoint of path tracing.
 #pragma once
 
+#include "tools/render/pixel_filter.h"
 #include "tools/render/splat/splat.h"
 #include "transport/lights.h"
 #include "transport/photon_walk.h"
@@ -14,7 +15,8 @@ namespace bnvpl {
 // ray can hit. Rough scatterings after the first are limited to maxBounces, as in the path tracer.
 class LightTracer {
  public:
-  LightTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, uint64_t seed);
+  LightTracer(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+              unsigned maxBounces, uint64_t seed);
   void follow(uint64_t begin, uint64_t end, Splats& out) const;
 
  private:
@@ -27,6 +29,7 @@ class LightTracer {
 
   const RayScene& rays_;
   const LightSet& lights_;
+  PixelFilter filter_;
   unsigned maxBounces_;
   uint64_t key_;
 };

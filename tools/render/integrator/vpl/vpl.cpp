@@ -113,7 +113,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
         streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
   }
   tile.spatialLights = parts->spatialLights.get();
-  const FilmRays filmRays(in.rays, in.lights, tile.spatialLights, in.seed);
+  const FilmRays filmRays(in.rays, in.lights, in.filter, tile.spatialLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   tile.gather = std::move(gather.tile);
   const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";

@@ -24,13 +24,15 @@ struct PilotTile {
   Vec3 light;
 };
 
-PilotTile samplePilot(const Scene& scene, const Tiles& tiles, size_t index, uint64_t key,
-                      uint64_t spp, const std::function<double(const TileSamples&)>& render) {
+PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles& tiles,
+                      size_t index, uint64_t key, uint64_t spp,
+                      const std::function<double(const TileSamples&)>& render) {
   const Tile tile = tiles.at(index);
+  constexpr SampleRange range{0, kPilotSlots, kPilotSlots, kPilotSlots};
   std::vector<CameraSample> samples;
   for (uint32_t s = 0; s < kPilotSlots; ++s) {
     for (uint32_t p = 0; p < tile.pixels(); ++p)
-      samples.push_back(makeSample(scene, key, kPilotSlots, tile.x(p), tile.y(p), s));
+      samples.push_back(makeSample(scene, filter, key, range, tile.x(p), tile.y(p), s));
   }
   const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
   PilotTile out;
@@ -87,8 +89,8 @@ std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
   return samples;
 }
 
-SampleAllocation findAllocation(const Scene& scene, uint64_t seed, uint64_t spp,
-                                const ProgressFn& progress,
+SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, uint64_t seed,
+                                uint64_t spp, const ProgressFn& progress,
                                 const std::function<double(const TileSamples&)>& render) {
   const Tiles tiles(scene.film);
   const size_t count = std::min(kPilotTiles, tiles.count());
@@ -98,8 +100,8 @@ SampleAllocation findAllocation(const Scene& scene, uint64_t seed, uint64_t spp,
   parallelFor(count, 1, [&](size_t k) {
     // A random tile of the k-th of `count` equal parts of the film.
     const size_t begin = k * tiles.count() / count, end = (k + 1) * tiles.count() / count;
-    pilot[k] =
-        samplePilot(scene, tiles, begin + random64(key, k, 1) % (end - begin), key, spp, render);
+    pilot[k] = samplePilot(scene, filter, tiles, begin + random64(key, k, 1) % (end - begin), key,
+                           spp, render);
     if (progress) progress(1);
   });
   SampleAllocation out;

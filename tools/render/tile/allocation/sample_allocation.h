@@ -26,6 +26,7 @@
 
 #include "core/progress.h"
 #include "scene/scene.h"
+#include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
 
 namespace bnvpl {
@@ -78,8 +79,8 @@ std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
 
 // Runs the pilot: a few samples of some tiles. `render` makes the samples of a tile and returns the
 // mean cost of one. `spp`: samples per pixel of the image.
-SampleAllocation findAllocation(const Scene& scene, uint64_t seed, uint64_t spp,
-                                const ProgressFn& progress,
+SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, uint64_t seed,
+                                uint64_t spp, const ProgressFn& progress,
                                 const std::function<double(const TileSamples&)>& render);
 
 }  // namespace bnvpl

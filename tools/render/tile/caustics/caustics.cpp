@@ -13,10 +13,12 @@
 
 namespace bnvpl {
 
-Caustics::Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons,
-                   float raysOfPixel, unsigned bounces, uint64_t seed, const ProgressFn& progress)
+Caustics::Caustics(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+                   uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed,
+                   const ProgressFn& progress)
     : rays_(rays),
       lights_(lights),
+      filter_(filter),
       photons_(photons),
       key_(streamKey(seed, Stream::Caustics)),
       raysOfPixel_(raysOfPixel),
@@ -52,7 +54,7 @@ void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
         constexpr unsigned kProxyBounces = 4;
         followPhoton(rays_, PhotonWalk(start, kProxyBounces, rng),
                      [&](const Bsdf& bsdf, Vec3 arriving, bool) {
-                       if (const auto film = connectToFilm(rays_, bsdf.point(), lens))
+                       if (const auto film = connectToFilm(rays_, bsdf.point(), lens, {}))
                          contribution.proxy += double{mean(arriving * film->value) * film->perArea};
                      });
         return contribution;
@@ -125,12 +127,12 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& 
   const float guided = guide_.density(e);
   const double probability = double{lights_.pickProbability(e.light)} * double{guided};
   if (!(probability > 0.0)) return kNoLamp;
-  Photon photon{e.light, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light), {}};
+  Photon photon{e.light,       guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light),
+                lensPoint(rng)};
   const uint64_t lamp =
       photon.hittable ? lampOf(lights_, e.light, -photon.start.direction) : kNoLamp;
   if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
     return lamp;  // the pilot does not need it, or its light is left to rays
-  photon.lens = lensPoint(rng);
   photon.flux = photon.start.flux * static_cast<float>(1.0 / (probability * double(photons_)));
   trace(photon, rng, out);
   return lamp;
@@ -184,12 +186,18 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
 
 void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon,
                        Splats& out) const {
-  const auto film = connectToFilm(rays_, vertex, photon.lens);
+  static const PixelFilter kPixel;
+  // Pilots count photons, so each of theirs belongs to one pixel.
+  const PixelFilter& filter = chosen_ ? filter_ : kPixel;
+  const auto film = connectToFilm(rays_, vertex, photon.lens, filter);
   if (!film) return;
   const float share =
       1.0f - sharedBy(film->perArea).ofRays(photon.light, -photon.start.direction, photon.guided);
   const Vec3 radiance = flux * film->value * (film->perArea * share);
-  if (isFinite(radiance)) out.list.push_back({film->pixel, radiance});
+  if (!isFinite(radiance)) return;
+  forPixelsAt(rays_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {
+    out.list.push_back({pixel, radiance * value});
+  });
 }
 
 }  // namespace bnvpl

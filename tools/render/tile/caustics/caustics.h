@@ -8,6 +8,7 @@
 
 #include "core/progress.h"
 #include "tools/render/film/integrator_interface.h"
+#include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
 #include "tools/render/splat/splat.h"
 #include "transport/direct_light.h"
@@ -33,8 +34,9 @@ class Caustics {
  public:
   // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
   // find the same light. `bounces`: rough vertices after the first. Borrows rays and lights.
-  Caustics(const RayScene& rays, const LightSet& lights, uint64_t photons, float raysOfPixel,
-           unsigned bounces, uint64_t seed, const ProgressFn& progress);
+  Caustics(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+           uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed,
+           const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
@@ -72,6 +74,7 @@ class Caustics {
 
   const RayScene& rays_;
   const LightSet& lights_;
+  PixelFilter filter_;
   uint64_t photons_, key_;
   float raysOfPixel_;
   unsigned bounces_;

@@ -21,10 +21,11 @@ constexpr double kMaxPrediction = 2.0;
 }  // namespace
 
 PixelControlVariate::PixelControlVariate(const RayScene& rays, const LightSet& lights,
-                                         const PrimaryPoints& film, const VplTable& lit)
+                                         const PixelFilter& filter, const PrimaryPoints& film,
+                                         const VplTable& lit)
     : scene_(rays.scene()),
       field_(lit),
-      pixels_(rays, lights, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
+      pixels_(rays, lights, filter, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
 
 Vec3 PixelControlVariate::predicted(const SpecularPath& path) const {
   if (!path.rough) return {};
@@ -70,11 +71,12 @@ class CovarianceSums {
   double n_ = 0.0, l_ = 0.0, v_ = 0.0, lv_ = 0.0, vv_ = 0.0;
 };
 
-// The variate of a pixel: beta times the prediction, which is clamped.
+// The variate of a pixel: beta times the prediction, which is clamped. Predictions include the
+// weight of the pixel filter, the bound does not.
 struct Variate {
   float beta = 0.0f, maxPrediction = 0.0f;
-  Vec3 of(Vec3 predicted) const {
-    const float m = mean(predicted);
+  Vec3 of(Vec3 predicted, float weight) const {
+    const float m = mean(predicted) / weight;
     return predicted * (m > maxPrediction ? beta * maxPrediction / m : beta);
   }
 };
@@ -120,11 +122,12 @@ void PixelControlVariate::apply(const TileSamples& tile,
     if (!(variate.beta > 0.0f)) continue;
     Vec3 sum;
     pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels), {},
-                    [&](const SpecularPath& path, const RadianceSample&) {
-                      sum += variate.of(predicted(path));
+                    [&](const SpecularPath& path, const RadianceSample&, float weight) {
+                      sum += variate.of(predicted(path), weight);
                     });
     tile.samples[i].radiance.indirect +=
-        sum * (1.0f / static_cast<float>(pixels_.count(tile, pixel))) - variate.of(predictions[i]);
+        sum * (1.0f / static_cast<float>(pixels_.count(tile, pixel))) -
+        variate.of(predictions[i], tile.samples[i].weight);
   }
 }
 

@@ -12,8 +12,8 @@ namespace bnvpl {
 class PixelControlVariate {
  public:
   // Borrows rays and lights.
-  PixelControlVariate(const RayScene& rays, const LightSet& lights, const PrimaryPoints& film,
-                      const VplTable& lit);
+  PixelControlVariate(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+                      const PrimaryPoints& film, const VplTable& lit);
 
   // Adds to the indirect light of each sample, which saw the end of its path,
   //

@@ -19,14 +19,16 @@ class PixelRays {
   // `values`: the quantity along one ray of each pixel. The more it varies around a pixel, the more
   // rays each of the pixel's samples gets; none where its deviation is below `minDeviation` times
   // its mean. Borrows rays and lights.
-  PixelRays(const RayScene& rays, const LightSet& lights, const PrimaryPoints& film,
-            std::span<const float> values, double minDeviation, TileDimension dimension);
+  PixelRays(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+            const PrimaryPoints& film, std::span<const float> values, double minDeviation,
+            TileDimension dimension);
 
   // Rays for each sample of a pixel of the tile.
   unsigned count(const TileLayout& tile, uint32_t pixel) const {
     return raysEach_[size_t{tile.y + pixel / tile.width} * width_ + tile.x + pixel % tile.width];
   }
-  // Calls fn(path, sample) for each ray. The rays are independent of the sample.
+  // Calls fn(path, sample, weight) for each ray; path and sample include the weight, which is that
+  // of the filter. The rays are independent of the sample.
   template <typename Fn>
   void forEach(const TileLayout& tile, uint32_t pixel, uint32_t sampleIndex,
                const SpecularLightSampling& specularLights, const Fn& fn) const {
@@ -36,17 +38,19 @@ class PixelRays {
     for (unsigned k = 0; k < rays; ++k) {
       const uint64_t index = uint64_t{sampleIndex} * rays + k;
       Rng rng = Rng::stratified(key, static_cast<uint32_t>(index));
-      const Point2 at = rng.nextPoint();
+      const PixelFilter::Sample at =
+          filter_.sample(rng.nextPoint(), {index, uint64_t{tile.samplesPerPixel} * rays, key});
       RadianceSample sample;
       const SpecularPath path =
           traceCameraPath(rays_, lights_, x, y, at, rng, sample, specularLights);
-      fn(path, sample);
+      fn(path, sample, at.weight);
     }
   }
 
  private:
   const RayScene& rays_;
   const LightSet& lights_;
+  PixelFilter filter_;
   uint32_t width_;
   TileDimension dimension_;
   std::vector<uint8_t> raysEach_;  // for each pixel

@@ -36,9 +36,10 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
+                                           const PixelFilter::Turn& turn,
                                            RadianceSample* layers) const {
   Rng rng = Rng::stratified(numbers.path, index);
-  const Point2 at = rng.nextPoint();
+  const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), turn);
   RadianceSample seen;
   const SpecularPath path =
       traceCameraPath(rays_, lights_, x, y, at, rng, seen, {rays.lights.strata, spatialLights_});
@@ -112,8 +113,8 @@ DirectSamples::Pilot DirectSamples::pilot(const TileLayout& tile,
     if (parity(x, y) != 0) continue;
     const RandomNumbers numbers(
         random64(tile.key, uint64_t{p} << 32 | tile.firstSample, kDimDirectPilots));
-    const Light a = sample(tile.x + x, tile.y + y, rays, numbers, 0),
-                b = sample(tile.x + x, tile.y + y, rays, numbers, 1);
+    const Light a = sample(tile.x + x, tile.y + y, rays, numbers, 0, {}),
+                b = sample(tile.x + x, tile.y + y, rays, numbers, 1, {});
     out.variance += 0.5 * squared(a.all() - b.all());
     varianceByLight += 0.5 * squared(a.byLight - b.byLight);
     squareByBsdf += 0.5 * (squared(a.byBsdf) + squared(b.byBsdf));
@@ -186,11 +187,13 @@ void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& ray
   const RandomNumbers numbers(
       random64(tile.key, uint64_t{pixel} << 32 | tile.firstSample, kDimDirectSamples));
   uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
+  PixelFilter::Turn turn{0, uint64_t{count} * out.sums.size(), numbers.path};
   for (size_t s = 0; s < out.sums.size(); ++s) {
     for (unsigned k = 0; k < count; ++k) {
       RadianceSample* layers =
           alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
-      const Light light = sample(x, y, rays, numbers, index++, layers);
+      const Light light = sample(x, y, rays, numbers, index++, turn, layers);
+      ++turn.index;
       out.sums[s] += light;
       moments.add(light.all());
     }

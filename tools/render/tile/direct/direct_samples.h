@@ -3,6 +3,7 @@
 // would waste time.
 #pragma once
 
+#include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
 #include "tools/render/tile/allocation/sample_allocation.h"
 #include "tools/render/tile/direct/visible_emission.h"
@@ -13,15 +14,15 @@ namespace bnvpl {
 class DirectSamples {
  public:
   // `count`: direct samples for each camera sample; 0: as many as a pilot finds efficient. The
-  // pilot's samples are used for nothing else, so that the mean is unbiased.
-  // `alone`: camera samples have no rays of their own; the direct samples also fill in depth,
-  // normal and albedo.
+  // pilot's samples are used for nothing else, so that the mean is unbiased. `alone`: camera
+  // samples have no rays of their own; the direct samples also fill in depth, normal and albedo.
   // `visibleEmission` and `spatialLights` may be null.
-  DirectSamples(const RayScene& rays, const LightSet& lights,
+  DirectSamples(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
                 const VisibleEmission* visibleEmission, const SpatialLightSampler* spatialLights,
                 unsigned count, bool alone)
       : rays_(rays),
         lights_(lights),
+        filter_(filter),
         visibleEmission_(visibleEmission),
         spatialLights_(spatialLights),
         count_(count),
@@ -57,9 +58,11 @@ class DirectSamples {
     float bsdf = 1.0f;  // mean number, at most 1
   };
   struct RandomNumbers;
-  // One direct sample. `layers`: receives depth, normal and albedo; may be null.
+  // One direct sample of a pixel, the index-th by `numbers`. `turn`: see PixelFilter. `layers`:
+  // receives depth, normal and albedo; may be null.
   Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
-               uint32_t index, RadianceSample* layers = nullptr) const;
+               uint32_t index, const PixelFilter::Turn& turn,
+               RadianceSample* layers = nullptr) const;
   Vec3 bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays, const LearnedLight& learned,
                Rng& rng) const;
   struct Pixel;
@@ -74,6 +77,7 @@ class DirectSamples {
 
   const RayScene& rays_;
   const LightSet& lights_;
+  PixelFilter filter_;
   const VisibleEmission* visibleEmission_;
   const SpatialLightSampler* spatialLights_;
   unsigned count_;

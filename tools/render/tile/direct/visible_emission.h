@@ -10,8 +10,9 @@ namespace bnvpl {
 class VisibleEmission {
  public:
   // Borrows rays and lights.
-  VisibleEmission(const RayScene& rays, const LightSet& lights, const PrimaryPoints& film)
-      : pixels_(rays, lights, film, film.emission, 0.0, kDimEmissionRays) {}
+  VisibleEmission(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+                  const PrimaryPoints& film)
+      : pixels_(rays, lights, filter, film, film.emission, 0.0, kDimEmissionRays) {}
 
   // `sum`: direct light and emission of `count` camera rays of a sample. Replaces both by the mean
   // over these and the pixel's further rays. The number of further rays depends on the film's
@@ -19,7 +20,7 @@ class VisibleEmission {
   void average(RadianceSample& sum, unsigned count, const TileLayout& tile, uint32_t pixel,
                uint32_t sample, const SpecularLightSampling& specularLights) const {
     pixels_.forEach(tile, pixel, sample, specularLights,
-                    [&](const SpecularPath&, const RadianceSample& s) {
+                    [&](const SpecularPath&, const RadianceSample& s, float) {
                       sum.direct += s.direct, sum.emission += s.emission;
                     });
     const float each = 1.0f / static_cast<float>(count + pixels_.count(tile, pixel));

@@ -1,0 +1,53 @@
+// Pixel filters: how much the light at a place of the film counts in a pixel. Camera rays of a
+// pixel are spread like its filter (Ernst, Stamminger & Greiner, Filter importance sampling, 2006;
+// pbrt-v4, section 8.8), so that each sample belongs to one pixel.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/random.h"
+
+namespace bnvpl {
+
+class PixelFilter {
+ public:
+  enum class Kind { Box, Gaussian, BlackmanHarris, Mitchell };
+
+  // A place on the film relative to the pixel's corner, in pixels, and the factor of the light
+  // there. Its mean is 1; it is 1 for filters that are nowhere negative.
+  struct Sample {
+    Point2 at;
+    float weight = 1.0f;
+  };
+  // Which of the samples that are averaged this is. A filter with negative lobes gives a fixed
+  // number of them a negative weight, so that the weights of all add up to their number. `key`
+  // decides which ones. With less than two samples the sign is random.
+  struct Turn {
+    uint64_t index = 0, count = 0, key = 0;
+  };
+
+  PixelFilter() = default;  // the box over the pixel, of radius 1/2
+  PixelFilter(Kind kind, float radius);
+  static float usualRadius(Kind kind);  // in pixels
+
+  // Whether the filter of a pixel is the pixel itself.
+  bool isPixel() const { return !axis_; }
+  float radius() const { return isPixel() ? 0.5f : axisRadius(); }
+  // Value at a place relative to the pixel's centre, 1/pixel^2; its integral is 1.
+  float density(float x, float y) const;
+  // Maps the unit square to places with a density proportional to |density()|.
+  Sample sample(Point2 u, const Turn& turn) const {
+    return isPixel() ? Sample{u} : samplePlaces(u, turn);
+  }
+  Sample sample(Point2 u) const { return sample(u, {}); }
+
+ private:
+  struct Axis;
+  float axisRadius() const;
+  Sample samplePlaces(Point2 u, const Turn& turn) const;
+
+  std::shared_ptr<const Axis> axis_;  // the filter along x and along y; null: the pixel's box
+};
+
+}  // namespace bnvpl
