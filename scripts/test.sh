@@ -25,7 +25,7 @@ step() { # name command...
 }
 
 build() {
-  cmake --preset release -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON && cmake --build --preset release
+  cmake --preset ci -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON && cmake --build --preset ci
 }
 
 step "install packages" scripts/install_packages.sh

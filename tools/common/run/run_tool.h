@@ -76,7 +76,7 @@ T fieldOf(const Json& json, const char* key) {
 
 // stageRecord() describes one run of a stage. extendProvenance() appends it to the history of the
 // input, which is empty for the first stage.
-//   {"tool": "vpl-place", "version": "0.2.0+<build>", "options": {...}, "inputs": {"scene":
+//   {"tool": "vpl-place", "version": "0.3.0+<build>", "options": {...}, "inputs": {"scene":
 //   "<hash>"}}
 // It also has "processor": "any" if that was requested.
 Json stageRecord(const std::string& tool, const Json& options, const Json& inputs,

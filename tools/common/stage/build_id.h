@@ -4,7 +4,7 @@
 
 namespace bnvpl {
 
-// Version and a hash of sources and compile options: "0.2.0+<12 hex digits>". A run does not
+// Version and a hash of sources and compile options: "0.3.0+<12 hex digits>". A run does not
 // resume checkpoints or merge shards of another build.
 std::string buildId();
 
