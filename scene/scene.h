@@ -22,6 +22,8 @@ namespace bnvpl {
 inline constexpr uint32_t kMaxFilmSide = 16384;  // pixels; limit of [film] and --size
 struct Film {
   uint32_t width = 640, height = 480;  // pixels
+  // Whether camera rays that leave the scene at once carry no light, for compositing.
+  bool transparent = false;
 };
 
 // Limits of a lens, with which rays through it stay within floats.

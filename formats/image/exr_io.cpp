@@ -64,7 +64,7 @@ void refuseNonFinite(const fs::path& file, const Image& image) {
 }
 
 Imf::PixelType typeOf(const ImageChannel& channel, ExrPixelType type) {
-  return type == ExrPixelType::Half && !isDepth(channel.name) ? Imf::HALF : Imf::FLOAT;
+  return type == ExrPixelType::Half && !needsFloat(channel.name) ? Imf::HALF : Imf::FLOAT;
 }
 
 Imf::Header makeHeader(const Image& image, ExrPixelType type) {
@@ -183,6 +183,11 @@ Image readChecked(const fs::path& file) {
 }
 
 }  // namespace
+
+bool needsFloat(const std::string& channel) {
+  return isDepth(channel) || channel.starts_with("P.") || channel.starts_with("Crypto") ||
+         channel == "objectid" || channel == "materialid";
+}
 
 HalfLosses writeExr(AtomicFile& file, const Image& image, ExrPixelType type) {
   refuseMalformed(file.target(), image);

@@ -17,6 +17,10 @@ enum class ExrPixelType { Half, Float };
 // more precision than half.
 inline bool isDepth(const std::string& channel) { return channel == "Z"; }
 
+// Whether the channel is written as float in half images, too: depth, positions, and numbers of
+// objects and materials, which half would round or overflow.
+bool needsFloat(const std::string& channel);
+
 // The first value that bnvpl's images must not hold: NaN, or infinity except as a depth.
 struct NonFinite {
   std::string channel;

@@ -8,7 +8,7 @@ from .tools import ToolError, ToolWarning, find_tool, run, scene_hash
 from .vpl_read import read_vpl
 from .vpls import Vpls
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 __all__ = [
     "Image",
     "Progress",

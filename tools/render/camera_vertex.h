@@ -20,6 +20,7 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
   if (weight != 1.0f) {
     for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.emissionLater}) *part *= weight;
   }
+  if (rays.scene().film.transparent && path.firstDistance == INFINITY) path.emissionFirst = {};
   out.emission = path.emissionFirst;
   out.direct = path.emissionFirst + path.emissionLater;
   if (path.firstDistance < INFINITY) {

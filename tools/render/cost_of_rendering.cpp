@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/render/film/tiles.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -38,7 +39,7 @@ Film filmToTry(const Film& film) {
   const auto scaled = [&](uint32_t side) {
     return std::max(1u, static_cast<uint32_t>(std::lround(side * scale)));
   };
-  return {scaled(film.width), scaled(film.height)};
+  return {scaled(film.width), scaled(film.height), film.transparent};
 }
 
 Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTable& lit,
@@ -67,7 +68,10 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   constexpr double kDevelopS = 5e-7;  // a pixel, its file included (measured)
   cost.workCpuS *= pixels / fewPixels * (double(spp) / double(tried));
   if (!apart) cost.workCpuS += kDevelopS * pixels;
-  cost.probed *= fewPixels / pixels * (double(tried) / double(spp));
+  const double crop = double(Tiles(film).pixelsMeeting(cropOf(options, film))) / pixels;
+  cost.workCpuS *= crop;
+  cost.probed =
+      std::min(1.0, cost.probed * (fewPixels / pixels) * (double(tried) / double(spp)) / crop);
   // What the film takes, and what an image that is developed takes besides (measured).
   cost.memoryBytes += (cost.memoryBytes - memory.before()) * (pixels / fewPixels - 1.0);
   cost.memoryBytes += pixels * (60.0 + (redistributesFireflies(plain) ? 170.0 : 0.0) +

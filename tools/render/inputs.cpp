@@ -34,6 +34,19 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
   const IntegratorMethod& integrator = integratorOf(options);
   layersOf(options);
   parseExposure(options[kExposureOption]);
+  if (options.has(kCropOption)) {
+    parseCrop(options[kCropOption]);
+    if (budgetOf(options)) {
+      throw UsageError(
+          "--crop has no passes over the whole film, by which --time, --target-error and --passes "
+          "go; leave them out and give --spp");
+    }
+    if (redistributesFireflies(options)) {
+      throw UsageError(
+          "--crop: --fireflies redistribute moves light over the whole film; add --fireflies keep, "
+          "or render parts of the whole by --shard");
+    }
+  }
   if (inShards && budgetOf(options)) {
     throw UsageError(
         "--shard has no passes over the whole film, by which --time, --target-error and --passes "
@@ -73,6 +86,12 @@ void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values&
   if (!files.lit.empty()) lights.requireSquares();
   const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
   if (!missed.empty()) printWarnings("vpl-render", {missed});
+}
+
+void setFilm(const Values& options, Scene& scene) {
+  if (!options[kSizeOption].empty()) scene.film = parseSize(options[kSizeOption]);
+  scene.film.transparent = options[kTransparentOption];
+  cropOf(options, scene.film);
 }
 
 void requireMemoryForImage(const Film& film, const Values& options) {

@@ -3,12 +3,10 @@
 #include <CLI/CLI.hpp>
 
 #include "core/hash.h"
-#include "tools/common/options/film_size.h"
 #include "tools/common/stage/stage_run.h"
 #include "tools/render/cost_of_rendering.h"
 #include "tools/render/inputs.h"
 #include "tools/render/outputs.h"
-#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 namespace {
@@ -24,7 +22,7 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   const VplTable lit = readLit(files.lit, options, run.estimating());
   Scene scene = loadSceneFor(request.scene, files.lit.empty() ? Warnings::Print : Warnings::Hold);
   run.filesReady(scene.files);
-  if (!options[kSizeOption].empty()) scene.film = parseSize(options[kSizeOption]);
+  setFilm(options, scene);
   if (!files.lit.empty()) requireLitOf(scene, lit, files.lit);
   if (!run.estimating()) requireMemoryForImage(scene.film, options);
   const Film film = scene.film;

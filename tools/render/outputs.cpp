@@ -35,8 +35,15 @@ float exposureOf(const Image& image, const std::string& text) {
 
 void writePreview(AtomicFile& file, const Image& image, float ev) {
   const auto provenance = image.attributes.find("bnvpl.provenance");
-  writePng(file, image.width, image.height,
-           toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev), 3,
+  const PixelBox box = image.dataWindow.value_or(PixelBox{0, 0, image.width, image.height});
+  const std::vector<uint8_t> film =
+      toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev);
+  std::vector<uint8_t> rgb8;
+  for (int y = box.y0; y < box.y1; ++y) {
+    const auto row = film.begin() + std::ptrdiff_t{3} * y * image.width;
+    rgb8.insert(rgb8.end(), row + std::ptrdiff_t{3} * box.x0, row + std::ptrdiff_t{3} * box.x1);
+  }
+  writePng(file, box.x1 - box.x0, box.y1 - box.y0, rgb8, 3,
            provenance == image.attributes.end() ? std::string() : provenance->second);
 }
 
@@ -151,13 +158,15 @@ Json withLayers(Json run, const Values& options) {
 Json sourcesOf(const RenderResult& result) {
   return {{"vpls", result.vpls},
           {"emission_points", result.emissionPoints},
-          {"camera", toJson(*result.image.camera)}};
+          {"camera", toJson(*result.image.camera)},
+          {"attributes", result.image.attributes}};
 }
 
 void takeSources(const Json& sources, RenderResult& result) {
   result.vpls = fieldOf<size_t>(sources, "vpls");
   result.emissionPoints = fieldOf<size_t>(sources, "emission_points");
   result.image.camera = imageCameraOf(fieldOf<Json>(sources, "camera"));
+  result.image.attributes = fieldOf<std::map<std::string, std::string>>(sources, "attributes");
 }
 
 namespace {
@@ -198,9 +207,11 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     means += line;
     summary.add(std::string("mean_") + name, value);
   }
-  std::snprintf(line, sizeof line, "%d x %d pixels, %llu spp: %s W/(m2 sr)", result.image.width,
-                result.image.height, static_cast<unsigned long long>(options[kSppOption]),
-                means.c_str());
+  const int width = result.image.width, height = result.image.height;
+  const PixelBox box = result.image.dataWindow.value_or(PixelBox{0, 0, width, height});
+  std::snprintf(line, sizeof line, "%d x %d pixels%s, %llu spp: %s W/(m2 sr)", box.x1 - box.x0,
+                box.y1 - box.y0, result.image.dataWindow ? " of the film" : "",
+                static_cast<unsigned long long>(options[kSppOption]), means.c_str());
   summary.add("samples", stats.samples, line);
   if (result.passes) reportPasses(*result.passes, options, summary);
   if (integratorOf(options).gathers) {

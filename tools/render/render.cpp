@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <numbers>
 
 #include "scene/surface_area.h"
 #include "tools/render/compensate/compensate.h"
+#include "tools/render/film/tiles.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/image_camera.h"
+#include "tools/render/integrator/tile_options.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -20,7 +23,8 @@ std::span<const Option> stageOptions() {
       kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kAdaptiveOption, kOnlyOption,
       kSeedOption, kFilterOption, kFilterRadiusOption,
       inTopic(Topic::Files, unrecorded(textOption(kLayersKey.name, "", "NAME,...", layersHelp))),
-      kSizeOption, kPixelsOption, kExposureOption);
+      kSizeOption, kTransparentOption, kCropOption, kForDenoiserOption, kPixelsOption,
+      kExposureOption);
   return options;
 }
 
@@ -46,12 +50,34 @@ FilmOptions filmOptionsOf(const Values& options) {
           onlyOf(options),
           layersOf(options),
           redistributesFireflies(options),
-          filterOf(options)};
+          filterOf(options),
+          {},
+          {}};
 }
 
 // Whether the integrator traces photons for this image.
 bool sendsPhotons(const Values& options) {
   return integratorOf(options).photons && onlyOf(options) != Only::Direct;
+}
+
+// The options that --for-denoiser stands for, spelled out.
+Given withDenoiserOptions(const Given& given) {
+  const Values options = resolve(renderSpec(), given);
+  if (!options[kForDenoiserOption]) return given;
+  Given all = given;
+  if (options.has(kReuseKey)) {
+    const auto typed =
+        std::ranges::find(given, kReuseKey.name, [](const auto& g) { return g.first; });
+    if (typed != given.end() && options[kReuseKey] != 1) {
+      throw UsageError("--for-denoiser: --reuse " + std::to_string(options[kReuseKey]) +
+                       " gives neighbouring pixels the same noise; leave one of them out");
+    }
+    all.emplace_back(kReuseKey.name, "1");
+  }
+  const std::string& layers = options[kLayersKey];
+  all.emplace_back(kLayersKey.name,
+                   layers + (layers.empty() ? "" : ",") + "denoise_albedo,denoise_normal");
+  return all;
 }
 
 // Condition that holds for the integrators that gather VPLs.
@@ -92,7 +118,7 @@ const StageSpec& renderSpec() {
 }
 
 Values resolveRender(const Given& given) {
-  Values options = resolve(renderSpec(), given);
+  Values options = resolve(renderSpec(), withDenoiserOptions(given));
   const bool limited = std::ranges::any_of(given, [](const auto& g) { return g.first == "spp"; });
   if (budgetOf(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
   return options;
@@ -133,14 +159,40 @@ uint64_t renderWork(const Scene& scene, const Values& options) {
     if (!options.has(kPassesOption) && spp == static_cast<uint64_t>(kUnlimitedSpp)) return 0;
     spp = budget->passes * kPassSpp;
   }
-  const uint64_t samples = uint64_t{scene.film.width} * scene.film.height * spp;
+  const uint64_t samples = Tiles(scene.film).pixelsMeeting(cropOf(options, scene.film)) * spp;
   return budget && sendsPhotons(options) ? 2 * samples : samples;  // else photons count apart
+}
+
+PixelBox parseCrop(const std::string& text) {
+  PixelBox box;
+  char rest = 0;
+  const bool digits = text.find_first_not_of("0123456789,") == std::string::npos;
+  if (!digits || text.size() > 24 ||
+      std::sscanf(text.c_str(), "%d,%d,%d,%d%c", &box.x0, &box.y0, &box.x1, &box.y1, &rest) != 4 ||
+      box.x0 >= box.x1 || box.y0 >= box.y1) {
+    throw UsageError("--crop '" + text +
+                     "' is not X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1, such as 0,0,320,240");
+  }
+  return box;
+}
+
+std::optional<PixelBox> cropOf(const Values& options, const Film& film) {
+  if (!options.has(kCropOption)) return {};
+  const std::string& text = options[kCropOption];
+  const PixelBox box = parseCrop(text);
+  if (box.x1 > static_cast<int>(film.width) || box.y1 > static_cast<int>(film.height)) {
+    throw UsageError("--crop '" + text + "' is larger than the film, whose size is " +
+                     std::to_string(film.width) + "x" + std::to_string(film.height) +
+                     "; name pixels of the film");
+  }
+  return box;
 }
 
 RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source) {
   RenderResult result;
-  result.image =
-      joinFilm(film, filmOptionsOf(options), sendsPhotons(options), result.stats, source);
+  FilmOptions filmOptions = filmOptionsOf(options);
+  filmOptions.crop = cropOf(options, film);
+  result.image = joinFilm(film, filmOptions, sendsPhotons(options), result.stats, source);
   return result;
 }
 
@@ -155,6 +207,8 @@ void renderSamples(const RayScene& rays, const Integrator& integrator, const Val
                    uint32_t spp, const ProgressFn& progress, const Resume& resume) {
   FilmOptions film = filmOptionsOf(options);
   film.spp = spp;
+  // Layers of first hits take next to no time.
+  std::erase_if(film.layers, [](const Layer* l) { return l->firstHit != FirstHit::None; });
   FilmStats stats;
   renderFilm(rays.scene(), integrator, film, stats, progress, resume);
 }
@@ -162,7 +216,9 @@ void renderSamples(const RayScene& rays, const Integrator& integrator, const Val
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress, const Resume& resume,
                     const PreviewFn& preview) {
-  const FilmOptions film = filmOptionsOf(options);
+  FilmOptions film = filmOptionsOf(options);
+  film.crop = cropOf(options, rays.scene().film);
+  film.firstHits = traceFirstHits(rays, film.filter, film.layers, film.seed, options[kSppOption]);
   const Integrator integrator = makeIntegrator(rays, lights, lit, options, progress);
   RenderResult result;
   result.vpls = integrator.vpls;
@@ -178,6 +234,7 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
     result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
   }
   result.image.camera = imageCameraOf(rays.scene());
+  addFirstHitAttributes(rays.scene(), film.layers, result.image.attributes);
   return result;
 }
 

@@ -21,6 +21,11 @@ Values resolveRender(const Given& given);
 std::optional<Budget> budgetOf(const Values& options);
 const IntegratorMethod& integratorOf(const Values& options);
 
+// Parses "X0,Y0,X1,Y1", a rectangle of pixels that is not empty. Throws UsageError.
+PixelBox parseCrop(const std::string& text);
+// The pixels that --crop names, or none without it. Throws UsageError if the film has others.
+std::optional<PixelBox> cropOf(const Values& options, const Film& film);
+
 // Layers that --layers names. Throws UsageError.
 std::vector<const Layer*> layersOf(const Values& options);
 

@@ -1,5 +1,6 @@
 #include "tools/render/film/film.h"
 
+#include <algorithm>
 #include <array>
 
 #include "tools/common/files/streams.h"
@@ -17,7 +18,8 @@ namespace {
 // round.
 constexpr uint32_t kSamplesPerRound = 64;
 
-constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons";
+constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons",
+                           kFirstHitWork = "first hits";
 
 // Sums of the samples and photons so far, and for a checkpoint how far they are: rounds, the tiles
 // of one, then photons.
@@ -26,15 +28,21 @@ struct FilmState {
     uint64_t round = 0;
     SplatProgress splats;
   };
-  FilmState(const Film& film, bool photons, const Shard& of)
+  FilmState(const Film& film, bool photons, const Shard& of, const std::optional<PixelBox>& box)
       : tiles(film),
         pixels(size_t{film.width} * film.height),
         counts(pixels.size()),
         splats(photons ? pixels.size() : 0),
-        shard(of) {
+        shard(of),
+        crop(box) {
     beginRound();
   }
-  void beginRound() { done = unitsToDo(tiles.count(), shard); }
+  void beginRound() {
+    done = unitsToDo(tiles.count(), shard);
+    for (size_t t = 0; t < done.size(); ++t) {
+      if (!tiles.meets(t, crop)) done[t] = kElsewhere;
+    }
+  }
 
   std::string encode() const {
     std::string bytes;
@@ -61,7 +69,7 @@ struct FilmState {
   void giveTo(const ShardSink& sink) const {
     std::vector<TilePixel> record;
     for (size_t t = 0; t < tiles.count(); ++t) {
-      if (!shard.has(t)) continue;
+      if (!shard.has(t) || !tiles.meets(t, crop)) continue;
       const Tile tile = tiles.at(t);
       record.resize(tile.pixels());
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
@@ -75,6 +83,7 @@ struct FilmState {
   void takeFrom(const ShardSource& source) {
     std::vector<TilePixel> record;
     for (size_t t = 0; t < tiles.count(); ++t) {
+      if (!tiles.meets(t, crop)) continue;
       const Tile tile = tiles.at(t);
       record.resize(tile.pixels());
       takeRecord(source, kTileWork, t, record);
@@ -100,6 +109,7 @@ struct FilmState {
   std::vector<PixelCounts> counts;
   SplatSums splats;
   Shard shard;
+  std::optional<PixelBox> crop;
 };
 
 Image blankImage(const Film& film) {
@@ -109,23 +119,82 @@ Image blankImage(const Film& film) {
   return image;
 }
 
-Image develop(const Film& size, const FilmOptions& options, FilmState& state, FilmStats& stats) {
-  Image image = blankImage(size);
+// The rows of a crop, one after the other.
+template <typename T>
+std::vector<T> cropped(const std::vector<T>& film, uint32_t width, const PixelBox& box) {
+  std::vector<T> out;
+  for (int y = box.y0; y < box.y1; ++y) {
+    const auto row = film.begin() + static_cast<std::ptrdiff_t>(y) * width;
+    out.insert(out.end(), row + box.x0, row + box.x1);
+  }
+  return out;
+}
+
+// The image of a crop on the film, with zeros around it.
+Image onFilm(const Image& crop, const Film& film, const PixelBox& box) {
+  Image image = blankImage(film);
+  image.dataWindow = box;
+  for (const ImageChannel& channel : crop.channels) {
+    std::vector<float>& data = image.add(channel.name);
+    for (int y = box.y0; y < box.y1; ++y)
+      std::copy_n(channel.data.begin() + static_cast<std::ptrdiff_t>(y - box.y0) * crop.width,
+                  crop.width, data.begin() + static_cast<std::ptrdiff_t>(y) * image.width + box.x0);
+  }
+  return image;
+}
+
+// Traces the layers of first hits of a shard's tiles.
+void giveFirstHits(const FilmState& state, const FirstHitValues& values, const ShardSink& sink) {
+  if (!values) return;
+  std::vector<std::vector<float>> tiles(state.tiles.count());
+  parallelFor(tiles.size(), 1, [&](size_t t) {
+    if (state.shard.has(t) && state.tiles.meets(t, state.crop)) tiles[t] = values(t);
+  });
+  for (size_t t = 0; t < tiles.size(); ++t)
+    if (!tiles[t].empty()) giveRecord(sink, kFirstHitWork, t, tiles[t]);
+}
+
+std::vector<std::vector<float>> takeFirstHits(const FilmState& state, size_t channels,
+                                              const ShardSource& source) {
+  std::vector<std::vector<float>> tiles(state.tiles.count());
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    if (channels == 0 || !state.tiles.meets(t, state.crop)) continue;
+    tiles[t].resize(channels * state.tiles.at(t).pixels());
+    takeRecord(source, kFirstHitWork, t, tiles[t]);
+  }
+  return tiles;
+}
+
+// `firstHits`: values of the layers of first hits.
+Image develop(const Film& size, const FilmOptions& options, FilmState& state, FilmStats& stats,
+              const FirstHitValues& firstHits) {
   if (state.splats.pixels() > 0) {
     for (size_t i = 0; i < state.pixels.size(); ++i) {
       for (size_t c = 0; c < 3; ++c)
         state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
     }
   }
+  Film shown = size;
+  if (options.crop) {
+    const PixelBox& box = *options.crop;
+    state.pixels = cropped(state.pixels, size.width, box);
+    state.counts = cropped(state.counts, size.width, box);
+    shown.width = static_cast<uint32_t>(box.x1 - box.x0);
+    shown.height = static_cast<uint32_t>(box.y1 - box.y0);
+  }
+  Image image = blankImage(shown);
   FilmSums film{state.pixels, state.counts, 1.0 / options.spp};
   std::vector<BothLights> redistributed;
   if (options.redistributeFireflies)
     film.redistributed = redistributed = redistributeFireflies(film, options.only, size.width);
   addRadiance(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
+  const PixelBox box = options.crop.value_or(
+      PixelBox{0, 0, static_cast<int>(size.width), static_cast<int>(size.height)});
+  addFirstHits(state.tiles, options.layers, firstHits, box, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
   stats.nonFinite += state.splats.nonFinite();
-  return image;
+  return options.crop ? onFilm(image, size, *options.crop) : image;
 }
 
 }  // namespace
@@ -133,7 +202,8 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
-  FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard);
+  FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard,
+                 options.crop);
   const Tiles& tiles = film.tiles;
   if (!resume.state.empty()) film.decode(resume.state);
   const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
@@ -142,7 +212,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
     return static_cast<uint32_t>(std::min<uint64_t>(options.spp, round * perRound));
   };
   const auto state = [&] { return film.encode(); };
-  const uint64_t own = resume.shard.shareOf(film.pixels.size());
+  const uint64_t own = resume.shard.shareOf(tiles.pixelsMeeting(options.crop));
   if (progress) progress(own * samplesBefore(film.at.round));
   for (; film.at.round < rounds; ++film.at.round, film.beginRound()) {
     const uint32_t begin = samplesBefore(film.at.round), end = samplesBefore(film.at.round + 1);
@@ -175,16 +245,18 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         [&](const Splat& splat) { film.splats.add(splat); }, progress, resume, state);
     film.splats.addNonFinite(film.at.splats.nonFinite);
   }
-  if (!resume.sink) return develop(scene.film, options, film, stats);
+  if (!resume.sink) return develop(scene.film, options, film, stats, options.firstHits);
   film.giveTo(*resume.sink);
+  giveFirstHits(film, options.firstHits, *resume.sink);
   return blankImage(scene.film);
 }
 
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
                const ShardSource& source) {
-  FilmState state(film, photons, {});
+  FilmState state(film, photons, {}, options.crop);
   state.takeFrom(source);
-  return develop(film, options, state, stats);
+  const auto firstHits = takeFirstHits(state, firstHitChannels(options.layers), source);
+  return develop(film, options, state, stats, [&](size_t tile) { return firstHits[tile]; });
 }
 
 }  // namespace bnvpl

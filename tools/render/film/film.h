@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "core/progress.h"
 #include "core/resume.h"
 #include "formats/image/image.h"
 #include "scene/scene.h"
+#include "tools/render/film/first_hits.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
 #include "tools/render/pixel_filter.h"
@@ -18,8 +20,10 @@ struct FilmOptions {
   uint64_t seed = 1;
   Only only = Only::Everything;
   std::vector<const Layer*> layers;    // channels beside R, G, B
-  bool redistributeFireflies = false;  // see fireflies.h
+  bool redistributeFireflies = false;  // see fireflies.h; not with a crop
   PixelFilter filter = {};
+  std::optional<PixelBox> crop = {};  // the pixels of the image; none: all
+  FirstHitValues firstHits = {};      // traceFirstHits(); unused by joinFilm()
 };
 
 struct FilmStats {
@@ -37,9 +41,9 @@ inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
 }
 
 // Renders with samples that are stratified in each pixel and spread like its filter. A tile depends
-// only on the seed and its position. Progress counts samples and photons. The state of `resume`
-// holds the sums of every pixel. A shard returns a blank image; the sums of its tiles and of its
-// photons go to the sink.
+// only on the seed and its position, so that a crop has the pixels of the whole image. Progress
+// counts samples and photons. The state of `resume` holds the sums of every pixel. A shard returns
+// a blank image; the sums of its tiles and of its photons go to the sink.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
 

@@ -16,7 +16,8 @@ void addRadiance(const FilmSums& film, Only only, Image& image) {
 }
 
 void addLayer(const Layer& layer, const FilmSums& film, Image& image) {
-  for (size_t c = 0; c < std::max<size_t>(1, layer.channels.size()); ++c) {
+  if (!layer.value) return;
+  for (size_t c = 0; c < channelCount(layer); ++c) {
     std::vector<float>& data = image.add(channelName(layer, c));
     for (size_t i = 0; i < data.size(); ++i) {
       const PixelPasses passes = film.passes.empty() ? PixelPasses{} : film.passes[i];

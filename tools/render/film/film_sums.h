@@ -24,6 +24,7 @@ struct FilmSums {
 
 // Adds R, G, B of the light that `only` shows.
 void addRadiance(const FilmSums& film, Only only, Image& image);
+// Adds a layer's channels; none for layers of first hits, which first_hits.h adds.
 void addLayer(const Layer& layer, const FilmSums& film, Image& image);
 
 // Statistics of a film of `samples` samples. Photons that were not finite are left out.

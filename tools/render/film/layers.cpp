@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/errors.h"
+#include "tools/render/film/cryptomatte.h"
 
 namespace bnvpl {
 
@@ -37,6 +38,15 @@ double errorOf(const LayerPixel& p, size_t channel) {
 
 double samplesOf(const LayerPixel& p, size_t) { return static_cast<double>(p.passes.samples); }
 
+constexpr Layer firstHitLayer(std::string_view name, std::string_view channels,
+                              std::string_view help, FirstHit firstHit) {
+  return {name, channels, help, nullptr, false, false, firstHit};
+}
+
+bool isMatte(const Layer& layer) {
+  return layer.firstHit == FirstHit::ObjectMatte || layer.firstHit == FirstHit::MaterialMatte;
+}
+
 constexpr std::array kLayers{
     Layer{"direct", "RGB", "direct light, W/(m2 sr)", lightOf<PixelSums::kDirect, 0>},
     Layer{"indirect", "RGB", "all other light, W/(m2 sr)", lightOf<PixelSums::kIndirect, 1>},
@@ -52,12 +62,42 @@ constexpr std::array kLayers{
           "standard error of R, G, B between passes, before fireflies are redistributed, W/(m2 sr)",
           errorOf, false, true},
     Layer{"samples", "", "samples of all passes", samplesOf, false, true},
+    firstHitLayer("A", "", "coverage: share of the pixel in which camera rays hit geometry",
+                  FirstHit::Coverage),
+    firstHitLayer("P", "XYZ",
+                  "position of the first hit in world space, mean of the rays that hit; 0 without "
+                  "a hit",
+                  FirstHit::Position),
+    firstHitLayer("objectid", "",
+                  "1 for the first object of the scene, and so on: the one that covers most of the "
+                  "pixel; 0 for none",
+                  FirstHit::ObjectId),
+    firstHitLayer("materialid", "", "the same for materials", FirstHit::MaterialId),
+    firstHitLayer("CryptoObject", "RGBA",
+                  "Cryptomatte of objects: six ids and coverages in CryptoObject00 to 02",
+                  FirstHit::ObjectMatte),
+    firstHitLayer("CryptoMaterial", "RGBA", "Cryptomatte of materials", FirstHit::MaterialMatte),
+    firstHitLayer("denoise_albedo", "RGB",
+                  "albedo for denoisers: of the first vertex that is not perfectly specular, "
+                  "metals and coats included",
+                  FirstHit::Albedo),
+    firstHitLayer("denoise_normal", "XYZ", "shading normal for denoisers, of the same vertex",
+                  FirstHit::Normal),
 };
 
 }  // namespace
 
+size_t channelCount(const Layer& layer) {
+  return std::max<size_t>(1, layer.channels.size()) * (isMatte(layer) ? kMatteLayers : 1);
+}
+
 std::string channelName(const Layer& layer, size_t channel) {
   std::string name(layer.name);
+  if (isMatte(layer)) {
+    const size_t channels = layer.channels.size();
+    name += "0" + std::to_string(channel / channels);
+    channel %= channels;
+  }
   if (!layer.channels.empty()) name += std::string(".") + layer.channels[channel];
   return name;
 }

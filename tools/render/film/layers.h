@@ -68,15 +68,30 @@ struct LayerPixel {
   BothLights redistributed;  // change by redistributeFireflies()
 };
 
+// What a layer shows of the first hits of camera rays (first_hits.h).
+enum class FirstHit {
+  None,  // nothing: the layer is a value of the samples
+  Coverage,
+  Position,
+  ObjectId,
+  MaterialId,
+  ObjectMatte,
+  MaterialMatte,
+  Albedo,  // denoiser_features.h
+  Normal
+};
+
 struct Layer {
   std::string_view name;      // as in --layers, and before the dot in names of channels
   std::string_view channels;  // "RGB": NAME.R, NAME.G, NAME.B; empty: one channel, NAME
   std::string_view help;      // description with unit
-  double (*value)(const LayerPixel&, size_t channel);
-  bool ofVpls = false;    // exists only where VPLs are gathered
+  double (*value)(const LayerPixel&, size_t channel);  // null for layers of first hits
+  bool ofVpls = false;                                 // exists only where VPLs are gathered
   bool ofPasses = false;  // exists only where the image is rendered by passes
+  FirstHit firstHit = FirstHit::None;
 };
 
+size_t channelCount(const Layer& layer);
 std::string channelName(const Layer& layer, size_t channel);
 // Text for --help: one line per layer, each preceded by a line break.
 std::string layerList();

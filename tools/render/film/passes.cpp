@@ -102,6 +102,8 @@ class Passes {
     const auto redistributed = fireflies();
     addRadiance(sumsSoFar(redistributed), options_.only, image);
     for (const Layer* layer : options_.layers) addLayer(*layer, sumsSoFar(redistributed), image);
+    addFirstHits(tiles_, options_.layers, options_.firstHits, {0, 0, image.width, image.height},
+                 image);
     stats = statsOf(sumsSoFar(), samplesSoFar());
     stats.nonFinite += state_.at.splats.nonFinite;
     done = {state_.at.pass, error_, nowS() - startS_, endedBy_};

@@ -35,6 +35,19 @@ Tile Tiles::at(size_t index) const {
   return {x0, y0, std::min(width_, x0 + kTileSide), std::min(height_, y0 + kTileSide)};
 }
 
+bool Tiles::meets(size_t index, const std::optional<PixelBox>& box) const {
+  if (!box) return true;
+  const Tile tile = at(index);
+  return static_cast<int>(tile.x0)<box->x1&& static_cast<int>(tile.x1)> box->x0 &&
+         static_cast<int>(tile.y0)<box->y1&& static_cast<int>(tile.y1)> box->y0;
+}
+
+size_t Tiles::pixelsMeeting(const std::optional<PixelBox>& box) const {
+  size_t pixels = 0;
+  for (size_t t = 0; t < count(); ++t) pixels += meets(t, box) ? at(t).pixels() : 0;
+  return pixels;
+}
+
 void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   if (!isFinite(r)) {
     ++counts.nonFinite;

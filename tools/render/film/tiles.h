@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "formats/image/image.h"
 #include "scene/scene.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
@@ -30,6 +32,10 @@ class Tiles {
   size_t down() const { return down_; }
   size_t count() const { return across_ * down_; }
   Tile at(size_t index) const;
+  // Whether the tile has a pixel of the box; all tiles have one without a box.
+  bool meets(size_t index, const std::optional<PixelBox>& box) const;
+  // Pixels of all tiles that meet the box.
+  size_t pixelsMeeting(const std::optional<PixelBox>& box) const;
   size_t pixelIndex(const Tile& tile, uint32_t p) const {
     return size_t{tile.y(p)} * width_ + tile.x(p);
   }

@@ -17,6 +17,7 @@ inline constexpr WholeOption kDirectSamplesOption =
 constexpr WholeOption reuseOption(std::string_view defaultText, std::string_view help) {
   return neededBy(kIndirectIsShown, wholeOption("reuse", defaultText, 1, 32, "", help));
 }
+inline constexpr OptionKey<uint64_t> kReuseKey = reuseOption("1", {}).key();
 constexpr TextOption controlOption(std::string_view defaultText) {
   return neededBy(kIndirectIsShown,
                   choiceOption("control", defaultText, "vpls|none",

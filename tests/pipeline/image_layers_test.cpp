@@ -1,0 +1,197 @@
+// Layers for compositing: coverage, positions, objects, Cryptomatte, and what denoisers take.
+#include <bit>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/vec3.h"
+#include "formats/image/exr_io.h"
+#include "tests/pipeline/tool_runner.h"
+#include "tools/common/run/exit_codes.h"
+#include "tools/common/run/run_tool.h"
+
+namespace bnvpl {
+namespace {
+
+constexpr const char* kCompositing =
+    " --layers A,P,Z,objectid,materialid,CryptoObject,CryptoMaterial";
+
+class ImageLayers : public PipelineTest {
+ protected:
+  // Renders the scene, whose objects and materials are Floor, Wall and Lamp, into i.exr.
+  Image render(const std::string& options) const {
+    succeed("vpl-render", scene_ + " --integrator path --quiet -o " + path("i.exr") + options);
+    return readExr(at("i.exr"));
+  }
+  // The same scene under a sky, as sky.toml; quoted.
+  std::string underSky() const {
+    fs::copy(BNVPL_SOURCE "/scenes/test", at("test"));
+    write("test/sky.toml", readAll(at("test/one-bounce.toml")) +
+                               "\n[[light]]\ntype = \"environment\"\nradiance = [0.5, 1.0, 2.0]\n");
+    return path("test/sky.toml");
+  }
+};
+
+// Ids and coverages of a pixel's ranks.
+std::vector<std::pair<uint32_t, float>> ranksOf(const Image& image, const std::string& layer,
+                                                size_t pixel) {
+  std::vector<std::pair<uint32_t, float>> ranks;
+  for (const char* number : {"00", "01", "02"}) {
+    for (const auto& [id, coverage] : {std::pair{".R", ".G"}, {".B", ".A"}}) {
+      ranks.emplace_back(std::bit_cast<uint32_t>((*image.find(layer + number + id))[pixel]),
+                         (*image.find(layer + number + coverage))[pixel]);
+    }
+  }
+  return ranks;
+}
+
+// The manifest of a layer: names by ids.
+std::map<uint32_t, std::string> manifestOf(const Image& image, const std::string& layer) {
+  for (const auto& [key, value] : image.attributes) {
+    if (!key.starts_with("cryptomatte/") || !key.ends_with("/name") || value != layer) continue;
+    const std::string prefix = key.substr(0, key.size() - 4);
+    EXPECT_EQ(prefix.size(), std::string("cryptomatte/1234567/").size());
+    EXPECT_EQ(image.attributes.at(prefix + "hash"), "MurmurHash3_32");
+    EXPECT_EQ(image.attributes.at(prefix + "conversion"), "uint32_to_float32");
+    std::map<uint32_t, std::string> names;
+    const Json manifest = Json::parse(image.attributes.at(prefix + "manifest"));
+    for (const auto& [name, hex] : manifest.items())
+      names[static_cast<uint32_t>(std::stoul(hex.get<std::string>(), nullptr, 16))] = name;
+    return names;
+  }
+  ADD_FAILURE() << "no manifest of " << layer;
+  return {};
+}
+
+TEST_F(ImageLayers, CryptomatteIsReadBack) {
+  const Image image = render(std::string(" --spp 16 --pixels half") + kCompositing);
+  const std::vector<float>& coverage = *image.find("A");
+  for (const std::string layer : {"CryptoObject", "CryptoMaterial"}) {
+    const auto names = manifestOf(image, layer);
+    std::set<std::string> all, seen;
+    for (const auto& [id, name] : names) all.insert(name);
+    for (const char* name : {"Floor", "Wall", "Lamp"}) EXPECT_EQ(all.count(name), 1u) << name;
+    size_t edges = 0;
+    for (size_t i = 0; i < image.pixelCount(); ++i) {
+      const auto ranks = ranksOf(image, layer, i);
+      float sum = 0.0f;
+      for (size_t r = 0; r < ranks.size(); ++r) {
+        const auto [id, share] = ranks[r];
+        sum += share;
+        EXPECT_EQ(share == 0.0f, id == 0u);
+        if (share > 0.0f) {
+          ASSERT_EQ(names.count(id), 1u) << layer << i;
+          seen.insert(names.at(id));
+        }
+        if (r == 0) continue;
+        EXPECT_LE(share, ranks[r - 1].second);
+        if (share > 0.0f && share == ranks[r - 1].second) {
+          EXPECT_GT(id, ranks[r - 1].first);
+        }
+      }
+      edges += ranks[1].second > 0.0f;
+      EXPECT_NEAR(sum, coverage[i], 1e-3f) << layer << i;  // A is half
+      EXPECT_EQ(std::fmod(sum * 16.0f, 1.0f), 0.0f);       // samples of the pixel
+    }
+    EXPECT_EQ(seen, (std::set<std::string>{"Floor", "Wall", "Lamp"}));
+    EXPECT_GT(edges, 10u);
+  }
+}
+
+TEST_F(ImageLayers, CoverageAndPositionsAreThoseOfTheFirstHits) {
+  const Image image = render(std::string(" --spp 16") + kCompositing);
+  const auto& m = image.camera->worldToNdc;
+  const std::vector<float>& coverage = *image.find("A");
+  size_t covered = 0, partly = 0;
+  for (size_t i = 0; i < image.pixelCount(); ++i) {
+    EXPECT_EQ(coverage[i] > 0.0f, std::isfinite((*image.find("Z"))[i]));
+    EXPECT_EQ(coverage[i] > 0.0f, (*image.find("objectid"))[i] > 0.0f);
+    EXPECT_EQ(coverage[i] > 0.0f, (*image.find("materialid"))[i] > 0.0f);
+    partly += coverage[i] > 0.0f && coverage[i] < 1.0f;
+    if (coverage[i] < 1.0f) continue;
+    ++covered;
+    const Vec3 p{(*image.find("P.X"))[i], (*image.find("P.Y"))[i], (*image.find("P.Z"))[i]};
+    const auto column = [&](size_t j) {
+      return p.x * m[j] + p.y * m[4 + j] + p.z * m[8 + j] + m[12 + j];
+    };
+    // Positions project to their pixels.
+    EXPECT_NEAR(column(0) / column(3) * 64.0f, float(i % 64) + 0.5f, 0.3f);
+    EXPECT_NEAR(column(1) / column(3) * 48.0f, float(i / 64) + 0.5f, 0.3f);
+    if ((*image.find("objectid"))[i] == 1.0f &&
+        ranksOf(image, "CryptoObject", i)[1].second == 0.0f) {
+      EXPECT_NEAR(p.y, 0.0f, 1e-5f);  // the floor
+    }
+  }
+  EXPECT_GT(covered, 500u);
+  EXPECT_GT(partly, 20u);
+}
+
+// A transparent film differs from the other only by the sky that camera rays see.
+TEST_F(ImageLayers, ATransparentFilmLeavesOutTheSky) {
+  const std::string sky = underSky();
+  succeed("vpl-place", sky + " -o " + path("c.vpl") + " -n 300 --quiet");
+  succeed("vpl-eliminate", path("c.vpl") + " -o " + path("v.vpl") + " -n 60 --quiet");
+  succeed("vpl-estimate",
+          sky + " " + path("v.vpl") + " -o " + path("l.vpl") + " --photons 2k --quiet");
+  for (const std::string& method :
+       {std::string("--integrator path"), path("l.vpl") + " --fireflies keep",
+        path("l.vpl") + " --integrator guided",
+        path("l.vpl") + " --only direct --fireflies keep"}) {
+    const std::string command = sky + " " + method + " --spp 4 --layers A --quiet -o ";
+    succeed("vpl-render", command + path("sky.exr"));
+    succeed("vpl-render", command + path("clear.exr") + " --transparent on");
+    const Image with = readExr(at("sky.exr")), without = readExr(at("clear.exr"));
+    EXPECT_EQ(*with.find("A"), *without.find("A"));
+    size_t empty = 0;
+    double skyLight = 0.0, surface = 0.0, clearSurface = 0.0;
+    for (size_t i = 0; i < with.pixelCount(); ++i) {
+      const float a = (*with.find("A"))[i], b = (*with.find("B"))[i],
+                  clear = (*without.find("B"))[i];
+      if (a == 0.0f) {
+        ++empty;
+        skyLight += double{b};
+        // Rays of direct light may meet geometry where those of the layer do not.
+        EXPECT_LT(clear, method.find("path") != std::string::npos ? 1e-9f : 2.0f) << method;
+      }
+      if (a == 1.0f) surface += double{b}, clearSurface += double{clear};
+    }
+    EXPECT_GT(skyLight, 1.9 * double(empty)) << method;
+    EXPECT_GT(empty, 100u);
+    EXPECT_NEAR(clearSurface, surface, 0.02 * surface) << method;
+  }
+}
+
+TEST_F(ImageLayers, DenoiserFeaturesAreThoseOfTheSurfaces) {
+  const Image image = render(" --spp 4 --layers A,objectid,denoise_albedo,denoise_normal,albedo");
+  const std::vector<float>& coverage = *image.find("A");
+  for (size_t i = 0; i < image.pixelCount(); ++i) {
+    const float object = (*image.find("objectid"))[i], y = (*image.find("denoise_normal.Y"))[i];
+    if (coverage[i] == 0.0f) {
+      EXPECT_EQ((*image.find("denoise_albedo.G"))[i], 0.0f);
+      EXPECT_EQ(y, 0.0f);
+    } else if (coverage[i] == 1.0f && object == 1.0f) {
+      EXPECT_NEAR((*image.find("denoise_albedo.G"))[i], (*image.find("albedo.G"))[i], 1e-5f);
+    }
+  }
+}
+
+// Path reuse is what makes the noise of neighbours alike.
+TEST_F(ImageLayers, ForDenoiserIsWithoutReuseAndAddsItsLayers) {
+  makeStages(scene_);
+  const std::string command = scene_ + " " + path("lit.vpl") + " --spp 2 --quiet -o ";
+  succeed("vpl-render", command + path("default.exr"));
+  succeed("vpl-render", command + path("alone.exr") + " --reuse 1");
+  succeed("vpl-render", command + path("denoise.exr") + " --for-denoiser on --layers Z");
+  const Image image = readExr(at("denoise.exr"));
+  EXPECT_EQ(*image.find("R"), *readExr(at("alone.exr")).find("R"));
+  EXPECT_NE(*image.find("R"), *readExr(at("default.exr")).find("R"));
+  for (const char* name : {"Z", "denoise_albedo.R", "denoise_normal.X"})
+    EXPECT_NE(image.find(name), nullptr) << name;
+  fail("vpl-render", command + path("x.exr") + " --for-denoiser on --reuse 4", kExitUsage,
+       {"--for-denoiser", "--reuse 4", "leave one of them out"});
+  succeed("vpl-render",
+          scene_ + " --integrator path --spp 1 --quiet --for-denoiser on -o " + path("path.exr"));
+}
+
+}  // namespace
+}  // namespace bnvpl

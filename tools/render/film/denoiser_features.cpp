@@ -1,0 +1,47 @@
+#include "tools/render/film/denoiser_features.h"
+
+#include "transport/bsdf.h"
+#include "transport/walk.h"
+
+namespace bnvpl {
+
+namespace {
+
+// Perfectly specular vertices that are followed; the albedo behind the last counts as 1.
+constexpr unsigned kMaxFollowed = 8;
+
+Vec3 atMostOne(Vec3 v) { return min(v, Vec3{1.0f}); }
+
+}  // namespace
+
+DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& first, Rng& rng) {
+  DenoiserFeatures out;
+  SurfacePoint hit = first;
+  Vec3 throughput{1.0f};
+  for (unsigned followed = 0;; ++followed) {
+    if (hit.triangle == kNone) return out;
+    const Bsdf bsdf(rays.scene(), hit);
+    const bool ends = bsdf.specularProbability() == 0.0f || !bsdf.specularIsDelta();
+    const Vec3 here = throughput * atMostOne(ends ? bsdf.albedo() : bsdf.roughAlbedo());
+    out.albedo += here;
+    // A normal weighs as much as its surface's albedo in what is left of the throughput.
+    if (ends) {
+      out.normal += hit.ns * maxComponent(throughput);
+      return out;
+    }
+    if (bsdf.hasRough()) out.normal += hit.ns * (1.0f - bsdf.specularProbability());
+    BsdfSample sample;
+    Ray next;
+    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+      return out;
+    throughput = throughput * atMostOne(sample.weight);
+    if (followed == kMaxFollowed) {
+      out.albedo += throughput;
+      out.normal += hit.ns * maxComponent(throughput);
+      return out;
+    }
+    rays.closestHit(next.origin, next.direction, hit);
+  }
+}
+
+}  // namespace bnvpl
