@@ -2,6 +2,7 @@
 #include "formats/image/png_io.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
+#include "scene/material_inputs.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
 #include "tools/inspect/scene/scene_difference.h"
@@ -137,23 +138,23 @@ TEST_F(ToToml, KeepsLampImages) {
 }
 
 TEST_F(ToToml, KeepsEveryModel) {
-  const std::pair<const char*, size_t> kModels[] = {
-      {"\"diffuse\"", 1},
+  const std::pair<const char*, std::string> kModels[] = {
+      {"\"diffuse\"", "diffuse"},
       {"\"diffusetransmission\" \"rgb reflectance\" [.1 .2 .3] \"rgb transmittance\" [.3 .2 .1]",
-       2},
+       "diffuse_transmission"},
       {"\"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\" "
        "\"float uroughness\" .2 \"float vroughness\" .4",
-       3},
-      {"\"conductor\" \"rgb reflectance\" [.9 .5 .2] \"bool remaproughness\" false", 3},
-      {"\"dielectric\" \"float eta\" 1.7 \"float roughness\" .1", 4},
-      {"\"thindielectric\"", 4},
-      {"\"coateddiffuse\" \"rgb reflectance\" [.9 .5 .2] \"float roughness\" .3", 5},
-      {"\"coatedconductor\" \"float interface.roughness\" .2", 6},
+       "conductor"},
+      {"\"conductor\" \"rgb reflectance\" [.9 .5 .2] \"bool remaproughness\" false", "conductor"},
+      {"\"dielectric\" \"float eta\" 1.7 \"float roughness\" .1", "dielectric"},
+      {"\"thindielectric\"", "dielectric"},
+      {"\"coateddiffuse\" \"rgb reflectance\" [.9 .5 .2] \"float roughness\" .3", "coated_diffuse"},
+      {"\"coatedconductor\" \"float interface.roughness\" .2", "coated_conductor"},
   };
   for (const auto& [text, model] : kModels) {
     SCOPED_TRACE(text);
     const Scene copy = copyOfPbrt(std::string("Material ") + text + "\n" + kSquare);
-    EXPECT_EQ(copy.materials.at(copy.triangles[0].material).model.index(), model);
+    EXPECT_EQ(nameOf(copy.materials.at(copy.triangles[0].material).model), model);
   }
 }
 

@@ -134,6 +134,8 @@ TEST_F(NonFinite, MaterialsOfAbsurdSize) {
 // The film's last resort: a sample that is not finite becomes black and is counted.
 TEST_F(NonFinite, SamplesAreCountedAsZero) {
   const World world(room({"metres"}));
+  const auto layers = parseLayers("all");
+  const auto firstHits = traceFirstHits(world.rays, {}, layers, 1, 4);
   const float bad[] = {std::nanf(""), kInf, -kInf, 3e38f};
   for (const float value : bad) {
     FilmStats stats;
@@ -144,7 +146,7 @@ TEST_F(NonFinite, SamplesAreCountedAsZero) {
             r.direct = r.indirect = Vec3(i % 2 == 0 ? 1.0f : value);  // 3e38 twice is infinite
           }
         }},
-        {.spp = 4, .layers = parseLayers("all")}, stats);
+        {.spp = 4, .layers = layers, .firstHits = firstHits}, stats);
     EXPECT_EQ(stats.nonFinite, stats.samples / 2);
     EXPECT_NEAR(meanOf(image), 1.0, 1e-6);
     for (const ImageChannel& channel : image.channels) {
