@@ -91,7 +91,7 @@ TEST_F(RejectionChain, PlacedVplsMayBeOfAnotherViewAndImagesMayNot) {
 TEST_F(RejectionChain, InfoShowsTheView) {
   EXPECT_TRUE(contains(tool("vpl-inspect", "info " + path("rj.exr")).out, "; view 24x16 "));
   EXPECT_TRUE(contains(tool("vpl-inspect", "info " + path("rj.vpl")).out, "; view 64x48 "));
-  EXPECT_FALSE(contains(tool("vpl-inspect", "info " + path("light.vpl")).out, "view"));
+  EXPECT_FALSE(contains(tool("vpl-inspect", "info " + path("light.vpl")).out, "; view"));
 }
 
 // Neither method leaves work to vpl-estimate.
