@@ -40,26 +40,23 @@ inline constexpr TextOption kFilterOption = inTopic(
                  "pixel filter of samples and photons; albedo, N and Z are means over the samples, "
                  "which are spread like the filter"));
 inline constexpr RealOption kFilterRadiusOption =
-    inTopic(Topic::Quality,
-            optional(realOption("filter-radius", "", 0.25, 8, "pixels",
-                                "half the width of the filter; without it, box 0.5, gaussian and "
-                                "blackman-harris 1.5, mitchell 2")));
+    optional(realOption("filter-radius", "", 0.25, 8, "pixels",
+                        "half the width of the filter; without it, box 0.5, gaussian and "
+                        "blackman-harris 1.5, mitchell 2"));
 inline constexpr SwitchOption kTransparentOption = inTopic(
     Topic::Files,
-    switchOption("transparent", "off",
-                 "leave out what camera rays see beyond the geometry, the environment and suns, of "
-                 "R, G, B, which are then premultiplied by layer A"));
-inline constexpr TextOption kCropOption = inTopic(
-    Topic::Files,
+    switchOption(
+        "transparent", "off",
+        "leave the sky that camera rays see out of R, G, B; suns, too; layer A is the alpha"));
+inline constexpr TextOption kCropOption =
     optional(textOption("crop", "", "X0,Y0,X1,Y1",
-                        "render only the columns from X0 to before X1 and the rows from Y0 to "
-                        "before Y1, counted from the upper left pixel; crops assemble into the "
-                        "whole image")));
+                        "render only columns X0 to before X1, rows Y0 to before Y1; they count "
+                        "from the upper left pixel, and crops assemble into the whole image"));
 inline constexpr SwitchOption kForDenoiserOption = unrecorded(inTopic(
     Topic::Quality,
     switchOption("for-denoiser", "off",
-                 "noise that is independent between pixels (--reuse 1), as denoisers expect, and "
-                 "the layers denoise_albedo and denoise_normal")));
+                 "noise that is independent between pixels; adds the layers denoise_albedo and "
+                 "denoise_normal, and sets --reuse 1")));
 inline constexpr TextOption kPixelsOption =
     choiceOption("pixels", "float", "half|float", "EXR channel type");
 inline constexpr TextOption kExposureOption = unrecorded(inTopic(

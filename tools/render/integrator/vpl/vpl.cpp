@@ -19,7 +19,7 @@ constexpr auto kLightOption =
                                             "disk"));
 constexpr auto kClampOption = neededBy(
     kIndirectIsShown,
-    inTopic(Topic::Quality, realOption("clamp", "2", 0, 1000, "r_max",
+    inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "r_max",
                                        "radius of a VPL: 1/d^2 of a point is clamped within "
                                        "it; a disk has this radius")));
 constexpr auto kNearFieldRaysOption =
