@@ -59,9 +59,9 @@ inline constexpr SwitchOption kForDenoiserOption = unrecorded(inTopic(
                  "denoise_normal, and sets --reuse 1")));
 inline constexpr TextOption kPixelsOption =
     choiceOption("pixels", "float", "half|float", "EXR channel type");
-inline constexpr TextOption kExposureOption = unrecorded(inTopic(
-    Topic::Files, textOption("exposure", "auto", "EV|auto",
-                             "exposure of the PNG, in stops; auto: the mean becomes middle grey")));
+inline constexpr TextOption kExposureOption = unrecorded(
+    inTopic(Topic::Files, textOption("exposure", "auto", "EV|auto",
+                                     "exposure of the PNG in stops; auto: mean is middle grey")));
 // The help lists the layers.
 inline constexpr OptionKey<std::string> kLayersKey{"layers"};
 
