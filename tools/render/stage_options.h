@@ -61,7 +61,7 @@ inline constexpr TextOption kPixelsOption =
     choiceOption("pixels", "float", "half|float", "EXR channel type");
 inline constexpr TextOption kExposureOption = unrecorded(
     inTopic(Topic::Files, textOption("exposure", "auto", "EV|auto",
-                                     "exposure of the PNG in stops; auto: mean is middle grey")));
+                                     "stops of the PNG; auto: the mean becomes middle grey")));
 // The help lists the layers.
 inline constexpr OptionKey<std::string> kLayersKey{"layers"};
 
