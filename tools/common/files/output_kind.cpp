@@ -57,10 +57,13 @@ bool isExr(std::string_view bytes) {
   return bytes.starts_with("\x76\x2f\x31\x01"sv) && bytes.substr(8).starts_with("bnvpl."sv);
 }
 
-// A PNG whose chunks before the pixels name this program.
+// A PNG whose chunks before the pixels name this program, or one of version 0.2 as stb_image_write
+// made it: 8 bits, no chunk between header and pixels, and a zlib header that zlib itself writes
+// for levels 2 to 5 only.
 bool isPng(std::string_view bytes) {
-  return bytes.starts_with("\x89PNG\r\n\x1a\n\0\0\0\rIHDR"sv) &&
-         bytes.substr(0, bytes.find("IDAT"sv)).find(kPngMark) != bytes.npos;
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n\0\0\0\rIHDR"sv) || bytes.size() <= 42) return false;
+  return bytes.substr(0, bytes.find("IDAT"sv)).find(kPngMark) != bytes.npos ||
+         (bytes[24] == 8 && bytes.substr(37).starts_with("IDAT\x78\x5e"sv));
 }
 
 // The text begins with {"tool":"vpl-, apart from white space. Other JSON, such as a glTF scene,
