@@ -62,7 +62,7 @@ def add_limits(p: argparse.ArgumentParser) -> None:
         pattern=r"\d+[KMGT]?|auto",
         what="a size such as 4G",
         default=per_stage("auto"),
-        help="of a task; default auto: by what is known of the tools (docs/scaling.md)",
+        help="of a task; default auto: by what is known of the tools (eval/scaling/README.md)",
     )
     p.add_argument(
         "--time",

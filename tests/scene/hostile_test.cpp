@@ -1,4 +1,4 @@
-// Malicious files: those that fuzzing found, and those that it looks for. See docs/security.md.
+// Malicious files: those that fuzzing found, and those that it looks for. See fuzz/README.md.
 #include <sys/stat.h>
 
 #include "scene/read/obj/load_obj.h"
