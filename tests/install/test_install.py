@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Installs the build into a folder and uses it: pages, completion, pipelines, licences, version.
+"""Installs the build into a folder and uses it: pages, completion, pipelines, Python, licences.
 
     tests/install/test_install.py BUILD
 
@@ -96,6 +96,41 @@ class Installed(InstalledTest):
             run(sys.executable, "-B", ninja, scene, "--out", folder, PATH=self.path)
             graph = (Path(folder) / "build.ninja").read_text()
             self.assertIn(str(self.prefix / "bin/vpl-place"), graph)
+
+    def test_python_takes_the_tools_on_the_path(self) -> None:
+        (package,) = self.prefix.glob("lib/python3*/*-packages/bnvpl")
+        self.assertEqual(list(package.rglob("__pycache__")), [])
+        self.assertTrue((package / "py.typed").is_file())
+        scene = self.share / "bnvpl/scenes/cornell/scene.toml"
+        code = (
+            "import bnvpl\nprint(bnvpl.__file__, bnvpl.tools.find_tool('vpl-place'))\n"
+            f"bnvpl.run('vpl-place', '{scene}', output='c.vpl', count=100)\n"
+            "print(bnvpl.read_vpl('c.vpl').position.shape)\n"
+        )
+        environment = {**os.environ, "PATH": self.path, "PYTHONPATH": str(package.parent)}
+        environment.pop("BNVPL_BIN", None)
+        with tempfile.TemporaryDirectory() as folder:
+            command = ["/usr/bin/python3", "-B", "-c", code]
+            done = subprocess.run(
+                command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+            )
+        tool = self.prefix / "bin/vpl-place"
+        expected = f"{package}/__init__.py {tool}\n(100, 3)\n"
+        self.assertEqual((done.stdout, done.stderr), (expected, ""))
+
+    def test_components(self) -> None:
+        def files(component: str) -> set[Path]:
+            with tempfile.TemporaryDirectory() as folder:
+                run("cmake", "--install", BUILD, "--prefix", folder, "--component", component)
+                return {p.relative_to(folder) for p in Path(folder).rglob("*") if p.is_file()}
+
+        parts = {name: files(name) for name in ("tools", "data", "python")}
+        self.assertIn(Path("share/man/man1/vpl-place.1"), parts["tools"])
+        self.assertIn(Path("share/bnvpl/scenes/cornell/scene.toml"), parts["data"])
+        self.assertEqual({p.parts[0] for p in parts["python"]}, {"lib"})
+        everything = {p.relative_to(self.prefix) for p in self.prefix.rglob("*") if p.is_file()}
+        self.assertEqual(sum(len(part) for part in parts.values()), len(everything))
+        self.assertEqual(set().union(*parts.values()), everything)
 
     def test_licences_of_all_libraries(self) -> None:
         doc = self.share / "doc/bnvpl"
