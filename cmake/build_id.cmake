@@ -1,5 +1,6 @@
-# Writes HEADER with a hash of FLAVOUR and of all sources that determine what the tools compute: the build id.
-# Runs at each build: cmake -DSOURCE=... -DHEADER=... -DFLAVOUR=... -P build_id.cmake
+# Writes HEADER with the version of Embree and the build id: a hash of it, of FLAVOUR, and of all sources that
+# determine what the tools compute.
+# Runs at each build: cmake -DSOURCE=... -DHEADER=... -DFLAVOUR=... -DEMBREE=... -P build_id.cmake
 file(GLOB_RECURSE files RELATIVE ${SOURCE}
      ${SOURCE}/core/* ${SOURCE}/formats/* ${SOURCE}/spatial/* ${SOURCE}/scene/* ${SOURCE}/transport/* ${SOURCE}/images/*
      ${SOURCE}/tools/* ${SOURCE}/cmake/*)
@@ -7,14 +8,14 @@ list(FILTER files INCLUDE REGEX "(\\.(h|cpp|cmake)|CMakeLists\\.txt)$")
 list(FILTER files EXCLUDE REGEX "_test\\.cpp$")
 list(APPEND files CMakeLists.txt)
 list(SORT files)
-set(all "${FLAVOUR}")
+set(all "${FLAVOUR} embree=${EMBREE}")
 foreach(file ${files})
   file(SHA256 ${SOURCE}/${file} hash)
   string(APPEND all "${file} ${hash}\n")
 endforeach()
 string(SHA256 hash "${all}")
 string(SUBSTRING ${hash} 0 12 id)
-set(text "#pragma once\n#define BNVPL_BUILD_ID \"${id}\"\n")
+set(text "#pragma once\n#define BNVPL_BUILD_ID \"${id}\"\n#define BNVPL_EMBREE \"${EMBREE}\"\n")
 set(old "")
 if(EXISTS ${HEADER})
   file(READ ${HEADER} old)

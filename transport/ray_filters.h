@@ -8,13 +8,12 @@
 // wins, in whatever order Embree reports them.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <cassert>
 #include <cmath>
 #include <tuple>
 
 #include "transport/alpha_test.h"
+#include "transport/embree.h"
 
 namespace bnvpl {
 
@@ -26,7 +25,7 @@ struct FilteredTriangles {
 
 // The state of a query. Embree passes its first member to the filters.
 struct ExactQuery {
-  RTCIntersectContext context;
+  QueryContext context;
   float reach;  // length of the ray, shortened by each hit that is kept
   uint32_t instance = kNone, triangle = kNone;
   float u = 0, v = 0;
@@ -81,7 +80,7 @@ inline ExactHit exactHit(const RTCFilterFunctionNArguments* args, unsigned i) {
           all == 0.0f ? 0.0f : std::min(b2 / all, 1.0f)};
 }
 
-// Filter of rtcIntersect1: keeps the nearest hit in the ExactQuery.
+// Filter of traceClosest(): keeps the nearest hit in the ExactQuery.
 template <bool kMasked>
 void keepExact(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<ExactQuery*>(args->context);
@@ -103,7 +102,7 @@ void keepExact(const RTCFilterFunctionNArguments* args) {
   RTCRayN_tfar(args->ray, args->N, 0) = beyond(hit.distance);
 }
 
-// Filter of rtcOccluded1 and rtcOccluded8: rejects hits beyond the ray's length.
+// Filter of traceShadow() and traceShadows(): rejects hits beyond the ray's length.
 template <bool kMasked>
 void hideExact(const RTCFilterFunctionNArguments* args) {
   const auto& query = *reinterpret_cast<const ExactQuery*>(args->context);

@@ -127,9 +127,8 @@ struct RayScene::Impl {
   bool occluded(const RTCRay& from) const {
     RTCRay ray = from;
     ExactQuery query{{}, from.tfar};
-    rtcInitIntersectContext(&query.context);
     if (exact) ray.tfar = beyond(ray.tfar);
-    rtcOccluded1(scene, &query.context, &ray);
+    traceShadow(scene, query.context, ray);
     return ray.tfar < 0.0f;
   }
 };
@@ -159,9 +158,8 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
   RTCRayHit rh{};
   rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
   rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &rh);
+  QueryContext context;
+  traceClosest(scene, context, rh);
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
     hit.triangle = kNone;
     return false;
@@ -186,8 +184,7 @@ bool RayScene::Impl::closestExactHit(const Ray& ray, SurfacePoint& hit) const {
   ExactQuery query{{}, std::numeric_limits<float>::infinity()};
   rh.ray = makeRay(ray.origin, ray.direction, query.reach);
   rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcInitIntersectContext(&query.context);
-  rtcIntersect1(scene, &query.context, &rh);
+  traceClosest(scene, query.context, rh);
   hit.triangle = query.triangle;
   hit.instance = query.instance == kNone ? kNone : query.instance - kFirstInstance;
   hit.distance = query.reach;
@@ -287,8 +284,7 @@ void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hi
       rays.id[k] = rays.flags[k] = 0;
     }
     ExactQuery query{{}, 1.0f};
-    rtcInitIntersectContext(&query.context);
-    rtcOccluded8(valid.data(), impl_->scene, &query.context, &rays);
+    traceShadows(valid.data(), impl_->scene, query.context, rays);
     for (size_t k = 0; k < count; ++k) hidden[begin + k] = rays.tfar[k] < 0.0f;
   }
 }

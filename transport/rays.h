@@ -1,4 +1,4 @@
-// Ray queries against a Scene. Only rays.cpp and ray_filters.h include Embree.
+// Ray queries against a Scene. Only transport/embree.h includes Embree.
 #pragma once
 
 #include <cstdint>

@@ -102,6 +102,7 @@ TEST_F(Options, Version) {
     const Outcome r = tool(name, "--version");
     EXPECT_EQ(r.code, kExitOk);
     EXPECT_TRUE(r.out.starts_with(name + " " BNVPL_VERSION "+")) << r.out;
+    EXPECT_TRUE(r.out.ends_with(" (Embree " BNVPL_EMBREE ")\n")) << r.out;
   }
 }
 

@@ -92,6 +92,7 @@ TEST_F(Output, StatsAreJson) {
     const Json json = Json::parse(readAll(at("s.json")));
     EXPECT_EQ(json.at("tool"), name);
     EXPECT_TRUE(std::string(json.at("version")).starts_with(BNVPL_VERSION "+"));
+    EXPECT_EQ(json.at("embree"), BNVPL_EMBREE);
     EXPECT_GT(json.at("time_s").get<double>(), 0.0);
     EXPECT_GT(json.at("peak_memory_MiB").get<double>(), 1.0);
     if (name == "vpl-place") {

@@ -162,7 +162,8 @@ Values resolve(const StageSpec& spec, const Given& given) {
   for (const MethodSlot& slot : spec.slots) {
     if (!satisfied(slot.needs, known)) continue;
     const std::string* text = textOf(given, slot.name);
-    const MethodEntry& method = chosen(slot, text ? *text : std::string(slot.defaultText));
+    const std::string wanted = text ? *text : std::string(slot.defaultText);
+    const MethodEntry& method = chosen(slot, wanted);
     for (Values* v : {&values, &known}) v->set(slot.name, std::string(method.name));
     methods.push_back(&method);
     for (const Option& o : method.options) takeOption(o, given, known);

@@ -189,8 +189,10 @@ void addToolOptions(CLI::App& cli, ToolOptions& options) {
             });
   inTopic(Topic::Files,
           addFile(cli, "--stats", options.stats, "also write the summary to this file, as JSON"));
-  inTopic(Topic::Expert, cli.set_version_flag("--version", cli.get_name() + " " + buildId(),
-                                              "show the version and exit"));
+  inTopic(Topic::Expert,
+          cli.set_version_flag(
+              "--version", cli.get_name() + " " + buildId() + " (Embree " + embreeVersion() + ")",
+              "show the version and exit"));
 }
 
 void addDepfileOption(CLI::App& cli, ToolOptions& options) {
@@ -252,7 +254,11 @@ void requireWritable(const std::vector<fs::path>& outputs) {
 
 Json stageRecord(const std::string& tool, const Json& options, const Json& inputs,
                  Processor processor) {
-  Json record{{"tool", tool}, {"version", buildId()}, {"options", options}, {"inputs", inputs}};
+  Json record{{"tool", tool},
+              {"version", buildId()},
+              {"embree", embreeVersion()},
+              {"options", options},
+              {"inputs", inputs}};
   if (processor == Processor::Any) record["processor"] = "any";
   return record;
 }
@@ -271,6 +277,7 @@ std::string extendProvenance(const std::string& earlier, const Json& record) {
 Summary::Summary(std::string tool) : tool_(std::move(tool)), startS_(nowS()) {
   values_["tool"] = tool_;
   values_["version"] = buildId();
+  values_["embree"] = embreeVersion();
 }
 
 void Summary::add(const std::string& key, Json value, const std::string& text) {

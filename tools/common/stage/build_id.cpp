@@ -6,4 +6,6 @@ namespace bnvpl {
 
 std::string buildId() { return BNVPL_VERSION "+" BNVPL_BUILD_ID; }
 
+std::string embreeVersion() { return BNVPL_EMBREE; }
+
 }  // namespace bnvpl
