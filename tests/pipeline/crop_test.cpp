@@ -44,6 +44,7 @@ TEST_F(Crop, CropsAssembleIntoTheImage) {
   const std::string vpls = scene_ + " " + path("lit.vpl") + " --fireflies keep --layers all";
   expectCropsOf(vpls + " --spp 4");
   expectCropsOf(vpls + " --spp 2 --integrator guided");
+  expectCropsOf(vpls + " --spp 2 --gather interleaved --interleave 5");
   expectCropsOf(scene_ + " --integrator path --spp 3 --layers all --pixels half");
   expectCropsOf(scene_ + " --integrator light --spp 4");
 }

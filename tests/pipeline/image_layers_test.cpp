@@ -189,6 +189,8 @@ TEST_F(ImageLayers, ForDenoiserIsWithoutReuseAndAddsItsLayers) {
     EXPECT_NE(image.find(name), nullptr) << name;
   fail("vpl-render", command + path("x.exr") + " --for-denoiser on --reuse 4", kExitUsage,
        {"--for-denoiser", "--reuse 4", "leave one of them out"});
+  fail("vpl-render", command + path("x.exr") + " --for-denoiser on --gather interleaved",
+       kExitUsage, {"--for-denoiser", "--gather interleaved", "choose another gather"});
   succeed("vpl-render",
           scene_ + " --integrator path --spp 1 --quiet --for-denoiser on -o " + path("path.exr"));
 }

@@ -78,6 +78,8 @@ TEST_F(ShardRun, RenderGivesTheSameBytesInAnyNumber) {
   expectTheSameInParts("vpl-render", render + vpls + " --spp 4", "whole.exr", {1, 7, 64});
   expectTheSameInParts("vpl-render", render + vpls + " --integrator guided --spp 2 --pixels half",
                        "guided.exr", {3});
+  expectTheSameInParts("vpl-render", render + vpls + " --spp 2 --gather interleaved",
+                       "interleaved.exr", {3});
   expectTheSameInParts("vpl-render", render + " --integrator path --spp 70", "path.exr", {1, 7});
   expectTheSameInParts("vpl-render", render + " --integrator light --spp 16", "light.exr",
                        {1, 7, 64});

@@ -52,7 +52,8 @@ FilmOptions filmOptionsOf(const Values& options) {
           redistributesFireflies(options),
           filterOf(options),
           {},
-          {}};
+          {},
+          gatherFilterOf(options)};
 }
 
 // Whether the integrator traces photons for this image.
@@ -64,6 +65,10 @@ bool sendsPhotons(const Values& options) {
 Given withDenoiserOptions(const Given& given) {
   const Values options = resolve(renderSpec(), given);
   if (!options[kForDenoiserOption]) return given;
+  if (gatherFilterOf(options)) {
+    throw UsageError("--for-denoiser: --gather " + options[kGatherSlot] +
+                     " shares light between neighbouring pixels; choose another gather");
+  }
   Given all = given;
   if (options.has(kReuseKey)) {
     const auto typed =
@@ -159,7 +164,9 @@ uint64_t renderWork(const Scene& scene, const Values& options) {
     if (!options.has(kPassesOption) && spp == static_cast<uint64_t>(kUnlimitedSpp)) return 0;
     spp = budget->passes * kPassSpp;
   }
-  const uint64_t samples = Tiles(scene.film).pixelsMeeting(cropOf(options, scene.film)) * spp;
+  FilmOptions film = filmOptionsOf(options);
+  film.crop = cropOf(options, scene.film);
+  const uint64_t samples = Tiles(scene.film).pixelsMeeting(sampledPixels(scene.film, film)) * spp;
   return budget && sendsPhotons(options) ? 2 * samples : samples;  // else photons count apart
 }
 

@@ -28,6 +28,7 @@ struct RadianceSample {
   PhotonLight photons;  // in the whole pixel; part of `indirect`
   Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
   Vec3 compensated;     // indirect light by sampled rays instead of VPLs; part of `indirect`
+  Vec3 gathered;        // light of VPLs that a film filter smooths; part of `indirect`
   Vec3 albedo, normal;  // at the shading point
   float depth = 0.0f;   // first hit, along the viewing axis; 0: the ray hit nothing
   uint32_t cut = 0, shadowRays = 0;

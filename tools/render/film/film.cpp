@@ -174,9 +174,13 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
         state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
     }
   }
+  const PixelBox box = options.crop.value_or(
+      PixelBox{0, 0, static_cast<int>(size.width), static_cast<int>(size.height)});
+  double filterPixels = 0.0;
+  if (options.gatherFilter)
+    filterPixels = applyFilter(options.gatherFilter, size.width, box, state.pixels);
   Film shown = size;
   if (options.crop) {
-    const PixelBox& box = *options.crop;
     state.pixels = cropped(state.pixels, size.width, box);
     state.counts = cropped(state.counts, size.width, box);
     shown.width = static_cast<uint32_t>(box.x1 - box.x0);
@@ -189,21 +193,25 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
     film.redistributed = redistributed = redistributeFireflies(film, options.only, size.width);
   addRadiance(film, options.only, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
-  const PixelBox box = options.crop.value_or(
-      PixelBox{0, 0, static_cast<int>(size.width), static_cast<int>(size.height)});
   addFirstHits(state.tiles, options.layers, firstHits, box, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
   stats.nonFinite += state.splats.nonFinite();
+  stats.filterPixels = filterPixels;
   return options.crop ? onFilm(image, size, *options.crop) : image;
 }
 
 }  // namespace
 
+std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& options) {
+  if (!options.crop || !options.gatherFilter) return options.crop;
+  return options.gatherFilter.needed(*options.crop, film.width, film.height);
+}
+
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
   FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard,
-                 options.crop);
+                 sampledPixels(scene.film, options));
   const Tiles& tiles = film.tiles;
   if (!resume.state.empty()) film.decode(resume.state);
   const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
@@ -212,7 +220,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
     return static_cast<uint32_t>(std::min<uint64_t>(options.spp, round * perRound));
   };
   const auto state = [&] { return film.encode(); };
-  const uint64_t own = resume.shard.shareOf(tiles.pixelsMeeting(options.crop));
+  const uint64_t own = resume.shard.shareOf(tiles.pixelsMeeting(film.crop));
   if (progress) progress(own * samplesBefore(film.at.round));
   for (; film.at.round < rounds; ++film.at.round, film.beginRound()) {
     const uint32_t begin = samplesBefore(film.at.round), end = samplesBefore(film.at.round + 1);
@@ -253,7 +261,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
 
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
                const ShardSource& source) {
-  FilmState state(film, photons, {}, options.crop);
+  FilmState state(film, photons, {}, sampledPixels(film, options));
   state.takeFrom(source);
   const auto firstHits = takeFirstHits(state, firstHitChannels(options.layers), source);
   return develop(film, options, state, stats, [&](size_t tile) { return firstHits[tile]; });

@@ -8,6 +8,7 @@
 #include "core/resume.h"
 #include "formats/image/image.h"
 #include "scene/scene.h"
+#include "tools/render/film/film_filter.h"
 #include "tools/render/film/first_hits.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
@@ -24,12 +25,14 @@ struct FilmOptions {
   PixelFilter filter = {};
   std::optional<PixelBox> crop = {};  // the pixels of the image; none: all
   FirstHitValues firstHits = {};      // traceFirstHits(); unused by joinFilm()
+  FilmFilter gatherFilter = {};       // smooths RadianceSample::gathered
 };
 
 struct FilmStats {
   // Means over pixels and channels, W/(m2 sr).
   double direct = 0, indirect = 0, clamped = 0, compensated = 0;
   double cut = 0, shadowRays = 0;  // means per sample
+  double filterPixels = 0;         // mean number of pixels that gatherFilter averages; 0: none
   uint64_t samples = 0;
   uint64_t nonFinite = 0;  // samples counted as zero because a value was NaN or infinite
 };
@@ -39,6 +42,9 @@ inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
   return (only != Only::Indirect ? p.sum[PixelSums::kDirect + c] : 0.0) +
          (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
 }
+
+// The pixels whose samples the image needs; none: all.
+std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& options);
 
 // Renders with samples that are stratified in each pixel and spread like its filter. A tile depends
 // only on the seed and its position, so that a crop has the pixels of the whole image. Progress

@@ -29,13 +29,14 @@ struct PixelSums {
     kDepth = 15,
     kHits = 16,
     kCompensated = 17,
-    kPhotons = 20  // the two brightest photons of the pixel, equal in all of its samples
+    kPhotons = 20,  // the two brightest photons of the pixel, equal in all of its samples
+    kGathered = 26
   };
   static constexpr size_t kBrightest = 2;
 
-  std::array<double, 26> sum{};
-  // Brightest samples of direct light without emission, and of indirect light without photons, in
-  // descending order of the channels' mean.
+  std::array<double, 29> sum{};
+  // Brightest samples of direct light without emission, and of indirect light without photons and
+  // light that a film filter smooths, in descending order of the channels' mean.
   std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
   Vec3 photon(size_t k) const {

@@ -89,8 +89,7 @@ class Passes {
       closePass();
       if (preview && nowS() >= previewS) {
         Image image = blank();
-        const auto redistributed = fireflies();
-        addRadiance(sumsSoFar(redistributed), options_.only, image);
+        addRadiance(shown().sums, options_.only, image);
         preview(image);
         previewS = nowS() + kPreviewEveryS;
       }
@@ -99,12 +98,13 @@ class Passes {
 
   Image image(FilmStats& stats, PassesDone& done) const {
     Image image = blank();
-    const auto redistributed = fireflies();
-    addRadiance(sumsSoFar(redistributed), options_.only, image);
-    for (const Layer* layer : options_.layers) addLayer(*layer, sumsSoFar(redistributed), image);
+    const Shown shown = this->shown();
+    addRadiance(shown.sums, options_.only, image);
+    for (const Layer* layer : options_.layers) addLayer(*layer, shown.sums, image);
     addFirstHits(tiles_, options_.layers, options_.firstHits, {0, 0, image.width, image.height},
                  image);
-    stats = statsOf(sumsSoFar(), samplesSoFar());
+    stats = statsOf(shown.sums, samplesSoFar());
+    stats.filterPixels = shown.filterPixels;
     stats.nonFinite += state_.at.splats.nonFinite;
     done = {state_.at.pass, error_, nowS() - startS_, endedBy_};
     return image;
@@ -117,12 +117,29 @@ class Passes {
     image.height = static_cast<int>(scene_.film.height);
     return image;
   }
-  FilmSums sumsSoFar(std::span<const BothLights> redistributed = {}) const {
-    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, redistributed};
+  FilmSums sumsSoFar() const {
+    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, {}};
   }
-  std::vector<BothLights> fireflies() const {
-    if (!options_.redistributeFireflies) return {};
-    return redistributeFireflies(sumsSoFar(), options_.only, scene_.film.width);
+  // The sums so far as the image shows them; `sums` refers to the vectors.
+  struct Shown {
+    std::vector<PixelSums> filtered;
+    double filterPixels = 0.0;
+    std::vector<BothLights> redistributed;
+    FilmSums sums;
+  };
+  Shown shown() const {
+    Shown out{{}, 0.0, {}, sumsSoFar()};
+    const Film& film = scene_.film;
+    if (options_.gatherFilter) {
+      out.filtered = state_.sums;
+      const PixelBox all{0, 0, static_cast<int>(film.width), static_cast<int>(film.height)};
+      out.filterPixels = applyFilter(options_.gatherFilter, film.width, all, out.filtered);
+      out.sums.sums = out.filtered;
+    }
+    if (options_.redistributeFireflies)
+      out.sums.redistributed = out.redistributed =
+          redistributeFireflies(out.sums, options_.only, film.width);
+    return out;
   }
   // Samples of the finished passes, and of the finished tiles of the current one.
   uint64_t samplesSoFar() const {

@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "tools/common/stage/method.h"
+#include "tools/render/film/film_filter.h"
 #include "tools/render/light_tree/light_tree.h"
 #include "tools/render/sample.h"
 #include "transport/bsdf.h"
@@ -66,7 +67,13 @@ struct GatherInputs {
   const ProgressFn& progress;                    // reports preparations
 };
 
-using GatherMethod = Method<Gather (*)(const GatherInputs&, const Values&)>;
+struct GatherMethod {
+  std::string_view name, summary;
+  std::span<const Option> options;
+  Gather (*make)(const GatherInputs&, const Values&);
+  // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
+  FilmFilter (*filmFilter)(const Values&) = nullptr;
+};
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();
 

@@ -9,6 +9,7 @@
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
 #include "tools/render/film/integrator_interface.h"
+#include "tools/render/gather/gather.h"
 #include "tools/render/pixel_filter.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
@@ -48,6 +49,13 @@ inline constexpr OptionKey<std::string> kFirefliesKey = firefliesOption({}).key(
 // Whether fireflies are redistributed; false for methods without the option.
 inline bool redistributesFireflies(const Values& options) {
   return options.has(kFirefliesKey) && options[kFirefliesKey] == "redistribute";
+}
+
+// The film filter of the gather; empty where there is none.
+inline FilmFilter gatherFilterOf(const Values& options) {
+  if (!options.has(kGatherSlot)) return {};
+  const GatherMethod& gather = methodNamed(gatherMethods(), options[kGatherSlot]);
+  return gather.filmFilter ? gather.filmFilter(options) : FilmFilter{};
 }
 
 struct IntegratorMethod {

@@ -125,7 +125,9 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
   parts_.gather(receivers, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) {
     RadianceSample& out = tile.samples[i].radiance;
-    out.indirect += points.paths[i].throughput * gathered[i].radiance;
+    const Vec3 light = points.paths[i].throughput * gathered[i].radiance;
+    out.indirect += light;
+    if (parts_.gathersForFilter) out.gathered += light;
     out.clamped += points.paths[i].throughput * gathered[i].clamped;
     out.cut += gathered[i].cut;
     out.shadowRays += gathered[i].shadowRays;

@@ -25,6 +25,7 @@ using ControlVariateFn =
 // Parts that are null or empty are left out.
 struct TileParts {
   GatherTile gather;  // VPLs
+  bool gathersForFilter = false;  // a film filter smooths their light
   std::unique_ptr<const IndirectRays> rays;
   unsigned raysEach = 0;  // from each shading point
   unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse

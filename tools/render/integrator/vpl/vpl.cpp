@@ -116,6 +116,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const FilmRays filmRays(in.rays, in.lights, in.filter, tile.spatialLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   tile.gather = std::move(gather.tile);
+  tile.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
   const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
   const bool controlled = indirect && options[kControlOption] == "vpls";
   const PrimaryPoints film = controlled || learned ? filmRays.all() : PrimaryPoints{};

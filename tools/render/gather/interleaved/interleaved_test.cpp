@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/gather_checks.h"
+#include "tests/transport/plain_scene.h"
+
+namespace bnvpl::test {
+namespace {
+
+double differenceOf(const Image& a, const Image& b) {
+  double difference = 0.0, sum = 0.0;
+  for (size_t i = 0; i < a.pixelCount(); ++i) {
+    difference += std::fabs(double{(*a.find("G"))[i]} - double{(*b.find("G"))[i]});
+    sum += double{(*b.find("G"))[i]};
+  }
+  return difference / sum;
+}
+
+TEST(Interleaved, HasTheEnergyOfAllVpls) { expectEnergyOfAll("interleaved", 0.02, 2); }
+
+TEST(Interleaved, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("interleaved"); }
+
+TEST(Interleaved, PatternsOfOnePixelAreTheSumOverAll) {
+  for (const GatherCase* c : gatherCases()) {
+    const Image all = c->indirect("all"), one = c->indirect("interleaved", {{"interleave", "1"}});
+    for (size_t i = 0; i < all.pixelCount(); ++i)
+      ASSERT_NEAR((*one.find("R"))[i], (*all.find("R"))[i], 1e-5f * (*all.find("R"))[i] + 1e-8f);
+  }
+}
+
+// Nine samples of a pixel take turns with its nine subsets. Without the filter's neighbours, at
+// pixels that see several surfaces, the sum of a pixel still holds every VPL once.
+TEST(Interleaved, SamplesOfAPixelTakeTurns) {
+  const GatherCase& c = *gatherCases().front();
+  const double one =
+      differenceOf(c.indirect("interleaved", {{"spp", "1"}}), c.indirect("all", {{"spp", "1"}}));
+  const double nine =
+      differenceOf(c.indirect("interleaved", {{"spp", "9"}}), c.indirect("all", {{"spp", "9"}}));
+  EXPECT_LT(nine, 0.5 * one);
+}
+
+// A floor below a wall that lights it, seen from above: the whole film shows one plane. Its mean
+// stays that of all VPLs whichever pixels hold which subsets, also where the film ends.
+Scene litPlane() {
+  Scene scene;
+  addSquare(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
+  addSquare(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, lambert(Vec3(0.8f)));
+  addSquare(scene, {-0.5f, 2.9f, 0.5f}, {0, 0, -1}, {1, 0, 0}, lamp(Vec3(10)));
+  finishScene(scene);
+  scene.film = {31, 22};
+  scene.camera.position = {0, 2, 0.3f};
+  scene.camera.forward = {0, -1, 0};
+  scene.camera.right = {1, 0, 0};
+  scene.camera.up = {0, 0, -1};
+  scene.camera.verticalFovRad = 0.6f;
+  return scene;
+}
+
+TEST(Interleaved, TheFilterKeepsTheEnergyOfAPlane) {
+  const World world{litPlane()};
+  const VplTable lit = litVpls(world, {{"count", "400"}}, {{"photons", "50k"}}, {{"count", "4k"}});
+  const auto shown = [&](const char* gather, const Given& options) {
+    return renderVpls(world, lit,
+                      with(with(kPlainRender, {{"gather", gather}, {"spp", "1"}}), options));
+  };
+  const RenderResult all = shown("all", {});
+  for (const char* side : {"3", "5"}) {
+    const RenderResult ours = shown("interleaved", {{"interleave", side}});
+    EXPECT_NEAR(ours.stats.indirect / all.stats.indirect, 1.0, 0.003) << side;
+    EXPECT_EQ(ours.stats.filterPixels, std::stod(side) * std::stod(side));
+    EXPECT_LT(differenceOf(ours.image, all.image), 0.02) << side;
+  }
+}
+
+// A filter that crossed the silhouettes of the blocks would bring the light of the wall behind.
+TEST(Interleaved, TheFilterStopsAtDiscontinuities) {
+  const GatherCase& c = *gatherCases().front();
+  const RenderResult ours =
+      renderVpls(c.world, c.lit, with(kPlainRender, {{"gather", "interleaved"}, {"spp", "1"}}));
+  EXPECT_LT(ours.stats.filterPixels, 8.5);
+  EXPECT_GT(ours.stats.filterPixels, 3.0);
+}
+
+}  // namespace
+}  // namespace bnvpl::test
