@@ -13,14 +13,19 @@ import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-from generator import rooms, teapot, test_scenes  # noqa: E402
+from generator import many_lights, rooms, teapot, test_scenes  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 
 
 def made_files() -> dict[str, bytes]:
     """Bytes of the files, by their paths below scenes/."""
-    made = {**teapot.files(HERE / "teapot"), **rooms.files(), **test_scenes.files()}
+    made = {
+        **teapot.files(HERE / "teapot"),
+        **rooms.files(),
+        **many_lights.files(),
+        **test_scenes.files(),
+    }
     return {name: data if isinstance(data, bytes) else data.encode() for name, data in made.items()}
 
 
