@@ -32,6 +32,8 @@ PARTS = [
     "sensitivity",
     "pictures",
 ]
+# These parts run only when they are named, with a size of their own.
+ALONE = ["field"]
 NEED_METHODS = {"energy", "reference_quality"}
 JUDGE_NOTHING = {"pictures"}
 
@@ -88,7 +90,11 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument(
         "--quick", action="store_const", dest="size", const="quick", help="the same as --size quick"
     )
-    parser.add_argument("--parts", default=",".join(PARTS), help=f"some of {','.join(PARTS)}")
+    parser.add_argument(
+        "--parts",
+        default=",".join(PARTS),
+        help=f"some of {','.join(PARTS)}, or one of {','.join(ALONE)}",
+    )
     parser.add_argument("--settings", type=Path, default=settings.EVAL / "settings.toml")
     parser.add_argument("--scenes", help="some of the size's scenes, by id")
     parser.add_argument("--views", help="some of main,second")
@@ -117,8 +123,9 @@ def main() -> int:
             f"eval: no size '{arguments.size}'; settings.toml has {', '.join(table['size'])}"
         )
     parts = arguments.parts.split(",")
-    if unknown := [part for part in parts if part not in PARTS]:
-        raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(PARTS)}")
+    known = [*PARTS, *ALONE]
+    if unknown := [part for part in parts if part not in known]:
+        raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(known)}")
     for part in NEED_METHODS & set(parts):
         if "methods" not in parts:
             raise SystemExit(f"eval: part '{part}' reads the rows of 'methods'; name that part too")
@@ -156,7 +163,7 @@ def main() -> int:
     }
     runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet, begin)
     modules = [
-        importlib.import_module(f"bnvpl_eval.parts.{part}") for part in PARTS if part in parts
+        importlib.import_module(f"bnvpl_eval.parts.{part}") for part in known if part in parts
     ]
     context = Context(arguments.size, size, table, chosen, runner)
     if set(parts) - JUDGE_NOTHING:

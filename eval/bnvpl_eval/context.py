@@ -19,6 +19,12 @@ class Context:
     settings: dict[str, Any]
     scenes: list[Scene]  # scenes of this size whose models are available
     runner: Runner
+    title: str = "Blue-noise virtual point lights: the evaluation"
+    lead: str = (
+        "VPLs from the light, random VPLs from the camera, the thesis' uniform blue noise, and "
+        "ours at the local density of what lights the view; judged against two independent "
+        "halves of a reference."
+    )
     # Each configuration of each part is a row.
     results: list[dict[str, Any]] = field(default_factory=list)
     tables: list[dict[str, Any]] = field(default_factory=list)  # tables of the report

@@ -88,10 +88,8 @@ def write_all(context: Context, folder: Path, provenance: dict[str, Any]) -> Pat
         ],
     )
     report = {
-        "title": "Blue-noise virtual point lights: the evaluation",
-        "lead": "VPLs from the light, random VPLs from the camera, the thesis' uniform blue "
-        "noise, and ours at the local "
-        "density of what lights the view; judged against two independent halves of a reference.",
+        "title": context.title,
+        "lead": context.lead,
         "provenance": provenance,
         "tables": context.tables,
         "plots": context.plots,

@@ -89,12 +89,18 @@ def options_of(c: Configuration) -> dict[str, str]:
     }
 
 
-def methods_of(runner: Runner, tool: str, slot: str) -> list[str]:
-    """The methods that a tool lists for one of its options."""
+def summaries_of(runner: Runner, tool: str, slot: str) -> dict[str, str]:
+    """The methods that a tool lists for one of its options, with their summaries."""
     spec = json.loads(
         subprocess.run([runner.bin / tool, "--help-json"], capture_output=True, check=True).stdout
     )
-    return [m["name"] for s in spec["slots"] if s["name"] == slot for m in s["methods"]]
+    return {
+        m["name"]: m["summary"] for s in spec["slots"] if s["name"] == slot for m in s["methods"]
+    }
+
+
+def methods_of(runner: Runner, tool: str, slot: str) -> list[str]:
+    return list(summaries_of(runner, tool, slot))
 
 
 def shadow_rays(runner: Runner, view: View, c: Configuration, seed: int) -> float:

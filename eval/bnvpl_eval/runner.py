@@ -43,6 +43,15 @@ def scene_key(scene: Path) -> str:
     return digest(text.encode() + b"".join(file.read_bytes() for file in files))
 
 
+class ToolFailed(SystemExit):
+    """Ends the program with the tool's message, unless it is caught."""
+
+    def __init__(self, command: list[str], code: int, message: str) -> None:
+        super().__init__(f"eval: {' '.join(command)}\nfailed with exit code {code}: {message}")
+        self.exit_code = code
+        self.message = message
+
+
 @dataclass
 class Run:
     folder: Path
@@ -150,9 +159,7 @@ class Runner:
         if child.returncode != 0:
             text = (partial / "log.txt").read_text(errors="replace").strip()
             shutil.rmtree(partial)
-            raise SystemExit(
-                f"eval: {' '.join(command)}\nfailed with exit code {child.returncode}: {text}"
-            )
+            raise ToolFailed(command, child.returncode, text)
         record = {
             "tool": executable.name,
             "options": words,

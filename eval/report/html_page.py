@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hdr_image import HdrStore, read_png
-from html_table import number_text, table_html
+from html_table import Places, number_text, table_html
 from plot_figure import DARK, LIGHT, page_svg, slope_text
 from report_json import ReportError
 
@@ -24,6 +24,7 @@ SCRIPTS = (
     "stage.js",
     "panel.js",
     "viewer.js",
+    "table.js",
     "main.js",
 )
 
@@ -32,6 +33,7 @@ def page_html(report: dict[str, Any]) -> str:
     store = HdrStore()
     views: list[dict[str, Any]] = []
     scenes = "".join(scene_html(scene, store, views) for scene in report["scenes"])
+    places = picture_places(report["scenes"])
     script = (
         '"use strict";\n(() => {\n'
         + "".join((WEB / name).read_text(encoding="utf-8") for name in SCRIPTS)
@@ -44,7 +46,7 @@ def page_html(report: dict[str, Any]) -> str:
     )
     body = [
         header_html(report),
-        "".join(table_html(t) for t in report["tables"]),
+        "".join(table_html(t, places) for t in report["tables"]),
         scenes and f'<div class="scenes">{scenes}</div>',
         plots_html(report["plots"]),
         provenance_html(report["provenance"]),
@@ -58,6 +60,16 @@ def page_html(report: dict[str, Any]) -> str:
         f"<script>{script}</script>",
     ]
     return head_html(report["title"], script) + "\n".join(body) + "\n</body>\n</html>\n"
+
+
+def picture_places(scenes: list[dict[str, Any]]) -> Places:
+    """Viewer and place in its list, by the ids of scene, view and image."""
+    shown = [(scene["id"], view) for scene in scenes for view in scene["views"]]
+    return {
+        (scene, view["id"], image["id"]): (index, k)
+        for index, (scene, view) in enumerate(shown)
+        for k, image in enumerate(view["images"])
+    }
 
 
 def head_html(title: str, script: str) -> str:

@@ -6,6 +6,10 @@ import math
 from html import escape
 from typing import Any
 
+from report_json import ReportError
+
+# Viewer and place in its list of images, by the ids of scene, view and image.
+Places = dict[tuple[str, str, str], tuple[int, int]]
 MINUS = "−"
 
 
@@ -81,31 +85,59 @@ def is_text(column: dict[str, Any], rows: list[dict[str, Any]]) -> bool:
     return any(isinstance(row["cells"][column["key"]], str) for row in rows)
 
 
-def head(columns: list[dict[str, Any]], text: list[bool]) -> str:
+def head(columns: list[dict[str, Any]], text: list[bool], sorts: bool) -> str:
     hints = {"low": "lower is better", "high": "higher is better", "one": "1 is best"}
     cells = []
     for column, left in zip(columns, text, strict=True):
         hint = hints.get(column["better"], "")
         below = " · ".join(t for t in (column["unit"], hint) if t)
         small = f"<small>{escape(below)}</small>" if below else ""
-        cells.append(
-            f'<th scope="col"{" class=text" if left else ""}>{escape(column["label"])}{small}</th>'
-        )
+        label = escape(column["label"])
+        if sorts:
+            label = f'<button type="button" data-column="{len(cells)}">{label}</button>'
+        cells.append(f'<th scope="col"{" class=text" if left else ""}>{label}{small}</th>')
     return "<thead><tr>" + "".join(cells) + "</tr></thead>"
 
 
-def table_html(table: dict[str, Any]) -> str:
+def plain(value: Any) -> str:
+    """Value of a cell as filters and sorting compare it."""
+    value = value[0] if isinstance(value, tuple) else value
+    return "" if value is None else str(value)
+
+
+def filters_html(table: dict[str, Any], columns: list[dict[str, Any]]) -> str:
+    """Lists of the values of the columns that choose rows."""
+    parts = ['<div class="filters">']
+    for k, column in enumerate(columns):
+        if column["key"] not in table["filters"]:
+            continue
+        found = list(dict.fromkeys(plain(row["cells"][column["key"]]) for row in table["rows"]))
+        options = "".join(f'<option value="{escape(v)}">{escape(v)}</option>' for v in found if v)
+        parts.append(
+            f'<label>{escape(column["label"])} <select data-column="{k}">'
+            f'<option value="">all</option>{options}</select></label>'
+        )
+    return "".join(parts) + "</div>"
+
+
+def table_html(table: dict[str, Any], places: Places) -> str:
     columns = [c for c in table["columns"] if c["key"] != "group"]
     text = [is_text(c, table["rows"]) for c in columns]
-    parts = [f'<section class="block" id="table-{table["id"]}"><h2>{escape(table["title"])}</h2>']
+    filtered = bool(table["filters"])
+    parts = [
+        f'<section class="block{" filtered" if filtered else ""}" id="table-{table["id"]}">'
+        f"<h2>{escape(table['title'])}</h2>"
+    ]
     if table["note"]:
         parts.append(f'<p class="note">{escape(table["note"])}</p>')
+    if filtered:
+        parts.append(filters_html(table, columns))
     # The table takes focus, so that arrow keys scroll it where it is wider than the page.
     parts.append(
         f'<div class="scroll" tabindex="0" role="region" '
         f'aria-label="{escape(table["title"])}"><table class="numbers">'
     )
-    parts.append(head(columns, text))
+    parts.append(head(columns, text, filtered))
     for group, rows in groups_of(table["rows"]):
         parts.append("<tbody>")
         if group:
@@ -114,7 +146,7 @@ def table_html(table: dict[str, Any]) -> str:
                 f"<span>{escape(group)}</span></th></tr>"
             )
         best = [best_rows(rows, c) for c in columns]
-        parts += [row_html(i, row, columns, text, best) for i, row in enumerate(rows)]
+        parts += [row_html(i, row, columns, text, best, places) for i, row in enumerate(rows)]
         parts.append("</tbody>")
     parts.append("</table></div>")
     if any(c["better"] for c in columns):
@@ -128,14 +160,32 @@ def row_html(
     columns: list[dict[str, Any]],
     text: list[bool],
     best: list[set[int]],
+    places: Places,
 ) -> str:
     cells = []
     for k, column in enumerate(columns):
+        value = f' data-value="{escape(plain(row["cells"][column["key"]]))}"'
         shown = escape(cell_text(row["cells"][column["key"]], column["digits"], column["decimals"]))
         if i in best[k]:
             shown = f'<b class="best">{shown}<span class="hidden"> (best)</span></b>'
+        kind = " class=text" if text[k] else ""
         if k == 0:
-            cells.append(f'<th scope="row"{" class=text" if text[k] else ""}>{shown}</th>')
+            shown = picture_button(row["picture"], shown, places)
+            cells.append(f'<th scope="row"{kind}{value}>{shown}</th>')
         else:
-            cells.append(f"<td{' class=text' if text[k] else ''}>{shown}</td>")
+            cells.append(f"<td{kind}{value}>{shown}</td>")
     return "<tr>" + "".join(cells) + "</tr>"
+
+
+def picture_button(picture: dict[str, str] | None, shown: str, places: Places) -> str:
+    """The first cell of a row, which shows its picture when it has one."""
+    if picture is None:
+        return shown
+    key = (picture["scene"], picture["view"], picture["image"])
+    if key not in places:
+        raise ReportError(f"no view has the picture {'/'.join(key)}; name one of its 'images'")
+    viewer, image = places[key]
+    return (
+        f'<button type="button" class="picture" aria-expanded="false" data-view="{viewer}" '
+        f'data-image="{image}" title="Show the picture">{shown}</button>'
+    )

@@ -151,15 +151,34 @@ def table(node: Node) -> dict[str, Any]:
                 "group": r.get("group", str, "a text", ""),
                 "cells": cells,
                 "judged": not r.get("unjudged", bool, "true or false", False),
+                "picture": picture_of(r),
             }
         )
+    keys = [c["key"] for c in columns]
+    filters = [str(n.typed(str, "a column's key")) for n in node.items("filters")]
+    if unknown := [key for key in filters if key not in keys]:
+        raise node.child("filters").fail(
+            f"no column has the key '{unknown[0]}'", "name keys of 'columns'"
+        )
+    if not filters and any(row["picture"] for row in rows):
+        raise node.fail("rows have pictures, but no column filters", "name columns in 'filters'")
     return {
         "id": identity(node),
         "title": node.text("title"),
         "note": node.text("note", ""),
         "columns": columns,
         "rows": rows,
+        "filters": filters,
     }
+
+
+def picture_of(row: Node) -> dict[str, str] | None:
+    """The image that a row is about: ids of scene, view and image."""
+    if row.value.get("picture") is None:
+        return None
+    inner = row.child("picture")
+    inner.typed(dict, "an object {...}")
+    return {key: inner.text(key) for key in ("scene", "view", "image")}
 
 
 def cell(row: Node, key: str) -> Any:

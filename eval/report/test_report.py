@@ -8,6 +8,7 @@ import unittest
 
 from test_inputs import InputTest  # noqa: F401
 from test_page import PageTest  # noqa: F401
+from test_table import TableTest  # noqa: F401
 from test_viewer import ViewerTest  # noqa: F401
 
 if __name__ == "__main__":

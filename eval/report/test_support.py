@@ -150,7 +150,32 @@ def tables() -> list[dict[str, Any]]:
                 {"group": "Two", "set": "p", "rmse": None, "ratio": 2, "rays": 5},
                 {"group": "Two", "set": "q", "rmse": 123456.0, "ratio": 1.01, "rays": 5},
             ],
-        }
+        },
+        {
+            "id": "field",
+            "title": "Field",
+            "columns": [
+                {"key": "scene", "label": "Scene"},
+                {"key": "gather", "label": "Gather"},
+                {"key": "rmse", "label": "RMSE", "better": "low"},
+            ],
+            "filters": ["scene", "gather"],
+            "rows": [
+                {
+                    "group": scene,
+                    "scene": scene,
+                    "gather": gather,
+                    "rmse": rmse,
+                    "picture": {"scene": "room", "view": view, "image": gather},
+                }
+                for scene, view, gather, rmse in (
+                    ("North", "main", "a", 0.02),
+                    ("North", "main", "b", {"value": 0.1, "error": 0.01}),
+                    ("South", "second", "a", 0.004),
+                    ("South", "second", "wild", None),
+                )
+            ],
+        },
     ]
 
 

@@ -26,6 +26,30 @@ for (const host of document.querySelectorAll(".viewer")) {
   host.addEventListener("pointerleave", () => { underPointer = null; });
 }
 
+// Moves the viewer of a row's picture into `room`. Returns a function that moves it back.
+let moveBack = null;
+function showPicture(button, room) {
+  moveBack?.();
+  const host = document.querySelector(`.viewer[data-view="${button.dataset.view}"]`);
+  const place = document.createComment("viewer");
+  host.replaceWith(place);
+  room.append(host);
+  makeViewer(host);
+  const viewer = viewers.get(host);
+  viewer.choose("a", Number(button.dataset.image));
+  if (viewer.reference >= 0) viewer.choose("b", viewer.reference);
+  const back = () => {
+    if (moveBack === back) moveBack = null;
+    if (place.isConnected) place.replaceWith(host);
+  };
+  moveBack = back;
+  return back;
+}
+
+for (const block of document.querySelectorAll(".block.filtered")) {
+  new ResultTable(block, showPicture);
+}
+
 // Keys while nothing has the focus: for the viewer under the pointer.
 document.addEventListener("keydown", (event) => {
   if (event.target === document.body) viewers.get(underPointer)?.key(event);

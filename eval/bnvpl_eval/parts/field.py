@@ -1,0 +1,223 @@
+"""Compares every gather beside every compensation, on the same virtual lights, scenes and rays.
+
+Equal VPLs: without compensation, for each count, the same lit VPLs and samples a pixel. Equal time:
+with each compensation, at one count, as many samples a pixel as fit into a time that is the same
+for all. Combinations that vpl-render refuses are listed with its reason.
+"""
+
+import math
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from .. import measures, pipeline
+from ..context import Context
+from ..runner import ToolFailed
+from ..settings import ROOT, View
+from ..tables import column, table
+from .convergence import series
+
+NONE = "none"
+EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
+MAX_SPP = 1024  # at equal time
+REFUSED = 2  # exit code of vpl-render
+
+COLUMNS = [
+    column("gather", "gather"),
+    column("scene", "scene"),
+    {**column("vpls", "VPLs"), "decimals": 0},
+    column("at", "at"),
+    column("compensate", "compensation"),
+    {**column("spp", "spp"), "decimals": 0},
+    column("relmse"),
+    column("rmse_over_mean"),
+    column("smape"),
+    column("flip"),
+    column("mean_ratio"),
+    column("bias_over_mean"),
+    column("std_over_mean"),
+    column("render_cpu_s", "render", "CPU s", "low"),
+    column("shadow_rays", "shadow rays a sample", better="low"),
+    column("render_peak_mib", "memory", "MiB", "low"),
+]
+
+
+@dataclass
+class Field:
+    """What the part has measured so far."""
+
+    context: Context
+    rows: list[dict[str, Any]] = field(default_factory=list)
+    refused: dict[str, str] = field(default_factory=dict)  # reasons, by combination
+    skipped: list[str] = field(default_factory=list)  # runs that would take too long
+
+    @property
+    def size(self) -> dict[str, Any]:
+        return self.context.size
+
+    def configuration(self, view: View, gather: str, compensate: str, vpls: int) -> Any:
+        c = self.context.configuration(view, "local")
+        return c.but(
+            vpls=vpls,
+            candidates=vpls * self.size["candidates_per_vpl"],
+            render=("--gather", gather, "--compensate", compensate, "--fireflies", "keep"),
+        )
+
+    def grouped(self) -> list[dict[str, Any]]:
+        """The rows, with those that compare gathers under equal conditions one after the other."""
+        scenes = [scene.title for scene in self.context.scenes]
+        return sorted(
+            self.rows,
+            key=lambda r: (scenes.index(r["scene"]), r["at"], r["compensate"], r["vpls"]),
+        )
+
+    def judge(self, view: View, gather: str, compensate: str, vpls: int, spp: int, at: str) -> Any:
+        """Adds a row, or a refusal, and returns the row or None."""
+        c = self.configuration(view, gather, compensate, vpls).but(spp=spp)
+        seeds = range(1, 1 + self.size["seeds"])
+        labels = {"scene": view.scene.title, "gather": gather, "compensate": compensate, "at": at}
+        try:
+            row = self.context.judge("field", view, c, seeds, **labels)
+        except ToolFailed as failed:
+            if failed.exit_code != REFUSED:
+                raise
+            reason = failed.message.partition(": ")[2]
+            self.refused.setdefault(f"{gather} with {compensate}", reason)
+            return None
+        row |= measures.compare_all(self.context, view, row["images"])
+        row["shadow_rays"] = pipeline.shadow_rays(self.context.runner, view, c, seeds[0])
+        row["group"] = f"{view.scene.title}, {vpls} VPLs, {at}, {compensate}"
+        self.rows.append(row)
+        return row
+
+    def at_equal_vpls(self, view: View, gather: str) -> list[dict[str, Any]]:
+        """Rows for growing counts, up to that whose time would exceed the limit."""
+        rows: list[dict[str, Any]] = []
+        for count in self.size["vpls"]:
+            if expected_s(rows, count) > self.size["limit_s"]:
+                self.skipped.append(f"{gather}, {count} VPLs, {view.scene.title}")
+                break
+            row = self.judge(view, gather, NONE, count, self.size["spp"], EQUAL_VPLS)
+            if row is None:
+                break
+            rows.append(row)
+        return rows
+
+    def at_equal_time(self, view: View, gather: str, compensate: str) -> dict[str, Any] | None:
+        c = self.configuration(view, gather, compensate, self.size["equal_time_vpls"])
+        try:
+            _, runs = pipeline.image(self.context.runner, view, c, 1)
+        except ToolFailed as failed:
+            if failed.exit_code != REFUSED:
+                raise
+            self.refused.setdefault(
+                f"{gather} with {compensate}", failed.message.partition(": ")[2]
+            )
+            return None
+        spp = round(c.spp * self.size["time_s"] / max(runs[-1].cpu_s, 1e-3))
+        if spp < 1:
+            self.skipped.append(f"{gather}, {compensate}, equal time, {view.scene.title}")
+            return None
+        row: dict[str, Any] | None = self.judge(
+            view, gather, compensate, c.vpls, min(spp, MAX_SPP), EQUAL_TIME
+        )
+        return row
+
+
+def expected_s(rows: list[dict[str, Any]], count: int) -> float:
+    """CPU seconds of the next count, if the time grows as before; in proportion after one row."""
+    if not rows:
+        return 0.0
+    last = rows[-1]
+    exponent = 1.0
+    if len(rows) > 1:
+        before = rows[-2]
+        exponent = math.log(last["render_cpu_s"] / before["render_cpu_s"]) / math.log(
+            last["vpls"] / before["vpls"]
+        )
+    return float(last["render_cpu_s"] * (count / last["vpls"]) ** exponent)
+
+
+def identity(row: dict[str, Any]) -> str:
+    return f"{row['gather']}-{row['compensate']}"
+
+
+def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> None:
+    a, _ = measures.halves(context, view).values()
+    shown = [{"id": "reference", "label": "reference", "file": a}]
+    for row in rows:
+        row["picture"] = {"scene": view.scene.id, "view": view.id, "image": identity(row)}
+        label = f"{row['gather']}, {row['compensate']}"
+        shown.append({"id": identity(row), "label": label, "file": row["images"][0]})
+    context.pictures[view.name] = {"images": shown, "overlays": []}
+
+
+def add_plots(context: Context, view: View, found: dict[str, list[dict[str, Any]]]) -> None:
+    for x, label in (("vpls", "VPLs"), ("render_cpu_s", "CPU seconds of vpl-render")):
+        lines = {gather: series(gather, rows, x) for gather, rows in found.items()}
+        context.plots.append(
+            {
+                "id": f"field-{x.replace('_', '-')}-{view.scene.id}",
+                "title": f"{view.scene.title}: error over {label}",
+                "caption": f"Without compensation, {context.size['spp']} samples a pixel.",
+                "x_label": label,
+                "y_label": "RMSE / mean of the indirect light",
+                "x_log": True,
+                "y_log": True,
+                "series": [line for line in lines.values() if line["x"]],
+            }
+        )
+
+
+def paragraph(gather: str) -> str:
+    """The first paragraph of the method's theory, as text."""
+    folder = ROOT / "tools/render/gather" / gather.replace("-", "_")
+    blocks = (folder / "theory.md").read_text().split("\n\n")
+    text = next(block for block in blocks if block and not block.startswith("#"))
+    return re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", " ".join(text.split())).replace("`", "")
+
+
+def note(size: dict[str, Any], run: Field) -> str:
+    parts = [
+        "One set of lit VPLs for each scene, count and seed.",
+        f"Equal VPLs: no compensation, spp {size['spp']}.",
+        f"Equal time: {size['time_s']} CPU seconds of vpl-render, {size['equal_time_vpls']} VPLs.",
+        f"{size['seeds']} seeds.",
+    ]
+    if run.skipped:
+        parts.append(f"Left out, as they take too long: {'; '.join(run.skipped)}.")
+    parts += [f"{name}: refused ({reason})." for name, reason in sorted(run.refused.items())]
+    return " ".join(parts)
+
+
+def run(context: Context) -> None:
+    gathers = pipeline.methods_of(context.runner, "vpl-render", "gather")
+    compensations = pipeline.methods_of(context.runner, "vpl-render", "compensate")
+    all_of = Field(context)
+    for view in context.views("main"):
+        found = {}
+        for gather in gathers:
+            context.say(f"field: {view.name}, {gather}")
+            found[gather] = all_of.at_equal_vpls(view, gather)
+        shown = []
+        for compensate in compensations:
+            for gather in gathers:
+                context.say(f"field: {view.name}, {gather}, {compensate}, equal time")
+                row = all_of.at_equal_time(view, gather, compensate)
+                shown += [row] if row else []
+        add_pictures(context, view, shown)
+        add_plots(context, view, {g: rows for g, rows in found.items() if rows})
+    context.title = "Gathers of virtual point lights, on equal terms"
+    context.lead = (
+        "How vpl-render's gathers light the same scenes from the same VPLs. Choose rows by the "
+        "lists, sort by a heading, and open a gather's picture by its name."
+    )
+    rows = all_of.grouped()
+    made = table("field", "Every gather", note(context.size, all_of), COLUMNS, rows)
+    made["filters"] = ["gather", "scene", "vpls", "at", "compensate"]
+    for shown_row, row in zip(made["rows"], rows, strict=True):
+        shown_row["picture"] = row.get("picture")
+    context.tables.append(made)
+    texts = [{"group": "", "gather": g, "text": paragraph(g)} for g in gathers]
+    columns = [column("gather", "gather"), column("text", "what it does")]
+    context.tables.append(table("gathers", "What the gathers do", "", columns, texts))

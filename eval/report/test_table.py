@@ -1,0 +1,83 @@
+"""Tests tables with filters: what a person chooses, sorts and opens."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from page_case import PageCase
+
+
+class TableTest(PageCase):
+    def rows(self) -> list[str]:
+        """Scene and gather of the rows that are shown, in their order."""
+        texts: list[str] = self.js("""
+            return [...document.querySelectorAll('#table-field tbody tr:not(.group):not(.shown)')]
+                .filter((row) => row.getClientRects().length > 0)
+                .map((row) => row.cells[0].innerText.trim() + ' ' + row.cells[1].innerText)""")
+        return texts
+
+    def headings(self) -> list[str]:
+        texts: list[str] = self.js("""
+            return [...document.querySelectorAll('#table-field tr.group')]
+                .filter((row) => row.getClientRects().length > 0).map((row) => row.innerText)""")
+        return texts
+
+    def choose(self, column: int, text: str) -> None:
+        self.js(
+            "const list = document.querySelectorAll('#table-field .filters select')[arguments[0]];"
+            "list.value = arguments[1]; list.dispatchEvent(new Event('change'))",
+            column,
+            text,
+        )
+
+    def sort(self, column: int) -> Any:
+        button = self.all("#table-field thead button")[column]
+        self.js("arguments[0].click()", button)
+        return self.js("return arguments[0].closest('th').getAttribute('aria-sort')", button)
+
+    def test_filters(self) -> None:
+        self.assertEqual(self.rows(), ["North a", "North b", "South a", "South wild"])
+        self.choose(1, "a")
+        self.assertEqual(self.rows(), ["North a", "South a"])
+        self.choose(0, "South")
+        self.assertEqual((self.rows(), self.headings()), (["South a"], ["South"]))
+        self.choose(0, "")
+        self.choose(1, "")
+        self.assertEqual(len(self.rows()), 4)
+
+    def test_sorting(self) -> None:
+        self.assertEqual(self.sort(2), "ascending")
+        self.assertEqual(self.rows(), ["South a", "North a", "North b", "South wild"])
+        self.assertEqual(self.headings(), [])
+        self.assertEqual(self.sort(2), "descending")
+        self.assertEqual(self.rows(), ["North b", "North a", "South a", "South wild"])
+        self.assertIsNone(self.sort(2))
+        self.assertEqual(self.rows(), ["North a", "North b", "South a", "South wild"])
+        self.assertEqual(self.headings(), ["North", "South"])
+
+    def test_a_row_shows_its_picture(self) -> None:
+        for width in (1280, 400):
+            self.open(width, "light")
+            home = self.js("return document.querySelector('#view-room-main .viewer') !== null")
+            self.assertTrue(home)
+            button = self.all("#table-field button.picture")[1]
+            self.js("arguments[0].click()", button)
+            viewer = self.all("#table-field tr.shown .viewer")[0]
+            self.until(lambda v=viewer: v.get_attribute("aria-busy") == "false")
+            label = "return document.querySelector('#table-field .stage').innerText"
+            self.assertIn("Image b", self.js(label))
+            self.assertIn("Image reference", self.js(label))
+            wide = self.js("return document.documentElement.scrollWidth")
+            self.assertLessEqual(wide, width)
+            self.js("arguments[0].click()", button)
+            self.assertEqual(self.all("#table-field tr.shown"), [])
+            self.assertEqual(len(self.all("#view-room-main .viewer")), 1)
+
+    def test_another_row_takes_the_viewer(self) -> None:
+        first, second = self.all("#table-field button.picture")[:2]
+        self.js("arguments[0].click()", first)
+        self.js("arguments[0].click()", second)
+        self.assertEqual(len(self.all("#table-field tr.shown")), 1)
+        self.sort(2)
+        self.assertEqual(self.all("#table-field tr.shown"), [])
+        self.assertEqual(len(self.all("#view-room-main .viewer")), 1)
