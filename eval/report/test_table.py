@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 from page_case import PageCase
+
+
+def is_drawn(viewer: Any) -> bool:
+    return bool(viewer.get_attribute("aria-busy") == "false")
 
 
 class TableTest(PageCase):
@@ -63,7 +68,7 @@ class TableTest(PageCase):
             button = self.all("#table-field button.picture")[1]
             self.js("arguments[0].click()", button)
             viewer = self.all("#table-field tr.shown .viewer")[0]
-            self.until(lambda v=viewer: v.get_attribute("aria-busy") == "false")
+            self.until(functools.partial(is_drawn, viewer))
             label = "return document.querySelector('#table-field .stage').innerText"
             self.assertIn("Image b", self.js(label))
             self.assertIn("Image reference", self.js(label))

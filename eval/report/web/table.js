@@ -6,7 +6,8 @@ class ResultTable {
     this.table = block.querySelector("table");
     this.show = show;
     this.bodies = [...this.table.tBodies].map((body) => ({
-      body, heading: body.querySelector(".group"), rows: [...body.querySelectorAll("tr:not(.group)")],
+      body, heading: body.querySelector(".group"),
+      rows: [...body.querySelectorAll("tr:not(.group)")],
     }));
     this.rows = this.bodies.flatMap(({rows}) => rows);
     this.sorted = el("tbody");
