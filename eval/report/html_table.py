@@ -87,7 +87,7 @@ def is_text(column: dict[str, Any], rows: list[dict[str, Any]]) -> bool:
 
 def head(columns: list[dict[str, Any]], text: list[bool], sorts: bool) -> str:
     hints = {"low": "lower is better", "high": "higher is better", "one": "1 is best"}
-    cells = []
+    cells: list[str] = []
     for column, left in zip(columns, text, strict=True):
         hint = hints.get(column["better"], "")
         below = " · ".join(t for t in (column["unit"], hint) if t)
