@@ -1,8 +1,12 @@
-// Checks for every gather: the energy of all VPLs, and the same bytes for any number of threads.
+// Checks for every gather: the energy of all VPLs, and the same bytes for any number of threads and
+// shards.
 #pragma once
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+
+#include <cmath>
+#include <map>
 
 #include "tests/support/pipeline.h"
 #include "transport/virtual_light_kinds.h"
@@ -25,8 +29,15 @@ struct GatherCase {
                            options))
         .image;
   }
+  // Mean of the sum over all VPLs, which the tests of all gathers share.
+  double meanOfAll(const std::string& light, uint64_t seed) const {
+    const auto [mean, isNew] = all.try_emplace({light, seed});
+    if (isNew) mean->second = meanOf(indirect("all", {{"light", light}}, seed));
+    return mean->second;
+  }
   World world;
   VplTable lit;
+  mutable std::map<std::pair<std::string, uint64_t>, double> all = {};
 };
 
 // A box whose blocks hide many VPLs, and a room lit through a door.
@@ -51,9 +62,30 @@ inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint6
       double sum = 0.0, all = 0.0;
       for (uint64_t seed = 1; seed <= seeds; ++seed) {
         sum += meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));
-        all += meanOf(c->indirect("all", {{"light", light}}, seed));
+        all += c->meanOfAll(light, seed);
       }
       EXPECT_NEAR(sum / all, 1.0, tolerance) << c->world.scene.name() << ", " << light;
+    }
+  }
+}
+
+// The same for unbiased gathers: within three standard errors over the seeds, which are at most
+// `maxError`.
+inline void expectMeanOfAll(const std::string& gather, double maxError, const Given& options = {}) {
+  constexpr uint64_t kSeeds = 8;
+  for (const GatherCase* c : gatherCases()) {
+    for (const std::string_view name : LightKinds::names) {
+      const std::string light(name);
+      double sum = 0.0, squares = 0.0;
+      for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        const double own = meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));
+        const double off = own / c->meanOfAll(light, seed) - 1.0;
+        sum += off, squares += off * off;
+      }
+      const double mean = sum / kSeeds;
+      const double error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
+      EXPECT_LE(std::abs(mean), 3.0 * error + 1e-6) << c->world.scene.name() << ", " << light;
+      EXPECT_LE(error, maxError) << c->world.scene.name() << ", " << light;
     }
   }
 }
@@ -61,12 +93,74 @@ inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint6
 inline void expectSameBytesForAnyThreads(const std::string& gather) {
   const GatherCase& c = *gatherCases().front();
   std::vector<std::vector<float>> red;
-  for (const size_t threads : {1u, 2u, 7u}) {
+  for (const size_t threads : {1u, 7u, 16u}) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     red.push_back(*c.indirect(gather, {}, 1).find("R"));
   }
   EXPECT_EQ(red[0], red[1]);
   EXPECT_EQ(red[0], red[2]);
+}
+
+// Three shards joined are the bytes of the whole image.
+inline void expectSameBytesInShards(const std::string& gather) {
+  const GatherCase& c = *gatherCases().front();
+  const Values options = resolveRender(
+      with(kPlainRender, {{"gather", gather}, {"only", "indirect"}, {"layers", "all"}}));
+  std::map<std::pair<std::string, uint64_t>, std::string> records;
+  ShardSink sink;
+  sink.record = [&](std::string_view work, uint64_t unit, std::string_view bytes) {
+    records[{std::string(work), unit}] = bytes;
+  };
+  for (const uint64_t k : {0u, 1u, 2u}) {
+    Resume resume;
+    resume.shard = {k, k + 1, 3};
+    resume.sink = &sink;
+    render(c.world.rays, c.world.lights, c.lit, options, {}, resume);
+  }
+  ShardSource source;
+  source.record = [&](std::string_view work, uint64_t unit) -> std::optional<std::string> {
+    return records.at({std::string(work), unit});
+  };
+  source.parts = 3;
+  const Image joined = joinRendered(c.world.scene.film, options, source).image;
+  const Image whole = render(c.world.rays, c.world.lights, c.lit, options).image;
+  for (const ImageChannel& channel : whole.channels)
+    EXPECT_EQ(*joined.find(channel.name), channel.data) << channel.name;
+}
+
+// Furnace: the walls' light is known. One bounce: the floor sees VPLs on one wall alone. The
+// gather has the light of all VPLs in both.
+inline void expectEnergyInFurnaceAndOfOneBounce(const std::string& gather, double tolerance,
+                                                const Given& options = {}) {
+  for (const char* name : {"furnace/scene.toml", "test/one-bounce.toml"}) {
+    const World world(name);
+    const VplTable lit = litVpls(world, {{"count", "300"}}, {}, {{"count", "6k"}});
+    const auto light = [&](const std::string& by, const Given& more) {
+      return indirectByVpls(world, lit,
+                            with(with({{"spp", "1"}, {"clamp", "0.3"}}, more), {{"gather", by}}));
+    };
+    EXPECT_NEAR(light(gather, options) / light("all", {}), 1.0, tolerance) << name;
+  }
+}
+
+// Mean over the film of a layer of one channel.
+inline double meanOfLayer(const Image& image, const std::string& name) {
+  double sum = 0.0;
+  for (const float v : *image.find(name)) sum += double{v};
+  return sum / double(image.pixelCount());
+}
+
+// The gather with these options is the sum over all VPLs, up to rounding.
+inline void expectSumOverAll(const std::string& gather, const Given& options,
+                             const Given& both = {}) {
+  for (const GatherCase* c : gatherCases()) {
+    const Image all = c->indirect("all", both, 1), own = c->indirect(gather, with(both, options));
+    for (const char* channel : {"R", "G", "B"}) {
+      const auto &x = *all.find(channel), &y = *own.find(channel);
+      for (size_t i = 0; i < x.size(); ++i)
+        ASSERT_NEAR(y[i], x[i], 1e-4f * (x[i] + 1e-3f)) << c->world.scene.name() << " " << i;
+    }
+  }
 }
 
 }  // namespace bnvpl::test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 #include <numbers>
 
 #include "scene/surface_area.h"
@@ -17,8 +18,36 @@ namespace bnvpl {
 
 namespace {
 
+// Lines of --help for the layers of the gathers' own counters.
+std::string counterList() {
+  std::string lines;
+  for (const GatherMethod* m : gatherMethods()) {
+    for (const Counter& c : m->counters) {
+      lines += "\n  " + std::string(c.name) + ": " + std::string(c.help) + ", with --gather " +
+               std::string(m->name);
+    }
+  }
+  return lines;
+}
+
+// Layers of the counters of the gather of a run.
+std::span<const Layer> counterLayersOf(const Values& options) {
+  static const auto all = [] {
+    std::map<std::string_view, std::vector<Layer>> layers;
+    for (const GatherMethod* m : gatherMethods()) {
+      for (size_t k = 0; k < m->counters.size(); ++k)
+        layers[m->name].push_back(counterLayer(m->counters[k], k));
+    }
+    return layers;
+  }();
+  if (!options.has(kGatherSlot)) return {};
+  const auto own = all.find(options[kGatherSlot]);
+  return own == all.end() ? std::span<const Layer>() : std::span<const Layer>(own->second);
+}
+
 std::span<const Option> stageOptions() {
-  static const std::string layersHelp = "extra channels of the image, or all" + layerList();
+  static const std::string layersHelp =
+      "extra channels of the image, or all" + layerList() + counterList();
   static const std::array options = optionTable(
       kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kAdaptiveOption, kOnlyOption,
       kSeedOption, kFilterOption, kFilterRadiusOption,
@@ -154,7 +183,12 @@ const IntegratorMethod& integratorOf(const Values& options) {
 std::vector<const Layer*> layersOf(const Values& options) {
   return parseLayers(options[kLayersKey],
                      integratorOf(options).gathers && onlyOf(options) != Only::Direct,
-                     budgetOf(options).has_value(), options[kOnlyOption]);
+                     budgetOf(options).has_value(), options[kOnlyOption], counterLayersOf(options));
+}
+
+std::span<const Counter> countersOf(const Values& options) {
+  if (!options.has(kGatherSlot)) return {};
+  return methodNamed(gatherMethods(), options[kGatherSlot]).counters;
 }
 
 uint64_t renderWork(const Scene& scene, const Values& options) {

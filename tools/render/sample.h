@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "core/random.h"
 #include "core/vec3.h"
@@ -19,6 +20,17 @@ struct PhotonLight {
   std::array<Vec3, 2> brightest;  // two photons, by the mean of the channels
 };
 
+// What a method of --gather counts for a receiver besides clusters and shadow rays. Its mean is a
+// layer of the image, and a number in --stats.
+struct Counter {
+  std::string_view name;  // name of the layer; in --stats it is mean_NAME
+  std::string_view unit;  // "grid lights": what is counted, in the plural
+  std::string_view help;
+};
+inline constexpr size_t kMaxCounters = 3;
+// Counts of a receiver, in the order in which the method declares its counters.
+using Counts = std::array<uint32_t, kMaxCounters>;
+
 // Radiance in W/(m2 sr). The first rough vertex of a camera path is the shading point: mirrors,
 // glass and near-specular lobes may lie between it and the camera.
 struct RadianceSample {
@@ -32,6 +44,7 @@ struct RadianceSample {
   Vec3 albedo, normal;  // at the shading point
   float depth = 0.0f;   // first hit, along the viewing axis; 0: the ray hit nothing
   uint32_t cut = 0, shadowRays = 0;
+  Counts counts{};
 };
 
 // One sample of a pixel.

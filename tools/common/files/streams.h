@@ -29,7 +29,8 @@ enum class Stream : uint32_t {
   PhotonEmission,
   IndirectShare,
   PilotPhotons = 30,  // vpl-estimate --method both
-  PilotPaths
+  PilotPaths,
+  GridMembers = 40  // gather grid-hierarchy
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

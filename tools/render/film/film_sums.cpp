@@ -49,7 +49,9 @@ FilmStats statsOf(const FilmSums& film, uint64_t samples) {
     stats.cut += double(c.cut);
     stats.shadowRays += double(c.shadowRays);
     stats.nonFinite += c.nonFinite;
+    for (size_t k = 0; k < kMaxCounters; ++k) stats.own[k] += double(c.own[k]);
   }
+  for (double& count : stats.own) count /= double(samples);
   stats.cut /= double(samples);
   stats.shadowRays /= double(samples);
   return stats;

@@ -1,5 +1,6 @@
 #include "tools/render/film/layers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -30,6 +31,11 @@ double depthOf(const LayerPixel& p, size_t) {
 template <uint64_t PixelCounts::*kCount>
 double countOf(const LayerPixel& p, size_t) {
   return static_cast<double>(p.counts.*kCount) * p.perCount;
+}
+
+template <size_t kIndex>
+double ownCountOf(const LayerPixel& p, size_t) {
+  return static_cast<double>(p.counts.own[kIndex]) * p.perCount;
 }
 
 double errorOf(const LayerPixel& p, size_t channel) {
@@ -87,6 +93,12 @@ constexpr std::array kLayers{
 
 }  // namespace
 
+Layer counterLayer(const Counter& counter, size_t index) {
+  constexpr std::array<double (*)(const LayerPixel&, size_t), kMaxCounters> kValues{
+      ownCountOf<0>, ownCountOf<1>, ownCountOf<2>};
+  return {counter.name, "", counter.help, kValues.at(index), true};
+}
+
 size_t channelCount(const Layer& layer) {
   return std::max<size_t>(1, layer.channels.size()) * (isMatte(layer) ? kMatteLayers : 1);
 }
@@ -110,14 +122,14 @@ std::string layerList() {
 }
 
 std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool passes,
-                                      std::string_view shown) {
+                                      std::string_view shown, std::span<const Layer> counters) {
   std::istringstream words(list);
   std::set<std::string, std::less<>> names;
   for (std::string name; std::getline(words, name, ',');) names.insert(name);
   const bool all = names.erase("all") > 0;
   std::vector<const Layer*> layers;
   std::string known;
-  for (const Layer& layer : kLayers) {
+  const auto consider = [&](const Layer& layer) {
     const bool named = names.erase(std::string(layer.name)) > 0;
     if (named && layer.ofVpls && !vpls) {
       throw UsageError("--layers: '" + std::string(layer.name) +
@@ -136,7 +148,9 @@ std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool p
     const bool possible = isShown && (vpls || !layer.ofVpls) && (passes || !layer.ofPasses);
     if (named || (all && possible)) layers.push_back(&layer);
     known += std::string(layer.name) + ", ";
-  }
+  };
+  std::ranges::for_each(kLayers, consider);
+  std::ranges::for_each(counters, consider);
   if (!names.empty())
     throw UsageError("--layers: unknown layer '" + *names.begin() + "'; use " + known + "or all");
   return layers;

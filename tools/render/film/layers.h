@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/vec3.h"
+#include "tools/render/sample.h"
 
 namespace bnvpl {
 
@@ -51,6 +52,7 @@ struct PixelSums {
 };
 struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
+  std::array<uint64_t, kMaxCounters> own{};  // by the gather's own counters
 };
 
 // Statistics of a pixel over the passes (passes.h).
@@ -92,6 +94,9 @@ struct Layer {
   FirstHit firstHit = FirstHit::None;
 };
 
+// The layer of the gather's counter number `index`.
+Layer counterLayer(const Counter& counter, size_t index);
+
 size_t channelCount(const Layer& layer);
 std::string channelName(const Layer& layer, size_t channel);
 // Text for --help: one line per layer, each preceded by a line break.
@@ -99,9 +104,10 @@ std::string layerList();
 
 // Parses a comma-separated list of names, or "all" for all layers that the image can have. `vpls`
 // and `passes`: whether it gathers VPLs and is rendered by passes. `shown`: "direct" or "indirect"
-// if the image shows only that light. Throws UsageError for a layer that is unknown or that the
-// image cannot have.
+// if the image shows only that light. `counters`: layers of the gather's own counters, which must
+// outlive the result. Throws UsageError for a layer that is unknown or that the image cannot have.
 std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true,
-                                      bool passes = false, std::string_view shown = "all");
+                                      bool passes = false, std::string_view shown = "all",
+                                      std::span<const Layer> counters = {});
 
 }  // namespace bnvpl

@@ -68,6 +68,7 @@ void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   if (r.depth > 0.0f) pixel.sum[PixelSums::kHits] += 1.0;
   counts.cut += r.cut;
   counts.shadowRays += r.shadowRays;
+  for (size_t k = 0; k < kMaxCounters; ++k) counts.own[k] += r.counts[k];
 }
 
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,

@@ -24,6 +24,7 @@ struct Gathered {
   Vec3 clamped;      // radiance that the bound on 1/d^2 removed
   uint32_t cut = 0;  // clusters or VPLs evaluated
   uint32_t shadowRays = 0;
+  Counts counts{};  // by the method's own counters
 };
 
 // The receivers of a tile's samples; null where a sample has none.
@@ -71,17 +72,28 @@ struct GatherMethod {
   std::string_view name, summary;
   std::span<const Option> options;
   Gather (*make)(const GatherInputs&, const Values&);
+  std::span<const Counter> counters = {};  // at most kMaxCounters
   // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
   FilmFilter (*filmFilter)(const Values&) = nullptr;
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();
 
-// Makes a Gather that handles each receiver separately: fn(bsdf) -> Gathered.
+// Makes a Gather that handles each receiver separately: fn(bsdf) -> Gathered, or fn(bsdf, key) with
+// a key for the random numbers of the receiver.
 template <typename Fn>
 Gather gatherEach(Fn fn) {
   return {[fn = std::move(fn)](const TileReceivers& tile, std::span<Gathered> out) {
-    for (size_t i = 0; i < out.size(); ++i) out[i] = tile.bsdf[i] ? fn(*tile.bsdf[i]) : Gathered{};
+    for (size_t i = 0; i < out.size(); ++i) {
+      out[i] = {};
+      if (!tile.bsdf[i]) continue;
+      if constexpr (std::is_invocable_v<const Fn&, const Bsdf&>) {
+        out[i] = fn(*tile.bsdf[i]);
+      } else {
+        const uint64_t sample = i + uint64_t{tile.firstSample} * tile.pixels;
+        out[i] = fn(*tile.bsdf[i], random64(tile.key, sample, 0));
+      }
+    }
   }};
 }
 

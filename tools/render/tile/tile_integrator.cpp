@@ -131,6 +131,7 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
     out.clamped += points.paths[i].throughput * gathered[i].clamped;
     out.cut += gathered[i].cut;
     out.shadowRays += gathered[i].shadowRays;
+    out.counts = gathered[i].counts;
   }
 }
 

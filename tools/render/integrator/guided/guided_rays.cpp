@@ -16,13 +16,13 @@ constexpr float kCertain = 3.0f;
 // Minimal probability of survival, as the guide may be wrong about dark places.
 constexpr float kMinSurvival = 0.4f;
 // Shadow rays to lights from the first vertex, which many samples reuse.
-constexpr unsigned kFirstLightRays = 2;
+constexpr unsigned kLightRaysFromFirst = 2;
 // Cost of a ray in the units of cost:: (measured: tools/render/tile/theory.md).
-constexpr double kCostOfRay = 30.0;
+constexpr double kCostOfGuidedRay = 30.0;
 
 }  // namespace
 
-double GuidedRays::costOfRay() const { return kCostOfRay; }
+double GuidedRays::costOfRay() const { return kCostOfGuidedRay; }
 
 void GuidedRays::send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                       RayContributions& out) const {
@@ -86,7 +86,8 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     const uint32_t region = guide_.regionAt(bsdf.point());
     const Directions directions = directionsIn(region, bsdf);
     strata = spatialLights_.at(bsdf.point().position, bsdf.point().ng);
-    const LearnedLight lights{strata.all ? &strata : nullptr, bounce == 1 ? kFirstLightRays : 1};
+    const LearnedLight lights{strata.all ? &strata : nullptr,
+                              bounce == 1 ? kLightRaysFromFirst : 1};
     const auto rayPdf = [&](Vec3 wi) { return directions.pdf(wi); };
     const LightNumbers numbers = lights.strata ? LightNumbers::sequence(rng) : LightNumbers(rng);
     if (bounce == 1) {
