@@ -6,6 +6,8 @@
 #include <queue>
 
 #include "tools/common/files/streams.h"
+#include "tools/render/light_tree/normal_cone.h"
+#include "tools/render/light_tree/orientation_split.h"
 
 namespace bnvpl {
 
@@ -16,8 +18,12 @@ constexpr float kNormalScale = 0.125f;
 
 class Builder {
  public:
-  Builder(const VplLights& vpls, uint64_t seed, LightTree& tree)
-      : vpls_(vpls), key_(streamKey(seed, Stream::LightTree)), tree_(tree), order_(vpls.size()) {
+  Builder(const VplLights& vpls, uint64_t seed, LightSplit by, LightTree& tree)
+      : vpls_(vpls),
+        key_(streamKey(seed, Stream::LightTree)),
+        by_(by),
+        tree_(tree),
+        order_(vpls.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
     Bounds all;
     for (const Vec3 p : vpls.position) all.extend(p);
@@ -51,9 +57,17 @@ class Builder {
     return axis < 3 ? vpls_.position[i][axis] : normalScale_ * vpls_.normal[i][axis - 3];
   }
 
-  // Splits at the middle of the longest of six sides, or into halves by count if one part would be
-  // empty.
+  // Splits into halves by count where one part would be empty.
   size_t split(size_t begin, size_t end) {
+    const size_t position =
+        by_ == LightSplit::Middle
+            ? splitAtMiddle(begin, end)
+            : begin + splitByOrientation(vpls_, std::span(order_).subspan(begin, end - begin));
+    return position > begin && position < end ? position : begin + (end - begin) / 2;
+  }
+
+  // Splits at the middle of the longest of six sides.
+  size_t splitAtMiddle(size_t begin, size_t end) {
     std::array<float, 6> low, high;
     low.fill(INFINITY);
     high.fill(-INFINITY);
@@ -71,8 +85,7 @@ class Builder {
     const auto at = [&](size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
     const auto cut = std::stable_partition(
         at(begin), at(end), [&](uint32_t i) { return coordinate(i, axis) < middle; });
-    const auto position = static_cast<size_t>(cut - order_.begin());
-    return position > begin && position < end ? position : begin + (end - begin) / 2;
+    return static_cast<size_t>(cut - order_.begin());
   }
 
   LightNode leafOf(uint32_t i) const {
@@ -92,7 +105,9 @@ class Builder {
     LightNode n;
     n.bounds = a.bounds;
     n.bounds.extend(b.bounds);
-    mergeCones(a, b, n);
+    const NormalCone cone = merged({a.axis, a.cosHalfAngle}, {b.axis, b.cosHalfAngle});
+    n.axis = cone.axis;
+    n.cosHalfAngle = cone.cosHalfAngle;
     n.frame = AxisFrame(n.axis);
     n.sinHalfAngle = n.cosHalfAngle <= 0.0f
                          ? 1.0f
@@ -108,34 +123,9 @@ class Builder {
     return n;
   }
 
-  // Smallest cone that contains both cones.
-  static void mergeCones(const LightNode& a, const LightNode& b, LightNode& n) {
-    const float ta = std::acos(a.cosHalfAngle), tb = std::acos(b.cosHalfAngle);
-    const float between = std::acos(std::clamp(dot(a.axis, b.axis), -1.0f, 1.0f));
-    const LightNode& wide = ta >= tb ? a : b;
-    const float wideAngle = std::max(ta, tb), narrowAngle = std::min(ta, tb);
-    if (between + narrowAngle <= wideAngle) {
-      n.axis = wide.axis;
-      n.cosHalfAngle = wide.cosHalfAngle;
-      return;
-    }
-    constexpr float kStraight = 3.14159265f;
-    const float angle = 0.5f * (ta + tb + between);
-    const Vec3& other = ta >= tb ? b.axis : a.axis;
-    const Vec3 sideways = other - wide.axis * dot(wide.axis, other);
-    if (angle >= kStraight || lengthSquared(sideways) < 1e-10f) {
-      n.axis = wide.axis;
-      n.cosHalfAngle = -1.0f;
-      return;
-    }
-    const float turn = angle - wideAngle;
-    n.axis = normalize(wide.axis * std::cos(turn) + normalize(sideways) * std::sin(turn));
-    // Slightly wider than exact, so that it stays a bound despite rounding.
-    n.cosHalfAngle = std::cos(std::min(kStraight, angle + 1e-3f));
-  }
-
   const VplLights& vpls_;
   uint64_t key_;
+  LightSplit by_;
   LightTree& tree_;
   std::vector<uint32_t> order_;
   float normalScale_ = 1.0f;
@@ -174,11 +164,11 @@ VplDraw LightTree::draw(const LightNode& n, float u) const {
   return {order[k], own > 0.0 ? static_cast<float>(whole / own) : 0.0f};
 }
 
-LightTree buildLightTree(const VplLights& vpls, uint64_t seed) {
+LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {
   LightTree tree;
   if (vpls.size() == 0) return tree;
   tree.nodes.reserve(2 * vpls.size());
-  Builder builder(vpls, seed, tree);
+  Builder builder(vpls, seed, by, tree);
   builder.build(0, vpls.size());
   tree.order = builder.takeOrder();
   tree.upTo.assign(1, 0.0);

@@ -58,9 +58,12 @@ struct LightTree {
   VplDraw draw(const LightNode& n, float u) const;
 };
 
-// Builds the tree top-down, splitting along the longest side of position and scaled normal, in O(N
-// log N). A parent takes the representative of one child, drawn in proportion to intensity.
-// Deterministic for a seed.
-LightTree buildLightTree(const VplLights& vpls, uint64_t seed);
+// How a cluster is split: at the middle of its longest side of position and scaled normal, or where
+// the orientation heuristic costs least (orientation_split.h).
+enum class LightSplit { Middle, Orientation };
+
+// Builds the tree top-down in O(N log N). A parent takes the representative of one child, drawn in
+// proportion to intensity. Deterministic for a seed.
+LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by = LightSplit::Middle);
 
 }  // namespace bnvpl

@@ -7,6 +7,7 @@
 
 #include "tools/render/gather/shadow_test.h"
 #include "tools/render/light_tree/cluster_bounds.h"
+#include "tools/render/light_tree/descend.h"
 
 namespace bnvpl::methods::gather::stochastic {
 
@@ -60,27 +61,6 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
   return 0.5f * (near + far);
 }
 
-struct Draw {
-  uint32_t vpl;
-  float probability;
-};
-
-std::optional<Draw> descend(const LightTree& tree, uint32_t node, const ClusterReceiver& receiver,
-                            float u) {
-  float probability = 1.0f;
-  while (!tree.nodes[node].leaf()) {
-    const LightNode& n = tree.nodes[node];
-    const auto left = leftShare(tree.nodes[n.left], tree.nodes[n.right], receiver);
-    if (!left) return {};
-    const bool goLeft = u < *left;
-    const float share = goLeft ? *left : 1.0f - *left;
-    u = std::min((goLeft ? u : u - *left) / share, 0x1.fffffep-1f);  // reuses the random number
-    probability *= share;
-    node = goLeft ? n.left : n.right;
-  }
-  return Draw{tree.nodes[node].representative, probability};
-}
-
 Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
                      size_t cutSize, const Bsdf& bsdf, uint64_t key) {
   Gathered out;
@@ -90,7 +70,10 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTre
   const std::vector<Cluster>& cut = chooseCut(tree, receiver, cutSize);
   for (const Cluster& cluster : cut) {
     const float u = toUnitFloat(random64(key, cluster.node, 0));
-    const auto draw = descend(tree, cluster.node, receiver, u);
+    const auto draw =
+        descend(tree, cluster.node, u, [&](const LightNode& left, const LightNode& right) {
+          return leftShare(left, right, receiver);
+        });
     if (draw && draw->probability > 0.0f) test.add(draw->vpl, 1.0f / draw->probability, out);
   }
   out.cut = static_cast<uint32_t>(cut.size());
@@ -99,15 +82,10 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTre
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto cut = static_cast<size_t>(options[kCutOption]);
-  return {[&rays = in.rays, &vpls = in.vpls, &tree = in.tree, cut](const TileReceivers& tile,
-                                                                   std::span<Gathered> out) {
-    for (size_t i = 0; i < out.size(); ++i) {
-      const uint64_t sample = i + uint64_t{tile.firstSample} * tile.pixels;
-      out[i] = tile.bsdf[i] ? gatherPoint(rays, vpls, tree, cut, *tile.bsdf[i],
-                                          random64(tile.key, sample, 0))
-                            : Gathered{};
-    }
-  }};
+  return gatherEach(
+      [&rays = in.rays, &vpls = in.vpls, &tree = in.tree, cut](const Bsdf& bsdf, uint64_t key) {
+        return gatherPoint(rays, vpls, tree, cut, bsdf, key);
+      });
 }
 
 }  // namespace
