@@ -1,0 +1,77 @@
+#include "tools/render/gather/shirley/bright_lights.h"
+
+#include <algorithm>
+
+namespace bnvpl::methods::gather::shirley {
+
+BrightLights::BrightLights(const VplLights& vpls, const Bounds& scene, uint32_t cells,
+                           float threshold)
+    : vpls_(vpls),
+      grid_(scene, std::max(maxComponent(scene.extent()), 1e-20f) / static_cast<float>(cells)),
+      threshold_(threshold),
+      upTo_(1, 0.0),
+      cells_(std::make_unique<LazyCell[]>(grid_.count())) {
+  for (const Vec3 i : vpls.intensity) upTo_.push_back(upTo_.back() + double{mean(i)});
+}
+
+const BrightLights::Cell& BrightLights::at(Vec3 position) const {
+  const size_t index = grid_.at(position);
+  LazyCell& lazy = cells_[index];
+  std::call_once(lazy.once, [&] { lazy.cell = find(grid_.bounds(index)); });
+  return lazy.cell;
+}
+
+BrightLights::Cell BrightLights::find(const Bounds& box) const {
+  const Vec3 centre = box.center();
+  const float radius2 = 0.25f * lengthSquared(box.extent());
+  std::vector<float> most(vpls_.size());  // irradiance that no point of the cell exceeds, W/m2
+  double arriving = 0.0;                  // at the centre of the cell, from all VPLs
+  for (size_t i = 0; i < vpls_.size(); ++i) {
+    const Vec3 to = vpls_.position[i] - centre;
+    const float d2 = lengthSquared(to), intensity = mean(vpls_.intensity[i]);
+    float cosine = 1.0f;
+    if (d2 > radius2) {
+      const float sinSphere = std::sqrt(radius2 / d2);
+      cosine =
+          cosineOfLess(-dot(vpls_.normal[i], to) / std::sqrt(d2), sineOf(sinSphere), sinSphere);
+    }
+    const float emitted =
+        intensity * withKind(vpls_.kind, [&](auto k) { return k.mostEmitted(cosine, 1.0f, 0.0f); });
+    const auto arrives = [&](float distance2) {
+      return emitted * falloff(vpls_.kind, distance2, vpls_.clamp2[i]);
+    };
+    most[i] = arrives(box.distanceSquared(vpls_.position[i]));
+    arriving += double{arrives(larger(d2, radius2))};
+  }
+  Cell cell;
+  cell.upTo.assign(1, 0.0);
+  for (uint32_t i = 0; i < most.size(); ++i) {
+    if (!(double{most[i]} > double{threshold_} * arriving)) continue;
+    cell.bright.push_back(i);
+    cell.upTo.push_back(cell.upTo.back() + double{mean(vpls_.intensity[i])});
+  }
+  return cell;
+}
+
+std::optional<BrightLights::Draw> BrightLights::drawDim(const Cell& cell, float u) const {
+  if (cell.bright.size() == vpls_.size()) return {};
+  // Intensity of the dim VPLs before number i.
+  const auto dimUpTo = [&](size_t i) {
+    const auto bright = std::ranges::lower_bound(cell.bright, i) - cell.bright.begin();
+    return upTo_[i] - cell.upTo[size_t(bright)];
+  };
+  const double all = dimUpTo(vpls_.size());
+  const double wanted = double{u} * all;
+  size_t first = 0, end = vpls_.size();  // the VPL is in [first, end)
+  while (end - first > 1) {
+    const size_t middle = first + (end - first) / 2;
+    (dimUpTo(middle) <= wanted ? first : end) = middle;
+  }
+  // Rounding of the sums may lead to a bright VPL, which has been counted.
+  if (std::ranges::binary_search(cell.bright, first)) return {};
+  const double own = double{mean(vpls_.intensity[first])};
+  if (!(own > 0.0) || !(all > 0.0)) return {};
+  return Draw{static_cast<uint32_t>(first), static_cast<float>(own / all)};
+}
+
+}  // namespace bnvpl::methods::gather::shirley
