@@ -9,10 +9,11 @@
 //   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
 //              compensation adds back: 1 - d^2 / boundedDistance2
 //   emitted    emission in a direction relative to that along the axis, times the distance
-//   mostEmitted, expectedEmitted
+//   mostEmitted, leastEmitted, expectedEmitted
 //              the same for a cluster whose axes fill a cone, without the distance: an upper bound
-//              for directions whose cosine with the cone's axis is at most the given one, and a
-//              typical value that is 0 only where nothing can be emitted
+//              for directions whose cosine with the cone's axis is at most the given one, a lower
+//              bound for those where it is at least that, and a typical value that is 0 only where
+//              nothing can be emitted
 // F is a float, or four of them (core/lanes.h).
 #pragma once
 
@@ -37,6 +38,11 @@ struct LambertEmission {
     const F zero = everyLane<F>(0.0f);
     const F nearest = cosineOfLess(cosine, cosHalfAngle, sinHalfAngle);
     return selectAtLeast(zero, cosHalfAngle, everyLane<F>(1.0f), larger(nearest, zero));
+  }
+  // `cosine` is the least of the direction with the axis of the cone.
+  static float leastEmitted(float cosine, float cosHalfAngle, float sinHalfAngle) {
+    return larger(cosine * cosHalfAngle - sineOf(cosine) * sinHalfAngle, 0.0f) *
+           (cosHalfAngle > 0.0f ? 1.0f : 0.0f);
   }
   // `halfAngle` is about half the angle that the cluster subtends; `sinHalfAngle` is that of the
   // cone.

@@ -62,7 +62,8 @@ TYPED_TEST(EachLightKind, FourAtOnceAreFourSingleOnes) {
   }
 }
 
-// Over a cone of axes, the bound is never below the emission of any axis, and never above 1.
+// Over a cone of axes, no axis emits more than the upper bound, which is at most 1, or less than
+// the lower one.
 TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
   Rng rng(streamKey(3, Stream::PixelSamples), 0);
   for (int i = 0; i < 300; ++i) {
@@ -72,11 +73,15 @@ TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
     const Vec3 axis = sampleSphere(u, v), direction{0, 0, -1};  // towards the light
     const float bound = TypeParam::mostEmitted(-dot(axis, direction), cosHalf, sinHalf);
     EXPECT_LE(bound, 1.0f);
+    const float least = TypeParam::leastEmitted(-dot(axis, direction), cosHalf, sinHalf);
+    EXPECT_GE(least, 0.0f);
     for (int k = 0; k < 100; ++k) {
       const float s = rng.next(), t = rng.next();
       const Vec3 own = sampleSphere(s, t);
       if (dot(own, axis) < cosHalf) continue;
-      EXPECT_LE(TypeParam::emitted(own, direction), bound + 1e-4f);
+      const float emitted = TypeParam::emitted(own, direction);
+      EXPECT_LE(emitted, bound + 1e-4f);
+      EXPECT_GE(std::max(emitted, 0.0f), least - 1e-4f);
     }
   }
 }

@@ -30,7 +30,8 @@ enum class Stream : uint32_t {
   IndirectShare,
   PilotPhotons = 30,  // vpl-estimate --method both
   PilotPaths,
-  GridMembers = 40  // gather grid-hierarchy
+  GridMembers = 40,  // gather grid-hierarchy
+  Octree             // gather paquette
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {
