@@ -42,6 +42,7 @@ struct Material {
   Vec3 emission;
   uint32_t emissionTexture = kNone;  // into Scene::expressions
   bool twoSidedEmission = false;
+  uint32_t lightGroup = 0;  // into Scene::lightGroups
 
   // Where the opacity is below the cutoff, the surface is absent for every kind of ray; opacity 0
   // makes what pbrt calls an interface. `opacityMap`, the mask of a texture (TextureUse::mask) in

@@ -114,6 +114,7 @@ struct LightSpec {
   uint32_t image = kNone;         // environment: into Scene::environments
   float rotateRad = 0.0f;         // environment: rotation about +y
   float scale = 1.0f;             // environment: factor on the radiance
+  uint32_t group = 0;             // into Scene::lightGroups
 };
 
 // A mesh by its name in the files. Its counts include triangles that are left out later.
@@ -172,6 +173,9 @@ struct Scene {
   std::vector<TextureExpression> expressions;
   std::vector<LightSpec> lights;
   std::vector<EnvironmentImage> environments;
+  // Light groups, whose light images can show apart: first that of lights without a group, then the
+  // others by name.
+  std::vector<std::string> lightGroups{"default"};
 
   uint64_t contentHash = 0;     // covers geometry, materials, textures and lights, not the camera
   std::vector<fs::path> files;  // every file that was read or is missing, for depfiles

@@ -44,6 +44,15 @@ void SceneBuilder::addCamera(const std::string& name, const FilePoint& position,
   if (including()) placeCamera(place_, scene_.views.back().camera, viewPositions_.back());
 }
 
+std::optional<uint32_t> SceneBuilder::lightGroup(const std::string& name) {
+  std::vector<std::string>& groups = scene_.lightGroups;
+  const auto known = std::ranges::find(groups, name);
+  if (known != groups.end()) return static_cast<uint32_t>(known - groups.begin());
+  if (groups.size() == kMaxLightGroups) return {};
+  groups.push_back(name);
+  return static_cast<uint32_t>(groups.size() - 1);
+}
+
 void SceneBuilder::addLight(const LightSpec& light, const FilePoint& position) {
   scene_.lights.push_back(light);
   scene_.lights.back().name = onOneLine(light.name);

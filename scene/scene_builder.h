@@ -27,6 +27,8 @@
 namespace bnvpl {
 
 inline constexpr std::array<uint32_t, 3> kNoCorners{kNone, kNone, kNone};
+// Maximal number of light groups, that of lights without a group included.
+inline constexpr size_t kMaxLightGroups = 32;
 
 // A mesh as its file gives it. The arrays are borrowed until addMesh() returns.
 struct Mesh {
@@ -86,9 +88,16 @@ class SceneBuilder {
   const Material* useReplacement(const std::string& name);
   // Adds a material that none replaces, whatever its name.
   uint32_t addOwnMaterial(Material material);
-  // All materials of this name that are added later emit `radiance` on their front or both sides,
-  // whatever they emit by themselves. An outer file's emission comes first.
-  void addEmission(const std::string& name, Vec3 radiance, bool twoSided);
+  // What a scene.toml says of the emission of a named material.
+  struct Emission {
+    std::optional<Vec3> radiance;  // on its front or both sides; empty: what it emits by itself
+    bool twoSided = false;
+    uint32_t group = 0;  // into Scene::lightGroups
+  };
+  // All materials of this name that are added later emit so. An outer file's emission comes first.
+  void addEmission(const std::string& name, const Emission& emission) {
+    emissions_.try_emplace(name, emission);
+  }
   bool isLit(const std::string& name) const { return lit_.contains(name); }
   // Reads the radiance of an image at once. Negative values become 0, with a warning. Throws
   // InputError if the file is no image.
@@ -98,6 +107,9 @@ class SceneBuilder {
   }
   // Adds a radiance map that was derived from the file `image`.
   uint32_t addEnvironment(const fs::path& image, EnvironmentImage radiance);
+  // The number of a light group, which is new unless it was named before. Returns nothing if there
+  // are kMaxLightGroups others.
+  std::optional<uint32_t> lightGroup(const std::string& name);
   // finish() computes light.position from `position`, which has no meaning for lights at infinity.
   void addLight(const LightSpec& light, const FilePoint& position = {});
 
@@ -174,10 +186,6 @@ class SceneBuilder {
     uint32_t material, object;  // `material` is kNone for grey until the triangle is found usable
     auto operator<=>(const Surface&) const = default;
   };
-  struct Emission {
-    Vec3 radiance;
-    bool twoSided;
-  };
   struct Include {
     fs::path file;
     Affine outer;  // place_ of the outer file
@@ -224,6 +232,7 @@ class SceneBuilder {
   void dropDoubledLamps();
   void sortByMask();
   void listObjects();
+  void sortLightGroups();
   void extendBounds();
   void placeViews();
   void requirePlace(const FilePoint& p, const char* what) const;

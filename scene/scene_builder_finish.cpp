@@ -161,6 +161,18 @@ void SceneBuilder::requireSize() const {
                    ", where floats suffice; change the meshes' 'scale' and the lights");
 }
 
+// Makes the numbers of light groups independent of the order in which files name them.
+void SceneBuilder::sortLightGroups() {
+  const std::vector<std::string> named = scene_.lightGroups;
+  std::ranges::sort(scene_.lightGroups.begin() + 1, scene_.lightGroups.end());
+  const auto renumber = [&](uint32_t& group) {
+    group = static_cast<uint32_t>(std::ranges::find(scene_.lightGroups, named[group]) -
+                                  scene_.lightGroups.begin());
+  };
+  for (Material& m : scene_.materials) renumber(m.lightGroup);
+  for (LightSpec& l : scene_.lights) renumber(l.group);
+}
+
 Scene SceneBuilder::finish() {
   placePrototypes();
   resolveTextures();
@@ -173,6 +185,7 @@ Scene SceneBuilder::finish() {
   dropDoubledLamps();
   sortByMask();
   listObjects();
+  sortLightGroups();
   extendBounds();
   for (const std::string& warning : liftCoplanarLamps(scene_)) warn(warning);
   scene_.positions.push_back({});  // Embree reads 16 bytes at each vertex

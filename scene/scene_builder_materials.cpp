@@ -53,10 +53,6 @@ uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression
   return expression;
 }
 
-void SceneBuilder::addEmission(const std::string& name, Vec3 radiance, bool twoSided) {
-  emissions_.try_emplace(name, Emission{radiance, twoSided});
-}
-
 const Material* SceneBuilder::useReplacement(const std::string& name) {
   const auto it = replacements_.find(name);
   if (it == replacements_.end()) return nullptr;
@@ -72,9 +68,13 @@ uint32_t SceneBuilder::addMaterial(Material material) {
 uint32_t SceneBuilder::addOwnMaterial(Material material) {
   if (const auto it = emissions_.find(material.name); it != emissions_.end()) {
     lit_.insert(material.name);
-    material.emission = it->second.radiance;
-    material.emissionTexture = kNone;
-    material.twoSidedEmission = it->second.twoSided;
+    const Emission& emission = it->second;
+    material.lightGroup = emission.group;
+    if (emission.radiance) {
+      material.emission = *emission.radiance;
+      material.emissionTexture = kNone;
+      material.twoSidedEmission = emission.twoSided;
+    }
   }
   uint32_t parts = 1;
   if (const auto* mix = std::get_if<MixModel>(&material.model)) {

@@ -110,6 +110,12 @@ uint64_t hashScene(const Scene& scene) {
     h.array(scene.prototypes);
     h.array(scene.instances);
   }
+  if (scene.lightGroups.size() > 1) {  // the same
+    for (const std::string& name : scene.lightGroups)
+      h.array(std::vector<char>(name.begin(), name.end()));
+    for (const Material& m : scene.materials) h.value(m.lightGroup);
+    for (const LightSpec& l : scene.lights) h.value(l.group);
+  }
   return h.digest();
 }
 

@@ -44,6 +44,11 @@ class LightSet {
   Vec3 power(size_t light) const { return lights_[light].power; }
   Vec3 totalPower() const;
   std::string name(size_t light) const;  // for messages
+  // Index into Scene::lightGroups.
+  uint32_t group(size_t light) const {
+    const Light& l = lights_[light];
+    return l.area ? scene_.materials[l.material].lightGroup : l.spec.group;
+  }
 
   // The same lights, but pick() returns only those that no ray can hit. BSDF rays find the others.
   LightSet onlyUnhittable() const;

@@ -145,6 +145,25 @@ TEST_F(SceneReport, ListsObjectsAndWritesTheirNames) {
   EXPECT_EQ(again["lights"].back()["light"], "point light 'bulb'");
 }
 
+TEST_F(SceneReport, TellsAndWritesLightGroups) {
+  writeTinyScene(at("."));
+  EXPECT_FALSE(contains(runInspect("scene " + quoted(at("tiny.toml"))).output, "group"));
+  writeAll(at("tiny.mtl"), "newmtl white\nKd 0.7 0.7 0.7\nKe 1 1 1\n");
+  writeAll(at("all.toml"), readAll(at("tiny.toml")) + "group = \"rim\"\n[[light]]\n" +
+                               "type = \"material\"\nmaterial = \"white\"\ngroup = \"key\"\n" +
+                               "[[light]]\ntype = \"disk\"\nradius = 1\nposition = [0, 9, 0]\n" +
+                               "direction = [0, 1, 0]\npower = [5, 5, 5]\n");
+  const Outcome text = runInspect("scene " + quoted(at("all.toml")));
+  for (const char* part : {"material 'white': (115.9 115.9 115.9) W, group key", "group default",
+                           "point light: (12.57 12.57 12.57) W, group rim"})
+    EXPECT_TRUE(contains(text.output, part)) << part << " in\n" << text.output;
+  ASSERT_EQ(runInspect("scene --to-toml " + quoted(at("copy")) + " " + quoted(at("all.toml"))).code,
+            0);
+  const Scene before = loadScene(at("all.toml")), after = loadScene(at("copy/scene.toml"));
+  EXPECT_EQ(after.lightGroups, (std::vector<std::string>{"default", "key", "rim"}));
+  EXPECT_EQ(sceneDifference(before, after), "");
+}
+
 // Triangles of instances count too, although each mesh is stored once.
 TEST_F(SceneReport, CountsMaskedTriangles) {
   writeTinyScene(at("."));

@@ -56,7 +56,7 @@ double side(const TomlSection& s, const char* key) {
 
 bool readTomlAreaLight(const fs::path& file, const TomlSection& s, const std::string& type,
                        size_t number, SceneBuilder& builder) {
-  std::set<std::string> keys{"name", "type", "position", "power", "radiance"};
+  std::set<std::string> keys{"name", "type", "position", "power", "radiance", "group"};
   const bool sphere = type == "sphere", disk = type == "disk";
   if (!sphere && !disk && type != "rectangle") return false;
   if (!sphere) keys.insert({"direction", "look_at", "up", "sides"});
@@ -79,6 +79,7 @@ bool readTomlAreaLight(const fs::path& file, const TomlSection& s, const std::st
   m.name = s.has("name") ? s.newName({}) : type + " light " + std::to_string(number);
   m.model = DiffuseModel{Colour(Vec3(0))};
   m.twoSidedEmission = s.has("sides") && s.integer("sides", 1, 2) == 2;
+  m.lightGroup = tomlLightGroup(s, builder);
   m.emission = radianceOf(s, m.twoSidedEmission ? 2.0 * area : area);
   const FilePoint position = s.place("position");
   Affine place;

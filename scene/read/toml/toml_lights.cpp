@@ -20,10 +20,11 @@ const std::vector<std::string> kLightKeys{"name",       "type",       "position"
                                           "irradiance", "image",      "material",
                                           "width",      "height",     "radius",
                                           "sides",      "cone_deg",   "falloff_deg",
-                                          "scale",      "rotate_deg", "angular_diameter_deg"};
+                                          "scale",      "rotate_deg", "angular_diameter_deg",
+                                          "group"};
 
 void requireKeys(const TomlSection& s, const std::string& type, std::set<std::string> allowed) {
-  allowed.insert({"name", "type"});
+  allowed.insert({"name", "type", "group"});
   s.requireOnly("a " + type + " light", allowed);
 }
 
@@ -79,6 +80,7 @@ void readEnvironment(const TomlSection& s, const FileNames& names, SceneBuilder&
 void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& builder) {
   LightSpec light;
   if (s.has("name")) light.name = s.newName({});
+  light.group = tomlLightGroup(s, builder);
   FilePoint position{};
   const std::string type = s.text("type");
   if (type == "point" || type == "spot") {
@@ -100,7 +102,36 @@ void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& build
   builder.addLight(light, position);
 }
 
+// A material light with a group may leave the emission to the material.
+SceneBuilder::Emission materialEmission(const TomlSection& s, SceneBuilder& builder) {
+  SceneBuilder::Emission emission{{}, false, tomlLightGroup(s, builder)};
+  if (!s.has("group") || s.has("radiance")) emission.radiance = s.color("radiance");
+  if (!s.has("sides")) return emission;
+  if (!emission.radiance) s.fail(s.node("sides"), "'sides' needs 'radiance'");
+  emission.twoSided = s.integer("sides", 1, 2) == 2;
+  return emission;
+}
+
 }  // namespace
+
+uint32_t tomlLightGroup(const TomlSection& s, SceneBuilder& builder) {
+  if (!s.has("group")) return 0;
+  const std::string name = s.text("group");
+  constexpr const char* kCharacters =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  constexpr size_t kLongest = 40;
+  if (name.empty() || name.size() > kLongest ||
+      name.find_first_not_of(kCharacters) != std::string::npos) {
+    s.fail(s.node("group"), "'group' names channels of images; use 1 to " +
+                                std::to_string(kLongest) + " letters, digits, '_' and '-'");
+  }
+  const std::optional<uint32_t> group = builder.lightGroup(name);
+  if (!group) {
+    s.fail(s.node("group"), "more than " + std::to_string(kMaxLightGroups - 1) +
+                                " light groups; give some lights the same");
+  }
+  return *group;
+}
 
 FilePoint tomlDirection(const TomlSection& s, const FilePoint& position) {
   if (s.has("direction") == s.has("look_at"))
@@ -125,12 +156,11 @@ std::vector<std::string> readTomlEmissions(const fs::path& file, const toml::tab
   for (const toml::table* t : tablesOf(file, root, "light")) {
     const TomlSection s(file, "[[light]]", *t, kLightKeys);
     if (s.text("type") != "material") continue;
-    s.requireOnly("a material light", {"type", "material", "radiance", "sides"});
+    s.requireOnly("a material light", {"type", "material", "radiance", "sides", "group"});
     out.push_back(s.text("material"));
     if (std::ranges::count(out, out.back()) > 1)
       s.fail(s.node("material"), "the material '" + out.back() + "' has a [[light]] above");
-    builder.addEmission(out.back(), s.color("radiance"),
-                        s.has("sides") && s.integer("sides", 1, 2) == 2);
+    builder.addEmission(out.back(), materialEmission(s, builder));
   }
   return out;
 }

@@ -19,6 +19,9 @@ void readTomlLights(const fs::path& file, const toml::table& root, const FileNam
 bool readTomlAreaLight(const fs::path& file, const TomlSection& s, const std::string& type,
                        size_t number, SceneBuilder& builder);
 
+// Index into Scene::lightGroups of the key 'group', or 0 without it. Throws InputError.
+uint32_t tomlLightGroup(const TomlSection& s, SceneBuilder& builder);
+
 // The unit vector of 'direction', or from `position` to 'look_at'.
 FilePoint tomlDirection(const TomlSection& s, const FilePoint& position);
 

@@ -97,6 +97,7 @@ bool sameMaterial(const MaterialOf& material, const MaterialOf& again) {
   const Scene &a = material.scene, &b = again.scene;
   const Material &m = *material, &n = *again;
   if (m.model.index() != n.model.index()) return false;
+  if (a.lightGroups[m.lightGroup] != b.lightGroups[n.lightGroup]) return false;
   const Parts p = partsOf(m), q = partsOf(n);
   const auto part = [&](uint32_t i, uint32_t j) {
     return i == kNone || j == kNone ? i == j : sameMaterial({a, i}, {b, j});

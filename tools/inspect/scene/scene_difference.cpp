@@ -64,6 +64,7 @@ bool Comparison::sameLight(const LightSpec& l, const LightSpec& m) const {
   const bool placed = l.type == LightType::Point || l.type == LightType::Spot;
   const bool directed = l.type == LightType::Spot || l.type == LightType::Directional;
   if (l.type != m.type || l.image != m.image) return false;
+  if (a_.lightGroups[l.group] != b_.lightGroups[m.group]) return false;
   if (placed && !samePlace(l.position, m.position)) return false;
   if (directed && !near(l.direction, m.direction)) return false;
   return (l.image != kNone || near(l.emission, m.emission)) && near(l.coneRad, m.coneRad) &&

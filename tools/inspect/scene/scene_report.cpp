@@ -65,10 +65,12 @@ Json describeViews(const Scene& scene) {
   return list;
 }
 
-Json describeLights(const LightSet& lights) {
+Json describeLights(const Scene& scene, const LightSet& lights) {
   Json list = Json::array();
-  for (size_t i = 0; i < lights.size(); ++i)
+  for (size_t i = 0; i < lights.size(); ++i) {
     list.push_back({{"light", lights.name(i)}, {"power_W", vectorJson(lights.power(i))}});
+    if (scene.lightGroups.size() > 1) list.back()["group"] = scene.lightGroups[lights.group(i)];
+  }
   return list;
 }
 
@@ -129,7 +131,7 @@ Json describeScene(const Scene& scene, const LightSet& lights) {
   json["objects"] = describeObjects(scene);
   json["materials"] = Json::array();
   for (const Material& m : scene.materials) json["materials"].push_back(describeMaterial(scene, m));
-  json["lights"] = describeLights(lights);
+  json["lights"] = describeLights(scene, lights);
   json["cameras"] = describeViews(scene);
   json["textures"] = describeTextures(scene);
   json["files"] = Json::array();
@@ -166,8 +168,10 @@ std::string sceneText(const Json& asFound) {
     return "'" + text(m, "name") + "': " + text(m, "model") + "; " +
            membersText(m, {"name", "model"});
   });
-  section("lights",
-          [&](const Json& l) { return text(l, "light") + ": " + valueText(l["power_W"]) + " W"; });
+  section("lights", [&](const Json& l) {
+    return text(l, "light") + ": " + valueText(l["power_W"]) + " W" +
+           (l.contains("group") ? ", group " + text(l, "group") : "");
+  });
   section("cameras", [&](const Json& c) {
     return jsonText(c["number"]) + " '" + text(c, "name") +
            "': " + membersText(c, {"number", "name"});

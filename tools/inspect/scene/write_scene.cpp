@@ -61,6 +61,7 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
     text += std::string(key) + " = " + value + "\n";
   };
   if (!l.name.empty()) add("name", inQuotes(l.name));
+  if (l.group > 0) add("group", inQuotes(scene.lightGroups[l.group]));
   switch (l.type) {
     case LightType::Point:
     case LightType::Spot:
@@ -87,6 +88,18 @@ std::string lightText(const Scene& scene, const LightSpec& l) {
       add("rotate_deg", degText(l.rotateRad));
       add("scale", shortestText(l.scale));
       break;
+  }
+  return text;
+}
+
+// The light groups of emissive materials.
+std::string materialGroupsText(const Scene& scene, const WrittenMaterials& used) {
+  std::string text;
+  for (const uint32_t m : used.materials) {
+    const uint32_t group = scene.materials[m].lightGroup;
+    if (group == 0) continue;
+    text += "\n[[light]]\ntype = \"material\"\nmaterial = " + inQuotes(used.names[m]) +
+            "\ngroup = " + inQuotes(scene.lightGroups[group]) + "\n";
   }
   return text;
 }
@@ -197,6 +210,7 @@ void writeSceneToml(const Scene& scene, OutputFolder& folder) {
   writeText(folder, "scene.mtl", mtlText(scene, used));
   std::string toml =
       viewText(scene, scene.film, scene.camera, false) + surfacesText(scene, used) + meshes;
+  toml += materialGroupsText(scene, used);
   for (const LightSpec& light : scene.lights) toml += lightText(scene, light);
   writeText(folder, "scene.toml", toml);
   for (size_t i = 0; scene.views.size() > 1 && i < scene.views.size(); ++i) {
