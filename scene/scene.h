@@ -101,6 +101,9 @@ struct ObjectRun {
 
 enum class LightType : uint32_t { Point, Spot, Directional, Environment };
 
+// Maximal number of light groups, that of lights without a group included.
+inline constexpr size_t kMaxLightGroups = 32;
+
 // A light that is not a surface. LightSet combines these with the emissive triangles.
 struct LightSpec {
   LightType type = LightType::Point;
@@ -176,6 +179,10 @@ struct Scene {
   // Light groups, whose light images can show apart: first that of lights without a group, then the
   // others by name.
   std::vector<std::string> lightGroups{"default"};
+  // Number of light groups; 0 if no light has one.
+  uint32_t lightGroupCount() const {
+    return lightGroups.size() > 1 ? static_cast<uint32_t>(lightGroups.size()) : 0;
+  }
 
   uint64_t contentHash = 0;     // covers geometry, materials, textures and lights, not the camera
   std::vector<fs::path> files;  // every file that was read or is missing, for depfiles

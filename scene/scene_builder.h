@@ -27,8 +27,6 @@
 namespace bnvpl {
 
 inline constexpr std::array<uint32_t, 3> kNoCorners{kNone, kNone, kNone};
-// Maximal number of light groups, that of lights without a group included.
-inline constexpr size_t kMaxLightGroups = 32;
 
 // A mesh as its file gives it. The arrays are borrowed until addMesh() returns.
 struct Mesh {

@@ -62,7 +62,9 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   const auto place = [&] { return lights.drawnBy(light, hit); };
   const float ofRays = arrival.shared.ofRays(light, -hit.wo, arrival.from, place);
   const float pdf = lights.pdfEmitted(light, hit, arrival.from);
-  return emitted * ofRays * hitWeight(lights, light, pdf, arrival, place);
+  const Vec3 found = emitted * ofRays * hitWeight(lights, light, pdf, arrival, place);
+  if (arrival.groups) arrival.groups.add(lights.group(light), found);
+  return found;
 }
 
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
@@ -70,7 +72,9 @@ Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& a
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
     const auto place = [&] { return lights.drawnBy(light, direction); };
     const float ofRays = arrival.shared.ofRays(light, direction, arrival.from, place);
-    sum += radiance * ofRays * hitWeight(lights, light, pdf, arrival, place);
+    const Vec3 found = radiance * ofRays * hitWeight(lights, light, pdf, arrival, place);
+    sum += found;
+    if (arrival.groups) arrival.groups.add(lights.group(light), found);
   });
   return sum;
 }

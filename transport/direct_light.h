@@ -8,6 +8,7 @@
 #include "core/sampling.h"
 #include "transport/bsdf.h"
 #include "transport/emission_guide.h"
+#include "transport/group_sink.h"
 #include "transport/light_strata.h"
 #include "transport/lights.h"
 
@@ -69,6 +70,8 @@ struct LightSampling {
   LearnedLight learned = {};
   LightChoice choice = LightChoice::One;
   SharedWithPhotons photons = {};
+  GroupSink groups = {};      // receives the light by group
+  GroupSink partGroups = {};  // receives it again; of LightWithPart, the part
 };
 
 // Where the random numbers of a vertex's shadow rays come from: independent ones, or the points of
@@ -159,6 +162,7 @@ struct Arrival {
   LightChoice choice = LightChoice::One;  // choice at `from`, unless learned.strata is given
   LearnedLight learned = {};
   SharedWithPhotons shared = {};  // weights of light through specular vertices
+  GroupSink groups = {};          // receives the emission by group
 };
 // Emission that a ray hits, with its MIS weight: that of the surface, or, for a ray that leaves the
 // scene, that of the lights at infinity.
@@ -176,6 +180,16 @@ bool unoccludedLight(const LightSet& lights, const Reflects& reflected, const Li
   light = reflected(out.wi) * out.radianceOverPdf;
   return !isBlack(light);
 }
+// Adds light of one light to the sums of its group.
+inline void addToGroup(const LightSampling& to, uint32_t group, Vec3 light) {
+  to.groups.add(group, light);
+  if (to.partGroups) to.partGroups.add(group, light);
+}
+inline void addToGroup(const LightSampling& to, uint32_t group, const LightWithPart& light) {
+  to.groups.add(group, light.all);
+  if (to.partGroups) to.partGroups.add(group, light.part);
+}
+
 // Whether anything lies between a vertex and a point of the lights.
 bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& sample);
 
@@ -203,7 +217,13 @@ typename Reflects::Light directLight(const RayScene& rays, const LightSet& light
                                      const Reflects& reflected, const LightSampling& sampling,
                                      const RayPdf& rayPdf, const LightNumbers& numbers) {
   typename Reflects::Light sum;
-  const auto& [learned, choice, photons] = sampling;
+  const LearnedLight& learned = sampling.learned;
+  const LightChoice choice = sampling.choice;
+  const auto ray = [&](const LightPlace& place, float count) {
+    const auto light = shadowRay(rays, lights, reflected, place, count, rayPdf, sampling.photons);
+    sum += light;
+    if (sampling.groups) addToGroup(sampling, lights.group(place.light), light);
+  };
   if (learned.strata) {
     const LearnedStrata& strata = *learned.strata;
     for (unsigned k = 0; k < learned.rays; ++k) {
@@ -212,7 +232,7 @@ typename Reflects::Light directLight(const RayScene& rays, const LightSet& light
       const LightPlace place = strata.all->place(stratum, at);
       const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
                           strata.all->share(stratum) * strata.all->lightShare(place.light);
-      sum += shadowRay(rays, lights, reflected, place, count, rayPdf, photons);
+      ray(place, count);
     }
     return sum;
   }
@@ -224,8 +244,7 @@ typename Reflects::Light directLight(const RayScene& rays, const LightSet& light
     const size_t light = all ? k : lights.pick(rng.next(), probability);
     if (!(probability > 0.0f)) continue;
     const LightPlace place{static_cast<uint32_t>(light), rng.nextPoint()};
-    sum += shadowRay(rays, lights, reflected, place, shadowRaysTo(lights, light, choice), rayPdf,
-                     photons);
+    ray(place, shadowRaysTo(lights, light, choice));
   }
   return sum;
 }

@@ -8,16 +8,19 @@ namespace bnvpl {
 
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
                          Vec3 throughput, PathLength length, const SpatialLightSampler* where,
-                         Rng& rng, Vec3& first, Vec3& later) {
+                         Rng& rng, Vec3& first, Vec3& later, const LeavingGroups& groups) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   LearnedStrata strata;
   for (unsigned bounce = 0;; ++bounce) {
     const Bsdf& bsdf = bounce == 0 ? at : scattering.emplace(rays.scene(), vertex.hit);
     Vec3& sum = bounce == 0 ? first : later;
+    const GroupSink& sink = bounce == 0 ? groups.first : groups.later;
     if (where) strata = where->at(bsdf.point().position, bsdf.point().ng);
-    sum += throughput * directLight(rays, lights, Reflected{bsdf}, {learnedBy(strata)},
-                                    BsdfRays{bsdf}, LightNumbers(rng));
+    sum +=
+        throughput * directLight(rays, lights, Reflected{bsdf},
+                                 {learnedBy(strata), LightChoice::One, {}, sink.times(throughput)},
+                                 BsdfRays{bsdf}, LightNumbers(rng));
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
     if (rng.next() >= survive) return bounce + 1;
@@ -28,8 +31,10 @@ unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsd
     throughput *= scattered.weight * (1.0f / survive);
     const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
                           learnedBy(strata)};
-    vertex = followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng,
-                                {nullptr, where});
+    vertex =
+        followSpecularPath(rays, lights, next.origin, next.direction, arrival, rng,
+                           {nullptr, where, sink.times(throughput),
+                            length.firstBounce ? GroupSink{} : groups.later.times(throughput)});
     sum += throughput * vertex.emissionFirst;
     if (length.firstBounce) return bounce + 1;
     later += throughput * vertex.emissionLater;

@@ -11,6 +11,11 @@ struct PathLength {
   bool firstBounce = false;  // whether to estimate direct light at the vertex only
 };
 
+// Receive `first` and `later` of addLeavingLight() by group.
+struct LeavingGroups {
+  GroupSink first, later;
+};
+
 // Adds throughput * radiance towards wo of the vertex, by light sampling and scattering with
 // multiple importance sampling (Veach 1997, section 10). `first` gets the direct light of the
 // vertex, `later` the rest. `at` is the vertex's BSDF, or one that represents it. `where` has the
@@ -18,6 +23,6 @@ struct PathLength {
 // of the path, this one included; each takes about two rays.
 unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
                          Vec3 throughput, PathLength length, const SpatialLightSampler* where,
-                         Rng& rng, Vec3& first, Vec3& later);
+                         Rng& rng, Vec3& first, Vec3& later, const LeavingGroups& groups = {});
 
 }  // namespace bnvpl

@@ -24,7 +24,10 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
   Arrival arrival = start;
   arrival.shared = {};
   while (true) {
-    Vec3& met = end.specularBounces == 0 ? end.emissionFirst : end.emissionLater;
+    const bool straight = end.specularBounces == 0;
+    Vec3& met = straight ? end.emissionFirst : end.emissionLater;
+    arrival.groups = (straight ? specularLights.emissionFirst : specularLights.emissionLater)
+                         .times(end.throughput);
     if (end.hit.triangle == kNone) {
       met += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
@@ -53,7 +56,8 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                                        : LearnedStrata{};
       end.emissionLater +=
           end.throughput * directLight(rays, lights, Reflected{bsdf, LobeGroup::Specular},
-                                       {learnedBy(strata), LightChoice::One, start.shared},
+                                       {learnedBy(strata), LightChoice::One, start.shared,
+                                        specularLights.emissionLater.times(end.throughput)},
                                        BsdfRays{bsdf, 1.0f, LobeGroup::Specular},
                                        LightNumbers(rng));
     }

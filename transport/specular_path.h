@@ -9,9 +9,11 @@ namespace bnvpl {
 class SpatialLightSampler;
 
 // Distributions by which near-specular vertices sample lights; without one, they sample by power.
+// Also where the light of a specular path goes by group.
 struct SpecularLightSampling {
   const LearnedStrata* first = nullptr;         // for the first specular vertex
   const SpatialLightSampler* others = nullptr;  // for the others, and for the first without `first`
+  GroupSink emissionFirst = {}, emissionLater = {};  // receive the members of SpecularPath
 };
 
 struct SpecularPath {

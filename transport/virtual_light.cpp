@@ -7,8 +7,10 @@
 
 namespace bnvpl {
 
-VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind) {
+VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind,
+                        const VplGroups& groups) {
   VplLights lights;
+  lights.groups = groups.groups;
   lights.kind = kind;
   // Min distance, below which rays cannot tell points apart. It keeps 1/d^2 finite without a clamp.
   const float nearest = rays.scene().offsetSize() * 0x1p-20f;
@@ -26,6 +28,8 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
       lights.position.push_back(rays.offsetOrigin(at[k], normal));
       lights.normal.push_back(normal);
       lights.intensity.push_back(lit.flux[i] * (part / kPi));
+      for (uint32_t g = 0; g < groups.groups; ++g)
+        lights.groupIntensity.push_back(groups.flux[i * groups.groups + g] * (part / kPi));
       lights.clamp2.push_back(
           std::max(clamp * clamp * lit.radius[i] * lit.radius[i], nearest * nearest));
     }

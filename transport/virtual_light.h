@@ -5,7 +5,9 @@
 
 #include "formats/vpl/vpl_table.h"
 #include "transport/bsdf.h"
+#include "transport/group_sink.h"
 #include "transport/virtual_light_kinds.h"
+#include "transport/vpl_groups.h"
 
 namespace bnvpl {
 
@@ -18,13 +20,21 @@ struct VplLights {
   std::vector<uint32_t> row;    // row of the VplTable, ascending
   std::vector<float> clamp2;    // squared size of the kind, (clamp * radius)^2; never 0
   size_t vplCount = 0;          // rows of the table that carry flux
+  uint32_t groups = 0;          // light groups; 0: their light is not told apart
+  std::vector<Vec3> groupIntensity;  // `groups` intensities for each entry
+
+  // Adds light of entry i by group. `transfer`: light over intensity.
+  void addByGroup(size_t i, Vec3 transfer, const GroupSink& sink) const {
+    const Vec3 factor = sink.factor * transfer;
+    for (uint32_t g = 0; g < groups; ++g) sink.sums[g] += factor * groupIntensity[i * groups + g];
+  }
 
   size_t size() const { return position.size(); }
 };
 
-// `clamp` is in units of each VPL's radius (r_max).
-VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp,
-                        LightKind kind = {});
+// `clamp` is in units of each VPL's radius (r_max). `groups`: the table's flux by light group.
+VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {},
+                        const VplGroups& groups = {});
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct VplTransfer {

@@ -89,6 +89,20 @@ TEST_F(ShardRun, RenderGivesTheSameBytesInAnyNumber) {
                        {2});
 }
 
+TEST_F(ShardRun, LightGroupsGiveTheSameBytesInAnyNumber) {
+  writeAll(at("groups.toml"), "[[mesh]]\nfile = " + scene_ + "\n[[light]]\ntype = \"point\"\n" +
+                                  "position = [0.1, 0.3, 0.1]\npower = [1, 1, 1]\n" +
+                                  "group = \"fill\"\n");
+  const std::string scene = path("groups.toml"),
+                    render = scene + " --size 44x25 --layers light_groups";
+  succeed("vpl-place", scene + " -n 4k --quiet -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 200 --quiet -o " + path("v.vpl"));
+  expectTheSameInParts("vpl-estimate", scene + " " + path("v.vpl") + " --photons 50k", "g.vpl",
+                       {3});
+  expectTheSameInParts("vpl-render", render + " " + path("g.vpl") + " --spp 4", "vpl.exr", {3});
+  expectTheSameInParts("vpl-render", render + " --integrator light --spp 4", "light.exr", {3});
+}
+
 TEST_F(ShardRun, PreviewsComeFromTheMerge) {
   const std::string render = scene_ + " --integrator path --size 32x24 --spp 2";
   succeed("vpl-render",

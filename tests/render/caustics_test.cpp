@@ -60,14 +60,14 @@ TEST(Caustics, PhotonsAndRaysShareTheLight) {
 
 NearFieldRays nearField(const World& world, const VplTable& lit, const char* compensate,
                         GatherPoint point) {
-  return {
-      world.rays,
-      world.lights,
-      std::move(point),
-      methodNamed(compensateMethods(), compensate).make({lit, world.rays, 2.0f, LightKind{}}, {}),
-      1,
-      nullptr,
-      Only::Indirect};
+  return {world.rays,
+          world.lights,
+          std::move(point),
+          methodNamed(compensateMethods(), compensate)
+              .make({lit, world.rays, 2.0f, LightKind{}, {}}, {}),
+          1,
+          nullptr,
+          Only::Indirect};
 }
 
 // The points that rays hit behind a near-specular lobe lie near a VPL that knows their light. They
@@ -81,7 +81,7 @@ TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
   const Bsdf bsdf(cover, Vec3(1.0f));
   const auto gathers = [&](const char* compensate) {
     size_t points = 0;
-    const GatherPoint count = [&](const Bsdf&, unsigned, Rng&) {
+    const GatherPoint count = [&](const Bsdf&, unsigned, Rng&, const GroupSink&) {
       ++points;
       return Gathered{};
     };
@@ -113,7 +113,9 @@ TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
     if (world.scene.materials[wall.material].name == "Red") seen.ng = seen.ns = seen.wo = way;
   }
   const Bsdf bsdf(seen, Vec3(1.0f));
-  const GatherPoint nothing = [](const Bsdf&, unsigned, Rng&) { return Gathered{}; };
+  const GatherPoint nothing = [](const Bsdf&, unsigned, Rng&, const GroupSink&) {
+    return Gathered{};
+  };
   const NearFieldRays rays = nearField(world, lit, "near-field", nothing);
   unsigned bring = 0;
   constexpr unsigned kRays = 2000;
@@ -194,7 +196,7 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
       world.scene.camera.position,
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
-    const Caustics caustics(world.rays, world.lights, {}, photons, 8.0f, 0, 3, {});
+    const Caustics caustics(world.rays, world.lights, {}, photons, 8.0f, 0, 3, 0, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
     return caustics.shared(seen, world.scene.camera.position).ofRays(lamp, {0, 1, 0}, 1.0f);

@@ -212,8 +212,9 @@ TEST(Fireflies, IntegratorsReportVisibleEmission) {
     float most = 0.0f;
     const Tiles tiles(world.scene.film);
     for (size_t t = 0; t < tiles.count(); ++t) {
-      sampleTile(world.scene, {}, integrator, 1, tiles.at(t), {0, 4, 4, 4},
-                 [&](uint32_t, const RadianceSample& sample) {
+      sampleTile(world.scene, {}, integrator, 1, tiles.at(t), {0, 4, 4, 4}, 0,
+                 [&](uint32_t, const CameraSample& camera) {
+                   const RadianceSample& sample = camera.radiance;
                    ASSERT_LT(mean(sample.direct - sample.emission), 0.5f * lamp);
                    most = std::max(most, mean(sample.emission));
                  });

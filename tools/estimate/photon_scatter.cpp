@@ -30,12 +30,13 @@ class PhotonBatch {
         rule_(rule),
         photons_(kSize),
         hittable_(kSize),
+        group_(kSize),
         next_(kSize),
         hits_(kSize),
         near_(kSize) {}
 
-  // Follows photons to their ends. start(walk, hittable) makes the next photon and sets whether
-  // rays can hit its light; it returns false if none is left.
+  // Follows photons to their ends. start(walk, hittable, group) makes the next photon and sets
+  // whether rays can hit its light, and its light group; it returns false if none is left.
   template <typename Start>
   void follow(const Start& start, PhotonSums& sums) {
     size_t size = 0;
@@ -52,6 +53,7 @@ class PhotonBatch {
         if (startAt(i, start)) continue;
         photon = photons_[--size];
         hittable_[i] = hittable_[size];
+        group_[i] = group_[size];
       }
       intersect(size);
       for (size_t i = 0; i < size; ++i) {
@@ -60,7 +62,7 @@ class PhotonBatch {
           ++sums.hits;
           scatter_.tally(sums, kReflected, leaving);
           const bool onlyPhotons = !hittable_[i] && photons_[i].beganAtPerfectMirror();
-          rule_(scatter_, {bsdf.point(), near_[i], leaving, firstBounce, onlyPhotons},
+          rule_(scatter_, {bsdf.point(), near_[i], leaving, firstBounce, onlyPhotons, group_[i]},
                 photons_[i].rng(), sums);
         });
       }
@@ -73,7 +75,7 @@ class PhotonBatch {
   template <typename Start>
   bool startAt(size_t i, const Start& start) {
     bool hittable = false;
-    if (!start(photons_[i], hittable)) return false;
+    if (!start(photons_[i], hittable, group_[i])) return false;
     hittable_[i] = hittable;
     return true;
   }
@@ -93,10 +95,11 @@ class PhotonBatch {
   const RayScene& rays_;
   const PhotonScatter& scatter_;
   const ScatterRule& rule_;
-  // One entry per photon: its walk, whether rays can hit its light, its next ray, the hit, and VPLs
-  // near it.
+  // One entry per photon: its walk, whether rays can hit its light, its light group, its next ray,
+  // the hit, and VPLs near it.
   std::vector<PhotonWalk> photons_;
   std::vector<uint8_t> hittable_;
+  std::vector<uint32_t> group_;
   std::vector<Ray> next_;
   std::vector<SurfacePoint> hits_;
   std::vector<ReachGrid::Lookup> near_;
@@ -156,8 +159,8 @@ namespace {
 
 PhotonSums sumsOfShards(const EstimateInputs& in, const PhotonRun& run) {
   const ShardSource& source = *in.resume.source;
-  const size_t vpls = in.vpls.size();
-  PhotonSums sums = sumsOf(source.sums(kPhotonWork, integersFor(vpls)), vpls);
+  const size_t vpls = in.vpls.size(), groups = run.scatter.groups();
+  PhotonSums sums = sumsOf(source.sums(kPhotonWork, integersFor(vpls, groups)), vpls, groups);
   sums.points = emitPointsOfShards(source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
   return sums;
 }
@@ -191,6 +194,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());
+    s.groups.resize(in.vpls.size() * run.scatter.groups());
     s.points = EmitPoints(in.vpls, run.emitPoints, mix64(run.key));
     return s;
   };
@@ -199,12 +203,13 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
     PhotonBatch batch(in.rays, run.scatter, rule);
     uint64_t photon = begin;
     batch.follow(
-        [&](PhotonWalk& walk, bool& hittable) {
+        [&](PhotonWalk& walk, bool& hittable, uint32_t& group) {
           if (photon == end) return false;
           Rng rng(run.key, photon);
           size_t light = 0;
           const PhotonStart start = startOf(in.lights, run, photon++, rng, light);
           hittable = in.lights.hittable(light);
+          group = in.lights.group(light);
           walk = PhotonWalk(start, run.maxBounces, rng);
           if (walk.goesOn()) run.scatter.tally(sums, kEmitted, start.flux);
           return true;
@@ -263,6 +268,7 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
 
 PhotonScatter::PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons)
     : radius_(radius),
+      groups_(in.rays.scene().lightGroupCount()),
       photonPower_(double{mean(in.lights.totalPower())} / static_cast<double>(photons)),
       fixed_(photonPower_, photons),
       perPhotonPower_(1.0 / photonPower_),
@@ -279,9 +285,28 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
   addChecked(s.squares, std::llrint(relative * relative / squareUnit_));
-  const bool whole = share_.empty() || hit.onlyPhotons;
-  sums.points.offer(vpl, whole ? relative : relative * share_[vpl], hit.point);
+  const double weight = share_.empty() || hit.onlyPhotons ? 1.0 : share_[vpl];
+  sums.points.offer(vpl, relative * weight, hit.point);
+  if (groups_ > 0) {
+    GroupSum& group = sums.groups[size_t{vpl} * groups_ + hit.group];
+    for (size_t c = 0; c < 3; ++c) {
+      const int64_t units = fixed_.encode(double{flux[c]} * weight);
+      addChecked(group.flux[c], units);
+      if (hit.firstBounce) addChecked(group.firstBounce[c], units);
+    }
+  }
   ++s.photons;
+}
+
+VplGroups PhotonScatter::groupFlux(const PhotonSums& sums) const {
+  VplGroups out(sums.vpl.size(), groups_);
+  for (size_t i = 0; i < sums.groups.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      out.flux[i][c] = static_cast<float>(fixed_.decode(sums.groups[i].flux[c]));
+      out.firstBounceFlux[i][c] = static_cast<float>(fixed_.decode(sums.groups[i].firstBounce[c]));
+    }
+  }
+  return out;
 }
 
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
@@ -301,6 +326,7 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
   EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
   result.useful = emission.useful;
   fillTable(result.table, sums, scatter);
+  finishGroups(scatter.groupFlux(sums), result.table);
   sums.points.fill(result.table);
   return result;
 }

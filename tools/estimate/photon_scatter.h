@@ -14,6 +14,7 @@
 #include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
 #include "transport/emission_guide.h"
+#include "transport/vpl_groups.h"
 
 namespace bnvpl {
 
@@ -36,6 +37,7 @@ struct PhotonHit {
   Vec3 flux;                      // flux that leaves the hit, W
   bool firstBounce;               // the photon came straight from a light
   bool onlyPhotons;               // paths from the hit cannot find this light
+  uint32_t group;                 // light group
 };
 
 // Adds deposits of hits to exact sums. Thread-safe where each thread has its own sums.
@@ -59,10 +61,14 @@ class PhotonScatter {
   double variance(const VplSum& s) const {
     return static_cast<double>(s.squares) * squareUnit_ * photonPower_ * photonPower_;
   }
+  uint32_t groups() const { return groups_; }  // light groups; 0: not told apart
+  // The flux of each VPL by light group.
+  VplGroups groupFlux(const PhotonSums& sums) const;
   float radius() const { return radius_; }  // reach, in units of each VPL's r_max
 
  private:
   float radius_;
+  uint32_t groups_;
   double photonPower_;
   FixedPoint fixed_;
   double perPhotonPower_;

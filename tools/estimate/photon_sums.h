@@ -56,6 +56,11 @@ struct VplSum {  // without padding, as its bytes are saved
   void add(const VplSum& o);
 };
 
+// Deposits of one light group in one VPL, with the weights that they have in its flux.
+struct GroupSum {
+  std::array<int64_t, 3> flux{}, firstBounce{};
+};
+
 // Entries of EnergyAccount (estimate.h), which describes them.
 enum Tally {
   kEmitted,
@@ -72,6 +77,7 @@ enum Tally {
 // Fluxes are in the unit of one FixedPoint.
 struct PhotonSums {
   std::vector<VplSum> vpl;
+  std::vector<GroupSum> groups;  // those of each VPL, row after row; empty without light groups
   EmitPoints points;
   std::array<int64_t, kTallies> tally{};
   uint64_t hits = 0, rays = 0, guardRays = 0, nonFinite = 0;
@@ -87,7 +93,7 @@ void decode(std::string_view bytes, std::vector<uint8_t>& done, PhotonSums& sums
 // Conversion of the sums, without emission points, to integers that can be added across shards, and
 // back. Integers of the same kind are contiguous.
 std::vector<int64_t> integersOf(const PhotonSums& sums);
-size_t integersFor(size_t vpls);
-PhotonSums sumsOf(std::span<const int64_t> integers, size_t vpls);
+size_t integersFor(size_t vpls, size_t groups);
+PhotonSums sumsOf(std::span<const int64_t> integers, size_t vpls, size_t groups);
 
 }  // namespace bnvpl

@@ -10,7 +10,8 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kVplsPerUnit = 16;
-constexpr std::string_view kPathWork = "paths", kPathPointsWork = "paths.points";
+constexpr std::string_view kPathWork = "paths", kPathPointsWork = "paths.points",
+                           kPathGroupsWork = "paths.groups";
 constexpr size_t unitsOf(size_t vpls) { return (vpls + kVplsPerUnit - 1) / kVplsPerUnit; }
 
 std::string encode(const std::vector<uint8_t>& done, const PathResult& result) {
@@ -18,6 +19,7 @@ std::string encode(const std::vector<uint8_t>& done, const PathResult& result) {
   appendArray(bytes, done);
   appendArray(bytes, result.sums);
   appendArray(bytes, result.points.winners());
+  appendArray(bytes, result.groups);
   return bytes;
 }
 
@@ -29,7 +31,8 @@ double PathSums::variance() const {
   return std::max(0.0, squares - meanFlux() * meanFlux() / n) * n / (n - 1.0);
 }
 
-PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints) const {
+PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
+                          std::span<GroupPathSum> byGroup) const {
   PathSums r;
   r.points = points;
   Rng shift(settings_.key, vpl);
@@ -39,7 +42,7 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints)
     Rng rng(random64(settings_.key, vpl, 1), k);
     ++r.rays;
     coverage_.forEachLayer(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
-      const double light = add(hit, area, rng, r);
+      const double light = add(hit, area, rng, r, byGroup);
       emitPoints.offer(vpl, light, hit);
       atPoint += light;
     });
@@ -50,12 +53,16 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints)
 
 // Adds an estimate of the exitance at `hit` times the area that it represents. Returns the mean
 // over the channels.
-double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const {
+double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
+                     std::span<GroupPathSum> byGroup) const {
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
+  std::vector<Vec3> groups(2 * size_t{groups_});  // the same by group
+  const LeavingGroups sinks =
+      groups_ > 0 ? LeavingGroups{{&groups[0]}, {&groups[groups_]}} : LeavingGroups{};
   const auto addPath = [&](const Bsdf& bsdf) {
     r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_,
-                                  settings_.spatialLights, rng, first, later);
+                                  settings_.spatialLights, rng, first, later, sinks);
   };
   // Exitance is the integral of the cosine times radiance over outgoing directions. Where the
   // albedo is constant, it is that of a diffuse surface of this albedo, as it is for photons. The
@@ -82,6 +89,10 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r)
   for (size_t c = 0; c < 3; ++c) {
     r.flux[c] += double{all[c]};
     r.firstBounce[c] += double{first[c]};
+    for (uint32_t g = 0; g < groups_; ++g) {
+      byGroup[g].flux[c] += double{groups[g][c]} + double{groups[groups_ + g][c]};
+      byGroup[g].firstBounce[c] += double{groups[g][c]};
+    }
   }
   return double{mean(all)};
 }
@@ -96,7 +107,9 @@ std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const Estimat
 
 PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
                      std::span<const uint64_t> points) {
-  PathResult result{std::vector<PathSums>(points.size()), gatherer.emptyEmitPoints()};
+  const size_t groups = gatherer.groups();
+  PathResult result{std::vector<PathSums>(points.size()), gatherer.emptyEmitPoints(),
+                    std::vector<GroupPathSum>(points.size() * groups)};
   std::vector<PathSums>& sums = result.sums;
   const size_t perVpl = sums.empty() ? 0 : result.points.winners().size() / sums.size();
   const Resume& resume = in.resume;
@@ -115,10 +128,15 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
     const size_t begin = unit * kVplsPerUnit;
     return result.points.winners().subspan(begin * perVpl, (endOf(unit) - begin) * perVpl);
   };
+  const auto groupsOfUnit = [&](size_t unit) {
+    const size_t begin = unit * kVplsPerUnit;
+    return std::span(result.groups).subspan(begin * groups, (endOf(unit) - begin) * groups);
+  };
   if (resume.source) {
     for (size_t unit = 0; unit < done.size(); ++unit) {
       takeRecord(*resume.source, kPathWork, unit, ofUnit(unit));
       takeRecord(*resume.source, kPathPointsWork, unit, pointsOfUnit(unit));
+      if (groups > 0) takeRecord(*resume.source, kPathGroupsWork, unit, groupsOfUnit(unit));
     }
     return result;
   }
@@ -127,6 +145,7 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
     takeArray(bytes, done);
     takeArray(bytes, sums);
     takeArray(bytes, result.points.winners());
+    takeArray(bytes, result.groups);
     requireAllTaken(bytes);
   }
   for (size_t unit = 0; in.progress && unit < done.size(); ++unit) {
@@ -136,7 +155,8 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
       done, resume,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
-          sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i], result.points);
+          sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i], result.points,
+                                    std::span(result.groups).subspan(i * groups, groups));
         if (in.progress) reportUnit(unit);
       },
       [&] { return encode(done, result); });
@@ -144,8 +164,19 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
     if (!resume.shard.has(unit)) continue;
     giveRecord(*resume.sink, kPathWork, unit, ofUnit(unit));
     giveRecord(*resume.sink, kPathPointsWork, unit, pointsOfUnit(unit));
+    if (groups > 0) giveRecord(*resume.sink, kPathGroupsWork, unit, groupsOfUnit(unit));
   }
   return result;
+}
+
+void addGroupsTo(VplGroups& groups, const PathResult& paths, std::span<const double> share) {
+  for (size_t i = 0; i < paths.groups.size(); ++i) {
+    const double times = share.empty() ? 1.0 : share[i / groups.groups];
+    for (size_t c = 0; c < 3; ++c) {
+      groups.flux[i][c] += static_cast<float>(times * paths.groups[i].flux[c]);
+      groups.firstBounceFlux[i][c] += static_cast<float>(times * paths.groups[i].firstBounce[c]);
+    }
+  }
 }
 
 std::string finishedState(const PathResult& result) {

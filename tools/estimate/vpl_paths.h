@@ -29,6 +29,11 @@ struct PathSums {  // without padding, as its bytes are saved
   double variance() const;  // variance of meanFlux() if points were independent; 0 for a single one
 };
 
+// The flux of one light group, W.
+struct GroupPathSum {
+  std::array<double, 3> flux{}, firstBounce{};
+};
+
 class VplPaths {
  public:
   struct Settings {
@@ -42,22 +47,28 @@ class VplPaths {
       : in_(in),
         settings_(settings),
         coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.rays),
-        length_{settings.maxBounces - 1} {}
+        length_{settings.maxBounces - 1},
+        groups_(in.rays.scene().lightGroupCount()) {}
 
   // Estimates the flux of one VPL from points of its disk, and offers them as emission points.
-  PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints) const;
+  // `byGroup` receives the flux of each light group.
+  PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
+                  std::span<GroupPathSum> byGroup) const;
+  uint32_t groups() const { return groups_; }  // light groups; 0: not told apart
   EmitPoints emptyEmitPoints() const {
     return {in_.vpls, settings_.emitPoints, mix64(settings_.key)};
   }
   uint64_t pathsOf(uint64_t points) const { return points * settings_.paths; }
 
  private:
-  double add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r) const;
+  double add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
+             std::span<GroupPathSum> byGroup) const;
 
   const EstimateInputs& in_;
   Settings settings_;
   Coverage coverage_;
   PathLength length_;
+  uint32_t groups_;
 };
 
 // Learns the distribution of light sampling for paths from the VPLs' surfaces. Null for a merge,
@@ -68,12 +79,15 @@ std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const Estimat
 struct PathResult {
   std::vector<PathSums> sums;  // one per VPL
   EmitPoints points;
+  std::vector<GroupPathSum> groups;  // those of each VPL, row after row
 };
 
 // Estimates the flux of every VPL i from points[i] points. `in.resume` and `in.progress` are for
 // this work alone; progress counts paths.
 PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
                      std::span<const uint64_t> points);
+// Adds the flux by light group, times `share` of each VPL.
+void addGroupsTo(VplGroups& groups, const PathResult& paths, std::span<const double> share = {});
 // Resume state of gatherAll() when all of its work is done.
 std::string finishedState(const PathResult& result);
 

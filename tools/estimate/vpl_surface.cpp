@@ -19,4 +19,17 @@ void beginLit(VplTable& vpls, float radius) {
   vpls.emitNormal = vpls.normal;
 }
 
+void finishGroups(VplGroups groups, VplTable& lit) {
+  const size_t count = groups.groups;
+  if (count == 0) return;
+  for (size_t i = 0; i < lit.size(); ++i) {
+    const auto of = [&](std::vector<Vec3>& all) {
+      return std::span(all).subspan(i * count, count);
+    };
+    balanceGroups(of(groups.flux), lit.flux[i]);
+    balanceGroups(of(groups.firstBounceFlux), lit.firstBounceFlux[i]);
+  }
+  addVplGroups(groups, lit);
+}
+
 }  // namespace bnvpl

@@ -6,6 +6,7 @@
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/options/option.h"
 #include "transport/rays.h"
+#include "transport/vpl_groups.h"
 
 namespace bnvpl {
 
@@ -17,5 +18,9 @@ std::vector<float> reachOf(const VplTable& vpls, float radius);
 
 // Adds the columns of stage Lit, without flux. Every VPL emits from its position.
 void beginLit(VplTable& vpls, float radius);
+
+// Adds the columns of light groups to a lit table, if there are groups, so that they add up to its
+// flux.
+void finishGroups(VplGroups groups, VplTable& lit);
 
 }  // namespace bnvpl

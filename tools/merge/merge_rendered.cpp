@@ -15,7 +15,9 @@ std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output,
   const Film film = parseSize(fieldOf<std::string>(fieldOf<Json>(whole.run, "view"), "size"));
   requireMemory(bytesPerPixelOf(options) * film.width * film.height,
                 "an image of " + sizeText(film) + " pixels", "choose a smaller --size");
-  RenderResult result = joinRendered(film, options, shards.source());
+  RenderResult result =
+      joinRendered(film, options, shards.source(),
+                   fieldOf<std::vector<std::string>>(whole.sources, "light_groups"));
   takeSources(whole.sources, result);
   finishImage(result, options, whole.history);
   reportRender(result, options, summary);

@@ -2,6 +2,8 @@
 // integrators.
 #pragma once
 
+#include <vector>
+
 #include "core/sampling.h"
 #include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
@@ -11,16 +13,27 @@
 namespace bnvpl {
 
 // Follows a camera ray to the first rough vertex. Emission that it hits on the way is direct light.
-// `weight`, by the pixel filter, becomes part of the throughput and of all light.
+// `weight`, by the pixel filter, becomes part of the throughput and of all light. `groups`
+// receives the emission by light group.
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
                                     Vec3 direction, float weight, Rng& rng, RadianceSample& out,
-                                    const SpecularLightSampling& specularLights = {}) {
-  SpecularPath path =
-      followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, specularLights);
+                                    const SpecularLightSampling& specularLights = {},
+                                    const SampleGroups& groups = {}) {
+  // Where the film is transparent, emission waits for the hit that tells it from the background.
+  const bool hidesSky = rays.scene().film.transparent;
+  std::vector<Vec3> waiting(hidesSky ? groups.count : 0);
+  SpecularLightSampling sampling = specularLights;
+  if (groups.sums) {
+    sampling.emissionFirst = (hidesSky ? sinkTo(waiting) : groups.emission()).times(weight);
+    sampling.emissionLater = groups.direct().times(weight);
+  }
+  SpecularPath path = followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, sampling);
   if (weight != 1.0f) {
     for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.emissionLater}) *part *= weight;
   }
-  if (rays.scene().film.transparent && path.firstDistance == INFINITY) path.emissionFirst = {};
+  const bool sky = path.firstDistance == INFINITY;
+  if (hidesSky && sky) path.emissionFirst = {};
+  for (uint32_t g = 0; !sky && g < waiting.size(); ++g) groups.emission().add(g, waiting[g]);
   out.emission = path.emissionFirst;
   out.direct = path.emissionFirst + path.emissionLater;
   if (path.firstDistance < INFINITY) {
@@ -34,14 +47,15 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
 inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
                                     uint32_t y, const PixelFilter::Sample& sample, Rng& rng,
                                     RadianceSample& out,
-                                    const SpecularLightSampling& specularLights = {}) {
+                                    const SpecularLightSampling& specularLights = {},
+                                    const SampleGroups& groups = {}) {
   const Scene& scene = rays.scene();
   const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
   const Ray ray = cameraRay(scene.camera, scene.film,
                             (static_cast<float>(x) + sample.at.x) / float(scene.film.width),
                             (static_cast<float>(y) + sample.at.y) / float(scene.film.height), lens);
   return traceCameraPath(rays, lights, ray.origin, ray.direction, sample.weight, rng, out,
-                         specularLights);
+                         specularLights, groups);
 }
 
 // Albedo and normal of the shading point.
@@ -60,7 +74,7 @@ RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const Cam
                          const SpecularLightSampling& specularLights = {}) {
   RadianceSample out;
   const SpecularPath path = traceCameraPath(rays, lights, sample.origin, sample.direction,
-                                            sample.weight, rng, out, specularLights);
+                                            sample.weight, rng, out, specularLights, sample.groups);
   const bool directOnly = only == Only::Direct || (!indirect && path.specularBounces == 0);
   if (!path.rough) return out;
   const Bsdf bsdf(rays.scene(), path.hit);

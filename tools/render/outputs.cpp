@@ -119,6 +119,7 @@ PreviewFn previewTo(const ImagePaths& paths, const Values& options) {
 
 Json resumableOptions(const Values& options) {
   Json record = recordOf(renderSpec(), options);
+  if (std::ranges::any_of(layersOf(options), &Layer::ofGroups)) record["light_groups"] = true;
   if (budgetOf(options)) {
     // Records are compared including the order of their keys, so `passes` always comes last.
     for (const char* countedBy : {"spp", "passes"}) record.erase(countedBy);
@@ -158,12 +159,14 @@ Json withLayers(Json run, const Values& options) {
 Json sourcesOf(const RenderResult& result) {
   return {{"vpls", result.vpls},
           {"emission_points", result.emissionPoints},
+          {"light_groups", result.groups},
           {"camera", toJson(*result.image.camera)},
           {"attributes", result.image.attributes}};
 }
 
 void takeSources(const Json& sources, RenderResult& result) {
   result.vpls = fieldOf<size_t>(sources, "vpls");
+  result.groups = fieldOf<std::vector<std::string>>(sources, "light_groups");
   result.emissionPoints = fieldOf<size_t>(sources, "emission_points");
   result.image.camera = imageCameraOf(fieldOf<Json>(sources, "camera"));
   result.image.attributes = fieldOf<std::map<std::string, std::string>>(sources, "attributes");

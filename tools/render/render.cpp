@@ -82,7 +82,8 @@ FilmOptions filmOptionsOf(const Values& options) {
           filterOf(options),
           {},
           {},
-          gatherFilterOf(options)};
+          gatherFilterOf(options),
+          {}};
 }
 
 // Whether the integrator traces photons for this image.
@@ -191,6 +192,22 @@ std::span<const Counter> countersOf(const Values& options) {
   return methodNamed(gatherMethods(), options[kGatherSlot]).counters;
 }
 
+std::vector<std::string> lightGroupsOf(const Values& options, const Scene& scene) {
+  const bool wanted = std::ranges::any_of(layersOf(options), &Layer::ofGroups);
+  if (!wanted) return {};
+  if (options.has(kGatherSlot)) {
+    const GatherMethod& gather = methodNamed(gatherMethods(), options[kGatherSlot]);
+    if (!gather.lightGroups) {
+      throw UsageError("--layers light_groups: --gather " + std::string(gather.name) +
+                       " does not tell light groups apart; use --gather tilecuts");
+    }
+  }
+  if (scene.lightGroupCount() > 0) return scene.lightGroups;
+  throw InputError(scene.name() +
+                   ": --layers light_groups: no light has a group; add group = \"NAME\" to a "
+                   "[[light]] of a scene.toml");
+}
+
 uint64_t renderWork(const Scene& scene, const Values& options) {
   const auto budget = budgetOf(options);
   uint64_t spp = options[kSppOption];
@@ -229,10 +246,12 @@ std::optional<PixelBox> cropOf(const Values& options, const Film& film) {
   return box;
 }
 
-RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source) {
+RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source,
+                          const std::vector<std::string>& groups) {
   RenderResult result;
   FilmOptions filmOptions = filmOptionsOf(options);
   filmOptions.crop = cropOf(options, film);
+  filmOptions.groups = groups;
   result.image = joinFilm(film, filmOptions, sendsPhotons(options), result.stats, source);
   return result;
 }
@@ -240,14 +259,27 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
 Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                           const Values& options, const ProgressFn& progress, CostProbe* probe) {
   const FilmOptions film = filmOptionsOf(options);
-  return integratorOf(options).make(
-      {rays, lights, lit, film.seed, film.only, film.filter, progress, probe}, options);
+  const IntegratorMethod& method = integratorOf(options);
+  const auto groups = static_cast<uint32_t>(lightGroupsOf(options, rays.scene()).size());
+  VplGroups litGroups;
+  if (groups > 0 && method.needsVpls && film.only != Only::Direct) {
+    litGroups = vplGroupsOf(lit, groups);
+    if (litGroups.groups == 0) {
+      throw InputError(
+          "--layers light_groups: the VPLs have no flux by light group, which vpl-estimate finds; "
+          "rerun it");
+    }
+  }
+  return method.make({rays, lights, lit, film.seed, film.only, film.filter, progress, probe, groups,
+                      std::move(litGroups)},
+                     options);
 }
 
 void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume) {
   FilmOptions film = filmOptionsOf(options);
   film.spp = spp;
+  film.groups = lightGroupsOf(options, rays.scene());
   // Layers of first hits take next to no time.
   std::erase_if(film.layers, [](const Layer* l) { return l->firstHit != FirstHit::None; });
   FilmStats stats;
@@ -260,8 +292,10 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   FilmOptions film = filmOptionsOf(options);
   film.crop = cropOf(options, rays.scene().film);
   film.firstHits = traceFirstHits(rays, film.filter, film.layers, film.seed, options[kSppOption]);
+  film.groups = lightGroupsOf(options, rays.scene());
   const Integrator integrator = makeIntegrator(rays, lights, lit, options, progress);
   RenderResult result;
+  result.groups = film.groups;
   result.vpls = integrator.vpls;
   result.emissionPoints = integrator.emissionPoints;
   result.caustics = integrator.caustics;

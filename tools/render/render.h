@@ -32,6 +32,10 @@ std::optional<PixelBox> cropOf(const Values& options, const Film& film);
 // Layers that --layers names. Throws UsageError.
 std::vector<const Layer*> layersOf(const Values& options);
 
+// Light groups that the image shows; empty unless --layers asks for them. Throws InputError if no
+// light of the scene has one.
+std::vector<std::string> lightGroupsOf(const Values& options, const Scene& scene);
+
 // Number of samples and photons that progress will count; 0 if unknown.
 uint64_t renderWork(const Scene& scene, const Values& options);
 
@@ -40,6 +44,7 @@ struct RenderResult {
   FilmStats stats;
   size_t vpls = 0, emissionPoints = 0;  // see Integrator
   CausticStats caustics = {};
+  std::vector<std::string> groups = {};  // light groups that the image shows
   std::optional<PassesDone> passes;  // set if there is a budget
   // Mean radiance that the power of the lights makes if it falls evenly on all surfaces and half of
   // it is reflected, W/(m2 sr); 0 if unknown.
@@ -54,8 +59,10 @@ Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const Vp
 void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume);
 
-// Joins the shards of an image. `film` is that of the shards. The result's counts of VPLs stay 0.
-RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source);
+// Joins the shards of an image. `film` and `groups` are those of the shards. The result's counts of
+// VPLs stay 0.
+RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source,
+                          const std::vector<std::string>& groups = {});
 
 // Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A
 // pure function: neither threads nor interruptions change a byte, given the same number of passes

@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "core/vec3.h"
+#include "transport/group_sink.h"
 
 namespace bnvpl {
 
@@ -18,6 +19,8 @@ enum class Only { Everything, Direct, Indirect };
 struct PhotonLight {
   Vec3 all;
   std::array<Vec3, 2> brightest;  // two photons, by the mean of the channels
+  std::array<uint8_t, 2> brightestGroup{};  // their light groups
+  const Vec3* groups = nullptr;             // `all` by light group; null: not told apart
 };
 
 // What a method of --gather counts for a receiver besides clusters and shadow rays. Its mean is a
@@ -47,12 +50,31 @@ struct RadianceSample {
   Counts counts{};
 };
 
+// The light of a sample by light group, W/(m2 sr): what RadianceSample has for all lights together.
+struct SampleGroups {
+  Vec3* sums = nullptr;  // `count` colours for each kind of light; null: no groups are wanted
+  uint32_t count = 0;
+  static constexpr uint32_t kKinds = 3;
+
+  GroupSink emission() const { return {sums}; }
+  GroupSink direct() const { return sinkOf(1); }    // without `emission`
+  GroupSink indirect() const { return sinkOf(2); }  // without photons
+  // Scales emission and direct light.
+  void scaleDirect(float factor) const {
+    for (uint32_t k = 0; sums && k < 2 * count; ++k) sums[k] *= factor;
+  }
+
+ private:
+  GroupSink sinkOf(uint32_t kind) const { return {sums ? sums + size_t{kind} * count : nullptr}; }
+};
+
 // One sample of a pixel.
 struct CameraSample {
   Vec3 origin, direction;
   Rng rng{0, 0};
   float weight = 1.0f;      // factor of the light by the pixel filter; may be negative
-  RadianceSample radiance;  // the integrator fills this in
+  RadianceSample radiance;  // the integrator fills this in, and adds to the sums of `groups`
+  SampleGroups groups = {};
 };
 
 inline constexpr uint32_t kTileSide = 8;  // pixels
@@ -69,6 +91,7 @@ struct TileLayout {
   uint64_t key = 0;              // keys the tile's random numbers
   // Offset of sample 0 in sequences that the whole film shares; random for each pass.
   uint32_t sequenceOffset = 0;
+  uint32_t groups = 0;  // light groups that the samples tell apart; 0: none
 };
 
 struct TileSamples : TileLayout {

@@ -307,6 +307,9 @@ class Estimator {
     }
     result.workShare = split.costShare;
     result.useful = emission_.useful;
+    VplGroups groups = photons.scatter.groupFlux(photons.sums);
+    addGroupsTo(groups, paths, pathShare);
+    finishGroups(std::move(groups), lit);
     EmitPoints points = photons.sums.points;
     points.add(paths.points, pathShare);
     points.fill(lit);

@@ -52,6 +52,9 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
     result.paths += r.paths;
     result.energy.nonFinite += r.nonFinite;
   }
+  VplGroups groups(lit.size(), gatherer.groups());
+  addGroupsTo(groups, received);
+  finishGroups(std::move(groups), lit);
   received.points.fill(lit);
   return result;
 }

@@ -13,6 +13,7 @@
 #include "tools/common/stage/method.h"
 #include "transport/rays.h"
 #include "transport/virtual_light_kinds.h"
+#include "transport/vpl_groups.h"
 
 namespace bnvpl {
 
@@ -37,6 +38,9 @@ struct Uncovered {
   // not know the edges of shadows.
   std::optional<Vec3> multiBounceRadiance;
   UncoveredShare byDistance = {};  // for other receivers that reuse the point
+  // multiBounceRadiance by light group is multiBounceFlux[g] * perFlux; null: not told apart.
+  const Vec3* multiBounceFlux = nullptr;
+  float perFlux = 0.0f;  // 1/(m2 sr)
 };
 
 // Thread-safe. If both functions are empty, nothing is compensated, and no rays are traced for it.
@@ -58,6 +62,7 @@ struct CompensateInputs {
   const RayScene& rays;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
   LightKind light;
+  const VplGroups& groups;  // the VPLs' flux by light group; empty: not told apart
 };
 
 using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;

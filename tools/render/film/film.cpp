@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tools/common/files/streams.h"
+#include "tools/render/film/film_groups.h"
 #include "tools/render/film/film_sums.h"
 #include "tools/render/film/fireflies.h"
 #include "tools/render/film/splat_sums.h"
@@ -19,7 +20,7 @@ namespace {
 constexpr uint32_t kSamplesPerRound = 64;
 
 constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons",
-                           kFirstHitWork = "first hits";
+                           kFirstHitWork = "first hits", kGroupPhotonWork = "group.splats";
 
 // Sums of the samples and photons so far, and for a checkpoint how far they are: rounds, the tiles
 // of one, then photons.
@@ -28,14 +29,22 @@ struct FilmState {
     uint64_t round = 0;
     SplatProgress splats;
   };
-  FilmState(const Film& film, bool photons, const Shard& of, const std::optional<PixelBox>& box)
+  FilmState(const Film& film, bool photons, const Shard& of, const std::optional<PixelBox>& box,
+            size_t lightGroups)
       : tiles(film),
         pixels(size_t{film.width} * film.height),
         counts(pixels.size()),
         splats(photons ? pixels.size() : 0),
+        groups(pixels.size(), static_cast<uint32_t>(lightGroups)),
+        groupSplats(splats.pixels() * lightGroups),
         shard(of),
         crop(box) {
     beginRound();
+  }
+  void add(const Splat& splat) {
+    splats.add(splat);
+    if (groupSplats.pixels() > 0)
+      groupSplats.add({splat.pixel * groups.count + splat.group, splat.radiance, 0});
   }
   void beginRound() {
     done = unitsToDo(tiles.count(), shard);
@@ -44,13 +53,15 @@ struct FilmState {
     }
   }
 
-  std::string encode() const {
+  std::string encode() {
     std::string bytes;
     appendArray(bytes, std::array{at});
     appendArray(bytes, done);
     appendArray(bytes, pixels);
     appendArray(bytes, counts);
     appendArray(bytes, splats.integers());
+    groups.forArrays([&](auto, const auto& array, size_t) { appendArray(bytes, array); });
+    appendArray(bytes, groupSplats.integers());
     return bytes;
   }
   void decode(std::string_view bytes) {
@@ -61,12 +72,16 @@ struct FilmState {
     takeArray(bytes, counts);
     std::vector<int64_t> integers(SplatSums::integersFor(splats.pixels()));
     takeArray(bytes, integers);
+    groups.forArrays([&](auto, auto& array, size_t) { takeArray(bytes, array); });
+    std::vector<int64_t> ofGroups(SplatSums::integersFor(groupSplats.pixels()));
+    takeArray(bytes, ofGroups);
     requireAllTaken(bytes);
+    groupSplats.setIntegers(ofGroups);
     at = progress[0];
     splats.setIntegers(integers);
   }
 
-  void giveTo(const ShardSink& sink) const {
+  void giveTo(const ShardSink& sink) {
     std::vector<TilePixel> record;
     for (size_t t = 0; t < tiles.count(); ++t) {
       if (!shard.has(t) || !tiles.meets(t, crop)) continue;
@@ -79,6 +94,13 @@ struct FilmState {
       giveRecord(sink, kTileWork, t, record);
     }
     if (splats.pixels() > 0) sink.sums(kPhotonWork, splats.integers());
+    if (groupSplats.pixels() > 0) sink.sums(kGroupPhotonWork, groupSplats.integers());
+    groups.forArrays([&](std::string_view work, auto& array, size_t perPixel) {
+      forOwnTiles([&](size_t t, const Tile& tile) {
+        auto part = ofTile(tile, array, perPixel);
+        giveRecord(sink, work, t, part);
+      });
+    });
   }
   void takeFrom(const ShardSource& source) {
     std::vector<TilePixel> record;
@@ -96,6 +118,39 @@ struct FilmState {
     if (splats.pixels() > 0) {
       splats.setIntegers(source.sums(kPhotonWork, SplatSums::integersFor(splats.pixels())));
     }
+    if (groupSplats.pixels() > 0) {
+      groupSplats.setIntegers(
+          source.sums(kGroupPhotonWork, SplatSums::integersFor(groupSplats.pixels())));
+    }
+    groups.forArrays([&](std::string_view work, auto& array, size_t perPixel) {
+      forOwnTiles([&](size_t t, const Tile& tile) {
+        auto part = ofTile(tile, array, perPixel);
+        takeRecord(source, work, t, part);
+        auto from = part.begin();
+        for (uint32_t p = 0; p < tile.pixels(); ++p, from += static_cast<std::ptrdiff_t>(perPixel))
+          std::copy_n(
+              from, perPixel,
+              array.begin() + static_cast<std::ptrdiff_t>(tiles.pixelIndex(tile, p) * perPixel));
+      });
+    });
+  }
+
+  // Calls fn(index, tile) for each tile of the shard that has a pixel of the crop.
+  template <typename Fn>
+  void forOwnTiles(const Fn& fn) const {
+    for (size_t t = 0; t < tiles.count(); ++t)
+      if (shard.has(t) && tiles.meets(t, crop)) fn(t, tiles.at(t));
+  }
+  // A tile's values of an array of the film with `perPixel` values for each pixel.
+  template <typename T>
+  std::vector<T> ofTile(const Tile& tile, const std::vector<T>& array, size_t perPixel) const {
+    std::vector<T> out;
+    for (uint32_t p = 0; p < tile.pixels(); ++p) {
+      const auto begin =
+          array.begin() + static_cast<std::ptrdiff_t>(tiles.pixelIndex(tile, p) * perPixel);
+      out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(perPixel));
+    }
+    return out;
   }
 
   struct TilePixel {  // without padding, as its bytes are saved
@@ -108,6 +163,8 @@ struct FilmState {
   std::vector<PixelSums> pixels;
   std::vector<PixelCounts> counts;
   SplatSums splats;
+  FilmGroups groups;
+  SplatSums groupSplats;  // photons by light group, those of a pixel one after the other
   Shard shard;
   std::optional<PixelBox> crop;
 };
@@ -119,13 +176,15 @@ Image blankImage(const Film& film) {
   return image;
 }
 
-// The rows of a crop, one after the other.
+// The rows of a crop, one after the other. `perPixel`: values of each pixel.
 template <typename T>
-std::vector<T> cropped(const std::vector<T>& film, uint32_t width, const PixelBox& box) {
+std::vector<T> cropped(const std::vector<T>& film, uint32_t width, const PixelBox& box,
+                       size_t perPixel = 1) {
+  const auto times = static_cast<std::ptrdiff_t>(perPixel);
   std::vector<T> out;
   for (int y = box.y0; y < box.y1; ++y) {
-    const auto row = film.begin() + static_cast<std::ptrdiff_t>(y) * width;
-    out.insert(out.end(), row + box.x0, row + box.x1);
+    const auto row = film.begin() + static_cast<std::ptrdiff_t>(y) * width * times;
+    out.insert(out.end(), row + box.x0 * times, row + box.x1 * times);
   }
   return out;
 }
@@ -179,19 +238,28 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
   double filterPixels = 0.0;
   if (options.gatherFilter)
     filterPixels = applyFilter(options.gatherFilter, size.width, box, state.pixels);
+  for (size_t k = 0; options.only != Only::Direct && k < state.groupSplats.pixels(); ++k) {
+    for (size_t c = 0; c < 3; ++c) state.groups.sums[3 * k + c] += state.groupSplats.sum(k, c);
+  }
   Film shown = size;
   if (options.crop) {
     state.pixels = cropped(state.pixels, size.width, box);
     state.counts = cropped(state.counts, size.width, box);
+    state.groups.forArrays([&](auto, auto& array, size_t perPixel) {
+      array = cropped(array, size.width, box, perPixel);
+    });
     shown.width = static_cast<uint32_t>(box.x1 - box.x0);
     shown.height = static_cast<uint32_t>(box.y1 - box.y0);
   }
   Image image = blankImage(shown);
-  FilmSums film{state.pixels, state.counts, 1.0 / options.spp};
+  FilmSums film{state.pixels, state.counts, 1.0 / options.spp, {}, {}, &state.groups};
+  std::vector<Vec3> groupsRedistributed;
   std::vector<BothLights> redistributed;
   if (options.redistributeFireflies)
-    film.redistributed = redistributed = redistributeFireflies(film, options.only, size.width);
+    film.redistributed = redistributed =
+        redistributeFireflies(film, options.only, size.width, &groupsRedistributed);
   addRadiance(film, options.only, image);
+  addGroups(state.groups, options.groups, film.perSample, groupsRedistributed, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);
   addFirstHits(state.tiles, options.layers, firstHits, box, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
@@ -211,7 +279,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
                  FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
   FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard,
-                 sampledPixels(scene.film, options));
+                 sampledPixels(scene.film, options), options.groups.size());
   const Tiles& tiles = film.tiles;
   if (!resume.state.empty()) film.decode(resume.state);
   const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
@@ -235,10 +303,11 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         [&](size_t index) {
           const Tile tile = tiles.at(index);
           sampleTile(scene, options.filter, integrator, key, tile,
-                     {begin, end, options.spp, options.spp},
-                     [&](uint32_t p, const RadianceSample& sample) {
+                     {begin, end, options.spp, options.spp}, film.groups.count,
+                     [&](uint32_t p, const CameraSample& sample) {
                        const size_t i = tiles.pixelIndex(tile, p);
-                       addSample(sample, film.pixels[i], film.counts[i]);
+                       if (addSample(sample.radiance, film.pixels[i], film.counts[i]))
+                         film.groups.add(i, sample, options.only, 1.0f);
                      });
           report(tile);
         },
@@ -250,7 +319,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
     if (progress) progress(film.at.splats.traced);
     addSplats(
         integrator.tracePhotons, photons, film.at.splats,
-        [&](const Splat& splat) { film.splats.add(splat); }, progress, resume, state);
+        [&](const Splat& splat) { film.add(splat); }, progress, resume, state);
     film.splats.addNonFinite(film.at.splats.nonFinite);
   }
   if (!resume.sink) return develop(scene.film, options, film, stats, options.firstHits);
@@ -261,7 +330,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
 
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,
                const ShardSource& source) {
-  FilmState state(film, photons, {}, sampledPixels(film, options));
+  FilmState state(film, photons, {}, sampledPixels(film, options), options.groups.size());
   state.takeFrom(source);
   const auto firstHits = takeFirstHits(state, firstHitChannels(options.layers), source);
   return develop(film, options, state, stats, [&](size_t tile) { return firstHits[tile]; });

@@ -26,6 +26,7 @@ struct FilmOptions {
   std::optional<PixelBox> crop = {};  // the pixels of the image; none: all
   FirstHitValues firstHits = {};      // traceFirstHits(); unused by joinFilm()
   FilmFilter gatherFilter = {};       // smooths RadianceSample::gathered
+  std::vector<std::string> groups = {};  // light groups to show; empty: none
 };
 
 struct FilmStats {

@@ -6,6 +6,7 @@
 
 #include "formats/image/image.h"
 #include "tools/render/film/film.h"
+#include "tools/render/film/film_groups.h"
 
 namespace bnvpl {
 
@@ -16,6 +17,7 @@ struct FilmSums {
   double perSample;  // factor of `sums`: one over the number of samples or passes in them
   std::span<const PixelPasses> passes = {};        // empty if there are no passes
   std::span<const BothLights> redistributed = {};  // from redistributeFireflies(), or empty
+  const FilmGroups* groups = nullptr;              // light by group; null: not told apart
 
   BothLights redistributedOf(size_t pixel) const {
     return redistributed.empty() ? BothLights{} : redistributed[pixel];

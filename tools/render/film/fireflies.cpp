@@ -15,6 +15,7 @@ namespace {
 // twice as large: its samples take few rays, so they vary more even without fireflies.
 constexpr double kMinShare = 0.125, kTimesItsShare = 2.0;
 constexpr std::array<double, 2> kTimes{2.0, 1.0};
+constexpr size_t kPhotonKind = 2;  // in forBrightest(), beside direct and indirect light
 constexpr float kVisible = 0.02f;  // contrast up to which added light is invisible
 // Level at which surfaceLight() compares the light of fireflies with that of the surface.
 constexpr size_t kLocal = 3;
@@ -53,37 +54,62 @@ FilmValues meanAround(const SurfaceFilter& filter, const FilmValues& ones,
   return out;
 }
 
-// Calls fn(kind, contribution to the pixel) for the brightest samples and photons of pixel i. Kind
-// 0 is direct, kind 1 indirect light.
+// Calls fn(kind, contribution to the pixel, rank) for the brightest samples and photons of pixel i.
+// Kind 0 is direct, kind 1 indirect light, kind 2 photons.
 template <typename Fn>
 void forBrightest(const FilmSums& film, size_t i, Only only, const Fn& fn) {
   const auto perSample = static_cast<float>(film.perSample);
   for (const size_t kind : {0u, 1u}) {
     if (!isShown(kind, only)) continue;
-    for (const Vec3 sample : film.sums[i].brightest[kind]) fn(kind, sample * perSample);
+    for (size_t k = 0; k < PixelSums::kBrightest; ++k)
+      fn(kind, film.sums[i].brightest[kind][k] * perSample, k);
   }
   if (!isShown(1, only)) return;
-  for (size_t k = 0; k < PixelSums::kBrightest; ++k) fn(1, film.sums[i].photon(k) * perSample);
+  for (size_t k = 0; k < PixelSums::kBrightest; ++k)
+    fn(kPhotonKind, film.sums[i].photon(k) * perSample, k);
 }
 
-// Excess e_i of each pixel's direct and indirect light.
+// Adds the share `excess` of a sample or photon to the light groups that it belongs to.
+void addExcess(const FilmSums& film, size_t i, size_t kind, size_t rank, float excess, Vec3 light,
+               std::vector<Vec3>& byGroup) {
+  const FilmGroups& groups = *film.groups;
+  Vec3* to = &byGroup[i * groups.count];
+  if (kind == kPhotonKind) {
+    to[groups.photons[2 * i + rank]] += light * excess;
+    return;
+  }
+  const Vec3* parts = groups.brightestOf(i, kind, rank);
+  const float factor = static_cast<float>(film.perSample) * excess;
+  for (uint32_t g = 0; g < groups.count; ++g) to[g] += parts[g] * factor;
+}
+
+// Excess e_i of each pixel's direct and indirect light, and by light group unless `byGroup` is
+// empty.
 std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValues& shown,
-                                 const FilmValues& smoothed, const FilmValues& ones) {
+                                 const FilmValues& smoothed, const FilmValues& ones,
+                                 std::vector<Vec3>& byGroup) {
   std::vector<BothLights> excess(shown.size());
   parallelFor(shown.size(), 256, [&](size_t i) {
     float others = shown[i];
-    forBrightest(film, i, only, [&](size_t, Vec3 light) { others -= mean(light); });
+    forBrightest(film, i, only, [&](size_t, Vec3 light, size_t) { others -= mean(light); });
     // Mean of the surroundings without these samples.
     const float around = (smoothed[i] - SurfaceFilter::kCentre * (shown[i] - others)) / ones[i];
     const double share = std::max(kMinShare, kTimesItsShare / samplesOf(film, i)) *
                          double{std::max({0.0f, others, around})};
-    forBrightest(film, i, only, [&](size_t kind, Vec3 light) {
-      const double bound = kTimes[kind] * share, own{mean(light)};
-      if (own > bound) excess[i][kind] += light * static_cast<float>(1.0 - bound / own);
+    forBrightest(film, i, only, [&](size_t kind, Vec3 light, size_t rank) {
+      const size_t shownKind = std::min<size_t>(kind, 1);
+      const double bound = kTimes[shownKind] * share, own{mean(light)};
+      if (!(own > bound)) return;
+      const auto part = static_cast<float>(1.0 - bound / own);
+      excess[i][shownKind] += light * part;
+      if (!byGroup.empty()) addExcess(film, i, kind, rank, part, light, byGroup);
     });
     // A bright pixel in dark surroundings keeps its light.
-    if (!(around > 1e-5f * shown[i]) || !isFinite(excess[i][0]) || !isFinite(excess[i][1]))
+    if (!(around > 1e-5f * shown[i]) || !isFinite(excess[i][0]) || !isFinite(excess[i][1])) {
       excess[i] = {};
+      if (!byGroup.empty())
+        std::fill_n(&byGroup[i * film.groups->count], film.groups->count, Vec3{});
+    }
   });
   return excess;
 }
@@ -168,32 +194,37 @@ std::vector<Target> chooseOverEdges(const SurfaceFilter& filter, const FilmValue
   return over;
 }
 
-// Moves the excess of each pixel to its target, for one channel of one kind of light.
+// Moves the excess of each pixel to its target. `excess` and `change` are functions of the pixel
+// for one channel of one kind of light.
+template <typename Excess, typename Change>
 void move(const SurfaceFilter& filter, std::span<const Target> targets, const FilmValues& light,
-          std::span<const BothLights> excess, size_t kind, size_t channel,
-          std::span<BothLights> change) {
+          const Excess& excess, const Change& change) {
   // Applies the adjoint of S_l ... S_0, from the widest level to the narrowest. Each level adds the
   // excess that it is the target of.
   FilmValues moved(light.size(), 0.0f);
   for (size_t level = filter.levels(); level-- > 0;) {
     for (size_t i = 0; i < moved.size(); ++i)
-      if (targets[i].level == level) moved[i] += excess[i][kind][channel] * targets[i].perLight;
+      if (targets[i].level == level) moved[i] += excess(i) * targets[i].perLight;
     moved = filter.scatter(moved, level);
   }
   for (size_t i = 0; i < moved.size(); ++i) {
-    const float leaves = targets[i].perLight > 0.0f ? excess[i][kind][channel] : 0.0f;
-    change[i][kind][channel] += light[i] * moved[i] - leaves;
+    const float leaves = targets[i].perLight > 0.0f ? excess(i) : 0.0f;
+    change(i) += light[i] * moved[i] - leaves;
   }
 }
 
 }  // namespace
 
-std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, uint32_t width) {
+std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, uint32_t width,
+                                              std::vector<Vec3>* groups) {
   const SurfaceFilter within(film.sums, width, SurfaceFilter::Edges::Stop),
       over(film.sums, width, SurfaceFilter::Edges::Ignore);
   const FilmValues ones = smoothedOnes(within), shown = shownLight(film, only);
+  const size_t count = film.groups && groups ? film.groups->count : 0;
+  std::vector<Vec3> byGroup(film.sums.size() * count);
+  if (groups) groups->assign(byGroup.size(), Vec3{});
   const std::vector<BothLights> excess =
-      excessOf(film, only, shown, over.smooth(shown, 0), smoothedOnes(over));
+      excessOf(film, only, shown, over.smooth(shown, 0), smoothedOnes(over), byGroup);
   FilmValues both = meansOf(excess, 0);
   const FilmValues indirect = meansOf(excess, 1);
   for (size_t i = 0; i < both.size(); ++i) both[i] += indirect[i];
@@ -203,12 +234,21 @@ std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, u
   const FilmValues lumps = lumpsOf(excess, width);
   std::vector<Target> withinEdges = chooseTargets(within, light, both, lumps);
   const std::vector<Target> overEdges = chooseOverEdges(over, light, both, lumps, withinEdges);
+  const auto moveBoth = [&](const auto& of, const auto& to) {
+    move(within, withinEdges, light, of, to);
+    move(over, overEdges, light, of, to);
+  };
   for (const size_t kind : {0u, 1u}) {
     if (!isShown(kind, only)) continue;
     for (size_t c = 0; c < 3; ++c) {
-      move(within, withinEdges, light, excess, kind, c, change);
-      move(over, overEdges, light, excess, kind, c, change);
+      moveBoth([&](size_t i) { return excess[i][kind][c]; },
+               [&](size_t i) -> float& { return change[i][kind][c]; });
     }
+  }
+  for (size_t g = 0; g < count; ++g) {
+    for (size_t c = 0; c < 3; ++c)
+      moveBoth([&](size_t i) { return byGroup[i * count + g][c]; },
+               [&](size_t i) -> float& { return (*groups)[i * count + g][c]; });
   }
   return change;
 }

@@ -68,6 +68,9 @@ constexpr std::array kLayers{
           "standard error of R, G, B between passes, before fireflies are redistributed, W/(m2 sr)",
           errorOf, false, true},
     Layer{"samples", "", "samples of all passes", samplesOf, false, true},
+    Layer{"light_groups", "RGB",
+          "the light of each light group of the scene, in light_NAME, W/(m2 sr); not in all",
+          nullptr, false, false, FirstHit::None, true},
     firstHitLayer("A", "", "coverage: share of the pixel in which camera rays hit geometry",
                   FirstHit::Coverage),
     firstHitLayer("P", "XYZ",
@@ -145,7 +148,8 @@ std::vector<const Layer*> parseLayers(const std::string& list, bool vpls, bool p
       throw UsageError("--layers: '" + std::string(layer.name) + "' is not complete with --only " +
                        std::string(shown) + "; leave one of them out");
     }
-    const bool possible = isShown && (vpls || !layer.ofVpls) && (passes || !layer.ofPasses);
+    const bool possible =
+        isShown && (vpls || !layer.ofVpls) && (passes || !layer.ofPasses) && !layer.ofGroups;
     if (named || (all && possible)) layers.push_back(&layer);
     known += std::string(layer.name) + ", ";
   };

@@ -92,6 +92,7 @@ struct Layer {
   bool ofVpls = false;                                 // exists only where VPLs are gathered
   bool ofPasses = false;  // exists only where the image is rendered by passes
   FirstHit firstHit = FirstHit::None;
+  bool ofGroups = false;  // light groups (film_groups.h), which `all` leaves out
 };
 
 // The layer of the gather's counter number `index`.

@@ -5,6 +5,7 @@
 
 #include "tools/common/files/streams.h"
 #include "tools/common/run/clock.h"
+#include "tools/render/film/film_groups.h"
 #include "tools/render/film/fireflies.h"
 #include "tools/render/film/pass_error.h"
 #include "tools/render/splat/add_splats.h"
@@ -25,7 +26,7 @@ struct PassesState {
     double spentS = 0.0;
     SplatProgress splats;
   };
-  PassesState(size_t pixels, size_t tiles)
+  PassesState(size_t pixels, size_t tiles, size_t lightGroups)
       : done(tiles),
         spp(tiles),
         samples(tiles),
@@ -33,7 +34,8 @@ struct PassesState {
         sums(pixels),
         counts(pixels),
         values(pixels),
-        squares(pixels) {}
+        squares(pixels),
+        groups(pixels, static_cast<uint32_t>(lightGroups)) {}
 
   Progress at;
   std::vector<uint8_t> done;        // tiles of the current pass
@@ -44,10 +46,12 @@ struct PassesState {
   std::vector<PixelCounts> counts;  // sums over samples
   std::vector<Rgb> values;          // shown R, G, B of the current pass
   std::vector<Rgb> squares;         // sums over finished passes of squared `values`
+  FilmGroups groups;                // sums of the passes' means
 
   template <typename Fn>
   void forArrays(const Fn& fn) {
     fn(done), fn(spp), fn(samples), fn(inverse), fn(sums), fn(counts), fn(values), fn(squares);
+    groups.forArrays([&](auto, auto& array, size_t) { fn(array); });
   }
   std::string encode() {
     std::string bytes;
@@ -74,7 +78,7 @@ class Passes {
         budget_(budget),
         tiles_(scene.film),
         key_(streamKey(options.seed, Stream::PixelSamples)),
-        state_(size_t{scene.film.width} * scene.film.height, tiles_.count()),
+        state_(size_t{scene.film.width} * scene.film.height, tiles_.count(), options.groups.size()),
         known_(state_.sums.size()) {}
 
   void run(const ProgressFn& progress, const Resume& resume, const PreviewFn& preview) {
@@ -100,6 +104,7 @@ class Passes {
     Image image = blank();
     const Shown shown = this->shown();
     addRadiance(shown.sums, options_.only, image);
+    addGroups(state_.groups, options_.groups, shown.sums.perSample, shown.groups, image);
     for (const Layer* layer : options_.layers) addLayer(*layer, shown.sums, image);
     addFirstHits(tiles_, options_.layers, options_.firstHits, {0, 0, image.width, image.height},
                  image);
@@ -118,17 +123,18 @@ class Passes {
     return image;
   }
   FilmSums sumsSoFar() const {
-    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, {}};
+    return {state_.sums, state_.counts, 1.0 / double(state_.at.pass), known_, {}, &state_.groups};
   }
   // The sums so far as the image shows them; `sums` refers to the vectors.
   struct Shown {
     std::vector<PixelSums> filtered;
     double filterPixels = 0.0;
     std::vector<BothLights> redistributed;
+    std::vector<Vec3> groups;  // change of the light groups by the redistribution
     FilmSums sums;
   };
   Shown shown() const {
-    Shown out{{}, 0.0, {}, sumsSoFar()};
+    Shown out{{}, 0.0, {}, {}, sumsSoFar()};
     const Film& film = scene_.film;
     if (options_.gatherFilter) {
       out.filtered = state_.sums;
@@ -138,7 +144,7 @@ class Passes {
     }
     if (options_.redistributeFireflies)
       out.sums.redistributed = out.redistributed =
-          redistributeFireflies(out.sums, options_.only, film.width);
+          redistributeFireflies(out.sums, options_.only, film.width, &out.groups);
     return out;
   }
   // Samples of the finished passes, and of the finished tiles of the current one.
@@ -194,6 +200,7 @@ class Passes {
           addSplat(splat, kShare, state_.sums, state_.counts);
           if (!isFinite(splat.radiance) || options_.only == Only::Direct) return;
           const Vec3 contribution = splat.radiance * kShare;
+          state_.groups.add(splat, kShare);
           for (size_t c = 0; c < 3; ++c)
             state_.values[splat.pixel][c] += double{contribution[int(c)]};
         },
@@ -207,9 +214,11 @@ class Passes {
     const auto sequenceOffset = static_cast<uint32_t>(random64(key, index, kDrawOffset) >> 33);
     std::vector<PixelSums> sums(tile.pixels());
     sampleTile(scene_, options_.filter, integrator_, key, tile,
-               {0, spp, spp, kMaxPassSpp, sequenceOffset},
-               [&](uint32_t p, const RadianceSample& sample) {
-                 addSample(sample, sums[p], state_.counts[tiles_.pixelIndex(tile, p)]);
+               {0, spp, spp, kMaxPassSpp, sequenceOffset}, state_.groups.count,
+               [&](uint32_t p, const CameraSample& sample) {
+                 const size_t i = tiles_.pixelIndex(tile, p);
+                 if (addSample(sample.radiance, sums[p], state_.counts[i]))
+                   state_.groups.add(i, sample, options_.only, 1.0f / static_cast<float>(spp));
                });
     for (uint32_t p = 0; p < tile.pixels(); ++p) {
       const size_t i = tiles_.pixelIndex(tile, p);

@@ -48,10 +48,10 @@ size_t Tiles::pixelsMeeting(const std::optional<PixelBox>& box) const {
   return pixels;
 }
 
-void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
+bool addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   if (!isFinite(r)) {
     ++counts.nonFinite;
-    return;
+    return false;
   }
   addTo(pixel, PixelSums::kDirect, r.direct);
   addTo(pixel, PixelSums::kIndirect, r.indirect);
@@ -69,6 +69,7 @@ void addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   counts.cut += r.cut;
   counts.shadowRays += r.shadowRays;
   for (size_t k = 0; k < kMaxCounters; ++k) counts.own[k] += r.counts[k];
+  return true;
 }
 
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,

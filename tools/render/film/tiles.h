@@ -53,14 +53,17 @@ struct SampleRange {
   uint32_t sequenceOffset = 0;  // see TileLayout
 };
 
-// Calls take(pixel of the tile, its RadianceSample) for each sample, by the sample's index
+// Calls take(pixel of the tile, its CameraSample) for each sample, by the sample's index
 // within the pixel. The result depends only on the key, the tile's position and the range.
+// `groups`: light groups that the samples tell apart.
 template <typename Take>
 void sampleTile(const Scene& scene, const PixelFilter& filter, const Integrator& integrator,
-                uint64_t key, const Tile& tile, const SampleRange& range, const Take& take);
+                uint64_t key, const Tile& tile, const SampleRange& range, uint32_t groups,
+                const Take& take);
 
-// Adds a sample to the sums of its pixel. A sample that is not finite counts as zero.
-void addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& counts);
+// Adds a sample to the sums of its pixel. A sample that is not finite counts as zero. Returns
+// whether the sample is finite.
+bool addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& counts);
 // Adds the contribution of a photon, times `share`, in the same way.
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
               std::span<PixelCounts> counts);
@@ -72,10 +75,12 @@ CameraSample makeSample(const Scene& scene, const PixelFilter& filter, uint64_t 
 
 template <typename Take>
 void sampleTile(const Scene& scene, const PixelFilter& filter, const Integrator& integrator,
-                uint64_t key, const Tile& tile, const SampleRange& range, const Take& take) {
+                uint64_t key, const Tile& tile, const SampleRange& range, uint32_t groups,
+                const Take& take) {
   constexpr uint32_t kSamplesAtOnce = 16;  // samples of each pixel that are held in memory together
   const uint64_t tileKey = mix64(key + 2 + (uint64_t{tile.y0} << 32 | tile.x0));
   std::vector<CameraSample> samples;
+  std::vector<Vec3> groupSums;
   for (uint32_t begin = range.first, end; begin < range.end; begin = end) {
     end =
         begin + std::min(range.end - begin,
@@ -86,11 +91,14 @@ void sampleTile(const Scene& scene, const PixelFilter& filter, const Integrator&
         samples.push_back(makeSample(scene, filter, key, range, tile.x(p), tile.y(p), s));
       }
     }
+    groupSums.assign(samples.size() * SampleGroups::kKinds * groups, Vec3{});
+    for (size_t k = 0; groups > 0 && k < samples.size(); ++k)
+      samples[k].groups = {&groupSums[k * SampleGroups::kKinds * groups], groups};
     integrator.renderTile({{tile.pixels(), tile.width(), tile.x0, tile.y0, begin, range.all,
-                            tileKey, range.sequenceOffset},
+                            tileKey, range.sequenceOffset, groups},
                            samples});
     for (size_t k = 0; k < samples.size(); ++k) {
-      take(static_cast<uint32_t>(k % tile.pixels()), samples[k].radiance);
+      take(static_cast<uint32_t>(k % tile.pixels()), samples[k]);
     }
   }
 }

@@ -30,6 +30,10 @@ struct Gathered {
 // The receivers of a tile's samples; null where a sample has none.
 struct TileReceivers : TileLayout {
   std::span<const Bsdf* const> bsdf;
+  Vec3* groupSums = nullptr;  // receives the radiance by light group, `groups` for each receiver
+  GroupSink groupsOf(size_t receiver) const {
+    return {groupSums ? groupSums + receiver * groups : nullptr};
+  }
   // Variance, relative to the tile's squared light, that a further shadow ray of a sample must
   // remove to be efficient (SampleAllocation); 0 if unknown.
   double marginalCost = 0.0;
@@ -40,8 +44,9 @@ struct TileReceivers : TileLayout {
 
 // One result for each receiver.
 using GatherTile = std::function<void(const TileReceivers&, std::span<Gathered>)>;
-// Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs.
-using GatherPoint = std::function<Gathered(const Bsdf&, unsigned draws, Rng&)>;
+// Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs. The
+// sink receives its radiance by light group.
+using GatherPoint = std::function<Gathered(const Bsdf&, unsigned draws, Rng&, const GroupSink&)>;
 
 // Immutable and thread-safe.
 struct Gather {
@@ -75,23 +80,24 @@ struct GatherMethod {
   std::span<const Counter> counters = {};  // at most kMaxCounters
   // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
   FilmFilter (*filmFilter)(const Values&) = nullptr;
+  bool lightGroups = true;  // fills TileReceivers::groupSums
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();
 
-// Makes a Gather that handles each receiver separately: fn(bsdf) -> Gathered, or fn(bsdf, key) with
-// a key for the random numbers of the receiver.
+// Makes a Gather that handles each receiver separately: fn(bsdf, sink) -> Gathered, or
+// fn(bsdf, key, sink) with a key for the random numbers of the receiver.
 template <typename Fn>
 Gather gatherEach(Fn fn) {
   return {[fn = std::move(fn)](const TileReceivers& tile, std::span<Gathered> out) {
     for (size_t i = 0; i < out.size(); ++i) {
       out[i] = {};
       if (!tile.bsdf[i]) continue;
-      if constexpr (std::is_invocable_v<const Fn&, const Bsdf&>) {
-        out[i] = fn(*tile.bsdf[i]);
+      if constexpr (std::is_invocable_v<const Fn&, const Bsdf&, const GroupSink&>) {
+        out[i] = fn(*tile.bsdf[i], tile.groupsOf(i));
       } else {
         const uint64_t sample = i + uint64_t{tile.firstSample} * tile.pixels;
-        out[i] = fn(*tile.bsdf[i], random64(tile.key, sample, 0));
+        out[i] = fn(*tile.bsdf[i], random64(tile.key, sample, 0), tile.groupsOf(i));
       }
     }
   }};

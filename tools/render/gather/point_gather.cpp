@@ -2,7 +2,8 @@
 
 namespace bnvpl {
 
-Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng) const {
+Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng,
+                                 const GroupSink& groups) const {
   Gathered out;
   const VplSampler::Point point(sampler_, bsdf);
   if (point.dark()) return out;
@@ -14,7 +15,9 @@ Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng) con
     if (!draw || !unoccludedTransfer(vpls_, draw->vpl, bsdf, c)) continue;
     ++out.shadowRays;
     if (rays_.occluded(from, vpls_.position[draw->vpl])) continue;
-    const Vec3 light = c.transfer * vpls_.intensity[draw->vpl] * (perDraw / draw->probability);
+    const float weight = perDraw / draw->probability;
+    const Vec3 light = c.transfer * vpls_.intensity[draw->vpl] * weight;
+    if (groups) vpls_.addByGroup(draw->vpl, c.transfer * weight, groups);
     out.radiance += light;
     out.clamped += light * c.clampLoss;
   }

@@ -11,7 +11,8 @@ class PointGather {
  public:
   PointGather(const RayScene& rays, const VplLights& vpls, const LightTree& tree)
       : rays_(rays), vpls_(vpls), sampler_(tree) {}
-  Gathered operator()(const Bsdf& bsdf, unsigned draws, Rng& rng) const;
+  Gathered operator()(const Bsdf& bsdf, unsigned draws, Rng& rng,
+                      const GroupSink& groups = {}) const;
 
  private:
   const RayScene& rays_;

@@ -5,13 +5,15 @@
 
 namespace bnvpl {
 
-// Borrows all three.
+// Borrows all three. `groups` receives the radiance by light group.
 class ShadowTest {
  public:
-  ShadowTest(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf)
+  ShadowTest(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf,
+             const GroupSink& groups = {})
       : rays_(rays),
         vpls_(vpls),
         bsdf_(bsdf),
+        groups_(groups),
         from_(rays.offsetOrigin(bsdf.point().position, bsdf.point().ng)) {}
 
   Gathered of(size_t i) const {
@@ -29,12 +31,14 @@ class ShadowTest {
     const Vec3 light = c.transfer * vpls_.intensity[i] * weight;
     out.radiance += light;
     out.clamped += light * c.clampLoss;
+    if (groups_) vpls_.addByGroup(i, c.transfer * weight, groups_);
   }
 
  private:
   const RayScene& rays_;
   const VplLights& vpls_;
   const Bsdf& bsdf_;
+  GroupSink groups_;
   Vec3 from_;
 };
 

@@ -13,6 +13,7 @@
 #include "tools/render/pixel_filter.h"
 #include "transport/lights.h"
 #include "transport/rays.h"
+#include "transport/vpl_groups.h"
 
 namespace bnvpl {
 
@@ -26,6 +27,8 @@ struct IntegratorInputs {
   PixelFilter filter;
   const ProgressFn& progress;  // reports preparations
   CostProbe* probe = nullptr;  // set for a cost estimate
+  uint32_t groups = 0;         // light groups that samples tell apart; 0: none
+  VplGroups litGroups = {};    // the VPLs' flux by these groups; empty without them
 
   uint64_t pixels() const {
     const Film& film = rays.scene().film;

@@ -13,7 +13,8 @@ RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
   return tracePath(rays_, lights_, sample, only_, indirect_, rng,
                    [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
                      addLeavingLight(rays_, lights_, bsdf, throughput, {maxBounces_, directOnly},
-                                     nullptr, rng, out.direct, out.indirect);
+                                     nullptr, rng, out.direct, out.indirect,
+                                     {sample.groups.direct(), sample.groups.indirect()});
                    });
 }
 

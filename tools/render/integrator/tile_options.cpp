@@ -34,12 +34,12 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
   const CostProbe::Part part(in.probe, static_cast<double>(photons) / static_cast<double>(sent));
   return std::make_unique<const Caustics>(in.rays, in.lights, in.filter, sent,
                                           static_cast<float>(raysOfPixel), bounces, in.seed,
-                                          in.progress);
+                                          in.groups, in.progress);
 }
 
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const PrimaryPoints& film) {
-  const auto control =
-      std::make_shared<const PixelControlVariate>(in.rays, in.lights, in.filter, film, in.lit);
+  const auto control = std::make_shared<const PixelControlVariate>(in.rays, in.lights, in.filter,
+                                                                   film, in.lit, in.litGroups);
   return [control](const TileSamples& tile, std::span<const SpecularPath> paths) {
     control->apply(tile, paths);
   };

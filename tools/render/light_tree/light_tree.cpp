@@ -131,6 +131,21 @@ class Builder {
   float normalScale_ = 1.0f;
 };
 
+// Children follow their parents.
+void sumGroups(const VplLights& vpls, LightTree& tree) {
+  const size_t groups = tree.groups = vpls.groups;
+  tree.groupIntensity.resize(tree.nodes.size() * groups);
+  for (size_t node = tree.nodes.size(); groups > 0 && node-- > 0;) {
+    const LightNode& n = tree.nodes[node];
+    for (size_t g = 0; g < groups; ++g) {
+      tree.groupIntensity[node * groups + g] =
+          n.leaf() ? vpls.groupIntensity[n.representative * groups + g]
+                   : tree.groupIntensity[n.left * groups + g] +
+                         tree.groupIntensity[n.right * groups + g];
+    }
+  }
+}
+
 // Repeatedly splits the cluster with the largest intensity times size, until there are
 // kMaxStartCut.
 std::vector<uint32_t> startCutOf(const LightTree& tree) {
@@ -171,6 +186,7 @@ LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {
   Builder builder(vpls, seed, by, tree);
   builder.build(0, vpls.size());
   tree.order = builder.takeOrder();
+  sumGroups(vpls, tree);
   tree.upTo.assign(1, 0.0);
   for (const uint32_t i : tree.order) {
     tree.upTo.push_back(tree.upTo.back() + double{mean(vpls.intensity[i])});

@@ -53,6 +53,14 @@ struct LightTree {
   std::vector<uint32_t> startCut;
   std::vector<uint32_t> order;  // VPLs from left to right
   std::vector<double> upTo;     // running sums of their mean intensities; has one entry more
+  uint32_t groups = 0;          // light groups; 0: not told apart
+  std::vector<Vec3> groupIntensity;  // `groups` for each node, which add up to its intensity
+
+  // Adds the light of a cluster by group. `transfer`: light over intensity.
+  void addByGroup(uint32_t node, Vec3 transfer, const GroupSink& sink) const {
+    for (uint32_t g = 0; g < groups; ++g)
+      sink.add(g, transfer * groupIntensity[size_t{node} * groups + g]);
+  }
 
   // Draws a VPL of the cluster in proportion to intensity; u in [0, 1).
   VplDraw draw(const LightNode& n, float u) const;

@@ -12,6 +12,7 @@ namespace bnvpl {
 struct Splat {
   uint32_t pixel;
   Vec3 radiance;  // a pixel's value is the sum over all photons divided by the samples per pixel
+  uint32_t group = 0;  // light group of the photon
 };
 
 struct Splats {

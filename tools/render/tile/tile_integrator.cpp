@@ -46,7 +46,8 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
     if (!points.bsdf[i] || only_ == Only::Indirect || parts_.directSamples) continue;
     const uint64_t key = random64(tile.key, i % tile.pixels, kDimLight);
     s.radiance.direct += points.paths[i].throughput *
-                         directAt(*points.bsdf[i], learned, sampleIndexOf(tile, i), key, s.rng);
+                         directAt(*points.bsdf[i], learned, sampleIndexOf(tile, i), key, s.rng,
+                                  s.groups.direct().times(points.paths[i].throughput));
   }
   if (parts_.rays) cost += addRays(tile, points, learned, allocation, pilot.light);
   if (parts_.control) parts_.control(tile, points.paths);
@@ -79,10 +80,10 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
     Rng rng = Rng::stratified(random64(tile.key, pixel, kDimCameraPath), sampleIndexOf(tile, i));
     out.paths[i] = traceCameraPath(rays_, lights_, s.origin, s.direction, s.weight, rng, s.radiance,
-                                   specularLights);
+                                   specularLights, s.groups);
     if (parts_.visibleEmission && !parts_.directSamples)
       parts_.visibleEmission->average(s.radiance, 1, tile, pixel, sampleIndexOf(tile, i),
-                                      specularLights);
+                                      specularLights, s.groups);
     if (!out.paths[i].rough) continue;
     out.bsdf[i] = &out.bsdfs.emplace_back(rays_.scene(), out.paths[i].hit);
     describeShadingPoint(*out.bsdf[i], s.radiance);
@@ -93,9 +94,9 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
 // Direct light at a shading point by shadow rays, with MIS weights against the rays for indirect
 // light.
 Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex,
-                              uint64_t key, Rng& rng) const {
+                              uint64_t key, Rng& rng, const GroupSink& groups) const {
   const Reflected reflected{bsdf};
-  const LightSampling sampling{learned, LightChoice::Each};
+  const LightSampling sampling{learned, LightChoice::Each, {}, groups};
   if (!learned.strata) {
     const BsdfRays others{bsdf, static_cast<float>(parts_.raysEach)};
     return directLight(rays_, lights_, reflected, sampling, others, LightNumbers(rng));
@@ -115,6 +116,8 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
                                 const SampleAllocation& allocation, Vec3 meanDirect) const {
   std::vector<Gathered> gathered(points.bsdf.size());
   TileReceivers receivers{tile, points.bsdf};
+  std::vector<Vec3> groups(gathered.size() * tile.groups);
+  if (tile.groups > 0) receivers.groupSums = groups.data();
   receivers.marginalCost = allocation.marginalCost;
   if (allocation.marginalCost > 0.0) {
     // Both lights are squares summed over three channels; of equal channels the sum is this root.
@@ -132,6 +135,8 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
     out.cut += gathered[i].cut;
     out.shadowRays += gathered[i].shadowRays;
     out.counts = gathered[i].counts;
+    const GroupSink indirect = tile.samples[i].groups.indirect().times(points.paths[i].throughput);
+    for (uint32_t g = 0; g < tile.groups; ++g) indirect.add(g, groups[i * tile.groups + g]);
   }
 }
 
@@ -147,7 +152,9 @@ class TileIntegrator::TileIndirectRays {
         learned_(learned),
         pattern_(tile),
         found_(tile.samples.size()),
-        reused_(tile.samples.size()) {
+        reused_(tile.samples.size()),
+        reusedGroups_(tile.samples.size() * tile.groups) {
+    for (RayContributions& found : found_) found.tellApart(tile.groups);
     directions_.reserve(points.bsdfs.size());
     for (const Bsdf& bsdf : points.bsdfs) directions_.push_back(parts_.rays->directionsFrom(bsdf));
   }
@@ -189,8 +196,10 @@ class TileIntegrator::TileIndirectRays {
     }
   }
   void addTo(std::span<CameraSample> samples) const {
-    for (size_t i = 0; i < found_.size(); ++i)
+    for (size_t i = 0; i < found_.size(); ++i) {
       found_[i].addMeanTo(samples[i].radiance, reused_[i].radiance);
+      found_[i].addMeanTo(samples[i].groups, reusedGroups(i), !parts_.directSamples);
+    }
   }
   double cost() const {
     double rays = 0.0;
@@ -218,14 +227,24 @@ class TileIntegrator::TileIndirectRays {
 
   void reuseWithin(std::span<const size_t> members) {
     std::vector<ReusingSample> group;
-    for (const size_t i : members)
-      group.push_back({&directions_[points_.indexOf(i)], found_[i].rays, found_[i].vertices});
-    reuseRays_ += reuseVertices(rays_, group);
+    for (const size_t i : members) {
+      std::fill_n(reusedGroups(i), tile_.groups, Vec3{});
+      group.push_back({&directions_[points_.indexOf(i)], found_[i].rays, found_[i].vertices,
+                       found_[i].vertexGroups.data(), reusedGroups(i)});
+    }
+    reuseRays_ += reuseVertices(rays_, group, tile_.groups);
     for (size_t k = 0; k < members.size(); ++k) {
       const Vec3 throughput = points_.paths[members[k]].throughput;
       reused_[members[k]] = {throughput * group[k].radiance,
                              double{dot(throughput * throughput, group[k].squares)}};
+      for (uint32_t g = 0; g < tile_.groups; ++g)
+        reusedGroups(members[k])[g] = throughput * group[k].groups[g];
     }
+  }
+
+  Vec3* reusedGroups(size_t sample) { return reusedGroups_.data() + sample * tile_.groups; }
+  const Vec3* reusedGroups(size_t sample) const {
+    return reusedGroups_.data() + sample * tile_.groups;
   }
 
   // Numbers of rays for the samples of each parity, from the variance of the other parity's pilot.
@@ -272,6 +291,7 @@ class TileIntegrator::TileIndirectRays {
   std::vector<Directions> directions_;  // parallel to points_.bsdfs
   std::vector<RayContributions> found_;
   std::vector<ReusedLight> reused_;
+  std::vector<Vec3> reusedGroups_;  // light of reused vertices by light group
   size_t reuseRays_ = 0;
 };
 

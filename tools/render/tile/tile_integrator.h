@@ -52,7 +52,7 @@ class TileIntegrator {
   class TileIndirectRays;
   ShadingPoints traceCameraPaths(const TileSamples& tile, const LearnedLight& learned) const;
   Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex, uint64_t key,
-                Rng& rng) const;
+                Rng& rng, const GroupSink& groups) const;
   void gatherVpls(const TileSamples& tile, const ShadingPoints& points,
                   const SampleAllocation& allocation, Vec3 meanDirect) const;
   double addRays(const TileSamples& tile, const ShadingPoints& points, const LearnedLight& learned,

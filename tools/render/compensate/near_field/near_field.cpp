@@ -39,7 +39,8 @@ float areaOf(uint32_t i, const Coverage& coverage) {
 
 }  // namespace
 
-NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind)
+NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind,
+                     const VplGroups& groups)
     : lit_(lit),
       rays_(rays),
       coverage_(lit.position, lit.normal,
@@ -48,12 +49,16 @@ NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, Lig
                 rays),
       kind_(kind),
       clampRadius_(scaled(lit.radius, clamp)),
+      groups_(groups.groups),
+      multiBounceFlux_(groups.flux),
       area_(lit.size()),
       covers_(lit.reach > 0.0) {
   for (std::atomic<float>& area : area_) area = kUnknown;
+  for (size_t i = 0; i < multiBounceFlux_.size(); ++i)
+    multiBounceFlux_[i] = groups.flux[i] - groups.firstBounceFlux[i];
 }
 
-std::optional<Vec3> NearField::multiBounceRadianceOf(uint32_t vpl) const {
+std::optional<float> NearField::perFluxOf(uint32_t vpl) const {
   if (!covers_) return {};  // the flux of a single photon belongs to no area
   // Two threads may measure the same area; both find the same value.
   float area = area_[vpl].load(std::memory_order_relaxed);
@@ -62,7 +67,7 @@ std::optional<Vec3> NearField::multiBounceRadianceOf(uint32_t vpl) const {
     area_[vpl].store(area, std::memory_order_relaxed);
   }
   if (!(area > 0.0f)) return {};
-  return (lit_.flux[vpl] - lit_.firstBounceFlux[vpl]) * (1.0f / (kPi * area));
+  return 1.0f / (kPi * area);
 }
 
 Uncovered NearField::uncovered(const SurfacePoint& point, float distance,
@@ -75,7 +80,13 @@ Uncovered NearField::uncovered(const SurfacePoint& point, float distance,
   const float share = withKind(kind_, [&](auto k) { return k.removed(relative); });
   const float shortest = kShortRay * lit_.radius[*found.vpl];
   if (distance < shortest) return {share, {}, {shortest, clampRadius_[*found.vpl], kind_}};
-  return {share, multiBounceRadianceOf(*found.vpl), {}};
+  Uncovered out{share, {}, {}};
+  const std::optional<float> perFlux = perFluxOf(*found.vpl);
+  if (!perFlux) return out;
+  out.multiBounceRadiance = (lit_.flux[*found.vpl] - lit_.firstBounceFlux[*found.vpl]) * *perFlux;
+  out.perFlux = *perFlux;
+  if (groups_ > 0) out.multiBounceFlux = &multiBounceFlux_[size_t{*found.vpl} * groups_];
+  return out;
 }
 
 namespace methods::compensate::near_field {
@@ -83,7 +94,8 @@ namespace methods::compensate::near_field {
 namespace {
 
 Compensation make(const CompensateInputs& in, const Values&) {
-  const auto field = std::make_shared<const NearField>(in.lit, in.rays, in.clamp, in.light);
+  const auto field =
+      std::make_shared<const NearField>(in.lit, in.rays, in.clamp, in.light, in.groups);
   return {[field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> coverLookup) {
             field->coverage().lookUp(hits, coverLookup);
           },

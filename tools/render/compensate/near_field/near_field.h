@@ -15,8 +15,9 @@ namespace bnvpl {
 
 class NearField {
  public:
-  // Borrows the table and the scene. `clamp` and `kind`: those of makeVplLights().
-  NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {});
+  // Borrows the table and the scene. `clamp`, `kind` and `groups`: those of makeVplLights().
+  NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {},
+            const VplGroups& groups = {});
 
   // `coverLookup`: the result of coverage().lookUp() for the point.
   Uncovered uncovered(const SurfacePoint& point, float distance,
@@ -24,15 +25,17 @@ class NearField {
   const Coverage& coverage() const { return coverage_; }
 
  private:
-  // Mean of Uncovered::multiBounceRadiance over the surface that the VPL covers; empty if its area
-  // is unknown.
-  std::optional<Vec3> multiBounceRadianceOf(uint32_t vpl) const;
+  // Radiance over flux, the mean over the surface that the VPL covers; empty if its area is
+  // unknown.
+  std::optional<float> perFluxOf(uint32_t vpl) const;
 
   const VplTable& lit_;
   const RayScene& rays_;
   Coverage coverage_;
   LightKind kind_;
   std::vector<float> clampRadius_;  // one per VPL, world units
+  uint32_t groups_;
+  std::vector<Vec3> multiBounceFlux_;  // by light group, VPL after VPL
   // Area of the surface that each VPL covers, world units squared. It is measured on first use, as
   // an image of few pixels needs only few of many VPLs.
   mutable std::vector<std::atomic<float>> area_;

@@ -37,11 +37,11 @@ class AdaptiveTree {
     }
   }
 
-  Gathered gather(const Bsdf& bsdf, uint64_t key) const {
+  Gathered gather(const Bsdf& bsdf, uint64_t key, const GroupSink& groups) const {
     Gathered out;
     if (tree_.nodes.empty()) return out;
     const Vec3 at = bsdf.point().position, normal = bsdf.point().ns;
-    const ShadowTest test(rays_, vpls_, bsdf);
+    const ShadowTest test(rays_, vpls_, bsdf, groups);
     const double allowed = maxDeviation_ * arriving(at);
     thread_local std::vector<uint32_t> open;  // reused between calls to avoid allocations
     open.assign(1, 0);
@@ -130,7 +130,9 @@ class AdaptiveTree {
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto tree = std::make_shared<const AdaptiveTree>(in, options[kSplitOption]);
-  return gatherEach([tree](const Bsdf& bsdf, uint64_t key) { return tree->gather(bsdf, key); });
+  return gatherEach([tree](const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+    return tree->gather(bsdf, key, groups);
+  });
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ namespace bnvpl::methods::gather::all {
 
 namespace {
 
-Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf) {
+Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf,
+                   const GroupSink& groups) {
   Gathered out;
   out.cut = static_cast<uint32_t>(vpls.size());
   const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
@@ -20,6 +21,7 @@ Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf
     const Vec3 light = c.transfer * vpls.intensity[i];
     total.add(light);
     clamped.add(light * c.clampLoss);
+    if (groups) vpls.addByGroup(i, c.transfer, groups);
   }
   out.radiance = total.toVec3();
   out.clamped = clamped.toVec3();
@@ -27,8 +29,9 @@ Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf
 }
 
 Gather make(const GatherInputs& in, const Values&) {
-  return gatherEach(
-      [&rays = in.rays, &vpls = in.vpls](const Bsdf& bsdf) { return gatherAll(rays, vpls, bsdf); });
+  return gatherEach([&rays = in.rays, &vpls = in.vpls](const Bsdf& bsdf, const GroupSink& groups) {
+    return gatherAll(rays, vpls, bsdf, groups);
+  });
 }
 
 }  // namespace

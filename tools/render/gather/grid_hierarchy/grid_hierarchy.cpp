@@ -66,9 +66,11 @@ class Hierarchy {
 };
 
 Gather make(const GatherInputs& in, const Values& options) {
-  if (in.vpls.size() == 0) return gatherEach([](const Bsdf&) { return Gathered{}; });
+  if (in.vpls.size() == 0) return gatherEach([](const Bsdf&, const GroupSink&) { return Gathered{}; });
   const auto levels = std::make_shared<const Hierarchy>(in, options.real32(kAlphaOption));
-  return gatherEach([levels](const Bsdf& bsdf, uint64_t key) { return levels->gather(bsdf, key); });
+  return gatherEach([levels](const Bsdf& bsdf, uint64_t key, const GroupSink&) {
+    return levels->gather(bsdf, key);
+  });
 }
 
 }  // namespace
@@ -76,6 +78,6 @@ Gather make(const GatherInputs& in, const Values& options) {
 extern const GatherMethod method;
 const GatherMethod method{"grid-hierarchy",
                           "near VPLs alone, farther ones by lights of ever coarser grids", kOptions,
-                          make, kCounters};
+                          make, kCounters, nullptr, false};
 
 }  // namespace bnvpl::methods::gather::grid_hierarchy

@@ -101,6 +101,6 @@ Gather make(const GatherInputs& in, const Values& options) {
 extern const GatherMethod method;
 const GatherMethod method{"interleaved",
                           "a subset of the VPLs for each pixel of a pattern, averaged by a filter",
-                          kOptions, make, {}, filmFilter};
+                          kOptions, make, {}, filmFilter, false};
 
 }  // namespace bnvpl::methods::gather::interleaved

@@ -28,7 +28,7 @@ bool lessBound(const Cluster& a, const Cluster& b) {
 }
 
 Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree, double error,
-                   size_t maxCut, const Bsdf& bsdf) {
+                   size_t maxCut, const Bsdf& bsdf, const GroupSink& groups) {
   Gathered out;
   if (tree.nodes.empty()) return out;
   const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
@@ -78,6 +78,8 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
       }
     }
   }
+  if (groups)
+    for (const Cluster& c : heap) tree.addByGroup(c.node, c.transfer, groups);
   out.cut = static_cast<uint32_t>(heap.size());
   out.radiance = total.toVec3();
   out.clamped = clamped.toVec3();
@@ -87,10 +89,10 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
 Gather make(const GatherInputs& in, const Values& options) {
   const auto error = double{options.real32(kErrorOption)};
   const auto maxCut = static_cast<size_t>(options[kMaxCutOption]);
-  return gatherEach(
-      [&rays = in.rays, &vpls = in.vpls, &tree = in.tree, error, maxCut](const Bsdf& bsdf) {
-        return gatherCut(rays, vpls, tree, error, maxCut, bsdf);
-      });
+  return gatherEach([&rays = in.rays, &vpls = in.vpls, &tree = in.tree, error, maxCut](
+                        const Bsdf& bsdf, const GroupSink& groups) {
+    return gatherCut(rays, vpls, tree, error, maxCut, bsdf, groups);
+  });
 }
 
 }  // namespace

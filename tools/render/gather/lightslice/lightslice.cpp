@@ -230,7 +230,7 @@ Gather make(const GatherInputs& in, const Values& options) {
       const auto slice = std::ranges::min_element(plan->slices, {}, apart) - plan->slices.begin();
       const size_t sample = tile.firstSample + i / tile.pixels;
       const auto& draws = plan->draws[slice][(tile.sequenceOffset + sample) % kDraws];
-      const ShadowTest test(rays, vpls, *tile.bsdf[i]);
+      const ShadowTest test(rays, vpls, *tile.bsdf[i], tile.groupsOf(i));
       for (const VplDraw& d : draws) test.add(d.index, d.weight, out[i]);
       out[i].cut = static_cast<uint32_t>(draws.size());
     }

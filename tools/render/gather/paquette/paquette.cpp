@@ -155,7 +155,7 @@ class Octree {
 Gather make(const GatherInputs& in, const Values& options) {
   const auto tree =
       std::make_shared<const Octree>(in, options[kErrorOption], options[kShadowsOption] != "none");
-  return gatherEach([tree](const Bsdf& bsdf) { return tree->gather(bsdf); });
+  return gatherEach([tree](const Bsdf& bsdf, const GroupSink&) { return tree->gather(bsdf); });
 }
 
 }  // namespace
@@ -163,6 +163,6 @@ Gather make(const GatherInputs& in, const Values& options) {
 extern const GatherMethod method;
 const GatherMethod method{"paquette",
                           "nodes of an octree, opened where the light of their VPLs may differ",
-                          kOptions, make, kCounters};
+                          kOptions, make, kCounters, nullptr, false};
 
 }  // namespace bnvpl::methods::gather::paquette

@@ -23,9 +23,9 @@ constexpr std::array kCounters{
     Counter{"brightlights", "bright VPLs", "VPLs that are bright in the sample's cell"}};
 
 Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const BrightLights& lights,
-                     uint32_t dimRays, const Bsdf& bsdf, uint64_t key) {
+                     uint32_t dimRays, const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
   Gathered out;
-  const ShadowTest test(rays, vpls, bsdf);
+  const ShadowTest test(rays, vpls, bsdf, groups);
   const BrightLights::Cell& cell = lights.at(bsdf.point().position);
   for (const uint32_t i : cell.bright) test.add(i, 1.0f, out);
   out.cut = out.counts[0] = static_cast<uint32_t>(cell.bright.size());
@@ -45,10 +45,10 @@ Gather make(const GatherInputs& in, const Values& options) {
       in.vpls, in.rays.scene().bounds, static_cast<uint32_t>(options[kCellsOption]),
       options.real32(kThresholdOption));
   const auto dimRays = static_cast<uint32_t>(options[kDimRaysOption]);
-  return gatherEach(
-      [&rays = in.rays, &vpls = in.vpls, lights, dimRays](const Bsdf& bsdf, uint64_t key) {
-        return gatherPoint(rays, vpls, *lights, dimRays, bsdf, key);
-      });
+  return gatherEach([&rays = in.rays, &vpls = in.vpls, lights, dimRays](
+                        const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+    return gatherPoint(rays, vpls, *lights, dimRays, bsdf, key, groups);
+  });
 }
 
 }  // namespace

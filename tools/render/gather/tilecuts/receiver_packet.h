@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "tools/render/gather/gather.h"
 #include "tools/render/light_tree/cluster_deviation.h"
@@ -14,6 +15,11 @@ namespace bnvpl {
 struct ReceiverPacket {
   static constexpr uint32_t kSize = 16;
   using Lanes = std::array<float, kSize>;
+  // The light of one light group.
+  struct GroupLanes {
+    alignas(64) Lanes red{}, green{}, blue{};  // irradiance, W/m2
+    std::array<Vec3, kSize> glossy{};          // radiance of glossy lobes
+  };
 
   alignas(64) Lanes x{}, y{}, z{}, sx{}, sy{}, sz{}, gx{}, gy{}, gz{};  // point; ns; ng
   // Channels of maxReflected(), 1/sr; 0 in an empty lane.
@@ -34,6 +40,7 @@ struct ReceiverPacket {
   float stratumOffset = 0.0f;  // shift of its draws along each cluster, in [0, 1)
   uint64_t rouletteKey = 0;
   uint32_t rouletteDraw = 0;
+  std::vector<GroupLanes> groups;  // empty: not told apart
 
   void add(uint32_t receiverOfTile, const Bsdf& b, Vec3 offsetPoint, uint32_t orderInTile) {
     const uint32_t lane = count++;
@@ -54,7 +61,7 @@ struct ReceiverPacket {
     if (!b.diffuseOnly()) lobes |= 1u << lane;
   }
 
-  void writeTo(std::span<Gathered> out) const {
+  void writeTo(const TileReceivers& tile, std::span<Gathered> out) const {
     for (uint32_t l = 0; l < count; ++l) {
       Gathered& g = out[receiver[l]];
       const Vec3 value = bsdf[l]->diffuseValue();
@@ -62,6 +69,11 @@ struct ReceiverPacket {
       g.clamped = value * Vec3(clampedRed[l], clampedGreen[l], clampedBlue[l]) + glossyClamped[l];
       g.cut = clusters;
       g.shadowRays = shadowRays[l];
+      for (uint32_t k = 0; k < groups.size(); ++k) {
+        const GroupLanes& of = groups[k];
+        tile.groupsOf(receiver[l])
+            .add(k, value * Vec3(of.red[l], of.green[l], of.blue[l]) + of.glossy[l]);
+      }
     }
   }
 };

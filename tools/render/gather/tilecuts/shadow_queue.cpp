@@ -32,6 +32,16 @@ uint32_t geometryOfPacket(const VplLights& vpls, uint32_t i, const ReceiverPacke
   return lanes & ((1u << p.count) - 1);
 }
 
+// The part of a VPL's light that a glossy BSDF reflects beyond the diffuse value, by which
+// ReceiverPacket::writeTo() multiplies irradiance. eval() includes the cosine, as the transfer
+// does.
+Vec3 glossyOf(const ReceiverPacket& p, uint32_t lane, Vec3 from) {
+  const Bsdf& b = *p.bsdf[lane];
+  const Vec3 direction = normalize(from - b.point().position);
+  const float cosine = dot(b.point().ns, direction);
+  return b.eval(LobeGroup::Rough, direction) * (1.0f / cosine) - b.diffuseValue();
+}
+
 }  // namespace
 
 ShadowQueue::ShadowQueue(const RayScene& rays, const VplLights& vpls,
@@ -53,6 +63,7 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   });
   if (lanes == 0) return waiting_.pop_back();
   d.light = vpls_.intensity[vpl.index] * vpl.weight;
+  d.vpl = vpl.index, d.weight = vpl.weight;
   float largest = 0.0f;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
     largest = std::max(largest, (lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f);
@@ -64,6 +75,7 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
     if (roulette >= survivalProbability || survivalProbability < kMinProbability)
       return waiting_.pop_back();
     d.light *= 1.0f / survivalProbability;
+    d.weight *= 1.0f / survivalProbability;
   }
   d.lanes = lanes;
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
@@ -77,7 +89,10 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
 
 void ShadowQueue::flush() {
   traceAll();
-  for (const PendingContribution& d : waiting_) accumulate(d);
+  for (const PendingContribution& d : waiting_) {
+    accumulate(d);
+    if (!d.packet->groups.empty()) accumulateGroups(d);
+  }
   waiting_.clear();
 }
 
@@ -109,6 +124,25 @@ void ShadowQueue::traceAll() {
   raysWaiting_ = 0;
 }
 
+void ShadowQueue::accumulateGroups(const PendingContribution& d) const {
+  ReceiverPacket& p = *d.packet;
+  for (uint32_t k = 0; d.lanes != 0 && k < p.groups.size(); ++k) {
+    const Vec3 light = vpls_.groupIntensity[size_t{d.vpl} * vpls_.groups + k] * d.weight;
+    if (isBlack(light)) continue;
+    ReceiverPacket::GroupLanes& to = p.groups[k];
+    for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
+      const float t = (d.lanes >> l & 1u) != 0 ? d.transfer[l] : 0.0f;
+      to.red[l] += t * light.x;
+      to.green[l] += t * light.y;
+      to.blue[l] += t * light.z;
+    }
+    for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
+      const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+      to.glossy[l] += glossyOf(p, l, d.at) * light * d.transfer[l];
+    }
+  }
+}
+
 void ShadowQueue::accumulate(const PendingContribution& d) {
   if (d.lanes == 0) return;
   ReceiverPacket& p = *d.packet;
@@ -122,15 +156,9 @@ void ShadowQueue::accumulate(const PendingContribution& d) {
     p.clampedGreen[l] += c * d.light.y;
     p.clampedBlue[l] += c * d.light.z;
   }
-  // ReceiverPacket::writeTo() multiplies the sums above by the diffuse value. A glossy BSDF adds
-  // its difference from that value here. eval() includes the cosine, as the transfer does.
   for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
-    const Bsdf& b = *p.bsdf[l];
-    const Vec3 direction = normalize(d.at - b.point().position);
-    const float cosine = dot(b.point().ns, direction);
-    const Vec3 lobe = b.eval(LobeGroup::Rough, direction) * (1.0f / cosine) - b.diffuseValue();
-    const Vec3 reflected = lobe * d.light * d.transfer[l];
+    const Vec3 reflected = glossyOf(p, l, d.at) * d.light * d.transfer[l];
     p.glossy[l] += reflected;
     p.glossyClamped[l] += reflected * d.clampLoss[l];
   }

@@ -30,6 +30,8 @@ class ShadowQueue {
     ReceiverPacket* packet;
     Vec3 at;         // position of the VPL
     Vec3 light;      // weighted intensity of the VPL, W/sr
+    uint32_t vpl;
+    float weight;    // factor of its intensity
     uint32_t lanes;  // mask of the lanes that may see it
     alignas(64) Lanes transfer;
     alignas(64) Lanes clampLoss;  // light that the bound on 1/d^2 removed, over the rest
@@ -40,6 +42,7 @@ class ShadowQueue {
 
   void traceAll();
   static void accumulate(const PendingContribution& d);
+  void accumulateGroups(const PendingContribution& d) const;
 
   const RayScene& rays_;
   const VplLights& vpls_;

@@ -61,6 +61,7 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
     const uint32_t sampleOfPixel = tile.firstSample + sample;
     for (size_t number = 0; number < packetsHere; ++number) {
       ReceiverPacket& packet = packets.emplace_back();
+      if (tile.groupSums) packet.groups.resize(tile.groups);
       packet.stratumOffset =
           (static_cast<float>(sampleOfPixel) +
            (static_cast<float>(number) + 0.5f) / static_cast<float>(packetsHere)) /
@@ -142,7 +143,7 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
     }
   }
   queue.flush();
-  for (const ReceiverPacket& packet : packets) packet.writeTo(out);
+  for (const ReceiverPacket& packet : packets) packet.writeTo(tile, out);
 }
 
 Gather make(const GatherInputs& in, const Values& values) {

@@ -51,7 +51,7 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
 struct Potential {
   float sum;  // unoccluded contribution, summed over the channels
   uint32_t vpl;
-  Vec3 light;
+  Vec3 light, transfer;
   float clampLoss;
 };
 bool brighter(const Potential& a, const Potential& b) {
@@ -65,14 +65,14 @@ std::vector<Potential>& sortedPotentials(const VplLights& vpls, const Bsdf& bsdf
   for (uint32_t i = 0; i < vpls.size(); ++i) {
     if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
-    list.push_back({light.x + light.y + light.z, i, light, c.clampLoss});
+    list.push_back({light.x + light.y + light.z, i, light, c.transfer, c.clampLoss});
   }
   std::ranges::sort(list, brighter);
   return list;
 }
 
 Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vector<float>& rates,
-                     double tolerance, const Bsdf& bsdf) {
+                     double tolerance, const Bsdf& bsdf, const GroupSink& groups) {
   const std::vector<Potential>& list = sortedPotentials(vpls, bsdf);
   double untested = 0.0;
   for (const Potential& p : list) untested += double{p.sum};
@@ -82,6 +82,7 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vec
   const auto add = [&](const Potential& p, double share) {
     total.add(p.light, share);
     clamped.add(p.light * p.clampLoss, share);
+    if (groups) vpls.addByGroup(p.vpl, p.transfer * static_cast<float>(share), groups);
   };
   // Number of visible VPLs among those tested, and its expectation from their mean visibility. The
   // ratio is the openness of this point.
@@ -109,10 +110,11 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vec
 Gather make(const GatherInputs& in, const Values& options) {
   const auto rates =
       std::make_shared<const std::vector<float>>(hitRates(in, options[kVisibilityTestsOption]));
-  return gatherEach([&rays = in.rays, &vpls = in.vpls, rates,
-                     tolerance = options[kToleranceOption]](const Bsdf& bsdf) {
-    return gatherPoint(rays, vpls, *rates, tolerance, bsdf);
-  });
+  return gatherEach(
+      [&rays = in.rays, &vpls = in.vpls, rates, tolerance = options[kToleranceOption]](
+          const Bsdf& bsdf, const GroupSink& groups) {
+        return gatherPoint(rays, vpls, *rates, tolerance, bsdf, groups);
+      });
 }
 
 }  // namespace

@@ -32,19 +32,25 @@ void GuidedRays::send(const RayOrigin& from, unsigned count, uint32_t first, uin
                              ? mean(from.throughput) * mean(bsdf.roughAlbedo()) *
                                    std::max(guide_.total(region), guide_.onward(region))
                              : 0.0f;
+  std::vector<Vec3> groups(3 * size_t{out.groups});
   sendRays(
       rays_, from, misRays_, count, first, key, out, [](std::span<const SurfacePoint>) {},
-      [&](size_t, const FirstSegment& segment) { follow(segment, expected, from.reuse, out); });
+      [&](size_t, const FirstSegment& segment) {
+        follow(segment, expected, from.reuse, groups, out);
+      });
 }
 
 // Path tracing from the first hit on. Other samples reuse the light that leaves the first vertex
 // alike in all directions: all of it if the surface is diffuse, or else that of its diffuse lobe.
 // The rest belongs to this ray alone.
 void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
-                        RayContributions& out) const {
+                        std::span<Vec3> groups, RayContributions& out) const {
   Rng rng = start.rng;
-  SpecularPath vertex = followSpecularPath(rays_, lights_, *start.hit, start.direction,
-                                           start.arrival, rng, {nullptr, &spatialLights_});
+  SpecularLightSampling sampling{nullptr, &spatialLights_};
+  if (only_ != Only::Indirect) sampling.emissionFirst = out.directGroups().times(start.throughput);
+  if (only_ != Only::Direct) sampling.emissionLater = out.indirectGroups().times(start.throughput);
+  SpecularPath vertex =
+      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng, sampling);
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.emissionFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
@@ -64,19 +70,36 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
     towardsStart = all || !isBlack(diffuse) ? reused.leaving.towards(vertex.hit.wo) : 0.0f;
     if (towardsStart == 0.0f) diffuse = {};
   }
-  const LightWithPart leaving = tracePath(first, start, expected, vertex.throughput, diffuse, rng);
+  std::ranges::fill(groups, Vec3{});
+  const LightWithPart leaving =
+      tracePath(first, start, expected, vertex.throughput, diffuse, rng, groups);
   add(start.throughput * leaving.all);
+  for (uint32_t g = 0; g < out.groups; ++g)
+    out.indirectGroups().add(g, start.throughput * groups[g]);
   if (towardsStart == 0.0f) return;
   const Vec3 shared = isBlack(diffuse) ? leaving.all : leaving.part;
   out.vertexLight += start.throughput * shared;
   reused.radiance = shared * (1.0f / towardsStart);
   out.vertices.push_back(reused);
+  for (uint32_t g = 0; g < out.groups; ++g) {
+    const Vec3 light = groups[isBlack(diffuse) ? g : out.groups + g];
+    out.vertexLightGroups().add(g, start.throughput * light);
+    out.vertexGroups.push_back(light * (1.0f / towardsStart));
+  }
 }
 
 // Light that leaves the first vertex of a ray, and the part of it that the lobe `diffuse` scatters,
-// both times `throughput`.
+// both times `throughput`. `groups` receives both by light group; its last third is scratch.
 LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start, float expected,
-                                    Vec3 throughput, Vec3 diffuse, Rng& rng) const {
+                                    Vec3 throughput, Vec3 diffuse, Rng& rng,
+                                    std::span<Vec3> groups) const {
+  const size_t lightGroups = groups.size() / 3;
+  const GroupSink all = sinkTo(groups.first(lightGroups)),
+                  part = sinkTo(groups.subspan(lightGroups, lightGroups));
+  const std::span<Vec3> emission = groups.last(lightGroups);
+  const auto sinks = [&](const LearnedLight& lights, const LightWithPart& w) {
+    return LightSampling{lights, LightChoice::One, {}, all.times(w.all), part.times(w.part)};
+  };
   LightWithPart leaving, weight{throughput, throughput};
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
@@ -92,9 +115,11 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     const LightNumbers numbers = lights.strata ? LightNumbers::sequence(rng) : LightNumbers(rng);
     if (bounce == 1) {
       const ReflectedWithDiffuse reflected{bsdf, diffuse};
-      leaving += directLight(rays_, lights_, reflected, {lights}, rayPdf, numbers) * throughput;
+      leaving += directLight(rays_, lights_, reflected, sinks(lights, weight), rayPdf, numbers) *
+                 throughput;
     } else {
-      leaving += weight * directLight(rays_, lights_, Reflected{bsdf}, {lights}, rayPdf, numbers);
+      leaving += weight * directLight(rays_, lights_, Reflected{bsdf}, sinks(lights, weight),
+                                      rayPdf, numbers);
     }
 
     float survival = bsdf.reflectance();
@@ -113,8 +138,13 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     const Ray ray = rayOn(rays_, bsdf.point(), next);
     vertex = followSpecularPath(rays_, lights_, ray.origin, ray.direction,
                                 {next.pdf, bsdf.point().position, LightChoice::One, lights}, rng,
-                                {nullptr, &spatialLights_});
+                                {nullptr, &spatialLights_, sinkTo(emission), sinkTo(emission)});
     leaving += weight * (vertex.emissionFirst + vertex.emissionLater);
+    for (uint32_t g = 0; g < lightGroups; ++g) {
+      all.times(weight.all).add(g, emission[g]);
+      part.times(weight.part).add(g, emission[g]);
+      emission[g] = {};
+    }
     if (bounce == maxBounces_ || !vertex.rough) break;
     weight = weight * vertex.throughput;
   }

@@ -40,9 +40,11 @@ class GuidedRays : public IndirectRays {
   }
   // `expected`: radiance that leaves the shading point, as the guide knows it, times the throughput
   // to the camera, mean of the channels; 0: unknown.
-  void follow(const FirstSegment& start, float expected, bool reuse, RayContributions& out) const;
+  // `groups`: room for three colours of each light group.
+  void follow(const FirstSegment& start, float expected, bool reuse, std::span<Vec3> groups,
+              RayContributions& out) const;
   LightWithPart tracePath(const Bsdf& first, const FirstSegment& start, float expected,
-                          Vec3 throughput, Vec3 diffuse, Rng& rng) const;
+                          Vec3 throughput, Vec3 diffuse, Rng& rng, std::span<Vec3> groups) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

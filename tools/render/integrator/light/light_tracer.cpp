@@ -34,27 +34,28 @@ void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
     PhotonStart start = lights_.emit(light, rng);
     start.flux *= static_cast<float>(1.0 / (double{probability} * pixels));
     const Vec3 lens = sampleLens(rays_.scene().camera, [&] { return rng.nextPoint(); });
-    follow(PhotonWalk(start, maxBounces_ + 1, rng), lens, index, out);
+    follow(PhotonWalk(start, maxBounces_ + 1, rng), lens, index, lights_.group(light), out);
   }
 }
 
-void LightTracer::follow(PhotonWalk photon, Vec3 lens, uint64_t index, Splats& out) const {
+void LightTracer::follow(PhotonWalk photon, Vec3 lens, uint64_t index, uint32_t group,
+                         Splats& out) const {
   for (SurfacePoint hit; photon.goesOn();) {
     rays_.closestHit(photon.next().origin, photon.next().direction, hit);
     const PhotonWalk before = photon;
     bool seen = false;
     photon.advance(rays_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
-      if (!firstBounce) connect(bsdf.point(), lens, flux, out);
+      if (!firstBounce) connect(bsdf.point(), lens, flux, group, out);
       seen = inSight(bsdf.point());
     });
-    if (seen) return followBranches(before, hit, index, out);
+    if (seen) return followBranches(before, hit, index, group, out);
   }
   out.nonFinite += photon.fate().finite ? 0 : 1;
 }
 
 // Follows the branches from `hit`, which has already been connected with the camera.
 void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
-                                 Splats& out) const {
+                                 uint32_t group, Splats& out) const {
   for (uint64_t k = 0; k < kBranches; ++k) {
     const Vec3 lens = sampleLens(rays_.scene().camera, [&] {
       return owenSobol(static_cast<uint32_t>(k), random64(key_ + 2, index, 0));
@@ -62,7 +63,7 @@ void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& h
     PhotonWalk branch = photon.branch(1.0f / kBranches, Rng(key_ + 1, index * kBranches + k));
     branch.advance(rays_, hit, [](const Bsdf&, Vec3, bool) {});
     const PhotonFate fate = followPhoton(rays_, branch, [&](const Bsdf& bsdf, Vec3 flux, bool) {
-      connect(bsdf.point(), lens, flux, out);
+      connect(bsdf.point(), lens, flux, group, out);
     });
     out.nonFinite += fate.finite ? 0 : 1;
   }
@@ -74,12 +75,13 @@ bool LightTracer::inSight(const SurfacePoint& vertex) const {
                          rays_.scene().camera.position);
 }
 
-void LightTracer::connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, Splats& out) const {
+void LightTracer::connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, uint32_t group,
+                          Splats& out) const {
   const auto c = connectToFilm(rays_, vertex, lens, filter_);
   if (!c) return;
   const Vec3 radiance = flux * c->value * c->perArea;
   forPixelsAt(rays_.scene().film, filter_, c->at, [&](uint32_t pixel, float value) {
-    out.list.push_back({pixel, radiance * value});
+    out.list.push_back({pixel, radiance * value, group});
   });
 }
 

@@ -20,12 +20,13 @@ class LightTracer {
   void follow(uint64_t begin, uint64_t end, Splats& out) const;
 
  private:
-  // `lens`: the point of the lens with which the photon's vertices are connected.
-  void follow(PhotonWalk photon, Vec3 lens, uint64_t index, Splats& out) const;
+  // `lens`: the point of the lens with which the photon's vertices are connected. `group`: the
+  // light group of the photon.
+  void follow(PhotonWalk photon, Vec3 lens, uint64_t index, uint32_t group, Splats& out) const;
   void followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
-                      Splats& out) const;
+                      uint32_t group, Splats& out) const;
   bool inSight(const SurfacePoint& vertex) const;
-  void connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, uint32_t group, Splats& out) const;
 
   const RayScene& rays_;
   const LightSet& lights_;

@@ -29,13 +29,14 @@ double NearFieldRays::costOfRay() const { return kCostOfRay; }
 void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                          RayContributions& out) const {
   std::array<ReachGrid::Lookup, RayScene::kBatch> coverLookup;
+  std::vector<Vec3> groups(2 * size_t{out.groups});
   sendRays(
       rays_, from, misRays_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
         if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, coverLookup);
       },
       [&](size_t k, const FirstSegment& segment) {
-        follow(segment, coverLookup[k], from.reuse, out);
+        follow(segment, coverLookup[k], from.reuse, groups, out);
       });
 }
 
@@ -56,6 +57,8 @@ struct NearFieldRays::Path {
   float roughImportance = 1.0f;
   std::optional<ReusedVertex> reused = {};
   float towardsStart = 0.0f;  // factor of its RoughLeaving
+  // The same of each light group: `light`, and the radiance of the reused vertex.
+  std::span<Vec3> lightGroups = {}, vertexGroups = {};
 
   bool isFirst() const { return segments == 1; }
   bool isStraight() const { return segment.specularBounces == 0; }
@@ -63,7 +66,21 @@ struct NearFieldRays::Path {
 
   LearnedLight learned(unsigned rays) const { return {strata.all ? &strata : nullptr, rays}; }
 
+  GroupSink lightSink() const { return sinkTo(lightGroups); }
+  void addGroups() {
+    for (uint32_t g = 0; g < lightGroups.size(); ++g) {
+      Vec3 found = lightGroups[g];
+      if (reused) {
+        vertexGroups[g] += found;
+        found = start.throughput * found;
+        out.vertexLightGroups().add(g, found);
+      }
+      out.indirectGroups().add(g, found);
+      lightGroups[g] = {};
+    }
+  }
   void addLight() {
+    addGroups();
     if (isBlack(light)) return;
     if (reused) {
       reused->radiance += light;
@@ -88,6 +105,7 @@ struct NearFieldRays::Path {
   void finish() {
     if (!reused) return;
     reused->radiance *= 1.0f / towardsStart;
+    for (const Vec3 v : vertexGroups) out.vertexGroups.push_back(v * (1.0f / towardsStart));
     out.vertices.push_back(*reused);
   }
 };
@@ -100,8 +118,10 @@ struct NearFieldRays::Path {
 //   - otherwise survives with the probability of the uncovered share, is lit like a shading point
 //     by lights and VPLs, and goes on in a direction sampled from the BSDF.
 void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& coverLookup,
-                           bool reuse, RayContributions& out) const {
+                           bool reuse, std::span<Vec3> groups, RayContributions& out) const {
   Path path{start, out, start.rng, start.throughput};
+  std::ranges::fill(groups, Vec3{});
+  path.lightGroups = groups.first(out.groups), path.vertexGroups = groups.last(out.groups);
   begin(path, coverLookup);
   for (bool goesOn = true; goesOn; ++path.segments) {
     const SpecularPath& segment = path.segment;
@@ -143,8 +163,12 @@ void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) cons
     path.atFirstHit = uncoveredAt(hit, true, &coverLookup, path.rng);
     path.roughImportance = std::max(kMinImportance, path.atFirstHit->share);
   }
+  SpecularLightSampling sampling{nullptr, spatialLights_};
+  if (only_ != Only::Indirect)
+    sampling.emissionFirst = path.out.directGroups().times(path.throughput);
+  if (only_ != Only::Direct) sampling.emissionLater = path.lightSink().times(path.throughput);
   path.segment = followSpecularPath(rays_, lights_, hit, path.start.direction, path.start.arrival,
-                                    path.rng, {nullptr, spatialLights_}, path.roughImportance);
+                                    path.rng, sampling, path.roughImportance);
 }
 
 // `straight`: the segment passed no specular vertex. `coverLookup`: the VPLs at the hit; null: not
@@ -154,7 +178,7 @@ Uncovered NearFieldRays::uncoveredAt(const SurfacePoint& hit, bool straight,
   if (!compensation_) return {straight ? 0.0f : 1.0f, {}};
   Uncovered out = compensation_.uncovered(hit, hit.distance, coverLookup, rng);
   // VPLs carry no light over specular vertices, but their radiance is right there, too.
-  if (!straight) out = {1.0f, out.multiBounceRadiance};
+  if (!straight) out.share = 1.0f, out.byDistance = {};
   return out;
 }
 
@@ -184,14 +208,19 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
   const float bsdfRays = known ? 0.0f : 1.0f;
   const LightNumbers numbers =
       lights.strata && lights.rays > 1 ? LightNumbers::sequence(path.rng) : LightNumbers(path.rng);
+  const GroupSink groups =
+      path.lightSink().times(path.throughput * (known ? uncovered.share : 1.0f));
   const Vec3 firstBounce =
-      directLight(rays_, lights_, Reflected{bsdf}, {lights}, BsdfRays{bsdf, bsdfRays}, numbers);
+      directLight(rays_, lights_, Reflected{bsdf}, {lights, LightChoice::One, {}, groups},
+                  BsdfRays{bsdf, bsdfRays}, numbers);
   if (known) {
     path.light +=
         path.throughput * (firstBounce + *uncovered.multiBounceRadiance) * uncovered.share;
+    for (uint32_t g = 0; g < path.lightGroups.size(); ++g)
+      groups.add(g, uncovered.multiBounceFlux[g] * uncovered.perFlux);
     return;
   }
-  const Gathered vpls = point_(bsdf, first ? kFirstDraws : kLaterDraws, path.rng);
+  const Gathered vpls = point_(bsdf, first ? kFirstDraws : kLaterDraws, path.rng, groups);
   path.light += path.throughput * (firstBounce + vpls.radiance);
   path.out.clamped += path.reused ? path.start.throughput * path.throughput * vpls.clamped
                                   : path.throughput * vpls.clamped;
@@ -207,11 +236,12 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
     return false;
   }
   path.throughput *= sample.weight;
+  const GroupSink groups = path.lightSink().times(path.throughput);
   const LearnedLight lights = path.learned(path.isFirst() ? kFirstLightRays : 1);
   path.segment =
       followSpecularPath(rays_, lights_, next.origin, next.direction,
                          {sample.pdf, path.segment.hit.position, LightChoice::One, lights},
-                         path.rng, {nullptr, spatialLights_});
+                         path.rng, {nullptr, spatialLights_, groups, groups});
   return true;
 }
 

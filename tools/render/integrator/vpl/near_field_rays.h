@@ -36,9 +36,9 @@ class NearFieldRays : public IndirectRays {
  private:
   struct Path;
   // `coverLookup`: the VPLs at the first hit. `reuse`: whether other samples reuse the first
-  // vertex.
+  // vertex. `groups`: room for two colours of each light group.
   void follow(const FirstSegment& start, const ReachGrid::Lookup& coverLookup, bool reuse,
-              RayContributions& out) const;
+              std::span<Vec3> groups, RayContributions& out) const;
   void begin(Path& path, const ReachGrid::Lookup& coverLookup) const;
   Uncovered uncoveredAt(const SurfacePoint& hit, bool straight,
                         const ReachGrid::Lookup* coverLookup, Rng& rng) const;

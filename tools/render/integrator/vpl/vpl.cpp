@@ -76,8 +76,9 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
                             options);
   if (!gather.point) {
     parts.point = std::make_unique<PointGather>(in.rays, parts.vpls, parts.tree);
-    gather.point = [&point = *parts.point](const Bsdf& bsdf, unsigned draws, Rng& rng) {
-      return point(bsdf, draws, rng);
+    gather.point = [&point = *parts.point](const Bsdf& bsdf, unsigned draws, Rng& rng,
+                                           const GroupSink& groups) {
+      return point(bsdf, draws, rng, groups);
     };
   }
   return gather;
@@ -97,11 +98,11 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
   const LightKind light = indirect ? lightKindNamed(options[kLightOption]) : LightKind{};
   const auto parts = std::make_shared<Parts>();
-  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light);
+  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light, in.litGroups);
   Compensation compensation;
   if (options.has(kCompensateSlot)) {
     compensation = methodNamed(compensateMethods(), options[kCompensateSlot])
-                       .make({in.lit, in.rays, clamp, light}, options);
+                       .make({in.lit, in.rays, clamp, light, in.litGroups}, options);
   }
   TileParts tile;
   // With --only direct, direct samples trace BSDF rays of their own.

@@ -15,7 +15,7 @@ namespace bnvpl {
 
 Caustics::Caustics(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
                    uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed,
-                   const ProgressFn& progress)
+                   uint32_t groups, const ProgressFn& progress)
     : rays_(rays),
       lights_(lights),
       filter_(filter),
@@ -25,7 +25,10 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, const PixelFilt
       bounces_(bounces),
       width_(rays.scene().film.width),
       light_(size_t{width_} * rays.scene().film.height),
+      groupLight_(light_.size() * groups),
       guide_(lights) {
+  for (size_t i = 0; i < groupLight_.size(); i += groups)
+    light_[i / groups].groups = &groupLight_[i];
   learnEmission(streamKey(seed, Stream::CausticEmission), progress);
   chooseLamps(streamKey(seed, Stream::CausticPilot), progress);
   SplatProgress done;
@@ -34,7 +37,7 @@ Caustics::Caustics(const RayScene& rays, const LightSet& lights, const PixelFilt
       [&](uint64_t begin, uint64_t end, Splats& out) {
         for (uint64_t i = begin; i < end; ++i) follow(key_, i, photons, out);
       },
-      photons, done, [&](const Splat& splat) { add(splat, light_[splat.pixel]); }, progress, {},
+      photons, done, [&](const Splat& splat) { add(splat); }, progress, {},
       [] { return std::string(); });
 }
 
@@ -99,11 +102,19 @@ void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
   chosen_ = true;
 }
 
-void Caustics::add(const Splat& splat, PhotonLight& to) {
+void Caustics::add(const Splat& splat) {
+  PhotonLight& to = light_[splat.pixel];
   to.all += splat.radiance;
+  if (!groupLight_.empty()) {
+    const size_t groups = groupLight_.size() / light_.size();
+    groupLight_[splat.pixel * groups + splat.group] += splat.radiance;
+  }
   Vec3 light = splat.radiance;
-  for (Vec3& kept : to.brightest) {
-    if (mean(light) > mean(kept)) std::swap(light, kept);
+  auto group = static_cast<uint8_t>(splat.group);
+  for (size_t k = 0; k < to.brightest.size(); ++k) {
+    if (!(mean(light) > mean(to.brightest[k]))) continue;
+    std::swap(light, to.brightest[k]);
+    std::swap(group, to.brightestGroup[k]);
   }
 }
 
@@ -196,7 +207,7 @@ void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& phot
   const Vec3 radiance = flux * film->value * (film->perArea * share);
   if (!isFinite(radiance)) return;
   forPixelsAt(rays_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {
-    out.list.push_back({pixel, radiance * value});
+    out.list.push_back({pixel, radiance * value, lights_.group(photon.light)});
   });
 }
 

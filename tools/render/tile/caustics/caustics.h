@@ -33,9 +33,10 @@ namespace bnvpl {
 class Caustics {
  public:
   // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
-  // find the same light. `bounces`: rough vertices after the first. Borrows rays and lights.
+  // find the same light. `bounces`: rough vertices after the first. `groups`: light groups to tell
+  // apart. Borrows rays and lights.
   Caustics(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
-           uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed,
+           uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed, uint32_t groups,
            const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
@@ -51,7 +52,7 @@ class Caustics {
 
   void learnEmission(uint64_t key, const ProgressFn& progress);
   void chooseLamps(uint64_t key, const ProgressFn& progress);
-  static void add(const Splat& splat, PhotonLight& to);
+  void add(const Splat& splat);
   SharedWithPhotons sharedBy(float samplesPerArea) const;
   Vec3 lensPoint(Rng& rng) const;
   // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
@@ -83,6 +84,7 @@ class Caustics {
   bool chosen_ = false;          // whether the pilot is done; until then all lamps send photons
   size_t lamps_ = 0;
   std::vector<PhotonLight> light_;
+  std::vector<Vec3> groupLight_;  // by light group, pixel after pixel
   EmissionGuide guide_;
   UsefulPhotons useful_;
 };

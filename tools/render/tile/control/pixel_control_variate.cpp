@@ -22,15 +22,23 @@ constexpr double kMaxPrediction = 2.0;
 
 PixelControlVariate::PixelControlVariate(const RayScene& rays, const LightSet& lights,
                                          const PixelFilter& filter, const PrimaryPoints& film,
-                                         const VplTable& lit)
+                                         const VplTable& lit, const VplGroups& groups)
     : scene_(rays.scene()),
-      field_(lit),
+      field_(lit, groups),
       pixels_(rays, lights, filter, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
 
 Vec3 PixelControlVariate::predicted(const SpecularPath& path) const {
   if (!path.rough) return {};
   return path.throughput * Bsdf(scene_, path.hit).roughAlbedo() *
          field_.indirectAt(path.hit.position, path.hit.ng);
+}
+
+// Adds the prediction by light group, times `factor`.
+void PixelControlVariate::addByGroup(const SpecularPath& path, float factor,
+                                     const GroupSink& sink) const {
+  if (!sink || !path.rough) return;
+  const Vec3 reflected = path.throughput * Bsdf(scene_, path.hit).roughAlbedo();
+  field_.addByGroup(path.hit.position, path.hit.ng, sink.times(reflected * factor));
 }
 
 std::vector<float> PixelControlVariate::predictedAt(const PrimaryPoints& film) const {
@@ -75,9 +83,9 @@ class CovarianceSums {
 // weight of the pixel filter, the bound does not.
 struct Variate {
   float beta = 0.0f, maxPrediction = 0.0f;
-  Vec3 of(Vec3 predicted, float weight) const {
+  float factor(Vec3 predicted, float weight) const {
     const float m = mean(predicted) / weight;
-    return predicted * (m > maxPrediction ? beta * maxPrediction / m : beta);
+    return m > maxPrediction ? beta * maxPrediction / m : beta;
   }
 };
 
@@ -121,13 +129,18 @@ void PixelControlVariate::apply(const TileSamples& tile,
     const Variate& variate = variates[pixel];
     if (!(variate.beta > 0.0f)) continue;
     Vec3 sum;
+    const float each = 1.0f / static_cast<float>(pixels_.count(tile, pixel));
+    const GroupSink byGroup = tile.samples[i].groups.indirect();
     pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels), {},
                     [&](const SpecularPath& path, const RadianceSample&, float weight) {
-                      sum += variate.of(predicted(path), weight);
+                      const Vec3 prediction = predicted(path);
+                      const float factor = variate.factor(prediction, weight);
+                      sum += prediction * factor;
+                      addByGroup(path, factor * each, byGroup);
                     });
-    tile.samples[i].radiance.indirect +=
-        sum * (1.0f / static_cast<float>(pixels_.count(tile, pixel))) -
-        variate.of(predictions[i], tile.samples[i].weight);
+    const float factor = variate.factor(predictions[i], tile.samples[i].weight);
+    tile.samples[i].radiance.indirect += sum * each - predictions[i] * factor;
+    addByGroup(paths[i], -factor, byGroup);
   }
 }
 

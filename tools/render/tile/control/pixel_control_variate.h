@@ -13,7 +13,7 @@ class PixelControlVariate {
  public:
   // Borrows rays and lights.
   PixelControlVariate(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
-                      const PrimaryPoints& film, const VplTable& lit);
+                      const PrimaryPoints& film, const VplTable& lit, const VplGroups& groups = {});
 
   // Adds to the indirect light of each sample, which saw the end of its path,
   //
@@ -25,6 +25,7 @@ class PixelControlVariate {
 
  private:
   Vec3 predicted(const SpecularPath& path) const;
+  void addByGroup(const SpecularPath& path, float factor, const GroupSink& sink) const;
   std::vector<float> predictedAt(const PrimaryPoints& film) const;
 
   const Scene& scene_;

@@ -28,10 +28,11 @@ class PixelRays {
     return raysEach_[size_t{tile.y + pixel / tile.width} * width_ + tile.x + pixel % tile.width];
   }
   // Calls fn(path, sample, weight) for each ray; path and sample include the weight, which is that
-  // of the filter. The rays are independent of the sample.
+  // of the filter. The rays are independent of the sample. `groups` receives their emission.
   template <typename Fn>
   void forEach(const TileLayout& tile, uint32_t pixel, uint32_t sampleIndex,
-               const SpecularLightSampling& specularLights, const Fn& fn) const {
+               const SpecularLightSampling& specularLights, const Fn& fn,
+               const SampleGroups& groups = {}) const {
     const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
     const unsigned rays = count(tile, pixel);
     const uint64_t key = random64(tile.key, pixel, dimension_);
@@ -42,7 +43,7 @@ class PixelRays {
           filter_.sample(rng.nextPoint(), {index, uint64_t{tile.samplesPerPixel} * rays, key});
       RadianceSample sample;
       const SpecularPath path =
-          traceCameraPath(rays_, lights_, x, y, at, rng, sample, specularLights);
+          traceCameraPath(rays_, lights_, x, y, at, rng, sample, specularLights, groups);
       fn(path, sample, at.weight);
     }
   }

@@ -36,13 +36,13 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
-                                           const PixelFilter::Turn& turn,
-                                           RadianceSample* layers) const {
+                                           const PixelFilter::Turn& turn, RadianceSample* layers,
+                                           const SampleGroups& met, const GroupSink& lit) const {
   Rng rng = Rng::stratified(numbers.path, index);
   const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), turn);
   RadianceSample seen;
-  const SpecularPath path =
-      traceCameraPath(rays_, lights_, x, y, at, rng, seen, {rays.lights.strata, spatialLights_});
+  const SpecularPath path = traceCameraPath(rays_, lights_, x, y, at, rng, seen,
+                                            {rays.lights.strata, spatialLights_}, met);
   Light light{seen.emission, seen.direct, {}, {}};
   if (layers) *layers = seen;
   if (!path.rough) return light;
@@ -58,20 +58,26 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   const LightNumbers random =
       learned.strata ? LightNumbers(index * learned.rays, numbers.light) : LightNumbers(rng);
   light.byLight =
-      path.throughput * directLight(rays_, lights_, Reflected{bsdf}, {learned, LightChoice::Each},
+      path.throughput * directLight(rays_, lights_, Reflected{bsdf},
+                                    {learned, LightChoice::Each, {}, lit.times(path.throughput)},
                                     BsdfRays{bsdf, rays.bsdf}, random);
-  light.byBsdf = bsdfRay(bsdf, path.throughput, rays, learned, rng);
+  light.byBsdf = bsdfRay(bsdf, path.throughput, rays, learned, rng, lit);
   return light;
 }
 
 // Light by at most one BSDF ray, which is traced with the probability rays.bsdf.
 Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
-                            const LearnedLight& learned, Rng& rng) const {
+                            const LearnedLight& learned, Rng& rng, const GroupSink& lit) const {
   BsdfSample next;
   if ((rays.bsdf < 1.0f && rng.next() >= rays.bsdf) ||
       !bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next))
     return {};
-  const Arrival arrival{next.pdf * rays.bsdf, bsdf.point().position, LightChoice::Each, learned};
+  const Arrival arrival{next.pdf * rays.bsdf,
+                        bsdf.point().position,
+                        LightChoice::Each,
+                        learned,
+                        {},
+                        lit.times(throughput * next.weight * (1.0f / rays.bsdf))};
   const Ray ray = rayOn(rays_, bsdf.point(), next);
   SurfacePoint hit;
   const Vec3 emission = rays_.closestHit(ray.origin, ray.direction, hit)
@@ -179,6 +185,7 @@ unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, do
 struct DirectSamples::Pixel {
   std::vector<Light> sums;  // for each sample index
   unsigned count = 0;       // for each sample index
+  std::vector<Vec3> lit;    // light that shading points scatter, by group, for each sample index
 };
 
 void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count,
@@ -192,7 +199,9 @@ void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& ray
     for (unsigned k = 0; k < count; ++k) {
       RadianceSample* layers =
           alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
-      const Light light = sample(x, y, rays, numbers, index++, turn, layers);
+      const SampleGroups& met = tile.samples[s * tile.pixels + pixel].groups;
+      const GroupSink lit{met.sums ? &out.lit[s * met.count] : nullptr};
+      const Light light = sample(x, y, rays, numbers, index++, turn, layers, met, lit);
       ++turn.index;
       out.sums[s] += light;
       moments.add(light.all());
@@ -213,6 +222,7 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
   std::vector<PixelMoments> moments(tile.pixels);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     pixels[p].sums.resize(perPixel);
+    pixels[p].lit.resize(perPixel * tile.groups);
     for (size_t s = 0; s < perPixel; ++s) {
       const size_t i = s * tile.pixels + p;
       pixels[p].sums[s] = {
@@ -251,16 +261,21 @@ void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const Learned
   for (size_t s = 0; s < from.sums.size(); ++s) {
     const Light& sum = from.sums[s];
     RadianceSample& out = tile.samples[s * tile.pixels + pixel].radiance;
+    const SampleGroups& groups = tile.samples[s * tile.pixels + pixel].groups;
     out.direct = sum.met, out.emission = sum.emission;
     if (visibleEmission_) {
       visibleEmission_->average(out, cameraRays, tile, pixel,
                                 tile.firstSample + static_cast<uint32_t>(s),
-                                {strata, spatialLights_});
+                                {strata, spatialLights_}, groups);
     } else {
       const float each = 1.0f / static_cast<float>(cameraRays);
       out.direct *= each, out.emission *= each;
+      groups.scaleDirect(each);
     }
-    out.direct += (sum.byLight + sum.byBsdf) * (1.0f / static_cast<float>(from.count));
+    const float each = 1.0f / static_cast<float>(from.count);
+    out.direct += (sum.byLight + sum.byBsdf) * each;
+    for (uint32_t g = 0; g < groups.count; ++g)
+      groups.direct().times(each).add(g, from.lit[s * groups.count + g]);
   }
 }
 

@@ -59,12 +59,13 @@ class DirectSamples {
   };
   struct RandomNumbers;
   // One direct sample of a pixel, the index-th by `numbers`. `turn`: see PixelFilter. `layers`:
-  // receives depth, normal and albedo; may be null.
+  // receives depth, normal and albedo; may be null. `met` and `lit` receive the light by group that
+  // the camera path meets and that the shading point scatters.
   Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
-               uint32_t index, const PixelFilter::Turn& turn,
-               RadianceSample* layers = nullptr) const;
+               uint32_t index, const PixelFilter::Turn& turn, RadianceSample* layers = nullptr,
+               const SampleGroups& met = {}, const GroupSink& lit = {}) const;
   Vec3 bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays, const LearnedLight& learned,
-               Rng& rng) const;
+               Rng& rng, const GroupSink& lit) const;
   struct Pixel;
   double costOf(const Rays& rays) const;
   void add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count, Pixel& out,

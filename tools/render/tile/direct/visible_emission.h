@@ -16,15 +16,19 @@ class VisibleEmission {
 
   // `sum`: direct light and emission of `count` camera rays of a sample. Replaces both by the mean
   // over these and the pixel's further rays. The number of further rays depends on the film's
-  // points, not on the sample, so that the mean is unbiased.
+  // points, not on the sample, so that the mean is unbiased. `groups`: both by light group.
   void average(RadianceSample& sum, unsigned count, const TileLayout& tile, uint32_t pixel,
-               uint32_t sample, const SpecularLightSampling& specularLights) const {
-    pixels_.forEach(tile, pixel, sample, specularLights,
-                    [&](const SpecularPath&, const RadianceSample& s, float) {
-                      sum.direct += s.direct, sum.emission += s.emission;
-                    });
+               uint32_t sample, const SpecularLightSampling& specularLights,
+               const SampleGroups& groups = {}) const {
+    pixels_.forEach(
+        tile, pixel, sample, specularLights,
+        [&](const SpecularPath&, const RadianceSample& s, float) {
+          sum.direct += s.direct, sum.emission += s.emission;
+        },
+        groups);
     const float each = 1.0f / static_cast<float>(count + pixels_.count(tile, pixel));
     sum.direct *= each, sum.emission *= each;
+    groups.scaleDirect(each);
   }
 
  private:

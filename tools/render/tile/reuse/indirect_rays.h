@@ -23,6 +23,15 @@ struct RayContributions {
   Vec3 vertexLight;
   double squares = 0.0;  // sum of squared indirect light of rays without `vertexLight`
   uint32_t rays = 0, shadowRays = 0;
+  // Light by group: the sample's own of `direct`, `indirect` and `vertexLight`, in this order, and
+  // the radiance of each of `vertices`.
+  uint32_t groups = 0;  // 0: not told apart
+  std::vector<Vec3> groupSums, vertexGroups;
+
+  void tellApart(uint32_t count) { groups = count, groupSums.resize(3 * size_t{count}); }
+  GroupSink directGroups() { return sinkOf(0); }
+  GroupSink indirectGroups() { return sinkOf(1); }
+  GroupSink vertexLightGroups() { return sinkOf(2); }
 
   // Adds the mean of the rays, with `reused` in place of the mean of vertexLight: the light of the
   // vertices that the group's rays have found.
@@ -36,6 +45,18 @@ struct RayContributions {
     out.compensated += compensated * each + difference;
     out.shadowRays += shadowRays;
   }
+  // The same by light group. `withDirect`: whether direct light counts.
+  void addMeanTo(const SampleGroups& out, const Vec3* reused, bool withDirect) const {
+    if (rays == 0) return;
+    const float each = 1.0f / static_cast<float>(rays);
+    for (uint32_t g = 0; g < groups; ++g) {
+      if (withDirect) out.direct().add(g, groupSums[g] * each);
+      out.indirect().add(g, (groupSums[groups + g] - groupSums[2 * groups + g]) * each + reused[g]);
+    }
+  }
+
+ private:
+  GroupSink sinkOf(size_t kind) { return {groups > 0 ? &groupSums[kind * groups] : nullptr}; }
 };
 
 // The shading point that rays leave.

@@ -34,14 +34,17 @@ struct Connections {
   size_t samples = 0;
   std::vector<const ReusedVertex*> vertices;
   std::vector<size_t> foundBy;  // the sample whose ray found the vertex
+  std::vector<const Vec3*> byGroup;  // radiance by light group
   std::vector<Connection> all;  // vertex by vertex
 
-  explicit Connections(std::span<const ReusingSample> group) : samples(group.size()) {
+  Connections(std::span<const ReusingSample> group, uint32_t lightGroups) : samples(group.size()) {
     for (size_t i = 0; i < samples; ++i) {
       for (const ReusedVertex& vertex : group[i].vertices) {
         if (isBlack(vertex.radiance)) continue;
         vertices.push_back(&vertex);
         foundBy.push_back(i);
+        byGroup.push_back(group[i].vertexGroups +
+                          lightGroups * static_cast<size_t>(&vertex - group[i].vertices.data()));
         for (const ReusingSample& sample : group)
           all.push_back(connect(*sample.directions, vertex));
       }
@@ -75,8 +78,8 @@ struct Connections {
 
 }  // namespace
 
-size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group) {
-  Connections connections(group);
+size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group, uint32_t lightGroups) {
+  Connections connections(group, lightGroups);
   const size_t shadowRays = connections.testVisibility(rays, group);
   for (size_t v = 0; v < connections.vertices.size(); ++v) {
     float density = 0.0f;  // sum over k of n_k p_k(y)
@@ -91,6 +94,8 @@ size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group) {
       if (!c.visible) continue;
       const Vec3 light = c.value * weighted;
       group[k].radiance += light, group[k].squares += light * light;
+      for (uint32_t g = 0; g < lightGroups; ++g)
+        group[k].groups[g] += c.value * connections.byGroup[v][g] * (1.0f / density);
     }
   }
   return shadowRays;

@@ -44,11 +44,15 @@ struct ReusingSample {
   const Directions* directions;            // distribution of its rays
   unsigned rays;                           // number of rays that it sent, n_k
   std::span<const ReusedVertex> vertices;  // those that its rays found
+  const Vec3* vertexGroups;                // their radiance by light group; null: not told apart
+  Vec3* groups;                            // result: `radiance` by light group
   Vec3 radiance = {};  // result: the light of all vertices of the group, W/(m2 sr)
   Vec3 squares = {};   // result: sum of their squared contributions, for the variance
 };
 
-// Fills in the results. Returns the number of shadow rays.
-size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group);
+// Fills in the results. `lightGroups`: number of light groups that are told apart. Returns the
+// number of shadow rays.
+size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group,
+                     uint32_t lightGroups = 0);
 
 }  // namespace bnvpl
