@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <ranges>
 #include <valarray>
 
-#include "core/cdf.h"
 #include "core/parallel.h"
 #include "tools/common/files/streams.h"
+#include "tools/render/gather/matrix_columns.h"
 #include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::methods::gather::lightslice {
@@ -30,10 +29,6 @@ constexpr double kCommonShare = 0.3;  // clusters found for all slices, over tho
 constexpr size_t kDraws = 16;         // draws from each cluster; samples of a pixel take turns
 
 using Vector = std::valarray<double>;
-using Columns = std::vector<Vector>;  // columns of the matrix, one per VPL, in some of its rows
-using Cluster = std::vector<uint32_t>;
-
-double norm(const Vector& v) { return std::sqrt((v * v).sum()); }
 
 // A point with its position and scaled normal; or a slice with its centre and a point that
 // represents it.
@@ -76,85 +71,22 @@ void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>&
   slice(points.subspan(below), most, rng, slices);
 }
 
-// Sums over the columns of a cluster.
-struct Bundle {
-  Vector sum;
-  double norms = 0.0;
-  void add(const Vector& c, double weight) {
-    sum = sum.size() == 0 ? Vector(weight * c) : Vector(sum + weight * c);
-    norms += weight * norm(c);
-  }
-  // Clustering cost; 0 if all columns are parallel.
-  double cost() const { return norms * norms - (sum * sum).sum(); }
-  double apart(const Vector& c) const { return std::max(0.0, norms * norm(c) - (sum * c).sum()); }
-};
-
-Bundle bundleOf(const Cluster& cluster, const Columns& columns) {
-  Bundle bundle;
-  for (const uint32_t i : cluster) bundle.add(columns[i], 1.0);
-  return bundle;
-}
-
-// Draws a VPL of the cluster in proportion to its share. The weight is one over its probability.
-VplDraw draw(const Cluster& cluster, std::span<const double> shares, Rng& rng) {
-  std::vector<double> own;
-  for (const uint32_t i : cluster) own.push_back(shares[i]);
-  const std::vector<double> cdf = makeCdf<double>(own);
-  float u = rng.next();
-  const size_t k = sampleCdf<double>(cdf, u);
-  return {cluster[k], static_cast<float>(1.0 / cdfShare<double>(cdf, k))};
-}
-
-// Clustering by sampling (Hasan et al. 2007): centres are drawn in proportion to what a column adds
-// to the cost of a single cluster of all; each VPL joins the nearest centre.
-std::map<uint32_t, Cluster> sampled(const Cluster& vpls, const Columns& columns, double count,
-                                    Rng& rng) {
-  const Bundle all = bundleOf(vpls, columns);
-  std::vector<double> alpha(columns.size());
-  for (const uint32_t i : vpls) alpha[i] = all.apart(columns[i]);
-  std::map<uint32_t, Bundle> centres;
-  for (double k = 0; k < count; ++k) {
-    const VplDraw centre = draw(vpls, alpha, rng);
-    centres[centre.index].add(columns[centre.index], double{centre.weight});
-  }
-  std::vector<uint32_t> nearest(columns.size());
-  parallelFor(vpls.size(), 64, [&](size_t k) {
-    const auto apart = [&](const auto& centre) { return centre.second.apart(columns[vpls[k]]); };
-    nearest[vpls[k]] = std::ranges::min_element(centres, {}, apart)->first;
-  });
-  std::map<uint32_t, Cluster> clusters;
-  for (const uint32_t i : vpls) clusters[nearest[i]].push_back(i);
-  return clusters;
-}
-
 // Splits a cluster along the line between its two longest columns. Returns one part and leaves the
 // other.
 Cluster splitOff(Cluster& cluster, const Columns& columns) {
   std::ranges::partial_sort(cluster, cluster.begin() + 2, std::greater{},
-                            [&](uint32_t i) { return norm(columns[i]); });
-  const Vector line = columns[cluster[0]] - columns[cluster[1]];
-  const auto along = [&](uint32_t i) { return (columns[i] * line).sum(); };
+                            [&](uint32_t i) { return columns.norm(i); });
+  const std::span<const float> a = columns[cluster[0]], b = columns[cluster[1]];
+  const auto along = [&](uint32_t i) {
+    const std::span<const float> c = columns[i];
+    double sum = 0.0;
+    for (size_t k = 0; k < c.size(); ++k) sum += double{c[k]} * (double{a[k]} - double{b[k]});
+    return sum;
+  };
   const size_t below = divideAtMiddle(std::span(cluster), along);
   const Cluster part(cluster.begin() + below, cluster.end());
   cluster.erase(cluster.begin() + below, cluster.end());
   return part;
-}
-
-// Refines clusters by splitting the one of largest cost, until there are `count` or all costs are
-// 0.
-std::multimap<double, Cluster> refined(const std::map<uint32_t, Cluster>& clusters, size_t count,
-                                       const Columns& columns) {
-  std::multimap<double, Cluster> byCost;
-  const auto add = [&](const Cluster& c) {
-    byCost.emplace(c.size() < 2 ? 0.0 : bundleOf(c, columns).cost(), c);
-  };
-  for (const auto& [centre, cluster] : clusters) add(cluster);
-  while (byCost.size() < count && byCost.rbegin()->first > 0.0) {
-    Cluster cluster = byCost.extract(std::prev(byCost.end())).mapped();
-    add(splitOff(cluster, columns));
-    add(cluster);
-  }
-  return byCost;
 }
 
 // Columns restricted to the rows of the `count` slices nearest to `slice`.
@@ -162,11 +94,10 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
                   const Columns& columns) {
   std::vector<size_t> order(slices.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, {}, [&](size_t k) { return norm(slice.at - slices[k].at); });
-  const std::valarray<size_t> rows(order.data(), std::min(order.size(), count));
-  Columns local;
-  for (const Vector& c : columns) local.emplace_back(c[rows]);
-  return local;
+  std::ranges::stable_sort(order, {}, [&](size_t k) {
+    return ((slice.at - slices[k].at) * (slice.at - slices[k].at)).sum();
+  });
+  return columns.inRows(std::span(order).first(std::min(order.size(), count)));
 }
 
 // The VPLs of each slice, one per cluster.
@@ -190,29 +121,25 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   Rng rng(key, 0);
   slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), rng, plan.slices);
 
-  Columns columns(in.vpls.size(), Vector(plan.slices.size()));
-  const auto phase = in.progress.before("slices", plan.slices.size());
-  parallelFor(plan.slices.size(), 1, [&](size_t s) {
-    const Bsdf bsdf(in.rays.scene(), plan.slices[s].point);
-    const ShadowTest test(in.rays, in.vpls, bsdf);
-    for (size_t i = 0; i < columns.size(); ++i) columns[i][s] = double{length(test.of(i).radiance)};
-    if (in.progress) in.progress(1);
-  });
-  std::vector<double> norms;
-  std::ranges::transform(columns, std::back_inserter(norms), norm);
+  std::vector<SurfacePoint> rows;
+  for (const Placed& s : plan.slices) rows.push_back(s.point);
+  const Columns columns = columnsAt(in, rows, "slices");
   Cluster vpls(columns.size());
   std::iota(vpls.begin(), vpls.end(), 0u);
-  std::erase_if(vpls, [&](uint32_t i) { return norms[i] == 0.0; });  // no slice sees them
+  std::erase_if(vpls, [&](uint32_t i) { return columns.norm(i) == 0.0; });  // no slice sees them
   if (vpls.empty()) return plan;
   const auto count = static_cast<size_t>(options[kColumnsOption]);
-  const auto common = sampled(vpls, columns, kCommonShare * double(count), rng);
+  const std::vector<Cluster> common = clustersBySampling(
+      vpls, columns, static_cast<size_t>(std::ceil(kCommonShare * double(count))), rng);
   plan.draws.resize(plan.slices.size());
   parallelFor(plan.slices.size(), 1, [&](size_t s) {
     Rng own(key, s + 1);
     const Columns local =
         rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
-    for (const auto& [cost, cluster] : refined(common, count, local)) {
-      for (auto& draws : plan.draws[s]) draws.push_back(draw(cluster, norms, own));
+    const std::vector<Cluster> clusters = refinedClusters(
+        common, count, local, false, [&](Cluster& c) { return splitOff(c, local); });
+    for (const Cluster& cluster : clusters) {
+      for (auto& draws : plan.draws[s]) draws.push_back(drawFrom(cluster, columns.norms(), own));
     }
   });
   return plan;

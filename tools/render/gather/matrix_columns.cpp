@@ -1,0 +1,108 @@
+#include "tools/render/gather/matrix_columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cdf.h"
+#include "core/parallel.h"
+#include "tools/render/gather/shadow_test.h"
+
+namespace bnvpl {
+
+namespace {
+
+double lengthOf(std::span<const float> column) {
+  double squares = 0.0;
+  for (const float v : column) squares += double{v} * double{v};
+  return std::sqrt(squares);
+}
+
+}  // namespace
+
+void Columns::measure() {
+  parallelFor(size(), 256, [&](size_t i) { norms_[i] = lengthOf((*this)[i]); });
+}
+
+Columns Columns::inRows(std::span<const size_t> rows) const {
+  Columns out(size(), rows.size());
+  for (size_t i = 0; i < size(); ++i) {
+    const float* from = values_.data() + i * entries_;
+    float* to = out.values_.data() + i * out.entries_;
+    for (const size_t row : rows) to = std::copy_n(from + 3 * row, 3, to);
+  }
+  out.measure();
+  return out;
+}
+
+Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receivers,
+                  std::string_view phase) {
+  Columns columns(in.vpls.size(), receivers.size());
+  const auto running = in.progress.before(phase, receivers.size());
+  parallelFor(receivers.size(), 1, [&](size_t row) {
+    const Bsdf bsdf(in.rays.scene(), receivers[row]);
+    const ShadowTest test(in.rays, in.vpls, bsdf);
+    for (size_t i = 0; i < columns.size(); ++i) columns.set(i, row, test.of(i).radiance);
+    if (in.progress) in.progress(1);
+  });
+  columns.measure();
+  return columns;
+}
+
+void Bundle::add(const Columns& columns, size_t i, double weight) {
+  const std::span<const float> column = columns[i];
+  sum_.resize(column.size());
+  for (size_t k = 0; k < column.size(); ++k) sum_[k] += weight * double{column[k]};
+  norms_ += weight * columns.norm(i);
+}
+
+double Bundle::cost() const {
+  double squares = 0.0;
+  for (const double v : sum_) squares += v * v;
+  return std::max(0.0, norms_ * norms_ - squares);
+}
+
+double Bundle::apart(const Columns& columns, size_t i) const {
+  const std::span<const float> column = columns[i];
+  double product = 0.0;
+  for (size_t k = 0; k < column.size(); ++k) product += sum_[k] * double{column[k]};
+  return std::max(0.0, norms_ * columns.norm(i) - product);
+}
+
+Bundle bundleOf(std::span<const uint32_t> cluster, const Columns& columns) {
+  Bundle bundle;
+  for (const uint32_t i : cluster) bundle.add(columns, i);
+  return bundle;
+}
+
+VplDraw drawFrom(std::span<const uint32_t> cluster, std::span<const double> shares, Rng& rng) {
+  std::vector<double> own;
+  for (const uint32_t i : cluster) own.push_back(shares[i]);
+  const std::vector<double> cdf = makeCdf<double>(own);
+  float u = rng.next();
+  const size_t k = sampleCdf<double>(cdf, u);
+  return {cluster[k], static_cast<float>(1.0 / cdfShare<double>(cdf, k))};
+}
+
+std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& columns, size_t count,
+                                        Rng& rng) {
+  const Bundle all = bundleOf(vpls, columns);
+  std::vector<double> alpha(columns.size());
+  for (const uint32_t i : vpls) alpha[i] = all.apart(columns, i);
+  std::map<uint32_t, Bundle> centres;
+  for (size_t k = 0; k < count; ++k) {
+    const VplDraw centre = drawFrom(vpls, alpha, rng);
+    centres[centre.index].add(columns, centre.index, double{centre.weight});
+  }
+  std::vector<uint32_t> nearest(columns.size());
+  parallelFor(vpls.size(), 64, [&](size_t k) {
+    const auto apart = [&](const auto& centre) { return centre.second.apart(columns, vpls[k]); };
+    nearest[vpls[k]] = std::ranges::min_element(centres, {}, apart)->first;
+  });
+  std::map<uint32_t, Cluster> clusters;
+  for (const uint32_t i : vpls) clusters[nearest[i]].push_back(i);
+  std::vector<Cluster> out;
+  for (auto& [centre, cluster] : clusters) out.push_back(std::move(cluster));
+  return out;
+}
+
+}  // namespace bnvpl
