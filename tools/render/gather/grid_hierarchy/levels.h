@@ -22,7 +22,8 @@ struct Level {
   VplLights lights;
   std::vector<uint32_t> members;  // kMembers for each light; empty where the lights are VPLs
   CellPoints cells;
-  // Distances from which lights count, fully do so, no longer fully do so, and no longer count.
+  // Distances between which lights count: their share rises from `from` to `rise`, and falls from
+  // `fall` to `to`.
   float from = 0.0f, rise = 0.0f, fall = INFINITY, to = INFINITY;
 
   // Share of a light at this distance. Those of all levels add up to 1.
