@@ -78,10 +78,27 @@ struct DiskLight : LambertEmission {
   }
 };
 
+// A disk of radius `size` of points that shine alike in all directions, seen from above its middle:
+// the mean of 1/d^2 times the cosine is (2 / size^2) (1 - d / sqrt(d^2 + size^2)), which is exact
+// at every distance and has no edge (Yuksel 2020, "Point Light Attenuation Without Singularity").
+struct YukselLight : LambertEmission {
+  static constexpr std::string_view name = "yuksel";
+  template <typename F>
+  static F boundedDistance2(F d2, F size2) {
+    const F slant2 = d2 + size2;
+    // The rounding of the root could lead below d2.
+    return larger(everyLane<F>(0.5f) * (slant2 + squareRoot(d2 * slant2)), d2);
+  }
+  static float removed(float distanceOverSize) {
+    const float d2 = distanceOverSize * distanceOverSize;
+    return 1.0f - d2 / boundedDistance2(d2, 1.0f);
+  }
+};
+
 template <typename... Kinds>
 struct KindList {
   static constexpr std::array<std::string_view, sizeof...(Kinds)> names{Kinds::name...};
-  // "point|disk"
+  // "point|disk|yuksel"
   static constexpr auto choices = [] {
     std::array<char, (Kinds::name.size() + ...) + sizeof...(Kinds) - 1> text{};
     auto at = text.begin();
@@ -94,7 +111,7 @@ struct KindList {
 };
 
 // Every kind; the first is the default.
-using LightKinds = KindList<PointLight, DiskLight>;
+using LightKinds = KindList<PointLight, DiskLight, YukselLight>;
 inline constexpr std::string_view kLightKinds{LightKinds::choices.data(),
                                               LightKinds::choices.size()};
 

@@ -15,8 +15,8 @@ namespace {
 
 constexpr auto kLightOption =
     neededBy(kIndirectIsShown, choiceOption("light", "point", kLightKinds,
-                                            "model of a VPL: a point with a bound on 1/d^2, or a "
-                                            "disk"));
+                                            "model of a VPL: a point with a bound on 1/d^2, a "
+                                            "disk, or attenuation without singularity"));
 constexpr auto kClampOption = neededBy(
     kIndirectIsShown,
     inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "r_max",
