@@ -83,12 +83,8 @@ TEST_F(Help, JsonTellsKindDefaultRangeAndNeeds) {
   EXPECT_EQ(option("spp").at("max"), 4294967295.0);
   EXPECT_EQ(option("clamp").at("unit"), "r_max");
   EXPECT_EQ(option("clamp").at("needs"), "--only all or indirect");
-<<<<<<< ours
   for (const HelpJson& slot : render.at("slots"))
     EXPECT_EQ(option(slot.at("name")).at("choices").size(), slot.at("methods").size());
-=======
-  EXPECT_EQ(option("gather").at("choices").size(), 10u);
->>>>>>> theirs
   EXPECT_EQ(option("only").at("choices"), HelpJson({"all", "direct", "indirect"}));
   EXPECT_EQ(option("allocate").at("choices"), HelpJson({"on", "off"}));
   EXPECT_EQ(option("error").at("methods").at("gather"),
