@@ -1,13 +1,10 @@
 // vpl-inspect on files that the stages wrote: check --scene, and --stats of commands that print.
-#include <nlohmann/json.hpp>
-
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/files/json_text.h"
 #include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 class Inspect : public PipelineTest {
  protected:

@@ -1,16 +1,15 @@
 // Extreme films, counts and intensities through the executables; the stages are in tests/numbers.
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "formats/image/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/files/json_text.h"
 #include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {
 
 using Numbers = PipelineTest;
-using Json = nlohmann::ordered_json;
 
 void expectFinite(const fs::path& exr) {
   const Image image = readExr(exr);

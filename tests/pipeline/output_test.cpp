@@ -1,17 +1,16 @@
 // What a stage leaves behind besides its product: summary, JSON, depfile, layers and pixel types.
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <tuple>
 
 #include "formats/image/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
+#include "tools/common/files/json_text.h"
 #include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
 namespace {
 
 using Output = PipelineTest;
-using Json = nlohmann::ordered_json;
 
 // Every stage's command, in order.
 std::vector<std::pair<std::string, std::string>> allStages(const std::string& scene,

@@ -255,7 +255,9 @@ TEST_F(Rerun, QualitiesAreThoseOfOneFile) {
         shell("pipelines/generate_ninja.py " + path("veach-door/scene.toml") + " --out " +
               path("q") + " --bin " BNVPL_BIN_FROM_SOURCE " --quality " + quality);
     EXPECT_EQ(make.code + ninja.code, 0) << make.err << ninja.err;
-    const auto behind = [&](const char* stage) { return of[stage].empty() ? "" : " " + of[stage]; };
+    const auto behind = [&counts = of](const char* stage) {
+      return counts[stage].empty() ? "" : " " + counts[stage];
+    };
     for (const std::string& text : {make.out, readAll(at("q/build.ninja"))}) {
       for (const std::string& part :
            {"candidates.vpl -n " + of["CANDIDATES"] + " ", "vpls.vpl -n " + of["VPLS"] + " ",

@@ -67,12 +67,14 @@ PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
     if (progress) progress(joined.rows() - before);
   };
   Wave traced, next;
-  for (trace(traced); found < count; std::swap(traced, next)) {
+  trace(traced);
+  while (found < count) {
     if (chunks * kPathsPerChunk >= effortFor(count)) {
       join(traced);
       failTooFew(scene, joined.soFar(), joined.rows(), count);
     }
     tbb::parallel_invoke([&] { trace(next); }, [&] { join(traced); });
+    std::swap(traced, next);
   }
   join(traced);
   return joined.finish(scene + ": ");

@@ -15,11 +15,11 @@ struct RoughLeaving {
   // The factor of wo, unit. 0 where it is unknown: the coat transmits next to nothing, or wo bends
   // the normal.
   float towards(Vec3 wo) const {
-    constexpr float kMin = 1e-3f;
+    constexpr float kMinFactor = 1e-3f;
     if (ior == 0.0f) return !unbent || keepsNormal(ng, ns, wo) ? 1.0f : 0.0f;
     if (!keepsNormal(ng, ns, wo)) return 0.0f;
     const float out = CoatedBase{{}, ior, alpha}.through(dot(ns, wo));
-    return out > kMin ? out : 0.0f;
+    return out > kMinFactor ? out : 0.0f;
   }
 };
 

@@ -27,7 +27,7 @@ class MaterialReport {
   void addModel(const ModelReport& report) {
     json["model"] = report.model;
     for (const auto& [name, parameter] : report.parameters)
-      std::visit([&](const auto& value) { add(name, value); }, parameter);
+      std::visit([&, &key = name](const auto& value) { add(key, value); }, parameter);
   }
 
   void addShared(const Material& m) {

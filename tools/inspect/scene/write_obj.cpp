@@ -16,7 +16,7 @@ class Numbering {
   std::vector<uint32_t> used;
   void finish() {
     std::ranges::sort(used);
-    used.erase(std::ranges::unique(used).begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
   }
   std::string operator[](uint32_t index) const {
     return std::to_string(std::ranges::lower_bound(used, index) - used.begin() + 1);

@@ -42,7 +42,6 @@ float areaOf(uint32_t i, const Coverage& coverage) {
 NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind,
                      const VplGroups& groups)
     : lit_(lit),
-      rays_(rays),
       coverage_(lit.position, lit.normal,
                 scaled(lit.radius,
                        lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),

@@ -30,7 +30,6 @@ class NearField {
   std::optional<float> perFluxOf(uint32_t vpl) const;
 
   const VplTable& lit_;
-  const RayScene& rays_;
   Coverage coverage_;
   LightKind kind_;
   std::vector<float> clampRadius_;  // one per VPL, world units

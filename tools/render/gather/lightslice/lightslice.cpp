@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <ranges>
 #include <valarray>
 
 #include "core/parallel.h"
@@ -46,10 +45,12 @@ Vector placeOf(const SurfacePoint& p, float scale) {
 // half the size if that would be all or none.
 template <typename T, typename Value>
 size_t divideAtMiddle(std::span<T> all, const Value& value) {
-  const auto [low, high] = std::ranges::minmax(all | std::views::transform(value));
-  const auto isBelow = [&, middle = 0.5 * (low + high)](const T& t) { return value(t) < middle; };
-  const size_t above = std::ranges::partition(all, isBelow).size();
-  return above == 0 || above == all.size() ? all.size() / 2 : all.size() - above;
+  const auto ends = std::ranges::minmax_element(all, {}, value);
+  const auto middle = 0.5 * (value(*ends.min) + value(*ends.max));
+  const auto isBelow = [&](const T& t) { return value(t) < middle; };
+  const auto below =
+      static_cast<size_t>(std::partition(all.begin(), all.end(), isBelow) - all.begin());
+  return below == 0 || below == all.size() ? all.size() / 2 : below;
 }
 
 // Splits points along the longest of six sides until a slice has at most `most` points.
@@ -57,7 +58,8 @@ void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>&
   Vector middle(6), side(6);
   for (size_t a = 0; a < 6; ++a) {
     const auto on = [a](const Placed& p) { return p.at[a]; };
-    const auto [low, high] = std::ranges::minmax(points | std::views::transform(on));
+    const auto ends = std::ranges::minmax_element(points, {}, on);
+    const double low = on(*ends.min), high = on(*ends.max);
     middle[a] = 0.5 * (low + high), side[a] = high - low;
   }
   if (points.size() <= most) {
