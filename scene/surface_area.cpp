@@ -15,13 +15,13 @@ double areaOf(const Scene& scene, uint32_t begin, uint32_t end) {
   return area;
 }
 
-double volumeFactor(const Instance& instance) {
+}  // namespace
+
+double areaFactor(const Instance& instance) {
   const Vec3 x = instance.vector({1, 0, 0}), y = instance.vector({0, 1, 0}),
              z = instance.vector({0, 0, 1});
-  return std::fabs(double{dot(x, cross(y, z))});
+  return std::pow(std::fabs(double{dot(x, cross(y, z))}), 2.0 / 3.0);
 }
-
-}  // namespace
 
 double surfaceArea(const Scene& scene) {
   double area = areaOf(scene, 0, scene.worldEnd());
@@ -30,7 +30,7 @@ double surfaceArea(const Scene& scene) {
     const auto [known, isNew] = ofPrototypes.try_emplace(instance.prototype);
     const Prototype& p = scene.prototypes[instance.prototype];
     if (isNew) known->second = areaOf(scene, p.begin, p.end);
-    area += known->second * std::pow(volumeFactor(instance), 2.0 / 3.0);
+    area += known->second * areaFactor(instance);
   }
   return area;
 }

@@ -4,8 +4,11 @@
 
 namespace bnvpl {
 
-// Area of all triangles, in scene units squared. Each instance counts, by the factor of its volume
-// to the power 2/3, which is exact for transforms that keep angles.
+// Factor of areas by an instance's transform: that of volumes to the power 2/3, which is exact for
+// transforms that keep angles.
+double areaFactor(const Instance& instance);
+
+// Area of all triangles, in scene units squared, with those of each instance.
 double surfaceArea(const Scene& scene);
 
 }  // namespace bnvpl

@@ -62,6 +62,16 @@ TEST_F(Doctor, FindsALampThatFacesAWall) {
   EXPECT_EQ(r.code, kExitOk);
   EXPECT_TRUE(contains(r.err, "times darker than the power of the lights")) << r.err;
   EXPECT_TRUE(contains(r.err, "vpl-inspect doctor")) << r.err;
+  // A warning about the result keeps the result.
+  const std::string image = readAll(at("wall.exr"));
+  fs::remove(at("wall.exr"));
+  const Outcome strict =
+      tool("vpl-render", path("wall.toml") + " --integrator path --spp 4 --quiet --strict -o " +
+                             path("wall.exr"));
+  EXPECT_EQ(strict.code, kExitInput);
+  EXPECT_EQ(strict.err,
+            r.err + "vpl-render: a warning is an error with --strict; the outputs are written\n");
+  EXPECT_EQ(readAll(at("wall.exr")), image);
 }
 
 TEST_F(Doctor, FindsUnitsThatLookWrong) {
@@ -83,6 +93,32 @@ TEST_F(Doctor, FindsACameraInASolidOrAwayFromTheScene) {
                         "usemtl wall\nf 13 15 16 14\nf 17 18 20 19\nf 13 17 19 15\nf 14 16 20 18\n"
                         "f 13 14 18 17\nf 15 19 20 16\n");
   EXPECT_TRUE(contains(found("in.toml"), "it is inside a solid")) << found("in.toml");
+}
+
+TEST_F(Doctor, NamesMissingTextures) {
+  room("bare.toml", 1.0, 1.9, true);
+  write("room.mtl",
+        "newmtl wall\nmap_Kd wood.png\nmap_Ke glow.png\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n");
+  const std::string all = found("bare.toml");
+  EXPECT_TRUE(contains(all, "textures or other files are missing: ")) << all;
+  EXPECT_TRUE(contains(all, at("wood.png").string()) && contains(all, at("glow.png").string()))
+      << all;
+  EXPECT_EQ(std::ranges::count(all, '\n'), 1) << all;  // the warnings themselves are left out
+}
+
+// A hall beside the closed room has 100 times its surface, but light from there never arrives.
+TEST_F(Doctor, CountsVplsOnlyWhereTheyLightTheView) {
+  room("hall.toml", 1.0, 1.9, true);
+  std::string obj = readAll(at("room.obj")) + "usemtl wall\n";
+  for (int i = 0; i < 8; ++i) obj += vertex(1.0, i & 1 ? 30 : 10, i & 2 ? 30 : 10, i & 4 ? 30 : 10);
+  obj +=
+      "f 13 14 16 15\nf 17 19 20 18\nf 13 15 19 17\nf 14 18 20 16\nf 13 17 18 14\nf 15 16 20 19\n";
+  write("room.obj", obj);
+  EXPECT_EQ(found("hall.toml"), "");
+  const auto vpls =
+      nlohmann::json::parse(tool("vpl-inspect", "doctor --json " + path("hall.toml")).out)["vpls"];
+  EXPECT_GT(vpls.at("surface"), 2400.0);
+  EXPECT_NEAR(vpls.at("in_use").get<double>() * vpls.at("surface").get<double>(), 24.0, 8.0);
 }
 
 TEST_F(Doctor, KnowsTheRatesOfTheCostModelAndTheCountsOfThePipeline) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tools/common/run/result_warning.h"
 #include "tools/estimate/vpl_surface.h"
 
 namespace bnvpl {
@@ -70,7 +71,7 @@ void warnOfDark(uint64_t dark, const EstimateResult& result) {
   const std::string which = none ? paths ? "no VPL lights anything: " : "no VPL got a photon: "
                                  : share + std::string(paths ? " of the VPLs light nothing: "
                                                              : " of the VPLs got no photon: ");
-  printWarnings("vpl-estimate", {which + causeOfDark(result, none)});
+  warnOfResult(which + causeOfDark(result, none));
 }
 
 void reportPhotons(const EnergyAccount& a, Summary& summary) {

@@ -8,6 +8,7 @@
 #include "formats/image/png_io.h"
 #include "formats/image/tonemap.h"
 #include "tools/common/options/exposure.h"
+#include "tools/common/run/result_warning.h"
 #include "tools/render/image_camera.h"
 #include "tools/render/stage_options.h"
 
@@ -52,9 +53,9 @@ void warnOfBlack(const Image& image) {
   for (const char* channel : {"R", "G", "B"}) {
     if (std::ranges::any_of(*image.find(channel), [](float v) { return v != 0.0f; })) return;
   }
-  printWarnings("vpl-render",
-                {"the image is black: the camera looks away from everything, or no light comes to "
-                 "what it sees; vpl-inspect doctor SCENE tells which, and what to change"});
+  warnOfResult(
+      "the image is black: the camera looks away from everything, or no light comes to "
+      "what it sees; vpl-inspect doctor SCENE tells which, and what to change");
 }
 
 // Rooms lit around two corners are 20 to 30 times darker than even light.
@@ -63,10 +64,9 @@ constexpr double kDark = 70.0;
 void warnOfDark(const RenderResult& result) {
   const double shown = result.stats.direct + result.stats.indirect;
   if (!(shown > 0.0) || kDark * shown > result.evenRadiance) return;
-  printWarnings("vpl-render",
-                {"the image is " + formatSi(result.evenRadiance / shown) +
-                 " times darker than the power of the lights would make it if it fell evenly on "
-                 "all surfaces; vpl-inspect doctor SCENE tells where their light goes"});
+  warnOfResult("the image is " + formatSi(result.evenRadiance / shown) +
+               " times darker than the power of the lights would make it if it fell evenly on "
+               "all surfaces; vpl-inspect doctor SCENE tells where their light goes");
 }
 
 double percentOf(double part, double whole) { return whole > 0 ? 100 * part / whole : 0.0; }
@@ -95,7 +95,7 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
   }
   const auto warn = [](uint64_t count, const char* what) {
     if (count == 0) return;
-    printWarnings("vpl-render", {std::to_string(count) + what + "; use --pixels float"});
+    warnOfResult(std::to_string(count) + what + "; use --pixels float");
   };
   warn(losses.beyond, " values exceed half precision");
   warn(losses.below, " values are too small for half precision and became 0");
@@ -192,7 +192,7 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
                   "two passes, the fewest, took %.1f s instead of --time's %.6g; choose a smaller "
                   "--size, or a lower quality",
                   passes.timeS, wantedS);
-    printWarnings("vpl-render", {line});
+    warnOfResult(line);
   }
 }
 

@@ -23,6 +23,7 @@
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/run/interrupt.h"
 #include "tools/common/run/pin_functions.h"
+#include "tools/common/run/result_warning.h"
 #include "tools/common/stage/build_id.h"
 
 namespace bnvpl {
@@ -38,6 +39,7 @@ double peakMemoryMiB() {
 std::string toolName;  // begins each line on stderr
 std::vector<std::string> heldWarnings;
 bool strict = false;  // --strict
+bool resultWarned = false;
 char** arguments = nullptr;
 
 void tellWarnings(const std::string& tool, const std::vector<std::string>& warnings) {
@@ -177,7 +179,7 @@ void addToolOptions(CLI::App& cli, ToolOptions& options) {
   inTopic(Topic::Expert, cli.add_flag("--quiet", options.quiet,
                                       "no progress and no summary; errors and warnings stay"));
   inTopic(Topic::Expert, cli.add_flag("--strict", options.strict,
-                                      "warnings are errors: nothing is written after one"));
+                                      "a warning fails the run: of inputs, before the work"));
   inTopic(Topic::Files, cli.add_flag("--no-clobber", options.noClobber,
                                      "refuse outputs that exist, before the work"));
   addOption(cli,
@@ -231,7 +233,10 @@ int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
         options.threads > 0
             ? options.threads
             : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-    return work();
+    const int code = work();
+    if (code == kExitOk && strict && resultWarned)
+      return fail(kExitInput, "a warning is an error with --strict; the outputs are written");
+    return code;
   } catch (const Interrupted& e) {
     endInterrupted(e);
   } catch (...) {
@@ -288,9 +293,8 @@ void Summary::add(const std::string& key, Json value, const std::string& text) {
 void Summary::addNonFinite(uint64_t count, const std::string& what) {
   add("non_finite_samples", count);
   if (count == 0) return;
-  printWarnings(tool_, {std::to_string(count) + " " + what +
-                        " were not finite and count as zero; look for values of absurd size in "
-                        "the scene"});
+  warnOfResult(std::to_string(count) + " " + what +
+               " were not finite and count as zero; look for values of absurd size in the scene");
 }
 
 Summary::Cost Summary::close(const ToolOptions& options, OutputSet& files) const {
@@ -320,6 +324,11 @@ void printWarnings(const std::string& tool, const std::vector<std::string>& warn
   tellWarnings(tool, warnings);
   if (strict && !warnings.empty())
     throw InputError("a warning is an error with --strict; nothing is written");
+}
+
+void warnOfResult(const std::string& text) {
+  resultWarned = true;
+  tellWarnings(toolName, {text});
 }
 
 void holdWarning(const std::string& text) { heldWarnings.push_back(text); }

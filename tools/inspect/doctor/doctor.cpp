@@ -4,16 +4,18 @@
 #include <cstdio>
 #include <sstream>
 
+#include "core/files.h"
 #include "scene/surface_area.h"
 #include "tools/common/run/progress_meter.h"
 #include "tools/common/run/run_tool.h"
 #include "tools/inspect/doctor/light_trials.h"
+#include "tools/inspect/doctor/surface_trial.h"
 
 namespace bnvpl {
 namespace {
 
 constexpr uint64_t kPhotonsOfLight = 2048, kPhotonsOfAll = 1 << 20;
-constexpr size_t kLightsShown = 20;
+constexpr size_t kLightsShown = 20, kFilesShown = 10;
 
 std::string number(double value) {
   char text[32];
@@ -114,17 +116,19 @@ void describeView(const RayScene& rays, Json& json, Findings& findings) {
 }
 
 void describeVpls(const RayScene& rays, Json& json, Findings& findings) {
-  const double area = surfaceArea(rays.scene()), depth = json["view"]["depth"].get<double>();
-  const double radius = std::sqrt(area / (2.0 * std::sqrt(3.0) * kUsualVpls));
-  json["vpls"] = {{"surface", area}, {"count", kUsualVpls}, {"spacing", 2.0 * radius}};
+  const double area = surfaceArea(rays.scene()), used = shareInUse(rays),
+               depth = json["view"]["depth"].get<double>();
+  const double radius = std::sqrt(used * area / (2.0 * std::sqrt(3.0) * kUsualVpls));
+  json["vpls"] = {
+      {"surface", area}, {"in_use", used}, {"count", kUsualVpls}, {"spacing", 2.0 * radius}};
   constexpr double kWide = 0.2;  // spacing over depth above which each VPL is seen
   const double enough = kUsualVpls * std::pow(2.0 * radius / (kWide * std::max(depth, 1e-30)), 2.0);
-  findings.add(
-      depth > 0.0 && 2.0 * radius > kWide * depth && enough < 1e8,
-      formatSi(kUsualVpls) + " VPLs on all of the surface would stand " + number(2.0 * radius) +
-          " m apart, in a view that is " + number(depth) + " m deep",
-      "place and keep more, up to -n " + number(std::ceil(enough / 1000.0)) +
-          "k, if vpl-inspect plot shows them that sparse: most surfaces may be out of use");
+  findings.add(depth > 0.0 && 2.0 * radius > kWide * depth && enough < 1e8,
+               formatSi(kUsualVpls) + " VPLs on the surfaces that light the view would stand " +
+                   number(2.0 * radius) + " m apart, in a view that is " + number(depth) +
+                   " m deep",
+               "place and keep more: -n " + number(std::ceil(enough / 1000.0)) +
+                   "k of vpl-eliminate, and some 20 times as many of vpl-place");
 }
 
 void describeCost(const RayScene& rays, Json& json) {
@@ -141,6 +145,31 @@ void describeCost(const RayScene& rays, Json& json) {
   json["cost"] = {{"cpu_s", cpuS}, {"memory_MiB", bytes / 1048576.0}};
 }
 
+// Warnings of files that are missing become one finding.
+void describeWarnings(const Scene& scene, Json& json, Findings& findings) {
+  std::vector<std::string> missing;
+  for (const fs::path& file : scene.files) {
+    if (!isRegularFile(file)) missing.push_back(file.string());
+  }
+  json["missing"] = missing;
+  const auto isOfMissing = [&](const std::string& warning) {
+    return std::ranges::any_of(
+        missing, [&](const std::string& file) { return warning.starts_with(file + ": "); });
+  };
+  std::string names;
+  for (size_t i = 0; i < missing.size() && i < kFilesShown; ++i)
+    names += (i > 0 ? ", " : "") + missing[i];
+  if (missing.size() > kFilesShown)
+    names += " and " + std::to_string(missing.size() - kFilesShown) + " more";
+  findings.add(!missing.empty(), "textures or other files are missing: " + names,
+               "put them there, or correct their names in the file that names them, relative to "
+               "its folder; a .glb holds its textures");
+  for (const std::string& warning : scene.warnings) {
+    findings.add(!isOfMissing(warning), warning,
+                 "see what the message says; what is ignored may be missed");
+  }
+}
+
 }  // namespace
 
 Json diagnose(const RayScene& rays, const LightSet& lights) {
@@ -151,8 +180,7 @@ Json diagnose(const RayScene& rays, const LightSet& lights) {
   describeView(rays, json, findings);
   describeVpls(rays, json, findings);
   describeCost(rays, json);
-  for (const std::string& warning : scene.warnings)
-    findings.add(true, warning, "see what the message says; what is ignored may be missed");
+  describeWarnings(scene, json, findings);
   json["findings"] = findings.list();
   return json;
 }
@@ -175,7 +203,8 @@ std::string doctorText(const Json& asFound) {
   out << "  view: surfaces " << number(real(d["view"]["depth"])) << " m away, "
       << percent(real(d["view"]["open"])) << " of the film shows none; "
       << percent(real(d["reaches_view"])) << " of the light reaches it\n"
-      << "  VPLs: " << formatSi(real(d["vpls"]["count"])) << " on all of the surface are "
+      << "  VPLs: " << formatSi(real(d["vpls"]["count"])) << " on the "
+      << percent(real(d["vpls"]["in_use"])) << " of the surface that lights the view are "
       << number(real(d["vpls"]["spacing"])) << " m apart\n"
       << "  with the defaults: about " << durationText(real(d["cost"]["cpu_s"]))
       << " of CPU time and " << number(real(d["cost"]["memory_MiB"]))

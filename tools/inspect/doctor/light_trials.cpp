@@ -17,14 +17,14 @@ constexpr uint64_t kKey = 0x646f63746f72;  // "doctor"
 
 double sizeOf(const Scene& scene) { return length(scene.bounds.upper - scene.bounds.lower); }
 
+}  // namespace
+
 bool inSight(const RayScene& rays, const SurfacePoint& point) {
   const Scene& scene = rays.scene();
   const RasterPoint at = projectToFilm(scene.camera, scene.film, point.position);
   if (at.depth <= 0.0f || at.x < 0.0f || at.x > 1.0f || at.y < 0.0f || at.y > 1.0f) return false;
   return !rays.occluded(rays.offsetOrigin(point.position, point.ng), scene.camera.position);
 }
-
-}  // namespace
 
 LightTrial tryLight(const RayScene& rays, const LightSet& lights, size_t light, uint64_t photons) {
   LightTrial trial;
@@ -78,7 +78,6 @@ ViewTrial tryView(const RayScene& rays) {
     std::ranges::nth_element(depths, middle);
     trial.depth = *middle;
   }
-  Rng rng(kKey, 0);
   for (unsigned i = 0; i < kAround; ++i) {
     const float z = 1.0f - 2.0f * (static_cast<float>(i) + 0.5f) / kAround,
                 angle = 2.39996323f * static_cast<float>(i),  // golden spiral

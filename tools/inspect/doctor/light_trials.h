@@ -20,6 +20,9 @@ struct LightTrial {
 inline constexpr double kAtOnce = 0.01;
 LightTrial tryLight(const RayScene& rays, const LightSet& lights, size_t light, uint64_t photons);
 
+// Whether the camera sees a point, from the side that its geometric normal points to.
+bool inSight(const RayScene& rays, const SurfacePoint& point);
+
 // What the camera sees, by a grid of rays through the film, and what is around it.
 struct ViewTrial {
   double depth = 0.0;     // median distance of what the film shows, scene units; 0: nothing
