@@ -1,14 +1,17 @@
-# Writes HEADER with the version of Embree and the build id: a hash of it, of FLAVOUR, and of all sources that
-# determine what the tools compute.
-# Runs at each build: cmake -DSOURCE=... -DHEADER=... -DFLAVOUR=... -DEMBREE=... -P build_id.cmake
+# Writes HEADER with the version of Embree and the build id: a hash of it, of FLAVOUR, of those FLAGS of the compiler
+# that change arithmetic, and of all sources that determine what the tools compute. Folders, debug information and
+# hardening do not change it.
+# Runs at each build: cmake -DSOURCE=... -DHEADER=... -DFLAVOUR=... -DFLAGS=... -DEMBREE=... -P build_id.cmake
 file(GLOB_RECURSE files RELATIVE ${SOURCE}
      ${SOURCE}/core/* ${SOURCE}/formats/* ${SOURCE}/spatial/* ${SOURCE}/scene/* ${SOURCE}/transport/* ${SOURCE}/images/*
      ${SOURCE}/tools/* ${SOURCE}/cmake/*)
 list(FILTER files INCLUDE REGEX "(\\.(h|cpp|cmake)|CMakeLists\\.txt)$")
-list(FILTER files EXCLUDE REGEX "_test\\.cpp$")
+list(FILTER files EXCLUDE REGEX "_test\\.cpp$|^cmake/Install\\.cmake$")
 list(APPEND files CMakeLists.txt)
 list(SORT files)
-set(all "${FLAVOUR} embree=${EMBREE}")
+string(REGEX MATCHALL "(^| )-(m|f[a-z-]*math|ffp-|fexcess-|Ofast)[^ ]*" arithmetic "${FLAGS}")
+list(JOIN arithmetic "" arithmetic)
+set(all "${FLAVOUR}${arithmetic} embree=${EMBREE}")
 foreach(file ${files})
   file(SHA256 ${SOURCE}/${file} hash)
   string(APPEND all "${file} ${hash}\n")

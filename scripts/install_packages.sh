@@ -1,27 +1,35 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that the build and the tests need, and those named as arguments.
-# Does nothing when all are installed.
+# Installs the packages that the build and the tests need on Debian 12 and 13 and Ubuntu 24.04, and those named as
+# arguments. Does nothing when all are installed.
 set -euo pipefail
+
+# Ubuntu has another package of libjpeg-turbo, and Chromium as a snap only.
+jpeg=libjpeg62-turbo-dev
+browser=(chromium chromium-driver)
+if [[ $(. /etc/os-release 2>/dev/null && echo "${ID:-}") == ubuntu ]]; then
+  jpeg=libjpeg-turbo8-dev
+  browser=()
+fi
 
 packages=(
   build-essential cmake ninja-build pkg-config python3
   libembree-dev libtbb-dev                                # ray tracing, threads
   libflann-dev liblz4-dev                                 # kd-tree; FLANN's headers need lz4
   libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB requires Boost
-  libopenexr-dev libpng-dev libjpeg62-turbo-dev           # images
+  libopenexr-dev libpng-dev "$jpeg"                       # images
   zlib1g-dev libstb-dev                                   # gzip; TGA, BMP, written PNG
   libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
   libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums
   libgtest-dev libbenchmark-dev                           # tests, benchmarks
   python3-numpy python3-matplotlib python3-openimageio    # evaluation, package
-  python3-xxhash python3-pip                              # Python package
-  chromium chromium-driver python3-selenium               # test of its report
+  python3-xxhash python3-pip python3-yaml                 # Python package; test of the workflow
+  "${browser[@]}" python3-selenium                        # test of its report
   "$@"
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-  echo "No apt here, so nothing is installed. The build needs what Debian 12 calls:"
+  echo "No apt here, so nothing is installed. The build needs what Debian calls:"
   echo "  ${packages[*]}"
   exit 0
 fi

@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+import unittest
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -241,7 +242,7 @@ def write_report(folder: Path, change: dict[str, Any] | None = None) -> Path:
 def browser() -> webdriver.Chrome:
     for program in ("/usr/bin/chromium", "/usr/bin/chromedriver"):
         if not Path(program).exists():
-            raise RuntimeError(f"{program} is missing; install chromium and chromium-driver")
+            raise unittest.SkipTest(f"{program} is missing; install chromium and chromium-driver")
     options = Options()
     options.binary_location = "/usr/bin/chromium"
     arguments = ["--headless=new", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars"]

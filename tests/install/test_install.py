@@ -9,6 +9,7 @@ Shells that are not here are skipped.
 from __future__ import annotations
 
 import contextlib
+import importlib
 import json
 import os
 import pty
@@ -145,6 +146,9 @@ class Installed(InstalledTest):
         libraries = set(re.findall(r"\b(?:lib|zlib|nlohmann)[\w.+-]*-dev\b", script))
         used_by_tests = {"libgtest-dev", "libbenchmark-dev", "libboost-iostreams-dev"}
         self.assertEqual(libraries - used_by_tests - listed, set())
+        copyright_file = (ROOT / "debian/copyright").read_text()
+        for package in re.findall(r"^\| `([^`]+)`", table, re.M):
+            self.assertRegex(copyright_file, rf"\n {re.escape(package)}, ")
 
 
 class Completion(InstalledTest):
@@ -233,6 +237,36 @@ class Completion(InstalledTest):
         self.assertIn("--max-relmse", self.zsh("vpl-inspect compare --max-relm"))
 
 
+class BuildId(unittest.TestCase):
+    def header(self, flags: str) -> str:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "id.h"
+            words = [f"-DSOURCE={ROOT}", f"-DHEADER={path}", f"-DFLAGS={flags}", "-DEMBREE=4.3.3"]
+            run("cmake", *words, "-P", ROOT / "cmake/build_id.cmake")
+            return path.read_text()
+
+    def test_only_flags_that_change_arithmetic_count(self) -> None:
+        plain = self.header("")
+        self.assertIn('BNVPL_EMBREE "4.3.3"', plain)
+        hardened = "-g -O2 -ffile-prefix-map=/home/math/-march=. -fstack-protector-strong -Wformat"
+        self.assertEqual(self.header(hardened), plain)
+        for flag in ("-march=native", "-ffast-math", "-ffp-contract=fast", "-Ofast"):
+            self.assertNotEqual(self.header(f"{hardened} {flag}"), plain, flag)
+
+
+class Workflow(unittest.TestCase):
+    def test_runs_the_tests_where_the_docs_say_that_it_builds(self) -> None:
+        text = (ROOT / ".github/workflows/ci.yml").read_text()
+        jobs = importlib.import_module("yaml").safe_load(text)["jobs"]
+        images = jobs["test"]["strategy"]["matrix"]["image"]
+        self.assertEqual(images, ["debian:12", "debian:13", "ubuntu:24.04"])
+        self.assertIn("Debian 12 and 13 and Ubuntu 24.04", (ROOT / "docs/install.md").read_text())
+        self.assertEqual(jobs["test"]["steps"][-1]["run"], ".ci/run")
+        for job in jobs.values():
+            for step in job["steps"]:
+                self.assertTrue("run" in step or "uses" in step, step)
+
+
 class Version(unittest.TestCase):
     def test_one_version(self) -> None:
         project = re.search(r"project\(bnvpl VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())
@@ -242,6 +276,7 @@ class Version(unittest.TestCase):
             ("CITATION.cff", rf"^version: {version}$"),
             ("CHANGELOG.md", rf"^## \[{version}\] - (unreleased|20\d\d-\d\d-\d\d)$"),
             ("python/bnvpl/__init__.py", rf'^__version__ = "{version}"$'),
+            ("debian/changelog", rf"\Abnvpl \({version}\) "),
         ):
             self.assertRegex((ROOT / file).read_text(), re.compile(pattern, re.M), file)
         headings = re.findall(r"^## \[([^]]+)\]", (ROOT / "CHANGELOG.md").read_text(), re.M)
