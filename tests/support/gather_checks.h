@@ -163,4 +163,17 @@ inline void expectSumOverAll(const std::string& gather, const Given& options,
   }
 }
 
+// Mean squared difference of G from the sum over all VPLs at the same points, over its squared mean.
+inline double relativeMseToAll(const GatherCase& c, const std::string& gather,
+                               const Given& options) {
+  const Image all = c.indirect("all"), image = c.indirect(gather, options);
+  double squared = 0.0;
+  for (size_t i = 0; i < all.pixelCount(); ++i) {
+    const double difference = double{(*image.find("G"))[i]} - double{(*all.find("G"))[i]};
+    squared += difference * difference;
+  }
+  const double mean = meanOf(all);
+  return squared / (static_cast<double>(all.pixelCount()) * mean * mean);
+}
+
 }  // namespace bnvpl::test

@@ -3,15 +3,8 @@
 namespace bnvpl::test {
 namespace {
 
-// Squared difference from the sum over all VPLs at the same points, summed over the pixels.
-double errorOf(const GatherCase& c, const Given& options) {
-  const Image all = c.indirect("all"), image = c.indirect("lightslice", options);
-  double squared = 0.0;
-  for (size_t i = 0; i < all.pixelCount(); ++i) {
-    const double difference = double{(*image.find("G"))[i]} - double{(*all.find("G"))[i]};
-    squared += difference * difference;
-  }
-  return squared;
+double sliceError(const GatherCase& c, const Given& options) {
+  return relativeMseToAll(c, "lightslice", options);
 }
 
 // VPLs that no slice's representative sees are lost (theory.md).
@@ -23,7 +16,7 @@ TEST(LightSlice, MoreColumnsAreNearerToAllVpls) {
   const GatherCase& c = *gatherCases().back();
   double before = INFINITY;
   for (const char* columns : {"20", "100", "400"}) {
-    const double error = errorOf(c, {{"columns", columns}});
+    const double error = sliceError(c, {{"columns", columns}});
     EXPECT_LT(error, before) << columns;
     before = error;
   }
@@ -32,15 +25,15 @@ TEST(LightSlice, MoreColumnsAreNearerToAllVpls) {
 // Clusters per slice are better than as many for all points (Ou & Pellacini 2011).
 TEST(LightSlice, SlicesAreBetterThanOneForAll) {
   for (const GatherCase* c : gatherCases()) {
-    const double slices = errorOf(*c, {{"columns", "100"}});
-    EXPECT_LT(slices, 0.1 * errorOf(*c, {{"columns", "100"}, {"slices", "1"}}));
+    const double slices = sliceError(*c, {{"columns", "100"}});
+    EXPECT_LT(slices, 0.1 * sliceError(*c, {{"columns", "100"}, {"slices", "1"}}));
   }
 }
 
 // Clusters of one VPL are exact; larger clusters hold VPLs whose columns have one direction.
 TEST(LightSlice, WithoutALimitToColumnsItIsNearlyAll) {
   for (const GatherCase* c : gatherCases()) {
-    EXPECT_LT(errorOf(*c, {{"columns", "1M"}}), 0.1 * errorOf(*c, {{"columns", "60"}}));
+    EXPECT_LT(sliceError(*c, {{"columns", "1M"}}), 0.1 * sliceError(*c, {{"columns", "60"}}));
   }
 }
 
