@@ -133,7 +133,7 @@ TEST_F(Options, MistakesAreReportedInSentences) {
   fail("vpl-inspect", "compare a.exr b.exr --max-relms 1", kExitUsage,
        {"did you mean --max-relmse? See vpl-inspect compare --help"});
   fail("vpl-render", scene_ + " a.vpl -o " + path("x.exr") + " --gather tilecut", kExitUsage,
-       {"--gather: 'tilecut' is not a method; did you mean tilecuts? Use all, "});
+       {"--gather: 'tilecut' is not a method; did you mean tilecuts? Use adaptive-tree, all, "});
   fail("vpl-render", scene_ + " a.vpl -o " + path("x.exr") + " --only direkt", kExitUsage,
        {"--only: 'direkt' is not one of its choices; did you mean direct?"});
   // Removed options name their replacement.
