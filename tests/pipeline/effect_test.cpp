@@ -163,6 +163,21 @@ TEST_F(Effect, LayersOfVplsNeedVpls) {
     EXPECT_EQ(all.find(name), nullptr) << name;
 }
 
+// What a gather counts is a layer of its images alone, and its mean a statistic.
+TEST_F(Effect, CountersOfAGatherAreLayersAndStatistics) {
+  makeStages(scene_);
+  const std::string render = scene_ + " " + path("lit.vpl") + " --spp 1 --size 8x6 -o " +
+                             path("c.exr") + " --layers brightlights --gather ";
+  fail("vpl-render", render + "all", kExitUsage, {"--layers", "brightlights"});
+  succeed("vpl-render", render + "shirley --stats " + path("c.json"));
+  const Image image = readExr(at("c.exr"));
+  double sum = 0.0;
+  for (const float v : *image.find("brightlights")) sum += double{v};
+  EXPECT_GT(sum, 0.0);
+  const Json stats = Json::parse(readAll(at("c.json")));
+  EXPECT_NEAR(stats.at("mean_brightlights").get<double>(), sum / 48.0, 1e-3);
+}
+
 TEST_F(Effect, NeighboursThatNobodyCountsAreRefused) {
   makeStages(scene_);
   const std::string keep = path("candidates.vpl") + " -n 5 -o " + path("v.vpl");
