@@ -131,7 +131,9 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
       vpls.intensity.push_back(Vec3(1.0f));
       vpls.clamp2.push_back(clamp2);
     }
-    const GatherOf gather(world, vpls, {{"gather", method}});
+    Given options{{"gather", method}};
+    if (method == "interleaved") options.emplace_back("interleave", "1");  // all VPLs in one sample
+    const GatherOf gather(world, vpls, options);
     seesNothing = gather.looksAtFilm;
     const Gathered out = gather.at(bsdf);
     EXPECT_TRUE(isFinite(out.radiance) && isFinite(out.clamped));

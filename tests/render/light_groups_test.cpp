@@ -13,7 +13,7 @@ const Given kGroups{{"layers", "light_groups"}};
 
 // The Cornell box with a point light, a sky, and a group whose lights are off. `only`: the group
 // whose lights shine; kNone: all.
-Scene room(uint32_t side, uint32_t only = kNone, bool shiny = false) {
+Scene groupedRoom(uint32_t side, uint32_t only = kNone, bool shiny = false) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {side, side};
   scene.lightGroups = {"default", "fill", "lamp", "off"};
@@ -64,7 +64,7 @@ Image rendered(const World& world, const VplTable& lit, const Given& way) {
 
 TEST(LightGroupLayers, AddUpToTheImageWhichTheyLeaveAsItIs) {
   for (const bool shiny : {false, true}) {
-    World world(room(24, kNone, shiny));
+    World world(groupedRoom(24, kNone, shiny));
     world.scene.film.transparent = shiny;
     const VplTable lit = litIn(world);
     for (const Given& way : waysToRender()) {
@@ -89,9 +89,9 @@ TEST(LightGroupLayers, AddUpToTheImageWhichTheyLeaveAsItIs) {
 
 // The sums over a group's lights have the expectation of a scene that has no others.
 TEST(LightGroupLayers, HaveTheExpectationOfTheirLights) {
-  const World all(room(8));
+  const World all(groupedRoom(8));
   for (const uint32_t group : {0u, 1u, 2u}) {
-    const World own(room(8, group));
+    const World own(groupedRoom(8, group));
     ZTest options;
     options.layer = "light_" + all.scene.lightGroups[group] + ".";
     options.seeds = 12;
@@ -110,7 +110,7 @@ TEST(LightGroupLayers, HaveTheExpectationOfTheirLights) {
 }
 
 TEST(LightGroupLayers, VplsHaveTheFluxOfTheirLights) {
-  const World all(room(16));
+  const World all(groupedRoom(16));
   for (const Given& estimated : {Given{}, Given{{"method", "paths"}}, Given{{"method", "guarded"}},
                                  Given{{"method", "even"}}}) {
     const VplTable vpls = keptVpls(all, {{"count", "300"}}, {{"count", "4k"}});
@@ -133,7 +133,7 @@ TEST(LightGroupLayers, VplsHaveTheFluxOfTheirLights) {
     }
     EXPECT_EQ(sums[3], 0.0);
     for (const uint32_t group : {0u, 1u, 2u}) {
-      const World own(room(16, group));
+      const World own(groupedRoom(16, group));
       const double flux = totalFlux(lightVpls(own, vpls, work).table);
       EXPECT_NEAR(sums[group], flux, 0.02 * flux) << group;
     }
@@ -142,13 +142,13 @@ TEST(LightGroupLayers, VplsHaveTheFluxOfTheirLights) {
 
 TEST(LightGroupLayers, OfVplsAreTheImagesOfTheirLights) {
   for (const bool shiny : {false, true}) {
-    const World all(room(24, kNone, shiny));
+    const World all(groupedRoom(24, kNone, shiny));
     const Given way = with(kGroups, {{"spp", "16"}});
     const VplTable vpls = keptVpls(all, {{"count", "300"}}, {{"count", "4k"}});
     const Given photons{{"photons", "1M"}};
     const Image image = rendered(all, lightVpls(all, vpls, photons).table, way);
     for (const uint32_t group : {0u, 1u, 2u}) {
-      const World own(room(24, group, shiny));
+      const World own(groupedRoom(24, group, shiny));
       const std::string layer = "light_" + all.scene.lightGroups[group] + ".";
       const double alone = meanOf(rendered(own, lightVpls(own, vpls, photons).table, way), layer);
       EXPECT_NEAR(meanOf(image, layer), alone, 0.02 * alone) << layer << shiny;
@@ -157,9 +157,9 @@ TEST(LightGroupLayers, OfVplsAreTheImagesOfTheirLights) {
 }
 
 TEST(LightGroupLayers, AreRefusedWhereThereAreNone) {
-  const World world(room(8));
+  const World world(groupedRoom(8));
   const VplTable lit = litVpls(world, {{"count", "50"}}, {{"photons", "10k"}}, {{"count", "1k"}});
-  World none(room(8));
+  World none(groupedRoom(8));
   none.scene.lightGroups.resize(1);
   const auto error = [](const World& in, VplTable vpls) -> std::string {
     try {
